@@ -21,11 +21,11 @@ libraries='^name = "(nalgebra|simba|libm|rapier3d.*|parry3d.*|rand.*|sobol_burle
 sources() {
     case $1 in
         windows) paths="$simulation data tasks robots" ;;
-        maps) paths="$simulation data tasks robots src/map" ;;
-        studies) paths="$simulation crates/ask-tell src/study data tasks robots spaces uncertainties" ;;
+        maps) paths="$simulation data tasks robots crates/analysis/src/map" ;;
+        studies) paths="$simulation crates/ask-tell crates/study data tasks robots spaces uncertainties" ;;
         checks) paths="$simulation lab/src/analytic robots" ;;
-        bench) paths="$simulation crates/ask-tell src/calibration data tasks robots spaces priors" ;;
-        levers) paths="$simulation src/calibration src/levers data tasks robots spaces priors" ;;
+        bench) paths="$simulation crates/ask-tell crates/calibration data tasks robots spaces priors" ;;
+        levers) paths="$simulation crates/calibration crates/connector crates/analysis/src/levers data tasks robots spaces priors" ;;
         optimizers) paths="crates/ask-tell lab/src/problems results/reference/landscapes" ;;
         *) echo "scripts/stale.sh: no scope is called $1" >&2; exit 2 ;;
     esac

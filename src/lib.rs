@@ -3,8 +3,8 @@
 //! Data flows one way, and no module reaches back up the flow; `docs/architecture.md` draws it:
 //!
 //! ```text
-//! input, contact, finray, ask_tell -> insertion
-//!       -> connector, sensitivity, map, study, calibration -> identify, levers, tune -> answer -> report -> session -> cli
+//! input, contact, ask_tell -> finray -> insertion -> connector, study -> analysis, calibration -> report
+//!       -> session -> cli
 //! ```
 //!
 //! Inside the library every quantity is in SI units; millimetres, newtons per
@@ -31,15 +31,5 @@
 // A panic is a defect; what input can reach is an error with a message.
 #![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
-pub mod answer;
-pub mod calibration;
 pub mod cli;
-pub mod connector;
-pub mod identify;
-pub mod levers;
-pub mod map;
-pub mod report;
-pub mod sensitivity;
 pub mod session;
-pub mod study;
-pub mod tune;

@@ -1,22 +1,6 @@
-//! The order of the rooms in `src/`: what lies in `crates/` the compiler keeps apart.
+//! Rules that the compiler does not keep.
 
 use std::path::Path;
-
-/// A room may use those before it (`docs/architecture.md`).
-const FLOW: [&str; 12] = [
-    "connector",
-    "sensitivity",
-    "map",
-    "study",
-    "calibration",
-    "identify",
-    "levers",
-    "tune",
-    "answer",
-    "report",
-    "session",
-    "cli",
-];
 
 /// Gives every source file under a folder, and its text.
 fn sources(folder: &Path, each: &mut dyn FnMut(&Path, &str)) {
@@ -28,31 +12,6 @@ fn sources(folder: &Path, each: &mut dyn FnMut(&Path, &str)) {
             each(&path, &std::fs::read_to_string(&path).unwrap());
         }
     }
-}
-
-/// Every `crate::ROOM` in a room of `src/` that comes later, as `file -> room`.
-fn upward(folder: &Path, own: usize, found: &mut Vec<String>) {
-    sources(folder, &mut |path, text| {
-        let later = FLOW[own + 1..].iter();
-        let used = later.filter(|room| text.contains(&format!("crate::{room}")));
-        found.extend(used.map(|room| format!("{} -> {room}", path.display())));
-    });
-}
-
-#[test]
-fn no_room_uses_a_later_one() {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut found = Vec::new();
-    for (own, room) in FLOW.iter().enumerate() {
-        upward(&source.join(room), own, &mut found);
-    }
-    assert_eq!(found, Vec::<String>::new());
-    // What the search finds is seen: the command line uses the reports.
-    upward(&source.join("cli"), 4, &mut found);
-    assert!(found.iter().any(|arrow| arrow.ends_with("-> report")));
-    let folders =
-        std::fs::read_dir(&source).unwrap().filter(|entry| entry.as_ref().unwrap().path().is_dir());
-    assert_eq!(folders.count(), FLOW.len(), "a room stands outside the flow");
 }
 
 /// What std takes from the system's mathematical library (`clippy.toml` denies the same by type).

@@ -207,7 +207,7 @@ fn a_journal_that_others_change_stops_the_study_and_is_saved() {
         let stderr = interfered(&studies, name, interfere);
         assert!(stderr.contains(words), "{name}: {stderr}");
         let rescued = studies.dir(name).join("journal.rescued-1.jsonl");
-        let saved = finger_opt::study::strip_times(&read(&rescued));
+        let saved = study::strip_times(&read(&rescued));
         let body = |text: &str| text.lines().skip(2).map(str::to_owned).collect::<Vec<_>>();
         let (saved, all) = (body(&saved), body(&expected));
         assert!(saved.len() > 10 && all.starts_with(&saved), "{name}: {} lines", saved.len());

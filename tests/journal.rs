@@ -6,9 +6,6 @@ use ask_tell::GridPoint;
 use ask_tell::{Grid, Observation, Optimizer, StopReason};
 use common::memory::{self, Memory};
 use common::{Studies, read, sealed};
-use finger_opt::study::{
-    Ending, Recorded, StudyError, StudyRecord, Timing, decode, encode, strip_times,
-};
 use insertion::evaluation::evaluator::{Evaluate, Measured};
 use insertion::evaluation::objective::Score;
 use insertion::evaluation::template::{Impossible, Template};
@@ -25,6 +22,7 @@ use proptest::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
+use study::{Ending, Recorded, StudyError, StudyRecord, Timing, decode, encode, strip_times};
 
 const FIXTURE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/study");
 

@@ -1,7 +1,7 @@
 //! Capture maps of the contact simulation: against the window, their mirror images and a closed form.
 
+use analysis::map::{Axes, CaptureMap, Plane};
 use contact::direct::Direct;
-use finger_opt::map::{Axes, CaptureMap, Plane};
 use input::shipped::{ROBOTS, TASKS};
 use input::units::N_PER_MM;
 use insertion::evaluation::tolerance::{Search, evaluate};

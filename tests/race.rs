@@ -6,7 +6,6 @@ use ask_tell::{Grid, Optimizer, OptimizerKind, build};
 use common::memory::{self, Memory};
 use common::{Studies, sealed};
 use finger_opt::session::{OpenStudy, Order, SetupRequest, StudyRequest, TaskSource, perform};
-use finger_opt::study::StudyRecord;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluate, Measured};
 use insertion::evaluation::robustness::race::{self, Race};
@@ -22,6 +21,7 @@ use insertion::trial::fake::FakeRig;
 use proptest::prelude::*;
 use std::fs;
 use std::sync::atomic::AtomicBool;
+use study::StudyRecord;
 
 const FIXTURE: &str = include_str!("fixtures/study/study.toml");
 

@@ -8,8 +8,6 @@ use finger_opt::session::{
     self, Among, BenchRequest, CalibrateRequest, HowCalibrated, NextRequest, PrintRequest,
     RibsRequest, SceneRequest, SensitivityRequest, SheetRequest, TaskCheck, TuneRequest,
 };
-use finger_opt::study::write_file;
-use finger_opt::{connector, report};
 use insertion::evaluation::objective::Measure;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY};
 use insertion::trial::engine::EngineKind;
@@ -17,6 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::json;
 use std::path::PathBuf;
+use study::write_file;
 
 type Settings<'a, 'py> = &'a Bound<'py, PyDict>;
 

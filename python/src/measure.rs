@@ -3,7 +3,6 @@
 use crate::errors::{InputError, StudyError, not_forked, raise, signalled};
 use crate::keywords::{Keywords, Name, TaskWord, wrong};
 use finger_opt::cli;
-use finger_opt::report;
 use finger_opt::session::{
     EvaluateRequest, IdentifyRequest, LeversRequest, MapRequest, StiffnessRequest, TaskFile,
     TrialRequest,

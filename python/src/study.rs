@@ -3,12 +3,11 @@
 use crate::errors::{InputError, Refused, StudyError, raise};
 use crate::keywords::{Keywords, TaskWord};
 use crate::measure::{interruptible, released, watched};
+use ::study::{Ending, SOURCES, StudyRecord, evaluations_csv};
 use finger_opt::cli::call;
-use finger_opt::report;
 use finger_opt::session::{
     self, AnyStudy, Failure, NotTaken, Order, POLISH, ResumeRequest, StudyRequest,
 };
-use finger_opt::study::{Ending, SOURCES, StudyRecord, evaluations_csv};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde_json::json;

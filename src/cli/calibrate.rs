@@ -2,13 +2,13 @@
 
 use super::progress::Progress;
 use super::{Failure, print, print_json};
-use crate::calibration::table;
 use crate::session::{CalibrateRequest, Calibrated};
-use crate::study::write_file;
+use calibration::table;
 use clap::Args;
 use insertion::trial::NEVER;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
+use study::write_file;
 
 /// Predict what every finger does on the bench, from simulation and few measurements.
 ///

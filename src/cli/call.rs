@@ -3,14 +3,14 @@
 
 use super::study::{Arguments, ResumeArguments};
 use super::{Failure, recommended, summary};
-use crate::answer::Answer;
 use crate::session::{AnyStudy, Around, Ended};
-use crate::study::StudyRecord;
 use clap::{Args, Parser};
+use report::answer::Answer;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::Path;
+use study::StudyRecord;
 
 pub use super::calibrate::written as calibration;
 pub use super::compare::compared;
@@ -22,7 +22,7 @@ pub use super::robots::json as robots;
 pub use super::study::{Shown, warned};
 pub use super::task::{check as task_check, new as task_new, tune as task_tune};
 pub use super::tasks::listed as shipped;
-pub use crate::calibration::experiments::{COLUMNS, NOT_MEASURABLE};
+pub use calibration::experiments::{COLUMNS, NOT_MEASURABLE};
 
 #[derive(Parser)]
 #[command(no_binary_name = true)]

@@ -1,12 +1,12 @@
 //! Output on the finger and the task of a trial or an evaluation.
 
 use super::words;
-use crate::answer::lines;
 use crate::session::Chosen;
 use input::units::{MM, N_PER_MM};
 use insertion::evaluation::evaluator::Specimen;
 use insertion::finger::model::{CentreFrom, FingerModelKind, RCC_KEY};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY};
+use report::answer::lines;
 use serde_json::{Value, json};
 
 /// The keys that say what was measured.

@@ -1,11 +1,11 @@
 //! `optimize compare DIR..`: studies of the same problem side by side.
 
 use super::{Failure, print, print_json};
-use crate::report::compare::{Comparison, TOLERANCE_MM, compare, page, svg};
-use crate::study::{StudyRecord, write_file};
 use clap::Args;
+use report::compare::{Comparison, TOLERANCE_MM, compare, page, svg};
 use serde_json::json;
 use std::path::PathBuf;
+use study::{StudyRecord, write_file};
 
 /// Compare optimizers over studies of the same task and objective.
 #[derive(Debug, Args)]

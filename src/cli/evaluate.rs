@@ -3,13 +3,13 @@
 use super::terminal::merge;
 use super::words;
 use super::{Failure, chosen, print, print_json, repeat};
-use crate::answer::lines;
-use crate::answer::words::{mm, number};
 use crate::session::{EvaluateRequest, Evaluated};
-use crate::study::ByRibs;
 use clap::Args;
 use insertion::trial::NEVER;
+use report::answer::lines;
+use report::answer::words::{mm, number};
 use serde_json::{Value, json};
+use study::ByRibs;
 
 /// Measure one finger.
 #[derive(Debug, Args)]

@@ -2,10 +2,10 @@
 //! executors, and runs the study with the same library.
 
 use super::Failure;
-use crate::study::SOURCES;
 use std::ffi::OsString;
 use std::process::{Command, ExitCode, Stdio};
 use std::sync::{Mutex, PoisonError};
+use study::SOURCES;
 
 /// Names another interpreter than `python3`.
 const PYTHON: &str = "FINGER_OPT_PYTHON";

@@ -1,16 +1,16 @@
 //! `optimize finger`: what a finger's ribs say of its stiffness.
 
 use super::{Failure, print, print_json};
-use crate::answer::lines;
 use crate::session::{Ribs, RibsRequest};
-use crate::study::write_file;
 use clap::Args;
 use finray::picture;
 use finray::stiffness::PlanarStiffness;
 use input::units::{GRAM, MM, N_PER_MM};
 use nalgebra::Matrix3;
+use report::answer::lines;
 use serde_json::{Value, json};
 use std::path::PathBuf;
+use study::write_file;
 
 /// Largest force on the pad that is drawn, N: bends are those of small displacements.
 const LARGEST_LOAD_N: f64 = 1000.0;

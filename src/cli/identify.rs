@@ -2,10 +2,10 @@
 
 use super::words::wrapped;
 use super::{Failure, print, print_json};
-use crate::report::identify as shown;
 use crate::session::IdentifyRequest;
 use clap::Args;
 use insertion::trial::NEVER;
+use report::identify as shown;
 
 /// Tell from the robot's logs what its cell is like: friction, stiffness, preload, pads, edges
 ///

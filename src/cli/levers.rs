@@ -2,12 +2,12 @@
 
 use super::words::wrapped;
 use super::{Failure, print, print_json};
-use crate::report::levers as shown;
 use crate::session::LeversRequest;
-use crate::study::write_file;
 use clap::Args;
 use insertion::trial::NEVER;
+use report::levers as shown;
 use std::path::PathBuf;
+use study::write_file;
 
 /// Find out what would help a finger more than its infill: tilt, strokes, grip, friction, robot.
 #[derive(Debug, Args)]

@@ -3,8 +3,8 @@
 use super::terminal::merge;
 use super::words;
 use super::{Failure, chosen, print, print_json};
-use crate::map::CaptureMap;
 use crate::session::{Chosen, MapRequest};
+use analysis::map::CaptureMap;
 use clap::Args;
 use insertion::trial::NEVER;
 use serde_json::{Value, json};

@@ -38,6 +38,13 @@ use terminal::{print, print_json, say};
 use clap::{ArgMatches, Args, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
+use std::sync::LazyLock;
+
+/// Version, commit and the first digits of the sources' hash.
+static LONG_VERSION: LazyLock<String> = LazyLock::new(|| {
+    let [version, commit] = [env!("CARGO_PKG_VERSION"), env!("FINGER_OPT_COMMIT")];
+    format!("{version} ({commit}, sources {})", &::study::SOURCES[..8])
+});
 
 /// Finds the 3D-printed compliant finger that makes a connector insertion most robust.
 ///
@@ -50,7 +57,7 @@ use std::process::ExitCode;
 #[command(
     name = "optimize",
     version,
-    long_version = env!("FINGER_OPT_VERSION"),
+    long_version = LONG_VERSION.as_str(),
     subcommand_negates_reqs = true,
     arg_required_else_help = true,
     args_conflicts_with_subcommands = true,

@@ -2,8 +2,8 @@
 
 use super::progress::Progress;
 use super::{Failure, print, print_json};
-use crate::calibration::table::design_json;
 use crate::session::{Advised, NextRequest};
+use calibration::table::design_json;
 use clap::Args;
 use insertion::trial::NEVER;
 use serde_json::{Value, json};

@@ -3,10 +3,10 @@
 
 use super::terminal::say;
 use crate::session::{COSTS, Event, Part, Standing};
-use crate::study::{Recorded, Study};
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, stderr};
 use std::time::{Duration, Instant};
+use study::{Recorded, Study};
 
 /// Time between two lines where there is no terminal.
 const EVERY: Duration = Duration::from_secs(3);

@@ -1,10 +1,10 @@
 //! The recommendation of a study as JSON.
 
-use crate::answer::{Answer, AsGood, Measured, Recommended, Trust, command, expectation};
-use crate::study::{ByRibs, OnBench, StudyRecord};
 use insertion::evaluation::objective::Measure;
+use report::answer::{Answer, AsGood, Measured, Recommended, Trust, command, expectation};
 use serde_json::{Value, json};
 use std::path::Path;
+use study::{ByRibs, OnBench, StudyRecord};
 
 /// `recommended`, `equivalent_designs` and `spread_mm`.
 pub fn json(answer: &Answer) -> Value {

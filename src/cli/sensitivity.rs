@@ -1,12 +1,12 @@
 //! `optimize sensitivity`: which unknown matters for the window.
 
 use super::{Failure, print, print_json};
-use crate::report::sensitivity as shown;
 use crate::session::SensitivityRequest;
-use crate::study::write_file;
 use clap::Args;
 use insertion::trial::NEVER;
+use report::sensitivity as shown;
 use std::path::PathBuf;
+use study::write_file;
 
 /// Find out which input matters: of the design, the task and the cell.
 #[derive(Debug, Args)]

@@ -1,11 +1,11 @@
 //! `optimize stiffness`: the stiffness model and how well it fits.
 
 use super::{Failure, print, print_json};
-use crate::report::stiffness;
 use crate::session::StiffnessRequest;
-use crate::study::write_file;
 use clap::Args;
+use report::stiffness;
 use std::path::PathBuf;
+use study::write_file;
 
 /// Show the stiffness model.
 #[derive(Debug, Clone, Args)]

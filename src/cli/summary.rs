@@ -3,15 +3,15 @@
 use super::study::Shown;
 use super::terminal::merge;
 use super::{recommended, words};
-use crate::answer::lines;
-use crate::answer::words::{evaluated, volume_unit};
-use crate::answer::{Answer, Front, command, expectation};
-use crate::map::CaptureMap;
-use crate::report::levers;
 use crate::session::{Around, Ended};
-use crate::study::{Ending, Recorded, StudyRecord};
+use analysis::map::CaptureMap;
+use report::answer::lines;
+use report::answer::words::{evaluated, volume_unit};
+use report::answer::{Answer, Front, command, expectation};
+use report::levers;
 use serde_json::{Value, json};
 use std::path::Path;
+use study::{Ending, Recorded, StudyRecord};
 
 /// Output for a study that has ended, as JSON.
 pub fn json(ended: &Ended, around: &Around) -> String {

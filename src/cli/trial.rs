@@ -3,13 +3,13 @@
 use super::terminal::merge;
 use super::words;
 use super::{Failure, chosen, print, print_json};
-use crate::answer::lines;
-use crate::answer::words::number;
 use crate::session::{TrialDone, TrialRequest};
 use clap::Args;
 use insertion::evaluation::grid_mm;
 use insertion::outcome::Outcome;
 use insertion::trial::{NEVER, Trial};
+use report::answer::lines;
+use report::answer::words::number;
 use serde_json::{Value, json};
 
 /// Simulate one insertion.

@@ -1,6 +1,6 @@
 //! Lines that fit a terminal.
 
-use crate::answer::lines::Line;
+use report::answer::lines::Line;
 
 /// Columns of a terminal.
 const COLUMNS: usize = 80;

@@ -5,7 +5,6 @@ use super::finger::{Chosen, FingerRequest};
 use super::repeat::RepeatRequest;
 use super::request::SetupRequest;
 use super::{Failure, Setup};
-use crate::study::ByRibs;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::robustness::repeat::Bands;
@@ -13,6 +12,7 @@ use insertion::evaluation::tolerance::Search;
 use insertion::outcome::Outcome;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
+use study::ByRibs;
 
 /// Which finger to measure on which task, and how.
 #[derive(Debug, Clone, Default, clap::Args)]

@@ -1,19 +1,19 @@
 //! Why a request failed, and the exit code that says so.
 
-use crate::calibration::experiments::Problems;
-use crate::connector::draft::DraftError;
-use crate::connector::mesh::MeshError;
-use crate::report::ReportError;
-use crate::study::StudyError;
+use calibration::experiments::Problems;
+use connector::draft::DraftError;
+use connector::mesh::MeshError;
 use finray::FingerError;
 use input::shipped::ShippedError;
 use input::{Fault, InputError, Place, Placed};
 use insertion::evaluation::template::Impossible;
 use insertion::stiffness::SurrogateError;
+use report::ReportError;
 use std::error::Error;
 use std::fmt;
 use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicBool, Ordering};
+use study::StudyError;
 
 /// Why a request failed. The texts name options as the command line has them; Python's keywords are
 /// the same words.

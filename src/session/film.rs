@@ -3,18 +3,18 @@
 
 use super::failure::not_stopped;
 use super::{Failure, Setup};
-use crate::answer::Answer;
-use crate::report::replay::{self, ENDS, Film, pair_file};
-use crate::study::{StudyRecord, write_file, write_own_file};
 use insertion::evaluation::evaluator::Specimen;
 use insertion::evaluation::tolerance::offset;
 use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
 use insertion::outcome::Outcome;
 use insertion::trial::{Grasp, Recording, Rig};
 use rayon::ThreadPool;
+use report::answer::Answer;
+use report::replay::{self, ENDS, Film, pair_file};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
+use study::{StudyRecord, write_file, write_own_file};
 
 /// What is made of a recorded trial.
 #[derive(Debug, Clone, Default, clap::Args)]

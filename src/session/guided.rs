@@ -5,9 +5,6 @@ use super::failure::not_stopped;
 use super::open::{Ended, OpenStudy, confirmer, hint, resume_hint};
 use super::standing::Standing;
 use super::{Failure, Setup, Watch, optimizer};
-use crate::study::{
-    Arrived, Course, Ending, Kept, Next, Simulated, StudyError, Timing, Wanted, Work, WorkError,
-};
 use ask_tell::Optimizer;
 use insertion::evaluation::evaluator::Evaluate;
 use insertion::evaluation::objective::Measure;
@@ -17,6 +14,9 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
+use study::{
+    Arrived, Course, Ending, Kept, Next, Simulated, StudyError, Timing, Wanted, Work, WorkError,
+};
 
 /// An open study and what is out.
 pub struct Guided {

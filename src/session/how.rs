@@ -2,12 +2,12 @@
 
 use super::failure::{wide, within};
 use super::{Failure, Setup};
-use crate::calibration::bench::{Effort, Settings};
-use crate::study::{BenchEffort, Cache, Conclusion, IfChanged};
+use calibration::bench::{Effort, Settings};
 use rayon::ThreadPool;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
+use study::{BenchEffort, Cache, Conclusion, IfChanged};
 
 const CACHE: &str = "results/.cache";
 const THREADS: RangeInclusive<u16> = 1..=1024;

@@ -5,19 +5,19 @@ use super::failure::not_stopped;
 use super::files::find;
 use super::request::SetupRequest;
 use super::{Failure, Setup};
-use crate::identify::check::{Remark, remarks};
-use crate::identify::frame::Frame;
-use crate::identify::question::{Identified, IdentifyDone, Question};
-use crate::identify::runs;
-use crate::report::identify::html;
-use crate::study::write_file;
+use calibration::identify::check::{Remark, remarks};
+use calibration::identify::frame::Frame;
+use calibration::identify::question::{Identified, IdentifyDone, Question};
+use calibration::identify::runs;
 use input::files::{self, LARGEST_INPUT};
 use input::shipped::PRIORS;
 use input::units::N_PER_MM;
 use insertion::evaluation::cell::Priors;
 use insertion::robot::{Drive, Robot};
+use report::identify::html;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
+use study::write_file;
 
 /// Which logs to read, and what was known of the cell before.
 #[derive(Debug, Clone, Default, clap::Args)]

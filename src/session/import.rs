@@ -2,18 +2,18 @@
 
 use super::failure::{not_stopped, within};
 use super::{DEFAULT_ROBOT, Failure, TaskCheck, TaskFile, begun, read_task};
-use crate::connector::draft::DENSITY;
-use crate::connector::mesh::import::{Along, COARSEST, Imported, Jaws, Request, Unit, import};
-use crate::connector::mesh::place::{Placed, placed, value};
-use crate::connector::mesh::{Body, Triangle, pick, read};
-use crate::connector::write::{self, Notes};
-use crate::study::write_file;
-use crate::tune::Tuned;
+use connector::draft::DENSITY;
+use connector::mesh::import::{Along, COARSEST, Imported, Jaws, Request, Unit, import};
+use connector::mesh::place::{Placed, placed, value};
+use connector::mesh::{Body, Triangle, pick, read};
+use connector::tune::Tuned;
+use connector::write::{self, Notes};
 use input::shipped::Source;
 use input::units::MM;
 use insertion::trial::engine::EngineKind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
+use study::write_file;
 
 const FINEST: u32 = 1000;
 /// Voxels unless said otherwise.

@@ -4,7 +4,7 @@ use super::failure::not_stopped;
 use super::finger::FingerRequest;
 use super::request::SetupRequest;
 use super::{Failure, Setup};
-use crate::levers::{Levers, Question};
+use analysis::levers::{Levers, Question};
 use insertion::evaluation::template::Template;
 use insertion::space::Design;
 use insertion::surrogate::Prediction;

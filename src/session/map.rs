@@ -2,15 +2,14 @@
 
 use super::failure::not_stopped;
 use super::{Chosen, Failure, FingerRequest, Setup, SetupRequest};
-use crate::map::{Axes, CaptureMap, Mark, Plane};
-use crate::report;
-use crate::study::write_file;
+use analysis::map::{Axes, CaptureMap, Mark, Plane};
 use insertion::evaluation::OffsetStep;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::space::Design;
 use insertion::trial::Grasp;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
+use study::write_file;
 
 /// Which finger to map on which task, and over which errors.
 #[derive(Debug, Clone, Default, clap::Args)]

@@ -2,15 +2,15 @@
 
 use super::files::find;
 use super::{Failure, Setup, TaskSource, read_task};
-use crate::calibration::experiments::{self, Experiment};
-use crate::calibration::subject::whole;
-use crate::study::{BENCH_ROLES, StudyRecord, input_path, read_config};
+use calibration::experiments::{self, Experiment};
+use calibration::subject::whole;
 use input::files::{LARGEST_INPUT, read_named};
 use input::shipped::{MEASUREMENTS, Source, TASKS};
 use insertion::evaluation::cell::Priors;
 use insertion::evaluation::template::Template;
 use insertion::space::Space;
 use std::path::{Path, PathBuf};
+use study::{BENCH_ROLES, StudyRecord, input_path, read_config};
 
 /// Measurements from the bench, and the bounds of what nobody measured.
 pub struct Measured {

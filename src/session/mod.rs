@@ -42,7 +42,7 @@ mod trial;
 mod tune;
 mod unusable;
 
-pub use crate::identify::question::IdentifyDone;
+pub use ::calibration::identify::question::IdentifyDone;
 pub use around::Around;
 pub use calibration::{BenchRequest, CalibrateRequest, Calibrated, HowCalibrated};
 pub use evaluate::{EvaluateRequest, Evaluated};
@@ -74,7 +74,7 @@ pub use task::{TaskCheck, TaskFile, read_space, read_task};
 pub use trial::{Insertion, SceneRequest, TrialDone, TrialRequest};
 pub use tune::{TuneDone, TuneRequest, begun};
 
-use crate::study::Recorded;
+use ::study::Recorded;
 use std::sync::Mutex;
 
 /// Events of a run, for whoever shows them.

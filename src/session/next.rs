@@ -3,13 +3,13 @@
 use super::calibration::{BenchRequest, HowCalibrated, Prepared};
 use super::failure::not_stopped;
 use super::{Failure, Watch, measured};
-use crate::calibration::bench::sampled;
-use crate::calibration::next::{Advice, advise};
-use crate::calibration::published;
-use crate::calibration::subject::Subject;
 use ask_tell::stream::stream;
+use calibration::bench::sampled;
+use calibration::next::{Advice, advise};
+use calibration::subject::Subject;
 use input::shipped::Source;
 use insertion::space::Design;
+use insertion::stiffness::designs;
 use std::sync::atomic::AtomicBool;
 
 /// Fingers that may be printed.
@@ -67,7 +67,7 @@ impl NextRequest {
         }
         let published = match self.among {
             Among::Space => Vec::new(),
-            Among::Published => published::designs()
+            Among::Published => designs()
                 .iter()
                 .map(|design| Design::infill(design.density_percent, design.direction_deg))
                 .collect(),

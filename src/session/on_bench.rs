@@ -4,15 +4,15 @@ use super::calibration::{Ground, folds};
 use super::failure::not_stopped;
 use super::how::{RunRequest, settings};
 use super::{Failure, Setup, Watch, tell};
-use crate::calibration::bench::Settings;
-use crate::calibration::calibrate::Calibration;
-use crate::calibration::simulation::Simulation;
-use crate::calibration::table::{self, by_range, on_bench};
-use crate::study::{Study, StudyConfig, write_own_file};
+use calibration::bench::Settings;
+use calibration::calibrate::Calibration;
+use calibration::simulation::Simulation;
+use calibration::table::{self, by_range, on_bench};
 use insertion::evaluation::objective::{Measure, Objectives};
 use rayon::ThreadPool;
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
+use study::{Study, StudyConfig, write_own_file};
 
 /// Every finger of the space as predicted, in the study's folder.
 const TABLE: &str = "bench_predictions.csv";

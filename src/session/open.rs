@@ -5,12 +5,8 @@ use super::how::RunRequest;
 use super::task::nominal_start;
 use super::{COSTS, Event, Failure, Part, Setup, Watch, tell};
 use super::{film, on_bench, optimizer, printable, report, unusable};
-use crate::answer::command;
-use crate::answer::words::outcome;
-use crate::study::{
-    Cache, Confirmed, Confirmer, Ending, Kept, Recorded, Runner, Simulated, Study, StudyConfig,
-    StudyError, StudyRecord,
-};
+use ::report::answer::command;
+use ::report::answer::words::outcome;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::Template;
@@ -23,6 +19,10 @@ use rayon::ThreadPool;
 use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use study::{
+    Cache, Confirmed, Confirmer, Ending, Kept, Recorded, Runner, Simulated, Study, StudyConfig,
+    StudyError, StudyRecord,
+};
 
 /// A study that is open; no other process can open it meanwhile.
 pub struct OpenStudy {

@@ -2,7 +2,6 @@
 
 use super::open::bad_config;
 use super::{Failure, Setup};
-use crate::study::StudyConfig;
 use ask_tell::gp::DEFAULT_NOISE_FLOOR;
 use ask_tell::{Grid, GridPoint, Informed, Optimizer, OptimizerKind, Polished};
 use insertion::evaluation::objective::Measure;
@@ -11,6 +10,7 @@ use insertion::finger::file::is_shape;
 use insertion::finger::model::FingerSource;
 use insertion::space::{Design, Parameter};
 use insertion::stiffness::Measurement;
+use study::StudyConfig;
 
 /// The optimizer of a study.
 pub(super) fn optimizer(

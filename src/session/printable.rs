@@ -1,15 +1,15 @@
 //! The recommended finger of a study for the printer, written into its folder when it ends.
 
 use super::Failure;
-use crate::answer::Answer;
-use crate::report::printer::{SHEET, SURFACE, THREE_MF, recommended};
-use crate::study::{StudyRecord, write_own_file};
 use finray::export::prism::Prism;
 use finray::export::sheet::{self, AtPad};
 use finray::export::title;
 use finray::mechanics;
 use insertion::evaluation::evaluator::Evaluator;
+use report::answer::Answer;
+use report::printer::{SHEET, SURFACE, THREE_MF, recommended};
 use std::path::Path;
+use study::{StudyRecord, write_own_file};
 
 /// Writes surface, solid and sheet; nothing if nothing is recommended or its finger cannot be printed.
 pub(super) fn write(

@@ -2,12 +2,12 @@
 
 use super::setup::surrogate_of;
 use super::{Around, Failure, unusable};
-use crate::report::replay::{ENDS, pair_file};
-use crate::report::{self, Beside, printer};
-use crate::study::{StudyRecord, write_evaluations_csv, write_own_file};
 use input::files::{self, LARGEST_OWN};
 use insertion::surrogate::Model;
+use report::replay::{ENDS, pair_file};
+use report::{self, Beside, printer};
 use std::path::Path;
+use study::{StudyRecord, write_evaluations_csv, write_own_file};
 
 /// Writes tables, plots and page of the study in a folder again; gives what it measured.
 pub fn rewrite(dir: &Path) -> Result<StudyRecord, Failure> {

@@ -4,8 +4,6 @@ use super::Failure;
 use super::files::{find, printed_finger, stiffness_data, surrogate};
 use super::finger::setting;
 use super::request::DEFAULT_FINGER;
-use crate::answer::Answer;
-use crate::study::StudyRecord;
 use finray::geometry::Geometry;
 use finray::mechanics::{self, FingerStiffness};
 use finray::printed::PrintedFinger;
@@ -13,8 +11,10 @@ use input::shipped::FINGERS;
 use insertion::finger::file::{FingerFile, is_shape};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::{Model, Prediction};
+use report::answer::Answer;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use study::StudyRecord;
 
 /// Which finger to compute.
 #[derive(Debug, Clone, clap::Args)]

@@ -3,12 +3,12 @@
 use super::Failure;
 use super::failure::{not_stopped, wide, within};
 use super::request::SetupRequest;
-use crate::report::sensitivity::Found;
-use crate::sensitivity::factors::Factors;
-use crate::sensitivity::sobol::Sample;
+use analysis::sensitivity::factors::Factors;
+use analysis::sensitivity::sobol::Sample;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::template::Impossible;
 use rayon::prelude::*;
+use report::sensitivity::Found;
 use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -5,7 +5,6 @@ use super::files::{Fingers, find, surrogate};
 use super::measured::{self, Measured};
 use super::open::bad_config;
 use super::request::DEFAULT_FINGER;
-use crate::study::{BENCH_ROLES, CELL, FINGER, Inputs, Provenance, sha256};
 use input::Place;
 use input::shipped::{FINGERS, Source, UNCERTAINTIES};
 use insertion::evaluation::cell::{Priors, Target};
@@ -23,6 +22,7 @@ use insertion::surrogate::Model;
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
 use std::sync::Arc;
+use study::{BENCH_ROLES, CELL, FINGER, Inputs, Provenance, sha256};
 
 /// Everything that is needed to measure a design.
 pub struct Setup {

@@ -1,13 +1,13 @@
 //! The sheet to measure windows by hand.
 
 use super::{Failure, FingerRequest, SetupRequest, TaskSource, TrialRequest, read_task};
-use crate::report::sheet::{self, Picture};
-use crate::study::write_file;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::outcome::Outcome;
 use insertion::trial::picture;
+use report::sheet::{self, Picture};
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
+use study::write_file;
 
 /// How far outward pictures are looked for, mm.
 const FARTHEST_MM: u8 = 12;

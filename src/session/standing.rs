@@ -1,8 +1,8 @@
 //! The best of a study so far.
 
-use crate::study::{Recorded, Study};
 use ask_tell::pareto::Archive;
 use insertion::evaluation::objective::Goals;
+use study::{Recorded, Study};
 
 /// The front of the designs that keep all constraints.
 pub struct Standing {

@@ -7,16 +7,17 @@ use super::how::RunRequest;
 use super::open::OpenStudy;
 use super::request::SetupRequest;
 use super::{Failure, Setup, measured, on_bench};
-use crate::study::{
-    Confirmation, INDIFFERENCE_MM, INDIFFERENCES_MM, IfChanged, LARGEST_BATCH, LARGEST_BUDGET,
-    Study, StudyConfig, read_config, study_name,
-};
 use ask_tell::OptimizerKind;
 use input::shipped::PRIORS;
+use insertion::evaluation::INDIFFERENCE_MM;
 use insertion::evaluation::cell::Priors;
 use insertion::evaluation::objective::{Aggregate, AggregateKind, Constraint, Measure, Objectives};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
+use study::{
+    Confirmation, INDIFFERENCES_MM, IfChanged, LARGEST_BATCH, LARGEST_BUDGET, Study, StudyConfig,
+    read_config, study_name,
+};
 
 /// Seeds there are: TOML, in which studies keep theirs, has no larger whole numbers.
 const SEEDS: RangeInclusive<u64> = 0..=i64::MAX as u64;

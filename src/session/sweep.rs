@@ -3,13 +3,13 @@
 use super::evaluate::{EvaluateRequest, Evaluated};
 use super::failure::not_stopped;
 use super::{Failure, FingerRequest, RunRequest, Setup};
-use crate::study::{Cache, Simulated};
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::tolerance::Search;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
+use study::{Cache, Simulated};
 
 /// Measures fingers on a task, on its own threads and through the cache that studies share.
 pub struct Sweep {

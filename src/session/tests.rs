@@ -1,5 +1,5 @@
 use super::*;
-use crate::levers::Levers;
+use analysis::levers::Levers;
 use input::Place;
 use input::shipped::{self, Source};
 use insertion::evaluation::grid_mm;

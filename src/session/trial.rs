@@ -6,9 +6,8 @@ use super::film::FilmRequest;
 use super::finger::{Chosen, FingerRequest};
 use super::repeat::RepeatRequest;
 use super::request::SetupRequest;
-use crate::identify::curves::STEP_S;
-use crate::identify::log::of_samples;
-use crate::study::write_file;
+use calibration::identify::curves::STEP_S;
+use calibration::identify::log::of_samples;
 use contact::mjcf::{self, MjcfSettings};
 use input::units::MM;
 use insertion::evaluation::evaluator::Specimen;
@@ -19,6 +18,7 @@ use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
+use study::write_file;
 
 /// Largest offset accepted, mm: far outside any socket.
 const LARGEST_OFFSET_MM: f64 = 1000.0;

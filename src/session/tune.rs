@@ -3,10 +3,9 @@
 use super::failure::not_stopped;
 use super::files::robot;
 use super::{DEFAULT_ROBOT, Failure, Part, TaskFile, TaskSource, Watch, tell};
-use crate::connector::check::problems;
-use crate::connector::{picture, rewrite};
-use crate::study::write_file;
-use crate::tune::{Bench, Effort, Stage, Tuned, tune};
+use connector::check::problems;
+use connector::tune::{Bench, Effort, Stage, Tuned, tune};
+use connector::{picture, rewrite};
 use input::Place;
 use input::shipped::Source;
 use insertion::evaluation::Window;
@@ -18,6 +17,7 @@ use insertion::trial::engine::EngineKind;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
+use study::write_file;
 
 /// Which task to tune, and where the result goes.
 #[derive(Debug, Clone, Default, clap::Args)]

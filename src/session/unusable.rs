@@ -2,11 +2,11 @@
 
 use super::failure::not_stopped;
 use super::{Failure, Setup};
-use crate::answer::words::{outcome, remedy};
-use crate::study::{StudyRecord, write_own_file};
 use insertion::trial::{Grasp, picture};
+use report::answer::words::{outcome, remedy};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
+use study::{StudyRecord, write_own_file};
 
 pub(super) const PICTURE: &str = "nominal.svg";
 

@@ -1,12 +1,12 @@
 //! Studies with their journals in memory.
 
 use ask_tell::{Grid, Optimizer};
-use finger_opt::study::{Ending, Runner, Store, Study, StudyError, StudyRecord, strip_times};
 use insertion::evaluation::evaluator::Evaluate;
 use std::io;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
+use study::{Ending, Runner, Store, Study, StudyError, StudyRecord, strip_times};
 
 /// Memory whose operations fail from a given one on, as a full disk's do.
 #[derive(Clone, Default)]

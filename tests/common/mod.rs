@@ -134,7 +134,7 @@ impl Studies {
 
     /// A study's journal without its times.
     pub fn journal(&self, name: &str) -> String {
-        finger_opt::study::strip_times(&self.read(&format!("{name}/journal.jsonl")))
+        study::strip_times(&self.read(&format!("{name}/journal.jsonl")))
     }
 }
 

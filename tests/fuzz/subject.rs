@@ -5,7 +5,7 @@ use super::mutation::{Mutation, mutated};
 use super::process::{no_number, run};
 use anyhow::{Context, Result, bail, ensure};
 use ask_tell::OptimizerKind;
-use finger_opt::connector::mesh::{Surface, read};
+use connector::mesh::{Surface, read};
 use finger_opt::session::{
     Failure, NotTaken, OpenStudy, Order, SetupRequest, StudyRequest, TaskSource, perform,
 };

@@ -130,6 +130,20 @@ pub fn parse(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError>
     unit(rows(text, file)?, file)
 }
 
+/// The designs the publication measured.
+pub fn designs() -> Vec<Measurement> {
+    parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap_or_default()
+}
+
+/// The measured designs of lowest, middle and highest compliance stiffness.
+pub fn three(mut designs: Vec<Measurement>) -> Vec<Measurement> {
+    designs.sort_by(|a, b| a.compliance.total_cmp(&b.compliance));
+    let Some(last) = designs.len().checked_sub(1) else { return designs };
+    let mut places = vec![0, last / 2, last];
+    places.dedup();
+    places.into_iter().map(|place| designs[place]).collect()
+}
+
 /// Reads a measurement file and checks each value by itself.
 fn rows(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
     // The reader counts a line of a "\r\n" file too few.

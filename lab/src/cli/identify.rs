@@ -4,20 +4,19 @@ use super::{Failure, print};
 use crate::identified::truth::{self, Rows};
 use crate::identified::{HiddenCell, logs, tried};
 use clap::{Args, Subcommand};
-use finger_opt::calibration::published;
 use finger_opt::cli::terminal::say;
-use finger_opt::report::identify;
 use finger_opt::session::{Setup, SetupRequest, TaskSource};
-use finger_opt::study::write_file;
 use insertion::space::Design;
 use insertion::stiffness::Measurement;
 use insertion::trial::engine::EngineKind;
 use rayon::prelude::*;
+use report::identify;
 use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+use study::write_file;
 
 /// Tasks of the cells, in turn.
 const TASKS: &str = "usb,ket8";
@@ -140,7 +139,8 @@ impl Truth {
         for number in self.cells.clone() {
             let cell = HiddenCell::draw(&setup.evaluator, number)?;
             let missing = |finger: &Measurement| !rows.contains_key(&(number, finger.design));
-            let fingers: Vec<_> = published::designs().into_iter().filter(missing).collect();
+            let fingers: Vec<_> =
+                insertion::stiffness::designs().into_iter().filter(missing).collect();
             let row = |finger: &Measurement| {
                 let row = truth::measure(&cell, finger, engine)?;
                 append(&file, &row)?;

@@ -5,7 +5,6 @@ use ask_tell::Grid;
 use ask_tell::stream::stream;
 use clap::Args;
 use finger_opt::session::{Setup, SetupRequest};
-use finger_opt::study::write_file;
 use insertion::evaluation::evaluator::{Measured, Specimen};
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::Impossible;
@@ -17,6 +16,7 @@ use rand::seq::SliceRandom;
 use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
+use study::write_file;
 
 /// Most designs of a recorded space.
 const LARGEST: u64 = 20_000;

@@ -1,13 +1,13 @@
 //! `lab map`: capture maps against a trial at every place.
 
 use super::{Failure, print};
+use analysis::map::{CaptureMap, Mark};
 use clap::Args;
-use finger_opt::map::{CaptureMap, Mark};
 use finger_opt::session::MapRequest;
-use finger_opt::study::write_file;
 use insertion::outcome::Outcome;
 use insertion::trial::NEVER;
 use std::path::PathBuf;
+use study::write_file;
 
 /// Compare the capture map of one finger with a trial at every place
 ///

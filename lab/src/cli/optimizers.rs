@@ -4,9 +4,9 @@ use super::{Failure, print};
 use crate::problems::{Function, GridProblem, Landscape, csv, markdown, on_function, on_grid};
 use ask_tell::OptimizerKind;
 use clap::{Args, ValueEnum};
-use finger_opt::study::write_file;
 use input::shipped;
 use std::path::{Path, PathBuf};
+use study::write_file;
 
 /// Count the evaluations that the optimizers need on problems with known optima
 ///

@@ -2,10 +2,9 @@
 
 use super::{Failure, print, print_json};
 use crate::compare::published as beside;
+use calibration::published::{self, Origin};
 use clap::{Args, ValueEnum};
-use finger_opt::calibration::published::{self, Origin};
 use finger_opt::session::{self, DEFAULT_ROBOT, FingerModelRequest, TaskFile};
-use finger_opt::study::write_file;
 use input::shipped::TASKS;
 use insertion::evaluation::tolerance::Search;
 use insertion::stiffness::Measurement;
@@ -13,6 +12,7 @@ use insertion::task::{StartRule, Task};
 use insertion::trial::engine::EngineKind;
 use serde_json::json;
 use std::path::PathBuf;
+use study::write_file;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Fingers {
@@ -25,8 +25,8 @@ pub enum Fingers {
 impl Fingers {
     pub fn designs(self) -> Vec<Measurement> {
         match self {
-            Fingers::All => published::designs(),
-            Fingers::Three => published::three(published::designs()),
+            Fingers::All => insertion::stiffness::designs(),
+            Fingers::Three => insertion::stiffness::three(insertion::stiffness::designs()),
         }
     }
 }

@@ -5,9 +5,7 @@ use super::{Failure, print};
 use crate::compare::Subject;
 use crate::compare::windows::{self, Row};
 use clap::Args;
-use finger_opt::calibration::published;
 use finger_opt::session::{self, DEFAULT_ROBOT};
-use finger_opt::study::write_file;
 use finray::printed::PrintedFinger;
 use input::shipped::{self, FINGERS, SPACES};
 use insertion::robot::Robot;
@@ -19,6 +17,7 @@ use insertion::trial::engine::EngineKind;
 use insertion::trial::run::EngineRig;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
+use study::write_file;
 
 /// Step of the reference, as a share of the production step: 0.125 ms of 0.5.
 const FINE: f64 = 0.25;
@@ -87,7 +86,7 @@ impl Arguments {
 }
 
 fn designs(task: &str, random: Option<u32>) -> Result<Vec<Measurement>, Failure> {
-    let designs = published::designs();
+    let designs = insertion::stiffness::designs();
     let Some(count) = random else { return Ok(designs) };
     let [finger, ..] = FINGERS else { return Ok(designs) };
     let printed = PrintedFinger::parse(finger.text, finger.file).map_err(Failure::input)?;

@@ -1,7 +1,7 @@
 //! Windows of the same fingers in two ways, and the differences of their ends.
 
 use super::{Subject, TaskWays, Way, each, subject_json, window_json, window_words};
-use finger_opt::calibration::statistics::mean;
+use calibration::statistics::mean;
 use insertion::evaluation::{Evaluation, OffsetStep, Window, grid_mm};
 use insertion::stiffness::Measurement;
 use serde_json::{Value, json};

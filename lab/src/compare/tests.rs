@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::compare::pairs::WindowPair;
-use finger_opt::calibration::published::{designs, three};
 use input::shipped::TASKS;
 use insertion::evaluation::OffsetStep;
+use insertion::stiffness::{designs, three};
 use insertion::trial::fake::FakeRig;
 
 pub(super) fn window(steps: [OffsetStep; 2], ends: [FailureClass; 2]) -> Window {

@@ -216,7 +216,7 @@ mod tests {
     fn more_random_fingers_begin_with_the_same() {
         let infill = SPACES.iter().find(|space| space.name == "infill").unwrap();
         let space = Space::parse(infill.text, infill.file).unwrap();
-        let designs = finger_opt::calibration::published::designs();
+        let designs = insertion::stiffness::designs();
         let printed = finray::printed::PrintedFinger::parse(FINGERS[0].text, "f.toml").unwrap();
         let model = insertion::surrogate::fit(&designs, &printed).unwrap();
         let [few, more] = [2, 5].map(|count| random("usb", &space, &model, count));

@@ -4,9 +4,8 @@ use super::HiddenCell;
 use super::truth::Known;
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
-use finger_opt::identify::log::{Log, Moment, of_samples};
+use calibration::identify::log::{Log, Moment, of_samples};
 use finger_opt::session::Failure;
-use finger_opt::study::write_file;
 use input::units::MM;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::outcome::Outcome;
@@ -16,6 +15,7 @@ use insertion::trial::{Course, Grasp, Probe, Rig, Sample};
 use nalgebra::Vector3;
 use rand::RngExt;
 use std::path::Path;
+use study::write_file;
 
 /// The fingers that are logged: percent, degrees.
 pub const LOGGED: [[f64; 2]; 2] = [[10.0, 0.0], [30.0, 0.0]];

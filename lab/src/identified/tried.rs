@@ -3,8 +3,7 @@
 use super::logs::LOGGED;
 use super::truth::{Known, window};
 use super::{HIDDEN, HiddenCell};
-use finger_opt::calibration::published;
-use finger_opt::calibration::statistics::{mean, spearman};
+use calibration::statistics::{mean, spearman};
 use finger_opt::session::{Failure, IdentifyDone, IdentifyRequest, SetupRequest, TaskSource};
 use insertion::evaluation::cell::Parameter;
 use insertion::robot::{Drive, Robot};
@@ -71,7 +70,7 @@ pub fn identify(
         let mm = found.map_or(0.0, |taught| taught.window.range_mm());
         Ok(Some([known.range, mm, known.nominal]))
     };
-    let designs = published::designs();
+    let designs = insertion::stiffness::designs();
     let fingers: Vec<[f64; 2]> =
         designs.iter().map(|d| [d.density_percent, d.direction_deg]).collect();
     let others: Vec<_> = fingers.into_iter().filter(|finger| !LOGGED.contains(finger)).collect();

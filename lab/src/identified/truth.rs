@@ -1,7 +1,7 @@
 //! True windows of measured fingers in hidden cells, and the windows that our engine has for them.
 
 use super::{HIDDEN, HiddenCell};
-use finger_opt::calibration::statistics::{mean, spearman};
+use calibration::statistics::{mean, spearman};
 use finger_opt::session::Failure;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::evaluation::taught::{Moved, Taught, teach};

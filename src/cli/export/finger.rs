@@ -2,7 +2,6 @@
 
 use crate::cli::{Failure, print};
 use crate::session::PrintRequest;
-use crate::study::write_file;
 use clap::{Args, ValueEnum};
 use finray::export::prism::Prism;
 use finray::export::sheet::AtPad;
@@ -10,6 +9,7 @@ use finray::export::{self, profile, sheet, slicer};
 use finray::geometry::Geometry;
 use finray::mechanics;
 use std::path::{Path, PathBuf};
+use study::write_file;
 
 /// A finger for the printer: the best of a study, or of an infill
 ///

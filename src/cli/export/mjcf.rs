@@ -2,9 +2,9 @@
 
 use crate::cli::{Failure, print};
 use crate::session::SceneRequest;
-use crate::study::write_file;
 use clap::Args;
 use std::path::PathBuf;
+use study::write_file;
 
 /// The scene of a trial as MJCF, the model format of MuJoCo and its viewer
 ///

@@ -1,10 +1,10 @@
 //! `optimize measure add`.
 
-use crate::calibration::experiments::{
-    COLUMNS, Experiment, NOT_MEASURABLE, appended, own_task, own_tasks, parse,
-};
 use crate::cli::{Failure, print, say};
 use crate::session::{TaskFile, read_task};
+use calibration::experiments::{
+    COLUMNS, Experiment, NOT_MEASURABLE, appended, own_task, own_tasks, parse,
+};
 use clap::Args;
 use input::files::{LARGEST_INPUT, Table};
 use input::shipped::{MEASUREMENTS, TASKS};

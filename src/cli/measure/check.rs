@@ -1,9 +1,9 @@
 //! `optimize measure check`.
 
-use crate::calibration::experiments::Experiment;
 use crate::cli::terminal::merge;
 use crate::cli::{Failure, print, print_json};
 use crate::session::{read_measurements, read_task};
+use calibration::experiments::Experiment;
 use clap::Args;
 use insertion::outcome::FailureClass;
 use serde_json::{Value, json};

@@ -4,8 +4,8 @@ pub mod add;
 pub mod check;
 
 use super::{Failure, print};
-use crate::calibration::experiments::Experiment;
 use crate::session::SheetRequest;
+use calibration::experiments::Experiment;
 use clap::Subcommand;
 use insertion::trial::NEVER;
 

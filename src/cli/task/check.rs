@@ -3,18 +3,18 @@
 use super::super::words::wrapped;
 use super::super::{Failure, print, print_json, trial};
 use super::tune;
-use crate::connector::check::Problem;
-use crate::connector::picture;
 use crate::session::{DEFAULT_ROBOT, TaskCheck, TaskSource};
-use crate::study::write_file;
-use crate::tune::Tuned;
 use clap::Args;
+use connector::check::Problem;
+use connector::picture;
+use connector::tune::Tuned;
 use input::units::N_PER_MM;
 use insertion::outcome::Outcome;
 use insertion::trial::NEVER;
 use insertion::trial::engine::EngineKind;
 use serde_json::{Value, json};
 use std::path::PathBuf;
+use study::write_file;
 
 /// Look for what cannot work in a task file, draw it and try its nominal start
 #[derive(Debug, Args)]

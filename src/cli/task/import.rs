@@ -3,10 +3,10 @@
 use super::super::words::wrapped;
 use super::super::{Failure, print, print_json, say};
 use super::{check, tune};
-use crate::connector::mesh::import::{ALLOWED, MOST_PARTS};
-use crate::connector::mesh::place::value;
 use crate::session::{ImportRequest, ImportedTask};
 use clap::Args;
+use connector::mesh::import::{ALLOWED, MOST_PARTS};
+use connector::mesh::place::value;
 use input::units::MM;
 use insertion::trial::NEVER;
 use serde_json::{Value, json};

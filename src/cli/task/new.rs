@@ -3,12 +3,11 @@
 use super::super::words::wrapped;
 use super::super::{Failure, print};
 use super::{check, tune};
-use crate::connector::draft::{DENSITY, Dimensions, Hole, Size, draft};
-use crate::connector::write::{self, Notes};
 use crate::session::{DEFAULT_ROBOT, TaskCheck, TaskFile, begun, read_task};
-use crate::study::write_file;
-use crate::tune::Tuned;
 use clap::Args;
+use connector::draft::{DENSITY, Dimensions, Hole, Size, draft};
+use connector::tune::Tuned;
+use connector::write::{self, Notes};
 use input::shipped::Source;
 use input::units::MM;
 use insertion::trial::NEVER;
@@ -16,6 +15,7 @@ use insertion::trial::engine::EngineKind;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
+use study::write_file;
 
 /// Dimensions of the example that is written if none are given: a USB-C plug.
 const EXAMPLE: [&str; 3] = ["8.25x2.4x6.65", "0.1", "12x6.5x20"];

@@ -15,6 +15,10 @@ use crate::outcome::Outcome;
 use crate::surrogate::null_is_nan;
 use serde::{Deserialize, Serialize};
 
+/// Difference of two ranges that a bench cannot tell, mm: measured windows of the publication differ by 0.1
+/// to 0.5 mm.
+pub const INDIFFERENCE_MM: f64 = 0.3;
+
 /// A shift of the start position along y, as a number of 0.1 mm grid steps.
 pub type OffsetStep = i32;
 

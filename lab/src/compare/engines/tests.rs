@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::compare::tests;
-use finger_opt::calibration::published::designs;
 use input::shipped::TASKS;
 use insertion::evaluation::tolerance::Search;
 use insertion::outcome::FailureClass;
+use insertion::stiffness::designs;
 use insertion::task::Task;
 use insertion::task::finger::FingerModel;
 use insertion::trial::fake::FakeRig;

@@ -7,8 +7,8 @@ mod tests;
 pub use table::{accuracy, csv, json};
 
 use super::failures;
-use finger_opt::calibration::published::{self, Origin, Published};
-use finger_opt::calibration::statistics::{mean, spearman};
+use calibration::published::{self, Origin, Published};
+use calibration::statistics::{mean, spearman};
 use insertion::evaluation::Window;
 use insertion::evaluation::taught::{Moved, teach};
 use insertion::evaluation::template::Impossible;

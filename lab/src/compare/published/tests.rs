@@ -10,7 +10,7 @@ use insertion::trial::fake::FakeRig;
 
 /// Every measured design on a task, by the closed form.
 fn table(task: &str) -> TaskTable {
-    let measured = published::designs();
+    let measured = insertion::stiffness::designs();
     let window = |m: &Measurement| {
         let subject = Subject::new(task, &FingerModel::default(), *m);
         evaluate(&FakeRig::default(), &subject.finger, Search::Strides).window
@@ -47,7 +47,7 @@ fn agreement_of_three_designs_by_hand() {
         window([-50, 32], [Lost, Missed]),   // 8.2; published 7.6, 4 | 3
         window([-30, 30], [Jammed, Jammed]), // 6.0; published 6.3, 4 | 3
     ];
-    let designs = published::designs();
+    let designs = insertion::stiffness::designs();
     let found = TaskTable::new("usb", designs.into_iter().zip(windows)).agreements()[0];
     assert!((found.mean_absolute_error_mm.unwrap() - (1.0 + 0.6 + 0.3) / 3.0).abs() < 1e-9);
     assert!((found.mean_error_mm.unwrap() - (-1.0 + 0.6 - 0.3) / 3.0).abs() < 1e-9);
@@ -65,7 +65,7 @@ fn a_nominal_start_that_does_not_insert_has_no_match_and_a_range_of_0_unless_it_
         let (steps, ends) = ([0, 0], [FailureClass::Jammed; 2]);
         let failed =
             Window { nominal, end_negative: end, end_positive: end, ..window(steps, ends) };
-        let table = TaskTable::new(task, published::designs().into_iter().zip([failed]));
+        let table = TaskTable::new(task, insertion::stiffness::designs().into_iter().zip([failed]));
         let found = table.agreements()[0];
         assert_eq!((found.designs, found.matched_ends, found.ends), (counted, 0, 2));
         assert_eq!(found.mean_absolute_error_mm, (counted > 0).then_some(7.2));

@@ -1,0 +1,194 @@
+//! All tasks together: which coordinate is what, the posterior, and how far to trust it.
+
+use super::bench::{Bench, Settings, sampled};
+use super::predict::{Of, Predicted, draws, predict};
+use super::process::COORDINATES;
+use super::statistics::{mean, spearman};
+use super::subject::Subject;
+use ask_tell::stream::stream;
+use insertion::evaluation::cell::Parameter;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+use std::slice;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use study::LeaveOneOut;
+
+/// Joint draws per sample of the posterior.
+const DRAWS: usize = 3;
+
+#[derive(Debug, Clone)]
+pub struct Coordinate {
+    pub parameter: Parameter,
+    /// The task it belongs to; `None` if they share it.
+    pub task: Option<String>,
+}
+
+/// Meaning of a sample's coordinates: the parameters, then each task's hyperparameters.
+#[derive(Debug, Clone)]
+pub struct Layout {
+    pub coordinates: Vec<Coordinate>,
+    /// The coordinates of each task's parameters, in its simulation's order.
+    of_task: Vec<Vec<usize>>,
+}
+
+impl Layout {
+    /// Of the tasks and the parameters that each of them has.
+    pub fn new(tasks: &[(String, Vec<&Parameter>)]) -> Self {
+        let mut coordinates: Vec<Coordinate> = Vec::new();
+        let mut number = |parameter: &Parameter, task: &str| {
+            let task = (!parameter.shared).then(|| task.to_owned());
+            let same = |c: &Coordinate| c.parameter.name == parameter.name && c.task == task;
+            coordinates.iter().position(same).unwrap_or_else(|| {
+                coordinates.push(Coordinate { parameter: parameter.clone(), task });
+                coordinates.len() - 1
+            })
+        };
+        let of_task = tasks
+            .iter()
+            .map(|(task, parameters)| parameters.iter().map(|p| number(p, task)).collect())
+            .collect();
+        Layout { coordinates, of_task }
+    }
+
+    pub fn dimension(&self) -> usize {
+        self.coordinates.len() + COORDINATES * self.of_task.len()
+    }
+
+    pub fn benches<'a>(&self, subjects: &'a [Subject]) -> Vec<Bench<'a>> {
+        let bench = |(i, subject): (usize, &'a Subject)| {
+            subject.bench(self.of_task[i].clone(), self.coordinates.len() + COORDINATES * i)
+        };
+        subjects.iter().enumerate().map(bench).collect()
+    }
+}
+
+#[derive(Debug, Clone)]
+pub struct TaskResult {
+    /// Each finger of the space, in the subject's order.
+    pub predictions: Vec<Prediction>,
+    pub left_out: Vec<LeftOut>,
+}
+
+#[derive(Debug, Clone, Copy)]
+pub struct Prediction {
+    pub finger: usize,
+    pub range: Predicted,
+    /// Probability of its being the best of the space, 0 to 1.
+    pub best: f64,
+}
+
+pub struct Calibration {
+    pub layout: Layout,
+    pub posterior: Vec<Vec<f64>>,
+    pub tasks: Vec<TaskResult>,
+}
+
+impl Calibration {
+    /// Calibrates the subjects, and leaves out each measured finger in turn.
+    pub fn new(layout: Layout, subjects: &[Subject], settings: &Settings<'_>) -> Self {
+        let benches = layout.benches(subjects);
+        let dimension = layout.dimension();
+        let mut random = stream(settings.seed, 0, "calibrate");
+        let posterior = sampled(&benches, dimension, settings, &mut random);
+        let task = |(i, subject): (usize, &Subject)| {
+            let mut random = stream(settings.seed, i as u64, "draws");
+            let fingers: Vec<usize> = (0..subject.of_space).collect();
+            let ranges = predict(&benches[i], &posterior, &fingers, Of::Truth);
+            // Stopped, what follows is worthless.
+            let goes_on = |_: &&Vec<f64>| !settings.stop.load(Ordering::SeqCst);
+            let of =
+                |state| draws(&benches[i], slice::from_ref(state), &fingers, DRAWS, &mut random);
+            let drawn: Vec<Vec<f64>> = posterior.iter().take_while(goes_on).flat_map(of).collect();
+            let each = ranges.into_iter().zip(shares_best(&drawn, fingers.len())).enumerate();
+            TaskResult {
+                predictions: each
+                    .map(|(finger, (range, best))| Prediction { finger, range, best })
+                    .collect(),
+                left_out: leave_one_out(&benches, i, dimension, settings),
+            }
+        };
+        let tasks = subjects.iter().enumerate().map(task).collect();
+        Calibration { layout, posterior, tasks }
+    }
+}
+
+/// Share of the draws in which each finger is the best, 0 to 1.
+fn shares_best(drawn: &[Vec<f64>], fingers: usize) -> Vec<f64> {
+    let mut counts = vec![0_u32; fingers];
+    for draw in drawn {
+        if let Some((best, _)) = draw.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)) {
+            counts[best] += 1;
+        }
+    }
+    counts.iter().map(|&count| f64::from(count) / drawn.len().max(1) as f64).collect()
+}
+
+/// A measured finger, predicted without it.
+#[derive(Debug, Clone, Copy)]
+pub struct LeftOut {
+    pub finger: usize,
+    /// Its measured range, mm: the mean, if it was measured several times.
+    pub measured_mm: f64,
+    /// The range predicted for one more measurement.
+    pub predicted: Predicted,
+}
+
+impl LeftOut {
+    pub fn inside(&self) -> bool {
+        (self.predicted.low_mm..=self.predicted.high_mm).contains(&self.measured_mm)
+    }
+}
+
+impl TaskResult {
+    /// Accuracy of the predictions of left-out fingers, made with an emulator of this error. One that
+    /// does not insert at all has no deviation in percent.
+    pub fn trust(&self, emulator_error_mm: f64) -> LeaveOneOut {
+        let left_out = &self.left_out;
+        let wide = left_out.iter().filter(|one| one.measured_mm > 0.0);
+        let percent = |one: &LeftOut| {
+            100.0 * (one.predicted.mean_mm - one.measured_mm).abs() / one.measured_mm
+        };
+        let deviations: Vec<f64> = wide.map(percent).collect();
+        let pairs: Vec<(f64, f64)> =
+            left_out.iter().map(|one| (one.predicted.mean_mm, one.measured_mm)).collect();
+        LeaveOneOut {
+            fingers: left_out.len(),
+            mean_deviation_percent: mean(&deviations),
+            spearman: spearman(&pairs),
+            inside: left_out.iter().filter(|one| one.inside()).count(),
+            emulator_error_mm,
+        }
+    }
+}
+
+/// Most times that a calibration is repeated with fingers left out.
+const MOST_FOLDS: usize = 20;
+
+/// Predicts the measured fingers of one bench without them, at most [`MOST_FOLDS`] times.
+pub fn leave_one_out(
+    benches: &[Bench<'_>],
+    task: usize,
+    dimension: usize,
+    settings: &Settings<'_>,
+) -> Vec<LeftOut> {
+    let known = || benches[task].observations.iter().filter(|one| !one.at_least);
+    let fingers: BTreeSet<usize> = known().map(|one| one.finger).collect();
+    let fingers: Vec<usize> = fingers.into_iter().collect();
+    let size = fingers.len().div_ceil(MOST_FOLDS).max(1);
+    let (count, folds) = (AtomicUsize::new(0), fingers.len().div_ceil(size));
+    let fold = |fold: &[usize]| -> Vec<LeftOut> {
+        let mut benches = benches.to_vec();
+        benches[task].observations.retain(|one| !fold.contains(&one.finger));
+        let mut random = stream(settings.seed, fold[0] as u64, "leave one out");
+        let posterior = sampled(&benches, dimension, settings, &mut random);
+        let predicted = predict(&benches[task], &posterior, fold, Of::Measurement);
+        let left_out = |(&finger, predicted): (&usize, Predicted)| {
+            let own = known().filter(|one| one.finger == finger).map(|one| one.range_mm);
+            let measured_mm = mean(&own.collect::<Vec<f64>>())?;
+            Some(LeftOut { finger, measured_mm, predicted })
+        };
+        (settings.done)([count.fetch_add(1, Ordering::Relaxed) + 1, folds]);
+        fold.iter().zip(predicted).filter_map(left_out).collect()
+    };
+    fingers.par_chunks(size).flat_map_iter(fold).collect()
+}

@@ -1,0 +1,304 @@
+//! Measurements from a bench: `measurements.csv` (`docs/guide/measuring.md`) to checked experiments.
+//!
+//! Only the task, the design and something that was measured are needed; columns may be left
+//! out, and further design parameters are further columns, named as in a space file.
+
+pub mod line;
+#[cfg(test)]
+mod tests;
+
+use csv::StringRecord;
+use input::shipped::nearest;
+use input::{Fault, Place, Placed};
+use insertion::outcome::FailureClass;
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use line::{Cells, is_of_space};
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+
+/// The cell of `range_mm` that says: the finger was tried, and no range could be measured.
+pub const NOT_MEASURABLE: &str = "not measurable";
+
+/// The documented columns in the order of a new file; further ones are keys of a space file.
+pub const COLUMNS: [&str; 12] = [
+    "task",
+    DENSITY_KEY,
+    DIRECTION_KEY,
+    "negative_mm",
+    "positive_mm",
+    "range_mm",
+    "failure_negative",
+    "failure_positive",
+    "repeats",
+    "peak_force_n",
+    "date",
+    "note",
+];
+
+/// Begin of a comment line that says where the file of a task of one's own is, from the folder of the
+/// measurements: `# task usb-c: usb-c.toml`.
+const OWN_TASK: &str = "# task ";
+
+/// The comment line for a task of one's own; other lines that begin with `#` are no measurements
+/// either.
+pub fn own_task(name: &str, path: &str) -> String {
+    format!("{OWN_TASK}{name}: {path}\n")
+}
+
+/// The tasks of one's own, each with the path of its file, as the last comment line of it says.
+pub fn own_tasks(text: &str) -> BTreeMap<&str, &str> {
+    // A spreadsheet fills lines up with commas.
+    let named = comments(text).filter_map(|line| line.strip_prefix(OWN_TASK)?.split_once(": "));
+    named.map(|(name, path)| (name, path.trim_end_matches([',', ' ']))).collect()
+}
+
+fn comments(text: &str) -> impl Iterator<Item = &str> {
+    text.trim_start_matches('\u{feff}').lines().filter(|line| line.starts_with('#'))
+}
+
+/// Whether there is nothing but comments.
+fn is_empty(text: &str) -> bool {
+    let text = text.trim_start_matches('\u{feff}');
+    text.lines().all(|line| line.trim().is_empty() || line.starts_with('#'))
+}
+
+fn reader() -> csv::ReaderBuilder {
+    let mut reader = csv::ReaderBuilder::new();
+    reader.comment(Some(b'#'));
+    reader
+}
+
+/// All that is wrong with one file, a line each.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}", self.0.iter().map(Fault::to_string).collect::<Vec<_>>().join("\n"))]
+pub struct Problems(Vec<Fault>);
+
+impl Problems {
+    pub(crate) fn of(file: &str, mut problems: Vec<Fault>) -> Self {
+        problems.iter_mut().for_each(|fault| fault.place.file = Some(file.to_owned()));
+        Problems(problems)
+    }
+}
+
+impl From<Fault> for Problems {
+    fn from(fault: Fault) -> Self {
+        Problems(vec![fault])
+    }
+}
+
+impl Placed for Problems {
+    fn place(&self) -> Place {
+        self.0.first().map(Fault::place).unwrap_or_default()
+    }
+}
+
+/// A fault of a line, in a column unless its name is empty.
+pub(crate) fn problem(line: u64, column: &str, words: &str) -> Fault {
+    Place::default().line(line as usize).key(column).fault(words)
+}
+
+/// One line of a measurement file: one finger on one task.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Experiment {
+    pub line: u64,
+    pub task: String,
+    /// The finger's infill, and what else its columns set.
+    pub design: Design,
+    /// Most negative start that inserted, mm.
+    pub negative_mm: Option<f64>,
+    /// Most positive start that inserted, mm.
+    pub positive_mm: Option<f64>,
+    range_mm: Option<f64>,
+    /// Failure below and above the window.
+    pub failures: [Option<FailureClass>; 2],
+    /// Measurements that the values are the mean of.
+    pub repeats: u32,
+    pub peak_force_n: Option<f64>,
+    /// Day of the measurement, `YYYY-MM-DD`.
+    pub date: Option<String>,
+    pub note: String,
+}
+
+impl Experiment {
+    /// The tolerable range that the line tells, mm, and whether it is this or more.
+    ///
+    /// A window holds the start from which it is measured, so that one of its ends bounds the
+    /// range from below: "inserts at +1.5 mm" is a range of 1.5 mm or more.
+    pub fn extent(&self) -> Option<(f64, bool)> {
+        match (self.range_mm, self.negative_mm, self.positive_mm) {
+            (Some(range), ..) => Some((range, false)),
+            (None, Some(negative), Some(positive)) => Some((positive - negative, false)),
+            (None, Some(end), None) | (None, None, Some(end)) => Some((end.abs(), true)),
+            (None, None, None) => None,
+        }
+    }
+
+    /// The order in which lines are used, whatever their order in the file: by task, then finger.
+    pub fn order(&self, other: &Self) -> Ordering {
+        let numbers = |line: &Self| {
+            let ends = [line.negative_mm, line.positive_mm, line.range_mm, line.peak_force_n];
+            ends.map(|number| number.unwrap_or(f64::NEG_INFINITY))
+        };
+        let (own, theirs) = (&self.design.0, &other.design.0);
+        let settings = own.iter().zip(theirs).map(|(a, b)| a.0.cmp(b.0).then(a.1.total_cmp(b.1)));
+        let numbers = numbers(self).into_iter().zip(numbers(other)).map(|(a, b)| a.total_cmp(&b));
+        let task = self.task.cmp(&other.task);
+        let design = settings.fold(task, Ordering::then).then(own.len().cmp(&theirs.len()));
+        let date = design.then(self.date.cmp(&other.date));
+        numbers.fold(date, Ordering::then).then(self.repeats.cmp(&other.repeats))
+    }
+
+    /// The range, if it was measured whole, mm.
+    pub fn range_mm(&self) -> Option<f64> {
+        self.extent().filter(|(_, at_least)| !at_least).map(|(range, _)| range)
+    }
+}
+
+/// Reads and checks a measurement file; `file` is named in errors. An empty file has no lines.
+pub fn parse(text: &str, file: &str) -> Result<Vec<Experiment>, Problems> {
+    let why = "a line says which finger was tried on which task";
+    rows(text, file, &Columns { all: &COLUMNS, needed: 3, why }, line::experiment)
+}
+
+/// Columns of a table of fingers.
+pub(crate) struct Columns<'a> {
+    /// All but keys of a space file, the needed ones first.
+    pub all: &'a [&'a str],
+    pub needed: usize,
+    /// What a line says by those that are needed.
+    pub why: &'a str,
+}
+
+/// Reads and checks such a table by `one`, which is given the lines before, too, and leaves what is
+/// wrong in the cells.
+pub(crate) fn rows<T>(
+    text: &str,
+    file: &str,
+    columns: &Columns<'_>,
+    mut one: impl FnMut(&mut Cells<'_>, &[T]) -> T,
+) -> Result<Vec<T>, Problems> {
+    // The reader counts a line of a "\r\n" file too few; spreadsheets begin with a mark.
+    let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
+    if is_empty(&text) {
+        return Ok(Vec::new());
+    }
+    let mut reader = reader().trim(csv::Trim::All).from_reader(text.as_bytes());
+    let fault = |problem: Fault| Problems::of(file, vec![problem]);
+    let wrong = |error: csv::Error| fault(syntax(&text, &error));
+    let header = reader.headers().map_err(wrong)?.clone();
+    check_header(&header, columns, line_at(&text, header.position())).map_err(fault)?;
+    let (mut found, mut problems) = (Vec::new(), Vec::new());
+    for record in reader.records() {
+        let record = record.map_err(wrong)?;
+        let line = line_at(&text, record.position());
+        let mut cells = Cells { header: &header, record: &record, line, problems: Vec::new() };
+        let row = one(&mut cells, &found);
+        if cells.problems.is_empty() {
+            found.push(row);
+        }
+        problems.extend(cells.problems);
+    }
+    if problems.is_empty() { Ok(found) } else { Err(Problems::of(file, problems)) }
+}
+
+/// The line of a record: the reader says that of the comments before it.
+fn line_at(text: &str, position: Option<&csv::Position>) -> u64 {
+    let Some(position) = position else { return 1 };
+    let rest = text.get(position.byte() as usize..).unwrap_or("");
+    let bare = |line: &&str| line.is_empty() || line.starts_with('#');
+    position.line() + rest.lines().take_while(bare).count() as u64
+}
+
+fn syntax(text: &str, error: &csv::Error) -> Fault {
+    let words = match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            format!("has {len} cells where the header has {expected_len}")
+        }
+        _ => error.to_string(),
+    };
+    problem(line_at(text, error.position()), "", &words)
+}
+
+/// Checks that the columns are known, stand once, and say what is needed.
+fn check_header(header: &StringRecord, columns: &Columns<'_>, at: u64) -> Result<(), Fault> {
+    let Columns { all, needed, why } = columns;
+    for (i, name) in header.iter().enumerate() {
+        if !is_of_space(name) && !all.contains(&name) {
+            let words = format!(
+                "is no column{}; there are {}, and keys of a space file (task. or finger.)",
+                hint(name, all),
+                all.join(", ")
+            );
+            return Err(problem(at, name, &words));
+        }
+        if header.iter().take(i).any(|other| other == name) {
+            return Err(problem(at, name, "is given twice; each column may stand once"));
+        }
+    }
+    match all[..*needed].iter().find(|needed| header.iter().all(|name| name != **needed)) {
+        None => Ok(()),
+        Some(missing) => Err(problem(at, missing, &format!("is missing; {why}"))),
+    }
+}
+
+fn hint(name: &str, known: &[&str]) -> String {
+    nearest(name, known).map_or(String::new(), |near| format!(" (did you mean `{near}`?)"))
+}
+
+/// Checks that each line's task is one of `known`.
+pub fn check_tasks(experiments: &[Experiment], known: &[&str], file: &str) -> Result<(), Problems> {
+    let unknown = experiments.iter().filter(|line| !known.contains(&&*line.task));
+    let words = |Experiment { line, task, .. }: &Experiment| {
+        let words = format!(
+            "no task is called `{task}`{}; there are {}, or name your own by --task FILE.toml",
+            hint(task, known),
+            known.join(", ")
+        );
+        problem(*line, "task", &words)
+    };
+    let problems: Vec<Fault> = unknown.map(words).collect();
+    if problems.is_empty() { Ok(()) } else { Err(Problems::of(file, problems)) }
+}
+
+/// The file's text with one line more, after a comment line if that is not empty; `cells` are the
+/// columns that are not empty. Columns that the file does not have yet are added at its end; a new
+/// file has all the documented ones.
+pub fn appended(text: &str, comment: &str, cells: &[(&str, String)]) -> Result<String, csv::Error> {
+    let mut reader = reader().from_reader(text.as_bytes());
+    let mut header: Vec<String> = match is_empty(text) {
+        true => COLUMNS.map(str::to_owned).to_vec(),
+        false => reader.headers()?.iter().map(|name| name.trim().to_owned()).collect(),
+    };
+    let had = header.len();
+    for (column, _) in cells {
+        if !header.iter().any(|name| name == column) {
+            header.push((*column).to_owned());
+        }
+    }
+    let new = header.iter().map(|name| {
+        let cell = cells.iter().find(|(column, _)| column == name);
+        cell.map_or("", |(_, text)| text.as_str())
+    });
+    let line = |cells: &mut dyn Iterator<Item = &str>| {
+        // What begins with the mark of a comment is quoted.
+        let mut writer = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(Vec::new());
+        writer.write_record(cells)?;
+        let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+        Ok::<_, csv::Error>(String::from_utf8_lossy(&bytes).into_owned())
+    };
+    let last = line(&mut new.into_iter())?;
+    // What is there stays as it was written, unless a column is new.
+    if had == header.len() && !is_empty(text) {
+        let end = if text.ends_with('\n') { "" } else { "\n" };
+        return Ok(format!("{text}{end}{comment}{last}"));
+    }
+    let mut whole: String = comments(text).flat_map(|line| [line, "\n"]).collect();
+    whole += comment;
+    whole += &line(&mut header.iter().map(String::as_str))?;
+    for record in reader.records() {
+        let record = record?;
+        let more = std::iter::repeat_n("", header.len() - had);
+        whole += &line(&mut record.iter().chain(more))?;
+    }
+    Ok(whole + &last)
+}

@@ -1,0 +1,30 @@
+//! A log made up for tests.
+
+use super::log::{Log, Moment, Target};
+use ask_tell::normal::StandardNormal;
+use ask_tell::stream::stream;
+use input::units::{DEG, MM};
+use nalgebra::Vector3;
+use rand::RngExt;
+
+/// Down at 20 mm/s onto a face at 45 mm and 0.4 mm into it, 5 mm aside and 13 mm down, at 500 Hz;
+/// stiffness 50 N/mm, friction 0.2, so much noise and drift, N. The touch is at 0.3 s.
+pub fn made(noise: f64, drift: f64) -> Log {
+    let mut random = stream(1, 0, "log");
+    let mut normal = || -> f64 { random.sample(StandardNormal) };
+    let moments = (0..600).map(|i| {
+        let time = f64::from(i) * 2e-3;
+        let down = (20.0 * time).min(6.4) + (13.0 * (time - 0.6) / 0.5).clamp(0.0, 13.0);
+        let aside = (5.0 * (time - 0.35) / 0.1).clamp(0.0, 5.0);
+        let position = Vector3::new(0.0, aside - 1.2, 51.0 - down) * MM;
+        let press = 50.0 * (down - 6.0).clamp(0.0, 0.4);
+        let rub = if aside > 0.0 { -0.2 * press } else { 0.0 };
+        let error = Vector3::from_fn(|_, _| noise * normal());
+        let sway = Vector3::new(0.3, -0.2, 0.8 + drift * time / 1.2);
+        let force = Vector3::new(0.0, rub, press) + error + sway;
+        let (tilt, line) = (10.0 * DEG, i as usize + 2);
+        let target = Some(Target { position: position - Vector3::z() * 1e-5, tilt });
+        Moment { line, time_s: 7.0 + time, position, tilt, target, force }
+    });
+    Log::new("a.csv", moments.collect()).expect("moments in order")
+}

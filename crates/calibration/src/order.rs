@@ -1,0 +1,121 @@
+//! How far our simulation ranks the fingers of a task as the bench does.
+
+use crate::published::{Origin, Published, of_task};
+use crate::statistics::spearman;
+use input::shipped::TASKS;
+use insertion::evaluation::objective::Measure;
+use insertion::finger::model::FingerModelKind;
+use insertion::space::Design;
+use insertion::stiffness::designs;
+use serde::Deserialize;
+use study::StudyRecord;
+
+/// Our windows beside those of the bench: columns of the last committed `validation.csv`.
+const VALIDATION: &str = include_str!("../../../data/simulated_ranges.csv");
+
+/// A rank correlation of simulated and measured ranges.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Order {
+    /// Spearman's, +1 for the same order, -1 for the opposite one.
+    pub spearman: f64,
+    pub fingers: usize,
+    pub source: OrderSource,
+}
+
+/// Whose simulated ranges are held against the bench.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OrderSource {
+    Study,
+    /// Those of the committed validation, with the study's finger model and robot.
+    Validation,
+    /// Those of the committed validation, which has another finger model or another robot.
+    OtherRig,
+}
+
+impl OrderSource {
+    pub fn words(self) -> &'static str {
+        match self {
+            OrderSource::Study => "this study",
+            OrderSource::Validation => "our validation",
+            OrderSource::OtherRig => "our validation, though of paper fingers on servo,",
+        }
+    }
+}
+
+/// The robot of the committed validation; its fingers are the paper's.
+const VALIDATION_ROBOT: &str = "servo";
+
+#[derive(Deserialize)]
+struct Validated {
+    task: String,
+    range_mm: Option<f64>,
+    bench_range_mm: Option<f64>,
+}
+
+/// The order on a task: of the study's own ranges where it simulated all measured fingers.
+pub fn order_on_bench(record: &StudyRecord, task: usize) -> Option<Order> {
+    let name = record.config.tasks().nth(task)?;
+    let bench = of_task(name, Origin::Bench);
+    let measured = designs();
+    let pair = |bench: &Published| {
+        let m = measured.iter().find(|m| m.design == bench.design)?;
+        let infill = Design::infill(m.density_percent, m.direction_deg);
+        let found = record.current().iter().find(|recorded| recorded.design == infill)?;
+        Some((Measure::Range.value(found.on(task)?)?, bench.tolerable_range_mm?))
+    };
+    let own: Vec<(f64, f64)> = bench.iter().filter_map(pair).collect();
+    let all = bench.iter().filter(|bench| bench.tolerable_range_mm.is_some()).count();
+    let config = &record.config;
+    let like_validation =
+        config.finger_model == FingerModelKind::Paper && config.robot == VALIDATION_ROBOT;
+    let (pairs, source) = match (own.len() == all, like_validation) {
+        (true, _) => (own, OrderSource::Study),
+        (false, true) => (validated(name), OrderSource::Validation),
+        (false, false) => (validated(name), OrderSource::OtherRig),
+    };
+    Some(Order { spearman: spearman(&pairs)?, fingers: pairs.len(), source })
+}
+
+fn validated(task: &str) -> Vec<(f64, f64)> {
+    let rows = csv::Reader::from_reader(VALIDATION.as_bytes()).into_deserialize();
+    let own = rows.flatten().filter(|row: &Validated| row.task == task);
+    own.filter_map(|row| row.range_mm.zip(row.bench_range_mm)).collect()
+}
+
+/// Least and largest mean of `|simulated - measured| / measured` of the tasks, percent.
+pub fn errors_percent() -> [f64; 2] {
+    let errors = TASKS.iter().filter_map(|task| {
+        let pairs = validated(task.name);
+        let missed = pairs.iter().map(|(ours, bench)| (ours - bench).abs() / bench);
+        (!pairs.is_empty()).then(|| 100.0 * missed.sum::<f64>() / pairs.len() as f64)
+    });
+    errors.fold([f64::INFINITY, 0.0], |[least, most], error| [least.min(error), most.max(error)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The table of the README, computed from the committed ranges.
+    #[test]
+    fn the_committed_validation_tells_the_order() {
+        for (task, pairs, rank) in
+            [("ket8", 11, -0.62), ("ket12", 7, 0.85), ("rj45", 11, 0.52), ("usb", 11, -0.07)]
+        {
+            let found = validated(task);
+            assert_eq!(found.len(), pairs, "{task}");
+            assert!((spearman(&found).unwrap() - rank).abs() < 0.005, "{task}");
+        }
+        assert!(validated("mine").is_empty());
+    }
+
+    #[test]
+    fn the_ranges_are_those_of_the_committed_validation() {
+        let whole = include_str!("../../../results/reference/validation/validation.csv");
+        let cut = |line: &str| {
+            let cells: Vec<&str> = line.split(',').collect();
+            [0, 1, 2, 3, 9, 15].map(|column| cells[column]).join(",") + "\n"
+        };
+        assert_eq!(whole.lines().map(cut).collect::<String>(), VALIDATION);
+    }
+}

@@ -1,0 +1,89 @@
+//! Simulated windows under values of what nobody measured.
+
+use input::units::MM;
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::cell::{Parameter, Target};
+use insertion::evaluation::evaluator::{Evaluator, Specimen};
+use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::template::{Impossible, Template};
+use insertion::evaluation::tolerance::{self, Search};
+use insertion::outcome::Outcome;
+use insertion::robot::Robot;
+use insertion::space::Design;
+use insertion::trial::Grasp;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use study::Cache;
+
+/// Starts tried where the task's own does not insert, mm from it: a person teaches one that does.
+const TAUGHT_MM: [f64; 4] = [1.0, -1.0, 2.0, -2.0];
+
+pub struct Simulation<'a> {
+    evaluator: &'a Evaluator,
+    template: &'a Template,
+    /// The parameters that the task and the robot have, in order.
+    pub parameters: Vec<&'a Parameter>,
+    /// Where windows are kept, if they are.
+    cache: Option<PathBuf>,
+    /// Set when it is to end: windows are then worthless, and none is kept.
+    pub stop: &'a AtomicBool,
+}
+
+impl<'a> Simulation<'a> {
+    /// With those of the parameters that this task and robot have.
+    pub fn new(
+        evaluator: &'a Evaluator,
+        template: &'a Template,
+        parameters: impl Iterator<Item = &'a Parameter>,
+        cache: Option<PathBuf>,
+        stop: &'a AtomicBool,
+    ) -> Self {
+        let has = |parameter: &&Parameter| match &parameter.sets {
+            Target::Number(path) => evaluator.number(template, path).is_some(),
+            _ => parameter.fits(&evaluator.robot),
+        };
+        let parameters = parameters.filter(has).collect();
+        Simulation { evaluator, template, parameters, cache, stop }
+    }
+
+    /// The window of a design at these shares of the priors; without shares as in the files.
+    pub fn window(&self, design: &Design, shares: &[f64]) -> Result<Evaluation, Impossible> {
+        let values = self.parameters.iter().zip(shares).map(|(p, &share)| (*p, p.at(share)));
+        let values: Vec<_> = values.collect();
+        let (specimen, robot) = self.evaluator.under(self.template, (design, None), &values)?;
+        let inserts = |found: &Evaluation| found.window.nominal == Outcome::Inserted;
+        let own = self.measure(&specimen, &robot)?;
+        if inserts(&own) {
+            return Ok(own);
+        }
+        for shift in TAUGHT_MM {
+            let mut specimen = specimen.clone();
+            specimen.task.strategy.start[1] += shift * MM;
+            let evaluation = self.measure(&specimen, &robot)?;
+            if inserts(&evaluation) {
+                return Ok(evaluation);
+            }
+        }
+        Ok(own)
+    }
+
+    fn measure(&self, specimen: &Specimen, robot: &Robot) -> Result<Evaluation, Impossible> {
+        let engine = self.evaluator.engine;
+        let cache = self.cache.as_ref().map(|dir| Cache::new(dir, robot, &engine.record()));
+        let search = Search::default();
+        let keep =
+            cache.as_ref().map(|cache| (cache, cache.key(&(specimen, search, &Plan::WINDOW))));
+        if let Some(found) = keep.as_ref().and_then(|(cache, key)| cache.get(key)) {
+            return Ok(found);
+        }
+        let rig = engine.rig(&specimen.task, robot, &specimen.finger, 1.0)?;
+        let grasp = Grasp { stop: self.stop, ..Grasp::of(&specimen.finger) };
+        let evaluation = tolerance::evaluate_in(&*rig, grasp, search);
+        if let Some((cache, key)) = keep
+            && !self.stop.load(Ordering::SeqCst)
+        {
+            cache.put(&key, &evaluation);
+        }
+        Ok(evaluation)
+    }
+}

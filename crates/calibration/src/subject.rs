@@ -1,0 +1,196 @@
+//! One task: its fingers, their simulated ranges and their measurements.
+
+use super::bench::{Bench, Observation, Simulator};
+use super::emulator::{CalibrationError, Emulator, most};
+use super::process::Place;
+use crate::experiments::Experiment;
+use ask_tell::GridPoint;
+use ask_tell::SobolSequence;
+use insertion::evaluation::evaluator::Evaluator;
+use insertion::evaluation::template::Template;
+use insertion::outcome::FailureClass;
+use insertion::space::{Design, Parameter, Space};
+use std::collections::BTreeSet;
+
+/// Most fingers of a space that are predicted; of a larger space it is a designed set.
+const MOST_FINGERS: u64 = 4000;
+/// Measured fingers, or simulations, near a finger that say how it fails.
+const NEAR: usize = 3;
+
+pub struct Subject {
+    pub task: String,
+    /// The fingers: first those of the space, then other measured or published ones.
+    pub designs: Vec<Design>,
+    pub of_space: usize,
+    pub emulator: Emulator,
+    /// Measurements on this task, with the number of the finger.
+    pub experiments: Vec<(usize, Experiment)>,
+    places: Vec<Place>,
+    /// Shares of the space, as the emulator takes them.
+    shares: Vec<Vec<f64>>,
+}
+
+impl Subject {
+    /// The fingers of a space on a task, those of `more` and those measured.
+    pub fn new(
+        evaluator: &Evaluator,
+        template: &Template,
+        space: &Space,
+        emulator: Emulator,
+        experiments: &[Experiment],
+        more: &[Design],
+    ) -> Result<Self, CalibrationError> {
+        let task = template.task.name.clone();
+        let mut designs = fingers(space);
+        let of_space = designs.len();
+        let mut numbered = |design: Design| {
+            designs.iter().position(|known| *known == design).unwrap_or_else(|| {
+                designs.push(design);
+                designs.len() - 1
+            })
+        };
+        let mut measured = Vec::new();
+        for experiment in experiments.iter().filter(|line| line.task == task) {
+            let design = whole(space, template, experiment)?;
+            measured.push((numbered(design), experiment.clone()));
+        }
+        for design in more {
+            numbered(design.clone());
+        }
+        let stiffness = |design: &Design| {
+            let predicted = evaluator.predict(design)?;
+            Ok([1.0 / predicted.compliance.mean, predicted.assembly.mean])
+        };
+        let stiffness =
+            designs.iter().map(stiffness).collect::<Result<Vec<_>, CalibrationError>>()?;
+        let shares = designs.iter().map(|design| shares(space, design)).collect();
+        let places = standardised(&stiffness, of_space);
+        Ok(Subject { task, designs, of_space, emulator, experiments: measured, places, shares })
+    }
+
+    pub fn finger(&self, design: &Design) -> Option<usize> {
+        self.designs.iter().position(|known| known == design)
+    }
+
+    pub fn measured(&self) -> BTreeSet<usize> {
+        self.experiments.iter().map(|(number, _)| *number).collect()
+    }
+
+    /// Its bench, with the coordinates of its parameters and hyperparameters.
+    pub fn bench(&self, parameters: Vec<usize>, first: usize) -> Bench<'_> {
+        let observation = |&(finger, ref line): &(usize, Experiment)| {
+            let (range_mm, at_least) = line.extent()?;
+            Some(Observation { finger, range_mm, at_least, repeats: line.repeats })
+        };
+        Bench {
+            simulator: self,
+            places: &self.places,
+            observations: self.experiments.iter().filter_map(observation).collect(),
+            scale_mm: self.emulator.mean_mm.max(1.0),
+            error_mm: self.emulator.error_mm,
+            parameters,
+            first,
+        }
+    }
+
+    /// Failure at either end: as of most of the nearest measured fingers, else of simulated ones.
+    pub fn failures(&self, finger: usize) -> [Option<FailureClass>; 2] {
+        let here = self.places[finger];
+        let distance = |number: usize| {
+            let there = self.places[number];
+            (here[0] - there[0]).powi(2) + (here[1] - there[1]).powi(2)
+        };
+        let simulated = self.emulator.failures(&self.shares[finger], 4 * NEAR);
+        [0, 1].map(|end| {
+            let mut known: Vec<(f64, FailureClass)> = self
+                .experiments
+                .iter()
+                .filter_map(|(number, line)| Some((distance(*number), line.failures[end]?)))
+                .collect();
+            known.sort_by(|a, b| a.0.total_cmp(&b.0));
+            most(known.into_iter().take(NEAR).map(|(_, class)| class)).or(simulated[end])
+        })
+    }
+}
+
+impl Simulator for Subject {
+    fn ranges_mm(&self, fingers: &[usize], shares: &[f64]) -> Vec<f64> {
+        let range =
+            |&finger: &usize| self.emulator.range_mm(&[&self.shares[finger], shares].concat());
+        fingers.iter().map(range).collect()
+    }
+}
+
+/// The designs of a space, or of a large one a designed set.
+fn fingers(space: &Space) -> Vec<Design> {
+    let levels = space.levels();
+    let size = levels.iter().fold(1_u64, |size, &n| size.saturating_mul(u64::from(n)));
+    let point = |levels: Vec<u32>| space.design(&GridPoint(levels));
+    if size > MOST_FINGERS {
+        let at = |shares: Vec<f64>| {
+            let level = |(share, &n): (f64, &u32)| (share * f64::from(n)) as u32;
+            point(shares.into_iter().zip(&levels).map(level).collect())
+        };
+        let set = SobolSequence::new(levels.len(), 0, 0, "fingers").take(MOST_FINGERS as usize / 2);
+        return set.map(at).collect();
+    }
+    let number = |mut rest: u64| {
+        let level = |&n: &u32| {
+            let level = (rest % u64::from(n)) as u32;
+            rest /= u64::from(n);
+            level
+        };
+        levels.iter().map(level).collect()
+    };
+    (0..size).map(|rest| point(number(rest))).collect()
+}
+
+/// A measured design with all parameters of the space, by default as in the task file.
+pub fn whole(
+    space: &Space,
+    template: &Template,
+    line: &Experiment,
+) -> Result<Design, CalibrationError> {
+    let name = &space.name;
+    let fault = |words: String| Err(CalibrationError::Measured(line.line, words));
+    let known = |key: &String| space.parameters.iter().any(|parameter| parameter.key == *key);
+    if let Some(key) = line.design.0.keys().find(|key| !known(key)) {
+        return fault(format!(
+            "{key}: the space `{name}` has no such parameter; give --space FILE with it"
+        ));
+    }
+    let mut design = Design::default();
+    for Parameter { key, low, high, .. } in &space.parameters {
+        let value = line.design.get(key).or_else(|| template.numbers.number(key));
+        let value = value.unwrap_or((low + high) / 2.0);
+        if !(*low..=*high).contains(&value) {
+            return fault(format!(
+                "{key}: {value} lies outside {low} .. {high} of the space `{name}`; give a wider \
+                 --space FILE"
+            ));
+        }
+        design.0.insert(key.clone(), value);
+    }
+    Ok(design)
+}
+
+fn shares(space: &Space, design: &Design) -> Vec<f64> {
+    let share = |parameter: &Parameter| {
+        let value = design.get(&parameter.key).unwrap_or(parameter.low);
+        let width = parameter.high - parameter.low;
+        if width > 0.0 { (value - parameter.low) / width } else { 0.5 }
+    };
+    space.parameters.iter().map(share).collect()
+}
+
+/// Less the mean, over the standard deviation, of the first `reference` rows.
+fn standardised(rows: &[[f64; 2]], reference: usize) -> Vec<Place> {
+    let scale = [0, 1].map(|axis| {
+        let values = || rows.iter().take(reference).map(|row| row[axis]);
+        let mean = values().sum::<f64>() / reference.max(1) as f64;
+        let variance =
+            values().map(|value| (value - mean).powi(2)).sum::<f64>() / reference.max(1) as f64;
+        (mean, variance.sqrt().max(f64::MIN_POSITIVE))
+    });
+    rows.iter().map(|row| [0, 1].map(|axis| (row[axis] - scale[axis].0) / scale[axis].1)).collect()
+}

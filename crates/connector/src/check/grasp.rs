@@ -1,0 +1,121 @@
+//! Grasp: pads, roofs and the faces they hold.
+
+use super::{Case, Problem, mm, pair};
+use crate::hold::{Held, SEAM, find, held};
+use input::units::MM;
+
+/// Least height of face that a pad must meet, m.
+const LEAST_COVER: f64 = 1.0 * MM;
+
+pub(super) fn problems(case: &Case) -> Vec<Problem> {
+    let grip = &case.task.grip;
+    let held = held(&case.plug, grip.shoulder_z, Some(grip.faces_y));
+    let mut found: Vec<_> = faces(case, &held).or_else(|| cover(case, &held)).into_iter().collect();
+    found.extend(roof(case, &held));
+    let [low, high] = held.pad_z;
+    if !(low..=high).contains(&grip.tcp_z) {
+        let [tcp, low, high] = [grip.tcp_z, low, high].map(mm);
+        found.push(Problem::new(
+            "grip.tcp_z_mm",
+            format!("{tcp} mm is not between the pads, which reach from {low} to {high} mm"),
+            format!("about 3 mm below the shoulder: {} mm", mm(grip.shoulder_z - 3.0 * MM)),
+        ));
+    }
+    let over = low - case.task.success.depth;
+    if over < 0.0 {
+        let by = mm(-over);
+        found.push(Problem::new(
+            "grip.shoulder_z_mm",
+            format!("at the success depth the pads reach {by} mm into the socket"),
+            format!("hold the plug at least {by} mm higher, or ask for less depth"),
+        ));
+    }
+    found
+}
+
+fn faces(case: &Case, held: &Held) -> Option<Problem> {
+    let stated = case.task.grip.faces_y;
+    let [low, high] = held.pad_z.map(mm);
+    let Some(real) = held.faces else {
+        return Some(Problem::new(
+            "grip.shoulder_z_mm",
+            format!("between the pads, at heights of {low} to {high} mm, there is no plug"),
+            better(case),
+        ));
+    };
+    let side = |i: usize| {
+        let (y, part) = real[i];
+        let off = [-1.0, 1.0][i] * (stated[i] - y);
+        if off.abs() <= SEAM {
+            return None;
+        }
+        let name = &case.plug.parts[part].name;
+        let (label, by, stated, y) = (["-y", "+y"][i], mm(off.abs()), mm(stated[i]), mm(y));
+        let fault = match off > 0.0 {
+            true => {
+                format!("is {by} mm off the plug: between the pads it ends with `{name}` at {y} mm")
+            }
+            false => format!("lies {by} mm inside `{name}`, which reaches {y} mm"),
+        };
+        let widest = pair(real.map(|(y, _)| y));
+        Some(Problem::new(
+            "grip.faces_y_mm",
+            format!("the face at {label}, {stated} mm, {fault}"),
+            format!("{widest}: where the plug is widest between {low} and {high} mm"),
+        ))
+    };
+    (0..2).find_map(side)
+}
+
+fn cover(case: &Case, held: &Held) -> Option<Problem> {
+    let grip = &case.task.grip;
+    let cover = held.cover[0].min(held.cover[1]);
+    let [low, high] = held.pad_z.map(mm);
+    let (limit, met) = (mm(grip.slip_limit), mm(cover));
+    if cover < LEAST_COVER {
+        return Some(Problem::new(
+            "grip.shoulder_z_mm",
+            format!("the pads, {low} to {high} mm, meet only {met} mm of the grip block"),
+            better(case),
+        ));
+    }
+    (grip.slip_limit > cover + SEAM).then(|| {
+        Problem::new(
+            "grip.slip_limit_mm",
+            format!("is {limit} mm, but the pads hold only {met} mm of the plug: it has left them by then"),
+            format!("at most {} mm", mm(0.9 * cover)),
+        )
+    })
+}
+
+/// Fault of roofs that do not rest on the plug, which they push in.
+fn roof(case: &Case, held: &Held) -> Option<Problem> {
+    let shoulder = case.task.grip.shoulder_z;
+    let wrong = |top: &Option<f64>| top.is_none_or(|z| (z - shoulder).abs() > SEAM);
+    let top = held.under_roof.iter().find(|top| wrong(top))?;
+    let at = mm(shoulder);
+    let rest = format!("the roofs are to rest at {at} mm, but");
+    let problem = match top.map(|z| (z > shoulder, mm(z))) {
+        Some((true, top)) => {
+            format!("{rest} there the plug goes on to {top} mm: they would lie in it")
+        }
+        Some((false, top)) => {
+            format!("{rest} the plug's shoulder is at {top} mm: nothing carries the push")
+        }
+        None => format!("at {at} mm there is nothing under the roofs that could carry the push"),
+    };
+    Some(Problem::new("grip.shoulder_z_mm", problem, better(case)))
+}
+
+fn better(case: &Case) -> String {
+    match find(&case.plug, LEAST_COVER) {
+        Some((shoulder, faces)) => {
+            let ([shoulder, tcp], faces) = ([shoulder, shoulder - 3.0 * MM].map(mm), pair(faces));
+            format!(
+                "shoulder_z_mm = {shoulder}, tcp_z_mm = {tcp}, faces_y_mm = {faces} would hold it"
+            )
+        }
+        None => "give the plug a block with two faces across y and a top that the roofs rest on"
+            .to_owned(),
+    }
+}

@@ -1,0 +1,100 @@
+//! Check of a task's geometry and commanded moves, without simulation.
+
+mod grasp;
+mod parts;
+mod socket;
+mod strategy;
+
+pub use parts::FACES_MM;
+
+use super::body::ConvexBody;
+use super::seat::Seating;
+use input::InputError;
+use input::units::MM;
+use insertion::task::{Solid, Task};
+use serde::Serialize;
+
+/// Fault of a task file.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Problem {
+    /// Key, as a path in the file.
+    pub key: String,
+    /// Description of the fault.
+    pub problem: String,
+    /// Advice on a value that works.
+    pub remedy: String,
+}
+
+impl Problem {
+    fn new(key: impl Into<String>, problem: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Problem { key: key.into(), problem: problem.into(), remedy: remedy.into() }
+    }
+}
+
+impl From<&InputError> for Problem {
+    fn from(error: &InputError) -> Self {
+        match error {
+            InputError::Value { key, problem, .. } => {
+                let whole = (&**problem, "see docs/guide/tasks.md");
+                let (problem, remedy) = problem.split_once("; ").unwrap_or(whole);
+                Problem::new(key, problem, remedy)
+            }
+            InputError::Syntax { message, .. } => {
+                // The parser names an unknown or missing key in backticks.
+                let key = message.split('`').nth(1).unwrap_or("the file");
+                Problem::new(key, message, "see docs/guide/tasks.md, or `optimize task show usb`")
+            }
+        }
+    }
+}
+
+/// Task under check, with its two bodies.
+struct Case<'a> {
+    task: &'a Task,
+    plug: ConvexBody<'a>,
+    socket: ConvexBody<'a>,
+}
+
+/// Faults of a task, causes before consequences.
+pub fn problems(task: &Task) -> Vec<Problem> {
+    let case =
+        Case { task, plug: ConvexBody::plug(&task.plug), socket: ConvexBody::new(&task.socket) };
+    // In a wrong unit everything else is wrong, too.
+    let mut found = parts::lengths(&case);
+    if !found.is_empty() {
+        return found;
+    }
+    found.extend(parts::problems(&case));
+    found.extend(socket::walls(&case));
+    let seat = Seating::new(task, &case.plug, &case.socket).deepest();
+    found.extend(socket::depth(&case, &seat));
+    found.extend(grasp::problems(&case));
+    found.extend(strategy::problems(&case));
+    found
+}
+
+/// A length for a message: mm, two decimals at most.
+fn mm(length: f64) -> String {
+    format!("{}", (length / MM * 100.0).round() / 100.0 + 0.0)
+}
+
+/// Interval for a message, mm.
+fn pair([from, to]: [f64; 2]) -> String {
+    format!("[{}, {}]", mm(from), mm(to))
+}
+
+/// Key of a part, or of a field of it.
+fn part_key(body: &str, name: &str, field: &str) -> String {
+    format!("{body}.part \"{name}\" {field}").trim_end().to_owned()
+}
+
+/// Name of the field that gives a part's extent along an axis.
+fn field(solid: &Solid, axis: usize) -> &'static str {
+    match solid {
+        Solid::Box { .. } => ["x_mm", "y_mm", "z_mm"][axis],
+        Solid::Cylinder { .. } => ["diameter_mm", "diameter_mm", "z_mm"][axis],
+        Solid::Prism { axis: along, .. } if *along == axis => "span_mm",
+        Solid::Prism { .. } => "outline_mm",
+        Solid::Hull { .. } => "points_mm",
+    }
+}

@@ -1,0 +1,130 @@
+//! Opening, walls and depth of insertion.
+
+use super::{Case, Problem, field, mm, pair, part_key};
+use crate::body::{clipped, extent, width};
+use crate::seat::{Seat, section};
+use input::units::MM;
+use insertion::task::Part;
+use nalgebra::Point3;
+
+/// Depth at which the walls are looked for, m.
+const BELOW: f64 = 0.1 * MM;
+/// Tolerance between walls and opening, m: polygons for circles, small chamfers.
+const AGREE: f64 = 0.15 * MM;
+/// Places along a side at which its wall is looked for, halfway among them: walls are slanted and round.
+const ALONG: i32 = 41;
+/// Distance from the stated edge within which the wall is looked for, and its step, m.
+const FAR: f64 = 5.0 * MM;
+const STEP: f64 = 0.0025 * MM;
+/// Compliance of the contacts, by which success may be deeper than the seat, m.
+const GIVE: f64 = 0.02 * MM;
+
+/// Faults of the opening's sides and of the socket's height.
+pub(super) fn walls(case: &Case) -> Vec<Problem> {
+    let [_, top] = case.socket.extent(2);
+    if top < -AGREE {
+        return vec![Problem::new(
+            "socket.part",
+            format!("the socket's highest point is at z = {} mm", mm(top)),
+            "put its top at z = 0: all heights are counted from there",
+        )];
+    }
+    let sides = (0..2).flat_map(|axis| (0..2).map(move |end| (axis, end)));
+    sides.filter_map(|(axis, end)| side(case, axis, end)).collect()
+}
+
+/// Fault of one side of the opening, which is solid just outside halfway along, and somewhere along it
+/// free just inside. What it should be is read halfway along.
+fn side(case: &Case, axis: usize, end: usize) -> Option<Problem> {
+    let opening = case.task.opening;
+    let stated = opening[axis][end];
+    let outward = [-1.0, 1.0][end];
+    let other = 1 - axis;
+    let part_at = |at: f64, share: f64| {
+        let mut point = Point3::new(0.0, 0.0, -BELOW);
+        let [from, to] = opening[other];
+        (point[axis], point[other]) = (at, from + share * (to - from));
+        case.socket.part_at(&point)
+    };
+    let begins = |i: i32| {
+        let share = f64::from(2 * i + 1) / f64::from(2 * ALONG);
+        let solid = |beyond: f64| part_at(stated + outward * beyond, share).is_some();
+        solid(AGREE) && !solid(-AGREE)
+    };
+    let part = |at: f64| part_at(at, 0.5);
+    let solid = |beyond: f64| part(stated + outward * beyond).is_some();
+    if solid(AGREE) && (0..ALONG).any(begins) {
+        return None;
+    }
+    let name = ["x", "y"][axis];
+    let steps = (FAR / STEP) as usize;
+    // The face: solid beyond it, free before it.
+    let face =
+        (0..2 * steps).map(|i| i as f64 * STEP - FAR).find(|&at| !solid(at) && solid(at + STEP));
+    let (says, far) = (mm(stated), mm(FAR));
+    let (problem, remedy) = match face {
+        Some(at) => {
+            let right = stated + outward * (at + STEP / 2.0);
+            let wall = part(right + outward * STEP).map_or("", |i| &case.socket.parts[i].name);
+            let right = mm(right);
+            (
+                format!("says {says} mm, but `{wall}` begins at {name} = {right} mm"),
+                format!("{right} mm, or move the wall: the two must agree"),
+            )
+        }
+        None if solid(-AGREE) => (
+            format!("at {says} mm the opening is filled: no free side within {far} mm"),
+            "let the opening reach from wall to wall where the socket is hollow".to_owned(),
+        ),
+        None => (
+            format!("no wall begins at {name} = {says} mm nor within {far} mm of it"),
+            "state where the walls are, or add the wall as a [[socket.part]]".to_owned(),
+        ),
+    };
+    Some(Problem::new(format!("socket.opening_{name}_mm"), problem, remedy))
+}
+
+/// Faults of the success depth: opening too narrow, or plug stopped above it.
+pub(super) fn depth(case: &Case, seat: &Seat) -> Vec<Problem> {
+    let success = case.task.success.depth;
+    if success <= seat.depth + GIVE {
+        return Vec::new();
+    }
+    let wide: Vec<_> = (0..2).filter_map(|axis| wide(case, seat, axis)).collect();
+    if !wide.is_empty() {
+        return wide;
+    }
+    let by = seat.stopped_by.map_or(String::new(), |[plug, socket]| {
+        format!(": `{}` meets `{}`", case.plug.parts[plug].name, case.socket.parts[socket].name)
+    });
+    let [_, top] = case.plug.extent(2);
+    let (asked, stops) = (mm(success), mm(seat.depth.min(top)));
+    vec![Problem::new(
+        "success.depth_mm",
+        format!("is {asked} mm, but the plug stops {stops} mm below the top{by}"),
+        format!("at most {:.1} mm; less, if the plug may stay tilted", (0.96 * seat.depth / MM)),
+    )]
+}
+
+/// Fault of a plug that is wider than the opening over the depth it must enter.
+fn wide(case: &Case, seat: &Seat, axis: usize) -> Option<Problem> {
+    // A shoulder that rests on the housing is not meant to go in.
+    let depth = case.task.success.depth.min(seat.depth + BELOW);
+    let (plug, opening) = (section(&case.plug, depth)[axis], case.task.opening[axis]);
+    if width(plug) <= width(opening) || seat.depth > case.task.success.depth / 2.0 {
+        return None;
+    }
+    let below = |part: &Part| {
+        width(extent(clipped(&part.solid.corners(), 2, [f64::NEG_INFINITY, depth]), axis))
+    };
+    let part = case.plug.parts.iter().max_by(|a, b| below(a).total_cmp(&below(b)))?;
+    let (name, has, range) = (["x", "y"][axis], mm(width(opening)), pair(opening));
+    let wide = mm(width(plug));
+    Some(Problem::new(
+        part_key("plug", &part.name, field(&part.solid, axis)),
+        format!(
+            "the plug is {wide} mm wide in {name} where the opening has {has} mm ({range}): it cannot enter"
+        ),
+        format!("make it narrower than {has} mm, or widen socket.opening_{name}_mm and its walls"),
+    ))
+}

@@ -1,0 +1,150 @@
+//! Commanded moves: free approach, search over the opening, deep enough push.
+
+use super::{Case, Problem, mm, pair};
+use crate::body::span;
+use crate::seat::{self, Waypoint, section};
+use contact::scene::Pose;
+use input::units::MM;
+use insertion::task::{Ending, Phase, Stage};
+use nalgebra::Vector3;
+
+/// Overlap that counts as rounding, m.
+const ROUNDING: f64 = 0.01 * MM;
+/// Step of the collision check along the approach, m.
+const STEP: f64 = 0.5 * MM;
+/// Recommended clear height of the tip at the end of the approach, m.
+const AIR: f64 = 1.0 * MM;
+/// Recommended command of the push beyond the success depth, m.
+const PRESS: f64 = 4.0 * MM;
+
+pub(super) fn problems(case: &Case) -> Vec<Problem> {
+    let way = seat::waypoints(case.task, &case.plug);
+    let mut found: Vec<Problem> = case.task.strategy.phases.iter().filter_map(upward).collect();
+    found.extend(inside(case, &way));
+    // Of moves that go up nothing else can be said.
+    if found.is_empty() {
+        found.extend(way.iter().filter_map(short));
+        found.extend(too_shallow(case, &way));
+        found.extend(beside(case, &way));
+    }
+    found
+}
+
+fn key(name: &str) -> String {
+    format!("strategy.phase \"{name}\" move_mm")
+}
+
+/// Fault of a touch or push that does not go down.
+fn upward(phase: &Phase) -> Option<Problem> {
+    let z = phase.displacement[2];
+    let touch = matches!(phase.ending, Ending::Touch { .. });
+    if z < 0.0 || !(touch || phase.stage == Stage::Assembly) {
+        return None;
+    }
+    let what = if touch { "a touch" } else { "the push" };
+    let direction = if z > 0.0 { "goes up" } else { "does not go down" };
+    Some(Problem::new(
+        key(&phase.name),
+        format!("z is {} mm: {what} {direction}", mm(z)),
+        format!(
+            "z points out of the socket: give a negative number, as in {}",
+            mm(-z.abs().max(MM))
+        ),
+    ))
+}
+
+/// Collision at the start or on the approach.
+fn inside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
+    let collision = |tcp: Vector3<f64>| {
+        let pose = seat::plug_pose(case.task, tcp);
+        let (depth, [plug, socket]) = case.plug.overlap(&pose, &case.socket, &Pose::identity())?;
+        let names = [&case.plug.parts[plug].name, &case.socket.parts[socket].name];
+        (depth > ROUNDING).then_some((depth, names))
+    };
+    if let Some((depth, [plug, socket])) = collision(way[0].tcp) {
+        let right = way[0].tcp.z + 5.0 * MM - way[0].edge.z;
+        return Some(Problem::new(
+            "strategy.start_mm",
+            format!("at the start `{plug}` lies {} mm deep in `{socket}`", mm(depth)),
+            format!("z = {} mm: 5 mm of air below the tip", mm(right)),
+        ));
+    }
+    for pair in way.windows(2).take_while(|pair| pair[1].stage == Stage::Approach) {
+        let by = pair[1].tcp - pair[0].tcp;
+        let steps = (by.norm() / STEP).ceil();
+        for i in 1..=steps as usize {
+            let at = pair[0].tcp + by * (i as f64 / steps);
+            let Some((_, [plug, socket])) = collision(at) else { continue };
+            let (air, z) = (mm(AIR), mm(by.z + AIR - pair[1].edge.z));
+            return Some(Problem::new(
+                key(&pair[1].name),
+                format!("on the way `{plug}` runs into `{socket}`"),
+                format!(
+                    "an approach touches nothing: let the tip end about {air} mm above the top, z = {z}"
+                ),
+            ));
+        }
+    }
+    None
+}
+
+fn short(point: &Waypoint) -> Option<Problem> {
+    let by = point.short_by?;
+    Some(Problem::new(
+        key(&point.name),
+        format!("the stroke ends {} mm above the socket", mm(by)),
+        format!("at least {} mm longer: it ends at the first contact anyway", mm(by + AIR)),
+    ))
+}
+
+/// Fault of moves that end above the success depth.
+fn too_shallow(case: &Case, way: &[Waypoint]) -> Option<Problem> {
+    // Of the upright tip at the end of the path.
+    let depth = way.last().map_or(0.0, |last| case.task.grip.tcp_z - last.tcp.z);
+    let missing = case.task.success.depth - depth;
+    let last = case.task.strategy.phases.last().filter(|_| missing > 0.0)?;
+    let z = mm(last.displacement[2] - missing - PRESS);
+    let [depth, asked] = [depth, case.task.success.depth].map(mm);
+    Some(Problem::new(
+        key(&last.name),
+        format!("all moves together bring the tip {depth} mm deep; success asks for {asked}"),
+        format!("z = {z} mm: some mm more than is needed, for the springs give"),
+    ))
+}
+
+/// Fault of a search that does not pass over the opening.
+fn beside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
+    let [bottom, _] = case.plug.extent(2);
+    let tip = section(&case.plug, bottom + AIR);
+    let first = way.iter().position(|point| point.stage != Stage::Approach).unwrap_or(0);
+    let search: Vec<_> =
+        way[first.max(1) - 1..].iter().filter(|point| point.stage != Stage::Assembly).collect();
+    let [x, y] = case.task.opening;
+    let [left, right] = span(search.iter().map(|point| point.tcp.x));
+    let fits = [x[0] - tip[0][0], x[1] - tip[0][1]];
+    if right < fits[0].min(fits[1]) || left > fits[0].max(fits[1]) {
+        let at = pair([left, right]);
+        return Some(Problem::new(
+            "strategy.start_mm",
+            format!(
+                "in x the plug is searched at {at} mm, but is over its opening at {}",
+                pair(fits)
+            ),
+            format!("x = {} mm, or longer moves along x", mm((fits[0] + fits[1]) / 2.0)),
+        ));
+    }
+    let [low, high] = span(search.iter().map(|point| point.edge.y));
+    if high < y[0] || low > y[1] {
+        let right = way[0].tcp.y + (y[0] + y[1]) / 2.0 - way[0].edge.y;
+        let at = pair([low, high]);
+        return Some(Problem::new(
+            "strategy.start_mm",
+            format!(
+                "in y the tip's lower edge is searched at {at} mm, but the opening is at {}",
+                pair(y)
+            ),
+            format!("y = {} mm puts it over the opening's middle", mm(right)),
+        ));
+    }
+    None
+}

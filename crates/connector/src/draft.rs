@@ -1,0 +1,288 @@
+//! Task from a few dimensions: plug, clearance and the body that the fingers hold.
+
+use super::plan::{self, PlanError};
+use input::units::MM;
+use input::{Place, Placed};
+use insertion::finger::Pad;
+use insertion::task::finger::FingerModel;
+use insertion::task::{
+    Friction, Grip, Hold, PadTorsion, Part, Plug, Solid, StartRule, Strategy, Success, Task,
+    geometry,
+};
+use nalgebra::Vector3;
+use std::f64::consts::PI;
+use std::str::FromStr;
+
+/// Smallest and largest dimension, mm.
+const LIMITS_MM: [f64; 2] = [0.5, 200.0];
+/// Least thickness of the walls about the opening, m.
+const WALL: f64 = 5.0 * MM;
+/// Reach of the walls beyond the body that rests on them, m.
+const BEYOND_BODY: f64 = 2.0 * MM;
+/// Air between a seated plug's tip and the floor, m.
+const BELOW_TIP: f64 = 0.5 * MM;
+/// Air between the pads and the socket when the plug is seated, m.
+const BELOW_PADS: f64 = 1.0 * MM;
+/// Thickness of the floor, m.
+const FLOOR: f64 = 2.0 * MM;
+/// Share of its length by which a plug without a body goes in.
+const SHARE: f64 = 0.6;
+/// Assumed density of a plug, kg/m3: plastic with some metal in it.
+pub const DENSITY: f64 = 1500.0;
+
+/// Size of a block or a cylinder, m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Size {
+    /// Extent in y, between the jaws.
+    pub width: f64,
+    /// Extent in x.
+    pub height: f64,
+    /// Extent in z.
+    pub length: f64,
+}
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let right = "give WIDTHxHEIGHTxLENGTH in mm, as in 8.25x2.4x6.65";
+        let [width, height, length] = lengths(text, right)?;
+        Ok(Size { width, height, length })
+    }
+}
+
+impl Size {
+    /// Size of a cylinder from DIAMETERxLENGTH in mm.
+    ///
+    /// # Errors
+    /// If the text is something else, or a dimension beyond 0.5 to 200 mm.
+    pub fn round(text: &str) -> Result<Self, String> {
+        let [width, length] = lengths(text, "give DIAMETERxLENGTH in mm, as in 8x12")?;
+        Ok(Size { width, height: width, length })
+    }
+}
+
+/// Dimensions, m, of a text that has them in mm with an x between them.
+fn lengths<const N: usize>(text: &str, right: &str) -> Result<[f64; N], String> {
+    let numbers: Result<Vec<f64>, _> =
+        text.split(['x', 'X', '×']).map(|number| number.trim().parse()).collect();
+    let Ok(numbers) = <[f64; N]>::try_from(numbers.unwrap_or_default()) else {
+        return Err(right.to_owned());
+    };
+    let [low, high] = LIMITS_MM;
+    if !numbers.iter().all(|mm| (low..=high).contains(mm)) {
+        return Err(format!("each dimension lies between {low} and {high} mm; {right}"));
+    }
+    Ok(numbers.map(|mm| mm * MM))
+}
+
+/// Dimensions of a plug and its socket.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dimensions {
+    /// Part of the plug that goes in.
+    pub plug: Size,
+    /// Whether that part is a cylinder, with width and height as its diameter.
+    pub round: bool,
+    /// Opening less plug, in x and in y, m.
+    pub clearance: f64,
+    /// Body that the fingers hold; without it they hold the plug's upper end.
+    pub body: Option<Size>,
+}
+
+/// Error of a draft.
+#[derive(Debug, thiserror::Error, PartialEq)]
+pub enum DraftError {
+    /// Plug or body too short for the pads: its option, its length and the least, mm.
+    #[error(
+        "{0}: is {1} mm long; the pads are {height} mm high and must stay outside of the socket, so \
+         at least {2:.1} mm are needed",
+        height = Pad::PAPER.height / MM
+    )]
+    TooShort(&'static str, f64, f64),
+    /// No strategy can be derived.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+}
+
+impl Placed for DraftError {
+    fn place(&self) -> Place {
+        match self {
+            DraftError::TooShort(option, ..) => Place::option(option),
+            DraftError::Plan(_) => Place::default(),
+        }
+    }
+}
+
+/// Task without shapes: friction, grasp force and fingers as in the shipped tasks, or as in `like`.
+pub fn blank(name: &str, like: Option<&Task>) -> Task {
+    let finger_torsion = PadTorsion::Points(30.0 * MM);
+    let friction = Friction { finger_plug: 1.0, finger_torsion, plug_socket: 0.2 };
+    let (force, hold) = like.map_or((5.0, Hold::Always), |task| (task.grip.force, task.grip.hold));
+    let slip_limit = Pad::PAPER.height / 2.0;
+    Task {
+        name: name.to_owned(),
+        description: String::new(),
+        turn: like.map_or(0.0, |task| task.turn),
+        plug: Plug { parts: Vec::new(), mass: 0.0, latch: None },
+        socket: Vec::new(),
+        opening: [[0.0; 2]; 2],
+        grip: Grip { tcp_z: 0.0, shoulder_z: 0.0, faces_y: [0.0; 2], force, hold, slip_limit },
+        friction: like.map_or(friction, |task| task.friction),
+        finger: like.map_or(FingerModel::default(), |task| task.finger),
+        strategy: Strategy { tilt: 0.0, start: [0.0; 3], rule: StartRule::Given, phases: vec![] },
+        success: Success { depth: 0.0, tilt: 0.0 },
+    }
+}
+
+/// Task of these dimensions; what they do not decide is taken from `like`.
+///
+/// # Errors
+/// If the plug is too short to be held, or no strategy can be derived.
+pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task, DraftError> {
+    let (plug, body) = (size.plug, size.body);
+    let mut task = blank(name, like);
+    let [width, height, clearance] = [plug.width, plug.height, size.clearance].map(|v| v / MM);
+    let shape = match size.round {
+        true => format!("round plug of {width} mm"),
+        false => format!("plug {width} x {height} mm"),
+    };
+    task.description = format!("{shape}, {clearance} mm clearance");
+    let top = plug.length + body.map_or(0.0, |body| body.length);
+    let mut parts = match size.round {
+        true => {
+            let (radius, z) = (plug.width / 2.0, [0.0, plug.length]);
+            vec![part("plug", Solid::Cylinder { centre: [0.0; 2], radius, z })]
+        }
+        false => vec![upright("plug", plug, 0.0)],
+    };
+    parts.extend(body.map(|body| upright("body", body, plug.length)));
+    task.plug.mass = DENSITY * parts.iter().map(|part| geometry::volume(&part.solid)).sum::<f64>();
+    task.plug.parts = parts;
+    let held = body.unwrap_or(plug);
+    task.grip.shoulder_z = top;
+    task.grip.faces_y = [-held.width / 2.0, held.width / 2.0];
+    let floor = body.map_or(SHARE * plug.length, |_| plug.length + BELOW_TIP);
+    // The pads stay outside of the socket.
+    let pads = Pad::PAPER.height + BELOW_PADS;
+    let (option, least) = match body {
+        Some(_) => ("--body", pads),
+        None if size.round => ("--round", pads / (1.0 - SHARE)),
+        None => ("--plug", pads / (1.0 - SHARE)),
+    };
+    if held.length < least {
+        return Err(DraftError::TooShort(option, held.length / MM, least / MM));
+    }
+    (task.opening, task.socket) = housing(size, floor);
+    Ok(plan::complete(task)?)
+}
+
+fn upright(name: &str, size: Size, from: f64) -> Part {
+    let half = [size.height / 2.0, size.width / 2.0];
+    block(name, [[-half[0], half[0]], [-half[1], half[1]], [from, from + size.length]])
+}
+
+fn block(name: &str, [x, y, z]: [[f64; 2]; 3]) -> Part {
+    let [min, max] = [0, 1].map(|end| Vector3::new(x[end], y[end], z[end]));
+    part(name, Solid::Box { min, max })
+}
+
+fn part(name: &str, solid: Solid) -> Part {
+    Part { name: name.to_owned(), solid, friction: None }
+}
+
+/// Opening, and a socket of walls about it and a floor.
+fn housing(size: &Dimensions, floor: f64) -> ([[f64; 2]; 2], Vec<Part>) {
+    let hole = size.round.then(|| Hole::new(size.plug.width, size.clearance));
+    let opening = [size.plug.height, size.plug.width].map(|plug| {
+        let half = hole.map_or((plug + size.clearance) / 2.0, |hole| hole.flat);
+        [-half, half]
+    });
+    let outer = [0, 1].map(|axis| {
+        let half = opening[axis][1];
+        let body = |body: Size| [body.height, body.width][axis] / 2.0 - half + BEYOND_BODY;
+        let below_body = size.body.map_or(0.0, body);
+        let edge = half + WALL.max(below_body);
+        [-edge, edge]
+    });
+    let ([[left, right], [low, high]], z) = (opening, [-floor, 0.0]);
+    let mut parts = match hole {
+        Some(hole) => hole.walls(outer.map(|[_, edge]| edge), z),
+        None => vec![
+            block("wall at -y", [outer[0], [outer[1][0], low], z]),
+            block("wall at +y", [outer[0], [high, outer[1][1]], z]),
+            block("wall at -x", [[outer[0][0], left], opening[1], z]),
+            block("wall at +x", [[right, outer[0][1]], opening[1], z]),
+        ],
+    };
+    parts.push(block("floor", [outer[0], outer[1], [-floor - FLOOR, -floor]]));
+    (opening, parts)
+}
+
+/// Largest error of the hole's diameter, as a share of the clearance, as far as the flats allow.
+const OFF: f64 = 0.05;
+/// Fewest and most flats, multiples of four, so that one faces each of -x, +x, -y and +y.
+const FLATS: [u32; 2] = [16, 96];
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hole {
+    pub flats: u32,
+    /// Distance of each flat from the axis, m.
+    pub flat: f64,
+    /// Largest distance of the wall from the circle, m.
+    pub off: f64,
+}
+
+impl Hole {
+    /// Hole for a plug of a diameter with a clearance, m.
+    pub fn new(diameter: f64, clearance: f64) -> Self {
+        let radius = (diameter + clearance) / 2.0;
+        // With the flat at r - off and its corners at (r - off) / cos(pi / n) = r + off.
+        let off = |flats: u32| radius * libm::tan(PI / 2.0 / f64::from(flats)).powi(2);
+        let [fewest, most] = FLATS;
+        let enough = |flats: &u32| 2.0 * off(*flats) <= OFF * clearance;
+        let flats = (fewest..most).step_by(4).find(enough).unwrap_or(most);
+        Hole { flats, flat: radius - off(flats), off: off(flats) }
+    }
+
+    /// Prisms between the hole and a rectangle of half sides `outer` in x and y, m.
+    pub fn walls(&self, outer: [f64; 2], z: [f64; 2]) -> Vec<Part> {
+        let corner = |k: u32| {
+            let turn = (f64::from(k) - 0.5) * 2.0 * PI / f64::from(self.flats);
+            let (x, y) = (libm::cos(turn), libm::sin(turn));
+            let inner = self.flat / libm::cos(PI / f64::from(self.flats));
+            let far = (outer[0] / x.abs()).min(outer[1] / y.abs());
+            [inner, far].map(|from| [from * x, from * y])
+        };
+        let wall = |k: u32| {
+            let ([a, b], [d, c]) = (corner(k), corner(k + 1));
+            let solid = Solid::Prism { axis: 2, outline: vec![a, b, c, d], span: z };
+            Part { name: format!("wall {}", k + 1), solid, friction: None }
+        };
+        (0..self.flats).map(wall).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The ring of flats has the volume that the circle leaves, and keeps the clearance.
+    #[test]
+    fn a_hole_is_its_circle_within_the_error_that_it_states() {
+        for (diameter_mm, clearance_mm) in [(3.0, 0.1), (8.0, 0.1), (20.0, 0.2), (100.0, 0.02)] {
+            let (diameter, clearance) = (diameter_mm * MM, clearance_mm * MM);
+            let hole = Hole::new(diameter, clearance);
+            let radius = (diameter + clearance) / 2.0;
+            let corner = hole.flat / libm::cos(PI / f64::from(hole.flats));
+            assert!((radius - hole.flat - hole.off).abs() < 1e-12);
+            assert!((corner - radius - hole.off).abs() < 1e-12);
+            assert!(hole.flats == FLATS[1] || 2.0 * hole.off <= OFF * clearance);
+            let half = diameter;
+            let walls = hole.walls([half; 2], [-5.0 * MM, 0.0]);
+            let volume: f64 = walls.iter().map(|part| geometry::volume(&part.solid)).sum();
+            let expected = 5.0 * MM * (4.0 * half * half - PI * radius * radius);
+            // Its corners are cut where no flat's end meets them.
+            assert!((volume / expected - 1.0).abs() < 0.02, "{volume} {expected}");
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! Task files of your own connector: drafted from dimensions or meshes, and checked before simulation.
+#![forbid(unsafe_code)]
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+// A panic is a defect; what input can reach is an error with a message.
+#![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+
+pub mod body;
+pub mod check;
+pub mod draft;
+pub mod hold;
+pub mod mesh;
+pub mod nominal;
+pub mod picture;
+pub mod plan;
+pub mod rewrite;
+pub mod seat;
+pub mod tune;
+pub mod write;

@@ -1,0 +1,124 @@
+//! Merging of convex pieces into convex solids: boxes, prisms, hulls.
+
+use super::cut::{self, Piece};
+use crate::body::extent;
+use input::units::MM;
+use insertion::task::{Solid, geometry};
+use nalgebra::{Point3, Vector3};
+
+/// Largest relative difference of equal volumes.
+const ALIKE: f64 = 1e-6;
+/// Largest difference of equal coordinates, m.
+const NEAR: f64 = 1e-3 * MM;
+
+/// Convex hull of pieces, with its volume, m3, and bounds, m.
+struct Convex {
+    corners: Vec<Point3<f64>>,
+    volume: f64,
+    low: Vector3<f64>,
+    high: Vector3<f64>,
+}
+
+impl Convex {
+    fn new(piece: &[Point3<f64>]) -> Option<Self> {
+        let (corners, faces) = geometry::hull(piece)?;
+        let volume = geometry::surface_moments(&corners, &faces).0;
+        let [low, high] = [0, 1].map(|end| Vector3::from_fn(|axis, _| extent(&corners, axis)[end]));
+        Some(Convex { corners, volume, low, high })
+    }
+
+    fn touches(&self, other: &Convex) -> bool {
+        (0..3).all(|axis| {
+            self.low[axis] < other.high[axis] + NEAR && other.low[axis] < self.high[axis] + NEAR
+        })
+    }
+
+    /// Union of the two, if it is convex.
+    fn with(&self, other: &Convex) -> Option<Convex> {
+        let corners: Vec<_> = self.corners.iter().chain(&other.corners).copied().collect();
+        let both = Convex::new(&corners)?;
+        let sum = self.volume + other.volume;
+        ((both.volume - sum).abs() < ALIKE * sum).then_some(both)
+    }
+}
+
+/// Solids of the pieces, merged until no two have a convex union, from the lowest up.
+pub fn solids(pieces: &[Piece]) -> Vec<Solid> {
+    let mut convex: Vec<_> = pieces.iter().filter_map(|piece| Convex::new(piece)).collect();
+    loop {
+        let before = convex.len();
+        let mut i = 0;
+        while i < convex.len() {
+            let mut j = i + 1;
+            while j < convex.len() {
+                let pair = convex[i].touches(&convex[j]).then(|| convex[i].with(&convex[j]));
+                match pair.flatten() {
+                    Some(both) => {
+                        convex.swap_remove(j);
+                        convex[i] = both;
+                    }
+                    None => j += 1,
+                }
+            }
+            i += 1;
+        }
+        if convex.len() == before {
+            break;
+        }
+    }
+    // As hand-written files have them.
+    convex.sort_by(|Convex { low: a, .. }, Convex { low: b, .. }| {
+        a.z.total_cmp(&b.z).then(a.y.total_cmp(&b.y)).then(a.x.total_cmp(&b.x))
+    });
+    convex.iter().map(solid).collect()
+}
+
+fn solid(convex: &Convex) -> Solid {
+    let (min, max) = (convex.low, convex.high);
+    let prism = [2, 0, 1].into_iter().find_map(|axis| Some((axis, extruded(convex, axis)?)));
+    let Some((axis, (outline, span))) = prism else {
+        return Solid::Hull { points: convex.corners.clone() };
+    };
+    let on_corner = |p: &[f64; 2]| {
+        let at_end = |v: f64, i: usize| (v - min[i]).abs() < NEAR || (v - max[i]).abs() < NEAR;
+        p.iter().zip(OTHERS[axis]).all(|(&v, i)| at_end(v, i))
+    };
+    match outline.len() == 4 && outline.iter().all(on_corner) {
+        true => Solid::Box { min, max },
+        false => Solid::Prism { axis, outline, span },
+    }
+}
+
+/// The two other axes of each axis.
+const OTHERS: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
+
+/// Outline and span, if the solid is an outline extruded along this axis.
+fn extruded(convex: &Convex, axis: usize) -> Option<(Vec<[f64; 2]>, [f64; 2])> {
+    let ends = [convex.low[axis], convex.high[axis]];
+    let [a, b] = OTHERS[axis];
+    let at = |end: f64| -> Vec<[f64; 2]> {
+        let near = convex.corners.iter().filter(|p| (p[axis] - end).abs() < NEAR);
+        near.map(|p| [p[a], p[b]]).collect()
+    };
+    let [first, second] = ends.map(at);
+    let same =
+        |p: &[f64; 2], q: &[f64; 2]| (p[0] - q[0]).abs() < NEAR && (p[1] - q[1]).abs() < NEAR;
+    let within =
+        |some: &[[f64; 2]], all: &[[f64; 2]]| some.iter().all(|p| all.iter().any(|q| same(p, q)));
+    let all_at_ends = first.len() + second.len() == convex.corners.len();
+    if !(all_at_ends && within(&first, &second) && within(&second, &first)) {
+        return None;
+    }
+    Some((outline(first), ends))
+}
+
+/// Corners in their order about the middle, without those on a straight line.
+fn outline(mut corners: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    let count = corners.len() as f64;
+    let middle = [0, 1].map(|i| corners.iter().map(|p| p[i]).sum::<f64>() / count);
+    let angle = |p: &[f64; 2]| libm::atan2(p[1] - middle[1], p[0] - middle[0]);
+    corners.sort_by(|p, q| angle(p).total_cmp(&angle(q)));
+    cut::without(corners, 3, |[p, q, r]| {
+        (q[0] - p[0]) * (r[1] - q[1]) - (q[1] - p[1]) * (r[0] - q[0]) < 1e-4 * MM * MM
+    })
+}

@@ -1,0 +1,186 @@
+//! A task file with another strategy: its comments kept, old values beside the new ones.
+
+use super::write;
+use insertion::task::{Strategy, Task};
+use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TomlError, Value};
+
+/// The text of a task file with another strategy.
+///
+/// # Errors
+/// If the text is no TOML.
+pub fn strategy(text: &str, task: &Task, after: &Strategy) -> Result<String, TomlError> {
+    let mut file: DocumentMut = text.parse()?;
+    let changed = Task { strategy: after.clone(), ..task.clone() };
+    let new: DocumentMut = write::strategy_of(&changed).parse()?;
+    // Inline tables are written out: a comment has no place in them.
+    if let Ok(table) = std::mem::take(&mut file["strategy"]).into_table() {
+        file["strategy"] = Item::Table(table);
+    }
+    if let (Some(old), Some(new)) = (file["strategy"].as_table_mut(), new["strategy"].as_table()) {
+        if let Some(Ok(phases)) = old.remove("phase").map(Item::into_array_of_tables) {
+            old.insert("phase", Item::ArrayOfTables(phases));
+        }
+        change(old, new);
+        if let Some(rule) = old.remove("start") {
+            comment_above(old, "start_mm", &format!("# start was {}", shown(&rule)));
+        }
+        if let (Some(from), Some(to)) = (phases(old), new["phase"].as_array_of_tables()) {
+            if alike(from, to) {
+                from.iter_mut().zip(to).for_each(|(old, new)| change(old, new));
+            } else {
+                replace(from, to);
+            }
+        }
+    }
+    Ok(file.to_string())
+}
+
+fn phases(strategy: &mut Table) -> Option<&mut ArrayOfTables> {
+    strategy.get_mut("phase")?.as_array_of_tables_mut()
+}
+
+/// Whether two strategies consist of the same moves but for their numbers.
+fn alike(old: &ArrayOfTables, new: &ArrayOfTables) -> bool {
+    let kinds = |phases: &ArrayOfTables| -> Vec<_> {
+        let word = |phase: &Table, key| phase.get(key).and_then(Item::as_str).map(str::to_owned);
+        phases.iter().map(|phase| ["name", "stage", "motion"].map(|key| word(phase, key))).collect()
+    };
+    kinds(old) == kinds(new)
+}
+
+/// Sets the numbers of a table that differ, with the old ones beside them.
+fn change(old: &mut Table, new: &Table) {
+    for (key, to) in new {
+        let Some(to) = to.as_value() else { continue };
+        let from = old.get(key).and_then(Item::as_value).cloned();
+        if from.as_ref().is_some_and(|from| same(from, to)) {
+            continue;
+        }
+        let mut value = to.clone();
+        let beside = from.as_ref().and_then(|from| from.decor().suffix()?.as_str());
+        let note = from.as_ref().map_or(String::new(), |from| format!("was {}", bare(from)));
+        let beside = beside.unwrap_or("").trim();
+        let join = if beside.is_empty() { "#" } else { ";" };
+        *value.decor_mut() =
+            toml_edit::Decor::new(" ", format!(" {beside}{join} {note}").replace(" ;", ";"));
+        // In place: a key that is inserted anew loses the comments above it.
+        match old.get_mut(key) {
+            Some(item) => *item = Item::Value(value),
+            None => drop(old.insert(key, Item::Value(value))),
+        }
+    }
+}
+
+/// Other phases in place of the old ones, which stay as comments.
+fn replace(old: &mut ArrayOfTables, new: &ArrayOfTables) {
+    let mut was = String::from("\n# was:\n");
+    for phase in old.iter() {
+        was.push_str("# [[strategy.phase]]\n");
+        for line in phase.to_string().lines().filter(|line| !line.trim().is_empty()) {
+            was.push_str(&format!("# {}\n", line.trim()));
+        }
+    }
+    old.clear();
+    for (i, phase) in new.iter().enumerate() {
+        let mut phase = phase.clone();
+        let above = if i == 0 { was.as_str() } else { "\n" };
+        phase.decor_mut().set_prefix(above);
+        phase.set_position(None);
+        old.push(phase);
+    }
+}
+
+fn comment_above(table: &mut Table, key: &str, comment: &str) {
+    if let Some(mut key) = table.key_mut(key) {
+        let before =
+            key.leaf_decor().prefix().and_then(|raw| raw.as_str()).unwrap_or("").to_owned();
+        key.leaf_decor_mut().set_prefix(format!("{before}{comment}\n"));
+    }
+}
+
+/// Whether two values are equal as a task reads them.
+fn same(a: &Value, b: &Value) -> bool {
+    let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
+    let list =
+        |a: &Array, b: &Array| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b));
+    match (number(a), number(b), a.as_array(), b.as_array()) {
+        // As written: a tenth of a micrometre.
+        (Some(a), Some(b), ..) => (a - b).abs() < 1e-4,
+        (.., Some(a), Some(b)) => list(a, b),
+        _ => a.as_str().is_some() && a.as_str() == b.as_str(),
+    }
+}
+
+fn bare(value: &Value) -> String {
+    let mut bare = value.clone();
+    bare.decor_mut().clear();
+    bare.to_string()
+}
+
+fn shown(item: &Item) -> String {
+    item.as_value().map_or(String::new(), bare)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Family;
+    use input::shipped::TASKS;
+
+    #[test]
+    fn a_changed_file_has_the_new_strategy_the_old_values_and_all_comments() {
+        for file in TASKS {
+            let task = Task::parse(file.text, file.file).unwrap();
+            for family in Family::all() {
+                let after = family.of(&task).unwrap();
+                let written = strategy(file.text, &task, &after).unwrap();
+                let read = Task::parse(&written, "written").unwrap().strategy;
+                assert!((read.tilt - after.tilt).abs() < 1e-6);
+                for (read, after) in read.phases.iter().zip(&after.phases) {
+                    let off = (0..3).map(|i| (read.displacement[i] - after.displacement[i]).abs());
+                    assert!(off.fold(0.0, f64::max) < 1e-7, "{}", file.name);
+                }
+                let comments = file.text.lines().filter_map(|line| line.split_once('#'));
+                for (_, comment) in comments {
+                    assert!(written.contains(comment.trim()), "{}: {comment}", file.name);
+                }
+            }
+            let unchanged = strategy(file.text, &task, &task.strategy).unwrap();
+            assert_eq!(unchanged, file.text, "{}", file.name);
+        }
+    }
+
+    #[test]
+    fn inline_tables_are_changed_too() {
+        let [file, ..] = TASKS else { panic!() };
+        let mut fields: toml::Table = toml::from_str(file.text).unwrap();
+        let strategy = fields.remove("strategy").unwrap();
+        let text = format!("strategy = {strategy}\n{fields}");
+        let task = Task::parse(&text, "own").unwrap();
+        let after = Family::Peg.of(&task).unwrap();
+        let written = super::strategy(&text, &task, &after).unwrap();
+        let read = Task::parse(&written, "written").unwrap();
+        assert!((read.strategy.tilt - after.tilt).abs() < 1e-6, "{written}");
+        let off = read.strategy.phases.iter().zip(&after.phases).map(|(read, after)| {
+            (0..3).map(|i| (read.displacement[i] - after.displacement[i]).abs()).fold(0.0, f64::max)
+        });
+        assert!(off.fold(0.0, f64::max) < 1e-7, "{written}");
+    }
+
+    #[test]
+    fn other_phases_leave_the_old_ones_as_comments_and_a_rule_becomes_a_number() {
+        let [file, ..] = TASKS else { panic!() };
+        let text = file.text.replace("name = \"side\"", "name = \"along\"");
+        let text = text.replacen("tilt_deg = 5.0", "start = \"taught\"\ntilt_deg = 5.0 # mine", 1);
+        let task = Task::parse(&text, "own").unwrap();
+        let after = Family::Peg.of(&task).unwrap();
+        let written = strategy(&text, &task, &after).unwrap();
+        let read = Task::parse(&written, "written").unwrap();
+        assert_eq!(read.strategy.phases.len(), 6);
+        assert_eq!(read.strategy.rule, insertion::task::StartRule::Given);
+        for said in ["# name = \"along\"", "# start was \"taught\"", "# mine"] {
+            assert!(written.contains(said), "{said} in {written}");
+        }
+        assert_eq!(read.success, task.success);
+    }
+}

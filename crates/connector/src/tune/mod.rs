@@ -1,0 +1,329 @@
+//! A strategy by which a connector inserts, looked for before any finger is compared.
+
+mod bench;
+mod knobs;
+
+pub use bench::{Bench, ENOUGH_MM, Tried};
+
+use crate::body::ConvexBody;
+use crate::plan::Family;
+use ask_tell::{Grid, Observation, OptimizerKind};
+use input::InputError;
+use input::units::{DEG, MM};
+use insertion::evaluation::INDIFFERENCE_MM;
+use insertion::evaluation::template::Impossible;
+use insertion::finger::Finger;
+use insertion::task::{Strategy, Task};
+use insertion::trial::Conditions;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Most windows that are measured.
+pub const MOST_WINDOWS: usize = 150;
+/// Candidates that are proposed at a time: a number of its own, so that threads decide nothing.
+const BATCH: usize = 4;
+/// Windows of a candidate.
+const EACH: usize = 3;
+/// Turn of the socket that is checked, degrees, and factors on its friction.
+pub const YAW_DEG: f64 = 1.0;
+const FRICTION: [f64; 2] = [0.8, 1.2];
+/// Changes that are checked, no change among them, and those of them that turn the socket.
+const CHANGES: usize = 5;
+const TURNED: Range<usize> = 1..3;
+/// Most strategies that are checked with a turned socket and one finger, and those of one tilt that may keep
+/// nothing there before the others of that tilt are passed over: neighbours in a search fail alike.
+const FINALISTS: usize = 12;
+const ALIKE: usize = 2;
+
+/// How far to go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Stage {
+    /// The strategy as the file has it.
+    AsItIs,
+    /// A start taught with the medium finger.
+    Start,
+    /// Strategies of families of connectors, each with a taught start.
+    Families,
+    /// A search over tilt, strokes, preload and push speed.
+    Search,
+}
+
+/// One strategy that was tried.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// The stage that tried it.
+    pub stage: Stage,
+    /// What it changes: `like a key`.
+    pub what: String,
+    /// What came of it.
+    pub tried: Tried,
+    /// Least range of another finger with the socket turned either way, mm, if that was checked.
+    pub turned_mm: Option<f64>,
+}
+
+impl Step {
+    fn new(stage: Stage, what: impl Into<String>, tried: Tried) -> Self {
+        Step { stage, what: what.into(), tried, turned_mm: None }
+    }
+}
+
+/// What the recommended strategy keeps under a change: least range of three other fingers, mm; 0
+/// where one of them fails.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Kept {
+    /// The change: `yaw +1°`.
+    pub change: String,
+    /// Least range, mm.
+    pub least_range_mm: f64,
+}
+
+/// A tuned strategy.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tuned {
+    /// All that was tried, in its order; the first is the strategy as it was.
+    pub steps: Vec<Step>,
+    /// Index of the recommended step.
+    pub best: usize,
+    /// What other fingers keep under changes; empty unless it was asked for.
+    pub kept: Vec<Kept>,
+    /// Windows measured for all this.
+    pub windows: usize,
+}
+
+/// How far to look for a strategy.
+pub struct Effort<'a> {
+    /// The last stage.
+    pub last: Stage,
+    /// Whether to stop after the first stage that is enough.
+    pub until_enough: bool,
+    /// Seed of the search.
+    pub seed: u64,
+    /// Is told what was tried, its windows, those measured so far, and the most there may be.
+    pub tell: &'a (dyn Fn(&str, usize, usize, usize) + Sync),
+}
+
+/// Tunes the strategy of the bench's task.
+///
+/// # Errors
+/// If the task cannot be simulated as it is.
+pub fn tune(bench: &Bench, effort: &Effort) -> Result<Tuned, Impossible> {
+    let own = &bench.task.strategy;
+    let first = Step::new(Stage::AsItIs, "as it is", bench.given(own)?);
+    let mut tuned = Tuned { steps: Vec::new(), best: 0, kept: Vec::new(), windows: 0 };
+    tuned.add(first, effort);
+    for stage in [Stage::Start, Stage::Families, Stage::Search] {
+        let stopped = bench.stop.load(std::sync::atomic::Ordering::SeqCst);
+        let enough = stage > Stage::Start && tuned.best().tried.is_enough();
+        let enough = effort.until_enough && enough;
+        if stage > effort.last || enough || stopped {
+            break;
+        }
+        match stage {
+            Stage::AsItIs => {}
+            Stage::Start => {
+                let tried = bench.taught(own)?;
+                let by = (tried.strategy.start[1] - own.start[1]) / MM;
+                let what = format!("start taught, {by:+.1} mm in y");
+                tuned.add(Step::new(stage, what, tried), effort);
+            }
+            Stage::Families => tuned.families(bench, effort),
+            Stage::Search => tuned.search(bench, effort)?,
+        }
+    }
+    if effort.last == Stage::Search && tuned.inserts() {
+        tuned.check(bench)?;
+    }
+    Ok(tuned)
+}
+
+impl Tuned {
+    /// The recommended step.
+    pub fn best(&self) -> &Step {
+        &self.steps[self.best]
+    }
+
+    /// Whether the recommended strategy inserts with all three fingers.
+    pub fn inserts(&self) -> bool {
+        self.best().tried.inserts()
+    }
+
+    /// A step of a later stage must be better by what matters; of the same stage, or of two that fail, at
+    /// all.
+    fn add(&mut self, step: Step, effort: &Effort) {
+        self.windows += step.tried.cost;
+        (effort.tell)(&step.what, step.tried.cost, self.windows, MOST_WINDOWS);
+        self.steps.push(step);
+        let [best, last] = [self.best, self.steps.len() - 1].map(|i| &self.steps[i].tried);
+        let own = self.steps[self.best].stage == self.steps[self.steps.len() - 1].stage;
+        let margin = if best.inserts() && !own { INDIFFERENCE_MM } else { 0.0 };
+        // A middle is worth more than a start near the end of as wide a window.
+        let centred = self.steps.len() == 2
+            && last.side_mm() >= best.side_mm() + INDIFFERENCE_MM
+            && last.score >= best.score - INDIFFERENCE_MM;
+        if last.score > best.score + margin || centred {
+            self.best = self.steps.len() - 1;
+        }
+    }
+
+    fn families(&mut self, bench: &Bench, effort: &Effort) {
+        let families: Vec<_> = Family::all().collect();
+        let tried: Vec<_> = families
+            .par_iter()
+            .map(|family| Some((family.name(), bench.taught(&family.of(bench.task)?).ok()?)))
+            .collect();
+        for (what, tried) in tried.into_iter().flatten() {
+            self.add(Step::new(Stage::Families, what, tried), effort);
+        }
+    }
+
+    fn search(&mut self, bench: &Bench, effort: &Effort) -> Result<(), InputError> {
+        let from = self.best().tried.strategy.clone();
+        let task = Task { strategy: from, ..bench.task.clone() };
+        let knobs = knobs::knobs(&task.strategy)?;
+        let grid = Grid::new(knobs::levels(&knobs));
+        let mut optimizer = ask_tell::build(OptimizerKind::Gp, grid.clone(), effort.seed);
+        let limit = MOST_WINDOWS - Self::CHECKS - EACH;
+        let middle = grid.snap(&vec![0.5; knobs.len()]);
+        optimizer.tell(&[Observation::new(middle, Some(self.best().tried.score))]);
+        while self.windows + BATCH * EACH <= limit {
+            let points = optimizer.ask(BATCH);
+            if points.is_empty() || bench.stop.load(std::sync::atomic::Ordering::SeqCst) {
+                break;
+            }
+            let tried: Vec<_> = points
+                .par_iter()
+                .map(|point| {
+                    let (strategy, what) = knobs::turned(&task, &knobs, &grid.unit(point));
+                    (what, bench.taught(&strategy).ok())
+                })
+                .collect();
+            let score = |tried: &Option<Tried>| tried.as_ref().map(|tried| tried.score);
+            let told: Vec<_> = points
+                .into_iter()
+                .zip(&tried)
+                .map(|(point, (_, tried))| Observation::new(point, score(tried)))
+                .collect();
+            optimizer.tell(&told);
+            for (what, tried) in tried {
+                let Some(tried) = tried else { continue };
+                self.add(Step::new(Stage::Search, what, tried), effort);
+            }
+        }
+        Ok(())
+    }
+
+    /// Windows of the check.
+    const CHECKS: usize = CHANGES * EACH + TURNED.end * FINALISTS - TURNED.start * FINALISTS;
+
+    /// Recommends what keeps most where the socket is turned, and says what that keeps under all changes.
+    fn check(&mut self, bench: &Bench) -> Result<(), Impossible> {
+        let inserts = |place: &usize| self.steps[*place].tried.inserts();
+        let mut order: Vec<_> = (0..self.steps.len()).filter(inserts).collect();
+        let score: Vec<_> = self.steps.iter().map(|step| step.tried.score).collect();
+        order.sort_by(|&a, &b| score[b].total_cmp(&score[a]));
+        // First the best that was not searched for: what is no wider when turned does not replace it.
+        let plain = order.iter().position(|&place| self.steps[place].stage < Stage::Search);
+        plain.iter().for_each(|&at| order[..=at].rotate_right(1));
+        let mut most = (self.best, f64::NEG_INFINITY);
+        let (mut checked, mut failed) = (0, Vec::new());
+        for place in order {
+            let strategy = &self.steps[place].tried.strategy;
+            let alike = failed.iter().filter(|&&tilt| tilt == strategy.tilt).count();
+            if checked == FINALISTS || score[place] <= most.1 + INDIFFERENCE_MM {
+                break;
+            }
+            if alike == ALIKE {
+                continue;
+            }
+            checked += 1;
+            let kept = self.kept(bench, strategy, &bench.others[1..2], TURNED)?;
+            self.windows += kept.len();
+            let turned = kept.iter().map(|kept| kept.least_range_mm).fold(f64::INFINITY, f64::min);
+            if turned <= 0.0 {
+                failed.push(strategy.tilt);
+            }
+            self.steps[place].turned_mm = Some(turned);
+            let least = turned.min(score[place]);
+            if least > most.1 + INDIFFERENCE_MM {
+                most = (place, least);
+            }
+        }
+        self.best = most.0;
+        self.kept = self.kept(bench, &self.best().tried.strategy, &bench.others, 0..CHANGES)?;
+        self.windows += self.kept.len() * bench.others.len();
+        Ok(())
+    }
+
+    /// What a strategy keeps with some fingers, with a turned socket and with other friction.
+    fn kept(
+        &self,
+        bench: &Bench,
+        strategy: &Strategy,
+        fingers: &[Finger],
+        which: Range<usize>,
+    ) -> Result<Vec<Kept>, Impossible> {
+        let nominal = Conditions::NOMINAL;
+        let yaw = |degrees: f64| Conditions { yaw: degrees * DEG, ..nominal };
+        let friction = |factor| Conditions { friction_socket: factor, ..nominal };
+        let [less, more] = FRICTION;
+        let changes: [_; CHANGES] = [
+            ("none".to_owned(), nominal),
+            (format!("socket turned by {YAW_DEG}°"), yaw(YAW_DEG)),
+            (format!("socket turned by -{YAW_DEG}°"), yaw(-YAW_DEG)),
+            (format!("friction plug-socket times {less}"), friction(less)),
+            (format!("friction plug-socket times {more}"), friction(more)),
+        ];
+        let under = |(change, conditions): &(String, Conditions)| {
+            let windows = bench.windows(strategy, fingers, *conditions)?;
+            let ranges = windows.iter().map(|(window, _)| window.range_mm());
+            let least_range_mm = ranges.fold(f64::INFINITY, f64::min);
+            Ok(Kept { change: change.clone(), least_range_mm })
+        };
+        changes[which].par_iter().map(under).collect()
+    }
+
+    /// Where the start that failed least clearly came to its end, of strategies without any that inserts.
+    pub fn nearest(&self, task: &Task) -> Option<Stopped> {
+        let failed = self.steps.iter().filter_map(|step| step.tried.nearest.as_ref());
+        let trial = failed.max_by(|a, b| a.margin.total_cmp(&b.margin))?;
+        let phase = trial.phases.last()?;
+        let strongest =
+            phase.contacts.iter().max_by(|a, b| a.force.norm().total_cmp(&b.force.norm()));
+        let met = strongest.map(|contact| {
+            let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
+            let here = phase.poses.plug.inverse() * contact.point;
+            let name = |body: &ConvexBody, point| {
+                let at = body.near(point, TOUCHING).next();
+                at.map_or(String::new(), |i| body.parts[i].name.clone())
+            };
+            [name(&plug, &here), name(&socket, &contact.point)]
+        });
+        Some(Stopped {
+            outcome: trial.outcome.label(),
+            phase: phase.name.clone(),
+            depth_mm: trial.depth_mm,
+            tilt_deg: trial.tilt_deg,
+            met,
+        })
+    }
+}
+
+/// Distance within which a part is at a contact point, m.
+const TOUCHING: f64 = 0.05 * MM;
+
+/// How the start that failed least clearly ended.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Stopped {
+    /// How it failed.
+    pub outcome: &'static str,
+    /// Phase in which the trial ended.
+    pub phase: String,
+    /// Depth of the tip below the socket's top, mm.
+    pub depth_mm: f64,
+    /// Angle between the plug's axis and z, degrees.
+    pub tilt_deg: f64,
+    /// The parts of plug and socket between which the largest force acts.
+    #[serde(rename = "plug_and_socket_part")]
+    pub met: Option<[String; 2]>,
+}

@@ -1,0 +1,185 @@
+//! The designs that are as good as the recommended one, and which of them is the safe choice.
+
+use super::trust::Measured;
+use input::units::N_PER_MM;
+use insertion::evaluation::objective::Measure;
+use insertion::space::label;
+use study::{Recorded, StudyRecord};
+
+/// The designs within the study's indifference of the recommended one.
+#[derive(Debug, Clone)]
+pub struct AsGood<'a> {
+    /// They themselves, the recommended one with them, by evaluation; and what each loses against it
+    /// in the first objective.
+    pub designs: Vec<(&'a Recorded, f64)>,
+    /// Smallest and largest value of each parameter that the space leaves free.
+    pub spread: Vec<Spread<'a>>,
+    /// Share of the space that lies nearest to one of them, 0 to 1: their number says little, since a
+    /// search looks most where it is best.
+    pub share: f64,
+    /// Which to take for other reasons: the reason, the design, what is least or most of it and the
+    /// unit of that; none if there is no other.
+    pub alternatives: Vec<(&'static str, &'a Recorded, f64, &'static str)>,
+    /// Which to take without a reason of one's own; `None` if there is no other.
+    pub safe: Option<Safe<'a>>,
+}
+
+/// Values of a parameter over a set of designs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spread<'a> {
+    /// Key in the space file.
+    pub key: &'a str,
+    /// Smallest and largest value, in the unit of the key.
+    pub values: [f64; 2],
+}
+
+/// The safe choice of a set.
+#[derive(Debug, Clone)]
+pub struct Safe<'a> {
+    /// The design.
+    pub design: &'a Recorded,
+    /// Its range on a robot, mm, if it was measured; else it is the one of least force.
+    pub measured_mm: Option<f64>,
+    /// Largest contact force, N, if any trial inserted.
+    pub force_n: Option<f64>,
+    /// What it loses against the recommended one, in the unit of the first objective.
+    pub loss: f64,
+}
+
+impl Spread<'_> {
+    /// `10 to 11 %`.
+    pub fn words(&self) -> String {
+        let (name, unit) = label(self.key);
+        let [low, high] = self.values;
+        let short = ["infill density", "infill direction"].contains(&name.as_str());
+        let name = if short { String::new() } else { format!("{name} ") };
+        match low == high {
+            true => format!("{name}{low}{unit}"),
+            false => format!("{name}{low} to {high}{unit}"),
+        }
+    }
+}
+
+impl<'a> AsGood<'a> {
+    pub(super) fn of(record: &'a StudyRecord, index: u64, measured: &[Measured]) -> Self {
+        let designs = record.as_good(index);
+        let force = |r: &Recorded| record.measure(r, Measure::PeakForce);
+        let stiffness = |r: &Recorded| r.stiffness.compliance.mean / N_PER_MM;
+        // Without a second there is nothing to choose.
+        let among = if designs.len() < 2 { &[] } else { &designs[..] };
+        let forces = || among.iter().filter_map(|&(design, _)| Some((design, force(design)?)));
+        let stiffnesses = || among.iter().map(|&(design, _)| (design, stiffness(design)));
+        let value = |a: &(&Recorded, f64), b: &(&Recorded, f64)| a.1.total_cmp(&b.1);
+        let named = [
+            ("least force", forces().min_by(value), "N"),
+            ("softest", stiffnesses().min_by(value), "N/mm"),
+            ("stiffest", stiffnesses().max_by(value), "N/mm"),
+        ];
+        let known = named.into_iter().filter_map(|(reason, found, unit)| {
+            let (design, value) = found?;
+            Some((reason, design, value, unit))
+        });
+        let on_robot = |design: &Recorded| {
+            let found = measured.iter().find(|measured| measured.design == design.design);
+            found.map(|measured| measured.range_mm)
+        };
+        let printed = among.iter().filter_map(|&(r, loss)| Some((r, loss, on_robot(r)?)));
+        let printed = printed.max_by(|a, b| a.2.total_cmp(&b.2).then(b.0.index.cmp(&a.0.index)));
+        let gentle = forces().min_by(value).map(|(design, _)| design);
+        let loss = |design: &Recorded| among.iter().find(|(r, _)| r.index == design.index);
+        let safe = match (printed, gentle) {
+            (Some((design, loss, measured_mm)), _) => Some((design, loss, Some(measured_mm))),
+            (None, Some(design)) => loss(design).map(|&(design, loss)| (design, loss, None)),
+            (None, None) => None,
+        };
+        let safe = safe.map(|(design, loss, measured_mm)| Safe {
+            design,
+            measured_mm,
+            force_n: force(design),
+            loss: (10.0 * loss.max(0.0)).round() / 10.0,
+        });
+        let (spread, share) = (spread(record, &designs), share(record, &designs));
+        AsGood { spread, share, alternatives: known.collect(), safe, designs }
+    }
+}
+
+/// Points of the space that are asked which design they lie nearest to.
+const ASKED: u32 = 500;
+
+/// Share of evenly spread points whose nearest design, parameters over their spans, is in the set.
+fn share(record: &StudyRecord, set: &[(&Recorded, f64)]) -> f64 {
+    let space = &record.config.space;
+    let unit = |design: &Recorded| -> Vec<f64> {
+        let shares = space.point(&design.design).0.into_iter().zip(space.levels());
+        shares.map(|(level, levels)| f64::from(level) / f64::from(levels.max(2) - 1)).collect()
+    };
+    let designs: Vec<(Vec<f64>, bool)> = record
+        .current()
+        .iter()
+        .map(|found| (unit(found), set.iter().any(|(member, _)| member.index == found.index)))
+        .collect();
+    // Roberts' sequence: the root of x^(d + 1) = x + 1 fills d dimensions evenly.
+    let dimension = space.parameters.len() as u32;
+    let root = (0..60).fold(1.5_f64, |x, _| libm::pow(1.0 + x, 1.0 / f64::from(dimension + 1)));
+    let within = |&number: &u32| {
+        let powers = std::iter::successors(Some(1.0 / root), |power| Some(power / root));
+        let at: Vec<f64> = powers
+            .take(space.parameters.len())
+            .map(|power| (0.5 + f64::from(number) * power).fract())
+            .collect();
+        let from = |design: &[f64]| -> f64 {
+            design.iter().zip(&at).map(|(value, at)| (value - at) * (value - at)).sum()
+        };
+        let nearest = designs.iter().min_by(|a, b| from(&a.0).total_cmp(&from(&b.0)));
+        nearest.is_some_and(|(_, member)| *member)
+    };
+    f64::from((0..ASKED).filter(within).count() as u32) / f64::from(ASKED)
+}
+
+fn spread<'a>(record: &'a StudyRecord, designs: &[(&Recorded, f64)]) -> Vec<Spread<'a>> {
+    let free = record.config.space.parameters.iter().filter(|p| p.low < p.high);
+    let of = |key: &'a str| {
+        let values = designs.iter().filter_map(|(recorded, _)| recorded.design.get(key));
+        let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+            [low.min(value), high.max(value)]
+        });
+        Spread { key, values: [low, high] }
+    };
+    free.map(|parameter| of(&parameter.key)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::answer::{Answer, Verdict};
+    use study::StudyRecord;
+
+    fn fixture() -> StudyRecord {
+        StudyRecord::load("../../tests/fixtures/study".as_ref()).unwrap()
+    }
+
+    #[test]
+    fn what_is_said_follows_from_what_differs_too_little() {
+        let mut record = fixture();
+        record.config.indifference_mm = 0.1;
+        let answer = Answer::of(&record);
+        let found = answer.recommended.as_ref().and_then(|found| found.as_good.as_ref()).unwrap();
+        assert!(found.share < 0.5 && matches!(answer.verdict, Verdict::Print(_)), "{found:?}");
+        let named = answer.named().unwrap().index;
+        assert!(found.designs.iter().any(|(member, loss)| member.index == named && *loss == 0.0));
+        // Nothing differs by so much.
+        record.config.indifference_mm = 10.0;
+        let answer = Answer::of(&record);
+        let found = answer.recommended.as_ref().and_then(|found| found.as_good.as_ref()).unwrap();
+        assert!(found.share > 0.5);
+        assert_eq!(found.designs.len(), answer.feasible);
+        assert!(matches!(answer.verdict, Verdict::Any { .. }));
+        // One that a robot measured, else the gentlest, is the safe one.
+        let safe = found.safe.as_ref().unwrap();
+        let gentlest = found.designs.iter().filter_map(|(member, _)| {
+            Some(member.tasks.first()?.peak_force_n).filter(|force| force.is_finite())
+        });
+        let gentlest = gentlest.fold(f64::INFINITY, f64::min);
+        assert!(safe.measured_mm.is_some() || safe.force_n == Some(gentlest));
+        assert_eq!(answer.verdict.finger(), Some(&safe.design.design));
+    }
+}

@@ -1,0 +1,177 @@
+//! Commands that an answer ends with: the study again, and what to do next.
+
+use super::trust::Trust;
+use super::{Answer, Verdict};
+use input::shipped::{
+    FINGERS, MEASUREMENTS, ROBOTS, SPACES, STIFFNESS, Shipped, TASKS, UNCERTAINTIES,
+};
+use insertion::evaluation::INDIFFERENCE_MM;
+use insertion::evaluation::objective::Aggregate;
+use insertion::trial::engine::EngineKind;
+use std::path::Path;
+use study::{CELL, FINGER, Provenance, StudyRecord, input_path, sha256_hex};
+
+/// Inputs of a study by name: what is as shipped by its name, others by their copies in `dir`.
+struct Named<'a> {
+    record: &'a StudyRecord,
+    dir: &'a Path,
+}
+
+impl Named<'_> {
+    fn provenance(&self) -> &Provenance {
+        let StudyRecord { config, segments, .. } = self.record;
+        segments.last().map_or(&config.provenance, |last| &last.provenance)
+    }
+
+    fn input(&self, role: &str, shipped: &[Shipped]) -> String {
+        let segment = self.record.segments.len().max(1);
+        match name(self.provenance(), role, shipped) {
+            Some(name) => name.to_owned(),
+            None => input_path(self.dir, segment, role).display().to_string(),
+        }
+    }
+
+    fn tasks(&self) -> String {
+        let tasks = 1..=self.record.config.tasks.len();
+        let tasks = tasks.map(|number| self.input(&format!("task_{number}"), TASKS));
+        tasks.collect::<Vec<_>>().join(",")
+    }
+}
+
+/// Fingers that are printed at a time.
+const PRINTS: usize = 3;
+
+/// What to do next, as a command that runs as it stands, and why; `dir` is the study's folder.
+pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
+    let named = Named { record: answer.record, dir };
+    let tasks = named.tasks();
+    let several = answer.record.config.several_tasks();
+    match (&answer.verdict, &answer.trust) {
+        (Verdict::NothingInserts { place, .. }, _) => mend(answer.record, dir, *place),
+        (Verdict::NoneFeasible, _) => {
+            (format!("optimize report {}", dir.display()), "shows how far each design is off")
+        }
+        (_, Trust::Calibrated { .. }) | (_, Trust::Published { .. }) if !several => {
+            let given = answer.record.config.conclusion.measurements.clone();
+            let shipped = match answer.record.on_bench {
+                None => Some(MEASUREMENTS[0].name),
+                Some(_) => name(named.provenance(), "measurements", MEASUREMENTS),
+            };
+            let file = shipped.map(str::to_owned).or(given);
+            let file = file.unwrap_or_else(|| named.input("measurements", MEASUREMENTS));
+            let asked = format!("--task {tasks} --measurements {file} --count {PRINTS}");
+            let why = match (&answer.verdict, &answer.record.on_bench) {
+                (Verdict::MeasuredBefore { .. }, _) => "whether another finger is worth a print",
+                (_, Some(_)) => "what to print to gain or learn most; above is the widest expected",
+                (_, None) => "what to print first by measurements too; above by simulation alone",
+            };
+            (format!("optimize next {asked}"), why)
+        }
+        _ => ("optimize measure add bench.csv".to_owned(), "asks for what your robot measured"),
+    }
+}
+
+/// What to do about a task, by its place, whose nominal start fails, and why: a file of one's own is
+/// tuned where it is.
+pub fn mend(record: &StudyRecord, dir: &Path, place: usize) -> (String, &'static str) {
+    let (named, role) = (Named { record, dir }, format!("task_{}", place + 1));
+    if let Some(shipped) = name(named.provenance(), &role, TASKS) {
+        return (format!("optimize task check {shipped}"), "says what stops it");
+    }
+    let given = record.config.conclusion.task_files.get(place);
+    // A text of Python's is no file.
+    let file = given.filter(|file| file.ends_with(".toml")).cloned().unwrap_or_else(|| {
+        format!("{} --out {}.toml", named.input(&role, TASKS), record.config.tasks[place])
+    });
+    (format!("optimize task tune {file}"), "looks for a start and a strategy by which it inserts")
+}
+
+/// Whether the one task of a study is no shipped one.
+pub fn own_task(record: &StudyRecord) -> bool {
+    let named = Named { record, dir: Path::new("") };
+    name(named.provenance(), "task_1", TASKS).is_none()
+}
+
+/// The command that runs a study again, option by option, to be given in its folder.
+pub fn again(record: &StudyRecord) -> Vec<String> {
+    let config = &record.config;
+    let named = Named { record, dir: Path::new("") };
+    let mut words = vec!["optimize".to_owned(), format!("--task {}", named.tasks())];
+    words.extend(setup(&named));
+    let named = |role: &str, shipped| named.input(role, shipped);
+    words.push(format!("--optimizer {}", config.optimizer));
+    words.push(format!("--objective {}", config.objective));
+    words.extend(config.constraints.iter().map(|limit| format!("--constraint '{limit}'")));
+    if config.uncertainty.is_some() {
+        words.push(format!("--uncertainty {}", named("uncertainty", UNCERTAINTIES)));
+    }
+    words.extend(config.aggregate.as_ref().map(aggregate));
+    if config.indifference_mm != INDIFFERENCE_MM {
+        words.push(format!("--indifference-mm {}", config.indifference_mm));
+    }
+    words.push(format!("--seed {}", config.seed));
+    if !config.settles {
+        words.push(format!("--budget {}", config.budget));
+    }
+    if config.polish > 0 {
+        words.push(format!("--polish {}", config.polish));
+    }
+    words.push(format!("--batch {}", config.batch));
+    if config.asynchronous {
+        words.push("--async".to_owned());
+    }
+    words
+}
+
+/// The command of a trial of the first task, up to the design and the offset; `dir` is the study's
+/// folder.
+pub fn trial(record: &StudyRecord, dir: &Path) -> String {
+    let named = Named { record, dir };
+    let mut words =
+        vec!["optimize trial".to_owned(), format!("--task {}", named.input("task_1", TASKS))];
+    words.extend(setup(&named).into_iter().filter(|word| !USUAL.contains(&word.as_str())));
+    words.join(" ")
+}
+
+/// Options of a trial that need not be given.
+const USUAL: [&str; 2] = ["--space infill", "--robot servo"];
+
+/// Options from the space to the engine.
+fn setup(named: &Named) -> Vec<String> {
+    let provenance = named.provenance();
+    // A cell holds its robot.
+    let robot = match provenance.input_sha256.contains_key(CELL) {
+        true => format!("--cell {}", named.input(CELL, &[])),
+        false => format!("--robot {}", named.input("robot", ROBOTS)),
+    };
+    let mut words = vec![format!("--space {}", named.input("space", SPACES)), robot];
+    if name(provenance, "stiffness", STIFFNESS).is_none() {
+        words.push(format!("--stiffness-data {}", named.input("stiffness", &[])));
+    }
+    words.push(format!("--finger-model {}", named.record.config.finger_model.name()));
+    if provenance.input_sha256.contains_key(FINGER) {
+        words.push(format!("--finger {}", named.input(FINGER, FINGERS)));
+    }
+    let engine = &provenance.engine.name;
+    if engine != EngineKind::Direct.name() {
+        words.push(format!("--engine {engine}"));
+    }
+    words
+}
+
+/// The name of the shipped file that an input is.
+fn name(provenance: &Provenance, role: &str, shipped: &[Shipped]) -> Option<&'static str> {
+    let hash = provenance.input_sha256.get(role)?;
+    let own = |one: &&Shipped| sha256_hex(one.text.as_bytes()) == *hash;
+    shipped.iter().find(own).map(|one| one.name)
+}
+
+fn aggregate(aggregate: &Aggregate) -> String {
+    match aggregate {
+        Aggregate::Weighted(weights) => {
+            let weights: Vec<String> = weights.iter().map(f64::to_string).collect();
+            format!("--aggregate weighted --weights {}", weights.join(","))
+        }
+        other => format!("--aggregate {other}"),
+    }
+}

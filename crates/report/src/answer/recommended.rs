@@ -1,0 +1,107 @@
+//! The recommended design: what it tolerates, how firm that is, and what is as good.
+
+use super::alike::AsGood;
+use super::start::Start;
+use super::trust::Measured;
+use super::words;
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::objective::Measure;
+use insertion::evaluation::robustness::firm::Firm;
+use study::{ByRibs, Recorded, StudyRecord};
+
+/// The recommended design of a study. Of several tasks ranges and forces are aggregated, and a
+/// window is what all have in common.
+#[derive(Debug, Clone)]
+pub struct Recommended<'a> {
+    /// The design, with its stiffness, as it was walked if it was.
+    pub design: &'a Recorded,
+    /// The single objective and its value; `None` of a front.
+    pub objective: Option<(Measure, f64)>,
+    /// Each constraint: what it limits, and the design's value in words.
+    pub constraints: Vec<(Measure, String)>,
+    /// Range, mm; `None` if the nominal start diverged.
+    pub range_mm: Option<f64>,
+    /// Both ends of the window, mm.
+    pub window_mm: [f64; 2],
+    /// Range within which all repeats insert, mm; `None` if the ends were not repeated.
+    pub firm_range_mm: Option<f64>,
+    /// Both ends of that, mm; `None` also if there is no such window on a task.
+    pub firm_window_mm: Option<[f64; 2]>,
+    /// Largest force between plug and socket over the inserted trials, N.
+    pub peak_force_n: Option<f64>,
+    /// Measurements on each task.
+    pub tasks: Vec<OnTask<'a>>,
+    /// Measurements with springs computed from its ribs, if there are any.
+    pub by_ribs: Option<&'a ByRibs>,
+    /// The objective as the search had found it, where the walk found another value.
+    pub searched: Option<f64>,
+    /// Where the start lies in the window, the firm one if there is one; `None` of several tasks.
+    pub start: Option<Start>,
+    /// Designs that are as good; `None` of a front.
+    pub as_good: Option<AsGood<'a>>,
+}
+
+/// The recommended design on one task.
+#[derive(Debug, Clone, Copy)]
+pub struct OnTask<'a> {
+    /// Name of the task.
+    pub name: &'a str,
+    /// Window, its ends, errors drawn.
+    pub measured: &'a Evaluation,
+    /// Firm part of the window, if its ends were repeated.
+    pub firm: Option<&'a Firm>,
+}
+
+impl<'a> Recommended<'a> {
+    pub(super) fn of(record: &'a StudyRecord, measured: &[Measured]) -> Option<Self> {
+        let (config, found) = (&record.config, record.recommendation());
+        let design = found.or_else(|| record.best())?;
+        let walked = record.walked.first().filter(|_| found.is_some());
+        let firm = walked.map(|walked| &walked.firm[..]);
+        let windows: Option<Vec<[f64; 2]>> =
+            firm.and_then(|firm| firm.iter().map(Firm::window_mm).collect());
+        let firm_ranges: Option<Vec<f64>> =
+            firm.map(|firm| firm.iter().map(Firm::range_mm).collect());
+        let on = |(at, (name, measured)): (usize, (&'a str, &'a Evaluation))| OnTask {
+            name,
+            measured,
+            firm: firm.and_then(|firm| firm.get(at)),
+        };
+        let tasks = design.tasks();
+        let window_mm = common(tasks.iter().map(|task| words::ends_mm(&task.window)));
+        let firm_window_mm = windows.map(|windows| common(windows.into_iter()));
+        let start = Start::of(firm_window_mm.unwrap_or(window_mm));
+        let limits = config.constraints.iter();
+        Some(Recommended {
+            design,
+            objective: config.objective.single().zip(design.value()),
+            constraints: limits.map(|limit| (limit.measure, limit.words(&tasks))).collect(),
+            range_mm: record.measure(design, Measure::Range),
+            window_mm,
+            firm_range_mm: firm_ranges.map(|mm| record.aggregated(Measure::Range, &mm)),
+            firm_window_mm,
+            peak_force_n: record.measure(design, Measure::PeakForce),
+            tasks: config.tasks().zip(&design.tasks).enumerate().map(on).collect(),
+            by_ribs: walked.and_then(|walked| walked.by_ribs.as_ref()),
+            searched: searched(record, design),
+            start: start.filter(|_| record.config.tasks.len() == 1),
+            as_good: found.map(|found| AsGood::of(record, found.index, measured)),
+        })
+    }
+
+    /// ` on usb` behind what is said of one of several tasks; empty of the only one.
+    pub fn on(&self, task: &OnTask) -> String {
+        if self.tasks.len() > 1 { format!(" on {}", task.name) } else { String::new() }
+    }
+}
+
+fn common(windows: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
+    windows
+        .fold([f64::NEG_INFINITY, f64::INFINITY], |[low, high], [a, b]| [low.max(a), high.min(b)])
+}
+
+fn searched(record: &StudyRecord, design: &Recorded) -> Option<f64> {
+    let same = |recorded: &&Recorded| recorded.index == design.index;
+    let before = record.current().iter().find(same)?.value()?;
+    (Some(before) != design.value()).then_some(before)
+}

@@ -1,0 +1,173 @@
+//! How far an answer is to be trusted: what is known of its finger, and of fingers like it, from a
+//! robot.
+
+use calibration::order::errors_percent;
+use calibration::published::{Origin, of_task};
+use insertion::space::Design;
+use insertion::stiffness::Measurement;
+use insertion::stiffness::designs;
+use study::{Recorded, StudyRecord};
+
+/// A finger whose tolerable range was measured on a robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// The finger.
+    pub design: Design,
+    /// Its range, mm.
+    pub range_mm: f64,
+}
+
+/// How far an answer is to be trusted.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Trust {
+    /// Calibrated on fingers measured here.
+    Calibrated {
+        /// Fingers measured.
+        fingers: usize,
+        /// By how many percent each is missed when it is left out, on average, if that is known.
+        error_percent: Option<f64>,
+    },
+    /// Simulated, on tasks whose measured ranges are published.
+    Published {
+        /// Task by task the measured finger itself, or those of the most similar stiffness, the
+        /// nearest first.
+        nearest: Vec<(String, Vec<Measured>)>,
+        /// Whether it is the finger itself on all tasks.
+        itself: bool,
+    },
+    /// Simulated only.
+    Simulated {
+        /// Least and largest mean error of simulation on the published tasks, percent.
+        error_percent: [f64; 2],
+    },
+}
+
+/// Fingers that are named.
+const NAMED: usize = 2;
+
+impl Trust {
+    pub(super) fn of(record: &StudyRecord, finger: Option<&Recorded>) -> Self {
+        if let Some(found) = &record.on_bench {
+            let error_percent = found.trust.mean_deviation_percent;
+            return Trust::Calibrated { fingers: found.measured, error_percent };
+        }
+        let nearest = |task| {
+            let of_task = published(task);
+            let named = nearest(of_task, finger?);
+            Some((String::from(task), (!named.is_empty()).then_some(named)?))
+        };
+        let nearest: Option<Vec<(String, Vec<Measured>)>> =
+            record.config.tasks().map(nearest).collect();
+        match nearest {
+            Some(nearest) => {
+                let itself = nearest.iter().all(|(_, named)| named.len() == 1);
+                Trust::Published { nearest, itself }
+            }
+            None => Trust::Simulated { error_percent: errors_percent() },
+        }
+    }
+
+    /// The label: one of three.
+    pub fn label(&self) -> &'static str {
+        match self {
+            Trust::Calibrated { .. } => "calibrated on measured fingers",
+            Trust::Published { .. } => "simulated, fingers like it measured",
+            Trust::Simulated { .. } => "simulated only",
+        }
+    }
+
+    /// Its name in JSON.
+    pub fn key(&self) -> &'static str {
+        match self {
+            Trust::Calibrated { .. } => "calibrated",
+            Trust::Published { .. } => "published",
+            Trust::Simulated { .. } => "simulated",
+        }
+    }
+
+    /// Why, in a clause.
+    pub fn reason(&self) -> String {
+        match self {
+            Trust::Calibrated { fingers, error_percent } => {
+                let missed = error_percent
+                    .map_or(String::new(), |error| format!(", left out in turn {error:.1} % off"));
+                format!("{fingers} fingers measured{missed}")
+            }
+            Trust::Published { nearest, itself } => {
+                let who = if *itself { "this finger" } else { "fingers like it" };
+                let several = nearest.len() > 1;
+                let of = |(task, fingers): &(String, Vec<Measured>)| {
+                    let on = if several { format!(" on {task}") } else { String::new() };
+                    format!("{}{on}", ranges(fingers))
+                };
+                let all: Vec<String> = nearest.iter().map(of).collect();
+                format!("{who} had {} on a robot", all.join(", "))
+            }
+            Trust::Simulated { error_percent: [least, most] } => {
+                format!("simulation was {least:.0} to {most:.0} % off on the shipped tasks")
+            }
+        }
+    }
+}
+
+/// `4.7 and 4.9 mm`.
+fn ranges(fingers: &[Measured]) -> String {
+    let mut mm: Vec<String> =
+        fingers.iter().map(|finger| format!("{:.1}", finger.range_mm)).collect();
+    mm.dedup();
+    format!("{} mm", mm.join(" and "))
+}
+
+/// The fingers of a task that were measured, each with its stiffness; none of a task of one's own.
+pub(super) fn published(task: &str) -> Vec<(Measured, Measurement)> {
+    let bench = of_task(task, Origin::Bench);
+    let one = |measurement: Measurement| {
+        let found = bench.iter().find(|found| found.design == measurement.design)?;
+        let design = Design::infill(measurement.density_percent, measurement.direction_deg);
+        Some((Measured { design, range_mm: found.tolerable_range_mm? }, measurement))
+    };
+    designs().into_iter().filter_map(one).collect()
+}
+
+/// The finger itself, if it was measured, else those of the most similar stiffness, the nearest first:
+/// it is all that simulation knows of them.
+fn nearest(mut all: Vec<(Measured, Measurement)>, finger: &Recorded) -> Vec<Measured> {
+    if let Some((itself, _)) = all.iter().find(|(found, _)| found.design == finger.design) {
+        return vec![itself.clone()];
+    }
+    let finger = &finger.stiffness;
+    let distance = |(_, found): &(Measured, Measurement)| {
+        let [compliance, assembly] = [
+            libm::log(found.compliance / finger.compliance.mean),
+            libm::log(found.assembly / finger.assembly.mean),
+        ];
+        libm::hypot(compliance, assembly)
+    };
+    all.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    all.into_iter().take(NAMED).map(|(measured, _)| measured).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_measured_finger_vouches_for_itself_and_others_of_its_stiffness_for_the_rest() {
+        let record = StudyRecord::load("../../tests/fixtures/study".as_ref()).unwrap();
+        let mut finger = record.best().unwrap().clone();
+        let all = || published("usb");
+        finger.design = Design::infill(20.0, 20.0);
+        assert_eq!(
+            nearest(all(), &finger).iter().map(|one| one.range_mm).collect::<Vec<_>>(),
+            [4.1]
+        );
+        // Nobody printed this one; of its stiffness are designs 8 and 11.
+        finger.design = Design::infill(27.0, 39.0);
+        finger.stiffness = insertion::surrogate::Prediction::exact(3.65e3, 31e3);
+        assert_eq!(
+            nearest(all(), &finger).iter().map(|one| one.range_mm).collect::<Vec<_>>(),
+            [5.0, 5.6]
+        );
+        assert!(published("mine").is_empty());
+    }
+}

@@ -1,0 +1,44 @@
+//! Predictions of the fingers on the bench.
+
+use super::elements::table;
+use crate::answer::words::{infill, interval, mm};
+use insertion::outcome::FailureClass;
+use maud::{Markup, html};
+use study::{BenchFinger, OnBench, StudyRecord};
+
+/// Every finger of the space as predicted, beside the page.
+const TABLE: &str = "bench_predictions.csv";
+
+/// The section; `None` without measurements.
+pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
+    let found = record.on_bench.as_ref()?;
+    Some(html! {
+        (table(
+            &["finger", "range on the bench", "80 % interval", "is the best", "fails below | above"],
+            &found.best.iter().map(row).collect::<Vec<_>>(),
+        ))
+        p { (how(found)) " " a href=(TABLE) { "All predicted fingers" } "." }
+    })
+}
+
+fn row(finger: &BenchFinger) -> Vec<String> {
+    let class = |class: Option<FailureClass>| class.map_or("–", FailureClass::label);
+    let [below, above] = finger.failures.map(class);
+    vec![
+        infill(&finger.design),
+        mm(finger.range_mm),
+        interval([finger.low_mm, finger.high_mm]),
+        format!("{:.1} %", 100.0 * finger.probability_best),
+        format!("{below} | {above}"),
+    ]
+}
+
+fn how(found: &OnBench) -> String {
+    let simulations = found.effort.simulations;
+    format!(
+        "From {simulations} simulations under drawn friction, preload, robot and print, and the \
+         measurements; the Gaussian process that stands in for the simulator misses fresh ones by \
+         {:.2} mm. The search did not know the measurements: it looked for the widest simulated window.",
+        found.trust.emulator_error_mm
+    )
+}

@@ -1,0 +1,292 @@
+//! Studies of the same problem beside each other: optimizers against evaluations.
+
+use super::ReportError;
+use super::chart::{Area, Drawn, around, axes, legend, message, sheet};
+use super::convergence::best_so_far;
+use super::elements::{document, figure, table};
+use super::marks::{line, stairs};
+use super::page::PLOT;
+use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE, RED};
+use insertion::evaluation::objective::{Aggregate, Constraint};
+use maud::html;
+use plotters::prelude::*;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use study::{StudyConfig, StudyRecord};
+
+/// How far below the best known value a study may be to have reached it, mm.
+pub const TOLERANCE_MM: f64 = 0.1;
+/// Values are multiples of 0.1 mm but for rounding.
+const ROUNDING_MM: f64 = 1e-9;
+
+/// Quartiles of studies; `None` where one is not known: a value that was not there yet, an
+/// evaluation that never came.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Quartiles {
+    /// Lower quartile.
+    pub q25: Option<f64>,
+    /// Median.
+    pub median: Option<f64>,
+    /// Upper quartile.
+    pub q75: Option<f64>,
+}
+
+impl Quartiles {
+    /// By linear interpolation between the sorted values; `None` where that meets an infinity.
+    fn of(mut values: Vec<f64>) -> Self {
+        values.sort_by(f64::total_cmp);
+        let quantile = |share: f64| {
+            let place = share * values.len().checked_sub(1)? as f64;
+            let (low, high) = (values[place.floor() as usize], values[place.ceil() as usize]);
+            let part = place - place.floor();
+            let value = if part == 0.0 { low } else { low + part * (high - low) };
+            value.is_finite().then_some(value)
+        };
+        Quartiles { q25: quantile(0.25), median: quantile(0.5), q75: quantile(0.75) }
+    }
+
+    /// Lower quartile, median and upper quartile.
+    pub fn all(&self) -> [Option<f64>; 3] {
+        [self.q25, self.median, self.q75]
+    }
+}
+
+/// Studies of one optimizer with different seeds.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OptimizerGroup {
+    /// Name of the optimizer, with its polish.
+    pub optimizer: String,
+    /// Designs it proposes at a time.
+    pub batch: u64,
+    /// Number of studies.
+    pub studies: usize,
+    /// Studies that reached the target.
+    pub reached: usize,
+    /// Number of evaluations to the target; a study that did not reach it counts as later than
+    /// all that did.
+    pub evaluations_to_target: Quartiles,
+    /// Best value so far over the studies after 1, 2, .. evaluations, up to the end of the
+    /// shortest, mm.
+    pub best_so_far_mm: Vec<Quartiles>,
+}
+
+/// Studies side by side; serialized it is what `optimize compare --json` prints.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Their task.
+    pub task: String,
+    /// Their objective.
+    pub objective: String,
+    /// The best value of them all, mm.
+    pub best_known_mm: f64,
+    /// The value whose evaluations are counted: [`TOLERANCE_MM`] below the best, mm.
+    pub target_mm: f64,
+    /// By optimizer and batch.
+    #[serde(rename = "optimizers")]
+    pub groups: Vec<OptimizerGroup>,
+}
+
+/// Compares studies, each with a name for messages.
+///
+/// # Errors
+/// If they measure different things, or one is given twice, or none has a value.
+pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, String> {
+    let (first, _) = studies.split_first().ok_or("give at least one study to compare")?;
+    studies.iter().try_for_each(|study| alike(first, study))?;
+    let objective = &first.1.config.objective;
+    if !objective.single().is_some_and(|measure| measure.key() == "mm" && measure.sense() > 0.0) {
+        return Err(format!(
+            "{} has the objective {objective}; only studies of one objective in mm that is to be \
+             large can be compared: range, centred-range or robust-range",
+            first.0
+        ));
+    }
+    let mut groups: BTreeMap<(String, u64), Vec<&(String, StudyRecord)>> = BTreeMap::new();
+    for study in studies {
+        let (config, method) = (&study.1.config, study.1.config.method());
+        let group = groups.entry((method.clone(), config.batch)).or_default();
+        if let Some(same) = group.iter().find(|other| other.1.config.seed == config.seed) {
+            return Err(format!(
+                "{} and {} are the same study ({method}, seed {}); give it once",
+                same.0, study.0, config.seed
+            ));
+        }
+        group.push(study);
+    }
+    let best = studies.iter().filter_map(|(_, record)| record.best()?.value()).reduce(f64::max);
+    let best_known_mm =
+        best.ok_or("no evaluation of these studies has a value: there is nothing to compare")?;
+    let target_mm = best_known_mm - TOLERANCE_MM;
+    let group = |((optimizer, batch), studies): ((String, u64), Vec<&(String, StudyRecord)>)| {
+        let to_target: Vec<Option<u64>> =
+            studies.iter().map(|(_, record)| reached(record, target_mm)).collect();
+        let late = |n: &Option<u64>| n.map_or(f64::INFINITY, |n| n as f64);
+        let shortest = studies.iter().map(|(_, record)| record.evaluations.len()).min();
+        let curves: Vec<Vec<f64>> = studies.iter().map(|(_, record)| curve(record)).collect();
+        let band = |n| Quartiles::of(curves.iter().map(|curve| curve[n]).collect());
+        OptimizerGroup {
+            optimizer,
+            batch,
+            studies: studies.len(),
+            reached: to_target.iter().flatten().count(),
+            evaluations_to_target: Quartiles::of(to_target.iter().map(late).collect()),
+            best_so_far_mm: (0..shortest.unwrap_or(0)).map(band).collect(),
+        }
+    };
+    Ok(Comparison {
+        task: first.1.config.task_name(),
+        objective: objective.to_string(),
+        best_known_mm,
+        target_mm,
+        groups: groups.into_iter().map(group).collect(),
+    })
+}
+
+fn problem(config: &StudyConfig) -> [(&'static str, String); 7] {
+    let limits: Vec<String> = config.constraints.iter().map(Constraint::to_string).collect();
+    let aggregate = config.aggregate.as_ref().map_or("none".to_owned(), Aggregate::to_string);
+    [
+        ("task", config.task_name()),
+        ("objective", config.objective.to_string()),
+        ("constraints", if limits.is_empty() { "none".to_owned() } else { limits.join(", ") }),
+        ("aggregate", aggregate),
+        ("robot", config.robot.clone()),
+        ("engine", config.provenance.engine.name.clone()),
+        ("space", config.space.name.to_owned()),
+    ]
+}
+
+fn alike(
+    (first, ours): &(String, StudyRecord),
+    (second, theirs): &(String, StudyRecord),
+) -> Result<(), String> {
+    let mut parts = problem(&ours.config).into_iter().zip(problem(&theirs.config));
+    match parts.find(|(ours, theirs)| ours != theirs) {
+        None => Ok(()),
+        Some(((what, ours), (_, theirs))) => Err(format!(
+            "{first} and {second} cannot be compared: the first has the {what} {ours}, the second \
+             {theirs}; compare studies of the same {what}"
+        )),
+    }
+}
+
+/// Number of evaluations until a value of at least `target`, mm.
+fn reached(record: &StudyRecord, target: f64) -> Option<u64> {
+    let values = record.evaluations.iter().map(|r| r.feasible()?.first().copied());
+    let place = values.into_iter().position(|v| v.is_some_and(|v| v >= target - ROUNDING_MM));
+    place.map(|index| index as u64 + 1)
+}
+
+/// Best so far after each evaluation; minus infinity before the first value.
+fn curve(record: &StudyRecord) -> Vec<f64> {
+    let known = best_so_far(record);
+    let none = record.evaluations.len() - known.len();
+    let values = known.into_iter().map(|(_, value)| value);
+    std::iter::repeat_n(f64::NEG_INFINITY, none).chain(values).collect()
+}
+
+/// The comparison as a page that opens offline: who gets there first, the table, and the courses.
+pub fn page(comparison: &Comparison) -> Result<String, ReportError> {
+    let Comparison { task, objective, best_known_mm, target_mm, groups } = comparison;
+    let number = |n: Option<f64>| n.map_or("–".to_owned(), |n| format!("{n:.1}"));
+    let late =
+        |group: &&OptimizerGroup| group.evaluations_to_target.median.unwrap_or(f64::INFINITY);
+    let mut groups: Vec<&OptimizerGroup> = groups.iter().collect();
+    groups.sort_by(|a, b| late(a).total_cmp(&late(b)));
+    let finding = groups.first().filter(|first| late(first).is_finite()).map_or(
+        format!("No optimizer reaches {target_mm:.1} mm in half of its studies"),
+        |first| {
+            let median = number(first.evaluations_to_target.median);
+            format!(
+                "{} reaches {target_mm:.1} mm first: after {median} evaluations",
+                first.optimizer
+            )
+        },
+    );
+    let row = |group: &&OptimizerGroup| {
+        let (batch, studies) = (group.batch.to_string(), group.studies.to_string());
+        let mut row = vec![group.optimizer.clone(), batch, studies, group.reached.to_string()];
+        row.extend(group.evaluations_to_target.all().map(number));
+        row
+    };
+    let head = ["optimizer", "batch", "studies", "reached", "25 %", "median", "75 %"];
+    let course = sheet("the comparison", PLOT, |area| draw(area, comparison, ""))?;
+    let caption = "Best so far: the median as a line, the quartiles as a band.";
+    let body = html! {
+        main {
+            header {
+                p.muted { (task) ", " (objective) }
+                h1 { (finding) }
+                p.lead {
+                    "Best known " (format!("{best_known_mm:.1}")) " mm; evaluations are counted up to \
+                    " (TOLERANCE_MM) " mm below it."
+                }
+            }
+            section { h2 { "Evaluations" } (table(&head, &groups.iter().map(row).collect::<Vec<_>>())) }
+            section { h2 { "Course" } (figure(&course, "best so far by optimizer", caption)) }
+        }
+    };
+    Ok(document(&format!("{task}: optimizers compared"), body))
+}
+
+const COLOURS: [Colour; 6] = [BLUE, ORANGE, GREEN, RED, MUTED, INK];
+
+/// `compare.svg`: best so far of each optimizer, the median as a line and the quartiles as a band.
+pub fn svg(comparison: &Comparison) -> Result<String, ReportError> {
+    let title = format!("{}: best so far, median and quartiles over seeds", comparison.task);
+    sheet("the comparison", (880, 480), |area| draw(area, comparison, &title))
+}
+
+fn draw(area: &Area<'_>, comparison: &Comparison, title: &str) -> Drawn {
+    let groups = &comparison.groups;
+    let longest = groups.iter().map(|g| g.best_so_far_mm.len()).max().unwrap_or(0).max(1) as f64;
+    let values = groups.iter().flat_map(|g| g.best_so_far_mm.iter().flat_map(|q| q.all()));
+    let range = around(values.flatten().chain([comparison.best_known_mm]), 0.06);
+    let label = format!("{} (mm)", comparison.objective);
+    let x = ("number of evaluations", 0.0..longest * 1.02 + 0.5);
+    let mut chart = axes(area, title, x, (&label, range))?;
+    let coloured = || groups.iter().zip(COLOURS.iter().cycle());
+    for (group, colour) in coloured().filter(|(group, _)| group.studies > 1) {
+        let mut outline = quartile(group, 0);
+        outline.extend(quartile(group, 2).into_iter().rev());
+        if !outline.is_empty() {
+            let band = Polygon::new(outline, colour.rgb().mix(0.16).filled());
+            chart.draw_series([band]).map_err(message)?;
+        }
+    }
+    let several =
+        |g: &OptimizerGroup| groups.iter().filter(|o| o.optimizer == g.optimizer).count() > 1;
+    for (group, colour) in coloured() {
+        let batch = if several(group) { format!(", batch {}", group.batch) } else { String::new() };
+        let plural = if group.studies == 1 { "study" } else { "studies" };
+        let label = format!("{}{batch} ({} {plural})", group.optimizer, group.studies);
+        line(&mut chart, quartile(group, 1), colour.rgb().stroke_width(3), label)?;
+    }
+    let target = vec![(0.0, comparison.target_mm), (longest, comparison.target_mm)];
+    let label = format!("best known - {TOLERANCE_MM} mm");
+    line(&mut chart, target, MUTED.rgb().stroke_width(1), label)?;
+    legend(&mut chart, SeriesLabelPosition::LowerRight)
+}
+
+/// One of the quartiles as stairs, from the first evaluation on at which it is known.
+fn quartile(group: &OptimizerGroup, which: usize) -> Vec<(f64, f64)> {
+    let numbered = (1..).zip(&group.best_so_far_mm);
+    stairs(numbered.filter_map(|(n, quartiles)| Some((f64::from(n), quartiles.all()[which]?))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quartiles_interpolate_and_do_not_invent() {
+        let five = vec![5.0, 1.0, 3.0, 2.0, 4.0];
+        let quartiles = |values| Quartiles::of(values).all();
+        assert_eq!(quartiles(five), [Some(2.0), Some(3.0), Some(4.0)]);
+        assert_eq!(quartiles(vec![1.0, 2.0]), [Some(1.25), Some(1.5), Some(1.75)]);
+        assert_eq!(quartiles(vec![7.0, f64::INFINITY]), [None; 3]);
+        let late = vec![7.0, 9.0, f64::INFINITY];
+        assert_eq!(quartiles(late), [Some(8.0), Some(9.0), None]);
+        assert_eq!(quartiles(vec![]), [None; 3]);
+    }
+}

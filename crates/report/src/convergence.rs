@@ -1,0 +1,117 @@
+//! Best so far, and each value, against evaluations; of several objectives the hypervolume.
+
+use super::ReportError;
+use super::chart::{Area, Drawn, around, axes, legend, message, sheet, words};
+use super::drawn::{PLOTTED, drawn, note, turning};
+use super::elements::figure;
+use super::marks::{PointMark, dashed, line, points, stairs};
+use super::theme::{BLUE, GREEN, MUTED, ORANGE, RED};
+use crate::answer::words::{settled, volume_unit};
+use insertion::evaluation::objective::Measure;
+use maud::Markup;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
+use study::{Recorded, StudyRecord, volume};
+
+/// Value of each evaluation and best so far (of several objectives the hypervolume) against the
+/// number of evaluations, on a white ground; `size` pixels.
+pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<String, ReportError> {
+    sheet("the convergence", size, |area| draw(area, record))
+}
+
+pub(super) fn section(record: &StudyRecord, size: (u32, u32)) -> Result<Markup, ReportError> {
+    let caption = match record.config.objective.single() {
+        Some(Measure::Range | Measure::CentredRange) => {
+            "Value of each evaluation, and the best so far. Values are multiples of 0.1 mm."
+        }
+        Some(_) => "Value of each evaluation, and the best so far.",
+        None => {
+            "Hypervolume of the front after each evaluation, from the reference stated with the \
+             front."
+        }
+    };
+    let settled = record.settled.then(|| format!(" Settled {}.", settled(record)));
+    let confirmed = (!record.walked.is_empty() && record.config.objective.single().is_some())
+        .then_some(" Confirmed: walked step by step.");
+    let note = note(record).map(|note| format!(" {note}"));
+    let more = [settled, confirmed.map(str::to_owned), note].into_iter().flatten();
+    let caption = more.fold(caption.to_owned(), |caption, more| caption + &more);
+    Ok(figure(&svg(record, size)?, "best value against evaluations", &caption))
+}
+
+/// Best value of a design that keeps all constraints after each evaluation, from the first
+/// such value on; of several objectives the hypervolume: `(evaluation, value)`.
+pub(super) fn best_so_far(record: &StudyRecord) -> Vec<(f64, f64)> {
+    let goals = record.config.goals();
+    let Some(measure) = goals.objectives.single() else {
+        let volume = volume(&goals, &record.evaluations);
+        return volume.so_far.iter().enumerate().map(|(n, &v)| (n as f64, v)).collect();
+    };
+    let mut best: Option<f64> = None;
+    let mut steps = Vec::new();
+    for recorded in &record.evaluations {
+        let value = recorded.known_value().filter(|_| recorded.feasible().is_some());
+        let better = |a: f64, b: f64| if measure.sense() * b > measure.sense() * a { b } else { a };
+        best = [best, value].into_iter().flatten().reduce(better);
+        steps.extend(best.map(|value| (recorded.index as f64, value)));
+    }
+    steps
+}
+
+fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
+    let count = record.evaluations.len();
+    let objectives = &record.config.objective;
+    let best = best_so_far(record);
+    let at = |r: &Recorded| Some((r.index as f64, r.value()?));
+    // The values of one of several objectives have no place beside a volume.
+    let values: Vec<f64> = match objectives.single() {
+        Some(_) => record.evaluations.iter().filter_map(Recorded::value).collect(),
+        None => best.iter().map(|b| b.1).collect(),
+    };
+    let confirmed: Vec<(f64, f64)> =
+        record.walked.iter().filter_map(|walked| at(&walked.recorded)).collect();
+    let shown = values.iter().chain(confirmed.iter().map(|(_, value)| value));
+    let mut range = around(shown.copied().chain([0.0]), 0.12);
+    if values.iter().all(|&value| value >= 0.0) {
+        range.start = range.start.max(-0.02 * range.end);
+    }
+    let (bottom, top) = (range.start.max(0.0), range.end);
+    let last = count.max(2) as f64 - 1.0;
+    let x = ("evaluation", -0.02 * last..1.02 * last);
+    let (label, name) = match objectives.single() {
+        Some(measure) => (measure.label(), "best so far"),
+        None => (format!("hypervolume ({})", volume_unit(objectives)), "hypervolume so far"),
+    };
+    let mut chart = axes(area, "", x, (&label, range))?;
+    if count == 0 {
+        let style = words(17, MUTED, HPos::Center, VPos::Center);
+        let note = Text::new("no evaluations yet", (0.5, 0.5), style);
+        return chart.draw_series([note]).map(|_| ()).map_err(message);
+    }
+    if record.settled {
+        dashed(&mut chart, [bottom, top].map(|value| (last, value)))?;
+    }
+    if objectives.single().is_some() {
+        let (raced, full): (Vec<&Recorded>, Vec<&Recorded>) =
+            drawn(record, &record.evaluations, PLOTTED).into_iter().partition(|r| r.raced());
+        let bounds = raced.into_iter().filter_map(at);
+        points(&mut chart, bounds, PointMark::ring(BLUE, 3, 1), "at most (raced)")?;
+        let (inside, outside): (Vec<&Recorded>, Vec<&Recorded>) =
+            full.into_iter().partition(|r| r.feasible().is_some());
+        let (inside, outside) =
+            (inside.into_iter().filter_map(at), outside.into_iter().filter_map(at));
+        points(&mut chart, inside, PointMark::dot(BLUE, 3), "each evaluation")?;
+        points(&mut chart, outside, PointMark::ring(MUTED, 3, 1), "violates a constraint")?;
+        points(&mut chart, confirmed, PointMark::disc(GREEN, 5), "confirmed")?;
+    }
+    let lost =
+        drawn(record, &record.evaluations, PLOTTED).into_iter().filter(|r| r.score.is_none());
+    let lost = lost.map(|r| (r.index as f64, bottom));
+    points(&mut chart, lost, PointMark::cross(RED, 4), "no value")?;
+    line(&mut chart, stairs(turning(best)), ORANGE.rgb().stroke_width(3), name)?;
+    let corner = match objectives.single() {
+        Some(measure) if measure.sense() < 0.0 => SeriesLabelPosition::UpperRight,
+        _ => SeriesLabelPosition::LowerRight,
+    };
+    legend(&mut chart, corner)
+}

@@ -1,0 +1,178 @@
+//! The first screen of a page: what to do, how far to trust it, how the finger ends, its window,
+//! the finger itself, its files, and the next command.
+
+use super::elements::{figure, inert};
+use super::page::{Beside, Film};
+use super::printer::{self, recommended};
+use super::replay::{ENDS, pair_file};
+use super::{bar, explore};
+use crate::answer::words::{design, finger, infill, outcome, remedy};
+use crate::answer::{Answer, Verdict, command, expectation, lines};
+use finray::export::sheet;
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::grid_mm;
+use insertion::outcome::{FailureClass, Outcome};
+use maud::{Markup, PreEscaped, html};
+use study::StudyRecord;
+
+/// The screen, which stands before all sections.
+pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
+    let (command, why) = command::next(answer, &beside.dir);
+    let stuck = matches!(answer.verdict, Verdict::NothingInserts { .. });
+    html! {
+        header {
+            p.muted { (lines::searched(answer)) " · " (answer.record.config.robot) }
+            h1 { (answer.verdict.headline()) }
+            p.lead {
+                (expectation(answer)) ". "
+                @if answer.verdict.finger().is_some() { span.trust { (answer.trust.label()) } }
+            }
+            @if matches!(answer.verdict, Verdict::NoneFeasible) { p.warn { (none(answer)) } }
+            @for (_, text) in lines::caveats(answer) { p.warn { (text) } }
+        }
+        div.first {
+            @if stuck { (nominal(answer, beside)) }
+            @else if let Some((_, tasks)) = answer.shown() { (films(answer, &tasks, beside)) }
+            div {
+                (bar::section(answer, &beside.robots).unwrap_or_default())
+                (drawn(answer).unwrap_or_default())
+                (files(answer, beside).unwrap_or_default())
+            }
+        }
+        div.next { h2 { "Next: " (why) } pre { code { (command) } } }
+    }
+}
+
+/// Why no design is named.
+fn none(answer: &Answer) -> String {
+    match &answer.nearest {
+        None => format!("None of {} evaluations gave a value.", answer.designs),
+        Some((nearest, constraints)) => format!(
+            "Evaluation {} ({}) violates them least: {}.",
+            nearest.index,
+            design(&nearest.design),
+            constraints.join("; ")
+        ),
+    }
+}
+
+/// Colours of the sheet, and those of the page.
+const COLOURS: [(&str, &str); 7] = [
+    ("#aab7c9", "var(--lines)"),
+    ("#223", "var(--ink)"),
+    ("#a33", "var(--red)"),
+    ("#c60", "var(--orange)"),
+    ("#a40", "var(--orange)"),
+    ("#222", "var(--muted)"),
+    ("#444", "var(--muted)"),
+];
+
+/// The finger as the sheet draws it.
+fn drawn(answer: &Answer) -> Option<Markup> {
+    let geometry = recommended(answer.record)?;
+    let design = answer.verdict.finger()?;
+    let first = answer.record.config.objective.first().name();
+    let best = answer.front.as_ref().map_or(String::new(), |_| format!(", best in {first}"));
+    let caption = format!("{}{best}, {} ribs", infill(design), geometry.ribs);
+    let svg = sheet::part(&geometry);
+    let svg = COLOURS.iter().fold(svg, |svg, (from, to)| svg.replace(from, to));
+    Some(html! { div.finger { (figure(&svg, "the finger to print", &caption)) } })
+}
+
+fn files(answer: &Answer, beside: &Beside) -> Option<Markup> {
+    recommended(answer.record)?;
+    let names = printer::FILES.into_iter().filter(|(file, _)| beside.files.contains(file));
+    Some(html! { p.files { @for (file, name) in names { a.button href=(file) { (name) } } } })
+}
+
+/// Where nothing inserts: how the design that comes nearest ends, and what to change.
+fn nominal(answer: &Answer, beside: &Beside) -> Markup {
+    let Verdict::NothingInserts { nearest, fails, .. } = &answer.verdict else { return html! {} };
+    html! {
+        div.whole {
+            @if let Some(fails) = fails {
+                p {
+                    "Evaluation " (nearest.index) ", " (finger(&nearest.design)) ", comes nearest: \
+                    its nominal start ends with " b { (outcome(*fails)) } ". " (remedy(*fails)) "."
+                }
+            }
+            @if let Some(svg) = &beside.nominal {
+                // Its first words, up to a mark, say what was tried; they are escaped in the file.
+                @let text = svg.split_once("<text").and_then(|(_, rest)| rest.split_once('>'));
+                @let text = text.and_then(|(_, rest)| rest.split('<').next()).unwrap_or_default();
+                figure.wide {
+                    img alt="the nominal start, phase by phase, from two sides" src=(inert(svg));
+                    figcaption { (PreEscaped(text)) "; the last phase is the one in which it fails" }
+                }
+            }
+        }
+    }
+}
+
+/// The end of the window that is shown first: a jam or a miss says more than a lost plug.
+pub fn preferred(record: &StudyRecord) -> &'static str {
+    let telling = |end: Option<Outcome>| {
+        let telling = [FailureClass::PlugMissed, FailureClass::Jammed].map(Outcome::Failed);
+        end.is_some_and(|end| telling.contains(&end))
+    };
+    let [negative, positive] = ENDS.map(|(end, _)| end);
+    let window = Answer::of(record).shown().and_then(|(_, tasks)| Some(&tasks.first()?.window));
+    let below = window.is_some_and(|w| telling(w.end_negative) && !telling(w.end_positive));
+    if below { negative } else { positive }
+}
+
+/// Both frames of an end, ready to be played, and buttons for all ends.
+fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Markup {
+    let films = &beside.films;
+    let (shown, linked): (Vec<&Film>, Vec<&Film>) =
+        films.iter().partition(|film| film.data.is_some());
+    html! {
+        @if !films.is_empty() {
+            div.films {
+                // What a film holds came from a file: it runs its script, and reaches nothing else.
+                @if let Some(film) = shown.first() {
+                    iframe #film title="two trials: the last that inserts, the first that fails" sandbox="allow-scripts" {}
+                    p #caption.muted { (caption(film, tasks)) }
+                }
+                p.files {
+                    @for (at, film) in shown.iter().enumerate() {
+                        button type="button" data-film=(at) data-caption=(caption(film, tasks)) {
+                            span aria-hidden="true" { "▶ " } "Play the " (label(answer, film))
+                        }
+                        script type="application/json" id={ "film" (at) } {
+                            (PreEscaped(film.data.as_deref().unwrap_or_default()))
+                        }
+                    }
+                    @for film in linked {
+                        a.button href=(pair_file(film.task, film.end)) { (label(answer, film)) }
+                    }
+                }
+                script type="application/json" id="viewer" {
+                    (PreEscaped(explore::embedded(&super::replay::viewer().into())))
+                }
+                script { (PreEscaped(include_str!("films.js"))) }
+            }
+        }
+    }
+}
+
+fn label(answer: &Answer, film: &Film) -> String {
+    let task = answer.record.config.tasks().nth(film.task).unwrap_or_default();
+    let on =
+        if answer.record.config.several_tasks() { format!(" on {task}") } else { String::new() };
+    format!("{} end{on}", film.end)
+}
+
+/// `Left: the last start that inserts (+5.7 mm). Right: the first that fails (+5.8 mm, jammed).`
+fn caption(film: &Film, tasks: &[&Evaluation]) -> String {
+    let Some(window) = tasks.get(film.task).map(|task| &task.window) else { return String::new() };
+    let (last, end, outward) = match film.end == ENDS[0].0 {
+        true => (window.negative_steps, window.end_negative, ENDS[0].1),
+        false => (window.positive_steps, window.end_positive, ENDS[1].1),
+    };
+    let [inside, outside] = [last, last + outward].map(grid_mm);
+    let ends = end.map_or("fails".to_owned(), outcome);
+    format!(
+        "Left: the last start that inserts ({inside:+.1} mm). Right: the next ({outside:+.1} mm): {ends}."
+    )
+}

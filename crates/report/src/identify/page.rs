@@ -1,0 +1,271 @@
+//! `identify.html`: what the logs of attempts said of their cell, beside the curves it comes from.
+
+use super::{AXES, origin, short, unmodelled};
+use crate::answer::words::{finger, number, outcome, stiffness};
+use crate::chart::{Area, Drawn, around, axes, message, sheet, words};
+use crate::elements::{definitions, document, stacked, table};
+use crate::marks::{dashed, line};
+use crate::page::PLOT;
+use crate::theme::{BLUE, INK, MUTED, ORANGE, inline};
+use calibration::identify::curves::{Curves, STEP_S};
+use calibration::identify::formulas::{Flange, Friction};
+use calibration::identify::log::Ended;
+use calibration::identify::misfit::misfits;
+use calibration::identify::question::{Compared, Identified, IdentifyDone};
+use calibration::identify::unknown::{From, Unknown};
+use input::units::MM;
+use insertion::evaluation::cell::{Parameter, Target, Way};
+use insertion::outcome::Outcome;
+use insertion::space::{Scale, label};
+use maud::{Markup, PreEscaped, html};
+use plotters::prelude::{Color, Text};
+use plotters::style::text_anchor::{HPos, VPos};
+
+/// Most points of a curve, and points of the air before the touch that are drawn: 0.1 s.
+const POINTS: usize = 400;
+const AIR: usize = 50;
+
+/// The page: numbers of the cell, robot and probes, and every attempt, measured and simulated.
+pub fn html(done: &IdentifyDone) -> String {
+    let IdentifyDone { task, remarks, found, .. } = done;
+    let (serious, others): (Vec<_>, Vec<_>) = remarks.iter().partition(|remark| remark.serious);
+    let rows: Vec<_> = found.unknowns.iter().map(unknown).collect();
+    let body = html! {
+        main {
+            h1 { (headline(done)) }
+            @for remark in serious { p.warn { (remark) } }
+            @for sentence in unmodelled(&found.compared) { p.warn { (sentence) } }
+            (definitions(&by_origin(found)))
+            @if !others.is_empty() {
+                details { summary { "Notes on the logs" } ul { @for remark in others { li { (remark) } } } }
+            }
+            section {
+                h2 { "Numbers of the cell" }
+                (stacked(&["number", "before", "identified", "deviation left", "from"], &rows))
+                p.muted {
+                    "× is a factor on the number of its file. Deviation left: share of the prior's standard deviation; "
+                    "the dashed mark is what was expected of these logs before the fit."
+                }
+            }
+            section { h2 { "Robot and probes" } (robot(found)) }
+            section {
+                h2 { "Attempts" }
+                p.key {
+                    @for (style, of) in [("1px solid var(--muted)", "measured"),
+                        ("2px dashed var(--orange)", "simulated with the files' numbers"),
+                        ("2px solid var(--blue)", "simulated with the identified ones")] {
+                        span { i style={ "border-top:" (style) } {} (of) }
+                    }
+                }
+                p.muted {
+                    "Force on the tool in the task's frame, from 0.1 s before the touch, with which the search begins. "
+                    "Misfit: root mean square of measured less simulated, in standard deviations, with the files' numbers → "
+                    "with the identified ones, up to the first contact that only one of the two makes or loses."
+                }
+                h3 { "All attempts" }
+                (misfit(&found.compared))
+                @for one in &found.compared { (attempt(one)) }
+            }
+        }
+    };
+    document(&format!("{task}: what its logs say of the cell"), body)
+}
+
+fn headline(IdentifyDone { task, found, .. }: &IdentifyDone) -> String {
+    let counted =
+        |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+    let attempts = counted(found.compared.len(), "attempt");
+    let probes = counted(found.probes.len(), "probe");
+    let told = found.unknowns.iter().filter(|one| one.from != From::Prior).count();
+    let misfit = match found.smoothed.misfit[..] {
+        [first, .., last] if last.is_finite() => {
+            format!("; misfit {first:.2} deviations before the fit, {last:.2} after it")
+        }
+        _ => String::new(),
+    };
+    let all = found.unknowns.len();
+    format!("{attempts} and {probes} on {task} tell {told} of {all} numbers of the cell{misfit}")
+}
+
+/// Names of the numbers by where their values come from, and how much was compared.
+fn by_origin(found: &Identified) -> Vec<(String, String)> {
+    let named = |from: From| {
+        let of = found.unknowns.iter().filter(|one| one.from == from);
+        let names: Vec<&str> = of.map(|one| one.posterior.name.as_str()).collect();
+        (!names.is_empty()).then(|| (origin(from).to_owned(), names.join(", ")))
+    };
+    let share = format!("{:.0} % of the data", 100.0 * found.smoothed.compared);
+    let all = [From::Formula, From::Fit, From::Prior].map(named);
+    all.into_iter().flatten().chain([("compared".to_owned(), share)]).collect()
+}
+
+/// A row of the numbers.
+fn unknown(one: &Unknown) -> Vec<Markup> {
+    let Unknown { prior, posterior, left, from, advice } = one;
+    let told = *from != From::Prior;
+    let (share, expected) = match (left, from) {
+        // The fit began at what the formula says: it knows no share of the prior's.
+        (_, From::Formula) => (deviation(posterior) / deviation(prior), None),
+        (Some([expected, left]), _) => (*left, Some(*expected)),
+        (None, _) => (1.0, None),
+    };
+    let percent = |share: f64| format!("{:.0}%", 100.0 * share.clamp(0.0, 1.0));
+    vec![
+        html! { (posterior.name) },
+        html! { (amount(prior)) },
+        html! { @if told { (amount(posterior)) } @else { "as before" } },
+        html! {
+            (format!("{:.0} %", 100.0 * share))
+            div.track {
+                i.firm style={ "left:0;width:" (percent(share)) } {}
+                @if let Some(expected) = expected { b style={ "left:" (percent(expected)) } {} }
+            }
+        },
+        html! {
+            (origin(*from)) @if told { ": " (posterior.source) }
+            @if let Some(advice) = advice { ": " (advice) }
+        },
+    ]
+}
+
+/// Value and deviation of a row, or its bounds, with the unit.
+pub(super) fn amount(row: &Parameter) -> String {
+    let (sign, unit) = match (row.way, &row.sets) {
+        (Way::Factor, _) => ("× ", ""),
+        (_, Target::Tilting) => ("", " N m/rad"),
+        (_, sets) => ("", label(sets.key()).1),
+    };
+    match row.value.zip(row.sd) {
+        Some((value, sd)) => format!("{sign}{} ± {}{unit}", short(value), short(sd)),
+        None => format!("{sign}{} to {}{unit}", short(row.low), short(row.high)),
+    }
+}
+
+/// Standard deviation of a row on its own scale.
+fn deviation(row: &Parameter) -> f64 {
+    let log = row.scale == Scale::Log;
+    match row.value.zip(row.sd) {
+        Some((value, sd)) if log => sd / value,
+        Some((_, sd)) => sd,
+        None if log => libm::log(row.high / row.low) / 12_f64.sqrt(),
+        None => (row.high - row.low) / 12_f64.sqrt(),
+    }
+}
+
+/// Axes of the robot, preload, and slides of the probes.
+fn robot(found: &Identified) -> Markup {
+    let axis = |(name, flange): (&str, &Option<Flange>)| {
+        let cells = match flange {
+            Some(flange) => vec![
+                stiffness(flange.stiffness),
+                number(flange.damping, 0, "N s/m"),
+                number(flange.mass, 2, "kg"),
+                number(1e3 * flange.delay_s, 0, "ms"),
+                number(100.0 * flange.explained, 0, "%"),
+            ],
+            None => vec!["not told by these logs".to_owned()],
+        };
+        [format!("along {name}")].into_iter().chain(cells).map(|cell| html! { (cell) }).collect()
+    };
+    let axes: Vec<Vec<Markup>> = AXES.into_iter().zip(&found.flange).map(axis).collect();
+    let probes: Vec<_> = found.probes.iter().map(probe).collect();
+    html! {
+        (stacked(&["axis", "stiffness", "damping", "mass", "delay of the force", "force explained"], &axes))
+        @if let Some(preload) = found.preload {
+            p { "Preload: " (number(preload.mean / MM, 3, "mm")) ", standard error " (number(preload.sd / MM, 5, "mm")) }
+        }
+        @if !probes.is_empty() {
+            (stacked(&["probe", "friction", "tangential over normal force, along y", "and back"], &probes))
+        }
+    }
+}
+
+fn probe((file, friction): &(String, Friction)) -> Vec<Markup> {
+    let coefficient = friction.coefficient.map(|one| format!("{:.3} ± {:.3}", one.mean, one.sd));
+    let slides = |forth: bool| {
+        let of = friction.slides.iter().filter(|slide| slide.forth == forth);
+        let words = of.map(|slide| {
+            format!("{:.3}{}", slide.ratio, if slide.rising { " (the part turned)" } else { "" })
+        });
+        words.collect::<Vec<_>>().join(", ")
+    };
+    let cells =
+        [file.clone(), coefficient.unwrap_or("not told".to_owned()), slides(true), slides(false)];
+    cells.map(|cell| html! { (cell) }).into()
+}
+
+fn attempt(one: &Compared) -> Markup {
+    let logged = &one.logged;
+    let ended = match logged.ended {
+        Ended::Inserted => outcome(Outcome::Inserted),
+        Ended::Failed(class) => outcome(Outcome::Failed(class)),
+        Ended::Probe => "probe".to_owned(),
+    };
+    html! {
+        article {
+            h3 { (finger(&logged.design)) ", start " (format!("{:+.1} mm", logged.offset / MM)) ": " (ended) }
+            p.muted {
+                (logged.file) ". Simulated: " (outcome(one.before.1)) " with the files' numbers, "
+                (outcome(one.after.1)) " with the identified ones."
+            }
+            div.curves {
+                @for (axis, name) in AXES.into_iter().enumerate() {
+                    @match sheet("the curves", PLOT, |area| draw(area, one, axis)) {
+                        Ok(svg) => {
+                            div role="img" aria-label={ "force along " (name) " over time" } { (PreEscaped(inline(&svg))) }
+                        }
+                        Err(error) => { p.warn { (error) } }
+                    }
+                }
+            }
+            (misfit(std::slice::from_ref(one)))
+        }
+    }
+}
+
+/// Misfit of the force by phase and axis.
+fn misfit(compared: &[Compared]) -> Markup {
+    let all = misfits(compared);
+    let rows: Vec<Vec<String>> = all
+        .chunk_by(|a, b| a.phase == b.phase)
+        .map(|phase| {
+            let cells = phase.iter().map(|one| match one.before.max(one.after) > 0.0 {
+                true => format!("{:.2} → {:.2}", one.before, one.after),
+                false => "not compared".to_owned(),
+            });
+            phase.first().map(|one| one.phase.to_owned()).into_iter().chain(cells).collect()
+        })
+        .collect();
+    table(&["misfit", "fx", "fy", "fz"], &rows)
+}
+
+/// One component of the force over time.
+fn draw(area: &Area<'_>, one: &Compared, axis: usize) -> Drawn {
+    let Compared { logged, before, after } = one;
+    let from = logged.touch.saturating_sub(AIR);
+    let points = |curves: &Curves| -> Vec<(f64, f64)> {
+        let every = curves.force.len().saturating_sub(from).div_ceil(POINTS).max(1);
+        let shown = curves.force.iter().enumerate().skip(from).step_by(every);
+        let points = shown.map(|(i, force)| (i as f64 * STEP_S, force[axis]));
+        points.filter(|(_, force)| force.is_finite()).collect()
+    };
+    let [measured, before, after] = [&logged.curves, &before.0, &after.0].map(points);
+    let all = || measured.iter().chain(&before).chain(&after);
+    let force = around(all().map(|point| point.1), 0.16);
+    let (bottom, top) = (force.start, force.end);
+    let label = format!("force along {} (N)", AXES[axis]);
+    let time = around(all().map(|point| point.0), 0.0);
+    let aside = 0.012 * (time.end - time.start);
+    let mut chart = axes(area, "", ("time (s)", time), (&label, force))?;
+    let phases = [(logged.touch, "search"), (logged.push, "push")];
+    for (at, phase) in phases.into_iter().filter(|(at, _)| at + 1 < logged.curves.force.len()) {
+        let time = at as f64 * STEP_S;
+        dashed(&mut chart, [(time, bottom), (time, top)])?;
+        let style = words(15, INK, HPos::Left, VPos::Top);
+        let name = Text::new(phase, (time + aside, top), style);
+        chart.draw_series([name]).map_err(message)?;
+    }
+    line(&mut chart, measured, MUTED.rgb().stroke_width(1), "")?;
+    line(&mut chart, before, ORANGE.rgb().stroke_width(2), "")?;
+    line(&mut chart, after, BLUE.rgb().stroke_width(2), "")
+}

@@ -1,0 +1,79 @@
+use super::html;
+use calibration::identify::check::Remark;
+use calibration::identify::curves::Curves;
+use calibration::identify::fixtures::made;
+use calibration::identify::formulas::{Friction, Slide};
+use calibration::identify::log::{Ended, Run};
+use calibration::identify::question::{Compared, Identified, IdentifyDone};
+use calibration::identify::replay::Logged;
+use calibration::identify::smoother::Smoothed;
+use calibration::identify::unknown::{From, Unknown};
+use input::shipped::{PRIORS, ROBOTS};
+use insertion::evaluation::cell::Priors;
+use insertion::outcome::Outcome;
+use insertion::robot::Robot;
+use insertion::space::Design;
+use insertion::surrogate::Estimate;
+
+const FILE: &str = "<b>1.csv";
+
+fn attempt() -> Compared {
+    let mut log = made(0.5, 1.0);
+    log.file = FILE.to_owned();
+    let design = Design::infill(10.0, 0.0);
+    let run = Run { log, design, offset: 0.0022, ended: Ended::Inserted, line: 2 };
+    let logged = Logged::new(&run).unwrap();
+    let simulated = |share: f64| {
+        let force = logged.curves.force.iter().map(|force| force * share).collect();
+        (Curves { force, ..logged.curves.clone() }, Outcome::Inserted)
+    };
+    Compared { before: simulated(0.2), after: simulated(0.95), logged }
+}
+
+/// Twelve attempts and a probe, by which the first number is fitted, and the others are not told.
+fn done() -> IdentifyDone {
+    let cell = Priors::parse(PRIORS[0].text, PRIORS[0].file).unwrap();
+    let unknown = |(i, prior): (usize, &insertion::evaluation::cell::Parameter)| Unknown {
+        prior: prior.clone(),
+        posterior: prior.clone(),
+        left: Some([0.3, 0.25]),
+        from: if i == 0 { From::Fit } else { From::Prior },
+        advice: (i > 0).then_some("a probe"),
+    };
+    let slide = |forth: bool| Slide { forth, ratio: 0.2, rising: !forth };
+    let probe = Friction { slides: vec![slide(true), slide(false)], coefficient: None };
+    let found = Identified {
+        robot: Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap(),
+        flange: [None; 3],
+        preload: Some(Estimate { mean: 2.5e-4, sd: 1e-5 }),
+        probes: vec![("probe.csv".to_owned(), probe)],
+        unknowns: cell.parameters.iter().enumerate().map(unknown).collect(),
+        smoothed: Smoothed {
+            members: Vec::new(),
+            expected_sd: Vec::new(),
+            misfit: vec![2.0, 0.5],
+            compared: 0.9,
+        },
+        compared: (0..12).map(|_| attempt()).collect(),
+    };
+    let text = "the sensor is saturated".to_owned();
+    let remark = Remark { file: FILE.to_owned(), lines: Some([3, 9]), text, serious: true };
+    IdentifyDone { task: "usb".to_owned(), remarks: vec![remark], found, cell }
+}
+
+#[test]
+fn the_page_has_every_number_and_curve_and_runs_no_name() {
+    let done = done();
+    let page = html(&done);
+    let has = |text: &str| assert!(page.contains(text), "{text}");
+    has("12 attempts and 1 probe on usb tell 1 of ");
+    has("misfit 2.00 deviations before the fit, 0.50 after it");
+    has("&lt;b&gt;1.csv: lines 3 to 9: the sensor is saturated");
+    has("not told: a probe");
+    has("0.200 (the part turned)");
+    has("10 % infill at 0°, start +2.2 mm: inserted");
+    done.found.unknowns.iter().for_each(|one| has(&one.posterior.name));
+    assert_eq!(page.matches("force along z (N)").count(), 12);
+    assert!(!page.contains(FILE) && !page.contains("://"));
+    assert!(page.len() < 1_000_000, "{}", page.len());
+}

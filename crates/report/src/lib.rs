@@ -1,0 +1,51 @@
+//! Plots and pages of a study and of the stiffness model: pure functions of
+//! what was measured. Nothing here simulates, and nothing reads or writes files.
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+// A panic is a defect; what input can reach is an error with a message.
+#![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+
+pub mod answer;
+mod bar;
+mod bench;
+mod chart;
+pub mod compare;
+mod convergence;
+mod drawn;
+mod elements;
+mod explore;
+mod first;
+mod front;
+pub mod identify;
+pub mod levers;
+pub mod map;
+mod marks;
+mod page;
+pub mod printer;
+mod provenance;
+pub mod replay;
+pub mod sensitivity;
+mod set;
+mod shape;
+pub mod sheet;
+pub mod stiffness;
+mod surface;
+#[cfg(test)]
+mod tests;
+mod theme;
+
+pub use convergence::svg as convergence_svg;
+pub use first::preferred;
+pub use front::svg as front_svg;
+pub use page::{Beside, Film, card, page};
+
+/// Why a plot could not be made: the drawing library refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("cannot draw {plot}: {problem}")]
+pub struct ReportError {
+    /// The plot.
+    plot: &'static str,
+    /// The library's message.
+    problem: String,
+}

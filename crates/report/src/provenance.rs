@@ -1,0 +1,172 @@
+//! How the trials of a study ended, and what decided its results.
+
+use super::elements::{definitions, table};
+use crate::answer::{Answer, command, lines, words};
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::objective::Measure;
+use insertion::outcome::{FailureClass, Outcome};
+use insertion::stiffness::Axis;
+use insertion::surrogate::Model;
+use maud::{Markup, html};
+use study::{Provenance, Recorded, StudyRecord};
+
+/// Key of the remote centre, where a space has it among its parameters.
+const REMOTE_CENTRE_KEY: &str = "finger.rcc_mm";
+/// Lines of the recommended finger that stand elsewhere on the page.
+const SAID: [&str; 9] = [
+    "best design",
+    "firm range",
+    "window",
+    "ends",
+    "from its ribs",
+    "as good",
+    "spread",
+    "  softest",
+    "  stiffest",
+];
+
+/// What decided the results, how to read them, and how to make them again; folded.
+pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
+    let found = answer.recommended.iter().flat_map(|found| lines::recommended(answer, found));
+    let found = found.filter(|_| answer.verdict.finger().is_some());
+    let more: Vec<_> = found.filter(|(name, _)| !SAID.contains(&name.as_str())).collect();
+    html! {
+        details {
+            summary { "How to read the numbers" }
+            ul { @for text in reading(answer, model) { li { (text) } } }
+        }
+        @if !more.is_empty() {
+            details { summary { "More of the finger that simulation recommends" } (definitions(&more)) }
+        }
+        details { summary { "Settings and hashes" } (provenance(answer.record)) }
+        p {
+            a href="evaluations.csv" { "evaluations.csv" } ", " a href="journal.jsonl" { "journal.jsonl" }
+            ". The same study again, in its folder:"
+        }
+        pre { code { (command::again(answer.record).join(" ")) } }
+    }
+}
+
+/// What limits the numbers.
+fn reading(answer: &Answer, model: &Model) -> Vec<String> {
+    let goals = answer.record.config.goals();
+    let robust = goals.need(Measure::RobustRange);
+    let mut texts = vec![
+        "The ends of a window are known to the 0.1 mm grid: the next step does not insert, and the \
+         range is up to 0.2 mm wider."
+            .to_owned(),
+        "The search looks every 0.5 mm outward and bisects before the first failure, so it can step over \
+         a gap: for a design that was not walked use optimize evaluate --walk before you print."
+            .to_owned(),
+        stiffness(model, robust),
+    ];
+    let draws = "Success rate and robust range are those of the assumed errors, not of your cell; all \
+                 designs meet the same draws.";
+    texts.extend(goals.need_draws().then(|| draws.to_owned()));
+    let parameters = &answer.record.config.space.parameters;
+    texts.push(match parameters.iter().any(|parameter| parameter.key == REMOTE_CENTRE_KEY) {
+        true => "The finger's remote centre is a number of the design here; whether a finger with this \
+                 infill and this centre can be made was not checked."
+            .to_owned(),
+        false => "The finger's remote centre is where the task file puts it, at one distance or along a \
+                  straight line over the infill direction. On a printed finger it moves with the infill; how \
+                  far was not measured."
+            .to_owned(),
+    });
+    texts
+}
+
+fn stiffness(model: &Model, robust: bool) -> String {
+    let error = |axis| {
+        let percent = model.chosen(axis)?.mean_absolute_percent;
+        percent.is_finite().then(|| format!("by {percent:.1} % in {}", axis.label()))
+    };
+    let errors: Vec<String> = Axis::ALL.into_iter().filter_map(error).collect();
+    let missed = match errors.is_empty() {
+        true => "how far it misses others is not known".to_owned(),
+        false => format!("left out in turn they are missed {} on average", errors.join(" and ")),
+    };
+    let ribs = if model.ratios { " and from the ribs of the finger" } else { "" };
+    let carried = match robust {
+        true => "the robust range alone carries its error",
+        false => "its error is not carried into the range",
+    };
+    format!("Stiffness is predicted from {}{ribs}; {missed}; {carried}.", model.counted())
+}
+
+pub(super) fn outcomes(record: &StudyRecord) -> Markup {
+    let searches = || record.evaluations.iter().flat_map(Recorded::tasks);
+    let count = |of: &dyn Fn(&Evaluation) -> u32| -> u64 {
+        searches().map(|found| u64::from(of(found))).sum()
+    };
+    let trials = count(&|found| found.trials);
+    let failed = count(&|found| found.failure_counts.iter().sum());
+    let diverged = count(&|found| found.diverged);
+    let row = |outcome: Outcome| {
+        let count = match outcome {
+            Outcome::Failed(class) => count(&|found| found.failure_counts[class as usize]),
+            Outcome::Diverged => diverged,
+            Outcome::Inserted => trials.saturating_sub(failed + diverged),
+        };
+        let share = match trials {
+            0 => "–".to_owned(),
+            _ => format!("{:.1} %", 100.0 * count as f64 / trials as f64),
+        };
+        vec![words::outcome(outcome), count.to_string(), share]
+    };
+    let outcomes = FailureClass::ALL.map(Outcome::Failed).into_iter();
+    let rows: Vec<_> = outcomes.chain([Outcome::Diverged, Outcome::Inserted]).map(row).collect();
+    let at_nominal = searches().filter(|found| found.window.nominal != Outcome::Inserted);
+    html! {
+        p {
+            (trials) " trials in " (searches().count()) " window searches. " (at_nominal.count())
+            " of them do not insert at the nominal start. A window search ends at the failures \
+            next to the window, so failures count window ends, not how likely a failure is."
+        }
+        (table(&["how the trial ended", "trials", "share"], &rows))
+    }
+}
+
+fn provenance(record: &StudyRecord) -> Markup {
+    let config = &record.config;
+    let mut rows: Vec<(String, String)> = Vec::new();
+    let mut add = |name: &str, value: String| rows.push((name.to_owned(), value));
+    add("study", config.name());
+    add("task", config.task_name());
+    add("robot", config.robot.clone());
+    add("finger model", config.finger_model.name().to_owned());
+    add("optimizer", config.method());
+    add("objective", config.objective.to_string());
+    add("seed", config.seed.to_string());
+    add("evaluations", config.counted(record.evaluations.len()));
+    add("designs proposed at a time", config.batch.to_string());
+    config.constraints.iter().for_each(|constraint| add("constraint", constraint.to_string()));
+    if let Some(aggregate) = &config.aggregate {
+        add("objective over the tasks", format!("{aggregate}, of values that are not scaled"));
+    }
+    config.uncertainty.iter().for_each(|errors| add("drawn errors", errors.clone()));
+    for p in &config.space.parameters {
+        let name = format!("{}: {}", config.space.name, p.key);
+        add(&name, format!("{} to {} in steps of {}", p.low, p.high, p.step));
+    }
+    let searches = record.evaluations.iter().flat_map(Recorded::tasks);
+    let simulated: f64 = searches.map(|found| found.simulated_s).sum();
+    let wall: f64 = record.evaluations.iter().map(|r| r.timing.wall_s).sum();
+    add("simulated time of the window searches", format!("{simulated:.0} s"));
+    add("wall-clock time, summed over evaluations", format!("{wall:.0} s"));
+    for (i, segment) in record.segments.iter().enumerate() {
+        let of = match record.segments.len() {
+            1 => String::new(),
+            _ => format!(", segment {} (from evaluation {})", i + 1, segment.first),
+        };
+        let Provenance { program, source_sha256, input_sha256, engine, .. } = &segment.provenance;
+        add(&format!("finger-opt{of}"), format!("{program}, sources {source_sha256}"));
+        add(&format!("contact engine{of}"), engine.version.clone());
+        let settings = engine.settings.iter().map(|(key, value)| format!("{key} = {value}"));
+        add(&format!("engine settings{of}"), settings.collect::<Vec<_>>().join(", "));
+        for (role, hash) in input_sha256 {
+            add(&format!("SHA-256 of the {role} file{of}"), hash.clone());
+        }
+    }
+    definitions(&rows)
+}

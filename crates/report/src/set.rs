@@ -1,0 +1,53 @@
+//! The designs that are as good as the one that is named, and the reasons to take another.
+
+use super::elements::table;
+use crate::answer::words::{ACROSS, design, mm, stiffness};
+use crate::answer::{Answer, AsGood, lines};
+use insertion::evaluation::objective::Measure;
+use maud::{Markup, html};
+use study::Recorded;
+
+/// Designs that are listed; the explorer has all.
+const LISTED: usize = 8;
+
+/// The section; `None` if nothing is recommended or several objectives leave the choice.
+pub(super) fn section(answer: &Answer) -> Option<Markup> {
+    answer.verdict.finger()?;
+    let found = answer.recommended.as_ref()?.as_good.as_ref()?;
+    let named = answer.named()?.index;
+    let mut designs = found.designs.clone();
+    // The one that is named first, then what loses least.
+    designs
+        .sort_by(|a, b| (a.0.index != named).cmp(&(b.0.index != named)).then(a.1.total_cmp(&b.1)));
+    let millimetres = answer.record.config.objective.first().unit() == "mm";
+    let row = |(recorded, loss): &(&Recorded, f64)| {
+        let loss = if millimetres { mm(loss.max(0.0)) } else { String::new() };
+        let force = answer.record.measure(recorded, Measure::PeakForce);
+        let robot = answer.measured.iter().find(|found| found.design == recorded.design);
+        vec![
+            design(&recorded.design),
+            reasons(found, recorded, named),
+            loss,
+            force.map_or(String::new(), |force| format!("{force:.0} N")),
+            stiffness(recorded.stiffness.compliance),
+            robot.map_or(String::new(), |robot| mm(robot.range_mm)),
+        ]
+    };
+    let head = ["finger", "", "expected less", "largest force", ACROSS, "on a robot"];
+    let rows: Vec<_> = designs.iter().take(LISTED).map(row).collect();
+    Some(html! {
+        p { (lines::within(answer, found).1) "." }
+        @if let Some((name, text)) = lines::safe(found) { p { b { (name) } " " (text) "." } }
+        @if let Some(text) = lines::moves(answer) { p { b { "infill" } " " (text) "." } }
+        @if rows.len() > 1 { (table(&head, &rows)) }
+        @if designs.len() > LISTED { p.muted { (designs.len() - LISTED) " more are in the explorer." } }
+    })
+}
+
+fn reasons(found: &AsGood, recorded: &Recorded, named: u64) -> String {
+    let own = |one: &&Recorded| one.index == recorded.index;
+    let named = (recorded.index == named).then_some("recommended");
+    let safe = found.safe.as_ref().filter(|safe| own(&safe.design)).map(|_| "safe choice");
+    let others = found.alternatives.iter().filter(|(_, one, ..)| own(one)).map(|(why, ..)| *why);
+    named.into_iter().chain(safe).chain(others).collect::<Vec<_>>().join(", ")
+}

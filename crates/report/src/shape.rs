@@ -1,0 +1,63 @@
+//! Gain from the parameters of the finger itself beyond the infill alone.
+
+use super::printer::finger_file;
+use crate::answer::words::infill;
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::objective::Measure;
+use insertion::finger::file::is_shape;
+use insertion::space::{Parameter, label};
+use maud::{Markup, html};
+use study::{Recorded, StudyRecord};
+
+/// The section; `None` if the space has no such parameter.
+pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
+    let parameters = &record.config.space.parameters;
+    let shape: Vec<&Parameter> = parameters.iter().filter(|p| is_shape(&p.key)).collect();
+    let index = record.recommended().filter(|_| !shape.is_empty())?.index;
+    // As the search found it, which alone has looked at the others, too.
+    let best = record.current().iter().find(|recorded| recorded.index == index)?;
+    let file = finger_file(record)?;
+    let plain: Vec<(&str, f64)> = shape
+        .iter()
+        .filter_map(|p| Some((p.key.as_str(), p.value(p.nearest(file.numbers.number(&p.key)?)))))
+        .collect();
+    let is_plain = |recorded: &&Recorded| {
+        plain.iter().all(|(key, value)| recorded.design.get(key) == Some(*value))
+    };
+    let alone = study::best(&record.config.goals(), record.current().iter().filter(is_plain));
+    let changed: Vec<String> = plain
+        .iter()
+        .filter_map(|&(key, from)| Some((key, from, best.design.get(key)?)))
+        .filter(|(_, from, to)| from != to)
+        .map(|(key, from, to)| {
+            let (name, unit) = label(key);
+            format!("{name} {to}{unit} in place of {from}{unit}")
+        })
+        .collect();
+    Some(html! {
+        @match alone {
+            Some(alone) => p { "Against the infill alone, " (infill(&alone.design)) ": " (gain(alone, best)) }
+            None => p { "No evaluation of this study has the finger as its file has it." }
+        }
+        @if changed.is_empty() {
+            p { "The best design has the finger as its file has it." }
+        } @else {
+            p.warn {
+                "It leaves the measured fingers: " (changed.join(", ")) ". Its stiffness was \
+                computed from its ribs and scaled by measured over computed at its infill; the \
+                standard deviation holds how far that ratio differs from finger to finger. Print \
+                and measure this finger before you trust the result."
+            }
+        }
+    })
+}
+
+fn gain(alone: &Recorded, best: &Recorded) -> String {
+    let of = |(before, now): (&Evaluation, &Evaluation)| {
+        let [force, other] = [now, before].map(|task| Measure::PeakForce.show(task.peak_force_n));
+        let more = now.window.range_mm() - before.window.range_mm();
+        format!("{more:+.1} mm of range, at {force} in place of {other}")
+    };
+    let gains = alone.tasks.iter().zip(&best.tasks).map(of);
+    format!("the finger's parameters give {}.", gains.collect::<Vec<_>>().join("; "))
+}

@@ -1,0 +1,113 @@
+//! A model of the first objective over the space, for the report alone: a Gaussian process
+//! through the evaluations, as the optimizer `gp` has one.
+
+use ask_tell::gp::{FitEffort, Gp, fit};
+use insertion::space::Parameter;
+use serde_json::{Value, json};
+use study::StudyRecord;
+
+/// Most evaluations that the model goes through; of more, evenly taken ones.
+const MOST: usize = 300;
+/// Smallest standard deviation of a value, in its unit: what a step of 0.1 rounds off.
+const NOISE: f64 = 0.03;
+/// Most cells along an axis of the surface.
+const CELLS: u32 = 41;
+/// Steps along an axis to see how far the mean goes.
+const LEVELS: u32 = 20;
+
+/// The process of a study, fitted once a page.
+pub(super) struct Model {
+    gp: Gp,
+    mean: f64,
+    sd: f64,
+}
+
+impl Model {
+    /// `None` with too few evaluations, or if their values are all alike.
+    pub(super) fn of(record: &StudyRecord) -> Option<Self> {
+        let parameters = &record.config.space.parameters;
+        let known: Vec<(Vec<f64>, f64)> = record
+            .current()
+            .iter()
+            .filter_map(|recorded| {
+                let x = parameters.iter().map(|p| Some(unit(p, recorded.design.get(&p.key)?)));
+                Some((x.collect::<Option<Vec<f64>>>()?, recorded.known_value()?))
+            })
+            .collect();
+        let every = known.len().div_ceil(MOST).max(1);
+        let (x, y): (Vec<Vec<f64>>, Vec<f64>) = known.into_iter().step_by(every).unzip();
+        let count = y.len() as f64;
+        let mean = y.iter().sum::<f64>() / count;
+        let sd = (y.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / count).sqrt();
+        if y.len() < 5 || sd.is_nan() || sd < 1e-9 {
+            return None;
+        }
+        let values: Vec<f64> = y.iter().map(|y| (y - mean) / sd).collect();
+        let floor = (NOISE / sd).powi(2);
+        let theta = fit(&x, &values, floor, None, FitEffort::for_observations(x.len()));
+        Some(Model { gp: Gp::new(&x, &values, floor, &theta)?, mean, sd })
+    }
+
+    /// Mean and standard deviation at a point of the unit cube, in the unit of the value.
+    fn at(&self, x: &[f64]) -> (f64, f64) {
+        let (mean, variance) = self.gp.predict(x);
+        (self.mean + self.sd * mean, self.sd * variance.max(0.0).sqrt())
+    }
+}
+
+fn unit(parameter: &Parameter, value: f64) -> f64 {
+    let span = parameter.high - parameter.low;
+    if span > 0.0 { (value - parameter.low) / span } else { 0.5 }
+}
+
+/// The surface over the two parameters that matter most, the others as recommended; nothing for
+/// one parameter or too few evaluations.
+pub(super) fn to_json(record: &StudyRecord, model: &Model) -> Option<Value> {
+    let parameters = &record.config.space.parameters;
+    if parameters.len() < 2 {
+        return None;
+    }
+    let best = record.recommended()?;
+    let base: Vec<f64> =
+        parameters.iter().map(|p| unit(p, best.design.get(&p.key).unwrap_or(p.low))).collect();
+    let mut axes: Vec<usize> = (0..parameters.len()).collect();
+    axes.sort_by(|&a, &b| {
+        reach(model, &base, b).total_cmp(&reach(model, &base, a)).then(a.cmp(&b))
+    });
+    axes.truncate(2);
+    axes.sort_unstable();
+    let levels = |parameter: &Parameter| -> Vec<f64> {
+        let cells = parameter.levels().clamp(2, CELLS);
+        let step = (parameter.high - parameter.low) / f64::from(cells - 1);
+        (0..cells).map(|k| round(parameter.low + f64::from(k) * step)).collect()
+    };
+    let (p, q) = (&parameters[axes[0]], &parameters[axes[1]]);
+    let (xs, ys) = (levels(p), levels(q));
+    let (mut mean, mut sd) = (Vec::new(), Vec::new());
+    for y in &ys {
+        for x in &xs {
+            let mut point = base.clone();
+            (point[axes[0]], point[axes[1]]) = (unit(p, *x), unit(q, *y));
+            let found = model.at(&point);
+            mean.push(round(found.0));
+            sd.push(round(found.1));
+        }
+    }
+    Some(json!({"axes": axes, "x": xs, "y": ys, "mean": mean, "sd": sd}))
+}
+
+/// How far the model's mean goes along an axis through a point.
+fn reach(model: &Model, base: &[f64], axis: usize) -> f64 {
+    let along = (0..=LEVELS).map(|level| {
+        let mut point = base.to_vec();
+        point[axis] = f64::from(level) / f64::from(LEVELS);
+        model.at(&point).0
+    });
+    let [low, high] =
+        along.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
+    high - low
+}
+
+fn round(value: f64) -> f64 {
+    (value * 1e4).round() / 1e4 + 0.0
+}

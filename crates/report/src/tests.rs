@@ -1,0 +1,360 @@
+use super::*;
+use crate::answer::words;
+use finray::printed::PrintedFinger;
+use input::shipped::{FINGERS, STIFFNESS};
+use input::units::N_PER_MM;
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::objective::{Aggregate, Goals, Measure, Objectives};
+use insertion::evaluation::tolerance::{Search, evaluate};
+use insertion::finger::Finger;
+use insertion::outcome::{FailureClass, Outcome};
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
+use insertion::stiffness::{Axis, parse};
+use insertion::surrogate::{Model, fit};
+use insertion::trial::engine::EngineKind;
+use insertion::trial::fake::{Altered, FakeRig};
+use insertion::trial::{Grasp, Trial};
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::OnceLock;
+use study::{Provenance, Recorded, Segment, StudyConfig, StudyRecord, Timing};
+
+fn finray9() -> PrintedFinger {
+    PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap()
+}
+
+/// The shipped model, fitted once.
+fn model() -> &'static Model {
+    static MODEL: OnceLock<Model> = OnceLock::new();
+    MODEL.get_or_init(|| {
+        fit(&parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap(), &finray9()).unwrap()
+    })
+}
+
+fn record(evaluations: Vec<Recorded>) -> StudyRecord {
+    let hashes = BTreeMap::from([("task_1".to_owned(), "9f86d081884c7d65".repeat(4))]);
+    let provenance = Provenance::new(EngineKind::Direct, hashes);
+    let fixture = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/fixtures/study");
+    let fixture = StudyRecord::load(&fixture).unwrap();
+    let (seed, budget) = (7, 200);
+    let config =
+        StudyConfig { seed, budget, provenance: provenance.clone(), ..fixture.config.clone() };
+    let segments = vec![Segment { first: 0, provenance }];
+    StudyRecord { config, segments, evaluations, ..fixture }
+}
+
+fn html(study: &StudyRecord) -> String {
+    page(study, model(), &Beside::default()).unwrap()
+}
+
+/// A study of the closed-form rig over a coarse grid in a scattered order.
+fn study() -> StudyRecord {
+    let infill = |index: u64| [10.0 + (index * 13 % 21) as f64, (index * 29 % 41) as f64];
+    record((0..60).map(|index| walked(index, infill(index))).collect())
+}
+
+/// An evaluation by the closed-form rig.
+fn walked(index: u64, infill: [f64; 2]) -> Recorded {
+    let stiffness = model().predict(infill[0], infill[1]).unwrap();
+    let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
+    recorded(index, infill, evaluate(&FakeRig::default(), &finger, Search::Walk))
+}
+
+fn recorded(index: u64, infill: [f64; 2], evaluation: Evaluation) -> Recorded {
+    let stiffness = model().predict(infill[0], infill[1]).unwrap();
+    let score = Goals::of(Measure::Range).score(&[&evaluation]);
+    let design = Design::infill(infill[0], infill[1]);
+    let (tasks, timing) = (vec![evaluation], Timing::default());
+    Recorded { index, proposal: None, design, score, stiffness, tasks, timing, refused: None }
+}
+
+#[test]
+fn of_very_many_evaluations_the_best_and_some_are_drawn() {
+    let few = study();
+    let many = (0..20_000u64).map(|index| {
+        let one = &few.evaluations[index as usize % few.evaluations.len()];
+        Recorded { index, ..one.clone() }
+    });
+    let many = record(many.collect());
+    let shown = super::drawn::drawn(&many, &many.evaluations, super::drawn::LISTED);
+    assert!((4000..5100).contains(&shown.len()), "{}", shown.len());
+    assert!(shown.windows(2).all(|pair| pair[0].index < pair[1].index));
+    let best = many.recommended().unwrap().index;
+    assert!(shown.iter().any(|one| one.index == best));
+    let widest = |all: &[&Recorded]| {
+        let mut values: Vec<f64> = all.iter().filter_map(|one| one.value()).collect();
+        values.sort_by(|a, b| b.total_cmp(a));
+        values[..500].to_vec()
+    };
+    assert_eq!(widest(&shown), widest(&many.evaluations.iter().collect::<Vec<_>>()));
+    let page = html(&many);
+    assert!(page.contains("evaluations.csv has all") && page.len() < 1_000_000, "{}", page.len());
+    assert!(!html(&few).contains("evaluations.csv has all"));
+}
+
+/// An evaluation whose nominal start already ends so.
+fn at_nominal(index: u64, infill: [f64; 2], nominal: Outcome) -> Recorded {
+    let ends = Altered(move |_: &Grasp, _: f64, trial: Trial| Trial { outcome: nominal, ..trial });
+    let finger = Finger::new(2.0 * N_PER_MM, 40.0 * N_PER_MM);
+    recorded(index, infill, evaluate(&ends, &finger, Search::Walk))
+}
+
+/// The page of a study, which is whole.
+fn whole(study: &StudyRecord) -> String {
+    let page = html(study);
+    for id in ["convergence", "failures", "provenance"] {
+        assert_eq!(page.matches(&format!("<section id=\"{id}\">")).count(), 1, "{id}");
+    }
+    for word in ["http:", "https:", "@import", "url(", "src=", "NaN", "inf "] {
+        assert!(!page.contains(word), "{word}");
+    }
+    assert_eq!(page.matches("<svg ").count(), page.matches("</svg>").count());
+    for tag in ["section", "table", "dl", "figure", "details", "p"] {
+        let opened =
+            page.matches(&format!("<{tag}>")).count() + page.matches(&format!("<{tag} ")).count();
+        assert_eq!(opened, page.matches(&format!("</{tag}>")).count(), "{tag}");
+    }
+    assert!(!page.contains("fill=\"#") && !page.contains("stroke=\"#"), "a fixed colour");
+    page
+}
+
+#[test]
+fn the_page_is_whole_and_its_numbers_are_the_records() {
+    let study = study();
+    let html = whole(&study);
+    let best = study.best().unwrap();
+    let window = &best.tasks[0].window;
+    for number in [
+        format!("<h1>Print the finger with {}</h1>", words::finger(&best.design)),
+        format!("simulated: {} mm, not confirmed", words::span(words::ends_mm(window))),
+        format!("compliance {:.2} ± ", best.stiffness.compliance.mean / N_PER_MM),
+        words::mm(window.range_mm()),
+        "<pre><code>optimize next --task".to_owned(),
+        "jammed (class 3)".to_owned(),
+        "plug missed (class 2)".to_owned(),
+        "9f86d081884c7d65".repeat(4),
+    ] {
+        assert!(html.contains(&number), "{number}");
+    }
+    let trials: u32 = study.evaluations.iter().map(|r| r.tasks[0].trials).sum();
+    assert!(html.contains(&format!("{trials} trials in 60 window searches")));
+    assert_eq!(html.matches("<div role=\"img\"").count(), 2, "the finger and the convergence");
+    assert_eq!(html.matches("<script").count(), 2, "the data and what shows it");
+    assert!(html.contains("default-src 'none'"));
+}
+
+#[test]
+fn a_measured_design_shows_its_range_on_a_robot() {
+    let html = whole(&record(vec![walked(0, [20.0, 20.0])]));
+    assert!(
+        html.contains("measured on a robot, 20 %, 20°: 4.1 mm") && html.contains("<td>4.1 mm</td>")
+    );
+}
+
+#[test]
+fn a_best_design_outside_the_hull_is_warned_of() {
+    let recorded = walked(0, [10.0, 40.0]);
+    let distance =
+        format!("extrapolated by {:.2} of the measured span", recorded.stiffness.hull_distance);
+    assert!(html(&record(vec![recorded])).contains(&distance), "{distance}");
+}
+
+#[test]
+fn empty_failed_and_diverged_studies_still_have_a_page() {
+    let jammed = Outcome::Failed(FailureClass::Jammed);
+    for (evaluations, words) in [
+        (vec![], "<h1>No design can be recommended</h1>"),
+        (vec![at_nominal(0, [10.0, 0.0], Outcome::Diverged)], "<h1>No finger inserts on"),
+        (
+            vec![at_nominal(0, [10.0, 0.0], jammed)],
+            "nominal start ends with <b>jammed (class 3)</b>",
+        ),
+        (
+            (0..5).map(|i| at_nominal(i, [10.0 + i as f64, 5.0], jammed)).collect(),
+            "Check the clearance of plug and socket",
+        ),
+    ] {
+        let study = record(evaluations);
+        let html = whole(&study);
+        assert!(html.contains(words) && !html.contains("finger.stl"), "{words}");
+        assert!(convergence_svg(&study, (880, 480)).unwrap().contains("evaluation"));
+    }
+}
+
+#[test]
+fn what_comes_from_files_is_escaped_and_unknown_tasks_are_told() {
+    let mut study = study();
+    study.config.tasks = vec!["<img onerror=x>&\"'".to_owned()];
+    study.config.uncertainty = Some("<b>errors".to_owned());
+    study.evaluations[0].design.0.insert("<i>key".to_owned(), 1.0);
+    study.segments[0].provenance.input_sha256.insert("<u>".to_owned(), "<s>".to_owned());
+    let html = whole(&study);
+    for raw in ["<img", "<b>errors", "<i>", "<u>", "<s>"] {
+        assert!(!html.contains(raw), "{raw}");
+    }
+    assert!(html.contains("&lt;img onerror") && !html.contains("published"));
+}
+
+/// Two objectives and a constraint on two tasks that measure the same.
+#[test]
+fn fronts_constraints_and_tasks_have_their_places_on_the_page() {
+    let mut study = study();
+    study.config.objective = "range,peak-force".parse().unwrap();
+    study.config.constraints = vec!["range<=6".parse().unwrap()];
+    study.config.tasks.push("<s>other".to_owned());
+    study.config.aggregate = Some(Aggregate::Mean);
+    let goals = study.config.goals();
+    for recorded in &mut study.evaluations {
+        recorded.tasks.push(recorded.tasks[0].clone());
+        recorded.score = goals.score(&recorded.tasks());
+    }
+    let html = whole(&study);
+    assert!(html.contains("on &lt;s&gt;other, in mm from the taught one"));
+    assert!(!html.contains("<s>other") && html.contains("range&lt;=6"));
+    let front = study.front();
+    let ranges: Vec<f64> = front.iter().filter_map(|recorded| recorded.value()).collect();
+    assert!(ranges.is_sorted_by(|a, b| a > b) && ranges[0] <= 6.0, "{ranges:?}");
+    assert!(html.contains(&format!("{} of 60 evaluated designs are on the front", front.len())));
+    assert!(front_svg(&study, (880, 480)).unwrap().unwrap().contains("range (mm)"));
+    let volumes = convergence::best_so_far(&study);
+    assert!(volumes.len() == 60 && volumes.windows(2).all(|pair| pair[0].1 <= pair[1].1));
+    for recorded in &mut study.evaluations {
+        recorded.score.as_mut().unwrap().violations = vec![1.0 + recorded.index as f64];
+    }
+    let html = self::html(&study);
+    assert!(html.contains("<h1>No design can be recommended</h1>"));
+    assert!(html.contains("Evaluation 0 ("), "the one that violates least");
+    assert!(study.best().is_none() && study.front().is_empty());
+}
+
+/// Evaluations are counted from 0, as in the journal and on the command line.
+#[test]
+fn convergence_never_falls_and_ends_at_the_best() {
+    let study = study();
+    let steps = convergence::best_so_far(&study);
+    assert!(steps.windows(2).all(|pair| pair[0].1 <= pair[1].1));
+    let best = study.best().unwrap();
+    assert_eq!((steps[0].0, steps.last().copied()), (0.0, Some((59.0, best.value().unwrap()))));
+    let fact = format!("\"best\":{}", best.index);
+    assert!(html(&study).contains(&fact), "{fact}");
+    let svg = convergence_svg(&study, (880, 480)).unwrap();
+    for word in ["best so far", "range (mm)", "each evaluation"] {
+        assert!(svg.contains(word), "{word}");
+    }
+}
+
+#[test]
+fn the_stiffness_report_has_every_model_and_both_axes() {
+    let model = model();
+    let table = stiffness::table(model);
+    for word in ["1.64", "10.00", "<- used", "RMSE N/mm", "assembly (z)", "compliance (y)"] {
+        assert!(table.contains(word), "{word}: {table}");
+    }
+    let json = stiffness::json(model);
+    assert_eq!(json["models"].as_array().map(Vec::len), Some(8));
+    let percent = json["models"][0]["loo_mean_absolute_percent"].as_f64().unwrap();
+    assert!((percent - 1.64).abs() < 0.01);
+    let svg = stiffness::svg(model).unwrap();
+    for word in ["stiffness in compliance (y) (N/mm)", "density 20 %", "direction 40°"] {
+        assert!(svg.contains(word), "{word}");
+    }
+}
+
+#[test]
+fn other_spaces_have_a_page() {
+    let mut study = study();
+    let text = include_str!("../../../spaces/infill.toml").replace(DENSITY_KEY, "wall_mm");
+    study.config.space = Space::parse(&text, "s.toml").unwrap();
+    for recorded in &mut study.evaluations {
+        let direction = recorded.design.get(DIRECTION_KEY).unwrap();
+        recorded.design = Design(BTreeMap::from([
+            ("wall_mm".to_owned(), 1.2),
+            (DIRECTION_KEY.to_owned(), direction),
+        ]));
+    }
+    whole(&study);
+}
+
+#[test]
+fn the_limits_are_those_of_what_was_done() {
+    let html = self::html(&study());
+    for statement in [
+        "the range is up to 0.2 mm wider",
+        "it can step over a gap",
+        "optimize evaluate --walk",
+        "along a straight line over the infill direction",
+        "its error is not carried into the range",
+    ] {
+        assert!(html.contains(statement), "{statement}");
+    }
+    for axis in Axis::ALL {
+        let percent = model().chosen(axis).unwrap().mean_absolute_percent;
+        let error = format!("by {percent:.1} % in {}", axis.label());
+        assert!(html.contains(&error), "{error}");
+    }
+    for wrong in ["known to within", "centre of rotation of the finger is fixed"] {
+        assert!(!html.contains(wrong), "{wrong}");
+    }
+    let mut codesign = study();
+    let text = include_str!("../../../spaces/codesign.toml");
+    codesign.config.space = Space::parse(text, "codesign.toml").unwrap();
+    codesign.config.objective = Objectives::of(Measure::RobustRange);
+    let html = self::html(&codesign);
+    for statement in ["remote centre is a number of the design", "alone carries its error"] {
+        assert!(html.contains(statement), "{statement}");
+    }
+}
+
+/// Shipped inputs go by their names, the rest by their copies; nothing that decides is left out.
+#[test]
+fn the_command_that_repeats_a_study_names_all_that_decides() {
+    let mut study = study();
+    let text = |name: &str, text: &str| (name.to_owned(), text.to_owned());
+    let inputs = study::Inputs::from([
+        text("task_1", input::shipped::TASKS[3].text),
+        text("task_2", "mine"),
+        text("space", input::shipped::SPACES[0].text),
+        text("robot", input::shipped::ROBOTS[1].text),
+        text("stiffness", "my measurements"),
+        text("finger", FINGERS[0].text),
+    ]);
+    let provenance = Provenance::new(EngineKind::Rapier, study::sha256(&inputs));
+    study.segments[0].provenance = provenance;
+    study.config.tasks.push("mine".to_owned());
+    study.config.aggregate = Some(Aggregate::weighted(vec![2.0, 1.0], 2).unwrap());
+    study.config.finger_model = insertion::finger::model::FingerModelKind::Computed;
+    let command = crate::answer::command::again(&study).join(" ");
+    assert_eq!(
+        command,
+        "optimize --task usb,inputs/task_2.toml --space infill --robot rigid --stiffness-data \
+         inputs/stiffness.csv --finger-model computed --finger finray9 --engine rapier --optimizer \
+         gp --objective range --aggregate weighted --weights 2,1 --seed 7 --budget 200 --batch 4"
+    );
+}
+
+#[test]
+fn levers_are_drawn_largest_first_and_grey_where_they_matter_little() {
+    use super::levers;
+    let lever = |name: &str, ends: [Option<f64>; 2]| {
+        json!({"name": name, "key": name, "unit": "mm", "value": 2.0, "low": 1.0, "high": 3.0,
+               "source": "made <up>", "range_mm": ends})
+    };
+    let found = json!({
+        "task": "a<b", "design": {}, "base": {"range_mm": 4.0, "taught_start_mm": 0.0},
+        "infill_range_mm": [3.0, 4.0], "left_out": ["speed"], "windows": 7,
+        "levers": [lever("tilt", [None, Some(4.5)]), lever("grip", [Some(3.9), Some(4.1)])],
+    });
+    let found = serde_json::from_value(found).unwrap();
+    let svg = levers::svg(&found);
+    let document = roxmltree::Document::parse(&svg).unwrap();
+    let texts: Vec<_> = document.descendants().filter_map(|node| node.text()).collect();
+    let at = |text: &str| texts.iter().position(|&found| found == text).unwrap();
+    assert!(
+        at("tilt") < at("none at 1 mm") && at("tilt") < at("infill") && at("infill") < at("grip")
+    );
+    let bars = document.descendants().filter_map(|node| node.attribute("fill-opacity"));
+    assert_eq!(bars.collect::<Vec<_>>(), ["0.85", "0.85", "0.85", "0.85", "0.45", "0.45"]);
+    let text = levers::text(&found);
+    assert!(text.contains("7 windows; none left for speed") && text.contains("grip: made <up>"));
+}

@@ -19,13 +19,13 @@ use std::time::Instant;
 /// A study read from its folder: all that a report may know of it.
 ///
 /// ```
-/// use finger_opt::study::StudyRecord;
+/// use study::StudyRecord;
 ///
 /// let record = StudyRecord::load("../../tests/fixtures/study".as_ref())?;
 /// let best = record.best().expect("a design with a range");
 /// assert_eq!((best.design.labelled().as_str(), best.value()),
 ///     ("infill density 11 %, infill direction 6°", Some(6.7)));
-/// # Ok::<(), finger_opt::study::StudyError>(())
+/// # Ok::<(), study::StudyError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyRecord {

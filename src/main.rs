@@ -4,5 +4,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    finger_opt::cli::main(std::env::args_os())
+    finger_opt::program::main(std::env::args_os())
 }

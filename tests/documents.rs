@@ -64,7 +64,7 @@ fn changelog_and_citation_are_of_this_version() {
 #[test]
 fn the_command_reference_is_what_the_program_says() {
     let page = root().join("docs/cli.md");
-    let reference = finger_opt::cli::reference();
+    let reference = finger_opt::manual::reference();
     if std::env::var_os("RENEW").is_some() {
         std::fs::write(&page, &reference).unwrap();
     }

@@ -5,7 +5,10 @@ mod common;
 use ask_tell::{Grid, Optimizer, OptimizerKind, build};
 use common::memory::{self, Memory};
 use common::{Studies, sealed};
-use finger_opt::session::{OpenStudy, Order, SetupRequest, StudyRequest, TaskSource, perform};
+use finger_opt::command::parse;
+use finger_opt::commands::study;
+use finger_opt::studies::guided::{Order, perform};
+use finger_opt::studies::open::OpenStudy;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluate, Measured};
 use insertion::evaluation::robustness::race::{self, Race};
@@ -16,7 +19,6 @@ use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::Design;
 use insertion::surrogate::Prediction;
 use insertion::trial::NEVER;
-use insertion::trial::engine::EngineKind;
 use insertion::trial::fake::FakeRig;
 use proptest::prelude::*;
 use std::fs;
@@ -177,17 +179,10 @@ fn errors(studies: &Studies) -> String {
 
 /// The journal of a study that is measured by workers.
 fn by_workers(studies: &Studies, errors: &str) -> String {
-    let setup = SetupRequest {
-        tasks: TaskSource::list("usb"),
-        engine: EngineKind::Fake,
-        ..SetupRequest::default()
-    };
-    let request = StudyRequest {
-        objective: "success-rate".parse().unwrap(),
-        uncertainty: Some(errors.to_owned()),
-        out: Some(studies.dir("workers")),
-        ..StudyRequest::new(setup, Some(24))
-    };
+    let line = "--task usb --engine fake --budget 24 --objective success-rate --uncertainty";
+    let words = line.split(' ').map(str::to_owned).chain([errors.to_owned()]);
+    let mut request: study::Request = parse(words).unwrap();
+    request.out = Some(studies.dir("workers"));
     let Ok(mut guided) = request.open(None).and_then(OpenStudy::guided) else { panic!("no study") };
     while let Ok(Order::Measure(works)) = guided.order(&AtomicBool::new(false)) {
         for (proposal, work) in works.into_iter().rev() {

@@ -6,12 +6,13 @@ use super::process::{no_number, run};
 use anyhow::{Context, Result, bail, ensure};
 use ask_tell::OptimizerKind;
 use connector::mesh::{Surface, read};
-use finger_opt::session::{
-    Failure, NotTaken, OpenStudy, Order, SetupRequest, StudyRequest, TaskSource, perform,
-};
+use finger_opt::command::parse;
+use finger_opt::commands::study;
+use finger_opt::failure::Failure;
+use finger_opt::studies::guided::{NotTaken, Order, perform};
+use finger_opt::studies::open::OpenStudy;
 use input::units::MM;
 use insertion::trial::NEVER;
-use insertion::trial::engine::EngineKind;
 use nalgebra::Point3;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -202,9 +203,10 @@ fn lathe(flats: usize, rings: usize) -> String {
 
 /// A study whose worker lies: what is believed of it can be read again.
 fn lied_to(mutations: &[Mutation], out: &Path) -> How {
-    let tasks = TaskSource::list("usb");
-    let setup = SetupRequest { tasks, engine: EngineKind::Fake, ..SetupRequest::default() };
-    let request = StudyRequest { out: Some(out.to_owned()), ..StudyRequest::new(setup, Some(3)) };
+    let line = "--task usb --engine fake --budget 3".split(' ');
+    let mut request: study::Request =
+        parse(line).map_err(|failure| anyhow::anyhow!("{failure}"))?;
+    request.out = Some(out.to_owned());
     let failed = |failure: Failure| anyhow::anyhow!("{failure}");
     let mut guided = request.open(None).and_then(OpenStudy::guided).map_err(failed)?;
     let mut how = "accepted";

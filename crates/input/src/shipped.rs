@@ -72,7 +72,7 @@ pub const STIFFNESS: &[Shipped] = shipped! { "measured": "data/measured_stiffnes
 pub const MEASUREMENTS: &[Shipped] = shipped! { "published": "data/published_bench.csv" };
 
 /// A text and what to call it in messages.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Deserialize)]
 pub struct Source {
     /// File name as the user knows it.
     pub file: String,

@@ -1,7 +1,8 @@
 //! `lab benchmark`: speed of the simulation on this machine.
 
 use super::{Failure, print};
-use finger_opt::session::{self, DEFAULT_ROBOT};
+use finger_opt::setup::files;
+use finger_opt::setup::request::DEFAULT_ROBOT;
 use input::shipped::TASKS;
 use input::units::N_PER_MM;
 use insertion::evaluation::tolerance::{self, Search};
@@ -20,7 +21,7 @@ const COMPLIANCE: f64 = 2.6;
 const ASSEMBLY: f64 = 45.0;
 
 pub fn run() -> Result<(), Failure> {
-    let robot = session::robot(DEFAULT_ROBOT)?;
+    let robot = files::robot(DEFAULT_ROBOT)?;
     let mut text = format!(
         "{} threads, finger of {COMPLIANCE} and {ASSEMBLY} N/mm\n\
          task     trials/s  evaluations/min  budget of {BUDGET} takes about\n",

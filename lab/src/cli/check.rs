@@ -6,7 +6,8 @@ use crate::analytic;
 use crate::compare::{TaskWays, Way, pairs};
 use clap::Args;
 use contact::Engine;
-use finger_opt::session::{self, DEFAULT_ROBOT};
+use finger_opt::setup::files;
+use finger_opt::setup::request::DEFAULT_ROBOT;
 use insertion::evaluation::OffsetStep;
 use insertion::evaluation::tolerance::Search;
 use insertion::robot::Robot;
@@ -61,7 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 impl Arguments {
     fn windows(&self) -> Result<(), Failure> {
-        let robot = session::robot(&self.robot)?;
+        let robot = files::robot(&self.robot)?;
         let ways = if self.convergence { finer } else { searches };
         let engine = || self.engine.build(1.0);
         let tasks = tasks(&self.task)?.into_iter().map(|task| ways(task, &robot, engine()));

@@ -5,7 +5,8 @@ use super::{Failure, print, print_json};
 use crate::compare::engines;
 use crate::compare::{TaskWays, Way};
 use clap::Args;
-use finger_opt::session::{self, DEFAULT_ROBOT};
+use finger_opt::setup::files;
+use finger_opt::setup::request::DEFAULT_ROBOT;
 use insertion::evaluation::tolerance::Search;
 use insertion::finger::model::FingerSource;
 use insertion::task::Task;
@@ -41,7 +42,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let kinds = [arguments.engine, arguments.against];
     let names = kinds.map(EngineKind::name);
-    let robot = session::robot(DEFAULT_ROBOT)?;
+    let robot = files::robot(DEFAULT_ROBOT)?;
     let ways = |task: Task| {
         let way = |engine: EngineKind| {
             let rig = engine.rig(&task, &robot, &FingerSource::Paper.any(&task), 1.0);

@@ -3,7 +3,9 @@
 use super::{Failure, print};
 use analysis::map::{CaptureMap, Mark};
 use clap::Args;
-use finger_opt::session::MapRequest;
+use finger_opt::command::Request as _;
+use finger_opt::commands::map::{Mapped, Request as MapRequest};
+use finger_opt::context::Context;
 use insertion::outcome::Outcome;
 use insertion::trial::NEVER;
 use std::path::PathBuf;
@@ -22,7 +24,7 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (_, map) = arguments.request.run(&NEVER)?;
+    let Mapped { map, .. } = arguments.request.run(&Context::silent(&NEVER))?;
     let full = arguments.request.full(&map, &NEVER)?;
     write_file(&arguments.out, &csv(&map, &full))?;
     let pairs = || map.outcomes.iter().flatten().zip(full.iter().flatten());

@@ -12,10 +12,15 @@ mod validate;
 mod windows;
 
 use clap::{Parser, Subcommand};
-use finger_opt::cli::terminal::{print, print_json, say};
-use finger_opt::session::Failure;
+use finger_opt::failure::Failure;
+use finger_opt::terminal::{print, say};
 use std::ffi::OsString;
 use std::process::ExitCode;
+
+/// Prints a value as JSON, one line.
+fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
+    print(&format!("{value}\n"))
+}
 
 /// Checks the models behind `optimize`: against closed formulas, other engines and published tables.
 ///

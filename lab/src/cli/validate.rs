@@ -4,7 +4,9 @@ use super::{Failure, print, print_json};
 use crate::compare::published as beside;
 use calibration::published::{self, Origin};
 use clap::{Args, ValueEnum};
-use finger_opt::session::{self, DEFAULT_ROBOT, FingerModelRequest, TaskFile};
+use finger_opt::setup::files;
+use finger_opt::setup::request::{DEFAULT_ROBOT, FingerModelRequest};
+use finger_opt::setup::task::{TaskFile, read_task};
 use input::shipped::TASKS;
 use insertion::evaluation::tolerance::Search;
 use insertion::stiffness::Measurement;
@@ -70,7 +72,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     for task in &mut tasks {
         task.strategy.rule = arguments.start.unwrap_or(task.strategy.rule);
     }
-    let robot = session::robot(&arguments.robot)?;
+    let robot = files::robot(&arguments.robot)?;
     let search = if arguments.strides { Search::Strides } else { Search::Walk };
     let fingers = arguments.finger_model.fingers()?;
     let designs = arguments.fingers.designs();
@@ -118,7 +120,7 @@ pub fn tasks(name: &str) -> Result<Vec<Task>, Failure> {
 }
 
 fn task(name: &str) -> Result<Task, Failure> {
-    let TaskFile { source, task } = session::read_task(name)?;
+    let TaskFile { source, task } = read_task(name)?;
     if published::of_task(&task.name, Origin::Simulation).is_empty() {
         let names = TASKS.iter().map(|shipped| shipped.name).collect::<Vec<_>>().join(", ");
         let (file, task) = (source.file, task.name);

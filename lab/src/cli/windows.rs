@@ -5,7 +5,8 @@ use super::{Failure, print};
 use crate::compare::Subject;
 use crate::compare::windows::{self, Row};
 use clap::Args;
-use finger_opt::session::{self, DEFAULT_ROBOT};
+use finger_opt::setup::files;
+use finger_opt::setup::request::DEFAULT_ROBOT;
 use finray::printed::PrintedFinger;
 use input::shipped::{self, FINGERS, SPACES};
 use insertion::robot::Robot;
@@ -52,7 +53,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let [reference, file] = &arguments.compare[..] {
         return print(&windows::compare(&read(reference)?, &read(file)?));
     }
-    let robot = session::robot(DEFAULT_ROBOT)?;
+    let robot = files::robot(DEFAULT_ROBOT)?;
     let mut rows = Vec::new();
     for task in tasks(&arguments.task)? {
         let designs = designs(&task.name, arguments.random)?;

@@ -8,7 +8,6 @@ pub mod windows;
 #[cfg(test)]
 mod tests;
 
-use finger_opt::cli::terminal::merge;
 use input::units::N_PER_MM;
 use insertion::evaluation::tolerance::{self, Search};
 use insertion::evaluation::{Evaluation, Window};
@@ -72,7 +71,9 @@ fn subject_json(task: &str, design: &Measurement, measured: Value) -> Value {
         "stiffness_assembly_n_per_mm": design.assembly / N_PER_MM,
         "stiffness_compliance_n_per_mm": design.compliance / N_PER_MM,
     });
-    merge(&mut fields, measured);
+    if let (Value::Object(fields), Value::Object(measured)) = (&mut fields, measured) {
+        fields.extend(measured);
+    }
     fields
 }
 

@@ -5,7 +5,7 @@ use super::truth::Known;
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
 use calibration::identify::log::{Log, Moment, of_samples};
-use finger_opt::session::Failure;
+use finger_opt::failure::Failure;
 use input::units::MM;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::outcome::Outcome;

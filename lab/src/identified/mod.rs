@@ -5,7 +5,7 @@ pub mod tried;
 pub mod truth;
 
 use ask_tell::stream::stream;
-use finger_opt::session::Failure;
+use finger_opt::failure::Failure;
 use input::shipped::PRIORS;
 use insertion::evaluation::cell::{Parameter, Priors};
 use insertion::evaluation::evaluator::{Evaluator, Specimen};

@@ -3,8 +3,13 @@
 use super::logs::LOGGED;
 use super::truth::{Known, window};
 use super::{HIDDEN, HiddenCell};
+use calibration::identify::question::IdentifyDone;
 use calibration::statistics::{mean, spearman};
-use finger_opt::session::{Failure, IdentifyDone, IdentifyRequest, SetupRequest, TaskSource};
+use finger_opt::command::Request as _;
+use finger_opt::commands::identify;
+use finger_opt::context::Context;
+use finger_opt::failure::Failure;
+use finger_opt::setup::request::{SetupRequest, TaskSource};
 use insertion::evaluation::cell::Parameter;
 use insertion::robot::{Drive, Robot};
 use insertion::space::Design;
@@ -35,14 +40,14 @@ pub fn identify(
     let task = cell.template.task.name.clone();
     let setup =
         SetupRequest { tasks: vec![TaskSource::Named(task.clone())], ..SetupRequest::default() };
-    let request = IdentifyRequest {
+    let request = identify::Request {
         setup,
         runs: folder.join("runs.csv"),
         frame: Some(folder.join("frame.toml")),
         priors: "bench".to_owned(),
-        ..IdentifyRequest::default()
+        ..identify::Request::default()
     };
-    let done = request.run(&NEVER)?;
+    let done = request.run(&Context::silent(&NEVER))?.done;
     let rows: Vec<&Parameter> = done.cell.of(&task).collect();
     let robot = done.cell.robot("cell").map_err(Failure::input)?;
     let along = |robot: &Robot| match &robot.drive {

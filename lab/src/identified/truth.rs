@@ -2,7 +2,7 @@
 
 use super::{HIDDEN, HiddenCell};
 use calibration::statistics::{mean, spearman};
-use finger_opt::session::Failure;
+use finger_opt::failure::Failure;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::evaluation::taught::{Moved, Taught, teach};
 use insertion::evaluation::tolerance::{self, Search};

@@ -1,0 +1,163 @@
+//! The form of a command: a request, which the command line or keywords give, and a response, which is printed as
+//! text or as JSON.
+
+use crate::context::Context;
+use crate::failure::Failure;
+use crate::terminal;
+use clap::{Arg, ArgAction, ArgMatches, Args};
+use serde::Serialize;
+use std::ffi::OsString;
+use std::fmt;
+
+/// Input of a command: its fields are the options, its doc comments their help.
+pub trait Request: Args {
+    /// Result of the command.
+    type Response: Response;
+    /// Whether the result can be printed as JSON.
+    const JSON: bool = true;
+    /// Whether the command shows its progress.
+    const PROGRESS: bool = false;
+
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// If an input cannot be used, a file cannot be written, or the run is cancelled.
+    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure>;
+}
+
+/// Result of a command: serialized it is what `--json` prints and Python returns, its text is for a terminal.
+pub trait Response: Serialize + fmt::Display {
+    /// Returns an SVG or a page that shows the result, if there is one.
+    ///
+    /// # Errors
+    /// If it cannot be drawn.
+    fn picture(&self) -> Result<Option<String>, Failure> {
+        Ok(None)
+    }
+
+    /// Returns the error with which the program ends although there is a result to print.
+    ///
+    /// # Errors
+    /// If the result says that something does not work, for example a task that does not insert.
+    fn verdict(&self) -> Result<(), Failure> {
+        Ok(())
+    }
+}
+
+/// A text that is the whole result.
+#[derive(Debug, Default, Serialize)]
+#[serde(transparent)]
+pub struct Text(pub String);
+
+impl fmt::Display for Text {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl Response for Text {}
+
+/// Result of a command as other programs take it.
+#[derive(Debug)]
+pub struct Called {
+    /// What `--json` prints.
+    pub json: String,
+    /// SVG or page that shows the result, if there is one.
+    pub picture: Option<String>,
+}
+
+/// A command with its place in the program.
+#[derive(Clone, Copy)]
+pub struct Command {
+    /// Words that select it: `["task", "new"]`.
+    pub path: &'static [&'static str],
+    augment: fn(clap::Command) -> clap::Command,
+    print: fn(&ArgMatches) -> Result<(), Failure>,
+    call: fn(&ArgMatches, &Context<'_>) -> Result<Called, Failure>,
+}
+
+const JSON: &str = "json";
+const QUIET: &str = "quiet";
+
+impl Command {
+    /// Returns the command of a request, selected by these words.
+    pub const fn of<R: Request>(path: &'static [&'static str]) -> Self {
+        Command { path, augment: augment::<R>, print: print::<R>, call: call::<R> }
+    }
+
+    /// Adds the options of this command to a command of clap.
+    pub fn augment(&self, command: clap::Command) -> clap::Command {
+        (self.augment)(command)
+    }
+
+    /// Returns the command line of this command alone.
+    pub fn clap(&self) -> clap::Command {
+        self.augment(clap::Command::new(self.path.last().copied().unwrap_or_default()))
+    }
+
+    /// Runs the command and prints its result.
+    ///
+    /// # Errors
+    /// If the request fails, or the result says so ([`Response::verdict`]).
+    pub fn print(&self, matches: &ArgMatches) -> Result<(), Failure> {
+        (self.print)(matches)
+    }
+
+    /// Runs the command for another program.
+    ///
+    /// # Errors
+    /// If the request fails.
+    pub fn call(&self, matches: &ArgMatches, context: &Context<'_>) -> Result<Called, Failure> {
+        (self.call)(matches, context)
+    }
+}
+
+fn augment<R: Request>(command: clap::Command) -> clap::Command {
+    let flag = |name: &'static str, help: &'static str| {
+        Arg::new(name).long(name).action(ArgAction::SetTrue).help(help)
+    };
+    let command = R::augment_args(command);
+    let json = R::JSON.then(|| flag(JSON, "Print the result as JSON"));
+    let quiet = R::PROGRESS.then(|| flag(QUIET, "Show no progress"));
+    command.args(json.into_iter().chain(quiet))
+}
+
+/// Reads a request from words of the command line, the command's name left out.
+///
+/// # Errors
+/// If they are no such request.
+pub fn parse<R: Request>(
+    words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
+) -> Result<R, Failure> {
+    let program = augment::<R>(clap::Command::new("optimize")).no_binary_name(true);
+    request(&program.try_get_matches_from(words).map_err(Failure::of_clap)?)
+}
+
+fn request<R: Request>(matches: &ArgMatches) -> Result<R, Failure> {
+    R::from_arg_matches(matches).map_err(Failure::of_clap)
+}
+
+fn print<R: Request>(matches: &ArgMatches) -> Result<(), Failure> {
+    let set = |name| matches.try_get_one::<bool>(name).ok().flatten().copied().unwrap_or(false);
+    let json = set(JSON);
+    let request = request::<R>(matches)?;
+    let context = Context::terminal(json, set(QUIET));
+    let response = request.run(&context)?;
+    drop(context);
+    match json {
+        true => terminal::print(&(to_json(&response)? + "\n"))?,
+        false => terminal::print(&response.to_string())?,
+    }
+    response.verdict()
+}
+
+fn call<R: Request>(matches: &ArgMatches, context: &Context<'_>) -> Result<Called, Failure> {
+    let response = request::<R>(matches)?.run(context)?;
+    Ok(Called { json: to_json(&response)?, picture: response.picture()? })
+}
+
+fn to_json(response: &impl Serialize) -> Result<String, Failure> {
+    // As a value first: of a key that two flattened parts have, the last counts.
+    let value = serde_json::to_value(response);
+    Ok(value.map_err(|error| Failure::running(error.to_string()))?.to_string())
+}

@@ -1,0 +1,98 @@
+//! `optimize calibrate`: what few measurements say of every finger.
+
+use crate::command;
+use crate::context::{Context, cost};
+use crate::failure::Failure;
+use crate::setup::bench::{BenchRequest, HowCalibrated, Prepared, folds};
+use crate::setup::measured;
+use calibration::bench::Settings;
+use calibration::calibrate::Calibration;
+use calibration::subject::Subject;
+use calibration::table;
+use serde::{Serialize, Serializer};
+use std::fmt;
+use std::path::{Path, PathBuf};
+use study::write_file;
+
+/// Predict what every finger does on the bench, from simulation and few measurements.
+///
+/// Simulates the task under what nobody measured (friction, preload, robot, finger), compares
+/// with the measurements, learns what no parameter explains as a process over the stiffness, and
+/// says how far the result is to be trusted: each measured finger predicted without it.
+#[derive(Debug, Clone, clap::Args)]
+#[command(
+    display_order = 20,
+    after_help = "Example: optimize calibrate --task ket8 --measurements published --out results/ket8-bench"
+)]
+pub struct Request {
+    /// Tasks and measurements.
+    #[command(flatten)]
+    pub bench: BenchRequest,
+    /// How it is computed.
+    #[command(flatten)]
+    pub how: HowCalibrated,
+    /// Folder that tables are written to
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Predictions for every finger of the tasks.
+pub struct Calibrated {
+    /// The tasks' fingers, in order.
+    subjects: Vec<Subject>,
+    /// Predictions for them.
+    found: Calibration,
+    /// Folder of the tables.
+    out: Option<PathBuf>,
+}
+
+impl command::Request for Request {
+    type Response = Calibrated;
+    const PROGRESS: bool = true;
+
+    fn run(&self, context: &Context<'_>) -> Result<Calibrated, Failure> {
+        let simulations = self.bench.setup.tasks.len().max(1) * self.how.simulations();
+        context.begin(simulations as f64 * cost::SIMULATION);
+        let source = measured::file(&self.bench.measurements)?;
+        let Prepared { subjects, layout, settings } =
+            self.how.prepare((&self.bench, &source), &[], context)?;
+        let done = |[done, of]: [usize; 2]| context.part(&folds(done, of));
+        let found = Calibration::new(layout, &subjects, &Settings { done: &done, ..settings });
+        context.check()?;
+        let calibrated = Calibrated { subjects, found, out: self.out.clone() };
+        self.out.as_deref().map_or(Ok(()), |out| calibrated.write(out))?;
+        Ok(calibrated)
+    }
+}
+
+impl Calibrated {
+    fn write(&self, out: &Path) -> Result<(), Failure> {
+        let Calibrated { subjects, found, .. } = self;
+        for (subject, result) in subjects.iter().zip(&found.tasks) {
+            let name = format!("predictions_{}.csv", subject.task);
+            write_file(&out.join(name), &table::predictions_csv(subject, result))?;
+        }
+        write_file(&out.join("leave_one_out.csv"), &table::left_out_csv(found, subjects))?;
+        Ok(write_file(&out.join("parameters.csv"), &table::parameters_csv(found))?)
+    }
+}
+
+impl Serialize for Calibrated {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        table::json(&self.found, &self.subjects).serialize(serializer)
+    }
+}
+
+impl command::Response for Calibrated {}
+
+impl fmt::Display for Calibrated {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Calibrated { subjects, found, out } = self;
+        let tasks = subjects.iter().zip(&found.tasks);
+        let mut text: Vec<String> =
+            tasks.map(|(subject, result)| table::text(subject, result)).collect();
+        text.push(table::parameters_text(found));
+        text.extend(out.iter().map(|out| format!("tables are in {}\n", out.display())));
+        f.write_str(&text.join("\n"))
+    }
+}

@@ -1,0 +1,26 @@
+//! `optimize completions`: the command line, described for a shell.
+
+use crate::command::{self, Text};
+use crate::context::Context;
+use crate::failure::Failure;
+use crate::program::program;
+use clap_complete::Shell;
+
+/// Print a completion script for a shell
+#[derive(Debug, clap::Args)]
+#[command(display_order = 91, after_help = "Example: optimize completions bash > optimize.bash")]
+pub struct Request {
+    /// Shell
+    shell: Shell,
+}
+
+impl command::Request for Request {
+    type Response = Text;
+    const JSON: bool = false;
+
+    fn run(&self, _context: &Context<'_>) -> Result<Text, Failure> {
+        let mut script = Vec::new();
+        clap_complete::generate(self.shell, &mut program(), "optimize", &mut script);
+        Ok(Text(String::from_utf8_lossy(&script).into_owned()))
+    }
+}

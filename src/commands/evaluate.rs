@@ -1,0 +1,179 @@
+//! `optimize evaluate`: the tolerance window of one finger.
+
+use crate::command;
+use crate::context::{Context, not_stopped};
+use crate::failure::Failure;
+use crate::layout;
+use crate::setup::Setup;
+use crate::setup::finger::{Chosen, FingerRequest};
+use crate::setup::repeat::{RepeatRequest, bands_text, serialize_bands};
+use crate::setup::request::SetupRequest;
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::robustness::repeat::Bands;
+use insertion::evaluation::tolerance::Search;
+use insertion::outcome::Outcome;
+use report::answer::lines;
+use report::answer::words::{mm, number};
+use serde::{Serialize, Serializer};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+use study::ByRibs;
+
+/// Measure the tolerance window of one finger
+#[derive(Debug, Clone, Default, clap::Args)]
+#[command(
+    display_order = 10,
+    after_help = "Example: optimize evaluate --task usb --density 20 --direction 10 --walk"
+)]
+pub struct Request {
+    /// Task, robot, finger model; one task.
+    #[command(flatten)]
+    pub setup: SetupRequest,
+    /// The finger.
+    #[command(flatten)]
+    pub finger: FingerRequest,
+    /// Go step by step to the first failure: sees gaps narrower than 0.5 mm, three times the trials
+    #[arg(long)]
+    pub walk: bool,
+    /// Success rate and robust range under these errors, too: typical, or the path of a file
+    #[arg(long, value_name = "NAME")]
+    pub uncertainty: Option<String>,
+    /// Seed of the drawn errors: those of the study with this seed
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "uncertainty")]
+    pub seed: u64,
+    /// Repeats at the window's ends.
+    #[command(flatten)]
+    pub repeat: Option<RepeatRequest>,
+    /// Leave out the window with springs computed from the ribs
+    // On which of the two the bench agrees depends on the task (docs/notes/finger.md).
+    #[arg(long, hide = true)]
+    pub no_ribs: bool,
+}
+
+/// Measurements of a finger.
+#[derive(Serialize)]
+pub struct Evaluated {
+    /// The finger on its task.
+    #[serde(flatten)]
+    pub chosen: Chosen,
+    /// Its window.
+    #[serde(flatten)]
+    pub evaluation: Evaluation,
+    /// Wall-clock duration of the evaluation, s.
+    pub wall_s: f64,
+    /// Bands at the window's ends in which repeats differ, if there is a window and repeats were asked for.
+    #[serde(serialize_with = "serialize_bands", skip_serializing_if = "Option::is_none")]
+    pub bands: Option<Bands>,
+    /// The same finger with springs computed from its ribs, if that was asked for.
+    #[serde(
+        rename = "computed",
+        serialize_with = "computed",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub by_ribs: Option<ByRibs>,
+}
+
+impl command::Request for Request {
+    type Response = Evaluated;
+
+    fn run(&self, context: &Context<'_>) -> Result<Evaluated, Failure> {
+        let stop = context.stop;
+        let (setup, plan) = self.prepared()?;
+        let chosen = self.finger.choose(&setup)?;
+        let clock = Instant::now();
+        let evaluation = setup.evaluator.measure(&chosen.specimen, self.search(), &plan, stop);
+        let evaluation = evaluation.map_err(Failure::input)?;
+        not_stopped(stop)?;
+        let wall_s = clock.elapsed().as_secs_f64();
+        let window = &evaluation.window;
+        let bands = |repeat: RepeatRequest| {
+            let (specimen, taught) = (&chosen.specimen, evaluation.taught);
+            repeat.of(&setup, specimen, taught, stop, |repeats| repeats.bands(window))
+        };
+        let repeat = self.repeat.filter(|_| window.nominal == Outcome::Inserted);
+        let bands = repeat.map(bands).transpose()?;
+        let by_ribs = self.by_ribs(&setup, &chosen, stop)?;
+        Ok(Evaluated { chosen, evaluation, bands, by_ribs, wall_s })
+    }
+}
+
+impl Request {
+    /// Returns all that is needed beside the finger.
+    pub(crate) fn prepared(&self) -> Result<(Setup, Plan), Failure> {
+        let mut setup = self.setup.setup()?;
+        if let Some(name) = &self.uncertainty {
+            setup = setup.under_named(name)?;
+        }
+        let plan = setup.plan(self.seed, |_| setup.uncertainty.is_some())?;
+        Ok((setup, plan))
+    }
+
+    pub(crate) fn search(&self) -> Search {
+        if self.walk { Search::Walk } else { Search::Strides }
+    }
+
+    /// Measures the finger once more, from its ribs, with the start taught where the task's own does
+    /// not insert; nothing if a finger model was asked for, if the finger is given by its springs, or
+    /// if the engine has no such fingers.
+    fn by_ribs(
+        &self,
+        setup: &Setup,
+        chosen: &Chosen,
+        stop: &AtomicBool,
+    ) -> Result<Option<ByRibs>, Failure> {
+        if self.no_ribs || self.setup.finger_model.kind.is_some() || chosen.given {
+            return Ok(None);
+        }
+        let Some(evaluator) = setup.by_ribs() else { return Ok(None) };
+        let measured = self.finger.by(setup, &evaluator).and_then(|Chosen { specimen, .. }| {
+            let found = evaluator.measure_or_teach(&specimen, self.search(), &Plan::WINDOW, stop);
+            found.map_err(Failure::input)
+        });
+        not_stopped(stop)?;
+        Ok(Some(match measured {
+            Ok(evaluation) => ByRibs::Measured(vec![evaluation]),
+            Err(failure) => ByRibs::Refused(failure.to_string()),
+        }))
+    }
+}
+
+/// The window of the one task, or why there is none.
+fn computed<S: Serializer>(by_ribs: &Option<ByRibs>, serializer: S) -> Result<S::Ok, S::Error> {
+    match by_ribs {
+        None => serializer.serialize_none(),
+        Some(ByRibs::Measured(tasks)) => tasks.first().serialize(serializer),
+        Some(ByRibs::Refused(why)) => BTreeMap::from([("refused", why)]).serialize(serializer),
+    }
+}
+
+impl command::Response for Evaluated {}
+
+impl fmt::Display for Evaluated {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Evaluated { chosen, evaluation, .. } = self;
+        let [c1, c2, c3, c4] = evaluation.failure_counts;
+        let mut rest = vec![("range".to_owned(), mm(evaluation.window.range_mm()))];
+        rest.extend(lines::window(evaluation));
+        let failures = format!(
+            "{c1} of class 1, {c2} of 2, {c3} of 3, {c4} of 4, {} diverged in {} trials",
+            evaluation.diverged, evaluation.trials
+        );
+        rest.push(("failures".to_owned(), failures));
+        rest.push(("peak force".to_owned(), number(evaluation.peak_force_n, 1, "N")));
+        rest.extend(lines::taught(evaluation.taught));
+        rest.extend(lines::drawn(evaluation));
+        rest.extend(self.by_ribs.iter().flat_map(lines::by_ribs));
+        let text = format!(
+            "task          {}\n{}{}{}time          {:.1} s\n",
+            chosen.specimen.task.name,
+            chosen.text(),
+            layout::lines(rest),
+            self.bands.as_ref().map(bands_text).unwrap_or_default(),
+            self.wall_s
+        );
+        f.write_str(&layout::wrapped(&text))
+    }
+}

@@ -1,0 +1,79 @@
+//! `optimize export mjcf`: the scene of a trial.
+
+use crate::command;
+use crate::context::Context;
+use crate::failure::Failure;
+use crate::setup::finger::FingerRequest;
+use crate::setup::request::SetupRequest;
+use contact::mjcf::{self, MjcfSettings};
+use insertion::evaluation::evaluator::Specimen;
+use insertion::trial::cell;
+use serde::Serialize;
+use std::fmt;
+use std::path::PathBuf;
+use study::write_file;
+
+/// The scene of a trial as MJCF, the model format of MuJoCo and its viewer
+///
+/// The part stands at its pick-up place and the jaws are open. In the viewer the
+/// sliders move the robot's command and close the jaws. Needs no MuJoCo.
+#[derive(Debug, clap::Args)]
+#[command(
+    display_order = 1,
+    mut_arg("engine", |engine| engine.hide(true)),
+    after_help = "Example: optimize export mjcf --task usb --density 20 --direction 10 --out scene.xml"
+)]
+pub struct Request {
+    /// Task, robot, finger model; one task.
+    #[command(flatten)]
+    pub setup: SetupRequest,
+    /// The finger.
+    #[command(flatten)]
+    pub finger: FingerRequest,
+    /// File to write
+    #[arg(long, value_name = "FILE.xml")]
+    pub out: PathBuf,
+}
+
+/// File that was written, and the task of its scene.
+#[derive(Serialize)]
+pub struct Written {
+    out: PathBuf,
+    task: String,
+}
+
+impl command::Request for Request {
+    type Response = Written;
+
+    fn run(&self, _context: &Context<'_>) -> Result<Written, Failure> {
+        let (task, text) = self.scene()?;
+        write_file(&self.out, &text)?;
+        Ok(Written { out: self.out.clone(), task })
+    }
+}
+
+impl Request {
+    /// Returns the name of the task, and the scene as MJCF.
+    fn scene(&self) -> Result<(String, String), Failure> {
+        let setup = self.setup.setup()?;
+        let Specimen { task, finger, .. } = self.finger.choose(&setup)?.specimen;
+        let robot = &setup.evaluator.robot;
+        let mounted = robot.mount(task.turn, task.strategy.tilt).map_err(Failure::input)?;
+        let scene = cell::build(&task, &mounted, &finger).scene;
+        let instead = match scene.patched() {
+            Some(_) => "give finger_plug_torsion_mm in mm",
+            None => "--robot servo and --robot rigid need none of it",
+        };
+        let text = mjcf::write(&scene, &task.name, &MjcfSettings::default())
+            .map_err(|error| Failure::usage(format!("{error}; {instead}")))?;
+        Ok((task.name, text))
+    }
+}
+
+impl command::Response for Written {}
+
+impl fmt::Display for Written {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "wrote {}: the scene of {}, for MuJoCo", self.out.display(), self.task)
+    }
+}

@@ -1,0 +1,159 @@
+//! `optimize identify`: from the robot's logs to the numbers of its cell.
+
+use crate::command;
+use crate::context::{Context, not_stopped};
+use crate::failure::Failure;
+use crate::layout;
+use crate::setup::Setup;
+use crate::setup::bench::DEFAULT_PRIORS;
+use crate::setup::files::find;
+use crate::setup::request::SetupRequest;
+use calibration::identify::check::{Remark, remarks};
+use calibration::identify::frame::Frame;
+use calibration::identify::question::{Identified, IdentifyDone, Question};
+use calibration::identify::runs;
+use input::files::{self, LARGEST_INPUT};
+use input::shipped::PRIORS;
+use input::units::N_PER_MM;
+use insertion::evaluation::cell::Priors;
+use insertion::robot::{Drive, Robot};
+use report::identify::{self as shown, html};
+use serde::{Serialize, Serializer};
+use std::fmt;
+use std::path::PathBuf;
+use study::write_file;
+
+/// Tell from the robot's logs what its cell is like: friction, stiffness, preload, pads, edges
+///
+/// The attempts are simulated along their commanded paths. What force and pose tell by themselves is read
+/// by formulas, the rest is fitted to the curves; what these logs cannot tell is named and left as it was.
+#[derive(Debug, Clone, Default, clap::Args)]
+#[command(
+    display_order = 21,
+    after_help = "Example: optimize identify --task usb --runs runs.csv --out cell.toml --report identify.html"
+)]
+pub struct Request {
+    /// Task, finger model, and the robot to begin with; one task.
+    #[command(flatten)]
+    pub setup: SetupRequest,
+    /// Table of the logs: log, infill_density_percent, infill_direction_deg, offset_mm, outcome
+    #[arg(long, value_name = "FILE.csv")]
+    pub runs: PathBuf,
+    /// Task's frame in the robot's base: origin_mm and axis_angle_rad, as a pendant shows them; force_sign = 1
+    /// or -1, tool_mass_kg; and upright_axis_angle_rad of the TCP, gravity_compensated = false if need be
+    #[arg(long, value_name = "FILE.toml")]
+    pub frame: Option<PathBuf>,
+    /// Write the cell, for --cell, --priors and --uncertainty
+    #[arg(long, value_name = "FILE.toml")]
+    pub out: Option<PathBuf>,
+    /// Write a page with the curves, measured and simulated, and the table of numbers
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    /// Bounds of what the logs may not tell: bench, or the path of a file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_PRIORS)]
+    pub priors: String,
+    /// Seed of the fit
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+}
+
+/// What the logs say of the cell.
+pub struct Done {
+    /// The numbers of the cell.
+    pub done: IdentifyDone,
+    written: Vec<PathBuf>,
+}
+
+impl command::Request for Request {
+    type Response = Done;
+
+    fn run(&self, context: &Context<'_>) -> Result<Done, Failure> {
+        let stop = context.stop;
+        let setup = self.setup.setup()?;
+        let template = setup.only_task()?;
+        let priors = find("priors", PRIORS, &self.priors)?;
+        let priors = Priors::parse(&priors.text, &priors.file).map_err(Failure::input)?;
+        let frame = self.frame.as_deref().map(|path| -> Result<Frame, Failure> {
+            let file = path.to_string_lossy();
+            let text = files::read_named(path, LARGEST_INPUT);
+            let text = text.map_err(|error| Failure::in_file(&file, error))?;
+            Frame::parse(&text, &file).map_err(Failure::input)
+        });
+        let frame = frame.transpose()?;
+        let runs = runs::read(&self.runs, frame.as_ref()).map_err(Failure::input)?;
+        let remarks: Vec<Remark> =
+            runs.iter().flat_map(|run| remarks(run, &template.task)).collect();
+        let question = Question {
+            evaluator: &setup.evaluator,
+            template,
+            priors: &priors,
+            runs: &runs,
+            tool_mass: frame.as_ref().map_or(0.0, |frame| frame.tool_mass),
+            seed: self.seed,
+            stop,
+        };
+        let found = question.answer().map_err(Failure::input)?;
+        not_stopped(stop)?;
+        let cell = cell(&setup, &found, runs.len()).checked("the cell").map_err(Failure::input)?;
+        let done = IdentifyDone { task: template.task.name.clone(), remarks, found, cell };
+        if let Some(path) = &self.out {
+            let text = toml::to_string(&done.cell).map_err(|error| Failure::Run(error.into()))?;
+            write_file(path, &text)?;
+        }
+        if let Some(path) = &self.report {
+            write_file(path, &html(&done))?;
+        }
+        Ok(Done { done, written: self.out.iter().chain(&self.report).cloned().collect() })
+    }
+}
+
+impl Serialize for Done {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        shown::json(&self.done).serialize(serializer)
+    }
+}
+
+impl command::Response for Done {
+    fn picture(&self) -> Result<Option<String>, Failure> {
+        Ok(Some(html(&self.done)))
+    }
+}
+
+impl fmt::Display for Done {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let text = layout::wrapped(&shown::text(&self.done));
+        write!(f, "{text}{}", layout::wrote(&self.written))
+    }
+}
+
+/// What was identified, as a cell file.
+fn cell(setup: &Setup, found: &Identified, logs: usize) -> Priors {
+    let task = setup.task_names().concat();
+    Priors {
+        name: "cell".to_owned(),
+        description: format!("identified from {logs} logs on {task}"),
+        task: Some(task),
+        robot: robot_table(setup, &found.robot),
+        parameters: found.unknowns.iter().map(|one| one.posterior.clone()).collect(),
+    }
+}
+
+/// A robot file of this robot: a soft flange, or the file that it was read from.
+fn robot_table(setup: &Setup, robot: &Robot) -> Option<toml::Table> {
+    let (Drive::Servo(servo), true) = (&robot.drive, *robot != setup.evaluator.robot) else {
+        return setup.inputs.get("robot")?.parse().ok();
+    };
+    let list = |values: [f64; 3]| toml::Value::from(values.to_vec());
+    let rows: [(&str, toml::Value); 9] = [
+        ("name", robot.name.clone().into()),
+        ("description", "a spring and a damper per axis, from the logs".into()),
+        ("kind", "servo".into()),
+        ("stop_force_n", robot.stop_force.into()),
+        ("stiffness_n_per_mm", list(servo.stiffness.map(|k| k / N_PER_MM))),
+        ("rotational_stiffness_nm_per_rad", list(servo.rotational_stiffness)),
+        ("mass_kg", servo.mass.into()),
+        ("inertia_kg_m2", servo.inertia.into()),
+        ("damping_ratio", servo.damping_ratio.into()),
+    ];
+    Some(rows.into_iter().map(|(key, value)| (key.to_owned(), value)).collect())
+}

@@ -1,0 +1,91 @@
+//! `optimize levers`: what would help more than the infill.
+
+use crate::command;
+use crate::context::{Context, not_stopped};
+use crate::failure::Failure;
+use crate::layout;
+use crate::setup::Setup;
+use crate::setup::finger::FingerRequest;
+use crate::setup::request::SetupRequest;
+use analysis::levers::{Levers, Question};
+use insertion::evaluation::template::Template;
+use insertion::space::Design;
+use insertion::surrogate::Prediction;
+use report::levers as shown;
+use serde::Serialize;
+use std::fmt;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+use study::write_file;
+
+/// Find out what would help a finger more than its infill: tilt, strokes, grip, friction, robot
+#[derive(Debug, Clone, Default, clap::Args)]
+#[command(
+    display_order = 17,
+    after_help = "Example: optimize levers --task rj45 --density 18 --direction 20 --svg rj45.svg"
+)]
+pub struct Request {
+    /// Task, robot, finger model; one task.
+    #[command(flatten)]
+    pub setup: SetupRequest,
+    /// The finger.
+    #[command(flatten)]
+    pub finger: FingerRequest,
+    /// Draw the ranges at both ends of each lever
+    #[arg(long, value_name = "FILE.svg")]
+    pub svg: Option<PathBuf>,
+}
+
+/// Levers of a finger, the sentence first.
+#[derive(Serialize)]
+pub struct Found {
+    sentence: String,
+    /// The levers.
+    #[serde(flatten)]
+    pub levers: Levers,
+}
+
+impl command::Request for Request {
+    type Response = Found;
+
+    /// Measures the levers, and the softest and the stiffest infill of the space beside them.
+    fn run(&self, context: &Context<'_>) -> Result<Found, Failure> {
+        let setup = self.setup.setup()?;
+        let chosen = self.finger.choose(&setup)?;
+        let given = chosen.given.then_some(chosen.specimen.stiffness);
+        let finger = (&chosen.design, given);
+        let levers = levers(&setup, setup.only_task()?, finger, None, context.stop)?;
+        if let Some(path) = &self.svg {
+            write_file(path, &shown::svg(&levers))?;
+        }
+        Ok(Found { sentence: levers.sentence(), levers })
+    }
+}
+
+impl command::Response for Found {
+    fn picture(&self) -> Result<Option<String>, Failure> {
+        Ok(Some(shown::svg(&self.levers)))
+    }
+}
+
+impl fmt::Display for Found {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&layout::wrapped(&shown::text(&self.levers)))
+    }
+}
+
+/// Measures the levers of a design on one of the setup's tasks, its stiffness predicted unless given; `infill`
+/// is the smallest and largest range over infills, mm, if that is known.
+pub(crate) fn levers(
+    setup: &Setup,
+    template: &Template,
+    (design, given): (&Design, Option<Prediction>),
+    infill: Option<[f64; 2]>,
+    stop: &AtomicBool,
+) -> Result<Levers, Failure> {
+    let question =
+        Question { evaluator: &setup.evaluator, template, space: &setup.space, design, given };
+    let found = question.levers(infill, stop).map_err(Failure::input)?;
+    not_stopped(stop)?;
+    Ok(found)
+}

@@ -1,0 +1,154 @@
+//! `optimize map`: how insertions end over two errors of the start.
+
+use crate::command;
+use crate::context::{Context, not_stopped};
+use crate::failure::Failure;
+use crate::layout;
+use crate::setup::Setup;
+use crate::setup::finger::{Chosen, FingerRequest};
+use crate::setup::request::SetupRequest;
+use analysis::map::{Axes, CaptureMap, Mark, Plane};
+use insertion::evaluation::OffsetStep;
+use insertion::evaluation::evaluator::Specimen;
+use insertion::space::Design;
+use insertion::trial::Grasp;
+use serde::Serialize;
+use std::fmt;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+use study::write_file;
+
+/// Trace the capture map of one finger
+///
+/// A tolerance window is one line through it: along y, without a second error. At most 300 trials;
+/// what lies between two that end alike is taken over from them.
+#[derive(Debug, Clone, Default, clap::Args)]
+#[command(
+    display_order = 12,
+    after_help = "Example: optimize map --task usb --density 10 --direction 26 --axes y,yaw --svg map.svg"
+)]
+pub struct Request {
+    /// Task, robot, finger model; one task.
+    #[command(flatten)]
+    pub setup: SetupRequest,
+    /// The finger.
+    #[command(flatten)]
+    pub finger: FingerRequest,
+    /// The two errors of the start: mm, degrees
+    #[arg(long, value_enum, default_value_t)]
+    pub axes: Axes,
+    /// Draw the map
+    #[arg(long, value_name = "FILE.svg")]
+    pub svg: Option<PathBuf>,
+}
+
+/// Map of a finger.
+#[derive(Serialize)]
+pub struct Mapped {
+    /// The finger on its task.
+    #[serde(flatten)]
+    pub chosen: Chosen,
+    /// Its map.
+    #[serde(flatten)]
+    pub map: CaptureMap,
+    #[serde(skip)]
+    written: Option<PathBuf>,
+}
+
+impl command::Request for Request {
+    type Response = Mapped;
+
+    fn run(&self, context: &Context<'_>) -> Result<Mapped, Failure> {
+        let stop = context.stop;
+        let setup = self.setup.setup()?;
+        let chosen = self.finger.choose(&setup)?;
+        let taught = setup.evaluator.taught(&chosen.specimen, stop).map_err(Failure::input)?;
+        let finger = (&chosen.specimen, &chosen.design);
+        let map = map_of(&setup, finger, taught, self.axes, stop)?;
+        if let Some(file) = &self.svg {
+            write_file(file, &report::map::svg(&map)?)?;
+        }
+        Ok(Mapped { chosen, map, written: self.svg.clone() })
+    }
+}
+
+impl Request {
+    /// A trial at every place of that map: thousands.
+    pub fn full(&self, map: &CaptureMap, stop: &AtomicBool) -> Result<Vec<Vec<Mark>>, Failure> {
+        let setup = self.setup.setup()?;
+        let specimen = self.finger.choose(&setup)?.specimen;
+        let taught = setup.evaluator.taught(&specimen, stop).map_err(Failure::input)?;
+        on_plane((&setup, &specimen), taught, self.axes, stop, |plane| map.full(plane))
+    }
+}
+
+/// Traces the map of a finger, a specimen and its design, from this taught start.
+///
+/// # Errors
+/// If task, robot and finger cannot be simulated; if `stop` is set meanwhile.
+pub(crate) fn map_of(
+    setup: &Setup,
+    (specimen, design): (&Specimen, &Design),
+    taught: Option<OffsetStep>,
+    axes: Axes,
+    stop: &AtomicBool,
+) -> Result<CaptureMap, Failure> {
+    on_plane((setup, specimen), taught, axes, stop, |plane| {
+        CaptureMap::trace(&specimen.task.name, design.clone(), plane)
+    })
+}
+
+fn on_plane<T>(
+    (setup, specimen): (&Setup, &Specimen),
+    taught: Option<OffsetStep>,
+    axes: Axes,
+    stop: &AtomicBool,
+    measure: impl FnOnce(&Plane) -> T,
+) -> Result<T, Failure> {
+    let rig = setup.evaluator.rig(specimen, taught, 1.0).map_err(Failure::input)?;
+    let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+    let measured = measure(&Plane::new(&*rig, grasp, axes));
+    not_stopped(stop)?;
+    Ok(measured)
+}
+
+impl command::Response for Mapped {
+    fn picture(&self) -> Result<Option<String>, Failure> {
+        Ok(Some(report::map::svg(&self.map)?))
+    }
+}
+
+impl fmt::Display for Mapped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Mapped { chosen, map, .. } = self;
+        let [first, second] = &map.axes;
+        let mut lines =
+            vec![("area".to_owned(), format!("{:.1} {} insert", map.area, map.area_unit))];
+        for (number, axis) in map.axes.iter().enumerate() {
+            let ends = map.ends(number);
+            let text = ends.map_or("nothing inserts".to_owned(), |[low, high]| {
+                let cut = if low == axis.low || high == axis.high { ", the map's end" } else { "" };
+                format!("{low:+} to {high:+} {}{cut}", axis.unit)
+            });
+            lines.push((format!("along {}", axis.name), text));
+        }
+        let window =
+            map.window_mm().map_or("fails at the nominal start".to_owned(), |[low, high]| {
+                format!("{low:+} to {high:+} mm")
+            });
+        lines.push((format!("at {} = 0", second.name), window));
+        let coarser = if map.traced_step > first.step {
+            format!("; its border within {} for want of trials", map.traced_step)
+        } else {
+            String::new()
+        };
+        let places: usize = map.outcomes.iter().map(Vec::len).sum();
+        let steps = format!("{} {}, {} {}", first.step, first.unit, second.step, second.unit);
+        lines.push((
+            "trials".to_owned(),
+            format!("{} for {places} places, every {steps}{coarser}", map.trials),
+        ));
+        let text = format!("task          {}\n{}{}", map.task, chosen.text(), layout::lines(lines));
+        write!(f, "{}{}", layout::wrapped(&text), layout::wrote(&self.written))
+    }
+}

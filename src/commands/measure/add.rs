@@ -1,0 +1,194 @@
+//! `optimize measure add`: a line more in a measurement file.
+
+use crate::command;
+use crate::commands::measure::check::counted;
+use crate::context::Context;
+use crate::failure::Failure;
+use crate::setup::task::{TaskFile, read_task};
+use crate::terminal::say;
+use calibration::experiments::{
+    COLUMNS, Experiment, NOT_MEASURABLE, appended, own_task, own_tasks, parse,
+};
+use input::files::{LARGEST_INPUT, Table};
+use input::shipped::{MEASUREMENTS, TASKS};
+use serde::Serialize;
+use std::fmt;
+use std::io::{self, BufRead};
+use std::path::Path;
+
+/// Add a line to a measurement file, which need not exist; without flags it asks for each value
+#[derive(Debug, clap::Args)]
+#[command(
+    display_order = 1,
+    after_help = "Example: optimize measure add bench.csv --task ket8 --density 20 --direction 0 \
+                  --range-mm 5.7 --failure-negative 3 --failure-positive 3"
+)]
+pub struct Request {
+    /// The file
+    #[arg(value_name = "FILE", default_value = "measurements.csv")]
+    pub file: String,
+    /// Task: ket8, ket12, rj45, usb, or the path of a task file
+    #[arg(long, value_name = "NAME")]
+    pub task: Option<String>,
+    /// Infill density, percent
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true)]
+    pub density: Option<String>,
+    /// Infill direction, degrees
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    pub direction: Option<String>,
+    /// Most negative start that inserted, mm
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub negative_mm: Option<String>,
+    /// Most positive start that inserted, mm
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub positive_mm: Option<String>,
+    /// Width of the window, mm
+    #[arg(
+        long,
+        value_name = "MM",
+        allow_negative_numbers = true,
+        conflicts_with = "not_measurable"
+    )]
+    pub range_mm: Option<String>,
+    /// The finger was tried, but no range could be measured
+    #[arg(long)]
+    pub not_measurable: bool,
+    /// Failure class below the window, 1 to 4
+    #[arg(long, value_name = "CLASS")]
+    pub failure_negative: Option<String>,
+    /// Failure class above the window, 1 to 4
+    #[arg(long, value_name = "CLASS")]
+    pub failure_positive: Option<String>,
+    /// Measurements that the values are the mean of
+    #[arg(long, value_name = "N")]
+    pub repeats: Option<String>,
+    /// Largest contact force, N
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub peak_force_n: Option<String>,
+    /// Day, YYYY-MM-DD
+    #[arg(long, value_name = "DAY")]
+    pub date: Option<String>,
+    /// Anything
+    #[arg(long, value_name = "TEXT")]
+    pub note: Option<String>,
+    /// A further design parameter, as in spaces/codesign.toml; may be given several times
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    pub set: Vec<(String, String)>,
+}
+
+fn setting(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) if key.starts_with("task.") || key.starts_with("finger.") => {
+            Ok((key.to_owned(), value.to_owned()))
+        }
+        _ => Err("a setting is KEY=NUMBER, as in task.strategy.tilt_deg=8".to_owned()),
+    }
+}
+
+/// File that a line was added to, and how many it has.
+#[derive(Serialize)]
+pub struct Added {
+    file: String,
+    lines: usize,
+}
+
+impl command::Request for Request {
+    type Response = Added;
+
+    fn run(&self, _context: &Context<'_>) -> Result<Added, Failure> {
+        let (file, mut cells) = (&self.file, self.cells());
+        not_shipped(file)?;
+        if cells.is_empty() {
+            cells = asked(&mut io::stdin().lock())?;
+        }
+        Ok(Added { file: file.clone(), lines: added(file, cells)?.len() })
+    }
+}
+
+impl command::Response for Added {}
+
+impl fmt::Display for Added {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}: {}", self.file, counted(self.lines))
+    }
+}
+
+fn not_shipped(file: &str) -> Result<(), Failure> {
+    if MEASUREMENTS.iter().any(|shipped| shipped.name == file) {
+        return Err(Failure::usage(format!("`{file}` is shipped; give a file of your own")));
+    }
+    Ok(())
+}
+
+/// Adds a line of these columns and returns all lines.
+fn added(file: &str, mut cells: Vec<(&str, String)>) -> Result<Vec<Experiment>, Failure> {
+    let mut own = None;
+    if let Some((_, name)) = cells.iter_mut().find(|(column, _)| *column == "task") {
+        let TaskFile { source, task } = read_task(name)?;
+        let shipped = TASKS.iter().any(|shipped| shipped.text == source.text);
+        // From the folder of the measurements on, if that is around it, else the whole path.
+        let folder = Path::new(file).parent().unwrap_or(Path::new(""));
+        let path = Path::new(name).strip_prefix(folder).map(Path::to_owned);
+        let path = path.or_else(|_| std::path::absolute(&*name)).map_err(Failure::input)?;
+        own = (!shipped).then(|| (task.name.clone(), path.display().to_string()));
+        *name = task.name;
+    }
+    // Read only now: others may have added lines meanwhile.
+    let unusable = |error| Failure::in_file(file, format!("cannot add to it: {error}"));
+    let full = |error| Failure::running(format!("{file}: cannot write: {error}"));
+    let mut table = Table::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
+    parse(table.text(), file).map_err(Failure::input)?;
+    let new =
+        |(name, path): &(String, String)| own_tasks(table.text()).get(&**name) != Some(&&**path);
+    let comment = own.filter(new).map_or(String::new(), |(name, path)| own_task(&name, &path));
+    let new = appended(table.text(), &comment, &cells).map_err(Failure::input)?;
+    let found = parse(&new, file).map_err(Failure::input)?;
+    table.replace(&new).map_err(full)?;
+    Ok(found)
+}
+
+impl Request {
+    fn cells(&self) -> Vec<(&str, String)> {
+        let range = self.not_measurable.then(|| NOT_MEASURABLE.to_owned());
+        let range = range.or_else(|| self.range_mm.clone());
+        let given = [
+            &self.task,
+            &self.density,
+            &self.direction,
+            &self.negative_mm,
+            &self.positive_mm,
+            &range,
+            &self.failure_negative,
+            &self.failure_positive,
+            &self.repeats,
+            &self.peak_force_n,
+            &self.date,
+            &self.note,
+        ];
+        let given = COLUMNS.into_iter().zip(given);
+        let given = given.filter_map(|(column, value)| Some((column, value.clone()?)));
+        given.chain(self.set.iter().map(|(key, value)| (key.as_str(), value.clone()))).collect()
+    }
+}
+
+/// Asks for each column on standard input; an empty answer is not known, and the end of the input ends it.
+fn asked(answers: &mut impl BufRead) -> Result<Vec<(&'static str, String)>, Failure> {
+    let failed = |error: io::Error| Failure::running(format!("cannot ask: {error}"));
+    let mut cells = Vec::new();
+    say(&format!("an empty answer is: not known; `{NOT_MEASURABLE}` may stand as range_mm"));
+    for column in COLUMNS {
+        say(column);
+        let mut answer = String::new();
+        if answers.read_line(&mut answer).map_err(failed)? == 0 {
+            break;
+        }
+        let answer = answer.trim();
+        if !answer.is_empty() {
+            cells.push((column, answer.to_owned()));
+        }
+    }
+    if cells.is_empty() {
+        return Err(Failure::usage("nothing was given; see `optimize measure add --help`"));
+    }
+    Ok(cells)
+}

@@ -1,0 +1,138 @@
+//! `optimize measure check`: what is wrong with a measurement file.
+
+use crate::command;
+use crate::context::Context;
+use crate::failure::Failure;
+use crate::setup::measured;
+use crate::setup::task::read_task;
+use calibration::experiments::Experiment;
+use insertion::outcome::FailureClass;
+use insertion::space::Design;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// Check a measurement file: units that look wrong, windows without the start, lines given
+/// twice, unknown tasks
+#[derive(Debug, clap::Args)]
+#[command(display_order = 2, after_help = "Example: optimize measure check bench.csv")]
+pub struct Request {
+    /// The file; `published` is the one shipped
+    #[arg(value_name = "FILE")]
+    pub file: String,
+    /// A task of your own that its lines name without a comment line; may be given several times
+    #[arg(long, value_name = "FILE.toml")]
+    pub task: Vec<String>,
+    /// List the lines
+    #[arg(long, hide = true)]
+    pub rows: bool,
+}
+
+/// Contents of a checked file.
+#[derive(Serialize)]
+pub struct Checked {
+    file: String,
+    lines: usize,
+    tasks: Vec<OfTask>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rows: Option<Vec<Row>>,
+}
+
+/// Number of lines of one task.
+#[derive(Debug, Default, Serialize)]
+struct OfTask {
+    task: String,
+    lines: usize,
+    ranges: usize,
+    /// Ranges known from below.
+    bounds: usize,
+    /// Insertion windows measured, over all lines.
+    repeats: u32,
+}
+
+/// A line by the columns of the file; null where a column is empty.
+#[derive(Serialize)]
+struct Row {
+    line: u64,
+    task: String,
+    negative_mm: Option<f64>,
+    positive_mm: Option<f64>,
+    range_mm: Option<f64>,
+    failure_negative: Option<u8>,
+    failure_positive: Option<u8>,
+    repeats: u32,
+    peak_force_n: Option<f64>,
+    date: Option<String>,
+    note: String,
+    #[serde(flatten)]
+    design: Design,
+}
+
+impl From<&Experiment> for Row {
+    fn from(line: &Experiment) -> Self {
+        let [below, above] = line.failures.map(|failure| failure.map(FailureClass::number));
+        Row {
+            line: line.line,
+            task: line.task.clone(),
+            negative_mm: line.negative_mm,
+            positive_mm: line.positive_mm,
+            range_mm: line.range_mm(),
+            failure_negative: below,
+            failure_positive: above,
+            repeats: line.repeats,
+            peak_force_n: line.peak_force_n,
+            date: line.date.clone(),
+            note: line.note.clone(),
+            design: line.design.clone(),
+        }
+    }
+}
+
+impl command::Request for Request {
+    type Response = Checked;
+
+    fn run(&self, _context: &Context<'_>) -> Result<Checked, Failure> {
+        let own = self.task.iter().map(|name| Ok(read_task(name)?.task.name));
+        let own = own.collect::<Result<Vec<_>, Failure>>()?;
+        let own: Vec<&str> = own.iter().map(String::as_str).collect();
+        let found = measured::read(&self.file, &own)?;
+        let mut tasks: BTreeMap<&str, OfTask> = BTreeMap::new();
+        for line in &found {
+            let known = tasks.entry(&line.task).or_default();
+            known.task.clone_from(&line.task);
+            known.lines += 1;
+            known.repeats += line.repeats;
+            match line.extent() {
+                Some((_, false)) => known.ranges += 1,
+                Some((_, true)) => known.bounds += 1,
+                None => (),
+            }
+        }
+        let tasks = tasks.into_values().collect();
+        let rows = self.rows.then(|| found.iter().map(Row::from).collect());
+        Ok(Checked { file: self.file.clone(), lines: found.len(), tasks, rows })
+    }
+}
+
+impl command::Response for Checked {}
+
+impl fmt::Display for Checked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for OfTask { task, lines, ranges, bounds, .. } in &self.tasks {
+            let rest = lines - ranges - bounds;
+            writeln!(
+                f,
+                "{task:<8} {ranges:>3} ranges, {bounds:>3} ranges known from below, {rest:>3} not measurable"
+            )?;
+        }
+        writeln!(f, "{}: {}, nothing looks wrong", self.file, counted(self.lines))
+    }
+}
+
+/// Returns the number of lines in words.
+pub fn counted(lines: usize) -> String {
+    match lines {
+        1 => "1 line".to_owned(),
+        count => format!("{count} lines"),
+    }
+}

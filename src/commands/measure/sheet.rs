@@ -1,0 +1,106 @@
+//! `optimize measure sheet`: the sheet to measure windows by hand.
+
+use crate::command::{self, Request as _};
+use crate::commands::trial;
+use crate::context::Context;
+use crate::failure::Failure;
+use crate::setup::finger::FingerRequest;
+use crate::setup::request::{SetupRequest, TaskSource};
+use crate::setup::task::read_task;
+use insertion::evaluation::evaluator::Specimen;
+use insertion::outcome::Outcome;
+use insertion::trial::picture;
+use report::sheet::{self, Picture};
+use serde::Serialize;
+use std::fmt;
+use std::path::PathBuf;
+use study::write_file;
+
+/// How far outward pictures are looked for, mm.
+const FARTHEST_MM: u8 = 12;
+/// Shipped examples of what no start of the task shows, as [`ended`] takes them.
+const EXAMPLES: [At<'_>; 5] = [
+    ("ket8", (10.0, 0.0), 0.0, None),
+    ("ket8", (10.0, 0.0), 0.0, Some(0.02)),
+    ("ket8", (10.0, 0.0), -12.0, None),
+    ("ket8", (10.0, 0.0), 3.0, None),
+    ("usb", (10.0, 0.0), -10.0, None),
+];
+
+/// Task, finger, shift of the start, mm, and force that holds the plug, N, unless it is the task's.
+type At<'a> = (&'a str, (f64, f64), f64, Option<f64>);
+
+/// Write a sheet to print and fill in, to measure windows by hand
+#[derive(Debug, Clone, clap::Args)]
+#[command(
+    display_order = 3,
+    after_help = "Example: optimize measure sheet --task usb --finger 10,0 --out sheet.html"
+)]
+pub struct Request {
+    /// Task: ket8, ket12, rj45, usb, or the path of a task file
+    #[arg(long, value_name = "NAME")]
+    pub task: String,
+    /// Infill density, percent, and direction, degrees, of a finger; may be given several times
+    #[arg(long = "finger", value_name = "PERCENT,DEG", required = true, value_parser = infill)]
+    pub fingers: Vec<(f64, f64)>,
+    /// File to write
+    #[arg(long, value_name = "FILE.html")]
+    pub out: PathBuf,
+}
+
+fn infill(text: &str) -> Result<(f64, f64), String> {
+    match text.split_once(',').map(|(a, b)| (a.trim().parse(), b.trim().parse())) {
+        Some((Ok(density), Ok(direction))) => Ok((density, direction)),
+        _ => Err("a finger is PERCENT,DEG, as in 10,0".to_owned()),
+    }
+}
+
+/// Sheet that was written.
+#[derive(Serialize)]
+pub struct Written {
+    out: PathBuf,
+}
+
+impl command::Request for Request {
+    type Response = Written;
+
+    /// Simulates how insertions of the fingers end, and writes the sheet.
+    fn run(&self, context: &Context<'_>) -> Result<Written, Failure> {
+        let task = read_task(&self.task)?.task;
+        let shifts = (1..=FARTHEST_MM).flat_map(|mm| [f64::from(mm), -f64::from(mm)]);
+        let outward = shifts.filter_map(|shift| Some((self.fingers.first()?, shift)));
+        let own = self.fingers.iter().map(|finger| (finger, 0.0)).chain(outward);
+        let own = own.map(|(finger, shift)| (&*self.task, *finger, shift, None));
+        let ended = own.chain(EXAMPLES).map(|at| ended(at, context));
+        let mut pictures = ended.collect::<Result<Vec<_>, Failure>>()?;
+        pictures.retain(|picture| picture.outcome != Outcome::Diverged);
+        pictures.sort_by_key(|picture| picture.outcome.failure());
+        pictures.dedup_by_key(|picture| picture.outcome);
+        write_file(&self.out, &sheet::page(&task, &self.task, &self.fingers, &pictures))?;
+        Ok(Written { out: self.out.clone() })
+    }
+}
+
+impl command::Response for Written {}
+
+impl fmt::Display for Written {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "wrote {}", self.out.display())
+    }
+}
+
+fn ended(
+    (task, infill, offset_mm, grip): At<'_>,
+    context: &Context<'_>,
+) -> Result<Picture, Failure> {
+    let tasks = vec![TaskSource::Named(task.to_owned())];
+    let set = grip.map(|force| ("task.grip.force_n".to_owned(), force)).into_iter().collect();
+    let (density, direction) = (Some(infill.0), Some(infill.1));
+    let finger = FingerRequest { density, direction, set, ..FingerRequest::default() };
+    let setup = SetupRequest { tasks, ..SetupRequest::default() };
+    let trial = trial::Request { setup, finger, offset_mm, ..trial::Request::default() };
+    let done = trial.run(context)?;
+    let Specimen { task, finger, .. } = done.chosen.specimen;
+    let svg = picture::ended(&task, &finger.pad, &done.trial);
+    Ok(Picture { outcome: done.trial.outcome, svg, task: task.name })
+}

@@ -1,0 +1,194 @@
+//! `optimize next`: which finger to print next.
+
+use crate::command;
+use crate::context::{Context, cost};
+use crate::failure::Failure;
+use crate::setup::bench::{BenchRequest, HowCalibrated, Prepared};
+use crate::setup::measured;
+use ask_tell::stream::stream;
+use calibration::bench::sampled;
+use calibration::next::{Advice, advise};
+use calibration::subject::Subject;
+use input::shipped::Source;
+use insertion::space::Design;
+use insertion::stiffness::designs;
+use serde::{Serialize, Serializer};
+use std::fmt;
+
+/// Fingers that may be printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Among {
+    /// Those of the space
+    Space,
+    /// The 11 of the publication
+    Published,
+}
+
+/// Say which finger to print next, and when to stop printing.
+///
+/// The finger with the largest expected gain of the best known bench range, by simulation and
+/// by what was measured; the file of measurements may have no line yet, or not be there.
+#[derive(Debug, Clone, clap::Args)]
+#[command(
+    display_order = 22,
+    after_help = "Example: optimize next --task ket8 --measurements bench.csv --count 2"
+)]
+pub struct Request {
+    /// Task and measurements; one task.
+    #[command(flatten)]
+    pub bench: BenchRequest,
+    /// Fingers to print at a time
+    #[arg(long, value_name = "K", default_value_t = 1,
+          value_parser = clap::value_parser!(u16).range(1..=100))]
+    pub count: u16,
+    /// Fingers that may be printed
+    #[arg(long, value_enum, default_value = "space")]
+    pub among: Among,
+    /// Gain of range that is worth the print and the measurement, mm; below it: stop
+    #[arg(long, value_name = "MM", default_value_t = 0.1, value_parser = print_cost)]
+    pub print_cost_mm: f64,
+    /// How it is computed.
+    #[command(flatten)]
+    pub how: HowCalibrated,
+}
+
+fn print_cost(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(mm) if mm.is_finite() && mm >= 0.0 => Ok(mm),
+        _ => Err("a cost is a number, 0 or above, in mm of range".to_owned()),
+    }
+}
+
+/// Fingers to print, and those they are chosen from.
+pub struct Advised {
+    /// The task's fingers.
+    pub subject: Subject,
+    /// Which of them to print.
+    pub advice: Advice,
+    /// The file of measurements, and whether it is not there yet.
+    measurements: String,
+    missing: bool,
+    print_cost_mm: f64,
+}
+
+impl command::Request for Request {
+    type Response = Advised;
+    const PROGRESS: bool = true;
+
+    fn run(&self, context: &Context<'_>) -> Result<Advised, Failure> {
+        context.begin(self.how.simulations() as f64 * cost::SIMULATION);
+        if self.bench.setup.tasks.len() > 1 {
+            return Err(Failure::usage("give one --task: a finger is printed for one"));
+        }
+        let published = match self.among {
+            Among::Space => Vec::new(),
+            Among::Published => designs()
+                .iter()
+                .map(|design| Design::infill(design.density_percent, design.direction_deg))
+                .collect(),
+        };
+        let file = &self.bench.measurements;
+        let missing = measured::is_missing(file);
+        let source = match missing {
+            true => Source { file: file.clone(), text: String::new() },
+            false => measured::file(file)?,
+        };
+        let prepared = self.how.prepare((&self.bench, &source), &published, context)?;
+        let Prepared { mut subjects, layout, settings } = prepared;
+        let benches = layout.benches(&subjects);
+        let one = subjects.first().zip(benches.first());
+        let (subject, bench) = one.ok_or_else(|| Failure::usage("give one --task"))?;
+        let among: Vec<usize> = match self.among {
+            Among::Space => (0..subject.of_space).collect(),
+            Among::Published => {
+                published.iter().filter_map(|design| subject.finger(design)).collect()
+            }
+        };
+        let mut random = stream(settings.seed, 0, "next");
+        let posterior = sampled(&benches, layout.dimension(), &settings, &mut random);
+        let (count, cost_mm) = (usize::from(self.count), self.print_cost_mm);
+        let advice = advise(bench, &posterior, &among, count, cost_mm, &mut random);
+        context.check()?;
+        let (subject, measurements) = (subjects.swap_remove(0), file.clone());
+        Ok(Advised { subject, advice, measurements, missing, print_cost_mm: cost_mm })
+    }
+}
+
+impl Serialize for Advised {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        /// A finger to print.
+        #[derive(Serialize)]
+        struct Print<'a> {
+            #[serde(flatten)]
+            design: &'a Design,
+            expected_mm: f64,
+            low_mm: f64,
+            high_mm: f64,
+            expected_gain_mm: f64,
+            reason: &'a str,
+        }
+        #[derive(Serialize)]
+        struct Fields<'a> {
+            task: &'a str,
+            measured: usize,
+            measurements_missing: bool,
+            best_known_mm: Option<f64>,
+            next: Vec<Print<'a>>,
+            stop: bool,
+        }
+        let Advised { subject, advice, missing, .. } = self;
+        let next = advice.next.iter().map(|print| Print {
+            design: &subject.designs[print.finger],
+            expected_mm: print.expected_mm,
+            low_mm: print.low_mm,
+            high_mm: print.high_mm,
+            expected_gain_mm: print.expected_gain_mm,
+            reason: &print.reason,
+        });
+        let fields = Fields {
+            task: &subject.task,
+            measured: subject.measured().len(),
+            measurements_missing: *missing,
+            best_known_mm: advice.best_known_mm,
+            next: next.collect(),
+            stop: advice.stop,
+        };
+        fields.serialize(serializer)
+    }
+}
+
+impl command::Response for Advised {}
+
+impl fmt::Display for Advised {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Advised { subject, advice, measurements, missing, print_cost_mm } = self;
+        let measured = subject.measured().len();
+        let file = missing.then(|| format!(" ({measurements} does not exist)"));
+        let mut lines = vec![match advice.best_known_mm {
+            Some(best) => format!(
+                "{}: {measured} fingers measured, the best of them expected at {best:.1} mm",
+                subject.task
+            ),
+            None => format!(
+                "{}: nothing measured yet{}; by simulation alone",
+                subject.task,
+                file.unwrap_or_default()
+            ),
+        }];
+        for (i, print) in advice.next.iter().enumerate() {
+            lines.push(format!("{}. {}", i + 1, subject.designs[print.finger].labelled()));
+            lines.push(format!(
+                "   expected {:.1} mm (80 %: {:.1} to {:.1}), gain {:.2} mm: {}",
+                print.expected_mm,
+                print.low_mm,
+                print.high_mm,
+                print.expected_gain_mm,
+                print.reason
+            ));
+        }
+        if advice.stop {
+            lines.push(format!("stop: no finger is expected to gain more than {print_cost_mm} mm"));
+        }
+        writeln!(f, "{}", lines.join("\n"))
+    }
+}

@@ -1,0 +1,45 @@
+//! `optimize report`: the tables and plots of a study made again.
+
+use crate::command;
+use crate::context::Context;
+use crate::failure::Failure;
+use crate::studies::report::{PAGE, rewrite};
+use serde::Serialize;
+use std::fmt;
+use std::path::PathBuf;
+
+/// Write the tables and plots of a study again
+#[derive(Debug, clap::Args)]
+#[command(display_order = 3, after_help = "Example: optimize report results/usb-gp-seed0")]
+pub struct Request {
+    /// Folder of the study
+    pub dir: PathBuf,
+}
+
+/// Page that was written.
+#[derive(Serialize)]
+pub struct Written {
+    page: PathBuf,
+    evaluations: usize,
+    warnings: Vec<String>,
+}
+
+impl command::Request for Request {
+    type Response = Written;
+
+    fn run(&self, context: &Context<'_>) -> Result<Written, Failure> {
+        let record = rewrite(&self.dir)?;
+        let warnings = record.remarks();
+        warnings.iter().for_each(|warning| context.note(&format!("warning: {warning}")));
+        let (page, evaluations) = (self.dir.join(PAGE), record.evaluations.len());
+        Ok(Written { page, evaluations, warnings })
+    }
+}
+
+impl command::Response for Written {}
+
+impl fmt::Display for Written {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "wrote the report of {} evaluations: {}", self.evaluations, self.page.display())
+    }
+}

@@ -1,0 +1,50 @@
+//! `optimize resume`: continues a study.
+
+use crate::command;
+use crate::context::Context;
+use crate::failure::Failure;
+use crate::setup::Setup;
+use crate::setup::run::RunRequest;
+use crate::studies::open::{Concluded, OpenStudy};
+use std::path::PathBuf;
+use study::Study;
+
+/// Continue a study after an interruption or a crash
+#[derive(Debug, Clone, clap::Args)]
+#[command(display_order = 2, after_help = "Example: optimize resume results/usb-gp-seed0")]
+pub struct Request {
+    /// Folder of the study
+    pub dir: PathBuf,
+    /// How it is run.
+    #[command(flatten)]
+    pub run: RunRequest,
+    /// Print all numbers behind the answer, too
+    #[arg(long, conflicts_with = "json")]
+    pub verbose: bool,
+}
+
+impl command::Request for Request {
+    type Response = Concluded;
+    const PROGRESS: bool = true;
+
+    fn run(&self, context: &Context<'_>) -> Result<Concluded, Failure> {
+        self.open()?.to_its_end(context, self.verbose)
+    }
+}
+
+impl Request {
+    /// Opens the study to go on with it.
+    pub fn open(&self) -> Result<OpenStudy, Failure> {
+        let mut study = Study::resume(&self.dir)?;
+        let no_confirm = study.config.conclusion.no_confirm || self.run.no_confirm;
+        let inputs = study.inputs()?;
+        let mut setup = Setup::from_inputs(&inputs, &study.provenance().engine.name)?;
+        let given = study.config.conclusion.measurements.clone();
+        if let Some((measured, file)) = setup.measured.as_mut().zip(given) {
+            measured.file = file;
+        }
+        setup.task_files.clone_from(&study.config.conclusion.task_files);
+        study.measure_with(&setup.provenance(), &inputs, self.run.if_changed())?;
+        OpenStudy::new(study, setup, RunRequest { no_confirm, ..self.run.clone() })
+    }
+}

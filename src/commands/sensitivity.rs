@@ -1,0 +1,130 @@
+//! `optimize sensitivity`: which unknown matters for the window.
+
+use crate::command;
+use crate::context::{Context, not_stopped};
+use crate::failure::{Failure, wide};
+use crate::setup::request::SetupRequest;
+use analysis::sensitivity::factors::Factors;
+use analysis::sensitivity::sobol::Sample;
+use insertion::evaluation::objective::Measure;
+use insertion::evaluation::template::Impossible;
+use rayon::prelude::*;
+use report::sensitivity::{self as shown, Found};
+use serde::{Serialize, Serializer};
+use std::fmt;
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use study::write_file;
+
+const SAMPLES: RangeInclusive<u32> = 4..=10_000;
+
+/// Find out which input matters: of the design, the task and the cell
+#[derive(Debug, Clone, clap::Args)]
+#[command(
+    display_order = 16,
+    after_help = "Example: optimize sensitivity --task usb --space codesign --svg usb.svg"
+)]
+pub struct Request {
+    /// Task, robot, space, finger model; one task.
+    #[command(flatten)]
+    pub setup: SetupRequest,
+    /// range or centred-range
+    #[arg(long, value_name = "NAME", default_value = "range")]
+    pub objective: Measure,
+    /// Errors of the cell that are varied, too: typical, none, or the path of a file
+    #[arg(long, value_name = "NAME", default_value = "typical")]
+    pub uncertainty: String,
+    /// Rows of the sample: evaluations are this times (inputs + 2)
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(wide(&SAMPLES)))]
+    pub samples: u32,
+    /// Seed of the sample
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    /// Write a chart of the shares
+    #[arg(long, value_name = "FILE.svg")]
+    pub svg: Option<PathBuf>,
+}
+
+/// Shares of the objective's variance.
+pub struct Ranked(Found);
+
+impl command::Request for Request {
+    type Response = Ranked;
+
+    /// Simulates the sample and ranks the inputs.
+    fn run(&self, context: &Context<'_>) -> Result<Ranked, Failure> {
+        let found = self.found(context.stop)?;
+        if let Some(path) = &self.svg {
+            write_file(path, &shown::svg(&found)?)?;
+        }
+        Ok(Ranked(found))
+    }
+}
+
+impl Request {
+    fn found(&self, stop: &AtomicBool) -> Result<Found, Failure> {
+        if !matches!(self.objective, Measure::Range | Measure::CentredRange) {
+            let problem = "has no value where nothing inserts; use range or centred-range";
+            return Err(Failure::usage(format!("--objective {} {problem}", self.objective)));
+        }
+        let mut setup = self.setup.setup()?;
+        if self.uncertainty != "none" {
+            setup = setup.under_named(&self.uncertainty)?;
+        }
+        if setup.uncertainty.as_ref().is_some_and(|uncertainty| uncertainty.cell.is_some()) {
+            return Err(Failure::usage(
+                "--uncertainty: varies errors here, no cell; give the cell by --cell",
+            ));
+        }
+        let template = setup.only_task()?;
+        let errors = setup.uncertainty.as_ref().map(|uncertainty| &uncertainty.errors);
+        let factors = Factors::new(&setup.space, errors).map_err(Failure::usage)?;
+        let sample = Sample::new(factors.0.len(), self.samples as usize, self.seed);
+        // `None` where the nominal start diverged.
+        let value = |unit: &Vec<f64>| {
+            if stop.load(Ordering::SeqCst) {
+                return Ok(None);
+            }
+            let evaluation = factors.evaluate(&setup.evaluator, template, unit, stop)?;
+            Ok(self.objective.value(&evaluation))
+        };
+        let values: Result<Vec<Option<f64>>, Impossible> =
+            sample.points().par_iter().map(value).collect();
+        let values = values.map_err(Failure::input)?;
+        not_stopped(stop)?;
+        let counted: Vec<f64> = values.iter().map(|value| value.unwrap_or_default()).collect();
+        let indices = sample.indices(&counted).ok_or_else(|| {
+            let everywhere = self.objective.show(counted[0]);
+            let problem = format!("is {everywhere} for every input: nothing matters");
+            Failure::running(format!("{} {problem}", self.objective))
+        })?;
+        Ok(Found {
+            task: template.task.name.clone(),
+            objective: self.objective,
+            indices,
+            evaluations: values.len(),
+            diverged: values.iter().filter(|value| value.is_none()).count(),
+            without_window: values.iter().filter(|value| **value == Some(0.0)).count(),
+            factors: factors.0,
+        })
+    }
+}
+
+impl Serialize for Ranked {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        shown::json(&self.0).serialize(serializer)
+    }
+}
+
+impl command::Response for Ranked {
+    fn picture(&self) -> Result<Option<String>, Failure> {
+        Ok(Some(shown::svg(&self.0)?))
+    }
+}
+
+impl fmt::Display for Ranked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&shown::text(&self.0))
+    }
+}

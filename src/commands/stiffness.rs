@@ -1,0 +1,85 @@
+//! `optimize stiffness`: the stiffness model and how well it fits.
+
+use crate::command;
+use crate::context::Context;
+use crate::failure::Failure;
+use crate::setup::files::{printed_finger, stiffness_data, surrogate};
+use crate::setup::request::DEFAULT_FINGER;
+use insertion::space::Design;
+use insertion::surrogate::{Model, Prediction};
+use report::stiffness as shown;
+use serde::{Serialize, Serializer};
+use std::fmt;
+use std::path::PathBuf;
+use std::sync::Arc;
+use study::write_file;
+
+/// Show the stiffness model and how well it fits
+#[derive(Debug, Clone, clap::Args)]
+#[command(
+    display_order = 13,
+    after_help = "Example: optimize stiffness --stiffness-data mine.csv --svg model.svg"
+)]
+pub struct Request {
+    /// Your own stiffness measurements in place of the shipped ones
+    #[arg(long, value_name = "FILE.csv")]
+    pub stiffness_data: Option<String>,
+    /// Finger that was measured: finray9, or the path of a finger file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_FINGER)]
+    pub finger: String,
+    /// Also write a plot of the data, the model and its uncertainty
+    #[arg(long, value_name = "FILE.svg")]
+    pub svg: Option<PathBuf>,
+    /// Give the prediction for this infill alone: density, percent
+    #[arg(long, value_name = "PERCENT", hide = true, requires = "direction")]
+    pub density: Option<f64>,
+    /// And direction, degrees
+    #[arg(long, value_name = "DEG", hide = true, requires = "density")]
+    pub direction: Option<f64>,
+}
+
+/// Model of the stiffness, and what it predicts if that was asked for.
+pub struct Fitted {
+    model: Arc<Model>,
+    predicted: Option<Prediction>,
+}
+
+impl command::Request for Request {
+    type Response = Fitted;
+
+    fn run(&self, _context: &Context<'_>) -> Result<Fitted, Failure> {
+        let infill = self.density.zip(self.direction);
+        if let Some((density, direction)) = infill {
+            Design::checked_infill(density, direction, "stiffness").map_err(Failure::input)?;
+        }
+        let finger = printed_finger(&self.finger)?;
+        let model = surrogate(&stiffness_data(self.stiffness_data.as_deref(), &finger)?, &finger)?;
+        let predict = |(density, direction)| model.predict(density, direction);
+        let predicted = infill.map(predict).transpose().map_err(Failure::input)?;
+        if let Some(path) = &self.svg {
+            write_file(path, &shown::svg(&model)?)?;
+        }
+        Ok(Fitted { model, predicted })
+    }
+}
+
+impl Serialize for Fitted {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match &self.predicted {
+            Some(predicted) => predicted.serialize(serializer),
+            None => shown::json(&self.model).serialize(serializer),
+        }
+    }
+}
+
+impl command::Response for Fitted {
+    fn picture(&self) -> Result<Option<String>, Failure> {
+        Ok(Some(shown::svg(&self.model)?))
+    }
+}
+
+impl fmt::Display for Fitted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&shown::table(&self.model))
+    }
+}

@@ -1,0 +1,264 @@
+//! `optimize --task T`: begins or continues a study.
+
+use crate::command;
+use crate::context::Context;
+use crate::failure::{Failure, within};
+use crate::setup::bench::DEFAULT_PRIORS;
+use crate::setup::files::find;
+use crate::setup::request::SetupRequest;
+use crate::setup::run::RunRequest;
+use crate::setup::{Setup, measured};
+use crate::studies::on_bench;
+use crate::studies::open::{Concluded, OpenStudy};
+use ask_tell::OptimizerKind;
+use input::shipped::PRIORS;
+use insertion::evaluation::INDIFFERENCE_MM;
+use insertion::evaluation::cell::Priors;
+use insertion::evaluation::objective::{Aggregate, AggregateKind, Constraint, Measure, Objectives};
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+use study::{
+    Confirmation, INDIFFERENCES_MM, IfChanged, LARGEST_BATCH, LARGEST_BUDGET, Study, StudyConfig,
+    read_config, study_name,
+};
+
+/// Seeds there are: TOML, in which studies keep theirs, has no larger whole numbers.
+const SEEDS: RangeInclusive<u64> = 0..=i64::MAX as u64;
+const BUDGETS: RangeInclusive<u64> = 1..=LARGEST_BUDGET;
+const POLISHES: RangeInclusive<u64> = 0..=LARGEST_BUDGET;
+const BATCHES: RangeInclusive<u64> = 1..=LARGEST_BATCH;
+const DEFAULT_BATCH: u64 = 4;
+/// Evaluations of a study that cannot tell when it is settled.
+const DEFAULT_BUDGET: u64 = 200;
+/// Most evaluations of one that can.
+const LIMIT: u64 = 500;
+const DEFAULT_UNCERTAINTY: &str = "typical";
+
+/// Find the finger that tolerates the largest shift: propose, simulate, search
+///
+/// Running the same command again continues the study. The name may be left out.
+#[derive(Debug, Clone, clap::Args)]
+#[command(display_order = 1, after_help = "Example: optimize study --task usb --budget 200")]
+pub struct Request {
+    /// Tasks, robot, space, finger model.
+    #[command(flatten)]
+    pub setup: SetupRequest,
+    /// Evaluations in all; run the same command with a larger one to go on [default: until no design
+    /// is expected to gain 0.3 mm, at most 500; 200 for other optimizers and objectives]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(BUDGETS))]
+    pub budget: Option<u64>,
+    /// Then up to N evaluations more, by Nelder-Mead from the best design; the budget of
+    /// such a study cannot be raised
+    #[arg(long, value_name = "N", num_args = 0..=1, default_value_t = 0, default_missing_value = "20",
+          allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(POLISHES))]
+    pub polish: u64,
+    /// Difference of ranges that a bench cannot tell, mm: designs that lose less are as good
+    #[arg(long, value_name = "MM", default_value_t = INDIFFERENCE_MM, allow_negative_numbers = true)]
+    pub indifference_mm: f64,
+    /// Optimizer: gp, cma-es, random, sobol or grid
+    #[arg(long, value_name = "NAME", default_value = "gp")]
+    pub optimizer: OptimizerKind,
+    /// What is optimized: range, centred-range, success-rate, robust-range, peak-force or slip;
+    /// two or three, by commas, give a front
+    #[arg(long, value_name = "NAME", default_value = "range")]
+    pub objective: Objectives,
+    /// What a design must keep to, as in 'peak-force<=30' or 'success-rate>=0.9'; may be given
+    /// several times
+    #[arg(long = "constraint", value_name = "LIMIT")]
+    pub constraints: Vec<Constraint>,
+    /// Errors for success-rate and robust-range: typical, or the path of a file [default: typical]
+    #[arg(long, value_name = "NAME")]
+    pub uncertainty: Option<String>,
+    /// What was measured on the bench, published or the path of a file: the study then ends with
+    /// the finger that is best there, predicted from all simulations and these measurements
+    #[arg(long, value_name = "FILE")]
+    pub measurements: Option<String>,
+    /// What nobody measured, and its bounds, for --measurements: bench, or the path of a file
+    /// [default: bench]
+    #[arg(long, value_name = "NAME")]
+    pub priors: Option<String>,
+    /// What is made of the values of several tasks [default: min]
+    #[arg(long, value_enum)]
+    pub aggregate: Option<AggregateKind>,
+    /// Weight of each task, by commas, for --aggregate weighted
+    #[arg(long, value_name = "W,W..", value_delimiter = ',', allow_negative_numbers = true)]
+    pub weights: Vec<f64>,
+    /// Seed; the same seed gives the same study
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0,
+          value_parser = clap::value_parser!(u64).range(SEEDS))]
+    pub seed: u64,
+    /// Designs proposed and evaluated at a time; part of the study, unlike --threads [default: that
+    /// of the study if it goes on, else 4, with --executor the number of its workers]
+    #[arg(long, value_name = "N", allow_negative_numbers = true,
+          value_parser = clap::value_parser!(u64).range(BATCHES))]
+    pub batch: Option<u64>,
+    /// Tell each result as it comes and ask for one more design, so that no worker waits for the
+    /// slowest of a batch; the journal then depends on who was fast
+    #[arg(long = "async")]
+    pub asynchronous: bool,
+    /// Folder of the study.
+    #[arg(
+        long,
+        value_name = "DIR",
+        help = "Folder of the study [default: results/<task>-<optimizer>-seed<seed>]"
+    )]
+    pub out: Option<PathBuf>,
+    /// How it is run.
+    #[command(flatten)]
+    pub run: RunRequest,
+    /// Print all numbers behind the answer, too
+    #[arg(long, conflicts_with = "json")]
+    pub verbose: bool,
+}
+
+impl command::Request for Request {
+    type Response = Concluded;
+    const PROGRESS: bool = true;
+
+    fn run(&self, context: &Context<'_>) -> Result<Concluded, Failure> {
+        self.open(None)?.to_its_end(context, self.verbose)
+    }
+}
+
+impl Request {
+    /// Begins the study or goes on with it; where no batch is given a new study's is `workers`.
+    pub fn open(&self, workers: Option<u64>) -> Result<OpenStudy, Failure> {
+        let (setup, mut config, dir) = self.look()?;
+        if self.batch.is_none() {
+            // A study that goes on keeps its own.
+            let kept = read_config(&dir).ok().map(|found| found.batch);
+            config.batch = kept.or(workers).unwrap_or(DEFAULT_BATCH).clamp(1, LARGEST_BATCH);
+        }
+        let more = measured::more(&dir, &setup);
+        let if_changed = more.map_or(self.run.if_changed(), |_| IfChanged::NewSegment);
+        let study = Study::create_or_continue(&dir, &config, &setup.inputs, if_changed)?;
+        let open = OpenStudy::new(study, setup, self.run.clone())?;
+        Ok(OpenStudy { new_measurements: more.unwrap_or(0), ..open })
+    }
+
+    /// Setup, configuration and folder of the study, checked; nothing is written.
+    pub(crate) fn look(&self) -> Result<(Setup, StudyConfig, PathBuf), Failure> {
+        within("--indifference-mm", self.indifference_mm, &INDIFFERENCES_MM)?;
+        if self.priors.is_some() && self.measurements.is_none() {
+            return Err(Failure::usage(
+                "--priors goes with --measurements: without, nothing is drawn",
+            ));
+        }
+        let priors = self.priors.as_deref().unwrap_or(DEFAULT_PRIORS);
+        let priors = find("file of priors", PRIORS, priors)?;
+        let of_robot = Priors::parse(&priors.text, &priors.file).map_err(Failure::input)?;
+        let mut setup = self.setup.setup_with(Some(&of_robot))?;
+        let constrained = self.constraints.iter().map(|constraint| constraint.measure);
+        let mut measures = self.objective.measures().iter().copied().chain(constrained);
+        match (measures.any(Measure::is_drawn), &self.uncertainty) {
+            (false, None) => {}
+            (false, Some(_)) => {
+                return Err(Failure::usage(
+                    "--uncertainty is for success-rate and robust-range; make one of them an \
+                     --objective or a --constraint",
+                ));
+            }
+            (true, name) => {
+                setup = setup.under_named(name.as_deref().unwrap_or(DEFAULT_UNCERTAINTY))?;
+            }
+        }
+        if let Some(name) = &self.measurements {
+            setup = setup.with_measurements(measured::file(name)?, priors)?;
+        }
+        let mut config = self.config(&setup)?;
+        if self.budget.is_none() && config.can_settle() {
+            (config.settles, config.budget) = (true, LIMIT);
+        }
+        check(self.optimizer, &config)?;
+        if setup.measured.is_some() {
+            on_bench::check(&config)?;
+        }
+        let dir = self.out.clone().unwrap_or_else(|| default_folder(&config));
+        Ok((setup, config, dir))
+    }
+
+    /// How the values of several tasks become one; `None` for one task.
+    fn aggregate(&self, tasks: usize) -> Result<Option<Aggregate>, Failure> {
+        let given = self.aggregate.unwrap_or(AggregateKind::Min);
+        if tasks == 1 && (self.aggregate.is_some() || !self.weights.is_empty()) {
+            return Err(Failure::usage(
+                "--aggregate and --weights are for several tasks, as in --task usb,rj45",
+            ));
+        }
+        if given != AggregateKind::Weighted && !self.weights.is_empty() {
+            return Err(Failure::usage("--weights goes with --aggregate weighted"));
+        }
+        let aggregate = match given {
+            AggregateKind::Min => Aggregate::Min,
+            AggregateKind::Mean => Aggregate::Mean,
+            AggregateKind::Weighted => Aggregate::weighted(self.weights.clone(), tasks)
+                .map_err(|problem| Failure::usage(format!("--weights: {problem}")))?,
+        };
+        Ok((tasks > 1).then_some(aggregate))
+    }
+
+    fn config(&self, setup: &Setup) -> Result<StudyConfig, Failure> {
+        let evaluator = &setup.evaluator;
+        let names = evaluator.templates.iter().map(|template| template.task.name.clone());
+        let tasks: Vec<String> = names.collect();
+        let mut config = StudyConfig {
+            aggregate: self.aggregate(tasks.len())?,
+            tasks,
+            robot: evaluator.robot.name.clone(),
+            finger_model: evaluator.fingers.kind(),
+            optimizer: self.optimizer.to_string(),
+            objective: self.objective.clone(),
+            constraints: self.constraints.clone(),
+            uncertainty: setup.uncertainty.as_ref().map(|errors| errors.name.clone()),
+            race: false,
+            seed: self.seed,
+            indifference_mm: self.indifference_mm,
+            budget: self.budget.unwrap_or(DEFAULT_BUDGET),
+            settles: false,
+            confirmation: Confirmation::Expected,
+            polish: self.polish,
+            batch: self.batch.unwrap_or(DEFAULT_BATCH),
+            asynchronous: self.asynchronous,
+            conclusion: self.run.conclusion(setup, None)?,
+            provenance: setup.provenance(),
+            space: setup.space.clone(),
+        };
+        config.race = config.can_race();
+        Ok(config)
+    }
+}
+
+/// Whether the optimizer can do what is asked for.
+fn check(kind: OptimizerKind, config: &StudyConfig) -> Result<(), Failure> {
+    if config.asynchronous && (kind == OptimizerKind::CmaEs || config.polish > 0) {
+        return Err(Failure::usage(
+            "--async: cma-es and --polish learn from whole batches; leave it out, or give another \
+             --optimizer and no --polish",
+        ));
+    }
+    if config.objective.single().is_some() {
+        return Ok(());
+    }
+    if !kind.takes_several_objectives() {
+        let able = OptimizerKind::all().filter(|kind| kind.takes_several_objectives());
+        let able: Vec<&str> = able.map(OptimizerKind::name).collect();
+        return Err(Failure::usage(format!(
+            "{kind} knows one objective only; for {} give --optimizer {}",
+            config.objective,
+            able.join(", ")
+        )));
+    }
+    if config.polish > 0 {
+        return Err(Failure::usage("--polish knows one objective only; leave it out"));
+    }
+    Ok(())
+}
+
+/// `results/<task>-<optimizer>-seed<seed>`; a task of one's own may be named with anything.
+fn default_folder(config: &StudyConfig) -> PathBuf {
+    let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+    // The plus sign stands between tasks.
+    let task = |name: &str| name.chars().map(safe).collect::<String>();
+    let task = config.tasks().map(task).collect::<Vec<_>>().join("+");
+    Path::new("results").join(study_name(&task, &config.method(), config.seed))
+}

@@ -1,0 +1,201 @@
+//! `optimize task new`: a task file to begin with.
+
+use crate::command;
+use crate::context::Context;
+use crate::failure::Failure;
+use crate::layout::wrapped;
+use crate::setup::request::DEFAULT_ROBOT;
+use crate::setup::task::{TaskCheck, TaskFile, read_task};
+use crate::setup::tune::{begun, brief, chosen};
+use connector::draft::{DENSITY, Dimensions, Hole, Size, draft};
+use connector::tune::Tuned;
+use connector::write::{self, Notes};
+use input::shipped::Source;
+use input::units::MM;
+use insertion::trial::engine::EngineKind;
+use serde::{Serialize, Serializer};
+use std::fmt;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+use study::write_file;
+
+/// Dimensions of the example that is written if none are given: a USB-C plug.
+const EXAMPLE: [&str; 3] = ["8.25x2.4x6.65", "0.1", "12x6.5x20"];
+
+/// Write a commented task file from a few dimensions, or like another task
+///
+/// With --plug or --round, start, tilt, strokes and success depth are derived from the geometry. With --like
+/// alone the file is a copy of that task; with both, friction and grasp force are that task's.
+/// With neither it is a USB-C plug.
+#[derive(Debug, clap::Args)]
+#[command(
+    display_order = 1,
+    after_help = "Example: optimize task new usb-c --plug 8.25x2.4x6.65 --clearance 0.1 --body 12x6.5x20"
+)]
+pub struct Request {
+    /// Name of the task: letters, digits, - and _
+    #[arg(value_name = "NAME")]
+    pub name: String,
+    /// What goes in: width (y, between the jaws) x height (x) x length, mm
+    #[arg(long, value_name = "WxHxL", requires = "clearance", group = "tip")]
+    pub plug: Option<Size>,
+    /// What goes in, if it is a cylinder: diameter x length, mm
+    #[arg(long, value_name = "DxL", requires = "clearance", group = "tip", value_parser = Size::round)]
+    pub round: Option<Size>,
+    /// Opening less plug in x and y, mm: both sides together
+    #[arg(long, value_name = "C", requires = "tip", value_parser = clearance)]
+    pub clearance: Option<f64>,
+    /// What the fingers hold, above the plug: width x height x length, mm [default: the plug itself]
+    #[arg(long, value_name = "WxHxL", requires = "tip")]
+    pub body: Option<Size>,
+    /// Another task: ket8, ket12, rj45, usb, or the path of a task file
+    #[arg(long, value_name = "T")]
+    pub like: Option<String>,
+    /// File to write [default: NAME.toml]
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Contact engine that tries the nominal start
+    #[arg(long, value_enum, default_value_t)]
+    pub engine: EngineKind,
+}
+
+/// A task that was written, its strategy and its check.
+pub struct Written {
+    name: String,
+    checked: TaskCheck,
+    tuned: Option<Tuned>,
+}
+
+impl command::Request for Request {
+    type Response = Written;
+
+    fn run(&self, context: &Context<'_>) -> Result<Written, Failure> {
+        let like = self.like.as_deref().map(read_task).transpose()?;
+        let (text, tuned) = match (&like, self.plug.or(self.round)) {
+            (Some(like), None) => (copy(&self.name, like), None),
+            (like, _) => drafted(self, like.as_ref(), context.stop)?,
+        };
+        let out = self.out.clone().unwrap_or_else(|| format!("{}.toml", self.name).into());
+        let file = out.display().to_string();
+        // The name is checked here: what is written can be read.
+        let written = TaskFile::parse(Source { file: file.clone(), text })?;
+        if out.exists() {
+            return Err(Failure::usage(format!("{file} exists; name another file with --out")));
+        }
+        write_file(&out, &written.source.text)?;
+        let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine, context.stop)?;
+        Ok(Written { name: self.name.clone(), checked, tuned })
+    }
+}
+
+impl Serialize for Written {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Fields<'a> {
+            out: &'a str,
+            tuned: Option<crate::setup::tune::Tried<'a>>,
+            check: &'a TaskCheck,
+        }
+        let Written { checked, tuned, .. } = self;
+        let tuned = tuned.as_ref().and_then(chosen);
+        Fields { out: &checked.source.file, tuned, check: checked }.serialize(serializer)
+    }
+}
+
+impl command::Response for Written {
+    fn verdict(&self) -> Result<(), Failure> {
+        self.checked.ended(self.tuned.as_ref())
+    }
+}
+
+impl fmt::Display for Written {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Written { name, checked, tuned } = self;
+        let file = &checked.source.file;
+        let strategy = tuned.iter().map(|tuned| brief("strategy", tuned)).collect::<String>();
+        let text = format!(
+            "written       {file}\n{strategy}{}next          optimize task check {file} --svg {name}.svg\n",
+            checked.text()
+        );
+        f.write_str(&wrapped(&text))
+    }
+}
+
+fn drafted(
+    request: &Request,
+    like: Option<&TaskFile>,
+    stop: &AtomicBool,
+) -> Result<(String, Option<Tuned>), Failure> {
+    let (size, example) = dimensions(request)?;
+    let task = draft(&request.name, &size, like.map(|like| &like.task)).map_err(Failure::input)?;
+    let body = size.body.map_or(String::new(), |body| format!(" --body {}", text(&body)));
+    let tip = match size.round {
+        true => format!("--round {}", mm(&[size.plug.width, size.plug.length])),
+        false => format!("--plug {}", text(&size.plug)),
+    };
+    let (name, clearance_mm) = (&request.name, size.clearance / MM);
+    let command = format!("optimize task new {name} {tip} --clearance {clearance_mm}{body}");
+    let mut head = vec![format!("Made by: {command}")];
+    if size.round {
+        let hole = Hole::new(size.plug.width, size.clearance);
+        head.push(format!(
+            "The hole has {} flats, which keep its diameter within {:.4} mm.",
+            hole.flats,
+            2.0 * hole.off / MM
+        ));
+    }
+    if example {
+        head.push("No dimensions were given: these are of a USB-C plug.".to_owned());
+    }
+    let mass = format!("Assumed: {DENSITY} kg/m3. Weigh yours.");
+    let (task, tuned) = begun(task, request.engine, stop)?;
+    Ok((write::task(&task, &Notes { head, mass }), tuned))
+}
+
+fn dimensions(request: &Request) -> Result<(Dimensions, bool), Failure> {
+    let tip = request.plug.or(request.round);
+    if let (Some(plug), Some(clearance)) = (tip, request.clearance) {
+        let (clearance, body) = (clearance * MM, request.body);
+        let round = request.round.is_some();
+        return Ok((Dimensions { plug, round, clearance, body }, false));
+    }
+    let [plug, clearance, body] = EXAMPLE;
+    let parse = |text: &str| text.parse::<Size>().map_err(Failure::usage);
+    let clearance = self::clearance(clearance).map_err(Failure::usage)?;
+    let (plug, body) = (parse(plug)?, Some(parse(body)?));
+    Ok((Dimensions { plug, round: false, clearance: clearance * MM, body }, true))
+}
+
+fn text(size: &Size) -> String {
+    mm(&[size.width, size.height, size.length])
+}
+
+/// Lengths as the options have them.
+fn mm(lengths: &[f64]) -> String {
+    let mm = |length: &f64| ((length / MM * 1e4).round() / 1e4).to_string();
+    lengths.iter().map(mm).collect::<Vec<_>>().join("x")
+}
+
+/// The other task's file with this name.
+fn copy(name: &str, TaskFile { source, task }: &TaskFile) -> String {
+    let line =
+        |key: &str, value: &str| format!("{key} = {}", toml::Value::String(value.to_owned()));
+    let described = format!("like {}: {}", task.name, task.description);
+    let mut head = true;
+    let lines = source.text.lines().map(|text| {
+        head &= !text.starts_with('[');
+        match text.split_once('=').map(|(key, _)| key.trim()) {
+            Some("name") if head => line("name", name),
+            Some("description") if head => line("description", &described),
+            _ => text.to_owned(),
+        }
+    });
+    lines.collect::<Vec<_>>().join("\n") + "\n"
+}
+
+fn clearance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(mm) if mm > 0.0 && mm <= 20.0 => Ok(mm),
+        _ => Err("a clearance is a number of mm above 0 and at most 20".to_owned()),
+    }
+}

@@ -1,0 +1,320 @@
+//! `optimize task tune`: a strategy by which a connector inserts.
+
+use crate::command;
+use crate::context::{Context, Part, not_stopped};
+use crate::failure::Failure;
+use crate::layout::{lines, wrapped};
+use crate::setup::files::robot;
+use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
+use crate::setup::task::TaskFile;
+use crate::setup::tune::{Tried, bench, outcome, ranges, tried};
+use connector::check::problems;
+use connector::tune::{Effort, Kept, MOST_WINDOWS, Stage, Stopped, Tuned, tune};
+use connector::{picture, rewrite};
+use input::Place;
+use input::shipped::Source;
+use input::units::{DEG, MM, N_PER_MM};
+use insertion::evaluation::Window;
+use insertion::finger::Finger;
+use insertion::robot::Robot;
+use insertion::task::{Strategy, Task};
+use insertion::trial::Conditions;
+use insertion::trial::engine::EngineKind;
+use serde::{Serialize, Serializer};
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use study::write_file;
+
+/// Find a start and a strategy by which a connector inserts, before fingers are compared
+///
+/// A start taught with a medium finger; then the strategies of the shipped tasks, carried over to
+/// this opening; then a search over tilt, strokes, preload and push speed for the widest least range
+/// of a soft, a medium and a stiff finger from one start. Exit code 1 if nothing inserts.
+#[derive(Debug, Clone, Default, clap::Args)]
+#[command(display_order = 5, after_help = "Example: optimize task tune mine.toml --svg mine.svg")]
+pub struct Request {
+    /// Task file, which is written anew; or the name of a shipped task, with --out
+    #[arg(value_name = "FILE")]
+    pub file: String,
+    /// Robot: see `optimize robots`, or the path of a robot file
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
+    pub robot: String,
+    /// Contact engine
+    #[arg(long, value_enum, default_value_t)]
+    pub engine: EngineKind,
+    /// Seed of the search
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    /// Write this new file in place of FILE
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Write no task file
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Draw the search before and after
+    #[arg(long, value_name = "FILE.svg")]
+    pub svg: Option<PathBuf>,
+}
+
+/// A tuned task.
+pub struct Done {
+    /// The file, as it was given.
+    file: String,
+    /// The task as it was.
+    pub task: Task,
+    /// All that was tried.
+    pub tuned: Tuned,
+    /// The soft, the medium and the stiff finger.
+    pub fingers: [Finger; 3],
+    /// Their windows on the task as it is written; `None` if no strategy inserts.
+    pub after: Option<Vec<Window>>,
+    /// The file that was written, if one was.
+    pub written: Option<PathBuf>,
+}
+
+impl command::Request for Request {
+    type Response = Done;
+    const PROGRESS: bool = true;
+
+    fn run(&self, context: &Context<'_>) -> Result<Done, Failure> {
+        let stop = context.stop;
+        context.begin(MOST_WINDOWS as f64);
+        let file = TaskFile::parse(TaskSource::Named(self.file.clone()).read()?)?;
+        let target = self.target()?;
+        if let Some(problem) = problems(&file.task).first() {
+            let (file, key, text) = (&file.source.file, &problem.key, &problem.problem);
+            let more = "`optimize task check` says what would be right";
+            let problem = format!("{text}; {more}");
+            return Err(Failure::task(Place::file(file).key(key).fault(problem)));
+        }
+        let robot = robot(&self.robot)?;
+        let bench = bench(&file.task, &robot, self.engine, stop)?;
+        let said = |what: &str, cost: usize, done, of| {
+            context.part(&Part { what: what.to_owned(), done, of, cost: cost as f64 });
+        };
+        let effort =
+            Effort { last: Stage::Search, until_enough: false, seed: self.seed, tell: &said };
+        let tuned = tune(&bench, &effort).map_err(Failure::input)?;
+        not_stopped(stop)?;
+        let fingers = bench.fingers;
+        let mut done = Done {
+            file: self.file.clone(),
+            task: file.task.clone(),
+            tuned,
+            fingers,
+            after: None,
+            written: None,
+        };
+        if done.tuned.inserts() {
+            done.after = Some(self.write(&file, &done, &robot, (target, stop))?);
+            done.written = target.filter(|_| !self.dry_run).map(Path::to_path_buf);
+        }
+        Ok(done)
+    }
+}
+
+impl Request {
+    /// Returns the file to write; a shipped task is not one.
+    fn target(&self) -> Result<Option<&Path>, Failure> {
+        match &self.out {
+            Some(out) if out.exists() => {
+                let out = out.display();
+                Err(Failure::usage(format!("{out} exists; name another file with --out")))
+            }
+            Some(out) => Ok(Some(out)),
+            None if Path::new(&self.file).is_file() => Ok(Some(Path::new(&self.file))),
+            None if self.dry_run => Ok(None),
+            None => Err(Failure::usage(format!(
+                "{} is a shipped task: name the file to write with --out",
+                self.file
+            ))),
+        }
+    }
+
+    /// Writes the task with its best strategy, and the picture; and measures what was written.
+    fn write(
+        &self,
+        file: &TaskFile,
+        done: &Done,
+        robot: &Robot,
+        (target, stop): (Option<&Path>, &AtomicBool),
+    ) -> Result<Vec<Window>, Failure> {
+        let strategy = &done.tuned.best().tried.strategy;
+        let after = TaskFile::parse(rewritten(&file.source, &file.task, strategy)?)?;
+        let bench = bench(&after.task, robot, self.engine, stop)?;
+        let found = bench.windows(&after.task.strategy, &bench.fingers, Conditions::NOMINAL);
+        not_stopped(stop)?;
+        let windows =
+            found.map_err(Failure::input)?.into_iter().map(|(window, _)| window).collect();
+        if let Some(svg) = &self.svg {
+            write_file(svg, &picture::both(&file.task, &after.task))?;
+        }
+        if let (Some(target), false) = (target, self.dry_run) {
+            write_file(target, &after.source.text)?;
+        }
+        Ok(windows)
+    }
+}
+
+fn rewritten(source: &Source, task: &Task, strategy: &Strategy) -> Result<Source, Failure> {
+    let text = rewrite::strategy(&source.text, task, strategy).map_err(Failure::input)?;
+    Ok(Source { file: source.file.clone(), text })
+}
+
+/// A strategy with the windows of the fingers that tried it, by the keys of `--json`.
+#[derive(Serialize)]
+struct State<'a> {
+    start_mm: [f64; 3],
+    tilt_deg: f64,
+    fingers: Vec<OfFinger<'a>>,
+}
+
+#[derive(Serialize)]
+struct OfFinger<'a> {
+    compliance_n_per_mm: f64,
+    assembly_n_per_mm: f64,
+    nominal: &'a str,
+    window_mm: [f64; 2],
+    range_mm: f64,
+}
+
+impl<'a> State<'a> {
+    fn new(strategy: &Strategy, windows: &[Window], fingers: &[Finger]) -> Self {
+        let of = |(finger, window): (&Finger, &Window)| OfFinger {
+            compliance_n_per_mm: finger.compliance / N_PER_MM,
+            assembly_n_per_mm: finger.assembly / N_PER_MM,
+            nominal: window.nominal.word(),
+            window_mm: [window.negative_mm(), window.positive_mm()],
+            range_mm: window.range_mm(),
+        };
+        State {
+            start_mm: strategy.start.map(|at| (at / MM * 1e4).round() / 1e4).into(),
+            tilt_deg: (strategy.tilt / DEG * 100.0).round() / 100.0,
+            fingers: fingers.iter().zip(windows).map(of).collect(),
+        }
+    }
+}
+
+impl Serialize for Done {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct By<'a> {
+            stage: Stage,
+            what: &'a str,
+        }
+        #[derive(Serialize)]
+        struct Fields<'a> {
+            schema_version: u32,
+            task: &'a str,
+            inserts: bool,
+            windows: usize,
+            before: State<'a>,
+            after: Option<State<'a>>,
+            by: By<'a>,
+            steps: Vec<Tried<'a>>,
+            kept: &'a [Kept],
+            nearest: Option<Stopped>,
+            out: Option<String>,
+        }
+        let Done { task, tuned, fingers, after, written, .. } = self;
+        let best = tuned.best();
+        let state = |after: &Vec<Window>| State::new(&best.tried.strategy, after, fingers);
+        let fields = Fields {
+            schema_version: 1,
+            task: &task.name,
+            inserts: after.is_some(),
+            windows: tuned.windows,
+            before: State::new(&task.strategy, &tuned.steps[0].tried.windows, fingers),
+            after: after.as_ref().map(state),
+            by: By { stage: best.stage, what: &best.what },
+            steps: tuned.steps.iter().map(Tried::from).collect(),
+            kept: &tuned.kept,
+            nearest: tuned.nearest(task),
+            out: written.as_ref().map(|path| path.display().to_string()),
+        };
+        fields.serialize(serializer)
+    }
+}
+
+impl command::Response for Done {
+    fn verdict(&self) -> Result<(), Failure> {
+        match self.after {
+            Some(_) => Ok(()),
+            None => Err(Failure::running(format!(
+                "{}: no strategy inserts; tried: {}",
+                self.file,
+                tried(&self.tuned)
+            ))),
+        }
+    }
+}
+
+impl fmt::Display for Done {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&wrapped(&text(self)))
+    }
+}
+
+fn text(done: &Done) -> String {
+    let Done { task, tuned, fingers, after, written, .. } = done;
+    let line = |name: &str, text: String| (name.to_owned(), text);
+    let mut all = vec![
+        line("task", task.name.clone()),
+        line("fingers", format!("{}: soft, medium, stiff (compliance)", compliances(fingers))),
+    ];
+    all.extend(steps(tuned));
+    match after {
+        None => all.extend(tuned.nearest(task).map(|nearest| {
+            let met = nearest.met.map_or(String::new(), |[plug, socket]| {
+                format!(", where `{plug}` meets `{socket}`")
+            });
+            let (depth, tilt) = (nearest.depth_mm, nearest.tilt_deg);
+            let how = format!("{} in `{}`, {depth:.1} mm deep", nearest.outcome, nearest.phase);
+            line("nearest", format!("{how}, {tilt:.1}° off{met}"))
+        })),
+        Some(after) => {
+            let best = tuned.best();
+            all.push(line("chosen", format!("{}: {}", best.what, ranges(after))));
+            all.extend(tuned.kept.iter().enumerate().map(|(i, kept)| {
+                let name = if i == 0 { "other fingers" } else { "" };
+                let change = if i == 0 { String::new() } else { format!(", {}", kept.change) };
+                line(name, format!("at least {:.1} mm{change}", kept.least_range_mm))
+            }));
+            let wrote = written.as_ref();
+            all.extend(wrote.map(|path| line("written", path.display().to_string())));
+        }
+    }
+    all.push(line("windows", format!("{} measured", tuned.windows)));
+    lines(all)
+}
+
+/// A line for each stage: its best, and for the families each.
+fn steps(tuned: &Tuned) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    for (i, step) in tuned.steps.iter().enumerate() {
+        if step.stage != Stage::Search {
+            let name = if step.stage == Stage::Families && tuned.steps[i - 1].stage == step.stage {
+                ""
+            } else {
+                NAMES[step.stage as usize]
+            };
+            found.push((name.to_owned(), format!("{}: {}", step.what, outcome(step))));
+        }
+    }
+    let searched = tuned.steps.iter().filter(|step| step.stage == Stage::Search);
+    let best = searched.max_by(|a, b| a.tried.score.total_cmp(&b.tried.score));
+    found.extend(best.map(|step| {
+        (NAMES[Stage::Search as usize].to_owned(), format!("{}: {}", step.what, outcome(step)))
+    }));
+    found
+}
+
+/// Names of the stages.
+const NAMES: [&str; 4] = ["before", "start", "families", "search"];
+
+fn compliances(fingers: &[Finger]) -> String {
+    let each: Vec<_> =
+        fingers.iter().map(|finger| format!("{:.1}", finger.compliance / N_PER_MM)).collect();
+    format!("{} N/mm", each.join(", "))
+}

@@ -1,0 +1,278 @@
+//! `optimize trial`: one simulated insertion.
+
+use crate::command;
+use crate::context::{Context, not_stopped};
+use crate::failure::Failure;
+use crate::layout;
+use crate::setup::driven::undriven;
+use crate::setup::film::FilmRequest;
+use crate::setup::finger::{Chosen, FingerRequest};
+use crate::setup::repeat::RepeatRequest;
+use crate::setup::request::SetupRequest;
+use calibration::identify::curves::STEP_S;
+use calibration::identify::log::of_samples;
+use input::units::MM;
+use insertion::evaluation::{OffsetStep, grid_mm};
+use insertion::outcome::Outcome;
+use insertion::trial::{Course, Grasp, PhaseEnd, Probe, Sample, Trial, picture};
+use report::answer::lines;
+use report::answer::words::number;
+use serde::{Serialize, Serializer};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::PathBuf;
+use study::write_file;
+
+/// Largest offset accepted, mm: far outside any socket.
+const LARGEST_OFFSET_MM: f64 = 1000.0;
+
+fn offset(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(mm) if mm.abs() <= LARGEST_OFFSET_MM => Ok(mm),
+        _ => Err(format!("an offset is a number of mm between ±{LARGEST_OFFSET_MM}")),
+    }
+}
+
+fn sampling(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds.is_finite() && seconds >= 0.0 => Ok(seconds),
+        _ => Err("a sampling time is a number of s, 0 or above".to_owned()),
+    }
+}
+
+/// Simulate one insertion
+#[derive(Debug, Clone, Default, clap::Args)]
+#[command(
+    display_order = 11,
+    after_help = "Example: optimize trial --task ket12 --density 10 --direction 0 --offset-mm 0.5 --svg trial.svg"
+)]
+pub struct Request {
+    /// Task, robot, finger model; one task.
+    #[command(flatten)]
+    pub setup: SetupRequest,
+    /// The finger.
+    #[command(flatten)]
+    pub finger: FingerRequest,
+    /// Shift of the start along y, mm
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, default_value_t = 0.0,
+          value_parser = offset)]
+    pub offset_mm: f64,
+    /// Repeats at that offset.
+    #[command(flatten)]
+    pub repeat: Option<RepeatRequest>,
+    /// Simulated time between two samples of the course, s, in the JSON
+    #[arg(long, value_name = "S", hide = true, value_parser = sampling)]
+    pub every_s: Option<f64>,
+    /// What is recorded.
+    #[command(flatten)]
+    pub film: FilmRequest,
+    /// Write force and pose at 500 Hz, as a robot logs them, from the search on
+    #[arg(long, value_name = "FILE.csv")]
+    pub log: Option<PathBuf>,
+    /// In place of an insertion, slide the part on a flat plate: 8 mm along y and back at 5 N, for `identify`
+    #[arg(long, requires = "log", conflicts_with_all = ["repeat", "svg", "record", "plot"])]
+    pub probe: bool,
+    /// Draw plug, fingertips and socket at the end of each phase
+    #[arg(long, value_name = "FILE.svg")]
+    pub svg: Option<PathBuf>,
+}
+
+/// Result of a trial.
+#[derive(Serialize)]
+pub struct Done {
+    /// The finger on its task.
+    #[serde(flatten)]
+    pub chosen: Chosen,
+    /// Shift of the start along y, mm.
+    pub offset_mm: f64,
+    /// How it ended.
+    #[serde(flatten, serialize_with = "whole")]
+    pub trial: Trial,
+    /// By how much the task's start was moved before that, grid steps, if it is taught.
+    #[serde(
+        rename = "taught_start_mm",
+        serialize_with = "taught_mm",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub taught: Option<OffsetStep>,
+    /// How often each outcome was met in the repeats, if they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub repeats: Option<BTreeMap<String, usize>>,
+    /// Its course from the start of the search on, if that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub series: Option<Series>,
+    /// The page that plays it, if it was asked for.
+    #[serde(rename = "film", skip_serializing_if = "Option::is_none")]
+    pub page: Option<String>,
+    /// Files that were written.
+    #[serde(skip)]
+    pub written: Vec<PathBuf>,
+}
+
+impl command::Request for Request {
+    type Response = Done;
+
+    fn run(&self, context: &Context<'_>) -> Result<Done, Failure> {
+        let (stop, offset_mm) = (context.stop, self.offset_mm);
+        let setup = self.setup.setup()?;
+        let chosen = self.finger.choose(&setup)?;
+        let specimen = &chosen.specimen;
+        let offset = offset_mm * MM;
+        let taught = setup.evaluator.taught(specimen, stop).map_err(Failure::input)?;
+        let rig = setup.evaluator.rig(specimen, taught, 1.0).map_err(Failure::input)?;
+        let filmed = self.film.record(&*rig, specimen, offset_mm, stop)?;
+        let (filmed, page) = filmed.map_or((None, None), |(filmed, page)| (Some(filmed), page));
+        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let (trial, samples) = match (self.every_s, filmed) {
+            _ if self.probe => {
+                let rig = setup.evaluator.rig(specimen, None, 1.0).map_err(Failure::input)?;
+                let probed = rig.follow(grasp, Course::Probe(Probe::USUAL), STEP_S);
+                probed.into_iter().next().ok_or_else(undriven)?
+            }
+            _ if self.log.is_some() => rig.hold(grasp).logged(offset, STEP_S),
+            (None, Some(recording)) => (recording.trial, Vec::new()),
+            (every_s, _) => rig.hold(grasp).sampled(offset, every_s),
+        };
+        not_stopped(stop)?;
+        if let Some(file) = &self.log {
+            let log = of_samples(&file.to_string_lossy(), &samples).map_err(Failure::input)?;
+            write_file(file, &log.csv())?;
+        }
+        if let Some(file) = &self.svg {
+            let label = format!("{}, start shifted by {offset_mm:+.1} mm", specimen.task.name);
+            write_file(file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial, &label))?;
+        }
+        drop(rig);
+        let outcomes = |repeat: RepeatRequest| {
+            repeat.of(&setup, specimen, taught, stop, |repeats| repeats.outcomes(offset))
+        };
+        let repeats = self.repeat.map(outcomes).transpose()?.map(|outcomes| {
+            let mut counts = BTreeMap::new();
+            for outcome in outcomes {
+                let word = match outcome {
+                    Outcome::Failed(class) => format!("failed: {}", class.label()),
+                    outcome => outcome.word().to_owned(),
+                };
+                *counts.entry(word).or_default() += 1;
+            }
+            counts
+        });
+        let written = self.svg.iter().chain(&self.log).chain(self.film.files()).cloned().collect();
+        let series = self.every_s.map(|_| Series::of(&samples));
+        Ok(Done { chosen, offset_mm, trial, taught, repeats, series, page, written })
+    }
+}
+
+/// Course of a trial from the start of the search on, a value for each sample.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Series {
+    /// Simulated time since the trial began, s.
+    pub time_s: Vec<f64>,
+    /// Place of the phase among the trial's phases.
+    pub phase: Vec<u32>,
+    /// Position of the TCP, mm.
+    pub tcp_mm: Vec<[f64; 3]>,
+    /// Tip of the plug, mm.
+    pub tip_mm: Vec<[f64; 3]>,
+    /// Angle between the plug's axis and z, degrees.
+    pub tilt_deg: Vec<f64>,
+    /// Force of the socket on the plug, N.
+    pub force_n: Vec<[f64; 3]>,
+    /// Slip of the part in the grasp, mm.
+    pub slip_mm: Vec<f64>,
+}
+
+impl Series {
+    fn of(samples: &[Sample]) -> Self {
+        Series {
+            time_s: samples.iter().map(|sample| sample.time_s).collect(),
+            phase: samples.iter().map(|sample| sample.phase).collect(),
+            tcp_mm: samples.iter().map(|sample| sample.tcp_mm).collect(),
+            tip_mm: samples.iter().map(|sample| sample.tip_mm).collect(),
+            tilt_deg: samples.iter().map(|sample| sample.tilt_deg).collect(),
+            force_n: samples.iter().map(|sample| sample.force_n).collect(),
+            slip_mm: samples.iter().map(|sample| sample.slip_mm).collect(),
+        }
+    }
+}
+
+/// How a trial ended, by the keys of `--json`.
+#[derive(Serialize)]
+pub struct Ended<'a> {
+    outcome: &'a str,
+    failure: Option<u8>,
+    depth_mm: f64,
+    tilt_deg: f64,
+    peak_force_n: f64,
+    slip_mm: f64,
+}
+
+impl<'a> From<&'a Trial> for Ended<'a> {
+    fn from(trial: &'a Trial) -> Self {
+        let Trial { outcome, depth_mm, tilt_deg, peak_force_n, slip_mm, .. } = *trial;
+        let (failure, outcome) = (outcome.failure(), outcome.word());
+        Ended { outcome, failure, depth_mm, tilt_deg, peak_force_n, slip_mm }
+    }
+}
+
+fn whole<S: Serializer>(trial: &Trial, serializer: S) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Whole<'a> {
+        #[serde(flatten)]
+        ended: Ended<'a>,
+        simulated_s: f64,
+        retried_at_half_step: bool,
+        phases: &'a [PhaseEnd],
+    }
+    let (ended, phases) = (trial.into(), trial.phases.as_slice());
+    let Trial { simulated_s, retried: retried_at_half_step, .. } = *trial;
+    Whole { ended, simulated_s, retried_at_half_step, phases }.serialize(serializer)
+}
+
+fn taught_mm<S: Serializer>(taught: &Option<OffsetStep>, serializer: S) -> Result<S::Ok, S::Error> {
+    taught.map(grid_mm).serialize(serializer)
+}
+
+impl command::Response for Done {}
+
+impl fmt::Display for Done {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // `repeats       18 inserted, 2 failed: jammed`.
+        let repeats = self.repeats.as_ref().map_or(String::new(), |counts| {
+            let counts = counts.iter().map(|(outcome, count)| format!("{count} {outcome}"));
+            format!("repeats       {}\n", counts.collect::<Vec<_>>().join(", "))
+        });
+        let start = layout::lines(lines::taught(self.taught));
+        let wrote = layout::wrote(&self.written);
+        let chosen = self.chosen.text();
+        write!(f, "{chosen}{start}{}{repeats}{wrote}", text(&self.trial))
+    }
+}
+
+fn text(trial: &Trial) -> String {
+    let reason = match trial.outcome {
+        Outcome::Failed(class) => format!(": {} (class {})", class.label(), class.number()),
+        Outcome::Inserted | Outcome::Diverged => String::new(),
+    };
+    let mut text = format!(
+        "outcome       {}{reason}\ndepth         {}\ntilt          {}\npeak force    {}\n\
+         slip          {}\n",
+        trial.outcome.word(),
+        number(trial.depth_mm, 2, "mm"),
+        number(trial.tilt_deg, 2, "deg"),
+        number(trial.peak_force_n, 1, "N"),
+        number(trial.slip_mm, 2, "mm"),
+    );
+    if trial.phases.is_empty() {
+        return text;
+    }
+    text += "\nphase         end s   tip x mm  tip y mm  tip z mm  tilt deg  slip mm  peak N\n";
+    for phase in &trial.phases {
+        let [x, y, z] = phase.tip_mm;
+        text.push_str(&format!(
+            "{:<12} {:6.2}  {x:9.2} {y:9.2} {z:9.2} {:9.2} {:8.2} {:7.1}\n",
+            phase.name, phase.time_s, phase.tilt_deg, phase.slip_mm, phase.peak_force_n
+        ));
+    }
+    text
+}

@@ -1,0 +1,55 @@
+//! `--executor WHERE`: hands the command to the installed Python package, which knows the
+//! executors, and runs the study with the same library.
+
+use crate::failure::Failure;
+use std::ffi::OsString;
+use std::process::{Command, ExitCode, Stdio};
+use std::sync::{Mutex, PoisonError};
+use study::SOURCES;
+
+/// Names another interpreter than `python3`.
+const PYTHON: &str = "FINGER_OPT_PYTHON";
+/// Tells the package which sources the program was built from.
+const SOURCES_KEY: &str = "FINGER_OPT_SOURCES";
+/// Keeps interpreters, and those that they start, from importing what lies in the current folder.
+const SAFE_PATH: (&str, &str) = ("PYTHONSAFEPATH", "1");
+/// For Python 3.10, which does not know that.
+const SAFE: &str = "import sys; sys.path[:] = filter(None, sys.path); ";
+
+/// Runs the command of these words, the program's name left out, by the Python package, which
+/// says itself what fails; gives its exit code.
+pub fn run(executor: &str, words: &[OsString]) -> Result<ExitCode, Failure> {
+    let python = std::env::var_os(PYTHON).unwrap_or_else(|| "python3".into());
+    let missing = |said: &str| {
+        Failure::running(format!(
+            "--executor {executor} needs the Python package of finger-opt ({} says: {said}); in \
+             the project's folder: pip install './python[dask,slurm]'. {PYTHON} names another \
+             interpreter",
+            python.display()
+        ))
+    };
+    let command = |code: &str| {
+        let mut command = Command::new(&python);
+        command.args(["-c", &format!("{SAFE}{code}")]).envs([SAFE_PATH]);
+        command
+    };
+    let found = command("import finger_opt").stdin(Stdio::null()).output();
+    let found = found.map_err(|error| missing(&error.to_string()))?;
+    if !found.status.success() {
+        let said = String::from_utf8_lossy(&found.stderr);
+        return Err(missing(said.lines().last().unwrap_or("nothing")));
+    }
+    let mut study = command("from finger_opt.executors import command; sys.exit(command())");
+    let study = study.args(words).env(SOURCES_KEY, SOURCES).stdin(Stdio::piped()).spawn();
+    let mut study = study.map_err(|error| missing(&error.to_string()))?;
+    // The package ends the study when its input ends, which is also when this process is killed.
+    let input = Mutex::new(study.stdin.take());
+    let stop = move || drop(input.lock().unwrap_or_else(PoisonError::into_inner).take());
+    let watch = ctrlc::set_handler(stop);
+    watch.map_err(|error| Failure::running(format!("cannot watch for Ctrl-C: {error}")))?;
+    let status = study.wait().map_err(|error| Failure::running(error.to_string()))?;
+    match status.code() {
+        Some(code) => Ok(ExitCode::from(u8::try_from(code).unwrap_or(1))),
+        None => Err(Failure::running(format!("the Python package was ended: {status}"))),
+    }
+}

@@ -1,0 +1,193 @@
+//! Why a request failed, and the exit code that says so.
+
+use calibration::experiments::Problems;
+use clap::error::{ContextKind, ContextValue};
+use connector::draft::DraftError;
+use connector::mesh::MeshError;
+use finray::FingerError;
+use input::shipped::ShippedError;
+use input::{Fault, InputError, Place, Placed};
+use insertion::evaluation::template::Impossible;
+use insertion::stiffness::SurrogateError;
+use report::ReportError;
+use std::error::Error;
+use std::fmt;
+use std::ops::RangeInclusive;
+use study::StudyError;
+
+/// Why a request failed. The texts name options as the command line has them; Python's keywords are
+/// the same words.
+#[derive(Debug)]
+pub enum Failure {
+    /// Bad usage or a bad input file: exit code 2.
+    Input(anyhow::Error),
+    /// A bad task file, or a task that is none: exit code 2.
+    Task(anyhow::Error),
+    /// Something failed while running: exit code 1.
+    Run(anyhow::Error),
+    /// It was asked to stop, and did; how to go on, if it can: exit code 1.
+    Interrupted(Option<String>),
+}
+
+/// Bad usage, described; it may begin with the option.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+struct Usage(String);
+
+impl Placed for Usage {
+    fn place(&self) -> Place {
+        Place::option(&self.0)
+    }
+}
+
+fn place<E: Placed + Error + 'static>(error: &(dyn Error + 'static)) -> Option<Place> {
+    error.downcast_ref::<E>().map(Placed::place)
+}
+
+/// The errors that know their place.
+const PLACED: [fn(&(dyn Error + 'static)) -> Option<Place>; 11] = [
+    place::<Usage>,
+    place::<Fault>,
+    place::<InputError>,
+    place::<ShippedError>,
+    place::<Problems>,
+    place::<SurrogateError>,
+    place::<FingerError>,
+    place::<Impossible>,
+    place::<DraftError>,
+    place::<MeshError>,
+    place::<StudyError>,
+];
+
+impl Failure {
+    /// The process's exit code.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Failure::Run(_) | Failure::Interrupted(_) => 1,
+            Failure::Input(_) | Failure::Task(_) => 2,
+        }
+    }
+
+    /// Where an input is wrong, as far as it is known.
+    pub fn place(&self) -> Place {
+        let error = match self {
+            Failure::Input(error) | Failure::Task(error) | Failure::Run(error) => error,
+            Failure::Interrupted(_) => return Place::default(),
+        };
+        let of = |error| PLACED.iter().find_map(|place| place(error));
+        error.chain().find_map(of).unwrap_or_default()
+    }
+
+    /// Bad input, for `map_err`.
+    pub fn input(error: impl Into<anyhow::Error>) -> Self {
+        Failure::Input(error.into())
+    }
+
+    /// Bad input, described.
+    pub fn usage(message: impl Into<String>) -> Self {
+        Failure::input(Usage(message.into()))
+    }
+
+    /// Bad usage as clap finds it, with the option first.
+    pub fn of_clap(error: clap::Error) -> Self {
+        let context = |kind| match error.get(kind) {
+            Some(ContextValue::String(text)) => Some(text.as_str()),
+            Some(ContextValue::Strings(texts)) => texts.first().map(String::as_str),
+            _ => None,
+        };
+        let option = context(ContextKind::InvalidArg).and_then(|arg| arg.split(' ').next());
+        let text = error.render().to_string();
+        let text = text.strip_prefix("error: ").unwrap_or(&text).trim_end();
+        // Without the lines on how to get help.
+        let text = text.split("\n\nUsage:").next().unwrap_or(text);
+        let text = text.split("\n\nFor more information").next().unwrap_or(text);
+        let value = context(ContextKind::InvalidValue);
+        Failure::usage(match (option, value, text.split_once("': ")) {
+            (Some(option), Some(value), Some((_, why))) => format!("{option} {value}: {why}"),
+            (Some(option), ..) if option.starts_with("--") => format!("{option}: {text}"),
+            _ => text.to_owned(),
+        })
+    }
+
+    /// Bad input in a file, described.
+    pub fn in_file(file: impl fmt::Display, problem: impl fmt::Display) -> Self {
+        Failure::input(Place::file(file.to_string()).fault(problem.to_string()))
+    }
+
+    /// A bad task file, for `map_err`.
+    pub fn task(error: impl Into<anyhow::Error>) -> Self {
+        Failure::Task(error.into())
+    }
+
+    /// Failed while running, described.
+    pub fn running(message: impl Into<String>) -> Self {
+        Failure::Run(anyhow::Error::msg(message.into()))
+    }
+}
+
+/// Checks that a number lies in its range, if it is given; `option` is what gives it.
+pub fn within<T: PartialOrd + fmt::Display>(
+    option: &str,
+    number: impl Into<Option<T>>,
+    range: &RangeInclusive<T>,
+) -> Result<(), Failure> {
+    match number.into() {
+        Some(number) if !range.contains(&number) => {
+            let (least, most) = (range.start(), range.end());
+            let problem = format!("{option} {number}: must lie between {least} and {most}");
+            Err(Failure::usage(problem))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A range as clap takes it of numbers narrower than its own.
+pub(crate) fn wide<T: Copy + Into<i64>>(range: &RangeInclusive<T>) -> RangeInclusive<i64> {
+    (*range.start()).into()..=(*range.end()).into()
+}
+
+/// Bad configuration in the folder of a study.
+pub fn bad_config(error: impl fmt::Display) -> Failure {
+    Failure::in_file("study.toml", error)
+}
+
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
+        let bad_input = error.is_bad_input();
+        let error = anyhow::Error::new(error);
+        if bad_input { Failure::Input(error) } else { Failure::Run(error) }
+    }
+}
+
+impl From<ReportError> for Failure {
+    fn from(error: ReportError) -> Self {
+        Failure::Run(error.into())
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            // The errors' own texts already hold their causes, so not `{error:#}`.
+            Failure::Input(error) | Failure::Task(error) | Failure::Run(error) => {
+                f.write_str(&short(&error.to_string()))
+            }
+            Failure::Interrupted(None) => f.write_str("interrupted"),
+            Failure::Interrupted(Some(hint)) => write!(f, "interrupted; {hint}"),
+        }
+    }
+}
+
+/// Longest line of a message, and most lines, in characters: what it quotes of a file may be anything.
+const LONGEST: usize = 600;
+const MOST_LINES: usize = 60;
+
+fn short(text: &str) -> String {
+    let line = |line: &str| match line.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{} .. (cut)", &line[..end]),
+        None => line.to_owned(),
+    };
+    let left_out = text.lines().count().saturating_sub(MOST_LINES);
+    let more = (left_out > 0).then(|| format!(".. and {left_out} lines more"));
+    text.lines().take(MOST_LINES).map(line).chain(more).collect::<Vec<_>>().join("\n")
+}

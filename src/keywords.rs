@@ -1,0 +1,86 @@
+//! Keywords of another program as the options of a command.
+
+use crate::command::{Called, Command, Request, parse};
+use crate::context::Context;
+use crate::failure::Failure;
+use clap::{Arg, ArgAction};
+use serde_json::{Map, Value};
+use std::ffi::OsString;
+
+/// Runs a command by its name (`task new`) with its options as keywords: names with underscores for hyphens. Numbers
+/// by their keys, which have a dot, are those of `--set`; `null` and `false` leave an option out.
+///
+/// The command line reads them, so that defaults, bounds and words are declared once.
+///
+/// # Errors
+/// If there is no such command or option, a value cannot be used, or the command fails.
+pub fn call(
+    commands: &[Command],
+    name: &str,
+    keywords: &Map<String, Value>,
+    context: &Context<'_>,
+) -> Result<Called, Failure> {
+    let path: Vec<&str> = name.split(' ').collect();
+    let command = commands.iter().find(|command| command.path == path);
+    let command = command.ok_or_else(|| Failure::usage(format!("unknown command `{name}`")))?;
+    let mut program = command.clap().no_binary_name(true);
+    program.build();
+    let words = words(&program, keywords)?;
+    command.call(&program.try_get_matches_from(words).map_err(Failure::of_clap)?, context)
+}
+
+/// Reads a request from keywords, as [`call`] does.
+///
+/// # Errors
+/// If there is no such option, or a value cannot be used.
+pub fn request<R: Request>(keywords: &Map<String, Value>) -> Result<R, Failure> {
+    let mut program = Command::of::<R>(&["request"]).clap();
+    program.build();
+    parse(words(&program, keywords)?)
+}
+
+/// Returns the words of a command line with these options.
+fn words(program: &clap::Command, keywords: &Map<String, Value>) -> Result<Vec<OsString>, Failure> {
+    let (mut words, mut positional) = (Vec::new(), Vec::new());
+    for (keyword, value) in keywords {
+        if keyword.contains('.') {
+            words.push(format!("--set={keyword}={}", text(value)));
+            continue;
+        }
+        let name = keyword.trim_end_matches('_').replace('_', "-");
+        let named =
+            |arg: &&Arg| arg.get_long().unwrap_or(arg.get_id().as_str()).replace('_', "-") == name;
+        let arg = program.get_arguments().find(named);
+        let arg = arg.ok_or_else(|| Failure::usage(format!("unknown option `{keyword}`")))?;
+        let several = match value {
+            Value::Null | Value::Bool(false) => continue,
+            Value::Array(values) if several(arg) => values.iter().map(text).collect(),
+            Value::Array(values) => vec![values.iter().map(text).collect::<Vec<_>>().join(",")],
+            Value::Object(fields) if name == "set" => {
+                fields.iter().map(|(key, value)| format!("{key}={}", text(value))).collect()
+            }
+            value => vec![text(value)],
+        };
+        match (arg.is_positional(), arg.get_action()) {
+            (true, _) => positional.extend(several),
+            (false, ArgAction::SetTrue) => words.push(format!("--{name}")),
+            (false, _) if *value == Value::Bool(true) => words.push(format!("--{name}")),
+            (false, _) => words.extend(several.iter().map(|value| format!("--{name}={value}"))),
+        }
+    }
+    // Behind these nothing is taken for an option.
+    words.push("--".to_owned());
+    Ok(words.into_iter().chain(positional).map(OsString::from).collect())
+}
+
+fn several(arg: &Arg) -> bool {
+    let many = arg.get_num_args().is_some_and(|count| count.max_values() > 1);
+    matches!(arg.get_action(), ArgAction::Append) && arg.get_value_delimiter().is_none() || many
+}
+
+fn text(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        value => value.to_string(),
+    }
+}

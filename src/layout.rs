@@ -1,0 +1,71 @@
+//! Lines that fit a terminal.
+
+use report::answer::lines::Line;
+use std::path::PathBuf;
+
+/// Columns of a terminal.
+const COLUMNS: usize = 80;
+/// Where what a line says begins, after its name.
+const INDENT: usize = 14;
+
+/// Lines that fit a terminal: a longer one goes on below where what it says begins. It is broken after
+/// a comma or before a bracket if there is one in its second half, else at a space.
+pub fn wrapped(text: &str) -> String {
+    text.split_inclusive('\n').map(wrapped_line).collect()
+}
+
+fn wrapped_line(line: &str) -> String {
+    if line.trim_end().chars().count() <= COLUMNS {
+        return line.to_owned();
+    }
+    let spaces = || {
+        let places = line.char_indices().take(COLUMNS + 1);
+        places.filter(|&(at, c)| c == ' ' && at > INDENT).map(|(at, _)| at)
+    };
+    let clause = |at: &usize| {
+        let (before, after) = line.split_at(*at);
+        *at > COLUMNS / 2 && (before.ends_with([',', ';']) || after.starts_with(" ("))
+    };
+    let Some(end) = spaces().filter(clause).last().or(spaces().last()) else {
+        return line.to_owned();
+    };
+    let (first, rest) = line.split_at(end);
+    let rest = wrapped_line(&format!("{:INDENT$}{}", "", rest.trim_start()));
+    format!("{first}\n{rest}")
+}
+
+/// Returns a line for each file that was written.
+pub fn wrote<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> String {
+    files.into_iter().map(|file| format!("wrote         {}\n", file.display())).collect()
+}
+
+/// A text of lines, each ended, what they say one below the other.
+pub fn lines(lines: impl IntoIterator<Item = Line>) -> String {
+    lines.into_iter().map(|(name, text)| format!("{name:<13} {text}\n")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_lines_go_on_below_where_they_begin() {
+        let short = "range         3.5 mm\n";
+        let design =
+            "  least force infill density 10 %, infill direction 29°: 79.2 N (evaluation 1176)\n";
+        let shape = "best design   material modulus 0.5 GPa, notch pad 11 mm, outline back radius 33 mm, \
+                     outline length 64.8 mm, ribs thickness 0.38 mm, skin thickness 0.7 mm (evaluation 9)\n";
+        let path = format!("study         {}\n", "x".repeat(100));
+        assert_eq!(wrapped(short), short);
+        assert_eq!(wrapped(&path), path, "nothing to break it at");
+        let broken = "  least force infill density 10 %, infill direction 29°: 79.2 N\n              (evaluation 1176)\n";
+        assert_eq!(wrapped(&format!("{short}{design}")), format!("{short}{broken}"));
+        let lines = wrapped(shape);
+        assert!(lines.lines().all(|line| line.chars().count() <= COLUMNS), "{lines}");
+        assert_eq!(
+            lines.split_whitespace().collect::<Vec<_>>(),
+            shape.split_whitespace().collect::<Vec<_>>()
+        );
+        assert!(lines.lines().skip(1).all(|line| line.starts_with(&" ".repeat(INDENT))), "{lines}");
+    }
+}

@@ -1,0 +1,106 @@
+//! Progress on standard error, through all phases: a bar on a terminal, a line every few seconds
+//! elsewhere.
+
+use crate::context::{Part, cost};
+use crate::studies::standing::Standing;
+use crate::terminal::say;
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use std::io::{IsTerminal, stderr};
+use std::time::{Duration, Instant};
+use study::{Recorded, Study};
+
+/// Time between two lines where there is no terminal.
+const EVERY: Duration = Duration::from_secs(3);
+/// Designs that are repeated, and walked, in most studies.
+const CONFIRMED: [f64; 2] = [5.0, 1.5];
+
+/// Shows how far a study or a calibration is. Work is counted in evaluations of the search.
+pub struct Progress {
+    bar: Option<ProgressBar>,
+    shown: bool,
+    begun: Instant,
+    said: Instant,
+    /// Work done since it began, and work left as far as that is known.
+    done: f64,
+    left: f64,
+    /// Evaluations in all, unless the search settles, and the best of them, of a study.
+    search: Option<(Option<u64>, Standing)>,
+}
+
+impl Progress {
+    /// Returns the progress of a study; `shown` says whether anybody sees it.
+    pub fn of_study(study: &Study, shown: bool) -> Self {
+        let config = &study.config;
+        let (done, budget) = (study.evaluations.len() as u64, config.expected_evaluations());
+        let conclusion = &config.conclusion;
+        let confirmed = CONFIRMED[0] * cost::REPEATED + CONFIRMED[1] * cost::WALKED;
+        let confirmed = if conclusion.no_confirm { 0.0 } else { confirmed };
+        let bench =
+            conclusion.bench.map_or(0.0, |effort| f64::from(effort.simulations) * cost::SIMULATION);
+        let left = budget.saturating_sub(done) as f64 + confirmed + bench;
+        let mut progress = Progress::of(left, shown && done < config.evaluations());
+        let total = if config.settles { None } else { Some(budget) };
+        progress.search = Some((total, Standing::new(study)));
+        progress
+    }
+
+    /// Returns the progress through so many evaluations' worth of work.
+    pub fn of(left: f64, shown: bool) -> Self {
+        let bar = (shown && stderr().is_terminal()).then(|| bar(left));
+        let now = Instant::now();
+        Progress { bar, shown, begun: now, said: now, done: 0.0, left, search: None }
+    }
+
+    /// Shows that a part is done.
+    pub fn part(&mut self, Part { what, done, of, cost }: &Part) {
+        self.step(*cost, &format!("{what}: {done}/{of}"), done == of);
+    }
+
+    /// Shows that a design was evaluated.
+    pub fn evaluated(&mut self, recorded: &Recorded) {
+        let Some((budget, standing)) = &mut self.search else { return };
+        standing.add(recorded);
+        let (done, budget) = (recorded.index + 1, *budget);
+        let of = budget.map_or(String::new(), |budget| format!("/{budget}"));
+        let what = format!("{done}{of} evaluations, {}", standing.best());
+        self.step(1.0, &what, Some(done) == budget);
+    }
+
+    /// A part of this cost is done; the last of a phase is always shown.
+    fn step(&mut self, cost: f64, what: &str, last: bool) {
+        self.done += cost;
+        self.left = (self.left - cost).max(0.0);
+        let left = self.begun.elapsed().mul_f64(self.left / self.done.max(1.0));
+        if let Some(bar) = &self.bar {
+            bar.set_message(format!("{what}, about {:#} left", HumanDuration(left)));
+            bar.set_length((self.done + self.left).ceil() as u64);
+            bar.set_position(self.done as u64);
+        } else if self.shown && (last || self.said.elapsed() >= EVERY) {
+            self.said = Instant::now();
+            say(&format!("{what}, about {} s left", left.as_secs()));
+        }
+    }
+
+    /// Writes a line on standard error, above a bar.
+    pub fn say(&self, text: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| say(text)),
+            None => say(text),
+        }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.iter().for_each(ProgressBar::finish_and_clear);
+    }
+}
+
+fn bar(left: f64) -> ProgressBar {
+    let bar = ProgressBar::new(left.ceil() as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:12} {msg}  {elapsed} gone") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(500));
+    bar
+}

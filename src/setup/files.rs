@@ -1,0 +1,109 @@
+//! From names to files: shipped ones, or those at a path.
+
+use super::request::DEFAULT_FINGER;
+use crate::failure::Failure;
+use finray::printed::PrintedFinger;
+use input::shipped::{self, FINGERS, ROBOTS, STIFFNESS, Shipped, Source};
+use insertion::finger::file::FingerFile;
+use insertion::finger::model::{ComputedFingers, FingerSource};
+use insertion::robot::Robot;
+use insertion::stiffness;
+use insertion::stiffness::SurrogateError;
+use insertion::surrogate::{self, Model};
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A finger file, read once: of fingers that are computed.
+pub(crate) struct Fingers {
+    /// The file's text.
+    pub source: Option<Source>,
+    file: Option<FingerFile>,
+}
+
+impl Fingers {
+    pub fn parse(source: Option<Source>) -> Result<Self, Failure> {
+        let parse = |Source { file, text }: &Source| FingerFile::parse(text, file);
+        let file = source.as_ref().map(parse).transpose().map_err(Failure::input)?;
+        Ok(Fingers { source, file })
+    }
+
+    /// The finger whose stiffness was measured: of the file; without one, the shipped finger.
+    pub fn measured_finger(&self) -> Result<PrintedFinger, Failure> {
+        match &self.file {
+            Some(file) => Ok(file.finger.clone()),
+            None => printed_finger(DEFAULT_FINGER),
+        }
+    }
+
+    /// Source of fingers of a design.
+    pub fn made(self) -> FingerSource {
+        match self.file {
+            None => FingerSource::Paper,
+            Some(file) => FingerSource::Computed(Box::new(ComputedFingers::new(file))),
+        }
+    }
+}
+
+/// The measurements the surrogate is fitted to: those at `path`, else those that the finger file names.
+///
+/// # Errors
+/// If they cannot be read, or the finger file names none: those of another finger are not its own.
+pub fn stiffness_data(path: Option<&str>, finger: &PrintedFinger) -> Result<Source, Failure> {
+    let find = |name: &str| find("stiffness data", STIFFNESS, name);
+    match (path, &finger.measured) {
+        (Some(path), _) => find(path),
+        (None, Some(named)) => match STIFFNESS.iter().find(|shipped| shipped.file == named) {
+            Some(shipped) => find(shipped.name),
+            None => {
+                let beside = Path::new(&finger.file).parent().unwrap_or(Path::new(""));
+                find(&beside.join(named).to_string_lossy())
+            }
+        },
+        (None, None) => Err(Failure::in_file(
+            &finger.file,
+            "no `measured` names a table of its measured fingers; give one there or by \
+             --stiffness-data: one finger is enough",
+        )),
+    }
+}
+
+/// The shipped file of that name, or the file at that path.
+pub fn find(kind: &'static str, shipped: &[Shipped], name: &str) -> Result<Source, Failure> {
+    shipped::resolve(kind, shipped, name).map_err(Failure::input)
+}
+
+/// The robot of that name, or of the file at that path.
+pub fn robot(name: &str) -> Result<Robot, Failure> {
+    let source = find("robot", ROBOTS, name)?;
+    Robot::parse(&source.text, &source.file).map_err(Failure::input)
+}
+
+/// The finger of that name, or of the file at that path.
+pub fn printed_finger(name: &str) -> Result<PrintedFinger, Failure> {
+    let source = find("finger", FINGERS, name)?;
+    PrintedFinger::parse(&source.text, &source.file).map_err(Failure::input)
+}
+
+/// A model and what it was fitted to.
+type Fit = (Source, PrintedFinger, Arc<Model>);
+
+/// The last fit, which the next evaluation mostly needs again.
+static LAST: Mutex<Option<Fit>> = Mutex::new(None);
+
+/// Fits the stiffness model to a CSV of measurements of such fingers.
+pub fn surrogate(data: &Source, finger: &PrintedFinger) -> Result<Arc<Model>, Failure> {
+    let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((known, of, model)) = &*last()
+        && (known, of) == (data, finger)
+    {
+        return Ok(Arc::clone(model));
+    }
+    let measurements = stiffness::parse(&data.text, &data.file).map_err(Failure::input)?;
+    let model = surrogate::fit(&measurements, finger).map_err(|error| match error {
+        SurrogateError::Finger(error) => Failure::input(error),
+        error => Failure::in_file(&data.file, error),
+    })?;
+    let model = Arc::new(model);
+    *last() = Some((data.clone(), finger.clone(), Arc::clone(&model)));
+    Ok(model)
+}

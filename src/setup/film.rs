@@ -1,0 +1,98 @@
+//! Films of trials.
+
+use crate::context::not_stopped;
+use crate::failure::Failure;
+use insertion::evaluation::evaluator::Specimen;
+use insertion::trial::{Grasp, Recording, Rig};
+use report::replay::{self, Film};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use study::write_file;
+
+/// What is made of a recorded trial.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct FilmRequest {
+    /// Record the trial: a page that plays it, or a table of every millisecond
+    #[arg(long, value_name = "FILE.html|.csv", value_parser = recordable)]
+    pub record: Option<PathBuf>,
+    /// Draw force against depth
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
+    /// Give the page that plays it in the result
+    #[arg(long = "film", hide = true)]
+    pub page: bool,
+}
+
+impl FilmRequest {
+    /// Records the trial at this offset and writes what was asked for; `None` if nothing was. The page
+    /// is there if it is to be kept.
+    pub(crate) fn record(
+        &self,
+        rig: &dyn Rig,
+        specimen: &Specimen,
+        offset_mm: f64,
+        stop: &AtomicBool,
+    ) -> Result<Option<(Recording, Option<String>)>, Failure> {
+        if self.record.is_none() && self.plot.is_none() && !self.page {
+            return Ok(None);
+        }
+        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let recording = rig.record(grasp, offset_mm * input::units::MM).ok_or_else(|| {
+            Failure::usage("--record and --plot need an engine that simulates: --engine direct")
+        })?;
+        not_stopped(stop)?;
+        let label = shifted(offset_mm);
+        let film = film(&label, specimen, &recording);
+        let page = || replay::page(&format!("{}, {label}", specimen.task.name), &[film]);
+        if let Some(file) = &self.record {
+            let content = match extension(file).as_deref() {
+                Some("csv") => replay::csv(&recording),
+                _ => page(),
+            };
+            write_file(file, &content)?;
+        }
+        if let Some(file) = &self.plot {
+            write_file(file, &replay::curve_svg(&film)?)?;
+        }
+        let page = self.page.then(page);
+        Ok(Some((recording, page)))
+    }
+
+    pub(crate) fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        self.record.iter().chain(&self.plot)
+    }
+}
+
+fn recordable(text: &str) -> Result<PathBuf, String> {
+    let file = PathBuf::from(text);
+    filmable(&file).map(|()| file)
+}
+
+/// Whether a trial can be recorded into a file of this name.
+fn filmable(file: &Path) -> Result<(), String> {
+    match extension(file).as_deref() {
+        Some("html" | "csv") => Ok(()),
+        _ => Err("its name must end with .html or .csv, which says what is written".into()),
+    }
+}
+
+fn extension(file: &Path) -> Option<String> {
+    Some(file.extension()?.to_str()?.to_lowercase())
+}
+
+/// Returns the film of a recorded trial.
+pub(crate) fn film<'a>(
+    label: &'a str,
+    specimen: &'a Specimen,
+    recording: &'a Recording,
+) -> Film<'a> {
+    Film { label, task: &specimen.task, pad: &specimen.finger.pad, recording }
+}
+
+/// Returns the words for a shifted start.
+pub(crate) fn shifted(offset_mm: f64) -> String {
+    if offset_mm == 0.0 {
+        return "nominal start".to_owned();
+    }
+    format!("start shifted by {offset_mm:+.1} mm")
+}

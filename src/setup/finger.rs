@@ -1,0 +1,268 @@
+//! Which finger a trial or an evaluation is of.
+
+use super::Setup;
+use crate::failure::Failure;
+use crate::layout;
+use input::shown;
+use input::units::{MM, N_PER_MM};
+use insertion::evaluation::evaluator::{Evaluator, Specimen};
+use insertion::finger::model::{CentreFrom, FingerModelKind, RCC_KEY};
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use insertion::surrogate::Prediction;
+use report::answer::lines;
+use serde::{Serialize, Serializer};
+use std::ops::RangeInclusive;
+
+/// Stiffnesses that a caller may give in place of an infill, N/mm.
+const STIFFNESS_N_PER_MM: RangeInclusive<f64> = 1e-6..=1e6;
+
+fn stiffness(text: &str) -> Result<f64, String> {
+    given_stiffness(text.parse().unwrap_or(f64::NAN))
+}
+
+fn given_stiffness(n_per_mm: f64) -> Result<f64, String> {
+    match STIFFNESS_N_PER_MM.contains(&n_per_mm) {
+        true => Ok(n_per_mm),
+        false => Err("a stiffness is a number above 0, 1e-6 to 1e6, in N/mm".to_owned()),
+    }
+}
+
+/// A number by its key, as `KEY=VALUE`.
+pub(crate) fn setting(text: &str) -> Result<(String, f64), String> {
+    let parts = text.split_once('=').map(|(key, value)| (key.trim(), value.trim().parse()));
+    match parts {
+        Some((key, Ok(value))) if !key.is_empty() => Ok((key.to_owned(), value)),
+        _ => Err("a setting is KEY=NUMBER, as in task.strategy.tilt_deg=8".to_owned()),
+    }
+}
+
+/// Which finger: by its infill, or by its springs.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct FingerRequest {
+    /// Infill density, percent
+    #[arg(
+        long,
+        value_name = "PERCENT",
+        required_unless_present = "stiffness_compliance",
+        allow_negative_numbers = true
+    )]
+    pub density: Option<f64>,
+    /// Infill direction, degrees
+    #[arg(
+        long,
+        value_name = "DEG",
+        required_unless_present = "stiffness_compliance",
+        allow_negative_numbers = true
+    )]
+    pub direction: Option<f64>,
+    /// Stiffness in the compliance direction, N/mm: bypasses the surrogate
+    #[arg(long, value_name = "K", requires = "stiffness_assembly", value_parser = stiffness,
+          allow_negative_numbers = true)]
+    pub stiffness_compliance: Option<f64>,
+    /// Stiffness in the direction of assembly, N/mm: bypasses the surrogate
+    #[arg(long, value_name = "K", requires = "stiffness_compliance", value_parser = stiffness,
+          allow_negative_numbers = true)]
+    pub stiffness_assembly: Option<f64>,
+    /// A number of the task or the finger, as in spaces/codesign.toml; may be given several times
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    pub set: Vec<(String, f64)>,
+}
+
+/// A finger on a task, and where its stiffness comes from.
+pub struct Chosen {
+    /// Task and finger.
+    pub specimen: Specimen,
+    /// Name of the robot.
+    pub robot: String,
+    /// Name of the cell, if one is given.
+    pub cell: Option<String>,
+    /// Where its springs come from that were not measured.
+    pub finger_model: FingerModelKind,
+    /// All that names the design: infill and what was set; empty for a stiffness alone.
+    pub design: Design,
+    /// Settings beside the infill.
+    pub set: Design,
+    /// Whether the stiffness was given, not predicted.
+    pub given: bool,
+}
+
+impl FingerRequest {
+    pub(crate) fn choose(&self, setup: &Setup) -> Result<Chosen, Failure> {
+        self.by(setup, &setup.evaluator)
+    }
+
+    /// The same finger by the models of another evaluator of the same setup.
+    pub(crate) fn by(&self, setup: &Setup, evaluator: &Evaluator) -> Result<Chosen, Failure> {
+        let template = setup.only_task()?;
+        let mut infill = Design::default();
+        for (flag, key, value) in [
+            ("--density", DENSITY_KEY, self.density),
+            ("--direction", DIRECTION_KEY, self.direction),
+        ] {
+            if let Some(value) = value {
+                check(setup, flag, key, value)?;
+                infill.0.insert(key.to_owned(), value);
+            }
+        }
+        let set = self.settings(setup)?;
+        let mut design = set.clone();
+        design.0.extend(infill.0);
+        let springs = self.springs()?;
+        let given = springs.is_some();
+        let stiffness = match springs {
+            Some(_) if evaluator.fingers.kind() == FingerModelKind::Computed => {
+                return Err(Failure::usage(
+                    "--stiffness-compliance and --stiffness-assembly are springs of the finger \
+                     model `paper`; --finger-model computed needs --density and --direction alone",
+                ));
+            }
+            Some(given) => given,
+            None if self.density.is_some() && self.direction.is_some() => {
+                evaluator.predict(&design).map_err(Failure::input)?
+            }
+            None => return Err(Failure::usage("give --density and --direction")),
+        };
+        let specimen = evaluator.specimen(template, &design, stiffness).map_err(Failure::input)?;
+        Ok(Chosen {
+            specimen,
+            robot: evaluator.robot.name.clone(),
+            cell: evaluator.cell.as_ref().map(|cell| cell.name.clone()),
+            finger_model: evaluator.fingers.kind(),
+            design,
+            set,
+            given,
+        })
+    }
+
+    fn springs(&self) -> Result<Option<Prediction>, Failure> {
+        match (self.stiffness_compliance, self.stiffness_assembly) {
+            (Some(compliance), Some(assembly)) => {
+                for given in [compliance, assembly] {
+                    given_stiffness(given).map_err(Failure::usage)?;
+                }
+                Ok(Some(Prediction::exact(compliance * N_PER_MM, assembly * N_PER_MM)))
+            }
+            (None, None) => Ok(None),
+            _ => Err(Failure::usage(
+                "--stiffness-compliance and --stiffness-assembly go together: give both",
+            )),
+        }
+    }
+
+    /// Settings beside the infill; a key of the space must keep to its bounds there.
+    fn settings(&self, setup: &Setup) -> Result<Design, Failure> {
+        let mut set = Design::default();
+        for (key, value) in &self.set {
+            if [DENSITY_KEY, DIRECTION_KEY].contains(&key.as_str()) {
+                return Err(Failure::usage(format!(
+                    "--set {key}: give the infill by --density and --direction"
+                )));
+            }
+            if setup.space.parameters.iter().any(|parameter| parameter.key == *key) {
+                check(setup, "--set", key, *value)?;
+            }
+            if set.0.insert(key.clone(), *value).is_some() {
+                return Err(Failure::usage(format!("--set {key}: is given twice")));
+            }
+        }
+        Ok(set)
+    }
+}
+
+/// A value must lie within the bounds its key has in the space.
+fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure> {
+    let parameters = &setup.space.parameters;
+    match parameters.iter().find(|parameter| parameter.key == key) {
+        // Written so that a NaN is outside.
+        Some(parameter) if (parameter.low..=parameter.high).contains(&value) => Ok(()),
+        Some(parameter) => Err(Failure::usage(format!(
+            "{flag} {}: {key} must lie between {} and {} in the space `{}`",
+            shown(value),
+            parameter.low,
+            parameter.high,
+            setup.space.name
+        ))),
+        None => {
+            Err(Failure::usage(format!("{flag}: the space `{}` has no {key}", setup.space.name)))
+        }
+    }
+}
+
+impl Serialize for Chosen {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        /// Keys that say which finger was simulated on which task.
+        #[derive(Serialize)]
+        struct Subject<'a> {
+            task: &'a str,
+            robot: &'a str,
+            cell: Option<&'a str>,
+            infill_density_percent: Option<f64>,
+            infill_direction_deg: Option<f64>,
+            set: &'a Design,
+            finger_model: &'a str,
+            rcc_mm: f64,
+            rcc_from: &'a str,
+            tilting_nm_per_rad: f64,
+            stiffness: &'a Prediction,
+        }
+        let Specimen { task, finger, centre, stiffness, .. } = &self.specimen;
+        let subject = Subject {
+            task: &task.name,
+            robot: &self.robot,
+            cell: self.cell.as_deref(),
+            infill_density_percent: self.design.get(DENSITY_KEY),
+            infill_direction_deg: self.design.get(DIRECTION_KEY),
+            set: &self.set,
+            finger_model: self.finger_model.name(),
+            rcc_mm: finger.rcc / MM,
+            rcc_from: match centre {
+                CentreFrom::Model => "finger-model",
+                CentreFrom::TaskFile => "task",
+                CentreFrom::Design => "design",
+            },
+            tilting_nm_per_rad: finger.rotation[0],
+            stiffness,
+        };
+        subject.serialize(serializer)
+    }
+}
+
+impl Chosen {
+    /// Returns design, stiffness and finger model as lines.
+    pub fn text(&self) -> String {
+        let stiffness = &self.specimen.stiffness;
+        let stiffness = match self.given {
+            false => layout::lines(lines::stiffness(stiffness)),
+            true => format!(
+                "stiffness     compliance {} N/mm, assembly {} N/mm, as given\n",
+                stiffness.compliance.mean / N_PER_MM,
+                stiffness.assembly.mean / N_PER_MM
+            ),
+        };
+        let finger = self.model_text();
+        let design = match self.design.0.is_empty() {
+            true => String::new(),
+            false => format!("design        {}\n", self.design.labelled()),
+        };
+        format!("{design}{stiffness}{finger}")
+    }
+
+    /// Returns the results of the finger model, if it is not the paper's.
+    fn model_text(&self) -> String {
+        let Specimen { finger, centre, .. } = &self.specimen;
+        if self.finger_model == FingerModelKind::Paper {
+            return String::new();
+        }
+        let (below, ahead) = (finger.rcc / MM, finger.ahead / MM);
+        let given = match centre {
+            CentreFrom::Model => String::new(),
+            CentreFrom::TaskFile => ", as the task file says, not computed".to_owned(),
+            CentreFrom::Design => format!(", as {RCC_KEY} says, not computed"),
+        };
+        format!(
+            "finger        computed: tilting {:.2} N m/rad, remote centre {ahead:.1} mm in front of \
+             the pad\n              and {below:.1} mm below the grasp point{given}\n",
+            finger.rotation[0]
+        )
+    }
+}

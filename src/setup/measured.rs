@@ -1,0 +1,178 @@
+//! Bench measurements, and the bounds of what nobody measured, as files have them.
+
+use super::Setup;
+use super::files::find;
+use super::request::TaskSource;
+use super::task::read_task;
+use crate::failure::Failure;
+use calibration::experiments::{self, Experiment};
+use calibration::subject::whole;
+use input::files::{LARGEST_INPUT, read_named};
+use input::shipped::{MEASUREMENTS, Source, TASKS};
+use insertion::evaluation::cell::Priors;
+use insertion::evaluation::template::Template;
+use insertion::space::Space;
+use std::path::{Path, PathBuf};
+use study::{BENCH_ROLES, StudyRecord, input_path, read_config};
+
+/// Measurements from the bench, and the bounds of what nobody measured.
+pub struct Measured {
+    /// The measurements' file.
+    pub file: String,
+    /// Its lines.
+    pub experiments: Vec<Experiment>,
+    /// The bounds.
+    pub priors: Priors,
+}
+
+/// The measurements of that name or at that path, checked; their tasks are shipped ones, those in
+/// `more`, or have a comment line with the path of their file.
+pub fn read(name: &str, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
+    let source = file(name)?;
+    let named = experiments::own_tasks(&source.text).into_keys();
+    for task in named.filter(|task| !more.contains(task)) {
+        own_task(&source, task)?;
+    }
+    lines(&source, more)
+}
+
+/// A shipped name, or else a path, whatever it looks like.
+pub fn file(name: &str) -> Result<Source, Failure> {
+    if Path::new(name).is_file() {
+        let text = read_named(Path::new(name), LARGEST_INPUT);
+        let unreadable = |error| Failure::in_file(name, format!("cannot read it: {error}"));
+        return Ok(Source { file: name.to_owned(), text: text.map_err(unreadable)? });
+    }
+    find("measurement file", MEASUREMENTS, name)
+}
+
+/// Whether it is the path of a file that is not there: such a file has no line yet.
+pub fn is_missing(name: &str) -> bool {
+    let path = Path::new(name);
+    (name.contains(['/', '\\']) || path.extension().is_some())
+        && path.try_exists().is_ok_and(|there| !there)
+}
+
+/// Where the file of a task of one's own is, by the comment line that keeps it; `None` without one.
+fn own_task(source: &Source, task: &str) -> Result<Option<PathBuf>, Failure> {
+    let Source { file, text } = source;
+    let Some(path) = experiments::own_tasks(text).remove(task) else { return Ok(None) };
+    let path = Path::new(file).parent().unwrap_or(Path::new("")).join(path);
+    let wrong = |problem: String| {
+        let task = format!("task `{task}`: {problem}; mend the line `# task {task}: ..`");
+        Failure::in_file(file, format!("{task}, or give --task"))
+    };
+    let found = read_task(&path.to_string_lossy()).map_err(|error| wrong(error.to_string()))?;
+    match found.task.name == task {
+        true => Ok(Some(path)),
+        false => Err(wrong(format!("{} is called `{}`", path.display(), found.task.name))),
+    }
+}
+
+/// Folder in which studies are unless another is given.
+const STUDIES: &str = "results";
+
+/// The task file of the first study in `results` that was given these measurements of this task.
+fn of_study(file: &str, task: &str) -> Option<PathBuf> {
+    let folders = Path::new(STUDIES).read_dir().ok()?.flatten().map(|entry| entry.path());
+    let own = |dir: &PathBuf| {
+        read_config(dir).is_ok_and(|config| {
+            config.tasks == [task] && config.conclusion.measurements.as_deref() == Some(file)
+        })
+    };
+    folders.filter(own).min().map(|dir| input_path(&dir, 1, "task_1"))
+}
+
+/// The one task of which a file has lines, as a command takes it: by its comment line, as shipped or
+/// from a study of these measurements.
+pub fn task(source: &Source) -> Result<TaskSource, Failure> {
+    let Source { file, text } = source;
+    let wrong = |problem: String| Failure::in_file(file, format!("{problem}; give --task"));
+    let found = experiments::parse(text, file).map_err(Failure::input)?;
+    let mut tasks: Vec<&str> = found.iter().map(|line| &*line.task).collect();
+    tasks.sort_unstable();
+    tasks.dedup();
+    let [task] = tasks[..] else {
+        return Err(wrong(match tasks.is_empty() {
+            true => "has no line yet that says of which task".to_owned(),
+            false => format!("has lines of {}", tasks.join(", ")),
+        }));
+    };
+    let shipped = || TASKS.iter().any(|shipped| shipped.name == task).then(|| task.into());
+    let path = own_task(source, task)?.or_else(shipped).or_else(|| of_study(file, task));
+    let path = path.ok_or_else(|| wrong(format!("no file is known of the task `{task}`")))?;
+    Ok(TaskSource::Named(path.to_string_lossy().into_owned()))
+}
+
+/// Most fingers of a task: the process of so many takes a minute to sample.
+const MOST_FINGERS: usize = 200;
+
+/// The lines of a file, in the one order that decides draws; their tasks are shipped ones, those in
+/// `more`, or have a comment line.
+pub fn lines(source: &Source, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
+    let mut found = experiments::parse(&source.text, &source.file).map_err(Failure::input)?;
+    let shipped = TASKS.iter().map(|task| task.name);
+    let own = experiments::own_tasks(&source.text).into_keys().filter(|own| !more.contains(own));
+    let known: Vec<&str> = shipped.chain(more.iter().copied()).chain(own).collect();
+    experiments::check_tasks(&found, &known, &source.file).map_err(Failure::input)?;
+    found.sort_by(Experiment::order);
+    for of_task in found.chunk_by(|a, b| a.task == b.task) {
+        let fingers = of_task.chunk_by(|a, b| a.design == b.design).count();
+        if fingers > MOST_FINGERS {
+            let (file, task) = (&source.file, &of_task[0].task);
+            let problem = format!(
+                "has {fingers} different fingers of the task `{task}`; at most {MOST_FINGERS} are \
+                 taken: keep those nearest to the best"
+            );
+            return Err(Failure::in_file(file, problem));
+        }
+    }
+    Ok(found)
+}
+
+/// Whether lines say something of the ranges of a task's fingers, and all of fingers in the space.
+pub fn check(
+    file: &str,
+    lines: &[Experiment],
+    template: &Template,
+    space: &Space,
+) -> Result<(), Failure> {
+    let task = &template.task.name;
+    let own = || lines.iter().filter(|line| line.task == *task);
+    if !own().any(|line| line.extent().is_some()) {
+        let problem = format!(
+            "no line has a range of the task `{task}`; measure one finger at least (`optimize next` \
+             says which), or leave out --measurements"
+        );
+        return Err(Failure::in_file(file, problem));
+    }
+    for line in own() {
+        whole(space, template, line).map_err(|error| Failure::in_file(file, error))?;
+    }
+    Ok(())
+}
+
+/// How many lines of its task a study in `dir` has not seen, if nothing else differs from this setup
+/// but that lines follow on those that it has: they change no simulated value.
+pub fn more(dir: &Path, setup: &Setup) -> Option<usize> {
+    let text = setup.inputs.get(BENCH_ROLES[0])?;
+    let record = StudyRecord::load(dir).ok()?;
+    let (mut before, mut now) = (record.segments.last()?.provenance.clone(), setup.provenance());
+    let inputs = record.inputs(dir).ok()?;
+    let known = inputs.get(BENCH_ROLES[0]);
+    // Without lines it had no bounds of what nobody measured either.
+    for role in BENCH_ROLES.iter().take(if known.is_some() { 1 } else { 2 }) {
+        before.input_sha256.remove(*role);
+        now.input_sha256.remove(*role);
+    }
+    let lines = |text: &str| {
+        let mut lines = experiments::parse(text, "").ok()?;
+        // Comments and columns may have moved them.
+        lines.iter_mut().for_each(|line| line.line = 0);
+        Some(lines)
+    };
+    let (known, found) = (lines(known.map_or("", String::as_str))?, lines(text)?);
+    let new = found.strip_prefix(&known[..]).filter(|new| !new.is_empty() && now == before)?;
+    let tasks = setup.task_names();
+    Some(new.iter().filter(|line| tasks.contains(&&*line.task)).count())
+}

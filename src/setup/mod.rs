@@ -1,0 +1,297 @@
+//! All that is needed to evaluate designs, and the options from which commands make it.
+
+pub mod bench;
+pub mod driven;
+pub mod files;
+pub mod film;
+pub mod finger;
+pub mod measured;
+pub mod printed;
+pub mod repeat;
+pub mod request;
+pub mod robots;
+pub mod run;
+pub mod task;
+pub mod tune;
+
+use crate::failure::{Failure, bad_config};
+use files::{Fingers, find, surrogate};
+use input::Place;
+use input::shipped::{FINGERS, Source, UNCERTAINTIES};
+use insertion::evaluation::cell::{Priors, Target};
+use insertion::evaluation::evaluator::Evaluator;
+use insertion::evaluation::objective::Measure;
+use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::template::{Template, printable};
+use insertion::evaluation::uncertainty::Uncertainty;
+use insertion::finger::computed::AtPad;
+use insertion::finger::file::is_shape;
+use insertion::finger::model::{FingerModelKind, FingerSource};
+use insertion::robot::Robot;
+use insertion::space::{Design, Space};
+use insertion::surrogate::Model;
+use insertion::task::Task;
+use insertion::trial::engine::EngineKind;
+use measured::Measured;
+use request::DEFAULT_FINGER;
+use std::sync::Arc;
+use study::{BENCH_ROLES, CELL, FINGER, Inputs, Provenance, sha256};
+
+/// Everything that is needed to measure a design.
+pub struct Setup {
+    /// Measures designs.
+    pub evaluator: Evaluator,
+    /// Search space.
+    pub space: Space,
+    /// The errors under which designs are measured, if they are.
+    pub uncertainty: Option<Uncertainty>,
+    /// Measurements on the bench, if a study asks for its fingers there.
+    pub measured: Option<Measured>,
+    /// The texts all this was read from.
+    pub inputs: Inputs,
+    /// What messages call the task files: their paths, as they were given.
+    pub task_files: Vec<String>,
+}
+
+/// Roles of the input files beside the tasks and the errors.
+const SPACE: &str = "space";
+const ROBOT: &str = "robot";
+const STIFFNESS_DATA: &str = "stiffness";
+const UNCERTAINTY: &str = "uncertainty";
+
+/// The role of a task, counted from 1.
+fn task_role(number: usize) -> String {
+    format!("task_{number}")
+}
+
+impl Setup {
+    /// From the copies kept in a study's folder.
+    pub(crate) fn from_inputs(inputs: &Inputs, engine: &str) -> Result<Self, Failure> {
+        let engine = EngineKind::from_name(engine)
+            .ok_or_else(|| bad_config(format!("no engine is called `{engine}`")))?;
+        let roles = (1..).map(task_role).take_while(|role| inputs.contains_key(role));
+        let tasks = roles.map(|role| input(inputs, &role)).collect::<Result<Vec<_>, _>>()?;
+        let [space, robot, stiffness] =
+            [SPACE, ROBOT, STIFFNESS_DATA].map(|role| input(inputs, role));
+        let space = space?;
+        let parsed = Space::parse(&space.text, &space.file).map_err(Failure::input)?;
+        let fingers = Fingers::parse(finger_input(inputs)?)?;
+        let others = [&robot?, &stiffness?];
+        let mut setup = Setup::new(&tasks, (&space, parsed), others, fingers, engine)?;
+        if inputs.contains_key(CELL) {
+            let source = input(inputs, CELL)?;
+            let found = cell(&source)?;
+            setup = setup.within(source, found)?;
+        }
+        if inputs.contains_key(UNCERTAINTY) {
+            setup = setup.under(input(inputs, UNCERTAINTY)?)?;
+        }
+        let [measurements, priors] = BENCH_ROLES;
+        match inputs.contains_key(measurements) {
+            true => setup.with_measurements(input(inputs, measurements)?, input(inputs, priors)?),
+            false => Ok(setup),
+        }
+    }
+
+    pub(crate) fn new(
+        tasks: &[Source],
+        (space_source, space): (&Source, Space),
+        others: [&Source; 2],
+        fingers: Fingers,
+        engine: EngineKind,
+    ) -> Result<Self, Failure> {
+        let [robot_source, stiffness_source] = others;
+        let robot = Robot::parse(&robot_source.text, &robot_source.file).map_err(Failure::input)?;
+        let template =
+            |task: &Source| Template::parse(&task.text, &task.file).map_err(Failure::task);
+        let templates = tasks.iter().map(template).collect::<Result<Vec<_>, Failure>>()?;
+        different(&templates)?;
+        let roles = (1..).map(task_role).zip(tasks);
+        let others = [SPACE, ROBOT, STIFFNESS_DATA].map(str::to_owned).into_iter();
+        let others = others.zip([space_source, robot_source, stiffness_source]);
+        let finger = fingers.source.iter().map(|source| (FINGER.to_owned(), source));
+        let sources = roles.chain(others).chain(finger);
+        let inputs = sources.map(|(role, source)| (role, source.text.clone())).collect();
+        let surrogate = surrogate(stiffness_source, &fingers.measured_finger()?)?;
+        let fingers = fingers.made();
+        let evaluator = Evaluator { surrogate, fingers, templates, robot, engine, cell: None };
+        fit_together(&evaluator, &space, &space_source.file)?;
+        let task_files = tasks.iter().map(|task| task.file.clone()).collect();
+        Ok(Setup { inputs, evaluator, uncertainty: None, measured: None, space, task_files })
+    }
+
+    /// The evaluator with springs computed from the ribs of the shipped finger, if its own are the
+    /// paper's and the design space, the tasks and the engine have a place for others.
+    pub(crate) fn by_ribs(&self) -> Option<Evaluator> {
+        let own = &self.evaluator;
+        if own.fingers.kind() != FingerModelKind::Paper {
+            return None;
+        }
+        let source = find("finger", FINGERS, DEFAULT_FINGER).ok()?;
+        let evaluator = Evaluator {
+            surrogate: Arc::clone(&own.surrogate),
+            fingers: Fingers::parse(Some(source)).ok()?.made(),
+            templates: own.templates.clone(),
+            robot: own.robot.clone(),
+            engine: own.engine,
+            cell: own.cell.clone(),
+        };
+        fit_together(&evaluator, &self.space, SPACE).ok()?;
+        Some(evaluator)
+    }
+
+    /// The same in a cell, whose robot it has; of the cell's source.
+    pub(crate) fn within(mut self, source: Source, cell: Priors) -> Result<Self, Failure> {
+        for row in &cell.parameters {
+            row.change_robot(row.middle(), &mut self.evaluator.robot);
+        }
+        self.evaluator.cell = Some(cell.clone());
+        possible(&self.evaluator, &cell, &source.file)?;
+        self.inputs.insert(CELL.to_owned(), source.text);
+        Ok(self)
+    }
+
+    /// The same with the errors of that name under which designs are measured.
+    pub(crate) fn under_named(self, name: &str) -> Result<Self, Failure> {
+        self.under(find("uncertainty", UNCERTAINTIES, name)?)
+    }
+
+    fn under(mut self, errors: Source) -> Result<Self, Failure> {
+        let uncertainty = Uncertainty::parse(&errors.text, &errors.file).map_err(Failure::input)?;
+        let robot = &self.evaluator.robot;
+        let rows = uncertainty.cell.iter().filter(|cell| cell.robot.is_none());
+        let mut rows = rows.flat_map(|cell| &cell.parameters);
+        if let Some(row) = rows.find(|row| !row.fits(robot)) {
+            let problem =
+                format!("goes with a robot of kind = \"servo\", which `{}` is not", robot.name);
+            return Err(Failure::input(Place::file(&errors.file).key(&row.name).fault(problem)));
+        }
+        self.uncertainty = Some(uncertainty);
+        self.inputs.insert(UNCERTAINTY.to_owned(), errors.text);
+        Ok(self)
+    }
+
+    /// The same with measurements of its one task from the bench.
+    pub(crate) fn with_measurements(
+        mut self,
+        lines: Source,
+        priors: Source,
+    ) -> Result<Self, Failure> {
+        let experiments = measured::lines(&lines, &self.task_names())?;
+        let file = lines.file;
+        if let [template] = self.evaluator.templates.as_slice() {
+            measured::check(&file, &experiments, template, &self.space)?;
+        }
+        let [role, priors_role] = BENCH_ROLES.map(str::to_owned);
+        let bounds = Priors::parse(&priors.text, &priors.file).map_err(Failure::input)?;
+        let measured = Measured { priors: bounds, experiments, file };
+        self.inputs.extend([(role, lines.text), (priors_role, priors.text)]);
+        self.measured = Some(measured);
+        Ok(self)
+    }
+
+    /// The names of its tasks.
+    pub fn task_names(&self) -> Vec<&str> {
+        self.evaluator.templates.iter().map(|template| template.task.name.as_str()).collect()
+    }
+
+    /// Provenance of all this, as a study records it.
+    pub fn provenance(&self) -> Provenance {
+        Provenance::new(self.evaluator.engine, sha256(&self.inputs))
+    }
+
+    /// The one task of a command that is not for several.
+    pub fn only_task(&self) -> Result<&Template, Failure> {
+        match self.evaluator.templates.as_slice() {
+            [template] => Ok(template),
+            _ => Err(Failure::usage("give one --task; only a study may have several")),
+        }
+    }
+
+    /// Plan of measurements beside the window, with the draws of this seed; `wanted` says which.
+    pub fn plan(&self, seed: u64, wanted: impl Fn(Measure) -> bool) -> Result<Plan, Failure> {
+        let (success, robust) = (wanted(Measure::SuccessRate), wanted(Measure::RobustRange));
+        match &self.uncertainty {
+            Some(uncertainty) => Ok(Plan::new(uncertainty, seed, success, robust)),
+            None if success || robust => Err(missing(UNCERTAINTY)),
+            None => Ok(Plan::WINDOW),
+        }
+    }
+}
+
+/// Whether robot, engine, fingers and space, read from `file`, go with each task.
+fn fit_together(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), Failure> {
+    let Evaluator { fingers, templates, robot, engine, .. } = evaluator;
+    if let FingerSource::Computed(fingers) = fingers {
+        printable::check(space, file, &fingers.file).map_err(Failure::input)?;
+    }
+    let fits = |task: &Task| engine.rig(task, robot, &fingers.any(task), 1.0).map(|_| ());
+    for template in templates {
+        fits(&template.task).map_err(Failure::input)?;
+        template.check(space, file, &fits).map_err(Failure::input)?;
+    }
+    printable::check_springs(evaluator, space, file).map_err(Failure::input)
+}
+
+/// Whether each task can have the cell's numbers.
+fn possible(evaluator: &Evaluator, cell: &Priors, file: &str) -> Result<(), Failure> {
+    for template in &evaluator.templates {
+        for row in cell.of(&template.task.name) {
+            let Target::Number(key) = &row.sets else { continue };
+            let value = evaluator.number(template, key).filter(|_| !is_shape(key));
+            let Some(value) = value else { continue };
+            let design = Design::infill(0.0, 0.0).with(key, value);
+            let at_pad = AtPad { compliance: 1.0, assembly: 1.0 };
+            template.apply(&design, &FingerSource::Paper, at_pad).map_err(|error| {
+                Failure::input(Place::file(file).key(&row.name).fault(error.to_string()))
+            })?;
+        }
+    }
+    Ok(())
+}
+
+/// A task that is given twice would count twice.
+fn different(templates: &[Template]) -> Result<(), Failure> {
+    let names: Vec<&str> = templates.iter().map(|template| &*template.task.name).collect();
+    match names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
+        None => Ok(()),
+        Some((_, twice)) => {
+            Err(Failure::usage(format!("two tasks are called `{twice}`; give each task once")))
+        }
+    }
+}
+
+/// The cell of a file, which has to hold a robot.
+pub(crate) fn cell(Source { file, text }: &Source) -> Result<Priors, Failure> {
+    let cell = Priors::parse(text, file).map_err(Failure::input)?;
+    match cell.robot {
+        Some(_) => Ok(cell),
+        None => Err(Failure::in_file(
+            file,
+            "robot: is missing; a cell has its robot in [robot], as a robot file",
+        )),
+    }
+}
+
+fn missing(role: &str) -> Failure {
+    bad_config(format!("input_sha256 has no `{role}`"))
+}
+
+/// One of the inputs kept in a study's folder.
+pub fn input(inputs: &Inputs, role: &str) -> Result<Source, Failure> {
+    match inputs.get(role) {
+        Some(text) => Ok(Source { file: format!("inputs/{role}"), text: text.clone() }),
+        None => Err(missing(role)),
+    }
+}
+
+/// The finger file kept in a study's folder, if its fingers are computed.
+fn finger_input(inputs: &Inputs) -> Result<Option<Source>, Failure> {
+    inputs.contains_key(FINGER).then(|| input(inputs, FINGER)).transpose()
+}
+
+/// The stiffness model of a study, from the copies in its folder.
+pub(crate) fn surrogate_of(inputs: &Inputs) -> Result<Arc<Model>, Failure> {
+    let finger = Fingers::parse(finger_input(inputs)?)?.measured_finger()?;
+    surrogate(&input(inputs, STIFFNESS_DATA)?, &finger)
+}

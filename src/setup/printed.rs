@@ -1,0 +1,115 @@
+//! A finger to be printed, and how stiff measured ones are.
+
+use super::files::{find, stiffness_data, surrogate};
+use super::request::DEFAULT_FINGER;
+use crate::failure::Failure;
+use finray::geometry::Geometry;
+use finray::printed::PrintedFinger;
+use input::shipped::FINGERS;
+use insertion::finger::file::{FingerFile, is_shape};
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use insertion::surrogate::Prediction;
+use report::answer::Answer;
+use std::path::{Path, PathBuf};
+use study::StudyRecord;
+
+/// Which finger to print: the best of a study, or of an infill.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct PrintRequest {
+    /// Folder of a study: its best design
+    #[arg(value_name = "DIR", conflicts_with_all = ["density", "direction"],
+          required_unless_present = "density")]
+    pub dir: Option<PathBuf>,
+    /// Infill density, percent
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, requires = "direction")]
+    pub density: Option<f64>,
+    /// Infill direction, degrees
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, requires = "density")]
+    pub direction: Option<f64>,
+    /// Finger: finray9, or the path of a finger file [default: the study's, or finray9]
+    #[arg(long, value_name = "NAME")]
+    pub finger: Option<String>,
+    /// Where the first rib lies, mm [default: the finger file's]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub phase_mm: Option<f64>,
+}
+
+impl PrintRequest {
+    /// Its ribs.
+    ///
+    /// # Errors
+    /// If a file cannot be used, the study recommends nothing, or there is no such finger.
+    pub fn geometry(&self) -> Result<Geometry, Failure> {
+        let (design, file, _) = self.chosen()?;
+        let finger = file.with(&design).map_err(Failure::input)?;
+        Geometry::new(&finger, &design.printed(self.phase_mm)).map_err(Failure::input)
+    }
+
+    /// Its stiffness by the model of measured fingers: as the study predicted it, else by the table
+    /// that the finger file names. `None` if there is none.
+    ///
+    /// # Errors
+    /// As of [`PrintRequest::geometry`].
+    pub fn measured_model(&self) -> Result<Option<Prediction>, Failure> {
+        let (design, file, of_study) = self.chosen()?;
+        of_study.map_or_else(|| measured_model(&file.finger, &design), |found| Ok(Some(found)))
+    }
+
+    /// The design, the file of its finger, and the stiffness that a study predicted of both.
+    fn chosen(&self) -> Result<(Design, FingerFile, Option<Prediction>), Failure> {
+        let (design, file, stiffness) = match (&self.dir, self.density, self.direction) {
+            (Some(dir), ..) => best(dir)?,
+            (None, Some(density), Some(direction)) => {
+                (Design::infill(density, direction), None, None)
+            }
+            _ => {
+                let problem = "give the folder of a study, or --density and --direction";
+                return Err(Failure::usage(problem));
+            }
+        };
+        let file = match (&self.finger, file) {
+            (None, Some(file)) => file,
+            (named, _) => finger_file(named.as_deref().unwrap_or(DEFAULT_FINGER))?,
+        };
+        Ok((design, file, stiffness.filter(|_| self.finger.is_none())))
+    }
+}
+
+/// Reads the finger file of that name or at that path.
+///
+/// # Errors
+/// If it cannot be used.
+pub(crate) fn finger_file(name: &str) -> Result<FingerFile, Failure> {
+    let source = find("finger", FINGERS, name)?;
+    FingerFile::parse(&source.text, &source.file).map_err(Failure::input)
+}
+
+/// Returns the stiffness by the model that is fitted to the table of measured fingers which a finger file names;
+/// `None` without a table, of an infill that it cannot predict, or of another shape than measured.
+pub(crate) fn measured_model(
+    finger: &PrintedFinger,
+    design: &Design,
+) -> Result<Option<Prediction>, Failure> {
+    let infill = [DENSITY_KEY, DIRECTION_KEY].map(|key| design.get(key));
+    let ([Some(density), Some(direction)], Some(_), false) =
+        (infill, &finger.measured, design.0.keys().any(|key| is_shape(key)))
+    else {
+        return Ok(None);
+    };
+    let model = surrogate(&stiffness_data(None, finger)?, finger)?;
+    Ok(model.predict(density, direction).ok())
+}
+
+/// The design that a study recommends, the finger file of its fingers, and their stiffness, if the
+/// design was evaluated.
+fn best(dir: &Path) -> Result<(Design, Option<FingerFile>, Option<Prediction>), Failure> {
+    let record = StudyRecord::load(dir)?;
+    let Some(best) = Answer::of(&record).verdict.finger().cloned() else {
+        return Err(Failure::usage(format!(
+            "{}: the study recommends no design; give --density and --direction",
+            dir.display()
+        )));
+    };
+    let found = record.current().iter().find(|recorded| recorded.design == best);
+    Ok((best.clone(), record.finger.clone(), found.map(|recorded| recorded.stiffness)))
+}

@@ -1,0 +1,100 @@
+//! Repeats of a trial or an evaluation: do small changes change the outcome?
+
+use super::Setup;
+use crate::context::not_stopped;
+use crate::failure::{Failure, wide};
+use insertion::evaluation::OffsetStep;
+use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::robustness::repeat::{Band, Bands, Repeats};
+use insertion::trial::Grasp;
+use serde::{Serialize, Serializer};
+use std::ops::RangeInclusive;
+use std::sync::atomic::AtomicBool;
+
+const REPEATS: RangeInclusive<u32> = 2..=10_000;
+
+/// How often to repeat, with friction within 10 %, start within 0.02 mm, and half the step by turns.
+#[derive(Debug, Clone, Copy, clap::Args)]
+pub struct RepeatRequest {
+    /// Then N times more with friction within 10 %, start within 0.02 mm, and half the step by turns
+    #[arg(id = "repeat", long = "repeat", value_name = "N", required = false,
+          value_parser = clap::value_parser!(u32).range(wide(&REPEATS)))]
+    pub count: u32,
+    /// Seed of the repeats
+    #[arg(
+        id = "repeat_seed",
+        long = "repeat-seed",
+        value_name = "N",
+        default_value_t = 0,
+        requires = "repeat"
+    )]
+    pub seed: u64,
+}
+
+impl RepeatRequest {
+    /// Results of repeats of a finger on its task, from this taught start.
+    pub(crate) fn of<T>(
+        &self,
+        setup: &Setup,
+        specimen: &Specimen,
+        taught: Option<OffsetStep>,
+        stop: &AtomicBool,
+        measure: impl Fn(&Repeats) -> T,
+    ) -> Result<T, Failure> {
+        let rig = |factor| setup.evaluator.rig(specimen, taught, factor).map_err(Failure::input);
+        let rigs = [rig(1.0)?, rig(0.5)?];
+        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let repeats = Repeats::new(rigs.each_ref().map(|rig| &**rig), grasp, self.seed, self.count);
+        let measured = measure(&repeats);
+        not_stopped(stop)?;
+        Ok(measured)
+    }
+}
+
+/// Returns the bands at a window's ends as lines.
+pub fn bands_text(bands: &Bands) -> String {
+    let width = |band: &Band| {
+        band.width_mm().map_or("more than 2 mm".to_owned(), |width| format!("{width:.1} mm"))
+    };
+    let inside = match bands.unsure_inside.as_slice() {
+        [] => format!("all {} offsets tried insert in every repeat", bands.looked_at_inside),
+        unsure => {
+            let at: Vec<String> = unsure.iter().map(|mm| format!("{mm:+.1}")).collect();
+            let tried = bands.looked_at_inside;
+            format!(
+                "{} of {tried} offsets tried do not insert in every repeat: {} mm",
+                unsure.len(),
+                at.join(", ")
+            )
+        }
+    };
+    format!(
+        "unsure bands  {} below, {} above\nbetween them  {inside}\n",
+        width(&bands.negative),
+        width(&bands.positive)
+    )
+}
+
+/// Serializes bands by the keys of `--json`.
+///
+/// # Errors
+/// Those of the serializer.
+pub fn serialize_bands<S: Serializer>(
+    bands: &Option<Bands>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Fields<'a> {
+        negative_band_mm: Option<f64>,
+        positive_band_mm: Option<f64>,
+        offsets_tried_inside: usize,
+        unsure_inside_mm: &'a [f64],
+    }
+    let fields = bands.as_ref().map(|bands| Fields {
+        negative_band_mm: bands.negative.width_mm(),
+        positive_band_mm: bands.positive.width_mm(),
+        offsets_tried_inside: bands.looked_at_inside,
+        unsure_inside_mm: &bands.unsure_inside,
+    });
+    fields.serialize(serializer)
+}

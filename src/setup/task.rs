@@ -1,0 +1,238 @@
+//! Task and space files: read, checked, tried.
+
+use super::files::{find, robot};
+use super::request::TaskSource;
+use super::tune::{self, mended};
+use crate::commands::trial::Ended;
+use crate::context::not_stopped;
+use crate::failure::Failure;
+use connector::check::{Problem, problems};
+use connector::nominal;
+use connector::tune::{Stage, Tuned};
+use input::Place;
+use input::shipped::{SPACES, STIFFNESS, Source};
+use input::units::N_PER_MM;
+use insertion::finger::Finger;
+use insertion::outcome::Outcome;
+use insertion::robot::Robot;
+use insertion::space::Space;
+use insertion::stiffness;
+use insertion::stiffness::three;
+use insertion::task::Task;
+use insertion::trial::engine::EngineKind;
+use insertion::trial::{Grasp, Trial};
+use serde::{Serialize, Serializer};
+use std::sync::atomic::AtomicBool;
+
+/// A task file that was read.
+#[derive(Debug, Clone)]
+pub struct TaskFile {
+    /// Its text, and what messages call it.
+    pub source: Source,
+    /// The task.
+    pub task: Task,
+}
+
+impl TaskFile {
+    /// Checks the text of a task file.
+    pub fn parse(source: Source) -> Result<Self, Failure> {
+        let task = Task::parse(&source.text, &source.file).map_err(Failure::task)?;
+        Ok(TaskFile { source, task })
+    }
+
+    /// The fields of a task file, checked.
+    pub fn fields(source: Source) -> Result<toml::Table, Failure> {
+        let Source { file, text } = TaskFile::parse(source)?.source;
+        input::read(&text, &file).map_err(Failure::input)
+    }
+
+    /// The task file with these fields, checked; `file` is what messages call it.
+    pub fn of_fields(file: &str, fields: &serde_json::Value) -> Result<Self, Failure> {
+        let text = toml::to_string(fields)
+            .map_err(|error| Failure::task(Place::file(file).fault(error.to_string())))?;
+        TaskFile::parse(Source { file: file.to_owned(), text })
+    }
+}
+
+/// The task of that name, or of the file at that path.
+pub fn read_task(name: &str) -> Result<TaskFile, Failure> {
+    TaskFile::parse(TaskSource::Named(name.to_owned()).read()?)
+}
+
+/// The space of that name, or of the file at that path.
+pub fn read_space(name: &str) -> Result<Space, Failure> {
+    let source = find("space", SPACES, name)?;
+    Space::parse(&source.text, &source.file).map_err(Failure::input)
+}
+
+/// Problems of a task file, and whether its nominal start inserts.
+pub struct TaskCheck {
+    /// The file.
+    pub source: Source,
+    /// The task, if the file can be read.
+    pub task: Option<Task>,
+    /// Problems that keep it from working.
+    pub problems: Vec<Problem>,
+    /// The finger that tried the nominal start and what came of it, unless a problem forbids it.
+    pub nominal: Option<(Finger, Trial, String)>,
+}
+
+impl TaskCheck {
+    /// Checks a task file with the robot of that name.
+    pub fn of(
+        source: Source,
+        robot_name: &str,
+        engine: EngineKind,
+        stop: &AtomicBool,
+    ) -> Result<Self, Failure> {
+        let task = match Task::parse(&source.text, &source.file) {
+            Ok(task) => task,
+            Err(error) => {
+                let problems = vec![Problem::from(&error)];
+                return Ok(TaskCheck { source, task: None, problems, nominal: None });
+            }
+        };
+        let problems = problems(&task);
+        let nominal = match problems.is_empty() {
+            true => {
+                let (finger, trial) = nominal_start(&task, &robot(robot_name)?, engine, stop)?;
+                let explanation = nominal::explain(&task, &trial);
+                Some((finger, trial, explanation))
+            }
+            false => None,
+        };
+        Ok(TaskCheck { source, task: Some(task), problems, nominal })
+    }
+}
+
+impl TaskCheck {
+    /// Stages of `task tune` until one mends a nominal start that fails; `None` if it inserts, or if
+    /// problems come first.
+    pub fn mend(
+        &self,
+        robot_name: &str,
+        engine: EngineKind,
+        stop: &AtomicBool,
+    ) -> Result<Option<Tuned>, Failure> {
+        let fails = |(_, trial, _): &(Finger, Trial, String)| trial.outcome != Outcome::Inserted;
+        match (&self.task, &self.nominal) {
+            (Some(task), Some(nominal)) if fails(nominal) => {
+                mended(task, (robot_name, engine), Stage::Search, stop).map(Some)
+            }
+            _ => Ok(None),
+        }
+    }
+}
+
+/// The middle one of the measured fingers, and its trial at the nominal start.
+pub(crate) fn nominal_start(
+    task: &Task,
+    robot: &Robot,
+    engine: EngineKind,
+    stop: &AtomicBool,
+) -> Result<(Finger, Trial), Failure> {
+    let finger = medium()?;
+    let shaped = finger.shaped(&task.finger, 0.0);
+    let rig = engine.rig(task, robot, &shaped, 1.0).map_err(Failure::input)?;
+    let trial = rig.hold(Grasp { stop, ..Grasp::of(&shaped) }).trial(0.0);
+    not_stopped(stop)?;
+    Ok((finger, trial))
+}
+
+/// The shipped measured finger of medium compliance stiffness.
+fn medium() -> Result<Finger, Failure> {
+    let nothing = || Failure::running("no measured fingers are shipped");
+    let [file] = STIFFNESS else { return Err(nothing()) };
+    let designs = stiffness::parse(file.text, file.file).map_err(Failure::input)?;
+    let three = three(designs);
+    let middle = three.get(1).or(three.first());
+    middle.map(|design| Finger::new(design.compliance, design.assembly)).ok_or_else(nothing)
+}
+
+impl Serialize for TaskCheck {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Nominal<'a> {
+            #[serde(flatten)]
+            ended: Ended<'a>,
+            compliance_n_per_mm: f64,
+            assembly_n_per_mm: f64,
+            explanation: &'a str,
+        }
+        #[derive(Serialize)]
+        struct Fields<'a> {
+            valid: bool,
+            problems: &'a [Problem],
+            nominal: Option<Nominal<'a>>,
+        }
+        let nominal = self.nominal.as_ref().map(|(finger, trial, explanation)| Nominal {
+            ended: trial.into(),
+            compliance_n_per_mm: finger.compliance / N_PER_MM,
+            assembly_n_per_mm: finger.assembly / N_PER_MM,
+            explanation,
+        });
+        let problems = &self.problems;
+        Fields { valid: problems.is_empty(), problems, nominal }.serialize(serializer)
+    }
+}
+
+impl TaskCheck {
+    /// Returns a line for each problem and one for the nominal start.
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        for Problem { key, problem, remedy } in &self.problems {
+            text.push_str(&format!(
+                "problem       {key}\n              {problem}\n              right: {remedy}\n"
+            ));
+        }
+        match &self.nominal {
+            None => text.push_str("nominal       not tried: mend the problems first\n"),
+            Some((finger, trial, explanation)) => text.push_str(&format!(
+                "geometry      no problems\n\
+                 finger        compliance {} N/mm, assembly {} N/mm: the middle one of the measured\n\
+                 nominal       {}, peak force {:.1} N, slip {:.2} mm\n              {explanation}\n",
+                finger.compliance / N_PER_MM,
+                finger.assembly / N_PER_MM,
+                trial.outcome.label(),
+                trial.peak_force_n,
+                trial.slip_mm,
+            )),
+        }
+        text
+    }
+
+    /// Checks that nothing is wrong and that the nominal start inserts.
+    ///
+    /// # Errors
+    /// If not: how many problems there are.
+    pub fn verdict(&self) -> Result<(), Failure> {
+        let file = &self.source.file;
+        let outcome = self.nominal.as_ref().map(|(_, trial, _)| trial.outcome);
+        if outcome == Some(Outcome::Inserted) {
+            return Ok(());
+        }
+        Err(Failure::usage(match self.problems.len() {
+            0 => format!("{file}: the nominal start does not insert"),
+            1 => format!("{file}: 1 problem"),
+            count => format!("{file}: {count} problems"),
+        }))
+    }
+
+    /// Returns how a command ends that wrote a new task: well if its nominal start inserts.
+    ///
+    /// # Errors
+    /// If it does not.
+    pub fn ended(&self, tuned: Option<&Tuned>) -> Result<(), Failure> {
+        match (self.verdict(), tuned) {
+            (Ok(()), _) => Ok(()),
+            (Err(_), Some(tuned)) => {
+                let file = &self.source.file;
+                let tried = tune::tried(tuned);
+                Err(Failure::running(format!(
+                    "{file}: does not insert; tried: {tried}; `optimize task tune {file}` looks further"
+                )))
+            }
+            (Err(problems), None) => Err(Failure::running(problems.to_string())),
+        }
+    }
+}

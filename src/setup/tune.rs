@@ -1,0 +1,136 @@
+//! Strategies of a new task.
+
+use super::files::robot;
+use super::request::DEFAULT_ROBOT;
+use crate::context::not_stopped;
+use crate::failure::Failure;
+use crate::layout;
+use connector::check::problems;
+use connector::tune::{Bench, Effort, Stage, Step, Tuned, YAW_DEG, tune};
+use insertion::evaluation::Window;
+use insertion::outcome::Outcome;
+use insertion::robot::Robot;
+use insertion::task::Task;
+use insertion::trial::engine::EngineKind;
+use serde::Serialize;
+use std::sync::atomic::AtomicBool;
+
+/// Returns the fingers that try strategies of a task.
+///
+/// # Errors
+/// If no measured fingers are shipped.
+pub fn bench<'a>(
+    task: &'a Task,
+    robot: &'a Robot,
+    engine: EngineKind,
+    stop: &'a AtomicBool,
+) -> Result<Bench<'a>, Failure> {
+    Bench::new(task, robot, engine, stop)
+        .ok_or_else(|| Failure::running("no measured fingers are shipped"))
+}
+
+/// Returns a new task with its start taught and, where that is not enough, the strategy of a family; nothing
+/// was tried of one that has problems.
+///
+/// # Errors
+/// If the task cannot be simulated; if `stop` is set meanwhile.
+pub fn begun(
+    task: Task,
+    engine: EngineKind,
+    stop: &AtomicBool,
+) -> Result<(Task, Option<Tuned>), Failure> {
+    if !problems(&task).is_empty() {
+        return Ok((task, None));
+    }
+    let tuned = mended(&task, (DEFAULT_ROBOT, engine), Stage::Families, stop)?;
+    let best = tuned.best();
+    let strategy = if tuned.inserts() { best.tried.strategy.clone() } else { task.strategy };
+    Ok((Task { strategy, ..task }, Some(tuned)))
+}
+
+/// Tries stages up to `last` until one of them is enough.
+///
+/// # Errors
+/// If the task cannot be simulated; if `stop` is set meanwhile.
+pub fn mended(
+    task: &Task,
+    (robot_name, engine): (&str, EngineKind),
+    last: Stage,
+    stop: &AtomicBool,
+) -> Result<Tuned, Failure> {
+    let robot = robot(robot_name)?;
+    let effort = Effort { last, until_enough: true, seed: 0, tell: &|_, _, _, _| () };
+    let tuned = tune(&bench(task, &robot, engine, stop)?, &effort).map_err(Failure::input)?;
+    not_stopped(stop)?;
+    Ok(tuned)
+}
+
+/// A strategy that was tried: stage, what it changes, and ranges of a soft, a medium and a stiff finger.
+#[derive(Serialize)]
+pub struct Tried<'a> {
+    stage: Stage,
+    what: &'a str,
+    least_range_mm: Option<f64>,
+    range_mm: Vec<f64>,
+    turned_least_range_mm: Option<f64>,
+}
+
+impl<'a> From<&'a Step> for Tried<'a> {
+    fn from(Step { stage, what, tried, turned_mm }: &'a Step) -> Self {
+        Tried {
+            stage: *stage,
+            what,
+            least_range_mm: tried.inserts().then_some(tried.score),
+            range_mm: tried.windows.iter().map(Window::range_mm).collect(),
+            turned_least_range_mm: *turned_mm,
+        }
+    }
+}
+
+/// Returns what was chosen; `None` where nothing inserts.
+pub fn chosen(tuned: &Tuned) -> Option<Tried<'_>> {
+    tuned.inserts().then(|| tuned.best().into())
+}
+
+/// Returns a line on what was chosen.
+pub fn brief(name: &str, tuned: &Tuned) -> String {
+    let step = tuned.best();
+    let range = outcome(step);
+    let text = format!("{}: {range} with a soft, a medium and a stiff finger", step.what);
+    layout::lines([(name.to_owned(), text)])
+}
+
+/// Returns what was tried, the candidates of the search by their number.
+pub fn tried(tuned: &Tuned) -> String {
+    let searched = tuned.steps.iter().filter(|step| step.stage == Stage::Search).count();
+    let named = tuned.steps.iter().filter(|step| step.stage != Stage::Search);
+    let mut all: Vec<_> = named.map(|step| step.what.clone()).collect();
+    if searched > 0 {
+        all.push(format!("{searched} of tilt, strokes, preload and speed"));
+    }
+    all.join(", ")
+}
+
+/// Returns how a strategy ends with the fingers that tried it.
+pub fn outcome(step: &Step) -> String {
+    let turned = step.turned_mm.map_or(String::new(), |least_mm| {
+        format!(", with the socket turned by {YAW_DEG}° at least {least_mm:.1} mm")
+    });
+    match step.tried.windows.is_empty() {
+        true => "inserts from no start".to_owned(),
+        false => ranges(&step.tried.windows) + &turned,
+    }
+}
+
+/// Returns `3.1, 3.3, 2.9 mm`, or how the nominal start fails where it does.
+pub fn ranges(windows: &[Window]) -> String {
+    let inserts = |window: &Window| window.nominal == Outcome::Inserted;
+    let all = windows.iter().all(inserts);
+    let unit = if all { "" } else { " mm" };
+    let range = |window: &Window| match inserts(window) {
+        true => format!("{:.1}{unit}", window.range_mm()),
+        false => window.nominal.short().to_owned(),
+    };
+    let each: Vec<_> = windows.iter().map(range).collect();
+    format!("{}{}", each.join(", "), if all { " mm" } else { "" })
+}

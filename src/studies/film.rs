@@ -1,0 +1,92 @@
+//! Films of the pairs of trials at the ends of a study's recommended window.
+
+use crate::failure::Failure;
+use crate::setup::Setup;
+use crate::setup::film::{film, shifted};
+use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::tolerance::offset;
+use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
+use insertion::outcome::Outcome;
+use insertion::trial::Grasp;
+use rayon::ThreadPool;
+use report::answer::Answer;
+use report::replay::{self, ENDS, pair_file};
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use study::{StudyRecord, write_own_file};
+
+/// Records the pair at each end of the recommended design's windows, the last offset that
+/// inserts beside the first that fails, into the study's folder; what an earlier run left there is
+/// replaced or, where there is no pair, removed. Ends early once `stop` is set.
+pub(crate) fn boundary(
+    dir: &Path,
+    record: &StudyRecord,
+    setup: &Setup,
+    pool: &ThreadPool,
+    stop: &AtomicBool,
+) -> Result<(), Failure> {
+    // Of a front there is no one finger to show.
+    let found = record.config.objective.single().and_then(|_| Answer::of(record).shown());
+    for (at, template) in setup.evaluator.templates.iter().enumerate() {
+        for (end, outward) in ENDS {
+            let file = dir.join(pair_file(at, end));
+            let pair =
+                match found.as_ref().and_then(|(design, tasks)| Some((*design, *tasks.get(at)?))) {
+                    None => None,
+                    Some((design, task)) => {
+                        let stiffness = setup.evaluator.predict(design).map_err(Failure::input)?;
+                        let specimen = setup
+                            .evaluator
+                            .specimen(template, design, stiffness)
+                            .map_err(Failure::input)?;
+                        pair(setup, &specimen, task, (end, outward), (pool, stop))?
+                    }
+                };
+            // What was filmed meanwhile is worthless.
+            if stop.load(Ordering::SeqCst) {
+                return Ok(());
+            }
+            match pair {
+                Some(page) => {
+                    let folder = file.parent().unwrap_or(dir);
+                    fs::create_dir_all(folder).map_err(|error| {
+                        Failure::running(format!("{}: {error}", folder.display()))
+                    })?;
+                    write_own_file(&file, &page)?;
+                }
+                // It need not be there.
+                None => drop(fs::remove_file(&file)),
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A page of both trials; `None` if no trial failed there, or the engine shows nothing.
+fn pair(
+    setup: &Setup,
+    specimen: &Specimen,
+    measured: &Evaluation,
+    (end, outward): (&str, OffsetStep),
+    (pool, stop): (&ThreadPool, &AtomicBool),
+) -> Result<Option<String>, Failure> {
+    let window = &measured.window;
+    let (last, failed) = match outward {
+        -1 => (window.negative_steps, window.end_negative),
+        _ => (window.positive_steps, window.end_positive),
+    };
+    if window.nominal != Outcome::Inserted || failed.is_none() {
+        return Ok(None);
+    }
+    let rig = setup.evaluator.rig(specimen, measured.taught, 1.0).map_err(Failure::input)?;
+    let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+    let record = |step| rig.record(grasp, offset(step));
+    let (inside, outside) =
+        pool.install(|| rayon::join(|| record(last), || record(last + outward)));
+    let Some((inside, outside)) = inside.zip(outside) else { return Ok(None) };
+    let labels = [last, last + outward].map(|step| shifted(grid_mm(step)));
+    let films = [film(&labels[0], specimen, &inside), film(&labels[1], specimen, &outside)];
+    let title = format!("{}: the {end} end of the window", specimen.task.name);
+    Ok(Some(replay::page(&title, &films)))
+}

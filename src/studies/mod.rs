@@ -1,0 +1,17 @@
+//! Studies: opened, run on the threads of this process or guided from outside, concluded and reported.
+
+pub mod around;
+mod film;
+pub mod guided;
+pub mod on_bench;
+pub mod open;
+mod optimizer;
+mod printable;
+pub mod recommended;
+pub mod report;
+pub mod request;
+pub mod standing;
+pub mod summary;
+pub mod sweep;
+pub mod text;
+mod unusable;

@@ -1,0 +1,67 @@
+//! The optimizer of a study: what it searches, and what it knows beforehand.
+
+use crate::failure::{Failure, bad_config};
+use crate::setup::Setup;
+use ask_tell::gp::DEFAULT_NOISE_FLOOR;
+use ask_tell::{Grid, GridPoint, Informed, Optimizer, OptimizerKind, Polished};
+use insertion::evaluation::objective::Measure;
+use insertion::evaluation::uncertainty::Uncertainty;
+use insertion::finger::file::is_shape;
+use insertion::finger::model::FingerSource;
+use insertion::space::{Design, Parameter};
+use insertion::stiffness::Measurement;
+use study::StudyConfig;
+
+/// The optimizer of a study.
+pub(crate) fn optimizer(
+    setup: &Setup,
+    config: &StudyConfig,
+) -> Result<Box<dyn Optimizer + Send>, Failure> {
+    let kind: OptimizerKind = config.optimizer.parse().map_err(bad_config)?;
+    let grid = Grid::new(setup.space.levels());
+    let measures = config.objective.measures().iter();
+    let floors: Vec<f64> =
+        measures.map(|&measure| noise_floor(measure, setup.uncertainty.as_ref())).collect();
+    let search = ask_tell::build_for(kind, grid.clone(), config.seed, &floors);
+    let search = match measured_points(setup) {
+        points if kind == OptimizerKind::Gp && !points.is_empty() => {
+            let own = setup.space.parameters.len() + 1;
+            Box::new(Informed::new(search, own, points)) as Box<dyn Optimizer + Send>
+        }
+        _ => search,
+    };
+    Ok(match config.polish {
+        0 => search,
+        polish => Box::new(Polished::new(search, grid, config.budget, polish)),
+    })
+}
+
+/// Of a space of printed fingers the points next to the measured ones, which have the shape of the
+/// finger file: what the other numbers add to the infill is told against those.
+fn measured_points(setup: &Setup) -> Vec<GridPoint> {
+    let parameters = &setup.space.parameters;
+    let FingerSource::Computed(fingers) = &setup.evaluator.fingers else { return Vec::new() };
+    if !parameters.iter().any(|parameter| is_shape(&parameter.key)) {
+        return Vec::new();
+    }
+    let point = |measured: &Measurement| {
+        let infill = Design::infill(measured.density_percent, measured.direction_deg);
+        let value =
+            |p: &Parameter| infill.get(&p.key).or_else(|| fingers.file.numbers.number(&p.key));
+        parameters.iter().map(|p| Some(p.nearest(value(p)?))).collect::<Option<_>>().map(GridPoint)
+    };
+    setup.evaluator.surrogate.measurements.iter().filter_map(point).collect()
+}
+
+/// Standard deviation of what a measure's steps round off, in its unit: ranges have steps of
+/// 0.1 mm, success rates of one trial, forces and slips none.
+fn noise_floor(measure: Measure, uncertainty: Option<&Uncertainty>) -> f64 {
+    match measure {
+        Measure::PeakForce | Measure::Slip => 0.0,
+        Measure::Range | Measure::CentredRange | Measure::RobustRange => DEFAULT_NOISE_FLOOR,
+        Measure::SuccessRate => {
+            let trials = uncertainty.map_or(1, |errors| errors.success.trials);
+            1.0 / f64::from(trials) / 12f64.sqrt()
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! Many fingers on one task, each measured as by itself.
+
+use crate::commands::evaluate::{Evaluated, Request as EvaluateRequest};
+use crate::context::not_stopped;
+use crate::failure::Failure;
+use crate::setup::Setup;
+use crate::setup::finger::FingerRequest;
+use crate::setup::run::RunRequest;
+use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::tolerance::Search;
+use rayon::ThreadPool;
+use rayon::prelude::*;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+use study::{Cache, Simulated};
+
+/// Measures fingers on a task, on its own threads and through the cache that studies share.
+pub struct Sweep {
+    setup: Setup,
+    search: Search,
+    plan: Plan,
+    cache: Option<Cache>,
+    pool: ThreadPool,
+}
+
+impl Sweep {
+    /// Of windows as they are asked for, but for the finger and repeats.
+    pub fn new(windows: &EvaluateRequest, run: &RunRequest) -> Result<Self, Failure> {
+        run.check()?;
+        let (setup, plan) = windows.prepared()?;
+        setup.only_task()?;
+        let (cache, pool) = (run.cache(&setup)?, run.pool()?);
+        Ok(Sweep { setup, search: windows.search(), plan, cache, pool })
+    }
+
+    /// How many windows were in the cache.
+    pub fn known(&self) -> u64 {
+        self.cache.as_ref().map_or(0, Cache::found)
+    }
+
+    /// Measures these fingers, in their order.
+    pub fn measure(
+        &self,
+        fingers: &[FingerRequest],
+        stop: &AtomicBool,
+    ) -> Result<Vec<Evaluated>, Failure> {
+        let Sweep { setup, search, plan, .. } = self;
+        let (evaluator, cache) = (&setup.evaluator, self.cache.as_ref());
+        let simulated = Simulated { evaluator, search: *search, plan, cache, stop };
+        let one = |finger: &FingerRequest| {
+            not_stopped(stop)?;
+            let clock = Instant::now();
+            let chosen = finger.choose(setup)?;
+            let (evaluation, _) =
+                simulated.measure(&chosen.specimen, plan).map_err(Failure::input)?;
+            let wall_s = clock.elapsed().as_secs_f64();
+            Ok(Evaluated { chosen, evaluation, bands: None, by_ribs: None, wall_s })
+        };
+        let found: Vec<_> = self.pool.install(|| fingers.par_iter().map(one).collect());
+        not_stopped(stop)?;
+        // Of several failures the first.
+        found.into_iter().collect()
+    }
+}

@@ -1,0 +1,120 @@
+//! The result of a study in words.
+
+use super::around::Around;
+use super::open::Ended;
+use super::report::PAGE;
+use crate::layout;
+use report::answer::lines;
+use report::answer::words::{evaluated, volume_unit};
+use report::answer::{Answer, Front, command, expectation};
+use std::path::Path;
+use study::{Ending, Recorded, StudyRecord};
+
+/// Returns the output of a study that has ended; `all` adds all numbers behind the answer.
+pub fn ended(Ended { dir, record, ending, known, .. }: &Ended, all: bool) -> String {
+    let answer = Answer::of(record);
+    let verbose = if all { verbose(&answer, *ending, *known) } else { String::new() };
+    told(&answer, dir, &verbose)
+}
+
+/// Returns what follows the answer.
+pub fn around(around: &Around) -> String {
+    let levers =
+        around.levers.iter().map(|levers| format!("levers        {}\n", levers.sentence()));
+    let robots = around.robots.iter().map(|found| format!("robot         {}\n", found.words()));
+    layout::wrapped(&levers.chain(robots).collect::<String>())
+}
+
+/// Returns the answer, and where to go on.
+fn told(answer: &Answer, dir: &Path, verbose: &str) -> String {
+    let mut text = format!("{}\n{}\n", answer.verdict.headline(), expectation(answer));
+    text += &layout::lines(lines::brief(answer));
+    text += verbose;
+    // To be copied: not wrapped.
+    let (command, why) = command::next(answer, dir);
+    let page = dir.join(PAGE);
+    let place = format!("study         {} (see {})\n", dir.display(), page.display());
+    format!("{}next          {command}\n              # {why}\n{place}", layout::wrapped(&text))
+}
+
+/// Returns all numbers behind the answer.
+fn verbose(answer: &Answer, ending: Ending, known: u64) -> String {
+    let record = answer.record;
+    let config = &record.config;
+    let done = record.evaluations.len();
+    let end = match ending {
+        Ending::SpaceExhausted => ": every design of the space",
+        Ending::Converged => ": the polish has converged",
+        Ending::NothingInserts => ": none of them inserts",
+        Ending::BudgetSpent | Ending::Interrupted | Ending::Settled => "",
+    };
+    let (task, method) = (config.task_name(), config.method());
+    let mut text = format!("\n{task} with {method}: {done} evaluations{end}\n");
+    let first = record.first_current();
+    if first > 0 {
+        text += &format!(
+            "segment       {}, from evaluation {first}: the settings changed, and only these count\n",
+            record.segments.len(),
+        );
+    }
+    if let Some(bench) = &record.on_bench {
+        text += &layout::lines(lines::on_bench(bench));
+        text += "by simulation alone:\n";
+    }
+    // Where none is recommended, what stands first says why.
+    let found = answer.recommended.as_ref().filter(|_| answer.named().is_some());
+    text += &found.map_or(String::new(), |found| match &answer.front {
+        Some(front) => front_text(record, front),
+        None => layout::lines(lines::recommended(answer, found)),
+    });
+    if known > 0 {
+        text += &format!("cache         {known} evaluations were known from other studies\n");
+    }
+    text
+}
+
+fn front_text(record: &StudyRecord, Front { designs, volume }: &Front) -> String {
+    let objectives = &record.config.objective;
+    let line = |recorded: &&Recorded| {
+        let values = objectives.show(recorded.feasible().unwrap_or_default());
+        format!("              {values}: {}\n", evaluated(recorded))
+    };
+    let size = match designs.len() {
+        1 => "one design is the best in all objectives".to_owned(),
+        count => {
+            format!("{count} designs; none is at least as good as another in all objectives")
+        }
+    };
+    format!(
+        "front         {size}\n{}hypervolume   {:.3} {} from the reference {}\n",
+        designs.iter().map(line).collect::<String>(),
+        volume.hypervolume,
+        volume_unit(objectives),
+        objectives.show(&volume.reference)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The lines of the committed studies, to the letter.
+    #[test]
+    fn the_summary_is_that_of_the_reference() {
+        for task in ["ket8", "rj45", "usb"] {
+            let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/reference").join(task);
+            let record = StudyRecord::load(&dir).unwrap();
+            let lines = told(&Answer::of(&record), &dir, "");
+            let (lines, _) = lines.split_once("study   ").unwrap();
+            let file = dir.join("summary.txt");
+            if std::env::var_os("RENEW").is_some() {
+                std::fs::write(&file, lines).unwrap();
+            }
+            let expected = std::fs::read_to_string(&file).unwrap();
+            assert_eq!(
+                lines, expected,
+                "{task}: after a change of its words, RENEW=1 writes it anew"
+            );
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! Diagnosis where no design of a study inserts at the nominal start.
+
+use crate::context::not_stopped;
+use crate::failure::Failure;
+use crate::setup::Setup;
+use insertion::trial::{Grasp, picture};
+use report::answer::words::{outcome, remedy};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use study::{StudyRecord, write_own_file};
+
+pub(crate) const PICTURE: &str = "nominal.svg";
+
+/// Fails, with what the design that comes nearest does at the nominal start, if none inserts there;
+/// if `stop` is set meanwhile.
+pub(crate) fn check(
+    dir: &Path,
+    record: &StudyRecord,
+    setup: &Setup,
+    stop: &AtomicBool,
+) -> Result<(), Failure> {
+    let Some((task, nearest)) = record.unusable() else { return Ok(()) };
+    let Some(template) = setup.evaluator.templates.get(task) else { return Ok(()) };
+    let evaluator = &setup.evaluator;
+    let specimen =
+        evaluator.specimen(template, &nearest.design, nearest.stiffness).map_err(Failure::input)?;
+    let taught = nearest.on(task).and_then(|found| found.taught);
+    let rig = evaluator.rig(&specimen, taught, 1.0).map_err(Failure::input)?;
+    let trial = rig.hold(Grasp { stop, ..Grasp::of(&specimen.finger) }).trial(0.0);
+    not_stopped(stop)?;
+    let class = outcome(trial.outcome);
+    let phase =
+        trial.phases.last().map_or(String::new(), |phase| format!(" in phase {}", phase.name));
+    let label = format!("evaluation {} at the nominal start: {class}{phase}", nearest.index);
+    let file = dir.join(PICTURE);
+    write_own_file(&file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial, &label))?;
+    Err(Failure::running(format!(
+        "no design of the study inserts at the nominal start of {}: evaluation {} ends with {class}{phase}, \
+         at depth {:.2} mm and tilt {:.2} deg; {} shows it. {}",
+        specimen.task.name,
+        nearest.index,
+        trial.depth_mm,
+        trial.tilt_deg,
+        file.display(),
+        remedy(trial.outcome)
+    )))
+}

@@ -57,8 +57,7 @@ pub fn program() -> clap::Command {
         .subcommand_negates_reqs(true)
         .arg_required_else_help(true)
         .args_conflicts_with_subcommands(true);
-    let mut root =
-        described(STUDY.augment(root), ABOUT, "Example: optimize --task usb --budget 200");
+    let root = described(STUDY.augment(root), ABOUT, "Example: optimize --task usb --budget 200");
     let mut groups = GROUPS.map(|(order, name, about, example)| {
         let group = clap::Command::new(name)
             .display_order(order)

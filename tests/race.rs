@@ -2,6 +2,7 @@
 
 mod common;
 
+use ::study::StudyRecord;
 use ask_tell::{Grid, Optimizer, OptimizerKind, build};
 use common::memory::{self, Memory};
 use common::{Studies, sealed};
@@ -23,7 +24,6 @@ use insertion::trial::fake::FakeRig;
 use proptest::prelude::*;
 use std::fs;
 use std::sync::atomic::AtomicBool;
-use study::StudyRecord;
 
 const FIXTURE: &str = include_str!("fixtures/study/study.toml");
 

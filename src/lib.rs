@@ -12,12 +12,12 @@
 //! use finger_opt::commands::evaluate;
 //! use finger_opt::context::Context;
 //! use finger_opt::failure::Failure;
-//! use finger_opt::setup::finger::FingerRequest;
+//! use finger_opt::setup::finger::{FingerRequest, InfillRequest};
 //! use finger_opt::setup::request::{SetupRequest, TaskSource};
 //! use std::sync::atomic::AtomicBool;
 //!
 //! let setup = SetupRequest { tasks: TaskSource::list("usb"), ..SetupRequest::default() };
-//! let finger = FingerRequest { density: Some(20.0), direction: Some(10.0), ..FingerRequest::default() };
+//! let finger = FingerRequest { infill: InfillRequest::of(20.0, 10.0), ..FingerRequest::default() };
 //! let request = evaluate::Request { setup, finger, ..evaluate::Request::default() };
 //! let stop = AtomicBool::new(false); // set by another thread, it ends the work
 //! let window = request.run(&Context::silent(&stop))?.evaluation.window;

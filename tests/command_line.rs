@@ -338,15 +338,6 @@ fn every_help_shows_an_example_and_the_shell_and_man_are_served() {
     let long = optimize_line("--version").succeeds().trim_end().to_owned();
     assert!(long.starts_with(&format!("{short} (")) && long.contains(", sources "), "{long}");
     optimize(&["task"]).fails(2, &["new", "show", "check", "import"]);
-    for (old, new) in [
-        ("check", "`lab check`"),
-        ("validate --strides", "`lab validate`"),
-        ("cross-check --against mujoco", "`lab cross-check`"),
-        ("bench", "`lab benchmark`"),
-        ("bench optimizers --seeds 3", "`lab optimizers`"),
-    ] {
-        optimize_line(old).fails(2, &["is now", new]);
-    }
 }
 
 #[test]

@@ -6,7 +6,7 @@ use finger_opt::commands::{COMMANDS, evaluate, levers, study};
 use finger_opt::context::Context;
 use finger_opt::failure::Failure;
 use finger_opt::keywords;
-use finger_opt::setup::finger::FingerRequest;
+use finger_opt::setup::finger::{FingerRequest, InfillRequest};
 use finger_opt::setup::request::{SetupRequest, TaskSource};
 use finger_opt::setup::run::{CacheRequest, RunRequest};
 use finger_opt::studies::request::AnyStudy;
@@ -26,7 +26,7 @@ fn usb() -> SetupRequest {
 }
 
 fn middle() -> FingerRequest {
-    FingerRequest { density: Some(20.0), direction: Some(10.0), ..FingerRequest::default() }
+    FingerRequest { infill: InfillRequest::of(20.0, 10.0), ..FingerRequest::default() }
 }
 
 fn silent() -> Context<'static> {
@@ -206,7 +206,7 @@ fn a_sweep_measures_what_evaluate_does_in_its_order_and_keeps_it() {
     let cache = CacheRequest { dir: Some(dir.path().to_owned()), off: false };
     let run = RunRequest { threads: Some(3), cache, ..RunRequest::default() };
     let windows = evaluate::Request { setup: usb(), walk: true, ..Default::default() };
-    let finger = |density| FingerRequest { density: Some(density), ..middle() };
+    let finger = |density| FingerRequest { infill: InfillRequest::of(density, 10.0), ..middle() };
     let fingers = [12.0, 30.0, 17.0].map(finger);
     let sweep = Sweep::new(&windows, &run).ok().unwrap();
     for _ in 0..2 {

@@ -3,7 +3,7 @@
 use crate::command;
 use crate::context::Context;
 use crate::failure::Failure;
-use crate::setup::finger::setting;
+use crate::setup::finger::{InfillRequest, setting};
 use crate::setup::printed::{finger_file, measured_model};
 use crate::setup::request::DEFAULT_FINGER;
 use finray::geometry::Geometry;
@@ -32,15 +32,14 @@ const LARGEST_LOAD_N: f64 = 1000.0;
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 14,
+    mut_arg("density", |density| density.required(true)),
+    mut_arg("direction", |direction| direction.required(true)),
     after_help = "Example: optimize finger --density 20 --direction 20 --svg finger.svg"
 )]
 pub struct Request {
-    /// Infill density, percent
-    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true)]
-    pub density: f64,
-    /// Infill direction, degrees
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
-    pub direction: f64,
+    /// Its infill.
+    #[command(flatten)]
+    pub infill: InfillRequest,
     /// Finger: finray9, or the path of a finger file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_FINGER)]
     pub finger: String,
@@ -90,10 +89,11 @@ impl command::Request for Request {
         let set = Design(self.set.iter().cloned().collect());
         let file = finger_file(&self.finger)?;
         let finger = file.with(&set).map_err(Failure::input)?;
-        let infill = Design::infill(self.density, self.direction).printed(self.phase_mm);
+        let [density, direction] = self.infill.both()?;
+        let infill = Design::infill(density, direction).printed(self.phase_mm);
         let geometry = Geometry::new(&finger, &infill).map_err(Failure::input)?;
         let computed = mechanics::compute(&geometry).map_err(Failure::input)?;
-        let mut design = Design::infill(self.density, self.direction);
+        let mut design = Design::infill(density, direction);
         design.0.extend(set.0);
         let measured = measured_model(&file.finger, &design)?;
         let ribs = Ribs { geometry, computed, measured, load_n: self.load_n };

@@ -4,6 +4,7 @@ use crate::command;
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::setup::files::{printed_finger, stiffness_data, surrogate};
+use crate::setup::finger::InfillRequest;
 use crate::setup::request::DEFAULT_FINGER;
 use insertion::space::Design;
 use insertion::surrogate::{Model, Prediction};
@@ -18,6 +19,8 @@ use study::write_file;
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 13,
+    mut_arg("density", |density| density.hide(true)),
+    mut_arg("direction", |direction| direction.hide(true)),
     after_help = "Example: optimize stiffness --stiffness-data mine.csv --svg model.svg"
 )]
 pub struct Request {
@@ -30,12 +33,9 @@ pub struct Request {
     /// Also write a plot of the data, the model and its uncertainty
     #[arg(long, value_name = "FILE.svg")]
     pub svg: Option<PathBuf>,
-    /// Give the prediction for this infill alone: density, percent
-    #[arg(long, value_name = "PERCENT", hide = true, requires = "direction")]
-    pub density: Option<f64>,
-    /// And direction, degrees
-    #[arg(long, value_name = "DEG", hide = true, requires = "density")]
-    pub direction: Option<f64>,
+    /// Infill of which the prediction alone is given.
+    #[command(flatten)]
+    pub infill: InfillRequest,
 }
 
 /// Model of the stiffness, and what it predicts if that was asked for.
@@ -48,7 +48,7 @@ impl command::Request for Request {
     type Response = Fitted;
 
     fn run(&self, _context: &Context<'_>) -> Result<Fitted, Failure> {
-        let infill = self.density.zip(self.direction);
+        let infill = self.infill.density.zip(self.infill.direction);
         if let Some((density, direction)) = infill {
             Design::checked_infill(density, direction, "stiffness").map_err(Failure::input)?;
         }

@@ -36,25 +36,41 @@ pub(crate) fn setting(text: &str) -> Result<(String, f64), String> {
     }
 }
 
-/// Which finger: by its infill, or by its springs.
-#[derive(Debug, Clone, Default, clap::Args)]
-pub struct FingerRequest {
+/// Infill of a finger.
+#[derive(Debug, Clone, Copy, Default, PartialEq, clap::Args)]
+pub struct InfillRequest {
     /// Infill density, percent
-    #[arg(
-        long,
-        value_name = "PERCENT",
-        required_unless_present = "stiffness_compliance",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "PERCENT", requires = "direction", allow_negative_numbers = true)]
     pub density: Option<f64>,
     /// Infill direction, degrees
-    #[arg(
-        long,
-        value_name = "DEG",
-        required_unless_present = "stiffness_compliance",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "DEG", requires = "density", allow_negative_numbers = true)]
     pub direction: Option<f64>,
+}
+
+impl InfillRequest {
+    /// Returns the infill of this density, percent, and direction, degrees.
+    pub fn of(density: f64, direction: f64) -> Self {
+        InfillRequest { density: Some(density), direction: Some(direction) }
+    }
+
+    /// Returns density, percent, and direction, degrees.
+    ///
+    /// # Errors
+    /// If one of them is not given.
+    pub fn both(self) -> Result<[f64; 2], Failure> {
+        let both = self.density.zip(self.direction).map(<[f64; 2]>::from);
+        both.ok_or_else(|| Failure::usage("give --density and --direction"))
+    }
+}
+
+/// Which finger: by its infill, or by its springs.
+#[derive(Debug, Clone, Default, clap::Args)]
+#[command(mut_arg("density", |density| density.required_unless_present("stiffness_compliance")))]
+#[command(mut_arg("direction", |direction| direction.required_unless_present("stiffness_compliance")))]
+pub struct FingerRequest {
+    /// Its infill.
+    #[command(flatten)]
+    pub infill: InfillRequest,
     /// Stiffness in the compliance direction, N/mm: bypasses the surrogate
     #[arg(long, value_name = "K", requires = "stiffness_assembly", value_parser = stiffness,
           allow_negative_numbers = true)]
@@ -96,8 +112,8 @@ impl FingerRequest {
         let template = setup.only_task()?;
         let mut infill = Design::default();
         for (flag, key, value) in [
-            ("--density", DENSITY_KEY, self.density),
-            ("--direction", DIRECTION_KEY, self.direction),
+            ("--density", DENSITY_KEY, self.infill.density),
+            ("--direction", DIRECTION_KEY, self.infill.direction),
         ] {
             if let Some(value) = value {
                 check(setup, flag, key, value)?;
@@ -117,10 +133,10 @@ impl FingerRequest {
                 ));
             }
             Some(given) => given,
-            None if self.density.is_some() && self.direction.is_some() => {
+            None => {
+                self.infill.both()?;
                 evaluator.predict(&design).map_err(Failure::input)?
             }
-            None => return Err(Failure::usage("give --density and --direction")),
         };
         let specimen = evaluator.specimen(template, &design, stiffness).map_err(Failure::input)?;
         Ok(Chosen {

@@ -1,6 +1,7 @@
 //! A finger to be printed, and how stiff measured ones are.
 
 use super::files::{find, stiffness_data, surrogate};
+use super::finger::InfillRequest;
 use super::request::DEFAULT_FINGER;
 use crate::failure::Failure;
 use finray::geometry::Geometry;
@@ -20,12 +21,9 @@ pub struct PrintRequest {
     #[arg(value_name = "DIR", conflicts_with_all = ["density", "direction"],
           required_unless_present = "density")]
     pub dir: Option<PathBuf>,
-    /// Infill density, percent
-    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, requires = "direction")]
-    pub density: Option<f64>,
-    /// Infill direction, degrees
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true, requires = "density")]
-    pub direction: Option<f64>,
+    /// Its infill.
+    #[command(flatten)]
+    pub infill: InfillRequest,
     /// Finger: finray9, or the path of a finger file [default: the study's, or finray9]
     #[arg(long, value_name = "NAME")]
     pub finger: Option<String>,
@@ -57,12 +55,10 @@ impl PrintRequest {
 
     /// The design, the file of its finger, and the stiffness that a study predicted of both.
     fn chosen(&self) -> Result<(Design, FingerFile, Option<Prediction>), Failure> {
-        let (design, file, stiffness) = match (&self.dir, self.density, self.direction) {
-            (Some(dir), ..) => best(dir)?,
-            (None, Some(density), Some(direction)) => {
-                (Design::infill(density, direction), None, None)
-            }
-            _ => {
+        let (design, file, stiffness) = match (&self.dir, self.infill.both()) {
+            (Some(dir), _) => best(dir)?,
+            (None, Ok([density, direction])) => (Design::infill(density, direction), None, None),
+            (None, Err(_)) => {
                 let problem = "give the folder of a study, or --density and --direction";
                 return Err(Failure::usage(problem));
             }

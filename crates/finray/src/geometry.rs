@@ -78,7 +78,7 @@ impl Geometry {
 
     /// Mass of the printed finger without a block for its holes, kg.
     pub fn mass(&self) -> f64 {
-        self.area() * self.finger.outline.depth * self.finger.material.density
+        self.area() * self.finger.outline.depth * self.finger.material.mass_density
     }
 }
 

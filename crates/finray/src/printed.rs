@@ -83,7 +83,7 @@ pub struct Material {
     /// Poisson's ratio.
     pub poisson: f64,
     /// Density, kg/m3.
-    pub density: f64,
+    pub mass_density: f64,
     /// Source of the values.
     pub source: String,
 }
@@ -216,7 +216,7 @@ fn checked_material(check: Check<'_>, raw: RawMaterial) -> Result<Material, Inpu
     Ok(Material {
         modulus: modulus * 1e9,
         poisson,
-        density: check.positive("material.density_kg_per_m3", raw.density_kg_per_m3)?,
+        mass_density: check.positive("material.density_kg_per_m3", raw.density_kg_per_m3)?,
         name: raw.name,
         source: raw.source,
     })

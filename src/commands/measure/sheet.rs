@@ -4,7 +4,7 @@ use crate::command::{self, Request as _};
 use crate::commands::trial;
 use crate::context::Context;
 use crate::failure::Failure;
-use crate::setup::finger::FingerRequest;
+use crate::setup::finger::{FingerRequest, InfillRequest};
 use crate::setup::request::{SetupRequest, TaskSource};
 use crate::setup::task::read_task;
 use insertion::evaluation::evaluator::Specimen;
@@ -95,8 +95,8 @@ fn ended(
 ) -> Result<Picture, Failure> {
     let tasks = vec![TaskSource::Named(task.to_owned())];
     let set = grip.map(|force| ("task.grip.force_n".to_owned(), force)).into_iter().collect();
-    let (density, direction) = (Some(infill.0), Some(infill.1));
-    let finger = FingerRequest { density, direction, set, ..FingerRequest::default() };
+    let infill = InfillRequest::of(infill.0, infill.1);
+    let finger = FingerRequest { infill, set, ..FingerRequest::default() };
     let setup = SetupRequest { tasks, ..SetupRequest::default() };
     let trial = trial::Request { setup, finger, offset_mm, ..trial::Request::default() };
     let done = trial.run(context)?;

@@ -15,6 +15,9 @@ pub mod units;
 
 pub use place::{Fault, Place, Placed};
 use serde::de::DeserializeOwned;
+use std::sync::atomic::{AtomicU64, Ordering};
+use toml::Spanned;
+use toml::de::DeTable;
 
 /// Error of an input file: not TOML of its shape, or a value that cannot be used.
 #[derive(Debug, Clone, thiserror::Error, PartialEq)]
@@ -70,17 +73,61 @@ pub fn syntax(file: &str, text: &str, error: &toml::de::Error) -> InputError {
     }
 }
 
+/// A TOML text that was parsed once, from which typed values are read.
+#[derive(Debug, Clone)]
+pub struct Document<'a> {
+    text: &'a str,
+    file: &'a str,
+    tree: Spanned<DeTable<'a>>,
+}
+
+/// Number of texts that were parsed.
+static PARSED: AtomicU64 = AtomicU64::new(0);
+
+/// Returns how many TOML texts were parsed since the process began.
+pub fn parsed() -> u64 {
+    PARSED.load(Ordering::Relaxed)
+}
+
+impl<'a> Document<'a> {
+    /// Parses TOML; `file` is named in errors.
+    ///
+    /// # Errors
+    /// If the text is not TOML.
+    pub fn parse(text: &'a str, file: &'a str) -> Result<Self, InputError> {
+        PARSED.fetch_add(1, Ordering::Relaxed);
+        let tree = DeTable::parse(text).map_err(|error| syntax(file, text, &error))?;
+        Ok(Document { text, file, tree })
+    }
+
+    /// Reads a value of the whole document.
+    ///
+    /// # Errors
+    /// If the document is not of this shape, or has a control character.
+    pub fn read<T: DeserializeOwned>(&self) -> Result<T, InputError> {
+        let found = self.of()?;
+        match control_character(&self.of()?) {
+            Some(key) => {
+                Check { file: self.file }.fail(&key, "has a control character, such as \\u001b")
+            }
+            None => Ok(found),
+        }
+    }
+
+    fn of<T: DeserializeOwned>(&self) -> Result<T, InputError> {
+        T::deserialize(toml::de::Deserializer::from(self.tree.clone())).map_err(|mut error| {
+            error.set_input(Some(self.text));
+            syntax(self.file, self.text, &error)
+        })
+    }
+}
+
 /// Reads TOML; `file` is named in errors.
 ///
 /// # Errors
 /// If the text is not TOML of this shape, or has a control character.
 pub fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, InputError> {
-    let found = toml::from_str(text).map_err(|error| syntax(file, text, &error))?;
-    let table: toml::Table = toml::from_str(text).map_err(|error| syntax(file, text, &error))?;
-    match control_character(&table) {
-        Some(key) => Check { file }.fail(&key, "has a control character, such as \\u001b"),
-        None => Ok(found),
-    }
+    Document::parse(text, file)?.read()
 }
 
 /// The key of a text with a control character in it: such texts reach terminals and pages.

@@ -4,6 +4,7 @@ use crate::command;
 use crate::context::{Context, not_stopped};
 use crate::failure::{Failure, wide};
 use crate::setup::request::SetupRequest;
+use crate::setup::words::Words;
 use analysis::sensitivity::factors::Factors;
 use analysis::sensitivity::sobol::Sample;
 use insertion::evaluation::objective::Measure;
@@ -29,8 +30,9 @@ pub struct Request {
     /// Task, robot, space, finger model; one task.
     #[command(flatten)]
     pub setup: SetupRequest,
-    /// range or centred-range
-    #[arg(long, value_name = "NAME", default_value = "range")]
+    /// Range that is looked at
+    #[arg(long, value_name = "NAME", default_value = "range",
+          value_parser = Words::<Measure>::new([Measure::Range, Measure::CentredRange].map(Measure::name)))]
     pub objective: Measure,
     /// Errors of the cell that are varied, too: typical, none, or the path of a file
     #[arg(long, value_name = "NAME", default_value = "typical")]

@@ -48,13 +48,16 @@ impl command::Request for Request {
     type Response = Fitted;
 
     fn run(&self, _context: &Context<'_>) -> Result<Fitted, Failure> {
-        let infill = self.infill.density.zip(self.infill.direction);
-        if let Some((density, direction)) = infill {
+        let infill = match self.infill {
+            InfillRequest { density: None, direction: None } => None,
+            infill => Some(infill.both()?),
+        };
+        if let Some([density, direction]) = infill {
             Design::checked_infill(density, direction, "stiffness").map_err(Failure::input)?;
         }
         let finger = printed_finger(&self.finger)?;
         let model = surrogate(&stiffness_data(self.stiffness_data.as_deref(), &finger)?, &finger)?;
-        let predict = |(density, direction)| model.predict(density, direction);
+        let predict = |[density, direction]: [f64; 2]| model.predict(density, direction);
         let predicted = infill.map(predict).transpose().map_err(Failure::input)?;
         if let Some(path) = &self.svg {
             write_file(path, &shown::svg(&model)?)?;

@@ -7,6 +7,7 @@ use crate::setup::bench::DEFAULT_PRIORS;
 use crate::setup::files::find;
 use crate::setup::request::SetupRequest;
 use crate::setup::run::RunRequest;
+use crate::setup::words::Words;
 use crate::setup::{Setup, measured};
 use crate::studies::on_bench;
 use crate::studies::open::{Concluded, OpenStudy};
@@ -55,12 +56,13 @@ pub struct Request {
     /// Difference of ranges that a bench cannot tell, mm: designs that lose less are as good
     #[arg(long, value_name = "MM", default_value_t = INDIFFERENCE_MM, allow_negative_numbers = true)]
     pub indifference_mm: f64,
-    /// Optimizer: gp, cma-es, random, sobol or grid
-    #[arg(long, value_name = "NAME", default_value = "gp")]
+    /// Optimizer
+    #[arg(long, value_name = "NAME", default_value = "gp",
+          value_parser = Words::<OptimizerKind>::new(OptimizerKind::all().map(OptimizerKind::name)))]
     pub optimizer: OptimizerKind,
-    /// What is optimized: range, centred-range, success-rate, robust-range, peak-force or slip;
-    /// two or three, by commas, give a front
-    #[arg(long, value_name = "NAME", default_value = "range")]
+    /// Measure that is optimized; two or three, by commas, give a front
+    #[arg(long, value_name = "NAME", default_value = "range",
+          value_parser = Words::<Objectives>::new(Measure::ALL.map(Measure::name)))]
     pub objective: Objectives,
     /// What a design must keep to, as in 'peak-force<=30' or 'success-rate>=0.9'; may be given
     /// several times

@@ -40,10 +40,10 @@ pub(crate) fn setting(text: &str) -> Result<(String, f64), String> {
 #[derive(Debug, Clone, Copy, Default, PartialEq, clap::Args)]
 pub struct InfillRequest {
     /// Infill density, percent
-    #[arg(long, value_name = "PERCENT", requires = "direction", allow_negative_numbers = true)]
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true)]
     pub density: Option<f64>,
     /// Infill direction, degrees
-    #[arg(long, value_name = "DEG", requires = "density", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub direction: Option<f64>,
 }
 

@@ -13,6 +13,7 @@ pub mod robots;
 pub mod run;
 pub mod task;
 pub mod tune;
+pub mod words;
 
 use crate::failure::{Failure, bad_config};
 use files::{Fingers, find, surrogate};

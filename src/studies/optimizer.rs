@@ -2,10 +2,7 @@
 
 use crate::failure::{Failure, bad_config};
 use crate::setup::Setup;
-use ask_tell::gp::DEFAULT_NOISE_FLOOR;
 use ask_tell::{Grid, GridPoint, Informed, Optimizer, OptimizerKind, Polished};
-use insertion::evaluation::objective::Measure;
-use insertion::evaluation::uncertainty::Uncertainty;
 use insertion::finger::file::is_shape;
 use insertion::finger::model::FingerSource;
 use insertion::space::{Design, Parameter};
@@ -19,9 +16,9 @@ pub(crate) fn optimizer(
 ) -> Result<Box<dyn Optimizer + Send>, Failure> {
     let kind: OptimizerKind = config.optimizer.parse().map_err(bad_config)?;
     let grid = Grid::new(setup.space.levels());
+    let trials = setup.uncertainty.as_ref().map_or(1, |errors| errors.success.trials);
     let measures = config.objective.measures().iter();
-    let floors: Vec<f64> =
-        measures.map(|&measure| noise_floor(measure, setup.uncertainty.as_ref())).collect();
+    let floors: Vec<f64> = measures.map(|measure| measure.rounding(trials)).collect();
     let search = ask_tell::build_for(kind, grid.clone(), config.seed, &floors);
     let search = match measured_points(setup) {
         points if kind == OptimizerKind::Gp && !points.is_empty() => {
@@ -51,17 +48,4 @@ fn measured_points(setup: &Setup) -> Vec<GridPoint> {
         parameters.iter().map(|p| Some(p.nearest(value(p)?))).collect::<Option<_>>().map(GridPoint)
     };
     setup.evaluator.surrogate.measurements.iter().filter_map(point).collect()
-}
-
-/// Standard deviation of what a measure's steps round off, in its unit: ranges have steps of
-/// 0.1 mm, success rates of one trial, forces and slips none.
-fn noise_floor(measure: Measure, uncertainty: Option<&Uncertainty>) -> f64 {
-    match measure {
-        Measure::PeakForce | Measure::Slip => 0.0,
-        Measure::Range | Measure::CentredRange | Measure::RobustRange => DEFAULT_NOISE_FLOOR,
-        Measure::SuccessRate => {
-            let trials = uncertainty.map_or(1, |errors| errors.success.trials);
-            1.0 / f64::from(trials) / 12f64.sqrt()
-        }
-    }
 }

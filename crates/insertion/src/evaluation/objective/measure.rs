@@ -2,6 +2,7 @@
 
 use crate::evaluation::Evaluation;
 use crate::outcome::Outcome;
+use ask_tell::gp::DEFAULT_NOISE_FLOOR;
 use std::fmt;
 use std::str::FromStr;
 
@@ -66,6 +67,16 @@ impl Measure {
     /// Whether it is measured under sampled errors.
     pub fn is_drawn(self) -> bool {
         matches!(self, Measure::SuccessRate | Measure::RobustRange)
+    }
+
+    /// Returns the standard deviation of what its steps round off, in its unit: ranges have steps of 0.1 mm,
+    /// success rates of one of so many trials, forces and slips none.
+    pub fn rounding(self, trials: u32) -> f64 {
+        match self {
+            Measure::PeakForce | Measure::Slip => 0.0,
+            Measure::Range | Measure::CentredRange | Measure::RobustRange => DEFAULT_NOISE_FLOOR,
+            Measure::SuccessRate => 1.0 / f64::from(trials) / 12f64.sqrt(),
+        }
     }
 
     /// Its value in its unit, `None` if the measure was not taken or the nominal start diverges. A

@@ -13,9 +13,10 @@ export LC_ALL=C
 reference=results/reference
 record=$reference/SOURCE
 
-simulation="crates/input crates/contact crates/finray crates/insertion crates/ask-tell/src/stream.rs"
-# The libraries that compute; the others may change without changing a number.
-libraries='^name = "(nalgebra|simba|libm|rapier3d.*|parry3d.*|rand.*|sobol_burley|linfa.*|argmin.*)"'
+# What decides an evaluation, as crates/study/build.rs has it.
+simulation=$(sed -n '/^const SIMULATION/,/^];/s/^ *"\(crates.*\)",$/\1/p' crates/study/build.rs)
+# The libraries that compute, which Cargo.toml pins; the others may change without changing a number.
+libraries="^name = \"($(sed -n 's/^\([a-z0-9_-]*\) = .*"=[0-9].*/\1/p' Cargo.toml | paste -sd '|'))\""
 
 # The folders and files of a scope.
 sources() {
@@ -24,7 +25,7 @@ sources() {
         maps) paths="$simulation data tasks robots crates/analysis/src/map" ;;
         studies) paths="$simulation crates/ask-tell crates/study data tasks robots spaces uncertainties" ;;
         checks) paths="$simulation lab/src/analytic robots" ;;
-        bench) paths="$simulation crates/ask-tell crates/calibration data tasks robots spaces priors" ;;
+        bench) paths="$simulation crates/ask-tell crates/study crates/calibration data tasks robots spaces priors" ;;
         levers) paths="$simulation crates/calibration crates/connector crates/analysis/src/levers data tasks robots spaces priors" ;;
         optimizers) paths="crates/ask-tell lab/src/problems results/reference/landscapes" ;;
         *) echo "scripts/stale.sh: no scope is called $1" >&2; exit 2 ;;

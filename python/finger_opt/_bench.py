@@ -6,16 +6,13 @@ import csv
 import datetime
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from . import _native
 from ._attempts import Attempts, newest
 from ._ends import Search
+from ._measurement import Measurement
 from ._native import InputError, StudyError, __version__
 from ._task import Given, Task
-
-if TYPE_CHECKING:
-    from .robot import Measurement
 
 #: How the note of a line begins.
 NOTE = "50 % points"

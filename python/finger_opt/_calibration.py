@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 import os
 from collections.abc import Iterable, Sequence
@@ -221,9 +222,27 @@ class Calibration(Result):
         return frame
 
     def _repr_html_(self) -> str:
-        from ._drawn import calibration
+        return _tables(self)
 
-        return calibration(self)
+
+def _tables(found: Calibration) -> str:
+    """A table of the fingers that are expected to be best, for each task."""
+    pieces: list[str] = []
+    for task in found.tasks:
+        best = sorted(task.predictions, key=lambda one: -one.range_mm)[:5]
+        rows = "".join(
+            f"<tr><td>{html.escape(', '.join(f'{key} {value:g}' for key, value in one.values.items()))}</td>"
+            f"<td>{one.range_mm:.1f} mm</td><td>{one.low_mm:.1f} to {one.high_mm:.1f}</td>"
+            f"<td>{one.probability_best:.0%}</td></tr>" for one in best
+        )
+        error = task.loo_mean_deviation_percent
+        trust = "" if error is None else f": {error:.0f} % off on average for fingers left out"
+        warnings = "".join(f"<p>{html.escape(text)}</p>" for text in task.warnings)
+        pieces.append(
+            f"<b>{html.escape(task.task)}</b>{trust}<table><tr><th>finger</th><th>range</th><th>80 %</th>"
+            f"<th>best</th></tr>{rows}</table>{warnings}"
+        )
+    return "".join(pieces)
 
 
 @checked

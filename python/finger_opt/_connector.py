@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Literal
 
 from . import _native
 from ._call import checked, given, without, wrong
+from ._drawn import COLOURS
+from ._plot import axes as axes_of, text
 from ._result import DRAWN, Result, save
 from ._task import Given, Task, sources
 from ._words import Engine, Outcome, RobotName, StrPath, TaskName
@@ -216,9 +218,26 @@ class Tuned(Result):
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the strategies that were tried; gives the axes."""
-        from ._plot import strategies
+        return _strategies(self, ax)
 
-        return strategies(self, ax)
+
+def _strategies(found: Tuned, ax: Drawing | None) -> Drawing:
+    """The strategies that were tried; a cross fails once the socket is turned, a ring is what was taken."""
+    axes = axes_of(ax, width=9.0)
+    names = {"as-it-is": "as it is", "start": "start taught", "families": "like a shipped task", "search": "searched"}
+    colours = dict(zip(names, ("black", *(COLOURS[number] for number in (2, 4, 0))), strict=True))
+    taken = next(at for at, step in enumerate(found.steps, 1) if (step.stage, step.what) == (found.by.stage, found.by.what))
+    for at, step in enumerate(found.steps, 1):
+        axes.plot(at, step.least_range_mm or 0.0, "x" if step.turned_least_range_mm == 0.0 else "o", color=colours[step.stage])
+    axes.plot(taken, found.steps[taken - 1].least_range_mm or 0.0, "o", markersize=13, markerfacecolor="none",
+              color=COLOURS[3], label="taken")
+    for stage in dict.fromkeys(step.stage for step in found.steps):
+        axes.plot([], [], "o", color=colours[stage], label=names[stage])
+    if any(step.turned_least_range_mm == 0.0 for step in found.steps):
+        axes.plot([], [], "x", color=colours["search"], label="fails with the socket\nturned by 1°")
+    axes.set(xlabel="strategy tried", ylabel="narrowest window of three fingers, mm", title=text(f"{found.task}: {found.by.what}"))
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
+    return axes
 
 
 @checked

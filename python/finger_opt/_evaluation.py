@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
+import html
 import json
+import textwrap
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, Union
+from typing import TYPE_CHECKING
 
 from . import _native
 from ._call import checked, given
+from ._drawn import COLOURS, colour, ending, finger
+from ._plot import axes as axes_of
 from ._result import Result
 from ._task import Given, sources
-from ._words import Engine, FingerModel, Numbers, Outcome, RobotName, SpaceName, Start, StrPath
+from ._words import End, Engine, FingerModel, Numbers, Outcome, RobotName, SpaceName, Start, StrPath
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes as Drawing
-
-#: What ends a window: a failure class, 1 to 4, or a simulation that diverged.
-End = Union[int, Literal["diverged"]]
 
 
 @dataclass(frozen=True, repr=False)
@@ -120,14 +121,64 @@ class Evaluation(Window, Subject):
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the window; gives the axes."""
-        from ._plot import window
-
-        return window(self, ax)
+        return _bar(self, ax)
 
     def _repr_html_(self) -> str:
-        from ._drawn import window
+        return _card(self)
 
-        return window(self)
+
+def _bar(found: Evaluation, ax: Drawing | None) -> Drawing:
+    """The window as a bar, with what ends it."""
+    ax = axes = axes_of(ax, height=1.8)
+    low, high = found.negative_mm, found.positive_mm
+    label = f"{found.task}, {finger(found.infill_density_percent, found.infill_direction_deg)}"
+    y = len(axes.patches)
+    axes.barh(y, high - low, left=low, height=0.6, color=COLOURS[0])
+    ends: list[tuple[float, End | None, str]] = [
+        (low, found.failure_negative, "right"), (high, found.failure_positive, "left"),
+    ]
+    inserts = found.nominal == "inserted"
+    for at, end, side in ends if inserts else ends[1:]:
+        text = textwrap.fill(ending(end).replace("class ", "class\u00a0"), 20)
+        text = text if inserts else f"does not insert from its start:\n{ending(end)}"
+        axes.annotate(text, (at, y), (4 if side == "left" else -4, 0), textcoords="offset points", ha=side, va="center",
+                      fontsize=8, color=colour(end))
+    axes.axvline(0.0, color="0.3", linewidth=0.8)
+    axes.set_yticks([*axes.get_yticks(), y] if y else [y], [*(tick.get_text() for tick in axes.get_yticklabels()), label] if y else [label])
+    reach = max(2.2 * max(-low, high, 1.0), *(abs(edge) for edge in axes.get_xlim()))
+    axes.set_xlim(-reach, reach)
+    axes.set_xlabel("shift of the start along y, mm")
+    return axes
+
+
+def _card(found: Evaluation) -> str:
+    """A card: the window as a bar over the shift of the start."""
+    low, high = found.negative_mm, found.positive_mm
+    title = html.escape(f"{found.task}, {finger(found.infill_density_percent, found.infill_direction_deg)}")
+    if found.nominal != "inserted":
+        return f"<p><b>{title}</b>: does not insert from its start: {ending(found.failure_negative)}</p>"
+    reach = max(-low, high, 1.0) * 1.25
+    width = 520.0
+
+    def at(mm: float) -> float:
+        return width * (mm + reach) / (2 * reach)
+
+    bars = [(-reach, low, colour(found.failure_negative)), (low, high, COLOURS[0]), (high, reach, colour(found.failure_positive))]
+    drawn = "".join(
+        f"<rect x='{at(a):.1f}' y='8' width='{max(0.0, at(b) - at(a)):.1f}' height='18' fill='{fill}' "
+        f"fill-opacity='{0.9 if fill == COLOURS[0] else 0.35}'/>" for a, b, fill in bars
+    )
+    marks = "".join(
+        f"<text x='{at(mm):.1f}' y='42' font-size='12' text-anchor='middle' fill='currentColor'>{text}</text>"
+        for mm, text in ((low, f"{low:+.1f}"), (0.0, "0"), (high, f"{high:+.1f} mm"))
+        if mm == 0.0 or abs(at(mm) - at(0.0)) > 28
+    )
+    line = f"<line x1='{at(0):.1f}' y1='4' x2='{at(0):.1f}' y2='30' stroke='currentColor'/>"
+    return (
+        f"<div><b>{title}: {found.range_mm:.1f} mm</b><br><svg viewBox='0 0 {width:.0f} 48' width='{width:.0f}' "
+        f"role='img' aria-label='window from {low} to {high} mm'>{drawn}{line}{marks}</svg><br>"
+        f"below: {ending(found.failure_negative)}; above: {ending(found.failure_positive)}</div>"
+    )
 
 
 @checked

@@ -8,6 +8,7 @@ from typing import Literal
 
 from . import _native
 from ._call import checked, given
+from ._drawn import framed
 from ._result import DRAWN, Result
 from ._task import Given, sources
 from ._words import Engine, FingerModel, Outcome, RobotName, SpaceName, Start, StrPath
@@ -116,8 +117,6 @@ class Cell(Result):
     page: str = field(repr=False, metadata=DRAWN)
 
     def _repr_html_(self) -> str:
-        from ._drawn import framed
-
         return framed(self.page)
 
 

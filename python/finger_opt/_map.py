@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._call import checked, given
+from ._drawn import COLOURS, WORDS
 from ._evaluation import Subject
+from ._plot import axes as axes_of
 from ._result import DRAWN, Result, equal, save, suffixed
 from ._task import Given, sources
 from ._words import Axes, Engine, FingerModel, Numbers, RobotName, SpaceName, Start, StrPath
@@ -57,12 +59,32 @@ class CaptureMap(Subject):
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the outcomes; gives the axes."""
-        from ._plot import outcomes
-
-        return outcomes(self, ax)
+        return _outcomes(self, ax)
 
     def _repr_html_(self) -> str:
         return self.svg
+
+
+def _outcomes(found: CaptureMap, ax: Drawing | None) -> Drawing:
+    """How insertions end over the two errors."""
+    axes = axes_of(ax, height=4.2)
+    from matplotlib.colors import BoundaryNorm, ListedColormap
+    from matplotlib.patches import Patch
+
+    numbers = [-1, 0, 1, 2, 3, 4]
+    colours = ListedColormap([COLOURS[number] for number in numbers])
+    edges = [np.arange(axis.low - axis.step / 2, axis.high + axis.step, axis.step) for axis in found.axes]
+    shape = found.outcomes.shape
+    axes.pcolormesh(edges[0][: shape[1] + 1], edges[1][: shape[0] + 1], found.outcomes, cmap=colours,
+                    norm=BoundaryNorm(np.arange(-1.5, 5.0), colours.N), alpha=0.85)
+    met = [number for number in numbers if (found.outcomes == number).any()]
+    axes.legend(handles=[Patch(color=COLOURS[number], label=WORDS[number]) for number in met], loc="upper left",
+                bbox_to_anchor=(1.0, 1.0), frameon=False)
+    axes.plot(0, 0, "+", color="white", markersize=10)
+    labels = [f"error of the start in {axis.name}, {axis.unit}" for axis in found.axes]
+    axes.set(xlabel=labels[0], ylabel=labels[1],
+             title=f"{found.task}: {found.area:.3g} {found.area_unit.replace('mm2', 'mm²')} insert")
+    return axes
 
 
 @checked
@@ -141,12 +163,30 @@ class Levers(Result):
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the ranges at both ends of each lever; gives the axes."""
-        from ._plot import tornado
-
-        return tornado(self, ax)
+        return _tornado(self, ax)
 
     def _repr_html_(self) -> str:
         return self.svg
+
+
+def _tornado(found: Levers, ax: Drawing | None) -> Drawing:
+    """The ranges at both ends of each lever."""
+    axes = axes_of(ax, width=7.4, height=4.2)
+    base = found.base.range_mm or 0.0
+    rows = list(reversed(found.levers))
+    for y, lever in enumerate(rows):
+        ends = zip(lever.range_mm, (lever.low, lever.high), (y + 0.2, y - 0.2), ("#9cc3e6", COLOURS[0]), strict=True)
+        for end, value, place, fill in ends:
+            reach = end or 0.0
+            axes.barh(place, reach - base, left=base, height=0.4, color=fill)
+            axes.annotate(f"{value:g}" if isinstance(value, float) else str(value), (reach, place),
+                          (3 if reach >= base else -3, 0), textcoords="offset points", va="center",
+                          ha="left" if reach >= base else "right", fontsize=7)
+    axes.set_yticks(range(len(rows)), [f"{lever.name}{f', {lever.unit}' if lever.unit else ''}" for lever in rows], fontsize=8)
+    axes.axvline(base, color="0.3", linewidth=0.8)
+    axes.set(xlabel="tolerable range, mm", title=found.sentence)
+    axes.margins(x=0.15)
+    return axes
 
 
 @checked

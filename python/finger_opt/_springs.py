@@ -6,9 +6,12 @@ import json
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, overload
 
+import numpy as np
+
 from . import _native
 from ._call import checked, given, without
 from ._evaluation import Springs
+from ._plot import axes as axes_of
 from ._result import DRAWN, Result, save
 from ._words import Numbers, StrPath
 
@@ -52,12 +55,25 @@ class StiffnessModel(Result):
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the stiffness in the compliance direction over density and direction; gives the axes."""
-        from ._plot import stiffness as drawn
-
-        return drawn(self, ax)
+        return _contours(self, ax)
 
     def _repr_html_(self) -> str:
         return self.svg
+
+
+def _contours(found: StiffnessModel, ax: Drawing | None) -> Drawing:
+    """The stiffness in the compliance direction over density and direction."""
+    axes = axes_of(ax, height=4.2)
+    infill: list[dict[str, float]] = json.loads(_native.space("infill"))
+    density, direction = (np.linspace(axis["low"], axis["high"], 21) for axis in infill)
+    values = np.array([
+        [stiffness(float(x), float(y), stiffness_data=found.stiffness_data, finger=found.finger).compliance_n_per_mm for x in density]
+        for y in direction
+    ])
+    filled = axes.contourf(density, direction, values, levels=14, cmap="viridis")
+    axes.figure.colorbar(filled, ax=axes, label="stiffness in the compliance direction, N/mm")
+    axes.set(xlabel="infill density, percent", ylabel="infill direction, degrees", title=f"fitted to {found.designs} designs")
+    return axes
 
 
 @overload

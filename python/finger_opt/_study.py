@@ -11,9 +11,13 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
+
 from . import _native
 from ._answer import Answer, Recommended
 from ._call import checked, given, wrong
+from ._drawn import COLOURS
+from ._plot import axes as axes_of, text
 from ._result import DRAWN, Result, save
 from ._run import run_open
 from ._task import Given, sources
@@ -200,15 +204,11 @@ class Study:
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the objective over the evaluations, and the best so far; gives the axes."""
-        from ._plot import convergence
-
-        return convergence(self, ax)
+        return _convergence(self, ax)
 
     def plot_surface(self, ax: Drawing | None = None) -> Drawing:
         """Draws the designs of an infill with their ranges; gives the axes."""
-        from ._plot import surface
-
-        return surface(self, ax)
+        return _surface(self, ax)
 
     def __len__(self) -> int:
         """Evaluations in the journal."""
@@ -229,6 +229,58 @@ class Study:
 
     def __repr__(self) -> str:
         return f"<Study {self.path}>"
+
+
+def _named(study: Study) -> str:
+    """The study's folder, without those that it is in."""
+    return text(os.path.basename(study.path))
+
+
+def _objective(study: Study) -> tuple[str, str, bool] | None:
+    """Column of the first objective, what it is in words with its unit, and whether less is better."""
+    columns = [str(column) for column in study.to_dataframe().columns]
+    column = next((column for column in columns if column.startswith("objective")), None)
+    if column is None:
+        return None
+    name = str(study.config["objective"]).split(",")[0].strip()
+    words = "tolerable range" if name == "range" else name.replace("-", " ")
+    unit = column.rpartition("_")[2] if column.count("_") > column.startswith("objective_1") else ""
+    return column, f"{words}, {unit}" if unit in ("mm", "n") else words, name in ("peak-force", "slip")
+
+
+def _convergence(study: Study, ax: Drawing | None) -> Drawing:
+    """Each evaluation, and the best so far."""
+    axes = axes_of(ax)
+    objective = _objective(study)
+    if objective is not None:
+        column, label, least = objective
+        values = study.to_dataframe()[column].to_numpy(dtype=float)
+        best = np.fmin.accumulate(values) if least else np.fmax.accumulate(values)
+        axes.plot(np.arange(1, len(values) + 1), values, ".", color="0.6", label="evaluation")
+        axes.step(np.arange(1, len(values) + 1), best, where="post", color=COLOURS[0], label="best so far")
+        axes.set_ylabel(label)
+        axes.legend(loc="lower right")
+    axes.set(xlabel="evaluation", title=_named(study))
+    return axes
+
+
+def _surface(study: Study, ax: Drawing | None) -> Drawing:
+    """The designs, coloured by their objective, and the recommended one."""
+    axes = axes_of(ax, height=4.2)
+    keys = ("infill_density_percent", "infill_direction_deg")
+    objective, frame = _objective(study), study.to_dataframe()
+    if objective is not None:
+        column, label, _ = objective
+        dots = axes.scatter(frame[keys[0]], frame[keys[1]], c=frame[column], cmap="viridis", s=28)
+        axes.figure.colorbar(dots, ax=axes, label=label)
+    best = study.best
+    if best is not None and all(key in best.values for key in keys):
+        axes.plot(*(best.values[key] for key in keys), "o", markersize=13, markerfacecolor="none", color=COLOURS[3],
+                  label="recommended")
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), frameon=False)
+    axes.set(xlabel="infill density, percent", ylabel="infill direction, degrees")
+    axes.set_title(_named(study), loc="left")
+    return axes
 
 
 @checked

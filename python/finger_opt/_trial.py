@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._call import checked, given, without, wrong
+from ._drawn import COLOURS, WORDS, framed
 from ._evaluation import Subject
+from ._plot import axes as axes_of, text
 from ._result import DRAWN, Result, equal, suffixed
 from ._task import Given, sources
 from ._words import Engine, FingerModel, Numbers, Outcome, RobotName, SpaceName, Start, StrPath
@@ -94,9 +96,7 @@ class Trial(Subject):
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the contact force over time, with the phases; gives the axes."""
-        from ._plot import force
-
-        return force(self, ax)
+        return _force(self, ax)
 
     def replay(self) -> Film:
         """The film of the trial, which a notebook plays; of a trial made with ``film=True``."""
@@ -106,6 +106,26 @@ class Trial(Subject):
 
     def _repr_html_(self) -> str:
         return super()._repr_html_() if self.film is None else self.replay()._repr_html_()
+
+
+def _force(trial: Trial, ax: Drawing | None) -> Drawing:
+    """The contact force over time; a stroke where a phase ends."""
+    axes = axes_of(ax)
+    series = trial.series
+    line = axes.plot(series.time_s, np.linalg.norm(series.force_n, axis=1), color=COLOURS[0], linewidth=1.0)[0]
+    # Room above for the names of the phases, none below.
+    line.sticky_edges.y.append(0.0)
+    axes.margins(y=0.2)
+    begin = float(series.time_s[0]) if len(series.time_s) else 0.0
+    for phase in trial.phases:
+        if phase.time_s > begin:
+            axes.axvline(phase.time_s, color="0.7", linewidth=0.6)
+            axes.text(phase.time_s, 0.98, phase.name, transform=axes.get_xaxis_transform(), rotation=90, ha="right", va="top",
+                      fontsize=7, color="0.35")
+    outcome = trial.outcome if trial.failure is None else WORDS[trial.failure]
+    axes.set(xlabel="time, s", ylabel="force of the socket on the plug, N",
+             title=f"{text(trial.task)}, start {trial.offset_mm:+g} mm: {outcome}")
+    return axes
 
 
 @dataclass(frozen=True)
@@ -120,8 +140,6 @@ class Film:
             page.write(self.html)
 
     def _repr_html_(self) -> str:
-        from ._drawn import framed
-
         return framed(self.html)
 
 

@@ -32,3 +32,5 @@ Axes = Literal["y,x", "y,yaw", "y,tilt"]
 Outcome = Literal["inserted", "failed", "diverged"]
 #: Numbers of task and finger by their keys: ``{"task.strategy.tilt_deg": 8}``.
 Numbers = Mapping[str, float]
+#: What ends a window: a failure class, 1 to 4, or a simulation that diverged.
+End = Union[int, Literal["diverged"]]

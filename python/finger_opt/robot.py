@@ -13,7 +13,6 @@ import threading
 from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from numbers import Real
 from pathlib import Path
 from typing import Any, Protocol, TypeGuard, TypeVar
@@ -23,6 +22,7 @@ import numpy as np
 from ._attempts import Attempt, Attempts, Tried
 from ._bench import Bench
 from ._ends import INTERVAL, Gap, Search, Side, Window
+from ._measurement import Measurement
 from ._native import InputError, StudyError
 from ._runs import Runs
 from ._simulated import SimulatedRobot
@@ -59,40 +59,6 @@ class Probing(Robot, Protocol):
         """Sets the plug down on the flat face beside the opening, slides it slowly back and forth along y, and
         records force and pose in ``log``; leaves the robot ready for the first attempt."""
         ...
-
-
-@dataclass(frozen=True)
-class Measurement:
-    """A measured window: each end is where half of the attempts insert, mm from the taught start.
-
-    An interval holds its end with 95 % probability. An end that was not met up to the limit, or before
-    ``attempts_max`` were made, is ``None``. ``failure_negative`` and ``failure_positive`` are the classes
-    met most beyond the ends. ``gaps`` are starts within the window that do not insert; the ends lie beyond
-    them. ``settled`` is whether both ends are known as asked; ``doubtful`` of the ``attempts`` do not count.
-    """
-
-    negative_mm: float | None
-    positive_mm: float | None
-    negative_interval_mm: tuple[float, float] | None
-    positive_interval_mm: tuple[float, float] | None
-    failure_negative: int | None
-    failure_positive: int | None
-    gaps: tuple[Gap, ...]
-    #: The farthest starts that inserted.
-    inserted_mm: tuple[float, float]
-    peak_force_n: float
-    attempts: int
-    doubtful: int
-    settled: bool
-    #: One line of JSON for each attempt.
-    log: Path
-
-    @property
-    def range_mm(self) -> float | None:
-        """Width of the window, mm, if both ends were met."""
-        if self.negative_mm is None or self.positive_mm is None:
-            return None
-        return round(self.positive_mm - self.negative_mm, 2)
 
 
 def measure_window(

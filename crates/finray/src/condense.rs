@@ -10,7 +10,7 @@
 use super::frontal::Frontal;
 use super::halving::halve;
 use super::mesh::{Mesh, MeshError};
-use crate::printed::Outline;
+use crate::outline::Outline;
 use nalgebra::{DMatrix, DVector, Point2};
 use std::ops::Range;
 

@@ -1,7 +1,8 @@
 //! Plane stress in quadratic triangles (Zienkiewicz and Taylor, The Finite Element Method, vol. 1).
 
 use super::condense::Element;
-use crate::printed::{Outline, PrintedFinger};
+use crate::outline::Outline;
+use crate::printed::PrintedFinger;
 use nalgebra::Point2;
 
 /// Profile extruded to a slab of an elastic material.

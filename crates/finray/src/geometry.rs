@@ -4,10 +4,10 @@ use super::FingerError;
 use super::infill::{Design, NARROWEST_VOID, RibLines};
 use super::polygon::{self, HalfPlane, Ring, without_repeats};
 use crate::holes::{Block, Holes};
-use crate::printed::{Outline, PrintedFinger};
-use input::units::{DEG, MM, PERCENT};
+use crate::outline::{Outline, ring};
+use crate::printed::PrintedFinger;
+use input::units::{MM, PERCENT};
 use input::{Check, InputError};
-use nalgebra::{Point2, Vector2};
 
 /// Checked profile of a finger, SI units: X from the tip to the base, Y across, 0 on the front side.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +39,10 @@ impl Geometry {
         let check = Check { file: &finger.file };
         check_outline(check, &finger.outline)?;
         check_ribs(check, finger, design, lines.pitch)?;
-        finger.holes.iter().try_for_each(|holes| holes.check(check, finger))?;
+        finger
+            .holes
+            .iter()
+            .try_for_each(|holes| holes.check(check, &finger.outline, finger.line_width))?;
         let outer = without_repeats(&ring(&finger.outline, 0.0, finger.outline.length), 1e-9);
         let ribbed = finger.outline.length - finger.outline.solid;
         let inside = ring(&finger.outline, finger.skin, ribbed);
@@ -193,83 +196,4 @@ fn check_rings(check: Check<'_>, finger: &PrintedFinger, outer: &Ring, inside: &
         return check.fail("skin.thickness_mm", problem);
     }
     Ok(())
-}
-
-/// Largest distance of the arc of the back from its chords, m.
-const SAGITTA: f64 = 0.001 * MM;
-
-impl Outline {
-    /// Tip of the finger, m.
-    pub fn tip_point(&self) -> Point2<f64> {
-        Point2::new(0.0, -self.tip)
-    }
-
-    /// Unit vector along the pad, from the tip to the notch's corner: the assembly direction z.
-    pub fn along_pad(&self) -> Vector2<f64> {
-        Vector2::new(libm::cos(self.pad_angle), libm::sin(self.pad_angle))
-    }
-
-    /// Unit vector out of the pad's face towards the part: the compliance direction y.
-    pub fn out_of_pad(&self) -> Vector2<f64> {
-        let z = self.along_pad();
-        Vector2::new(-z.y, z.x)
-    }
-
-    /// Corner between pad and roof, m.
-    pub fn corner(&self) -> Point2<f64> {
-        self.tip_point() + self.along_pad() * self.pad
-    }
-
-    /// Middle of the pad, where stiffness is stated, m.
-    pub fn pad_middle(&self) -> Point2<f64> {
-        self.tip_point() + self.along_pad() * (self.pad / 2.0)
-    }
-
-    /// Length of the roof, from the corner to the front side, m.
-    pub fn roof_length(&self) -> f64 {
-        -self.corner().y / self.out_of_pad().y
-    }
-
-    /// X at which the arc of the back ends and the straight back begins, m.
-    pub fn arc_end(&self) -> f64 {
-        self.arc_centre().unwrap_or_default().x
-    }
-
-    /// Centre of the arc, m, if the radius reaches from the tip to the back.
-    fn arc_centre(&self) -> Option<Point2<f64>> {
-        let rise = self.width - self.tip;
-        let square = rise * (2.0 * self.back_radius - rise);
-        (square > 0.0 && rise < self.back_radius)
-            .then(|| Point2::new(square.sqrt(), self.back_radius - self.width))
-    }
-}
-
-/// Outline moved inwards by `inset` and cut off at X = `end`, m, counter-clockwise from the tip.
-/// Lines and arc are moved each for itself and meet in mitred corners.
-pub(super) fn ring(outline: &Outline, inset: f64, end: f64) -> Ring {
-    let (z, y) = (outline.along_pad(), outline.out_of_pad());
-    let centre = outline.arc_centre().unwrap_or_default();
-    let radius = outline.back_radius - inset;
-    let pad = outline.tip_point() - y * inset;
-    // Where the pad's line meets the arc, on the tip's side.
-    let to_pad = pad - centre;
-    let half = z.dot(&to_pad);
-    let tip = pad - z * (half + (half * half - to_pad.norm_squared() + radius * radius).sqrt());
-    let start = libm::atan2((tip - centre).y, (tip - centre).x).rem_euclid(360.0 * DEG);
-    let sweep = 270.0 * DEG - start;
-    let chords = (sweep / (8.0 * SAGITTA / radius).sqrt()).ceil().max(1.0);
-    let mut ring: Ring = (0..=chords as usize)
-        .map(|i| {
-            let angle = start + sweep * i as f64 / chords;
-            centre + radius * Vector2::new(libm::cos(angle), libm::sin(angle))
-        })
-        .collect();
-    let corner = outline.corner() + (z - y) * inset;
-    let roof_top = corner + y * ((-inset - corner.y) / y.y);
-    ring.extend([Point2::new(end, inset - outline.width), Point2::new(end, -inset), roof_top]);
-    if inset == 0.0 {
-        ring.push(outline.corner() + y * outline.roof);
-    }
-    ring.push(corner);
-    ring
 }

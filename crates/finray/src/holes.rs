@@ -2,9 +2,8 @@
 //! run through its depth. The gripper holds all of it rigidly: mechanics know nothing of it.
 
 use super::polygon::Ring;
-use crate::export::mm;
-use crate::printed::{Outline, PrintedFinger};
-use input::units::MM;
+use crate::outline::Outline;
+use input::units::{MM, mm};
 use input::{Check, InputError};
 use nalgebra::Point2;
 use serde::Deserialize;
@@ -135,9 +134,13 @@ impl Holes {
         3 - self.axis as usize - self.row as usize
     }
 
-    /// Checks that the holes fit.
-    pub(super) fn check(&self, check: Check<'_>, finger: &PrintedFinger) -> Result<(), InputError> {
-        let outline = &finger.outline;
+    /// Checks that the holes fit into an outline printed with lines of that width, m.
+    pub(super) fn check(
+        &self,
+        check: Check<'_>,
+        outline: &Outline,
+        line_width: f64,
+    ) -> Result<(), InputError> {
         if self.row == self.axis {
             let [one, other] = self.axis.across().map(Direction::word);
             let problem = format!("is that of the holes; it must be \"{one}\" or \"{other}\"");
@@ -153,7 +156,7 @@ impl Holes {
             let fits = overlap <= outline.clamped + EPSILON;
             check.require("holes.block.overlap_mm", overlap / MM, fits, &held)?;
         }
-        self.check_walls(check, outline, WALL_LINES * finger.line_width)
+        self.check_walls(check, outline, WALL_LINES * line_width)
     }
 
     fn check_walls(&self, check: Check, outline: &Outline, least: f64) -> Result<(), InputError> {

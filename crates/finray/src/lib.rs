@@ -1,7 +1,7 @@
 //! The printed finger: its profile, its stiffness from its ribs, its picture.
 //!
 //! ```text
-//! geometry (polygon) -> mesh -> meshed -> condense (halving, frontal)
+//! outline, holes -> printed -> infill -> geometry (polygon) -> mesh -> meshed -> condense (halving, frontal)
 //!     elements: elasticity (in the plane), plate (across it) -> stiffness, mechanics, picture
 //! ```
 #![forbid(unsafe_code)]
@@ -20,6 +20,7 @@ pub mod infill;
 pub mod mechanics;
 pub mod mesh;
 pub mod meshed;
+pub mod outline;
 pub mod picture;
 pub mod plate;
 pub mod polygon;

@@ -1,10 +1,10 @@
 //! A finger as finite elements: its mesh, its clamped nodes, and its pad as a rigid body.
 
 use super::condense::{Condensed, Element, Role, condense};
-use super::geometry::{Geometry, ring};
+use super::geometry::Geometry;
 use super::mesh::{Mesh, MeshError};
 use super::polygon::{Ring, edges};
-use crate::printed::Outline;
+use crate::outline::{Outline, ring};
 use input::units::MM;
 use nalgebra::{DMatrix, Matrix3, Point2};
 

@@ -8,7 +8,7 @@ use super::mechanics::SIZE;
 use super::mesh::MeshError;
 use super::meshed::{Body, MeshedFinger};
 use super::stiffness::PlanarStiffness;
-use crate::printed::Outline;
+use crate::outline::Outline;
 use input::units::MM;
 use nalgebra::{Point2, Vector2, Vector3};
 use std::fmt::Write;

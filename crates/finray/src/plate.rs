@@ -7,7 +7,7 @@
 
 use super::condense::Element;
 use super::elasticity::{Shape, Slab, area, shape};
-use crate::printed::Outline;
+use crate::outline::Outline;
 use nalgebra::Point2;
 
 /// Slab loaded across its plane.

@@ -1,6 +1,7 @@
 //! Finger files: outline, skin, ribs and material of a printed finger.
 
 use crate::holes::{Holes, RawHoles};
+use crate::outline::Outline;
 use input::units::{DEG, MM};
 use input::{Check, InputError, read, syntax};
 use nalgebra::Point2;
@@ -33,31 +34,6 @@ pub struct PrintedFinger {
     pub line_width: f64,
     /// Width of the narrowest gap between ribs that stays open, m.
     pub smallest_gap: f64,
-}
-
-/// Outline of a finger, m; X along it from the tip, Y across it from its front side.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Outline {
-    /// Length from tip to end.
-    pub length: f64,
-    /// Width from front side to back.
-    pub width: f64,
-    /// Depth of the extruded profile.
-    pub depth: f64,
-    /// Distance of the tip behind the front side.
-    pub tip: f64,
-    /// Radius of the arc between back and tip.
-    pub back_radius: f64,
-    /// Length of the pad, from the tip to the notch's corner.
-    pub pad: f64,
-    /// Angle between pad and axis, rad.
-    pub pad_angle: f64,
-    /// Length of the roof that rests on a part.
-    pub roof: f64,
-    /// Length of the base without ribs.
-    pub solid: f64,
-    /// Length of the base that the gripper holds.
-    pub clamped: f64,
 }
 
 /// Rule by which ribs fill a finger.

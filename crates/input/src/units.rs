@@ -16,3 +16,8 @@ pub const GRAM: f64 = 1e-3;
 
 /// One percent, as a share.
 pub const PERCENT: f64 = 0.01;
+
+/// Writes a length in mm, to a micrometre.
+pub fn mm(length: f64) -> String {
+    format!("{}", (length / MM * 1e3).round() / 1e3)
+}

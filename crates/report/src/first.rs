@@ -1,8 +1,8 @@
 //! The first screen of a page: what to do, how far to trust it, how the finger ends, its window,
 //! the finger itself, its files, and the next command.
 
+use super::beside::{Beside, Film};
 use super::elements::{figure, inert};
-use super::page::{Beside, Film};
 use super::printer::{self, recommended};
 use super::replay::{ENDS, pair_file};
 use super::{bar, explore};

@@ -9,6 +9,7 @@
 pub mod answer;
 mod bar;
 mod bench;
+mod beside;
 mod chart;
 pub mod compare;
 mod convergence;
@@ -35,10 +36,11 @@ mod surface;
 mod tests;
 mod theme;
 
+pub use beside::{Beside, Film};
 pub use convergence::svg as convergence_svg;
 pub use first::preferred;
 pub use front::svg as front_svg;
-pub use page::{Beside, Film, card, page};
+pub use page::{card, page};
 
 /// Why a plot could not be made: the drawing library refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

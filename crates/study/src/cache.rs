@@ -9,7 +9,7 @@
 //! many processes need no lock; of two writers the later wins with an equal file. A file
 //! that is torn or damaged fails its check and is measured and written again.
 
-use super::fits;
+use super::plausible;
 use super::provenance::SIMULATION_SOURCES;
 use super::seal::{seal, sha256_hex, unseal};
 use input::files::{self, LARGEST_OWN};
@@ -70,7 +70,7 @@ impl Cache {
         if entry.key != key || entry.measured_sha256 != sha256_hex(whole.as_bytes()) {
             return None;
         }
-        if fits::implausible(&entry.measured).is_some() {
+        if plausible::implausible(&entry.measured).is_some() {
             return None;
         }
         self.found.fetch_add(1, Ordering::Relaxed);
@@ -115,7 +115,7 @@ impl Cache {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fits::tests::sound;
+    use crate::plausible::tests::sound;
     use input::shipped::ROBOTS;
     use insertion::trial::engine::EngineKind;
 

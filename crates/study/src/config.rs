@@ -1,7 +1,6 @@
 //! The resolved configuration of a study, as `study.toml` keeps it.
 
 use super::differences::differences;
-use super::on_bench::BenchEffort;
 use super::provenance::Provenance;
 use ask_tell::OptimizerKind;
 use insertion::evaluation::INDIFFERENCE_MM;
@@ -80,6 +79,16 @@ pub enum Confirmation {
     NineAndThree,
     /// Whichever is expected to be the best, until none is expected to gain.
     Expected,
+}
+
+/// How much a prediction computes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BenchEffort {
+    /// Simulations, those that measure the error of the simulator's stand-in with them.
+    pub simulations: u16,
+    /// Samples of the posterior.
+    pub samples: u16,
 }
 
 /// How a study ends. It changes no evaluation, so it may be settled anew.

@@ -16,6 +16,7 @@ mod header;
 mod journal;
 mod line;
 mod on_bench;
+mod plausible;
 mod provenance;
 mod race;
 mod recommendation;
@@ -33,8 +34,8 @@ mod work;
 
 pub use cache::Cache;
 pub use config::{
-    Conclusion, Confirmation, INDIFFERENCES_MM, LARGEST_BATCH, LARGEST_BUDGET, StudyConfig,
-    study_name,
+    BenchEffort, Conclusion, Confirmation, INDIFFERENCES_MM, LARGEST_BATCH, LARGEST_BUDGET,
+    StudyConfig, study_name,
 };
 pub use course::Ending;
 pub use course::{Arrived, Course, Next, Wanted};
@@ -44,7 +45,7 @@ pub use folder::{
 };
 pub use folder::{Study, write_file};
 pub use line::{decode, encode};
-pub use on_bench::{BenchEffort, BenchFinger, LeaveOneOut, OnBench};
+pub use on_bench::{BenchFinger, LeaveOneOut, OnBench};
 pub use provenance::{BENCH_ROLES, Provenance};
 pub use provenance::{SOURCES, Segment};
 pub use record::{ByRibs, Volume, Walked, best, nearest, volume};

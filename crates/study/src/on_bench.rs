@@ -1,7 +1,8 @@
 //! Prediction of a study's fingers on the bench from measurements, kept beside the journal in
 //! `bench.json`. It is found after the search, which does not know of it, and can be found again.
 
-use super::fits;
+use super::config::BenchEffort;
+use super::plausible;
 use super::provenance::Provenance;
 use input::files::{self, LARGEST_OWN};
 use insertion::evaluation::Evaluation;
@@ -43,21 +44,11 @@ impl OnBench {
     pub(super) fn read(dir: &Path, provenance: &Provenance, space: &Space) -> Option<OnBench> {
         let text = files::read_own(&dir.join(BENCH_FILE), LARGEST_OWN).ok()?;
         let found: OnBench = serde_json::from_str(&text).ok()?;
-        let fits = |finger: &BenchFinger| fits::off_the_space(&finger.design, space).is_none();
+        let fits = |finger: &BenchFinger| plausible::off_the_space(&finger.design, space).is_none();
         let sound = !found.best.is_empty() && found.best.iter().all(fits);
-        let sound = sound && fits::implausible(&found.simulated).is_none();
+        let sound = sound && plausible::implausible(&found.simulated).is_none();
         (found.provenance == *provenance && sound).then_some(found)
     }
-}
-
-/// How much a prediction computes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct BenchEffort {
-    /// Simulations, those that measure the error of the simulator's stand-in with them.
-    pub simulations: u16,
-    /// Samples of the posterior.
-    pub samples: u16,
 }
 
 /// The measured fingers, each predicted without it.

@@ -115,7 +115,7 @@ impl Standing {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fits::tests::sound;
+    use crate::plausible::tests::sound;
     use input::shipped::SPACES;
     use insertion::evaluation::objective::Constraint;
     use insertion::surrogate::Prediction;

@@ -17,7 +17,7 @@
 //! What
 //! this finds is kept beside the journal, in `walk.json`, and is no part of the budget.
 
-use super::fits;
+use super::plausible;
 use super::provenance::Provenance;
 use super::record::{ByRibs, Recorded, Walked};
 use super::rule::{Rule, Standing};
@@ -75,7 +75,7 @@ impl WalkFile {
         let text = files::read_own(&dir.join(WALK_FILE), LARGEST_OWN).ok()?;
         let file: WalkFile = serde_json::from_str(&text).ok()?;
         let walked = file.designs.iter().filter_map(|row| row.walked.as_ref());
-        let doubtful = walked.flat_map(WalkedRow::evaluations).find_map(fits::implausible);
+        let doubtful = walked.flat_map(WalkedRow::evaluations).find_map(plausible::implausible);
         let same = provenance.is_some_and(|own| own.simulates_like(&file.provenance));
         (same && doubtful.is_none()).then_some(file)
     }

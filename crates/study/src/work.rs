@@ -8,8 +8,8 @@
 //! Nothing of a result is believed before [`Work::check`] has looked at it.
 
 use super::course::Arrived;
-use super::fits;
 use super::folder::Inputs;
+use super::plausible;
 use super::provenance::Provenance;
 use super::record::Timing;
 use super::seal::{seal, sha256_hex, unseal};
@@ -173,7 +173,7 @@ impl Work {
             let asked = [self.success_rate, self.robust_range];
             let doubtful = done.tasks.iter().find_map(|found| {
                 match asked == [found.success.is_some(), found.robust.is_some()] {
-                    true => fits::implausible(found).or_else(|| self.race_problem(found)),
+                    true => plausible::implausible(found).or_else(|| self.race_problem(found)),
                     false => Some("it does not have what was asked for"),
                 }
             });
@@ -195,7 +195,8 @@ impl Work {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fits::tests::{BOUNDS, sound};
+    use crate::fits;
+    use crate::plausible::tests::{BOUNDS, sound};
     use crate::record::Recorded;
     use crate::{decode, encode};
     use insertion::evaluation::SuccessRate;
@@ -285,7 +286,7 @@ mod tests {
             change(&mut evaluation, value);
             // What is no number is not written as one.
             let raced = evaluation.success.as_ref().is_some_and(|success| success.raced().is_some());
-            let sound = fits::implausible(&evaluation).is_none() && (0.0..f64::INFINITY).contains(&wall_s) && !raced;
+            let sound = plausible::implausible(&evaluation).is_none() && (0.0..f64::INFINITY).contains(&wall_s) && !raced;
             let taken = taken(evaluation, wall_s);
             prop_assert!(taken == sound || value.is_nan(), "{value}, {wall_s} s");
         }

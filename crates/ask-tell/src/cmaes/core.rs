@@ -1,8 +1,7 @@
 //! One run of CMA-ES on R^n by ask and tell.
 
 use super::parameters::Parameters;
-use super::restarts::StartBox;
-use super::stop::History;
+use super::stop::{History, Tolerances};
 use crate::normal::StandardNormal;
 use crate::stream::stream;
 use libm::{exp, pow, sqrt};
@@ -13,6 +12,23 @@ use rand::RngExt;
 const CONDITION: f64 = 1e14;
 /// Iterations after which an eigen decomposition is given up (it takes a few per axis).
 const EIGEN_ITERATIONS: usize = 1000;
+
+/// Start of every run: a uniform point of a box, and a step size.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StartBox {
+    /// Lower corner.
+    pub low: Vec<f64>,
+    /// Upper corner.
+    pub high: Vec<f64>,
+    /// Step size of the first run and of runs with large population, units of x.
+    pub sigma: f64,
+    /// Least standard deviation per coordinate; empty for none.
+    pub min_std: Vec<f64>,
+    /// The population stops doubling here.
+    pub max_lambda: usize,
+    /// When a run stops.
+    pub tolerances: Tolerances,
+}
 
 /// Difference of one run from the others.
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 //! CMA-ES on a grid.
 
-use super::core::Solution;
-use super::restarts::{Restarts, StartBox};
+use super::core::{Solution, StartBox};
+use super::restarts::Restarts;
 use super::stop::Tolerances;
 use crate::proposed::Costs;
 use crate::{Grid, GridPoint, Observation, Optimizer, StopReason};

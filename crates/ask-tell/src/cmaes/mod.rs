@@ -10,7 +10,7 @@ mod parameters;
 mod restarts;
 mod stop;
 
-pub use self::core::Solution;
+pub use self::core::{Solution, StartBox};
 pub(crate) use grid::CmaEsOptimizer;
-pub use restarts::{Restarts, StartBox};
+pub use restarts::Restarts;
 pub use stop::Tolerances;

@@ -1,28 +1,10 @@
 //! Restarts with growing populations: BIPOP (Hansen 2009).
 
-use super::core::{CmaEs, Plan, Solution};
+use super::core::{CmaEs, Plan, Solution, StartBox};
 use super::parameters::default_lambda;
-use super::stop::Tolerances;
 use crate::stream::stream;
 use libm::pow;
 use rand::RngExt;
-
-/// Start of every run: a uniform point of a box, and a step size.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StartBox {
-    /// Lower corner.
-    pub low: Vec<f64>,
-    /// Upper corner.
-    pub high: Vec<f64>,
-    /// Step size of the first run and of runs with large population, units of x.
-    pub sigma: f64,
-    /// Least standard deviation per coordinate; empty for none.
-    pub min_std: Vec<f64>,
-    /// The population stops doubling here.
-    pub max_lambda: usize,
-    /// When a run stops.
-    pub tolerances: Tolerances,
-}
 
 /// CMA-ES with restarts: **minimises**, never stops by itself. Runs of doubling population are
 /// interlaced with runs of small population and step size that together get as many evaluations.
@@ -107,6 +89,7 @@ impl Restarts {
 
 #[cfg(test)]
 mod tests {
+    use super::super::stop::Tolerances;
     use super::*;
 
     /// The best value, and the populations of all runs but the last.

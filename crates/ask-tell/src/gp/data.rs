@@ -2,6 +2,9 @@
 
 use super::warp::{Warp, warp};
 
+/// Values by which the exponent of the transformation is chosen, at most.
+const WARPED_BY: usize = 250;
+
 /// Values in the model's units: mean 0, variance 1.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Standardised {
@@ -66,7 +69,9 @@ impl Standardised {
     /// the noise floor at the scale's average slope; unchanged if there is none. The zero has
     /// no meaning then.
     pub fn warped(self) -> Self {
-        let Some((values, warp)) = warp(&self.values) else { return self };
+        let sample: Vec<f64> =
+            spread(self.values.len(), WARPED_BY).map(|i| self.values[i]).collect();
+        let Some((values, warp)) = warp(&self.values, &sample) else { return self };
         let noise_floor = (self.noise_floor * warp.slope * warp.slope).clamp(1e-8, 1.0);
         let scale = Scale { warp: Some(warp), ..self.scale };
         Standardised { values, noise_floor, zero: f64::NAN, scale }

@@ -1,5 +1,6 @@
 //! Plug and socket from triangle meshes: read, checked, cut into convex parts, measured.
 
+mod axes;
 mod cut;
 mod decompose;
 pub mod import;

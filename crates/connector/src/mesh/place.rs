@@ -1,8 +1,10 @@
 //! Unit of the files and direction of insertion: those that were given, or the only ones in which the
 //! plug's end fits a hole of the socket and its body between the jaws.
 
+pub use super::axes::value;
+use super::axes::{Along, Unit};
 use super::cut::{self, Mouth};
-use super::import::{Along, Mesh, Unit, few_faces};
+use super::import::{Mesh, few_faces};
 use super::read::Triangle;
 use super::surface::{SIZES, Surface};
 use super::{Files, MeshError};
@@ -184,11 +186,6 @@ impl Fit {
             self.clearance / MM
         )
     }
-}
-
-/// Name of a value on the command line.
-pub fn value(of: impl ValueEnum) -> String {
-    of.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned())
 }
 
 fn longest(triangles: &[Triangle]) -> f64 {

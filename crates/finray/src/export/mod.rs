@@ -11,7 +11,7 @@ pub mod slicer;
 
 use crate::geometry::Geometry;
 use crate::polygon::Ring;
-use input::units::MM;
+use input::units::{MM, mm};
 use nalgebra::Point2;
 
 /// Title of a file: `finray9, infill 20 %, 10°`.
@@ -25,9 +25,4 @@ fn rings(geometry: &Geometry) -> Vec<Ring> {
     let width = geometry.finger.outline.width / MM;
     let moved = |ring: Vec<[f64; 2]>| ring.into_iter().map(|[x, y]| Point2::new(x, y + width));
     geometry.rings_mm().into_iter().map(|ring| moved(ring).collect()).collect()
-}
-
-/// A length in mm, to a micrometre.
-pub(crate) fn mm(length: f64) -> String {
-    format!("{}", (length / MM * 1e3).round() / 1e3)
 }

@@ -9,8 +9,8 @@ use crate::condense::Element;
 use crate::elasticity::{Shape, Slab, area, shape};
 use crate::mechanics::{CROSS_SIZE, cross};
 use crate::meshed::{Body, held};
+use crate::outline::Outline;
 use crate::plate::MindlinPlate;
-use crate::printed::Outline;
 use crate::stiffness::CrossStiffness;
 use nalgebra::{Matrix6, Point2, Vector6};
 

@@ -2,7 +2,7 @@
 
 use super::Part;
 use super::geometry::Axis;
-use super::raw::size;
+use super::quantity::size;
 use input::units::{GPA, MM};
 use input::{Check, InputError};
 use nalgebra::{Point3, Vector3};

@@ -5,6 +5,7 @@ mod edges;
 pub mod finger;
 pub mod geometry;
 mod latch;
+mod quantity;
 mod raw;
 mod raw_part;
 

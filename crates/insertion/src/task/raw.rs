@@ -2,6 +2,7 @@
 
 use super::finger::{RawFinger, finger};
 use super::latch::{RawLatch, latch};
+use super::quantity::{coefficient, span};
 use super::raw_part::{RawPart, parts};
 use super::{
     Ending, Friction, Grip, Hold, PadTorsion, Phase, Plug, Sensed, Stage, StartRule, Strategy,
@@ -116,8 +117,6 @@ struct RawSuccess {
     tilt_deg: f64,
 }
 
-/// Thinnest part and narrowest opening, mm: a thousandth of what a printer prints.
-const THINNEST_MM: f64 = 1e-3;
 const MOST_PHASES: usize = 100;
 /// Largest radius of the patch that torsional friction stands for, mm: larger is none.
 const LARGEST_PATCH_MM: f64 = 100.0;
@@ -178,21 +177,6 @@ fn name(check: Check<'_>, name: &str) -> Result<(), InputError> {
     Ok(())
 }
 
-pub fn coefficient(check: Check<'_>, key: &str, value: f64) -> Result<f64, InputError> {
-    if (0.0..=5.0).contains(&value) {
-        return Ok(value);
-    }
-    let value = shown(value);
-    check.fail(key, format!("is {value}; a coefficient of friction lies in 0 .. 5"))
-}
-
-pub fn size(check: Check<'_>, key: &str, mm: f64) -> Result<f64, InputError> {
-    if check.distance(key, check.positive(key, mm)?)? < THINNEST_MM {
-        return check.fail(key, format!("is {mm}; it must be {THINNEST_MM} mm or more"));
-    }
-    Ok(mm * MM)
-}
-
 fn frictions(check: Check<'_>, raw: &RawFriction) -> Result<Friction, InputError> {
     let finger_plug = coefficient(check, "friction.finger_plug", raw.finger_plug)?;
     let finger_torsion = match raw.finger_plug_torsion_mm {
@@ -219,16 +203,6 @@ fn torsion(check: Check<'_>, mm: f64, finger_plug: f64) -> Result<f64, InputErro
         return check.fail(key, problem);
     }
     Ok(torsion * MM)
-}
-
-pub fn span(check: Check<'_>, key: &str, span: [f64; 2]) -> Result<[f64; 2], InputError> {
-    let [a, b] = check.each(key, span, Check::distance)?;
-    if b - a < THINNEST_MM {
-        let problem =
-            format!("is [{a}, {b}]; the first must be below the second by {THINNEST_MM} mm");
-        return check.fail(key, problem);
-    }
-    Ok([a * MM, b * MM])
 }
 
 fn grip(check: Check<'_>, raw: &RawGrip) -> Result<Grip, InputError> {

@@ -2,7 +2,7 @@
 
 use super::edges::{self, Cut, Edge};
 use super::geometry::{self, Axis, Part, Solid};
-use super::raw::{coefficient, size, span};
+use super::quantity::{coefficient, size, span};
 use input::units::MM;
 use input::{Check, InputError};
 use nalgebra::{Point3, Vector3};

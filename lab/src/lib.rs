@@ -1,4 +1,4 @@
-//! Verification of the models: analytic checks, comparisons of windows, and benchmarks.
+//! Verification of the models: analytic checks, comparisons of windows, optimizers on known problems.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 // A stream that has gone makes these panic: `finger_opt::terminal` prints.

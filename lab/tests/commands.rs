@@ -42,7 +42,7 @@ fn an_engine_agrees_with_itself_in_the_cross_check() {
 
 #[test]
 fn every_help_shows_an_example() {
-    for command in ["check", "cross-check", "validate", "benchmark", "optimizers", "windows"] {
+    for command in ["check", "cross-check", "validate", "optimizers", "windows"] {
         let help = lab(&[command, "--help"]);
         let example = format!("Example: lab {command}");
         assert!(help.succeeds().contains(&example), "{command}: {}", help.stdout);

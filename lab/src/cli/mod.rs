@@ -1,6 +1,5 @@
 //! Command line of `lab`, a file for each command.
 
-mod benchmark;
 mod check;
 mod cross_check;
 mod identify;
@@ -45,12 +44,6 @@ enum Command {
     CrossCheck(cross_check::Arguments),
     #[command(after_help = "Example: lab validate --task ket8 --strides")]
     Validate(validate::Arguments),
-    /// Measure how fast this machine simulates.
-    ///
-    /// One finger is evaluated on every task, on as many threads as a study would
-    /// use; the time of a study is estimated from it. Close other programs first.
-    #[command(after_help = "Example: lab benchmark")]
-    Benchmark,
     #[command(after_help = "Example: lab windows --random 40 --out windows.csv")]
     Windows(windows::Arguments),
     #[command(after_help = "Example: lab optimizers --functions branin --optimizers gp")]
@@ -80,7 +73,6 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Check(arguments) => check::run(arguments),
         Command::CrossCheck(arguments) => cross_check::run(arguments),
         Command::Validate(arguments) => validate::run(arguments),
-        Command::Benchmark => benchmark::run(),
         Command::Windows(arguments) => windows::run(arguments),
         Command::Optimizers(arguments) => optimizers::run(arguments),
         Command::Landscape(arguments) => landscape::run(arguments),

@@ -1,0 +1,178 @@
+//! Time of what is simulated: `cargo bench --bench simulation`.
+
+use connector::mesh::Surface;
+use connector::mesh::import::{Along, Mesh, Request, import};
+use contact::direct::Direct;
+use contact::scene::{Body, Friction, Geom, Inertia, Motion, Pose, Scene, Shape};
+use contact::{Engine, World};
+use divan::{Bencher, black_box};
+use finray::geometry::Geometry;
+use finray::infill::Design;
+use finray::mechanics;
+use finray::printed::PrintedFinger;
+use input::shipped::{FINGERS, ROBOTS, Shipped, TASKS};
+use input::units::{MM, N_PER_MM};
+use insertion::evaluation::tolerance::{self, Search};
+use insertion::finger::Finger;
+use insertion::robot::Robot;
+use insertion::task::Task;
+use insertion::trial::Rig;
+use insertion::trial::engine::EngineKind;
+use nalgebra::{Point3, Vector3};
+
+fn main() {
+    divan::main();
+}
+
+const TASK_NAMES: [&str; 4] = ["usb", "ket8", "ket12", "rj45"];
+
+fn shipped<'a>(files: &'a [Shipped], name: &str) -> &'a Shipped {
+    files.iter().find(|file| file.name == name).expect("it is shipped")
+}
+
+fn task(name: &str) -> Task {
+    let file = shipped(TASKS, name);
+    Task::parse(file.text, file.file).expect("a task")
+}
+
+/// The finger of measured design 5 on a task, with the robot `servo`.
+fn rig(name: &str, engine: EngineKind) -> (Box<dyn Rig>, Finger) {
+    let (task, robot) = (task(name), shipped(ROBOTS, "servo"));
+    let robot = Robot::parse(robot.text, robot.file).expect("a robot");
+    let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM).shaped(&task.finger, 0.0);
+    (engine.rig(&task, &robot, &finger, 1.0).expect("the engine has it all"), finger)
+}
+
+fn trial(bencher: Bencher, name: &str, engine: EngineKind) {
+    let (rig, finger) = rig(name, engine);
+    bencher.bench(|| rig.grasp(black_box(&finger)).trial(0.0));
+}
+
+#[divan::bench(args = TASK_NAMES, sample_count = 10, sample_size = 1)]
+fn trial_direct(bencher: Bencher, name: &str) {
+    trial(bencher, name, EngineKind::Direct);
+}
+
+#[divan::bench(args = TASK_NAMES, sample_count = 3, sample_size = 1)]
+fn trial_rapier(bencher: Bencher, name: &str) {
+    trial(bencher, name, EngineKind::Rapier);
+}
+
+#[divan::bench(args = TASK_NAMES, sample_count = 5, sample_size = 1)]
+fn evaluation(bencher: Bencher, name: &str) {
+    let (rig, finger) = rig(name, EngineKind::Direct);
+    bencher.bench(|| tolerance::evaluate(&*rig, black_box(&finger), Search::default()));
+}
+
+fn cuboid(name: &str, size_mm: [f64; 3], middle_mm: [f64; 3]) -> Geom {
+    let [x, y, z] = middle_mm.map(|mm| mm * MM);
+    let half = Vector3::from(size_mm) * (MM / 2.0);
+    let pose = Pose::translation(x, y, z);
+    Geom { name: name.into(), shape: Shape::Box { half }, pose, friction: None }
+}
+
+/// A plug of 20 g, 8 mm wide, in a bore with this gap on all sides, and that above its floor.
+fn plug_in_bore(gap_mm: f64, floor_mm: f64, gravity: f64) -> Box<dyn World> {
+    let middle = 4.0 + gap_mm + 5.0;
+    let walls = [
+        cuboid("wall -x", [10.0, 40.0, 20.0], [-middle, 0.0, 10.0]),
+        cuboid("wall +x", [10.0, 40.0, 20.0], [middle, 0.0, 10.0]),
+        cuboid("wall -y", [40.0, 10.0, 20.0], [0.0, -middle, 10.0]),
+        cuboid("wall +y", [40.0, 10.0, 20.0], [0.0, middle, 10.0]),
+        cuboid("floor", [40.0, 40.0, 10.0], [0.0, 0.0, -5.0]),
+    ];
+    let inertia = Inertia { mass: 0.02, centre: Point3::origin(), moments: Vector3::repeat(4e-7) };
+    let mut scene = Scene { gravity: Vector3::new(0.0, 0.0, -gravity), ..Scene::default() };
+    let socket = scene.body(Body {
+        name: "socket".into(),
+        motion: Motion::Fixed,
+        pose: Pose::identity(),
+        geoms: walls.into(),
+    });
+    let plug = scene.body(Body {
+        name: "plug".into(),
+        motion: Motion::Free(inertia),
+        pose: Pose::translation(0.0, 0.0, (7.5 + floor_mm) * MM),
+        geoms: vec![cuboid("plug", [8.0, 8.0, 15.0], [0.0; 3])],
+    });
+    scene.contact(socket, plug, Friction::hard(0.2));
+    Direct::default().world(&scene)
+}
+
+/// Ten steps from the same state: the carried contact points are not yet known in the first.
+fn ten_steps(bencher: Bencher, world: &dyn World) {
+    bencher.with_inputs(|| world.snapshot()).bench_local_values(|mut world| {
+        (0..10).for_each(|_| world.step().expect("it is finite"));
+        world
+    });
+}
+
+/// Near its walls and touching none: contacts are sought, and there is nothing to solve.
+#[divan::bench(sample_count = 100, sample_size = 10)]
+fn contact_detection_10_steps(bencher: Bencher) {
+    ten_steps(bencher, &*plug_in_bore(0.3, 0.3, 0.0));
+}
+
+/// Standing on the floor between walls that it touches.
+#[divan::bench(sample_count = 100, sample_size = 10)]
+fn solver_10_steps(bencher: Bencher) {
+    ten_steps(bencher, &*plug_in_bore(0.0, 0.0, 9.81));
+}
+
+#[divan::bench(sample_count = 5, sample_size = 1)]
+fn stiffness_of_a_printed_finger(bencher: Bencher) {
+    let finger = PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).expect("a finger");
+    let design = Design { density_percent: 20.0, direction_deg: 10.0, phase_mm: None };
+    bencher.bench(|| {
+        let geometry = Geometry::new(black_box(&finger), &design).expect("it fits");
+        mechanics::compute(&geometry).expect("a stiffness")
+    });
+}
+
+/// Triangles between squares about z, of half width and height in mm, counter-clockwise.
+fn squares(outline: &[[f64; 2]]) -> Vec<[Point3<f64>; 3]> {
+    let corners = [[1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]];
+    let at = |[half, z]: [f64; 2], corner: usize| {
+        let [x, y] = corners[corner % 4];
+        Point3::new(half * x, half * y, z)
+    };
+    let side = |(i, corner): (usize, usize)| {
+        let (low, high) = (outline[i], outline[(i + 1) % outline.len()]);
+        let [a, b] = [at(low, corner), at(low, corner + 1)];
+        let [c, d] = [at(high, corner), at(high, corner + 1)];
+        [[a, b, d], [a, d, c]]
+    };
+    let sides = (0..outline.len()).flat_map(|i| (0..4).map(move |corner| (i, corner)));
+    sides.flat_map(side).collect()
+}
+
+/// A square plug and the chamfered hole that it goes into.
+#[divan::bench(sample_count = 5, sample_size = 1)]
+fn mesh_import(bencher: Bencher) {
+    let plug = [[0.0, 0.0], [3.9, 0.0], [3.9, 10.0], [6.0, 10.0], [6.0, 25.0], [0.0, 25.0]];
+    let socket = [
+        [0.0, -12.0],
+        [9.0, -12.0],
+        [9.0, 0.0],
+        [4.8, 0.0],
+        [4.0, -0.8],
+        [4.0, -10.0],
+        [0.0, -10.0],
+    ];
+    let (plug, socket, like) = (squares(&plug), squares(&socket), task("usb"));
+    let request = Request {
+        name: "square",
+        along: Along::MinusZ,
+        jaws: None,
+        resolution: 64,
+        like: Some(&like),
+        say: &|_| (),
+    };
+    bencher.bench_local(|| {
+        let mesh = |triangles: &[[Point3<f64>; 3]], file: &str| Mesh {
+            file: file.to_owned(),
+            surface: Surface::new(triangles, MM, file).expect("a closed surface"),
+        };
+        import(mesh(&plug, "plug.stl"), mesh(&socket, "socket.stl"), &request).expect("a task")
+    });
+}

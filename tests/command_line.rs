@@ -226,8 +226,8 @@ fn a_bad_file_is_named_with_its_key() {
     for (from, to, part) in [
         ("low = 10.0", "low = nan", "infill_density_percent"),
         ("low = 10.0", "low = ", "line"),
-        ("infill_direction_deg", "infill_direction", "infill_direction_deg: is missing"),
-        ("[[parameter]]", EXTRA, "speed_mm_per_s: sets nothing; a key begins with"),
+        ("infill_direction_deg", "infill_direction", "did you mean `infill_direction_deg`?"),
+        ("[[parameter]]", EXTRA, "unknown path `speed_mm_per_s`; a path begins with"),
     ] {
         let path = studies.file("space.toml", space.replacen(from, to, 1));
         studies.study("s", 4, &["--space", &path]).fails(2, &["space.toml", part]);

@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// What decides the evaluation of a design.
-const SIMULATION: [&str; 9] = [
+const SIMULATION: [&str; 10] = [
     "Cargo.lock",
     "crates/ask-tell/src/normal.rs",
     "crates/ask-tell/src/process",
@@ -14,6 +14,7 @@ const SIMULATION: [&str; 9] = [
     "crates/finray",
     "crates/input",
     "crates/insertion",
+    "crates/parameters",
     "data",
 ];
 /// What else decides the course of a study and what it recommends.

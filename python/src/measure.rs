@@ -9,7 +9,7 @@ use finger_opt::session::{
 };
 use finger_opt::session::{read_space, read_task};
 use input::shipped::Source;
-use insertion::space::Parameter;
+use insertion::space::Variable;
 use insertion::trial::Sample;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -246,8 +246,8 @@ fn stiffness_request(data: Option<Name>, finger: Option<Name>) -> StiffnessReque
 #[pyfunction]
 pub fn space(name: Name) -> PyResult<String> {
     let space = read_space(&name.0).map_err(raise)?;
-    let line = |parameter: &Parameter| {
-        let Parameter { key, low, high, step, .. } = parameter;
+    let line = |parameter: &Variable| {
+        let Variable { key, low, high, step, .. } = parameter;
         json!({"name": key, "low": low, "high": high, "step": step})
     };
     Ok(space.parameters.iter().map(line).collect::<Value>().to_string())

@@ -11,7 +11,7 @@ use finray::mechanics::{self, FingerStiffness};
 use finray::picture;
 use finray::stiffness::PlanarStiffness;
 use input::units::{GRAM, MM, N_PER_MM};
-use insertion::finger::file::is_shape;
+use insertion::finger::file::{infill, is_shape};
 use insertion::space::Design;
 use insertion::surrogate::Prediction;
 use nalgebra::Matrix3;
@@ -90,7 +90,7 @@ impl command::Request for Request {
         let file = finger_file(&self.finger)?;
         let finger = file.with(&set).map_err(Failure::input)?;
         let [density, direction] = self.infill.both()?;
-        let infill = Design::infill(density, direction).printed(self.phase_mm);
+        let infill = infill(&Design::infill(density, direction), self.phase_mm);
         let geometry = Geometry::new(&finger, &infill).map_err(Failure::input)?;
         let computed = mechanics::compute(&geometry).map_err(Failure::input)?;
         let mut design = Design::infill(density, direction);

@@ -71,8 +71,9 @@ impl command::Request for Request {
         let stop = context.stop;
         let setup = self.setup.setup()?;
         let template = setup.only_task()?;
-        let priors = find("priors", PRIORS, &self.priors)?;
-        let priors = Priors::parse(&priors.text, &priors.file).map_err(Failure::input)?;
+        let source = find("priors", PRIORS, &self.priors)?;
+        let priors = Priors::parse(&source.text, &source.file).map_err(Failure::input)?;
+        setup.evaluator.check_paths(&priors, &source.file).map_err(Failure::input)?;
         let frame = self.frame.as_deref().map(|path| -> Result<Frame, Failure> {
             let file = path.to_string_lossy();
             let text = files::read_named(path, LARGEST_INPUT);

@@ -5,10 +5,10 @@ use crate::context::{Context, not_stopped};
 use crate::failure::{Failure, wide};
 use crate::setup::request::SetupRequest;
 use crate::setup::words::Words;
-use analysis::sensitivity::factors::Factors;
-use analysis::sensitivity::sobol::Sample;
+use analysis::sensitivity::{evaluate, inputs};
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::template::Impossible;
+use parameters::plan::saltelli::Sample;
 use rayon::prelude::*;
 use report::sensitivity::{self as shown, Found};
 use serde::{Serialize, Serializer};
@@ -81,14 +81,14 @@ impl Request {
         }
         let template = setup.only_task()?;
         let errors = setup.uncertainty.as_ref().map(|uncertainty| &uncertainty.errors);
-        let factors = Factors::new(&setup.space, errors).map_err(Failure::usage)?;
-        let sample = Sample::new(factors.0.len(), self.samples as usize, self.seed);
+        let factors = inputs(&setup.space, errors).map_err(Failure::usage)?;
+        let sample = Sample::new(factors.len(), self.samples as usize, self.seed);
         // `None` where the nominal start diverged.
         let value = |unit: &Vec<f64>| {
             if stop.load(Ordering::SeqCst) {
                 return Ok(None);
             }
-            let evaluation = factors.evaluate(&setup.evaluator, template, unit, stop)?;
+            let evaluation = evaluate(&factors, (&setup.evaluator, template), unit, stop)?;
             Ok(self.objective.value(&evaluation))
         };
         let values: Result<Vec<Option<f64>>, Impossible> =
@@ -108,7 +108,7 @@ impl Request {
             evaluations: values.len(),
             diverged: values.iter().filter(|value| value.is_none()).count(),
             without_window: values.iter().filter(|value| **value == Some(0.0)).count(),
-            factors: factors.0,
+            factors,
         })
     }
 }

@@ -93,9 +93,10 @@ impl HowCalibrated {
         more: &[Design],
         context: &Context<'a>,
     ) -> Result<Prepared<'a>, Failure> {
-        let priors = find("file of priors", PRIORS, &self.priors)?;
-        let priors = Priors::parse(&priors.text, &priors.file).map_err(Failure::input)?;
+        let source = find("file of priors", PRIORS, &self.priors)?;
+        let priors = Priors::parse(&source.text, &source.file).map_err(Failure::input)?;
         let setup = bench.setup(measurements, &priors)?;
+        setup.evaluator.check_paths(&priors, &source.file).map_err(Failure::input)?;
         let experiments = measured::lines(measurements, &setup.task_names())?;
         let effort = self.effort.or(None)?;
         let ground = Ground {

@@ -19,17 +19,15 @@ use crate::failure::{Failure, bad_config};
 use files::{Fingers, find, surrogate};
 use input::Place;
 use input::shipped::{FINGERS, Source, UNCERTAINTIES};
-use insertion::evaluation::cell::{Priors, Target};
+use insertion::evaluation::cell::Priors;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::{Template, printable};
 use insertion::evaluation::uncertainty::Uncertainty;
-use insertion::finger::computed::AtPad;
-use insertion::finger::file::is_shape;
 use insertion::finger::model::{FingerModelKind, FingerSource};
 use insertion::robot::Robot;
-use insertion::space::{Design, Space};
+use insertion::space::Space;
 use insertion::surrogate::Model;
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
@@ -144,10 +142,10 @@ impl Setup {
     /// The same in a cell, whose robot it has; of the cell's source.
     pub(crate) fn within(mut self, source: Source, cell: Priors) -> Result<Self, Failure> {
         for row in &cell.parameters {
-            row.change_robot(row.middle(), &mut self.evaluator.robot);
+            self.evaluator.robot.change(row, row.middle());
         }
-        self.evaluator.cell = Some(cell.clone());
-        possible(&self.evaluator, &cell, &source.file)?;
+        self.evaluator.cell = Some(cell);
+        self.evaluator.check_cell(&source.file).map_err(Failure::input)?;
         self.inputs.insert(CELL.to_owned(), source.text);
         Ok(self)
     }
@@ -159,10 +157,13 @@ impl Setup {
 
     fn under(mut self, errors: Source) -> Result<Self, Failure> {
         let uncertainty = Uncertainty::parse(&errors.text, &errors.file).map_err(Failure::input)?;
+        if let Some(cell) = &uncertainty.cell {
+            self.evaluator.check_paths(cell, &errors.file).map_err(Failure::input)?;
+        }
         let robot = &self.evaluator.robot;
         let rows = uncertainty.cell.iter().filter(|cell| cell.robot.is_none());
         let mut rows = rows.flat_map(|cell| &cell.parameters);
-        if let Some(row) = rows.find(|row| !row.fits(robot)) {
+        if let Some(row) = rows.find(|row| !robot.fits(row)) {
             let problem =
                 format!("goes with a robot of kind = \"servo\", which `{}` is not", robot.name);
             return Err(Failure::input(Place::file(&errors.file).key(&row.name).fault(problem)));
@@ -185,6 +186,7 @@ impl Setup {
         }
         let [role, priors_role] = BENCH_ROLES.map(str::to_owned);
         let bounds = Priors::parse(&priors.text, &priors.file).map_err(Failure::input)?;
+        self.evaluator.check_paths(&bounds, &priors.file).map_err(Failure::input)?;
         let measured = Measured { priors: bounds, experiments, file };
         self.inputs.extend([(role, lines.text), (priors_role, priors.text)]);
         self.measured = Some(measured);
@@ -232,23 +234,6 @@ fn fit_together(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), 
         template.check(space, file, &fits).map_err(Failure::input)?;
     }
     printable::check_springs(evaluator, space, file).map_err(Failure::input)
-}
-
-/// Whether each task can have the cell's numbers.
-fn possible(evaluator: &Evaluator, cell: &Priors, file: &str) -> Result<(), Failure> {
-    for template in &evaluator.templates {
-        for row in cell.of(&template.task.name) {
-            let Target::Number(key) = &row.sets else { continue };
-            let value = evaluator.number(template, key).filter(|_| !is_shape(key));
-            let Some(value) = value else { continue };
-            let design = Design::infill(0.0, 0.0).with(key, value);
-            let at_pad = AtPad { compliance: 1.0, assembly: 1.0 };
-            template.apply(&design, &FingerSource::Paper, at_pad).map_err(|error| {
-                Failure::input(Place::file(file).key(&row.name).fault(error.to_string()))
-            })?;
-        }
-    }
-    Ok(())
 }
 
 /// A task that is given twice would count twice.

@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use finray::geometry::Geometry;
 use finray::printed::PrintedFinger;
 use input::shipped::FINGERS;
-use insertion::finger::file::{FingerFile, is_shape};
+use insertion::finger::file::{FingerFile, infill, is_shape};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::Prediction;
 use report::answer::Answer;
@@ -40,7 +40,7 @@ impl PrintRequest {
     pub fn geometry(&self) -> Result<Geometry, Failure> {
         let (design, file, _) = self.chosen()?;
         let finger = file.with(&design).map_err(Failure::input)?;
-        Geometry::new(&finger, &design.printed(self.phase_mm)).map_err(Failure::input)
+        Geometry::new(&finger, &infill(&design, self.phase_mm)).map_err(Failure::input)
     }
 
     /// Its stiffness by the model of measured fingers: as the study predicted it, else by the table

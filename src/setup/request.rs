@@ -8,7 +8,7 @@ use input::shipped::{FINGERS, ROBOTS, SPACES, Source, TASKS, resolve};
 use insertion::evaluation::cell::Priors;
 use insertion::finger::file::is_shape;
 use insertion::finger::model::{FingerModelKind, FingerSource};
-use insertion::space::{Parameter, Space};
+use insertion::space::{Space, Variable};
 use insertion::task::StartRule;
 use insertion::trial::engine::EngineKind;
 use serde::Deserialize;
@@ -190,10 +190,10 @@ impl FingerModelRequest {
     /// The finger file, if fingers are computed: as those of a space with numbers of a printed
     /// finger have to be.
     fn file(&self, space: Option<&Space>) -> Result<Option<Source>, Failure> {
-        let shape = |p: &&Parameter| is_shape(&p.key);
+        let shape = |p: &&Variable| is_shape(&p.key);
         let shaped = space.and_then(|space| space.parameters.iter().find(shape));
         let kind = match (self.kind, shaped) {
-            (Some(FingerModelKind::Paper), Some(Parameter { key, .. })) => {
+            (Some(FingerModelKind::Paper), Some(Variable { key, .. })) => {
                 return Err(Failure::usage(format!(
                     "the space sets {key}, which --finger-model computed knows, paper does not"
                 )));

@@ -5,7 +5,7 @@ use crate::setup::Setup;
 use ask_tell::{Grid, GridPoint, Informed, Optimizer, OptimizerKind, Polished};
 use insertion::finger::file::is_shape;
 use insertion::finger::model::FingerSource;
-use insertion::space::{Design, Parameter};
+use insertion::space::{Design, Variable};
 use insertion::stiffness::Measurement;
 use study::StudyConfig;
 
@@ -44,7 +44,7 @@ fn measured_points(setup: &Setup) -> Vec<GridPoint> {
     let point = |measured: &Measurement| {
         let infill = Design::infill(measured.density_percent, measured.direction_deg);
         let value =
-            |p: &Parameter| infill.get(&p.key).or_else(|| fingers.file.numbers.number(&p.key));
+            |p: &Variable| infill.get(&p.key).or_else(|| fingers.file.numbers.number(&p.key));
         parameters.iter().map(|p| Some(p.nearest(value(p)?))).collect::<Option<_>>().map(GridPoint)
     };
     setup.evaluator.surrogate.measurements.iter().filter_map(point).collect()

@@ -6,7 +6,7 @@ use super::process::COORDINATES;
 use super::statistics::{mean, spearman};
 use super::subject::Subject;
 use ask_tell::stream::stream;
-use insertion::evaluation::cell::Parameter;
+use parameters::Parameter;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::slice;

@@ -7,7 +7,7 @@ use ask_tell::SobolSequence;
 use ask_tell::gp::{FitEffort, Gp, fit_until};
 use insertion::evaluation::template::Impossible;
 use insertion::outcome::{FailureClass, Outcome};
-use insertion::space::{Design, Parameter, Space};
+use insertion::space::{Design, Space, Variable};
 use rayon::prelude::*;
 use std::sync::atomic::Ordering;
 
@@ -76,8 +76,11 @@ impl Emulator {
                 return Err(no_fit());
             }
             let (of_space, shares) = at.split_at(space.parameters.len());
-            let value = |(parameter, share): (&Parameter, &f64)| {
-                (parameter.key.clone(), parameter.low + share * (parameter.high - parameter.low))
+            let value = |(parameter, share): (&Variable, &f64)| {
+                (
+                    parameter.key.to_string(),
+                    parameter.low + share * (parameter.high - parameter.low),
+                )
             };
             let design = Design(space.parameters.iter().zip(of_space).map(value).collect());
             let evaluation = simulation.window(&design, shares)?;

@@ -2,7 +2,6 @@
 
 use input::units::MM;
 use insertion::evaluation::Evaluation;
-use insertion::evaluation::cell::{Parameter, Target};
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::{Impossible, Template};
@@ -11,6 +10,7 @@ use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::trial::Grasp;
+use parameters::Parameter;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use study::Cache;
@@ -38,11 +38,7 @@ impl<'a> Simulation<'a> {
         cache: Option<PathBuf>,
         stop: &'a AtomicBool,
     ) -> Self {
-        let has = |parameter: &&Parameter| match &parameter.sets {
-            Target::Number(path) => evaluator.number(template, path).is_some(),
-            _ => parameter.fits(&evaluator.robot),
-        };
-        let parameters = parameters.filter(has).collect();
+        let parameters = parameters.filter(|one| evaluator.has(template, one)).collect();
         Simulation { evaluator, template, parameters, cache, stop }
     }
 

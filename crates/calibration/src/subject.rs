@@ -9,7 +9,7 @@ use ask_tell::SobolSequence;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::template::Template;
 use insertion::outcome::FailureClass;
-use insertion::space::{Design, Parameter, Space};
+use insertion::space::{Design, Space, Variable};
 use std::collections::BTreeSet;
 
 /// Most fingers of a space that are predicted; of a larger space it is a designed set.
@@ -160,7 +160,7 @@ pub fn whole(
         ));
     }
     let mut design = Design::default();
-    for Parameter { key, low, high, .. } in &space.parameters {
+    for Variable { key, low, high, .. } in &space.parameters {
         let value = line.design.get(key).or_else(|| template.numbers.number(key));
         let value = value.unwrap_or((low + high) / 2.0);
         if !(*low..=*high).contains(&value) {
@@ -169,13 +169,13 @@ pub fn whole(
                  --space FILE"
             ));
         }
-        design.0.insert(key.clone(), value);
+        design.0.insert(key.to_string(), value);
     }
     Ok(design)
 }
 
 fn shares(space: &Space, design: &Design) -> Vec<f64> {
-    let share = |parameter: &Parameter| {
+    let share = |parameter: &Variable| {
         let value = design.get(&parameter.key).unwrap_or(parameter.low);
         let width = parameter.high - parameter.low;
         if width > 0.0 { (value - parameter.low) / width } else { 0.5 }

@@ -1,5 +1,6 @@
 //! TOML files, the numbers of which a design may set by their paths.
 
+use crate::shipped::nearest;
 use crate::{Check, InputError, read};
 use std::collections::BTreeSet;
 use toml::{Table, Value};
@@ -99,22 +100,30 @@ fn numbers<'a>(path: &str, value: &'a mut Value) -> Vec<(String, &'a mut Value)>
     }
 }
 
-/// Problem of a key that is none of `keys`: how a key that begins like it goes on.
-fn unknown(key: &str, keys: &[&str]) -> String {
-    let mut end = key.len();
+/// Problem of a path that is none of `paths`: the nearest of them, and how one that begins like it
+/// goes on.
+pub fn unknown(path: &str, paths: &[&str]) -> String {
+    let near = nearest(path, paths).map(|near| format!("; did you mean `{near}`?"));
+    let hint = near.as_deref().unwrap_or(";");
+    let mut end = path.len();
     loop {
-        let prefix = if end == 0 { String::new() } else { format!("{}.", &key[..end]) };
+        let prefix = if end == 0 { String::new() } else { format!("{}.", &path[..end]) };
         let next = |other: &&str| Some(other.strip_prefix(&prefix)?.split('.').next()?.to_owned());
-        let next: BTreeSet<String> = keys.iter().filter_map(next).collect();
-        if !next.is_empty() {
-            let names: Vec<String> = next.into_iter().collect();
-            return match (prefix.as_str(), names.split_last()) {
-                ("", Some((last, others))) => {
-                    format!("sets nothing; a key begins with {} or {last}", others.join(", "))
-                }
-                _ => format!("sets no number; `{prefix}` goes on with {}", names.join(", ")),
-            };
+        let next: BTreeSet<String> = paths.iter().filter_map(next).collect();
+        let names: Vec<String> = next.into_iter().collect();
+        match (end, names.split_last()) {
+            (0, Some((last, others))) => {
+                let others = others.join(", ");
+                return format!(
+                    "unknown path `{path}`{hint} a path begins with {others} or {last}"
+                );
+            }
+            (_, Some(_)) => {
+                let names = names.join(", ");
+                return format!("unknown path `{path}`{hint} `{prefix}` goes on with {names}");
+            }
+            (0, None) => return format!("unknown path `{path}`"),
+            (_, None) => end = path[..end].rfind('.').unwrap_or(0),
         }
-        end = key[..end].rfind('.').unwrap_or(0);
     }
 }

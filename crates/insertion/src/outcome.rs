@@ -1,5 +1,6 @@
 //! How a trial ends: the vocabulary of trials, published tables and measurements.
 
+use parameters::plan::grid::Ends;
 use serde::{Deserialize, Serialize};
 
 /// Failure class of a trial; the numbers are the paper's (Table "Failure Cases").
@@ -103,5 +104,10 @@ impl Outcome {
             Outcome::Failed(class) => Some(class.number()),
             _ => None,
         }
+    }
+}
+impl Ends for Outcome {
+    fn inside(self) -> bool {
+        self == Outcome::Inserted
     }
 }

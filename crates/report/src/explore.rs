@@ -97,7 +97,7 @@ pub(super) fn embedded(value: &Value) -> String {
 fn to_json(answer: &Answer, model: Option<&surface::Model>, dir: &Path) -> Value {
     let record = answer.record;
     let (parameters, measure) = (&record.config.space.parameters, record.config.objective.first());
-    let parameter = |p: &insertion::space::Parameter| {
+    let parameter = |p: &insertion::space::Variable| {
         let (name, unit) = label(&p.key);
         let option = match p.key.as_str() {
             DENSITY_KEY => "--density ".to_owned(),

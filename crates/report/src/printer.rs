@@ -3,7 +3,7 @@
 use crate::answer::Answer;
 use finray::geometry::Geometry;
 use input::shipped::FINGERS;
-use insertion::finger::file::FingerFile;
+use insertion::finger::file::{FingerFile, infill};
 use study::StudyRecord;
 
 /// The surface of the recommended finger, in the folder of its study.
@@ -28,5 +28,5 @@ pub(super) fn finger_file(record: &StudyRecord) -> Option<FingerFile> {
 pub fn recommended(record: &StudyRecord) -> Option<Geometry> {
     let design = Answer::of(record).verdict.finger()?;
     let finger = finger_file(record)?.with(design).ok()?;
-    Geometry::new(&finger, &design.printed(None)).ok()
+    Geometry::new(&finger, &infill(design, None)).ok()
 }

@@ -3,10 +3,9 @@
 use super::ReportError;
 use super::chart::{Area, Drawn, message, sheet, tick, words};
 use super::theme::{BLUE, INK, LINES, MUTED};
-use analysis::sensitivity::Interval;
-use analysis::sensitivity::factors::Factor;
-use analysis::sensitivity::sobol::Indices;
 use insertion::evaluation::objective::Measure;
+use parameters::Parameter;
+use parameters::plan::saltelli::{Indices, Interval};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 use serde_json::{Value, json};
@@ -19,7 +18,7 @@ pub struct Found {
     /// Measure analysed.
     pub objective: Measure,
     /// The inputs, as varied.
-    pub factors: Vec<Factor>,
+    pub factors: Vec<Parameter>,
     /// Shares of the objective's variance, in their order.
     pub indices: Vec<Indices>,
     /// Windows that were simulated.
@@ -32,7 +31,7 @@ pub struct Found {
 
 impl Found {
     /// The inputs by how much they matter, most first.
-    fn bars(&self) -> Vec<(&Factor, Indices)> {
+    fn bars(&self) -> Vec<(&Parameter, Indices)> {
         let mut bars: Vec<_> = self.factors.iter().zip(self.indices.iter().copied()).collect();
         bars.sort_by(|a, b| b.1.total.value.total_cmp(&a.1.total.value));
         bars
@@ -41,16 +40,17 @@ impl Found {
 
 /// The inputs by how much they matter, for other programs.
 pub fn json(found: &Found) -> Value {
-    let one = |(Factor { key, low, high, .. }, Indices { first, total }): (&Factor, Indices)| {
-        let mut fields = json!({"name": key, "low": low, "high": high});
-        let mut set = |name: String, value: f64| fields[name] = json!(value);
-        for (name, share) in [("first", first), ("total", total)] {
-            set(name.to_owned(), share.value);
-            set(format!("{name}_low"), share.low);
-            set(format!("{name}_high"), share.high);
-        }
-        fields
-    };
+    let one =
+        |(Parameter { path, low, high, .. }, Indices { first, total }): (&Parameter, Indices)| {
+            let mut fields = json!({"name": path, "low": low, "high": high});
+            let mut set = |name: String, value: f64| fields[name] = json!(value);
+            for (name, share) in [("first", first), ("total", total)] {
+                set(name.to_owned(), share.value);
+                set(format!("{name}_low"), share.low);
+                set(format!("{name}_high"), share.high);
+            }
+            fields
+        };
     json!({
         "task": found.task,
         "objective": found.objective.name(),
@@ -70,7 +70,7 @@ pub fn text(found: &Found) -> String {
         format!("{:<33} {:>10} {:>14} {:>8} {:>12}", "input", head[0], head[1], head[2], head[3]),
     ];
     for (factor, Indices { first, total }) in found.bars() {
-        let (name, of, last) = (short(&factor.key), interval(total), interval(first));
+        let (name, of, last) = (short(&factor.path), interval(total), interval(first));
         let (value, alone) = (total.value, first.value);
         lines.push(format!("{name:<33} {value:>10.2} {of:>14} {alone:>8.2} {last:>12}"));
     }
@@ -127,7 +127,7 @@ fn draw(area: &Area<'_>, found: &Found) -> Drawn {
         let ends = vec![(at(total.low), y), (at(total.high), y)];
         area.draw(&PathElement::new(ends, INK.rgb().stroke_width(2))).map_err(message)?;
         let name =
-            format!("{} ({} to {})", short(&factor.key), tick(factor.low), tick(factor.high));
+            format!("{} ({} to {})", short(&factor.path), tick(factor.low), tick(factor.high));
         area.draw_text(&name, &style(13, INK, HPos::Right), (LEFT - 8, y)).map_err(message)?;
         let value = format!("{:.2}", total.value);
         area.draw_text(&value, &style(14, INK, HPos::Left), (at(total.high) + 8, y))

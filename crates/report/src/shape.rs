@@ -5,14 +5,14 @@ use crate::answer::words::infill;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
 use insertion::finger::file::is_shape;
-use insertion::space::{Parameter, label};
+use insertion::space::{Variable, label};
 use maud::{Markup, html};
 use study::{Recorded, StudyRecord};
 
 /// The section; `None` if the space has no such parameter.
 pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     let parameters = &record.config.space.parameters;
-    let shape: Vec<&Parameter> = parameters.iter().filter(|p| is_shape(&p.key)).collect();
+    let shape: Vec<&Variable> = parameters.iter().filter(|p| is_shape(&p.key)).collect();
     let index = record.recommended().filter(|_| !shape.is_empty())?.index;
     // As the search found it, which alone has looked at the others, too.
     let best = record.current().iter().find(|recorded| recorded.index == index)?;

@@ -2,7 +2,7 @@
 //! through the evaluations, as the optimizer `gp` has one.
 
 use ask_tell::gp::{FitEffort, Gp, fit};
-use insertion::space::Parameter;
+use insertion::space::Variable;
 use serde_json::{Value, json};
 use study::StudyRecord;
 
@@ -55,7 +55,7 @@ impl Model {
     }
 }
 
-fn unit(parameter: &Parameter, value: f64) -> f64 {
+fn unit(parameter: &Variable, value: f64) -> f64 {
     let span = parameter.high - parameter.low;
     if span > 0.0 { (value - parameter.low) / span } else { 0.5 }
 }
@@ -76,7 +76,7 @@ pub(super) fn to_json(record: &StudyRecord, model: &Model) -> Option<Value> {
     });
     axes.truncate(2);
     axes.sort_unstable();
-    let levels = |parameter: &Parameter| -> Vec<f64> {
+    let levels = |parameter: &Variable| -> Vec<f64> {
         let cells = parameter.levels().clamp(2, CELLS);
         let step = (parameter.high - parameter.low) / f64::from(cells - 1);
         (0..cells).map(|k| round(parameter.low + f64::from(k) * step)).collect()

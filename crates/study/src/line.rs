@@ -16,7 +16,7 @@ use super::record::{Recorded, Timing};
 use super::seal::{is_sealed, seal, unseal};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Score;
-use insertion::space::{Design, Parameter, Space};
+use insertion::space::{Design, Space, Variable};
 use insertion::surrogate::Prediction;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -125,7 +125,7 @@ pub fn is_foreign(line: &str) -> bool {
 }
 
 /// A parameter as Optuna describes it: a JSON text within the JSON line.
-fn distribution(Parameter { key, low, high, step, .. }: &Parameter) -> (String, String) {
+fn distribution(Variable { key, low, high, step, .. }: &Variable) -> (String, String) {
     let attributes = json!({"low": low, "high": high, "log": false, "step": step});
-    (key.clone(), json!({"name": "FloatDistribution", "attributes": attributes}).to_string())
+    (key.to_string(), json!({"name": "FloatDistribution", "attributes": attributes}).to_string())
 }

@@ -97,7 +97,7 @@ impl Rule<'_> {
     /// Distance from the nearest bound of a parameter, as a share of its span; 0 to 0.5. A
     /// parameter of one value has no bounds to be near to.
     fn edge_distance(&self, design: &Design) -> f64 {
-        let of = |parameter: &insertion::space::Parameter| {
+        let of = |parameter: &insertion::space::Variable| {
             let (value, span) = (design.get(&parameter.key)?, parameter.high - parameter.low);
             (span > 0.0).then(|| (value - parameter.low).min(parameter.high - value) / span)
         };

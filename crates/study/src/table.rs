@@ -48,7 +48,10 @@ fn row(record: &StudyRecord, recorded: &Recorded) -> Result<Row, serde_json::Err
     let mut row = vec![("evaluation".to_owned(), recorded.index.to_string())];
     for parameter in &config.space.parameters {
         let value = recorded.design.get(&parameter.key);
-        row.push((parameter.key.clone(), value.map_or(String::new(), |value| value.to_string())));
+        row.push((
+            parameter.key.to_string(),
+            value.map_or(String::new(), |value| value.to_string()),
+        ));
     }
     let score = |of: fn(&Score) -> &[f64], i: usize| {
         let value = recorded.score.as_ref().and_then(|score| of(score).get(i));

@@ -7,7 +7,7 @@ pub mod truth;
 use ask_tell::stream::stream;
 use finger_opt::failure::Failure;
 use input::shipped::PRIORS;
-use insertion::evaluation::cell::{Parameter, Priors};
+use insertion::evaluation::cell::Priors;
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::taught::teach;
 use insertion::evaluation::template::Template;
@@ -15,6 +15,7 @@ use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::trial::NEVER;
 use insertion::trial::engine::EngineKind;
+use parameters::Parameter;
 use rand::RngExt;
 
 /// Seed of the streams that cells are drawn from.
@@ -63,7 +64,7 @@ impl<'a> HiddenCell<'a> {
             let [mut values, mut shown] = [[0.0; 5]; 2];
             for (i, row) in rows.iter().enumerate() {
                 values[i] = row.at(random.random());
-                shown[i] = template.numbers.number(row.sets.key()).unwrap_or(1.0) * values[i];
+                shown[i] = template.numbers.number(&row.path).unwrap_or(1.0) * values[i];
             }
             let rows = rows.clone();
             let cell = HiddenCell { number, draws, evaluator, template, rows, values, shown };

@@ -10,11 +10,11 @@ use finger_opt::commands::identify;
 use finger_opt::context::Context;
 use finger_opt::failure::Failure;
 use finger_opt::setup::request::{SetupRequest, TaskSource};
-use insertion::evaluation::cell::Parameter;
 use insertion::robot::{Drive, Robot};
 use insertion::space::Design;
 use insertion::trial::NEVER;
 use insertion::trial::engine::EngineKind;
+use parameters::Parameter;
 use rayon::prelude::*;
 use std::path::Path;
 

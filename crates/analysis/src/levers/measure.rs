@@ -1,41 +1,26 @@
 //! The windows of a finger and of its levers.
 
-use super::rows::{Changed, Row, rows};
-use super::{Base, Lever, Levers};
+use super::lever::{Base, Lever, Levers};
+use super::question::{Cell, Question};
+use super::rows::{Row, rows};
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::robustness::Plan;
-use insertion::evaluation::template::{Impossible, Template};
+use insertion::evaluation::template::Impossible;
 use insertion::evaluation::tolerance::Search;
 use insertion::evaluation::{Evaluation, grid_mm};
 use insertion::finger::model::FingerSource;
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space, label};
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::Prediction;
 use insertion::task::StartRule;
+use parameters::plan::one_at_a_time::End;
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// Most windows that are measured.
 const MOST_WINDOWS: usize = 20;
-
-/// Of which finger on which task the levers are asked for.
-pub struct Question<'a> {
-    /// Measures it.
-    pub evaluator: &'a Evaluator,
-    /// The task; one of the evaluator's.
-    pub template: &'a Template,
-    /// The space, whose bounds hold for the keys that it has.
-    pub space: &'a Space,
-    /// The finger, and what else its design sets.
-    pub design: &'a Design,
-    /// Its stiffness, unless it is to be predicted.
-    pub given: Option<Prediction>,
-}
-
-/// What is measured.
-type Cell = (Specimen, Robot);
 
 /// A lever that is measured: its row, its ends, and of each end the place of its window; of an end
 /// that changes nothing that of the base.
@@ -98,11 +83,10 @@ impl Question<'_> {
         let (mut tried, mut left_out) = (Vec::new(), Vec::new());
         for row in rows(self, &base.0.task)? {
             let (mut more, mut values, mut places) = (Vec::new(), [row.value; 2], [0; 2]);
-            for end in [0, 1] {
+            for (end, bound) in [End::Low, End::High].into_iter().enumerate() {
                 // A chamfer of 0 is the same shape in another form, which moves a window, too.
-                let changed = row.at(self, end).filter(|end| end.value != row.value);
-                let Some(Changed { value, specimen, robot }) = changed else { continue };
-                let cell = (specimen, robot);
+                let changed = row.at(self, bound).filter(|(value, _)| *value != row.value);
+                let Some((value, cell)) = changed else { continue };
                 if cell != base {
                     (values[end], places[end]) = (value, cells.len() + more.len());
                     more.push(cell);
@@ -184,10 +168,9 @@ fn written(value: f64) -> f64 {
 impl Tried {
     fn lever(self, ranges: &[Option<f64>]) -> Lever {
         let Tried { row: Row { parameter, value }, values, places } = self;
-        let key = parameter.sets.key();
         Lever {
-            unit: label(key).1.trim().to_owned(),
-            key: key.to_owned(),
+            unit: parameter.path.unit().trim().to_owned(),
+            key: parameter.path.to_string(),
             name: parameter.name,
             value: written(value),
             low: written(values[0]),

@@ -1,15 +1,16 @@
 //! Which levers a task and a robot have, and between what values.
 
-use super::measure::Question;
+use super::question::{Cell, Question};
 use connector::body::{ConvexBody, width};
 use connector::seat::section;
 use input::shipped::{LEVERS, PRIORS};
-use input::units::{MM, N_PER_MM};
-use insertion::evaluation::cell::{Parameter, Priors, Target, Way};
-use insertion::evaluation::evaluator::Specimen;
+use input::units::MM;
+use insertion::evaluation::cell::Priors;
 use insertion::evaluation::template::Impossible;
-use insertion::robot::{Drive, Robot};
 use insertion::task::Task;
+use parameters::numbers::{CLEARANCE, Kind};
+use parameters::plan::one_at_a_time::{End, farthest};
+use parameters::{Parameter, Path, Transform};
 
 /// Rows of `priors/bench.toml` that a user can change; the others are what fingers and pads are.
 const OF_BENCH: [&str; 5] = [
@@ -21,21 +22,11 @@ const OF_BENCH: [&str; 5] = [
 ];
 /// Rows of `priors/levers.toml` that come after all others.
 const LAST: [&str; 2] = ["stroke to the front", "stroke to the back"];
-/// Steps between the present value and a bound, of which the farthest that can be is taken.
-const STEPS: u32 = 100;
 
 /// A row with the present value, in the unit of what it sets.
 pub struct Row {
     pub parameter: Parameter,
     pub value: f64,
-}
-
-/// A cell with one number changed.
-pub struct Changed {
-    /// The number, in its unit.
-    pub value: f64,
-    pub specimen: Specimen,
-    pub robot: Robot,
 }
 
 /// The rows that question's task, finger and robot have; a key of the space keeps to its bounds there.
@@ -46,30 +37,26 @@ pub fn rows(question: &Question<'_>, task: &Task) -> Result<Vec<Row>, Impossible
     let (last, first): (Vec<_>, Vec<_>) =
         own.into_iter().partition(|row| LAST.contains(&&*row.name));
     let row = |mut parameter: Parameter| {
-        let value = present(question, task, &parameter.sets)?;
-        let key = parameter.sets.key();
-        if let Some(of) = question.space.parameters.iter().find(|of| of.key == key) {
+        let value = present(question, task, &parameter.path)?;
+        if let Some(of) = question.space.parameters.iter().find(|of| of.key == parameter.path) {
             let source = format!("the space `{}`: {}", question.space.name, of.source);
             let (low, high) = (of.low, of.high);
-            parameter = Parameter { way: Way::Value, low, high, source, ..parameter };
+            parameter = Parameter { transform: Transform::Value, low, high, source, ..parameter };
         }
         Some(Row { parameter, value })
     };
     Ok(first.into_iter().chain(bench).chain(last).filter_map(row).collect())
 }
 
-/// The present value of what a lever sets; `None` if there is no such thing here.
-fn present(question: &Question<'_>, task: &Task, sets: &Target) -> Option<f64> {
+/// Returns the present value of what a lever sets; `None` if there is no such thing here.
+fn present(question: &Question<'_>, task: &Task, path: &Path) -> Option<f64> {
     let Question { evaluator, template, design, .. } = question;
-    match sets {
-        Target::Number(key) => design.get(key).or_else(|| evaluator.number(template, key)),
-        Target::Clearance => Some(clearance(task) / MM),
-        Target::Chamfer => Some(0.0),
-        Target::Flange => match &evaluator.robot.drive {
-            Drive::Servo(servo) => Some(servo.stiffness[0] / N_PER_MM),
-            Drive::Ideal | Drive::Arm(_) => None,
-        },
-        Target::Edges | Target::Stiffness | Target::Tilting | Target::Centre => None,
+    match path.kind() {
+        Kind::File => design.get(path).or_else(|| evaluator.number(template, path)),
+        Kind::Added if *path == CLEARANCE => Some(clearance(task) / MM),
+        Kind::Added => Some(0.0),
+        Kind::Robot => evaluator.robot.number(path),
+        Kind::Infill | Kind::Finger | Kind::Springs | Kind::Error => None,
     }
 }
 
@@ -81,40 +68,20 @@ fn clearance(task: &Task) -> f64 {
 }
 
 impl Row {
-    /// The cell at the lower (0) or upper (1) bound, or as far on the way to it as can be.
-    pub fn at(&self, question: &Question<'_>, end: usize) -> Option<Changed> {
-        let Parameter { way, low, high, .. } = self.parameter;
-        let neutral = match way {
-            Way::Factor => 1.0,
-            Way::Shift => 0.0,
-            Way::Value => self.value,
-        };
-        let bound = if end == 0 { low.min(neutral) } else { high.max(neutral) };
-        let part = |steps: u32| {
-            let to = neutral + f64::from(steps) / f64::from(STEPS) * (bound - neutral);
-            self.changed(question, to)
-        };
-        if let Some(whole) = part(STEPS) {
-            return Some(whole);
-        }
-        // Possible at `can`, impossible at `cannot`.
-        let (mut can, mut cannot) = (0, STEPS);
-        while cannot - can > 1 {
-            let middle = (can + cannot) / 2;
-            if part(middle).is_some() { can = middle } else { cannot = middle }
-        }
-        part(can)
+    /// Returns the number and the cell at a bound, or as far on the way to it as can be.
+    pub fn at(&self, question: &Question<'_>, end: End) -> Option<(f64, Cell)> {
+        farthest(&self.parameter, self.value, end, |to| self.changed(question, to))
     }
 
-    fn changed(&self, question: &Question<'_>, to: f64) -> Option<Changed> {
+    fn changed(&self, question: &Question<'_>, to: f64) -> Option<(f64, Cell)> {
         let Question { evaluator, template, design, given, .. } = question;
         let value = self.parameter.applied(self.value, to);
-        if self.parameter.sets == Target::Clearance && value < self.value.min(0.0) {
+        if self.parameter.path == CLEARANCE && value < self.value.min(0.0) {
             return None;
         }
         let set = [(&self.parameter, to)];
-        let (specimen, robot) = evaluator.under(template, (design, *given), &set).ok()?;
-        evaluator.engine.rig(&specimen.task, &robot, &specimen.finger, 1.0).ok()?;
-        Some(Changed { value, specimen, robot })
+        let cell = evaluator.under(template, (design, *given), &set).ok()?;
+        evaluator.engine.rig(&cell.0.task, &cell.1, &cell.0.finger, 1.0).ok()?;
+        Some((value, cell))
     }
 }

@@ -2,18 +2,15 @@
 //! errors of the start at once, where a tolerance window has one.
 
 mod plane;
-mod trace;
 
 pub use plane::{Axes, Plane};
 
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::Design;
+use parameters::plan::grid::{self, Node, STEPS_PER_UNIT, Traced};
+use plane::{LIMIT, value};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use trace::{Found, Node, STEPS_PER_UNIT, Traced};
-
-/// How far a map reaches along both axes at most, in steps of the grid: 16 mm, and 8 mm or degrees.
-const LIMIT: Node = [16 * STEPS_PER_UNIT, 8 * STEPS_PER_UNIT];
 
 /// Outcomes over two errors of the start, on a grid; read back from its JSON it is the same.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -58,18 +55,17 @@ impl CaptureMap {
     /// Traces the map of a finger on its task: at most 300 trials.
     pub fn trace(task: &str, design: Design, plane: &Plane<'_>) -> Self {
         let outcome = |node| plane.outcome(node);
-        let traced = trace::trace(LIMIT, &outcome);
+        let traced = grid::trace(LIMIT, &outcome);
         let Traced { low, high, nodes, trials, step, .. } = &traced;
-        let inserts = |found: &&Found| found.outcome == Outcome::Inserted;
-        let inserting = nodes.values().filter(inserts).count();
+        let inserting = nodes.values().filter(|found| found.outcome == Outcome::Inserted).count();
         let names = plane.axes.names();
         let outcome = |node| nodes.get(&node).map_or(Outcome::Diverged, |found| found.outcome);
         CaptureMap {
             task: task.to_owned(),
             design,
             axes: [0, 1].map(|axis| Axis::new(names[axis], low[axis], high[axis])),
-            outcomes: grid(*low, *high, |node| Mark(outcome(node))),
-            simulated: grid(*low, *high, |node| nodes.get(&node).is_some_and(|f| f.simulated)),
+            outcomes: lattice(*low, *high, |node| Mark(outcome(node))),
+            simulated: lattice(*low, *high, |node| nodes.get(&node).is_some_and(|f| f.simulated)),
             trials: *trials,
             traced_step: value(*step),
             area: inserting as f64 * value(1) * value(1),
@@ -82,7 +78,7 @@ impl CaptureMap {
         let node = |of: fn(&Axis) -> f64| {
             self.axes.each_ref().map(|axis| (of(axis) * f64::from(STEPS_PER_UNIT)).round() as i32)
         };
-        let places = grid(node(|axis| axis.low), node(|axis| axis.high), |node| node);
+        let places = lattice(node(|axis| axis.low), node(|axis| axis.high), |node| node);
         let mark = |node: &Node| Mark(plane.outcome(*node));
         places.par_iter().map(|row| row.par_iter().map(mark).collect()).collect()
     }
@@ -122,7 +118,7 @@ impl CaptureMap {
 }
 
 /// A value at each place of the grid, row by row.
-fn grid<T>(low: Node, high: Node, of: impl Fn(Node) -> T) -> Vec<Vec<T>> {
+fn lattice<T>(low: Node, high: Node, of: impl Fn(Node) -> T) -> Vec<Vec<T>> {
     let row = |other| (low[0]..=high[0]).map(|y| of([y, other])).collect();
     (low[1]..=high[1]).map(row).collect()
 }
@@ -164,11 +160,6 @@ impl TryFrom<i8> for Mark {
             class => Ok(Mark(Outcome::Failed(FailureClass::try_from(class.unsigned_abs())?))),
         }
     }
-}
-
-/// A coordinate of the grid in the unit of its axis.
-fn value(node: i32) -> f64 {
-    f64::from(node) / f64::from(STEPS_PER_UNIT)
 }
 
 #[cfg(test)]

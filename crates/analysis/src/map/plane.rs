@@ -1,12 +1,16 @@
 //! Trials over the plane of two errors of the start.
 
-use super::trace::Node;
-use super::{LIMIT, value};
 use clap::ValueEnum;
-use input::units::{DEG, MM};
+use input::units::MM;
+use insertion::evaluation::uncertainty::Draw;
 use insertion::outcome::Outcome;
-use insertion::trial::{Conditions, Grasp, Grasped, Rig};
+use insertion::trial::{Grasp, Grasped, Rig};
+use parameters::numbers::{SOCKET_YAW, START_ACROSS, START_TILT};
+use parameters::plan::grid::{Node, STEPS_PER_UNIT};
 use std::sync::OnceLock;
+
+/// How far a map reaches along both axes at most, in steps of the grid: 16 mm, and 8 mm or degrees.
+pub(super) const LIMIT: Node = [16 * STEPS_PER_UNIT, 8 * STEPS_PER_UNIT];
 
 /// The two errors of a map: a shift of the start along y, and another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
@@ -24,25 +28,18 @@ pub enum Axes {
 }
 
 impl Axes {
-    /// Name and unit of both.
-    pub(super) fn names(self) -> [[&'static str; 2]; 2] {
-        let other = match self {
-            Axes::YX => ["x", "mm"],
-            Axes::YYaw => ["yaw", "deg"],
-            Axes::YTilt => ["tilt", "deg"],
-        };
-        [["y", "mm"], other]
+    /// Returns name and unit of the second error, and its path.
+    fn second(self) -> ([&'static str; 2], &'static str) {
+        match self {
+            Axes::YX => (["x", "mm"], START_ACROSS),
+            Axes::YYaw => (["yaw", "deg"], SOCKET_YAW),
+            Axes::YTilt => (["tilt", "deg"], START_TILT),
+        }
     }
 
-    /// Conditions of a trial with this value of the second error, mm or degrees.
-    fn conditions(self, value: f64) -> Conditions {
-        let mut conditions = Conditions::NOMINAL;
-        match self {
-            Axes::YX => conditions.start_across = value * MM,
-            Axes::YYaw => conditions.yaw = value * DEG,
-            Axes::YTilt => conditions.start_tilt = value * DEG,
-        }
-        conditions
+    /// Returns name and unit of both.
+    pub(super) fn names(self) -> [[&'static str; 2]; 2] {
+        [["y", "mm"], self.second().0]
     }
 }
 
@@ -65,7 +62,7 @@ impl<'a> Plane<'a> {
     /// How the trial of these errors ends.
     pub(super) fn outcome(&self, [y, other]: Node) -> Outcome {
         let hold = || {
-            let conditions = self.axes.conditions(value(other));
+            let conditions = Draw::under([(self.axes.second().1, value(other))]).conditions;
             self.rig.hold(Grasp { conditions, ..self.grasp })
         };
         let inserts = |grasped: &dyn Grasped| grasped.trial(value(y) * MM).outcome;
@@ -75,4 +72,9 @@ impl<'a> Plane<'a> {
             None => inserts(&*hold()),
         }
     }
+}
+
+/// A coordinate of the grid in the unit of its axis.
+pub(super) fn value(node: i32) -> f64 {
+    f64::from(node) / f64::from(STEPS_PER_UNIT)
 }

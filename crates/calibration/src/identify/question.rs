@@ -8,15 +8,16 @@ use super::log::{Ended, Run};
 use super::replay::{Logged, Replay};
 use super::smoother::{Datum, Predicted, Settings, Smoothed, smooth};
 use super::touch::bias;
-use super::unknown::{From, Unknown, advice, fit, told, untold, values, with};
+use super::unknown::{From, Unknown, advice, fit, not_fitted, told, untold, values, with};
 use input::units::MM;
-use insertion::evaluation::cell::{Parameter, Priors, Target, Way};
+use insertion::evaluation::cell::Priors;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::template::{Impossible, Template};
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
-use insertion::space::Scale;
 use insertion::surrogate::Estimate;
+use parameters::numbers::{FLANGE, FRICTION, Kind};
+use parameters::{Parameter, Scale, Transform};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Ten members to each unknown; four rounds; neighbours over 0.1 s err together.
@@ -25,10 +26,6 @@ pub const SETTINGS: Settings = Settings { members: 10, rounds: 4, alike: 10.0, s
 const EACH: usize = 5;
 /// Least standard deviation of a preload, mm: a touch is felt some ms late.
 const PRELOAD_MM: f64 = 0.02;
-pub(super) const FRICTION: &str = "task.friction.plug_socket";
-/// What the curves would have to give way to: other numbers' errors end in these two, which a weight on
-/// the finger and the grip tell better.
-pub(super) const NOT_FITTED: [&str; 2] = ["task.friction.finger_plug", "finger.stiffness"];
 const STRATEGY: &str = "task.strategy.";
 
 /// What is asked.
@@ -92,11 +89,11 @@ impl Question<'_> {
         let (mut fitted, mut rest) = (Vec::new(), Vec::new());
         for prior in self.rows() {
             let known = self.known(&prior, flange_sd, preload, &probes, &attempts);
-            let read = prior.sets.key().starts_with(STRATEGY) || prior.sets == Target::Flange;
+            let read = prior.path.starts_with(STRATEGY) || prior.path == FLANGE;
             match (known, read) {
                 (Some(known), true) => rest.push(told(prior, known, From::Formula)),
                 (None, true) => rest.push(untold(prior, None)),
-                _ if NOT_FITTED.contains(&prior.sets.key()) => rest.push(self.assumed(prior)),
+                _ if not_fitted(&prior) => rest.push(self.assumed(prior)),
                 (known, false) => fitted.push((prior, known)),
             }
         }
@@ -122,8 +119,8 @@ impl Question<'_> {
 
     /// A row that is not fitted, at the number of the files, with the deviation of its prior.
     fn assumed(&self, prior: Parameter) -> Unknown {
-        let own = match &prior.sets {
-            Target::Number(key) => self.evaluator.number(self.template, key),
+        let own = match prior.path.kind() {
+            Kind::File => self.evaluator.number(self.template, &prior.path),
             _ => Some(1.0),
         };
         let value = prior.value.or(own).unwrap_or_else(|| prior.middle());
@@ -151,24 +148,20 @@ impl Question<'_> {
     /// The rows of the prior that the task has; of a friction as values.
     fn rows(&self) -> Vec<Parameter> {
         let Question { evaluator, template, .. } = self;
-        let has = |row: &Parameter| match &row.sets {
-            Target::Number(key) => evaluator.number(template, key).is_some(),
-            _ => true,
-        };
+        let of_file = |row: &Parameter| row.path.kind() == Kind::File;
         let as_value = |row: &Parameter| {
-            let own = match &row.sets {
-                Target::Number(key) => evaluator.number(template, key),
-                Target::Clearance | Target::Edges | Target::Chamfer => Some(0.0),
-                _ => None,
+            let added = row.path.kind() == Kind::Added;
+            let own = match of_file(row) {
+                true => evaluator.number(template, &row.path),
+                false => added.then_some(0.0),
             };
             let Some(own) = own else { return row.clone() };
             let [low, high] = [row.low, row.high].map(|bound| row.applied(own, bound));
             let value = row.value.map(|value| row.applied(own, value));
-            let factor = if row.way == Way::Factor { own.abs() } else { 1.0 };
-            let cut = matches!(row.sets, Target::Edges | Target::Chamfer | Target::Clearance);
+            let factor = if row.transform == Transform::Factor { own.abs() } else { 1.0 };
             Parameter {
                 // The opening has no width of its own that could be set.
-                way: if cut { Way::Shift } else { Way::Value },
+                transform: if added { Transform::Shift } else { Transform::Value },
                 // A stroke towards -y is a factor on a negative number.
                 low: low.min(high),
                 high: low.max(high),
@@ -178,7 +171,8 @@ impl Question<'_> {
                 ..row.clone()
             }
         };
-        self.priors.of(&template.task.name).filter(|row| has(row)).map(as_value).collect()
+        let has = |row: &&Parameter| !of_file(row) || evaluator.has(template, row);
+        self.priors.of(&template.task.name).filter(has).map(as_value).collect()
     }
 
     /// A row as formulas tell it, if they do.
@@ -190,13 +184,14 @@ impl Question<'_> {
         probes: &[(String, Friction)],
         attempts: &[Logged],
     ) -> Option<Parameter> {
-        let key = prior.sets.key();
-        if prior.sets == Target::Flange {
+        let path = &prior.path;
+        if *path == FLANGE {
             let source = "force over how far the TCP is behind its target; [robot] has the values";
-            let factor = Parameter { way: Way::Factor, low: 0.5, high: 2.0, ..prior.clone() };
+            let factor =
+                Parameter { transform: Transform::Factor, low: 0.5, high: 2.0, ..prior.clone() };
             return flange.map(|sd| with(&factor, 1.0, sd, source));
         }
-        if key.ends_with("preload_mm") {
+        if path.ends_with("preload_mm") {
             let Estimate { mean, sd } = preload?;
             let sd = (sd / MM).max(PRELOAD_MM);
             return Some(with(
@@ -206,7 +201,7 @@ impl Question<'_> {
                 "where the target stopped, and where it was sent",
             ));
         }
-        if key.starts_with(STRATEGY) && key.ends_with("move_mm.y") {
+        if path.starts_with(STRATEGY) && path.ends_with("move_mm.y") {
             let stroke = |one: &Logged| {
                 let (target, from) = (one.curves.target.as_ref()?, one.curves.stopped()?);
                 let to = one.push.min(target.len() - 1);
@@ -217,7 +212,7 @@ impl Question<'_> {
                 .then(|| strokes.iter().sum::<f64>() / strokes.len() as f64)?;
             return Some(with(prior, mean, 0.01, "commanded from the touch to the push"));
         }
-        if key == FRICTION {
+        if *path == FRICTION {
             let said: Vec<Estimate> =
                 probes.iter().filter_map(|(_, found)| found.coefficient).collect();
             let n = said.len() as f64;
@@ -261,7 +256,7 @@ impl Question<'_> {
     ) -> Result<Vec<Compared>, Impossible> {
         let now: Vec<(&Parameter, f64)> =
             unknowns.iter().map(|one| (&one.posterior, one.posterior.middle())).collect();
-        let now: Vec<_> = now.into_iter().filter(|(row, _)| row.sets != Target::Flange).collect();
+        let now: Vec<_> = now.into_iter().filter(|(row, _)| row.path != FLANGE).collect();
         let files = Replay { robot: &self.evaluator.robot, ..*replay };
         let before = files.curves(&attempts, &[])?;
         let after = replay.curves(&attempts, &now)?;

@@ -5,7 +5,6 @@ use super::log::{Ended, Log, Moment, Run};
 use super::smoother::{Datum, Predicted};
 use super::touch::{bias, touch};
 use input::units::MM;
-use insertion::evaluation::cell::Parameter;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::template::{Impossible, Template};
 use insertion::outcome::Outcome;
@@ -13,6 +12,7 @@ use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::trial::{Course, Grasp, Path};
 use nalgebra::Vector3;
+use parameters::Parameter;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 

@@ -1,10 +1,9 @@
 //! A number of the cell before and after the logs were read.
 
-use super::question::{FRICTION, NOT_FITTED};
 use super::smoother::Smoothed;
-use insertion::evaluation::cell::{Parameter, Target};
-use insertion::evaluation::normal_share;
-use insertion::space::Scale;
+use ask_tell::normal::cumulative;
+use parameters::numbers::{CLEARANCE, FRICTION, Kind, PAD_FRICTION, STIFFNESS};
+use parameters::{Parameter, Scale};
 
 /// Factor on the deviations that the smoother leaves, from the coverage on synthetic cells.
 const INFLATION: f64 = 1.4;
@@ -41,7 +40,7 @@ pub struct Unknown {
 
 /// The values of rows at these standard normal coordinates.
 pub(super) fn values<'a>(rows: &[&'a Parameter], z: &[f64]) -> Vec<(&'a Parameter, f64)> {
-    rows.iter().zip(z).map(|(row, &z)| (*row, row.at(normal_share(z)))).collect()
+    rows.iter().zip(z).map(|(row, &z)| (*row, row.at(cumulative(z)))).collect()
 }
 
 /// A row with a value, within its bounds, which give way to a measurement.
@@ -83,7 +82,7 @@ pub(super) fn fit(
         return untold(prior.clone(), left);
     }
     let row = prior;
-    let at = |z: &f64| row.at(normal_share(mean + INFLATION * (z - mean)));
+    let at = |z: &f64| row.at(cumulative(mean + INFLATION * (z - mean)));
     let log = row.scale == Scale::Log;
     let drawn: Vec<f64> = z.iter().map(at).map(|v| if log { libm::log(v) } else { v }).collect();
     let (mean, sd) = moments(&drawn);
@@ -104,28 +103,31 @@ fn moments(values: &[f64]) -> (f64, f64) {
     (mean, variance.sqrt())
 }
 
-/// The attempt that would tell a number.
+/// Returns whether the curves would have to give way to a number: other numbers' errors end in these, which
+/// a weight on the finger and the grip tell better.
+pub(super) fn not_fitted(row: &Parameter) -> bool {
+    row.path == PAD_FRICTION || row.path == STIFFNESS
+}
+
+/// Returns the attempt that would tell a number.
 pub(super) fn advice(row: &Parameter) -> &'static str {
-    match &row.sets {
-        Target::Flange => "record target_TCP_pose beside actual_TCP_pose",
-        Target::Number(key) if key == FRICTION => {
-            "a probe: slide 8 mm along y and back at 5 mm/s and 5 N on a flat face"
-        }
-        Target::Number(key) if key.ends_with("preload_mm") => {
-            "record target_TCP_pose: the preload is how far the target goes beyond the touch"
-        }
-        Target::Number(key) if NOT_FITTED.contains(&key.as_str()) => {
-            "pull the plug out of the closed grip: half of the force over the grip force"
-        }
-        Target::Number(_) | Target::Tilting | Target::Centre => {
-            "starts at both ends of the window, where the plug turns in the grasp"
-        }
-        Target::Edges | Target::Chamfer => {
-            "starts 0.2 mm inside and outside of both ends of the window"
-        }
-        Target::Clearance => "measure plug and opening with a caliper",
-        Target::Stiffness => {
+    let path = &row.path;
+    match path.kind() {
+        Kind::Robot => "record target_TCP_pose beside actual_TCP_pose",
+        Kind::Springs => {
             "press the finger with a weight, as its sheet says (`optimize export finger --format sheet`)"
         }
+        Kind::Added if *path == CLEARANCE => "measure plug and opening with a caliper",
+        Kind::Added => "starts 0.2 mm inside and outside of both ends of the window",
+        _ if *path == FRICTION => {
+            "a probe: slide 8 mm along y and back at 5 mm/s and 5 N on a flat face"
+        }
+        _ if path.ends_with("preload_mm") => {
+            "record target_TCP_pose: the preload is how far the target goes beyond the touch"
+        }
+        _ if not_fitted(row) => {
+            "pull the plug out of the closed grip: half of the force over the grip force"
+        }
+        _ => "starts at both ends of the window, where the plug turns in the grasp",
     }
 }

@@ -5,8 +5,9 @@ use crate::seat;
 use input::InputError;
 use input::shipped::{LEVERS, PRIORS};
 use input::units::{DEG, MM};
-use insertion::evaluation::cell::{Parameter, Priors};
+use insertion::evaluation::cell::Priors;
 use insertion::task::{Ending, Stage, Strategy, Task};
+use parameters::Parameter;
 
 /// Values of a knob: an odd number, so that the present one is among them.
 const LEVELS: u32 = 31;

@@ -1,6 +1,6 @@
 //! Design in, evaluation out: the one way from a design to what is measured of it.
 
-use super::cell::{Parameter, Priors};
+use super::cell::{Priors, change};
 use super::leaving;
 use super::robustness::firm::{self, Firm};
 use super::robustness::race::Race;
@@ -24,6 +24,7 @@ use crate::trial::{Grasp, Rig};
 use input::numbers::DESIGN;
 use input::shown;
 use input::units::N_PER_MM;
+use parameters::Parameter;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -156,8 +157,8 @@ impl Evaluator {
         let set = self.completed(Some(template), design, rows);
         let (task, Made { finger, centre }) = template.apply(&set, &self.fingers, at_pad)?;
         let mut specimen = Specimen { task, design: design.clone(), finger, centre, stiffness };
-        for (row, value) in rows.iter().filter(|(row, _)| design.get(row.sets.key()).is_none()) {
-            row.change(*value, &mut specimen);
+        for (row, value) in rows.iter().filter(|(row, _)| design.get(&row.path).is_none()) {
+            change(row, *value, &mut specimen);
         }
         Ok(specimen)
     }

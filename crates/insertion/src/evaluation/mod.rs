@@ -13,6 +13,7 @@ pub mod uncertainty;
 
 use crate::outcome::Outcome;
 use crate::surrogate::null_is_nan;
+use ask_tell::normal::quantile;
 use serde::{Deserialize, Serialize};
 
 /// Difference of two ranges that a bench cannot tell, mm: measured windows of the publication differ by 0.1
@@ -191,27 +192,11 @@ impl SuccessRate {
     pub fn interval(&self) -> [f64; 2] {
         let Some(rate) = self.rate() else { return [0.0, 1.0] };
         let n = f64::from(self.counted());
-        let z = normal_quantile(0.5 + self.confidence / 2.0);
+        let z = quantile(0.5 + self.confidence / 2.0);
         let centre = (rate + z * z / (2.0 * n)) / (1.0 + z * z / n);
         let half = z / (1.0 + z * z / n) * (rate * (1.0 - rate) / n + z * z / (4.0 * n * n)).sqrt();
         [(centre - half).max(0.0), (centre + half).min(1.0)]
     }
-}
-
-/// The probability with which a standard normal number stays below this one.
-pub fn normal_share(number: f64) -> f64 {
-    0.5 * libm::erfc(-number * std::f64::consts::FRAC_1_SQRT_2)
-}
-
-/// The number that a standard normal one stays below with this probability, by bisection.
-fn normal_quantile(probability: f64) -> f64 {
-    let (mut low, mut high) = (-40.0, 40.0);
-    for _ in 0..100 {
-        let middle = (low + high) / 2.0;
-        let below = normal_share(middle) < probability;
-        *(if below { &mut low } else { &mut high }) = middle;
-    }
-    low
 }
 
 /// Ranges of one design under sampled errors.

@@ -3,7 +3,8 @@
 //! A key is `finger.`, then the path in the finger file (`finger.skin.thickness_mm`); values are
 //! in the unit that the key carries. They are put into the file as read, before its checks.
 
-use crate::space::Design;
+use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use finray::infill;
 use finray::printed::PrintedFinger;
 use input::InputError;
 use input::numbers::NumberFile;
@@ -20,6 +21,17 @@ pub struct FingerFile {
 /// Whether a key sets a number of a finger file: in a table, as no number of its springs is.
 pub fn is_shape(key: &str) -> bool {
     key.strip_prefix("finger.").is_some_and(|path| path.contains('.'))
+}
+
+/// Returns the infill that a finger of a design is printed with, its first rib at `phase_mm`, else where
+/// the finger file has it; NaN of what the design does not name, which no finger has.
+pub fn infill(design: &Design, phase_mm: Option<f64>) -> infill::Design {
+    let value = |key| design.get(key).unwrap_or(f64::NAN);
+    infill::Design {
+        density_percent: value(DENSITY_KEY),
+        direction_deg: value(DIRECTION_KEY),
+        phase_mm,
+    }
 }
 
 impl FingerFile {

@@ -9,6 +9,7 @@ use crate::task::finger::{Coupling, FingerModel, Rcc};
 use contact::scene::{Geom, Inertia, Pose, Shape, Spring, Springs};
 use input::units::{GRAM, MM, N_PER_MM};
 use nalgebra::{Matrix6, Point3, Vector3};
+use parameters::numbers::{self, CENTRE};
 
 /// One finger, in SI units; both fingers of a gripper are alike.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,6 +43,23 @@ pub struct Finger {
 const TILTING: f64 = 2.0;
 
 impl Finger {
+    /// Returns the number of a path (`finger.rcc_mm`) and the SI value of its unit. Compliance and
+    /// assembly stiffness are not among them: the infill decides those.
+    pub fn number(&mut self, path: &str) -> Option<(&mut f64, f64)> {
+        let [x, y, z] = &mut self.rotation;
+        Some(match path {
+            CENTRE => (&mut self.rcc, MM),
+            "finger.depth_n_per_mm" => (&mut self.depth, N_PER_MM),
+            numbers::TILTING => (x, 1.0),
+            "finger.rotation_y_nm_per_rad" => (y, 1.0),
+            "finger.rotation_z_nm_per_rad" => (z, 1.0),
+            "finger.mass_g" => (&mut self.mass, GRAM),
+            "finger.damping_n_s_per_m" => (&mut self.damping, 1.0),
+            "finger.rotational_damping_nm_s_per_rad" => (&mut self.rotational_damping, 1.0),
+            _ => return None,
+        })
+    }
+
     /// A finger of this compliance and assembly stiffness, N/m; everything else as in the paper.
     pub fn new(compliance: f64, assembly: f64) -> Self {
         Finger {

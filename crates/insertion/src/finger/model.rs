@@ -2,19 +2,15 @@
 
 use super::Finger;
 use super::computed::{self, AtPad, Given};
-use crate::finger::file::{FingerFile, is_shape};
+use crate::finger::file::{FingerFile, infill, is_shape};
 use crate::space::{DIRECTION_KEY, Design};
 use crate::task::Task;
 use crate::task::finger::{Coupling, Rcc};
 use finray::FingerError;
 use finray::mechanics::{FingerStiffness, Known};
 use input::units::MM;
+pub use parameters::numbers::{CENTRE as RCC_KEY, TILTING as TILTING_KEY};
 use serde::{Deserialize, Serialize};
-
-/// The key by which a design places the remote centre, mm below the TCP.
-pub const RCC_KEY: &str = "finger.rcc_mm";
-/// The key by which a design sets the tilting stiffness, N m/rad.
-pub const TILTING_KEY: &str = "finger.rotation_x_nm_per_rad";
 
 /// A finger model by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum, Serialize, Deserialize)]
@@ -134,7 +130,7 @@ impl ComputedFingers {
     /// # Errors
     /// If the printed finger cannot be.
     pub fn stiffness(&self, design: &Design) -> Result<FingerStiffness, FingerError> {
-        self.known.stiffness(&self.file.with(design)?, &design.printed(None))
+        self.known.stiffness(&self.file.with(design)?, &infill(design, None))
     }
 
     fn finger(

@@ -72,8 +72,8 @@ fn unknown(one: &Unknown) -> Value {
     let Unknown { prior, posterior, left, from, advice } = one;
     json!({
         "name": posterior.name,
-        "sets": posterior.sets.key(),
-        "as": posterior.way,
+        "sets": posterior.path,
+        "as": posterior.transform,
         "prior_low": prior.low,
         "prior_high": prior.high,
         "value": posterior.middle(),

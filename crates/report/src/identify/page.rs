@@ -14,10 +14,9 @@ use calibration::identify::misfit::misfits;
 use calibration::identify::question::{Compared, Identified, IdentifyDone};
 use calibration::identify::unknown::{From, Unknown};
 use input::units::MM;
-use insertion::evaluation::cell::{Parameter, Target, Way};
 use insertion::outcome::Outcome;
-use insertion::space::{Scale, label};
 use maud::{Markup, PreEscaped, html};
+use parameters::{Parameter, Scale, Transform};
 use plotters::prelude::{Color, Text};
 use plotters::style::text_anchor::{HPos, VPos};
 
@@ -130,10 +129,9 @@ fn unknown(one: &Unknown) -> Vec<Markup> {
 
 /// Value and deviation of a row, or its bounds, with the unit.
 pub(super) fn amount(row: &Parameter) -> String {
-    let (sign, unit) = match (row.way, &row.sets) {
-        (Way::Factor, _) => ("× ", ""),
-        (_, Target::Tilting) => ("", " N m/rad"),
-        (_, sets) => ("", label(sets.key()).1),
+    let (sign, unit) = match row.transform {
+        Transform::Factor => ("× ", ""),
+        Transform::Shift | Transform::Value => ("", row.path.unit()),
     };
     match row.value.zip(row.sd) {
         Some((value, sd)) => format!("{sign}{} ± {}{unit}", short(value), short(sd)),

@@ -33,7 +33,7 @@ fn attempt() -> Compared {
 /// Twelve attempts and a probe, by which the first number is fitted, and the others are not told.
 fn done() -> IdentifyDone {
     let cell = Priors::parse(PRIORS[0].text, PRIORS[0].file).unwrap();
-    let unknown = |(i, prior): (usize, &insertion::evaluation::cell::Parameter)| Unknown {
+    let unknown = |(i, prior): (usize, &parameters::Parameter)| Unknown {
         prior: prior.clone(),
         posterior: prior.clone(),
         left: Some([0.3, 0.25]),

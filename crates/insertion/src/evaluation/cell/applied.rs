@@ -1,60 +1,94 @@
-//! Values of a cell's numbers on their way into task, finger and robot.
+//! Values of parameters on their way into task, finger and robot.
 
-use super::{Parameter, Priors, Target, Way};
+use super::Priors;
 use crate::evaluation::evaluator::{Evaluator, Specimen};
 use crate::evaluation::template::{Impossible, Template};
-use crate::finger::Finger;
+use crate::finger::computed::AtPad;
+use crate::finger::file::is_shape;
 use crate::finger::model::FingerSource;
 use crate::robot::{Drive, Robot};
 use crate::space::Design;
 use crate::surrogate::Prediction;
 use crate::trial::Conditions;
-use input::numbers::DESIGN;
+use input::numbers::{DESIGN, unknown};
 use input::units::{MM, N_PER_MM};
+use input::{Check, InputError};
+use parameters::numbers::{CLEARANCE, EDGE_RADIUS, FLANGE, Kind};
+use parameters::{Parameter, Path, Transform};
 
-impl Parameter {
-    /// Whether a robot has what it sets.
-    pub fn fits(&self, robot: &Robot) -> bool {
-        self.sets != Target::Flange || matches!(robot.drive, Drive::Servo(_))
+/// Changes what a parameter sets beside the numbers of files and of the robot.
+pub(in crate::evaluation) fn change(parameter: &Parameter, value: f64, specimen: &mut Specimen) {
+    let Specimen { finger, task, .. } = specimen;
+    match parameter.path.kind() {
+        Kind::Finger => {
+            if let Some((number, unit)) = finger.number(&parameter.path) {
+                let own = *number / unit;
+                // What leaves a number as it is leaves its last bit.
+                if parameter.transform == Transform::Value || value != parameter.neutral(own) {
+                    *number = parameter.applied(own, value) * unit;
+                }
+            }
+        }
+        Kind::Springs => {
+            finger.compliance = parameter.applied(finger.compliance, value);
+            finger.assembly = parameter.applied(finger.assembly, value);
+        }
+        Kind::Added => {
+            let size = parameter.applied(0.0, value) * MM;
+            // Without an edge to cut a sharp box stays a box.
+            if size != 0.0 {
+                *task = if parameter.path == CLEARANCE {
+                    Conditions { clearance: size, ..Conditions::NOMINAL }.task(task)
+                } else if parameter.path == EDGE_RADIUS {
+                    task.rounded(size)
+                } else {
+                    task.chamfered(size)
+                };
+            }
+        }
+        Kind::Infill | Kind::File | Kind::Robot | Kind::Error => (),
+    }
+}
+
+impl Robot {
+    /// The numbers that a path sets, which go in proportion, and the SI value of its unit; none if the
+    /// robot has no such number.
+    fn numbers(&mut self, path: &Path) -> (Vec<&mut f64>, f64) {
+        let unit = if path == FLANGE { N_PER_MM } else { 1.0 };
+        let numbers = match (path.as_str(), &mut self.drive) {
+            ("robot.stop_force_n", _) => vec![&mut self.stop_force],
+            (FLANGE, Drive::Servo(servo)) => {
+                servo.stiffness.iter_mut().chain(&mut servo.rotational_stiffness).collect()
+            }
+            ("robot.mass_kg", Drive::Servo(servo)) => vec![&mut servo.mass],
+            ("robot.inertia_kg_m2", Drive::Servo(servo)) => vec![&mut servo.inertia],
+            ("robot.damping_ratio", Drive::Servo(servo)) => vec![&mut servo.damping_ratio],
+            _ => Vec::new(),
+        };
+        (numbers, unit)
     }
 
-    /// Changes what it sets beside the numbers of task and finger file.
-    pub(in crate::evaluation) fn change(&self, value: f64, specimen: &mut Specimen) {
-        // What leaves a number as it is leaves its last bit, and a sharp edge a box.
-        let idle = if self.way == Way::Factor { 1.0 } else { 0.0 };
-        if value == idle && (self.way, &self.sets) != (Way::Value, &Target::Centre) {
-            return;
-        }
-        let Finger { compliance, assembly, rotation, rcc, .. } = &mut specimen.finger;
-        match self.sets {
-            Target::Number(_) | Target::Flange => (),
-            Target::Clearance => {
-                let clearance = self.applied(0.0, value) * MM;
-                specimen.task =
-                    Conditions { clearance, ..Conditions::NOMINAL }.task(&specimen.task);
-            }
-            Target::Edges => specimen.task = specimen.task.rounded(self.applied(0.0, value) * MM),
-            Target::Chamfer => {
-                specimen.task = specimen.task.chamfered(self.applied(0.0, value) * MM);
-            }
-            Target::Stiffness => {
-                *compliance = self.applied(*compliance, value);
-                *assembly = self.applied(*assembly, value);
-            }
-            Target::Tilting => rotation[0] = self.applied(rotation[0], value),
-            Target::Centre => *rcc = self.applied(*rcc / MM, value) * MM,
-        }
+    /// Returns the number of a path, in its unit, if the robot has it.
+    pub fn number(&self, path: &Path) -> Option<f64> {
+        let mut robot = self.clone();
+        let (numbers, unit) = robot.numbers(path);
+        numbers.first().map(|number| **number / unit)
     }
 
-    /// Changes what it sets of a robot.
-    pub fn change_robot(&self, value: f64, robot: &mut Robot) {
-        if let (Target::Flange, Drive::Servo(servo)) = (&self.sets, &mut robot.drive) {
-            let own = servo.stiffness[0] / N_PER_MM;
-            let factor =
-                if self.way == Way::Factor { value } else { self.applied(own, value) / own };
-            let all = servo.stiffness.iter_mut().chain(&mut servo.rotational_stiffness);
-            all.for_each(|stiffness| *stiffness *= factor);
-        }
+    /// Returns whether it has what a parameter sets of a robot.
+    pub fn fits(&self, parameter: &Parameter) -> bool {
+        parameter.path.kind() != Kind::Robot || self.number(&parameter.path).is_some()
+    }
+
+    /// Sets what a parameter sets of a robot to this value of the parameter.
+    pub fn change(&mut self, parameter: &Parameter, value: f64) {
+        let (numbers, unit) = self.numbers(&parameter.path);
+        let Some(own) = numbers.first().map(|number| **number / unit) else { return };
+        let factor = match parameter.transform {
+            Transform::Factor => value,
+            Transform::Shift | Transform::Value => parameter.applied(own, value) / own,
+        };
+        numbers.into_iter().for_each(|number| *number *= factor);
     }
 }
 
@@ -65,6 +99,56 @@ impl Evaluator {
         let (none, rows) = (Design::default(), self.rows(Some(template)));
         let set = self.completed(Some(template), &none, &rows);
         set.get(key).or_else(|| self.in_file(Some(template), key))
+    }
+
+    /// Returns whether the files have what a parameter sets: the task, the finger or the robot.
+    pub fn has(&self, template: &Template, parameter: &Parameter) -> bool {
+        match parameter.path.kind() {
+            Kind::File => self.number(template, &parameter.path).is_some(),
+            _ => self.robot.fits(parameter),
+        }
+    }
+
+    /// Checks that the task of a cell's rows, if it is one of the evaluator's, has what they set; `file`
+    /// is named in errors.
+    ///
+    /// # Errors
+    /// The first row whose path its task does not have, with the nearest that it has.
+    pub fn check_paths(&self, cell: &Priors, file: &str) -> Result<(), InputError> {
+        let own = |template: &&Template| cell.task.as_ref() == Some(&template.task.name);
+        for template in self.templates.iter().filter(own) {
+            let in_task =
+                |row: &&Parameter| row.path.kind() == Kind::File && row.path.starts_with("task.");
+            for row in cell.parameters.iter().filter(in_task) {
+                if template.numbers.number(&row.path).is_none() {
+                    let paths = template.numbers.keys();
+                    let paths: Vec<&str> = paths.iter().map(String::as_str).collect();
+                    return Check { file }.fail(&row.name, unknown(&row.path, &paths));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that each task can have the numbers of the evaluator's own cell; `file` is named in errors.
+    ///
+    /// # Errors
+    /// The first row that sets a number to what cannot be, or as of [`Evaluator::check_paths`].
+    pub fn check_cell(&self, file: &str) -> Result<(), InputError> {
+        let Some(cell) = &self.cell else { return Ok(()) };
+        self.check_paths(cell, file)?;
+        for template in &self.templates {
+            for row in cell.of(&template.task.name).filter(|row| row.path.kind() == Kind::File) {
+                let value = self.number(template, &row.path).filter(|_| !is_shape(&row.path));
+                let Some(value) = value else { continue };
+                let design = Design::infill(0.0, 0.0).with(&row.path, value);
+                let at_pad = AtPad { compliance: 1.0, assembly: 1.0 };
+                if let Err(error) = template.apply(&design, &FingerSource::Paper, at_pad) {
+                    return Check { file }.fail(&row.name, error.to_string());
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Without a template that of a finger file alone.
@@ -94,11 +178,11 @@ impl Evaluator {
     ) -> Design {
         let mut set = design.clone();
         for (row, value) in rows {
-            if let Target::Number(key) = &row.sets
-                && design.get(key).is_none()
-                && let Some(own) = self.in_file(template, key)
+            if row.path.kind() == Kind::File
+                && design.get(&row.path).is_none()
+                && let Some(own) = self.in_file(template, &row.path)
             {
-                set.0.insert(key.clone(), row.applied(own, *value));
+                set.0.insert(row.path.to_string(), row.applied(own, *value));
             }
         }
         set
@@ -117,18 +201,19 @@ impl Evaluator {
     ) -> Result<(Specimen, Robot), Impossible> {
         let mut set = design.clone();
         for (parameter, value) in values {
-            if let Target::Number(key) = &parameter.sets
-                && let Some(own) = design.get(key).or_else(|| self.number(template, key))
+            let path = &parameter.path;
+            if path.kind() == Kind::File
+                && let Some(own) = design.get(path).or_else(|| self.number(template, path))
             {
-                set.0.insert(key.clone(), parameter.applied(own, *value));
+                set.0.insert(path.to_string(), parameter.applied(own, *value));
             }
         }
         let stiffness = given.map_or_else(|| self.predict(&set), Ok)?;
         let mut specimen = self.specimen(template, &set, stiffness)?;
         let mut robot = self.robot.clone();
         for (parameter, value) in values {
-            parameter.change(*value, &mut specimen);
-            parameter.change_robot(*value, &mut robot);
+            change(parameter, *value, &mut specimen);
+            robot.change(parameter, *value);
         }
         Ok((specimen, robot))
     }
@@ -149,9 +234,9 @@ impl Evaluator {
         let drawn = cell.parameters.iter().zip(values.iter().copied());
         let drawn = drawn.filter(|(row, _)| of_task.contains(row));
         let mut robot = cell.robot(&cell.name)?.unwrap_or_else(|| self.robot.clone());
-        drawn.clone().for_each(|(row, value)| row.change_robot(value, &mut robot));
+        drawn.clone().for_each(|(row, value)| robot.change(row, value));
         let mut rows = self.rows(Some(template));
-        rows.retain(|(own, _)| of_task.iter().all(|row| row.sets != own.sets));
+        rows.retain(|(own, _)| of_task.iter().all(|row| row.path != own.path));
         rows.extend(drawn);
         Ok((self.specimen_under(template, design, *stiffness, &rows)?, robot))
     }

@@ -7,7 +7,7 @@ pub mod repeat;
 use crate::evaluation::cell::Priors;
 use crate::evaluation::tolerance::{self, Search};
 use crate::evaluation::uncertainty::{
-    Draw, RobustSettings, Statistic, SuccessSettings, Uncertainty, cells, draws,
+    Draw, RobustSettings, Statistic, SuccessSettings, Uncertainty, draws,
 };
 use crate::evaluation::{Evaluation, RobustRange, SuccessRate};
 use crate::finger::Finger;
@@ -48,7 +48,8 @@ impl Plan {
             cells: uncertainty.cell.as_ref().map(|cell| {
                 let rate = if success { rate.trials } else { 0 };
                 let range = if robust { range.samples } else { 0 };
-                (cell.clone(), cells(cell, seed, rate.max(range)))
+                let count = rate.max(range);
+                (cell.clone(), parameters::draws(&cell.parameters, seed, count))
             }),
         }
     }

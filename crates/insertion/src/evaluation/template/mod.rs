@@ -4,24 +4,24 @@
 //!
 //! - `task.`, then the path in the task file as of [`NumberFile`]
 //!   (`task.strategy.phase.side.speed_mm_per_s`, `task.strategy.phase.side.move_mm.y`);
-//! - `finger.`, then one of [`finger_keys`] (`finger.rcc_mm`).
+//! - `finger.`, then a number of the finger that the files make (`finger.rcc_mm`).
 //!
 //! Values are in the unit of the key. They enter the task before its checks: none escapes them.
 
 pub mod printable;
 mod space;
 
-use crate::finger::Finger;
 use crate::finger::computed::AtPad;
 use crate::finger::file::is_shape;
-use crate::finger::model::{FingerSource, Made, RCC_KEY, TILTING_KEY};
+use crate::finger::model::{FingerSource, Made, RCC_KEY};
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use crate::task::Task;
 use crate::trial::run::RigError;
 use finray::FingerError;
 use input::numbers::{DESIGN, NumberFile};
-use input::units::{GRAM, MM, N_PER_MM};
 use input::{InputError, Place, Placed};
+use parameters::Path;
+use parameters::numbers::{Kind, paths};
 
 /// A task file, the numbers of which a design may set.
 #[derive(Debug, Clone)]
@@ -56,26 +56,6 @@ impl Placed for Impossible {
     }
 }
 
-/// One number of a finger: its key, where it is, and the SI value of its unit.
-type FingerNumber = (&'static str, fn(&mut Finger) -> &mut f64, f64);
-
-/// Compliance and assembly stiffness are not among them: the infill decides those.
-const FINGER: [FingerNumber; 8] = [
-    (RCC_KEY, |finger| &mut finger.rcc, MM),
-    ("finger.depth_n_per_mm", |finger| &mut finger.depth, N_PER_MM),
-    (TILTING_KEY, |finger| &mut finger.rotation[0], 1.0),
-    ("finger.rotation_y_nm_per_rad", |finger| &mut finger.rotation[1], 1.0),
-    ("finger.rotation_z_nm_per_rad", |finger| &mut finger.rotation[2], 1.0),
-    ("finger.mass_g", |finger| &mut finger.mass, GRAM),
-    ("finger.damping_n_s_per_m", |finger| &mut finger.damping, 1.0),
-    ("finger.rotational_damping_nm_s_per_rad", |finger| &mut finger.rotational_damping, 1.0),
-];
-
-/// The keys that set a number of the finger.
-pub fn finger_keys() -> [&'static str; 8] {
-    FINGER.map(|(key, _, _)| key)
-}
-
 pub(super) fn is_infill(key: &str) -> bool {
     [DENSITY_KEY, DIRECTION_KEY].contains(&key)
 }
@@ -106,7 +86,7 @@ impl Template {
             .iter()
             .map(|(key, &value)| (key.as_str(), value))
             .filter(|(key, _)| !is_infill(key) && !is_shape(key))
-            .partition(|(key, _)| finger_keys().contains(key));
+            .partition(|(key, _)| Path::new(*key).is_ok_and(|path| path.kind() == Kind::Finger));
         let shaped = design.0.keys().find(|key| is_shape(key));
         if let (FingerSource::Paper, Some(key)) = (fingers, shaped) {
             let problem = "is a number of a printed finger, which the paper's model does not know; \
@@ -127,9 +107,9 @@ impl Template {
             };
         }
         let mut made = fingers.make(at_pad, design, &task)?;
-        for (key, number, unit) in FINGER {
-            if let Some((_, value)) = of_finger.iter().find(|(name, _)| *name == key) {
-                *number(&mut made.finger) = value * unit;
+        for (key, value) in of_finger {
+            if let Some((number, unit)) = made.finger.number(key) {
+                *number = value * unit;
             }
         }
         Ok((task, made))
@@ -139,7 +119,9 @@ impl Template {
         if of_task.is_empty() {
             return Ok(self.task.clone());
         }
-        let elsewhere = [&finger_keys()[..], &[DENSITY_KEY, DIRECTION_KEY]].concat();
+        let finger = paths(Kind::Finger);
+        let finger = finger.iter().map(String::as_str);
+        let elsewhere: Vec<_> = finger.chain([DENSITY_KEY, DIRECTION_KEY]).collect();
         let table = self.numbers.with(of_task.iter().copied(), &elsewhere)?;
         Task::from_table(table, &self.numbers.file)
     }
@@ -148,10 +130,11 @@ impl Template {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::finger::Finger;
     use crate::fixtures::task_file;
     use crate::task::{Ending, Sensed};
     use input::shipped::TASKS;
-    use input::units::DEG;
+    use input::units::{DEG, MM};
     use std::collections::BTreeMap;
 
     fn usb() -> Template {
@@ -224,6 +207,7 @@ mod tests {
             ("task.strategy.start_mm", 1.0, "`task.strategy.start_mm.` goes on with x, y, z"),
             ("task.strategy.phase.side.motion", 1.0, "goes on with move_mm, settle_s, speed_mm_"),
             ("tilt", 1.0, "begins with finger, infill_density_percent, infill_direction_deg or"),
+            ("task.friction.plug_sokcet", 0.2, "did you mean `task.friction.plug_socket`?"),
         ] {
             let error = apply(&[(key, value)]).unwrap_err().to_string();
             assert!(error.contains(words), "{key}: {error}");

@@ -1,11 +1,12 @@
 //! Whether every finger of a space can be printed, and has springs, asked before one is simulated.
 
+use super::space::{each_corner, each_extreme};
 use super::{Impossible, is_infill};
 use crate::evaluation::evaluator::Evaluator;
 use crate::finger::computed::AtPad;
-use crate::finger::file::{FingerFile, is_shape};
+use crate::finger::file::{FingerFile, infill, is_shape};
 use crate::finger::model::{FingerSource, RCC_KEY, TILTING_KEY};
-use crate::space::{Design, Parameter, Space, corners};
+use crate::space::{Design, Space, Variable};
 use finray::geometry::Geometry;
 use input::{Check, InputError};
 
@@ -17,23 +18,15 @@ use input::{Check, InputError};
 /// If a key sets nothing in the finger file, or a combination cannot be printed.
 pub fn check(space: &Space, file: &str, finger: &FingerFile) -> Result<(), InputError> {
     let check = Check { file };
-    let shape = |p: &&Parameter| is_shape(&p.key);
-    for parameter in space.parameters.iter().filter(shape) {
-        for value in parameter.extremes() {
-            let alone = Design([(parameter.key.clone(), value)].into());
-            if let Err(error) = finger.with(&alone) {
-                return check.fail(&parameter.key, format!("cannot be {value}: {error}"));
-            }
-        }
-    }
-    let sets = |p: &&Parameter| shape(p) || is_infill(&p.key);
-    for design in corners(space.parameters.iter().filter(sets), usize::MAX) {
-        let finger = finger.with(&design)?;
-        if let Err(error) = Geometry::new(&finger, &design.printed(None)) {
-            return check.fail("parameter", format!("{design} cannot be printed: {error}"));
-        }
-    }
-    Ok(())
+    let shape = |p: &&Variable| is_shape(&p.key);
+    each_extreme(check, space.parameters.iter().filter(shape), |alone| {
+        Ok(finger.with(alone).map(drop)?)
+    })?;
+    let sets = |p: &&Variable| shape(p) || is_infill(&p.key);
+    let all = (space.parameters.iter().filter(sets), usize::MAX);
+    each_corner(check, "parameter", all, "cannot be printed", |design| {
+        Ok(Geometry::new(&finger.with(design)?, &infill(design, None)).map(drop)?)
+    })
 }
 
 /// A space read from `file` that sets a computed finger's remote centre or tilting stiffness may ask
@@ -48,13 +41,10 @@ pub fn check_springs(evaluator: &Evaluator, space: &Space, file: &str) -> Result
     let Some(first) = space.parameters.iter().find(|p| computed && sets(&p.key)) else {
         return Ok(());
     };
-    let tried = |p: &&Parameter| sets(&p.key) || is_infill(&p.key);
-    for design in corners(space.parameters.iter().filter(tried), usize::MAX) {
-        if let Err(error) = springs(evaluator, &design) {
-            return Check { file }.fail(&first.key, format!("{design} has no springs: {error}"));
-        }
-    }
-    Ok(())
+    let tried = |p: &&Variable| sets(&p.key) || is_infill(&p.key);
+    let all = (space.parameters.iter().filter(tried), usize::MAX);
+    let possible = |design: &Design| springs(evaluator, design);
+    each_corner(Check { file }, &first.key, all, "has no springs", possible)
 }
 
 fn springs(evaluator: &Evaluator, design: &Design) -> Result<(), Impossible> {
@@ -90,7 +80,7 @@ mod tests {
             (["high = 12.0", "high = 20.0"], "notch.roof_mm"),
             (["low = 15.0", "low = 9.0"], "outline.back_radius_mm"),
             (["low = 0.4\n", "low = 0.1\n"], "skin.thickness_mm"),
-            (["finger.skin.thickness_mm", "finger.skin.width_mm"], "goes on with thickness_mm"),
+            (["finger.skin.thickness_mm", "finger.holes.spacing_mm"], "unknown path"),
         ] {
             let error = shipped(change).unwrap_err().to_string();
             assert!(error.starts_with("spaces/finger.toml: "), "{error}");

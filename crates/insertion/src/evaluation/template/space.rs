@@ -4,10 +4,57 @@ use super::{Impossible, Template, is_infill};
 use crate::finger::computed::AtPad;
 use crate::finger::file::is_shape;
 use crate::finger::model::FingerSource;
-use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design, Parameter, Space, corners};
+use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space, Variable, corners};
 use crate::task::Task;
 use crate::trial::run::RigError;
 use input::{Check, InputError};
+
+/// Checks the extreme values of variables, each alone.
+///
+/// # Errors
+/// The first value that is impossible.
+pub(super) fn each_extreme<'a>(
+    check: Check<'_>,
+    variables: impl Iterator<Item = &'a Variable>,
+    possible: impl Fn(&Design) -> Result<(), Impossible>,
+) -> Result<(), InputError> {
+    for variable in variables {
+        for value in variable.extremes() {
+            match possible(&Design::default().with(&variable.key, value)) {
+                Ok(()) => (),
+                Err(Impossible::Value(InputError::Value { key, problem, .. }))
+                    if variable.key == key =>
+                {
+                    return check.fail(&key, problem);
+                }
+                Err(error) => {
+                    return check.fail(&variable.key, format!("cannot be {value}: {error}"));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Checks combinations of extreme values, as [`corners`] has them; a failure is one of `key`, in these
+/// words.
+///
+/// # Errors
+/// The first combination that is impossible.
+pub(super) fn each_corner<'a>(
+    check: Check<'_>,
+    key: &str,
+    (variables, most): (impl Iterator<Item = &'a Variable>, usize),
+    words: &str,
+    possible: impl Fn(&Design) -> Result<(), Impossible>,
+) -> Result<(), InputError> {
+    for design in corners(variables, most) {
+        if let Err(error) = possible(&design) {
+            return check.fail(key, format!("{design} {words}: {error}"));
+        }
+    }
+    Ok(())
+}
 
 /// Whether robot and engine can do a task.
 pub type Fits<'a> = dyn Fn(&Task) -> Result<(), RigError> + 'a;
@@ -31,29 +78,11 @@ impl Template {
             let problem = "is missing: a space must have it; to hold it fixed let low equal high";
             return check.fail(missing, problem);
         }
-        let other = |p: &&Parameter| !is_infill(&p.key) && !is_shape(&p.key);
+        let other = |p: &&Variable| !is_infill(&p.key) && !is_shape(&p.key);
         let parameters = || space.parameters.iter().filter(other);
-        for parameter in parameters() {
-            for value in parameter.extremes() {
-                let design = Design([(parameter.key.clone(), value)].into());
-                if let Err(error) = self.possible(&design, fits) {
-                    return match error {
-                        Impossible::Value(InputError::Value { key, problem, .. })
-                            if key == parameter.key =>
-                        {
-                            check.fail(&key, problem)
-                        }
-                        error => check.fail(&parameter.key, format!("cannot be {value}: {error}")),
-                    };
-                }
-            }
-        }
-        for design in corners(parameters(), COMBINATIONS) {
-            if let Err(error) = self.possible(&design, fits) {
-                return check.fail("parameter", format!("{design} is impossible: {error}"));
-            }
-        }
-        Ok(())
+        let possible = |design: &Design| self.possible(design, fits);
+        each_extreme(check, parameters(), possible)?;
+        each_corner(check, "parameter", (parameters(), COMBINATIONS), "is impossible", possible)
     }
 
     fn possible(&self, design: &Design, fits: &Fits<'_>) -> Result<(), Impossible> {
@@ -113,12 +142,11 @@ mod tests {
         let (x, y) = (format!("{side}.x"), format!("{side}.y"));
         assert_eq!(check(&[(&x, -5.0, 5.0)]), Ok(()), "y keeps the move from being zero");
         for (parameters, words) in [
+            (vec![("task.grip.tcp_z_mm", 30.0, 60.0)], "s.toml: task.grip.tcp_z_mm: cannot be 60"),
             (
-                vec![("task.strategy.tilt_deg", 0.0, 46.0)],
-                "s.toml: task.strategy.tilt_deg: cannot be 46",
+                vec![("task.strategy.phase.sied.speed_mm_per_s", 1.0, 2.0)],
+                "did you mean `task.strategy.phase.side.speed_mm_per_s`?",
             ),
-            (vec![("finger.mass_g", 0.0, 2.0)], "s.toml: finger.mass_g: is 0"),
-            (vec![("speed_mm_per_s", 1.0, 2.0)], "s.toml: speed_mm_per_s: sets nothing"),
             (vec![(&y, -5.0, 5.0)], "move_mm.y: cannot be 0"),
             (vec![(&x, -5.0, 5.0), (&y, -5.0, -1.0)], ""),
             (

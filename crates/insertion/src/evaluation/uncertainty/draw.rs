@@ -1,31 +1,19 @@
 //! Draws from the distribution.
 
 use super::Errors;
-use crate::evaluation::cell::Priors;
 use crate::finger::Finger;
 use crate::surrogate::{Estimate, Prediction};
 use crate::trial::{Conditions, Grasp};
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
+use input::units::{DEG, MM};
+use parameters::numbers::{SOCKET_YAW, START_ACROSS, START_TILT};
+use parameters::{Parameter, Path};
 use rand::RngExt;
 
 const PURPOSE: &str = "errors";
 /// A stream of its own: errors that came later leave those before as they were.
 const PURPOSE_ACROSS: &str = "error of the start along x";
-
-/// Goes before the key of what a cell's row sets: rows more or less leave the others as they were.
-const PURPOSE_CELL: &str = "cell ";
-
-/// `count` draws of a cell's rows, in their order; draw `i` of a row is a function of the seed, `i`
-/// and the row alone.
-pub fn cells(cell: &Priors, seed: u64, count: u32) -> Vec<Vec<f64>> {
-    let draw = |i: u32| {
-        let share =
-            |key: &str| stream(seed, u64::from(i), &format!("{PURPOSE_CELL}{key}")).random::<f64>();
-        cell.parameters.iter().map(|row| row.at(share(row.sets.key()))).collect()
-    };
-    (0..count).map(draw).collect()
-}
 
 /// One draw: what one insertion is like. It does not depend on the design, so
 /// that designs are compared under the same errors (common random numbers).
@@ -73,10 +61,23 @@ fn draw(errors: &Errors, seed: u64, index: u64) -> Draw {
 }
 
 impl Draw {
-    /// An insertion under these conditions, whose finger's compliance and assembly stiffness lie so
-    /// many standard deviations of the stiffness model above their medians.
-    pub fn under(conditions: Conditions, stiffness: [f64; 2]) -> Self {
-        Draw { offset: 0.0, conditions, stiffness, stiffness_sd_factor: 1.0 }
+    /// An insertion without any error.
+    const NOMINAL: Draw = Draw {
+        offset: 0.0,
+        conditions: Conditions::NOMINAL,
+        stiffness: [0.0; 2],
+        stiffness_sd_factor: 1.0,
+    };
+
+    /// Returns the insertion under these errors of the cell, each in the unit of its path, and no others.
+    pub fn under<'a>(errors: impl IntoIterator<Item = (&'a str, f64)>) -> Self {
+        let mut draw = Draw::NOMINAL;
+        for (path, value) in errors {
+            if let Some((.., set)) = ERRORS.iter().find(|(own, ..)| *own == path) {
+                set(&mut draw, value);
+            }
+        }
+        draw
     }
 
     /// A grasp by fingers that were to have the predicted stiffness, as it turns out.
@@ -97,6 +98,79 @@ impl Draw {
     }
 }
 
+/// Half width over which a normal error is varied, in standard deviations: 95 % of it.
+const NORMAL_WIDTH_SD: f64 = 2.0;
+
+/// An error of a cell by its path: between what it is varied, and what it sets.
+type CellError = (&'static str, fn(&Errors) -> [f64; 2], fn(&mut Draw, f64));
+
+fn both(half_width: f64) -> [f64; 2] {
+    [-half_width, half_width]
+}
+
+/// All errors of a cell. The shift along y is not varied: a window spans it.
+const ERRORS: [CellError; 11] = [
+    ("cell.start_y_mm", |_| both(0.0), |draw, value| draw.offset = value * MM),
+    (START_TILT, |_| both(0.0), |draw, value| draw.conditions.start_tilt = value * DEG),
+    (
+        SOCKET_YAW,
+        |errors| both(NORMAL_WIDTH_SD * errors.yaw_sd / DEG),
+        |draw, value| draw.conditions.yaw = value * DEG,
+    ),
+    (
+        START_ACROSS,
+        |errors| both(NORMAL_WIDTH_SD * errors.across_sd / MM),
+        |draw, value| draw.conditions.start_across = value * MM,
+    ),
+    (
+        "cell.friction_finger_percent",
+        |errors| both(100.0 * errors.friction_half_width),
+        |draw, value| draw.conditions.friction_finger = 1.0 + value / 100.0,
+    ),
+    (
+        "cell.friction_socket_percent",
+        |errors| both(100.0 * errors.friction_half_width),
+        |draw, value| draw.conditions.friction_socket = 1.0 + value / 100.0,
+    ),
+    (
+        "cell.clearance_mm",
+        |errors| both(errors.clearance_half_width / MM),
+        |draw, value| draw.conditions.clearance = value * MM,
+    ),
+    (
+        "cell.grasp_across_mm",
+        |errors| both(NORMAL_WIDTH_SD * errors.grasp_across_sd / MM),
+        |draw, value| draw.conditions.grasp_across = value * MM,
+    ),
+    (
+        "cell.grasp_low_mm",
+        |errors| [0.0, errors.grasp_low_max / MM],
+        |draw, value| draw.conditions.grasp_low = value * MM,
+    ),
+    (
+        "cell.compliance_error_sd",
+        |errors| both(NORMAL_WIDTH_SD * errors.stiffness_sd_factor),
+        |draw, value| draw.stiffness[0] = value,
+    ),
+    (
+        "cell.assembly_error_sd",
+        |errors| both(NORMAL_WIDTH_SD * errors.stiffness_sd_factor),
+        |draw, value| draw.stiffness[1] = value,
+    ),
+];
+
+impl Errors {
+    /// Returns the errors that are not 0 as numbers that vary evenly: normal ones over two standard
+    /// deviations to either side.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        let varied = |(path, width, _): &CellError| {
+            let [low, high] = width(self);
+            Some(Parameter::uniform(Path::new(*path).ok()?, [low, high])).filter(|_| low < high)
+        };
+        ERRORS.iter().filter_map(varied).collect()
+    }
+}
+
 /// A factor of mean 1 and standard deviation `relative` whose logarithm is normal:
 /// `exp(s z - s^2 / 2)`, `s^2 = ln(1 + relative^2)`. Never negative, unlike a normal one.
 fn lognormal(relative: f64, z: f64) -> f64 {
@@ -110,7 +184,7 @@ mod tests {
     use crate::evaluation::uncertainty::Uncertainty;
     use crate::fixtures::predicted;
     use input::shipped::UNCERTAINTIES;
-    use input::units::{DEG, MM};
+    use parameters::numbers::{Kind, paths};
 
     fn errors() -> Errors {
         Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap().errors
@@ -172,6 +246,27 @@ mod tests {
             assert_eq!((a.offset, a.conditions.clearance), (b.offset, b.conditions.clearance));
             assert_eq!(a.conditions.yaw, 0.0);
         }
+    }
+
+    #[test]
+    fn every_error_of_the_table_of_numbers_is_set_by_its_path_alone() {
+        let paths = paths(Kind::Error);
+        assert_eq!(paths.len(), ERRORS.len());
+        assert_eq!(Draw::under(paths.iter().map(|path| (&**path, 0.0))), Draw::NOMINAL);
+        let set: Vec<Draw> = paths.iter().map(|path| Draw::under([(&**path, 1.0)])).collect();
+        for (i, draw) in set.iter().enumerate() {
+            assert_ne!(*draw, Draw::NOMINAL, "{}", paths[i]);
+            assert!(!set[..i].contains(draw), "{}", paths[i]);
+        }
+    }
+
+    #[test]
+    fn what_is_certain_does_not_vary() {
+        let varied = Errors { yaw_sd: 0.0, ..errors() }.parameters();
+        assert!(varied.iter().all(|one| one.path != SOCKET_YAW));
+        let clearance = varied.iter().find(|one| one.path == "cell.clearance_mm").unwrap();
+        assert!((clearance.low + 0.03).abs() < 1e-12 && (clearance.high - 0.03).abs() < 1e-12);
+        assert!(Errors::default().parameters().is_empty());
     }
 
     #[test]

@@ -2,14 +2,16 @@
 
 mod draw;
 
-pub use draw::{Draw, cells, draws};
+pub use draw::{Draw, draws};
 
-use crate::evaluation::cell::{Priors, Target};
+use crate::evaluation::cell::Priors;
 use crate::evaluation::tolerance::Search;
 use crate::finger::file::is_shape;
 use input::shipped::UNCERTAINTIES;
 use input::units::{DEG, MM, PERCENT};
 use input::{Check, InputError, read};
+use parameters::Path;
+use parameters::numbers::{SOCKET_YAW, START_ACROSS};
 use serde::Deserialize;
 
 /// A checked distribution of errors, and how many draws each measure takes; SI units.
@@ -147,11 +149,6 @@ enum RawStatistic {
     LowerTail,
 }
 
-/// Largest error of a length, mm: no part is placed so badly.
-const LARGEST_MM: f64 = 20.0;
-const LARGEST_CLEARANCE_MM: f64 = 2.0;
-const LARGEST_DEG: f64 = 30.0;
-const LARGEST_FACTOR: f64 = 10.0;
 const MOST: u32 = 100_000;
 
 impl Uncertainty {
@@ -192,8 +189,7 @@ impl Uncertainty {
     }
 
     fn of(cell: Priors, file: &str) -> Result<Self, InputError> {
-        let shape = |target: &Target| matches!(target, Target::Number(key) if is_shape(key));
-        if let Some(row) = cell.parameters.iter().find(|row| shape(&row.sets)) {
+        if let Some(row) = cell.parameters.iter().find(|row| is_shape(&row.path)) {
             let problem =
                 "cannot be drawn: it makes another finger, which a space can; leave it out";
             return Check { file }.fail(&row.name, problem);
@@ -232,26 +228,26 @@ fn errors(check: Check<'_>, raw: &RawUncertainty) -> Result<Errors, InputError> 
     if half_width >= 100.0 {
         return check.fail(friction, "must be below 100: friction cannot be negative");
     }
-    // In SI units; `unit` is one of the file's.
-    let error = |key, value, largest, unit| match check.not_negative(key, value)? <= largest {
-        true => Ok(value * unit),
-        false => check.fail(key, format!("is {value}; it may be {largest} at most")),
+    // In SI units; `unit` is one of the file's, and the largest is that of the error's path.
+    let error = |key, value, path: &str, unit| {
+        let largest = Path::new(path).map_or(0.0, |path| path.bounds()[1]);
+        match check.not_negative(key, value)? <= largest {
+            true => Ok(value * unit),
+            false => check.fail(key, format!("is {value}; it may be {largest} at most")),
+        }
     };
     let (offset, gap, grasp) = (&raw.offset, raw.clearance.half_width_mm, &raw.grasp);
+    let (factor, compliance) = (raw.stiffness.sd_factor, "cell.compliance_error_sd");
+    let across = grasp.across_sd_mm;
     Ok(Errors {
-        offset_sd: error("offset.sd_mm", offset.sd_mm, LARGEST_MM, MM)?,
-        across_sd: error("offset.across_sd_mm", offset.across_sd_mm, LARGEST_MM, MM)?,
-        yaw_sd: error("yaw.sd_deg", raw.yaw.sd_deg, LARGEST_DEG, DEG)?,
+        offset_sd: error("offset.sd_mm", offset.sd_mm, "cell.start_y_mm", MM)?,
+        across_sd: error("offset.across_sd_mm", offset.across_sd_mm, START_ACROSS, MM)?,
+        yaw_sd: error("yaw.sd_deg", raw.yaw.sd_deg, SOCKET_YAW, DEG)?,
         friction_half_width: half_width * PERCENT,
-        stiffness_sd_factor: error(
-            "stiffness.sd_factor",
-            raw.stiffness.sd_factor,
-            LARGEST_FACTOR,
-            1.0,
-        )?,
-        clearance_half_width: error("clearance.half_width_mm", gap, LARGEST_CLEARANCE_MM, MM)?,
-        grasp_across_sd: error("grasp.across_sd_mm", grasp.across_sd_mm, LARGEST_MM, MM)?,
-        grasp_low_max: error("grasp.low_max_mm", grasp.low_max_mm, LARGEST_MM, MM)?,
+        stiffness_sd_factor: error("stiffness.sd_factor", factor, compliance, 1.0)?,
+        clearance_half_width: error("clearance.half_width_mm", gap, "cell.clearance_mm", MM)?,
+        grasp_across_sd: error("grasp.across_sd_mm", across, "cell.grasp_across_mm", MM)?,
+        grasp_low_max: error("grasp.low_max_mm", grasp.low_max_mm, "cell.grasp_low_mm", MM)?,
     })
 }
 

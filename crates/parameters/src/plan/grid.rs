@@ -1,4 +1,4 @@
-//! Tracing of outcomes over a plane: no simulation, only where to look next.
+//! Tracing of outcomes over the plane of two parameters: where to look next.
 //!
 //! On a coarse lattice, which grows until its border fails, then at half the distance and again: a
 //! place between two that end alike is taken over from them, one between two that differ is tried.
@@ -6,7 +6,6 @@
 //! there; then what was taken over beside that border; with what is left the other borders.
 
 use ask_tell::stream::stream;
-use insertion::outcome::Outcome;
 use rand::seq::SliceRandom;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -25,29 +24,40 @@ const MOST_COARSE: usize = 110;
 /// Place on the grid: steps along both axes, from no error.
 pub type Node = [i32; 2];
 
+/// What a trial ends in.
+pub trait Ends: Copy + PartialEq + Send + Sync {
+    /// Whether it is inside the region that is traced.
+    fn inside(self) -> bool;
+}
+
 /// Outcome at a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Found {
-    pub outcome: Outcome,
+pub struct Found<T> {
+    /// The outcome.
+    pub outcome: T,
     /// If not it is taken over from its neighbours.
     pub simulated: bool,
 }
 
 /// Outcomes at every place from `low` to `high`.
-pub struct Traced<'a> {
+pub struct Traced<'a, T> {
+    /// Lowest corner.
     pub low: Node,
+    /// Highest corner.
     pub high: Node,
-    pub nodes: BTreeMap<Node, Found>,
+    /// Every place from `low` to `high`.
+    pub nodes: BTreeMap<Node, Found<T>>,
+    /// Trials that were measured.
     pub trials: usize,
     /// Distance of the places that are simulated first, steps of the grid.
     coarse: i32,
     /// Distance within which the border of the inserting region was looked for, steps of the grid.
     pub step: i32,
-    measure: &'a (dyn Fn(Node) -> Outcome + Sync),
+    measure: &'a (dyn Fn(Node) -> T + Sync),
 }
 
 /// Traces the region that inserts around no error, up to `limit`, a multiple of 8, along either axis.
-pub fn trace(limit: Node, measure: &(dyn Fn(Node) -> Outcome + Sync)) -> Traced<'_> {
+pub fn trace<T: Ends>(limit: Node, measure: &(dyn Fn(Node) -> T + Sync)) -> Traced<'_, T> {
     let (low, high) = ([-2 * COARSE, -COARSE], [2 * COARSE, COARSE]);
     let nodes = BTreeMap::new();
     let coarse = COARSE;
@@ -56,7 +66,7 @@ pub fn trace(limit: Node, measure: &(dyn Fn(Node) -> Outcome + Sync)) -> Traced<
     let mut probed = false;
     loop {
         let most = if probed { MOST_TRIALS } else { MOST_TRIALS - PROBES };
-        traced.step = traced.refine(insert_differently, most);
+        traced.step = traced.refine(differ, most);
         if probed {
             traced.verify();
         }
@@ -74,11 +84,11 @@ pub fn trace(limit: Node, measure: &(dyn Fn(Node) -> Outcome + Sync)) -> Traced<
     traced
 }
 
-fn insert_differently(a: Outcome, b: Outcome) -> bool {
-    (a == Outcome::Inserted) != (b == Outcome::Inserted)
+fn differ<T: Ends>(a: T, b: T) -> bool {
+    a.inside() != b.inside()
 }
 
-impl Traced<'_> {
+impl<T: Ends> Traced<'_, T> {
     /// Simulates the lattice, which grows on each side until that fails; whether it has grown.
     fn extend(&mut self, limit: Node) -> bool {
         let first = (self.low, self.high);
@@ -89,9 +99,9 @@ impl Traced<'_> {
             let before = (self.low, self.high);
             for axis in [0, 1] {
                 let inserts = |edge: i32| {
-                    self.nodes.iter().any(|(node, found)| {
-                        node[axis] == edge && found.outcome == Outcome::Inserted
-                    })
+                    self.nodes
+                        .iter()
+                        .any(|(node, found)| node[axis] == edge && found.outcome.inside())
                 };
                 let [below, above] = [before.0, before.1].map(|end| inserts(end[axis]));
                 let (low, high) = (self.low[axis] - coarse, self.high[axis] + coarse);
@@ -121,7 +131,7 @@ impl Traced<'_> {
     /// Fills the grid from the lattice on, at half its distance and again; tries what lies between
     /// outcomes that differ in the sense given, as long as there are no more trials than `most`. Gives
     /// the last distance at which that was all.
-    fn refine(&mut self, differ: fn(Outcome, Outcome) -> bool, most: usize) -> i32 {
+    fn refine(&mut self, differ: fn(T, T) -> bool, most: usize) -> i32 {
         let (mut half, mut complete, mut traced) = (self.coarse / 2, true, self.coarse);
         while half >= 1 {
             // First the middles of edges, then those of faces.
@@ -151,18 +161,12 @@ impl Traced<'_> {
 
     /// Outcomes at this distance from a place along the axes on which it lies between two; of a face's
     /// middle along the one axis on which they are alike, if there is one.
-    fn around(
-        &self,
-        node: Node,
-        by: i32,
-        between: [bool; 2],
-        differ: fn(Outcome, Outcome) -> bool,
-    ) -> Vec<Outcome> {
-        let pair = |axis: usize| -> Vec<Outcome> {
+    fn around(&self, node: Node, by: i32, between: [bool; 2], differ: fn(T, T) -> bool) -> Vec<T> {
+        let pair = |axis: usize| -> Vec<T> {
             let beside = [-by, by].map(|by| moved(node, axis, by));
             beside.iter().filter_map(|at| Some(self.nodes.get(at)?.outcome)).collect()
         };
-        let apart = |pair: &[Outcome]| pair.iter().any(|&outcome| differ(outcome, pair[0]));
+        let apart = |pair: &[T]| pair.iter().any(|&outcome| differ(outcome, pair[0]));
         let [first, second] = [0, 1].map(|axis| if between[axis] { pair(axis) } else { vec![] });
         match (apart(&first), apart(&second)) {
             (false, true) if !first.is_empty() => first,
@@ -173,10 +177,10 @@ impl Traced<'_> {
 
     /// Tries places amid taken over ones that all insert, or all do not.
     fn probe(&mut self) {
-        let alike = |(node, found): &(&Node, &Found)| {
+        let alike = |(node, found): &(&Node, &Found<T>)| {
             let same = |beside: Node| {
                 let other = self.nodes[&beside];
-                !other.simulated && !insert_differently(other.outcome, found.outcome)
+                !other.simulated && !differ(other.outcome, found.outcome)
             };
             !found.simulated && self.beside(**node).all(same)
         };
@@ -190,10 +194,10 @@ impl Traced<'_> {
     /// Tries what was taken over beside a trial that ended otherwise, until nothing is.
     fn verify(&mut self) {
         loop {
-            let doubtful = |(node, found): &(&Node, &Found)| {
+            let doubtful = |(node, found): &(&Node, &Found<T>)| {
                 let against = |beside: Node| {
                     let other = self.nodes[&beside];
-                    other.simulated && insert_differently(other.outcome, found.outcome)
+                    other.simulated && differ(other.outcome, found.outcome)
                 };
                 !found.simulated && self.beside(**node).any(against)
             };
@@ -213,7 +217,7 @@ impl Traced<'_> {
         if all > room {
             wanted = (0..room).map(|i| wanted[i * all / room]).collect();
         }
-        let outcomes: Vec<Outcome> = wanted.par_iter().map(|&node| (self.measure)(node)).collect();
+        let outcomes: Vec<T> = wanted.par_iter().map(|&node| (self.measure)(node)).collect();
         self.trials += wanted.len();
         let found = outcomes.into_iter().map(|outcome| Found { outcome, simulated: true });
         self.nodes.extend(wanted.into_iter().zip(found));
@@ -246,10 +250,23 @@ fn moved(mut node: Node, axis: usize, by: i32) -> Node {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use Outcome::{Failed, Inserted};
-    use insertion::outcome::FailureClass::{Jammed, PlugMissed};
+    use Outcome::{Inserted, Jammed, Missed};
+
     use std::collections::BTreeSet;
     use std::sync::Mutex;
+
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    enum Outcome {
+        Inserted,
+        Jammed,
+        Missed,
+    }
+
+    impl Ends for Outcome {
+        fn inside(self) -> bool {
+            self == Inserted
+        }
+    }
 
     const LIMIT: Node = [64, 32];
 
@@ -273,18 +290,18 @@ mod tests {
         assert!(found.trials <= MOST_TRIALS);
         let [wide, high] = [0, 1].map(|axis| (found.high[axis] - found.low[axis] + 1) as usize);
         assert_eq!(found.nodes.len(), wide * high, "a place without an outcome");
-        let wrong = [count(&|a, b| a != b), count(&insert_differently)];
+        let wrong = [count(&|a, b| a != b), count(&differ)];
         (found.nodes.len(), found.trials, found.step, wrong)
     }
 
     fn inserted(is: bool) -> Outcome {
-        if is { Inserted } else { Failed(Jammed) }
+        if is { Inserted } else { Jammed }
     }
 
     #[test]
     fn a_disc_and_a_slanted_strip_are_traced_to_the_last_place() {
         let disc = |y: f64, x: f64| match libm::hypot(y - 1.0, x) < 3.0 {
-            false if y > 2.0 => Failed(PlugMissed),
+            false if y > 2.0 => Missed,
             inserts => inserted(inserts),
         };
         let strip = |y: f64, x: f64| inserted((x - 0.3 * y).abs() < 0.4 && y.abs() < 6.0);
@@ -309,7 +326,7 @@ mod tests {
     fn what_has_no_end_is_cut_off_and_what_takes_too_many_trials_is_traced_coarsely() {
         let (places, _, step, wrong) = traced(&|_, _| Inserted);
         assert_eq!((places, step, wrong), (129 * 65, 1, [0, 0]));
-        let (places, trials, ..) = traced(&|_, _| Failed(PlugMissed));
+        let (places, trials, ..) = traced(&|_, _| Missed);
         assert_eq!((places, trials), (17 * 9, 15 + PROBES));
         let (_, trials, step, _) =
             traced(&|y, x| inserted(libm::sin(3.1 * y) + libm::cos(2.7 * x) > 0.2));

@@ -1,11 +1,31 @@
-//! First-order and total Sobol indices.
+//! First-order and total Sobol indices: shares of a function's variance, with intervals.
+//!
+//! [`Sample::points`] gives the points of the unit cube to evaluate, in any order and in parallel;
+//! [`Sample::indices`] takes the values in the order of the points.
 //!
 //! Estimators of Jansen (Comput. Phys. Commun. 117 (1999) 35, doi:10.1016/S0010-4655(98)00154-4) on
 //! the design of Saltelli et al. (Comput. Phys. Commun. 181 (2010) 259, doi:10.1016/j.cpc.2009.09.018): two
 //! independent samples A and B, and for each input A with that input from B.
 
-use super::{Interval, bootstrap};
 use ask_tell::SobolSequence;
+use ask_tell::stream::stream;
+use rand::RngExt;
+
+/// Resamples of a bootstrap: enough for the ends of a 95 % interval.
+const RESAMPLES: usize = 1000;
+/// Probability outside a 95 % interval on each side.
+const TAIL: f64 = 0.025;
+
+/// An estimate with its 95 % interval by the bootstrap (percentiles), in the unit of the values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Point estimate.
+    pub value: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
 
 /// Sobol indices of an input, without unit; estimates may leave 0 .. 1 by their error.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,6 +101,18 @@ fn variance(of_a: &[f64], of_b: &[f64], rows: &[usize]) -> f64 {
     let count = 2.0 * rows.len() as f64;
     let mean = both().sum::<f64>() / count;
     both().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0)
+}
+
+/// Bootstrap interval of `statistic` over independent rows.
+fn bootstrap(rows: usize, seed: u64, statistic: impl Fn(&[usize]) -> f64) -> Interval {
+    let every: Vec<usize> = (0..rows).collect();
+    let mut random = stream(seed, rows as u64, "sensitivity bootstrap");
+    let mut resample =
+        || -> Vec<usize> { every.iter().map(|_| random.random_range(0..rows)).collect() };
+    let mut found: Vec<f64> = (0..RESAMPLES).map(|_| statistic(&resample())).collect();
+    found.sort_by(f64::total_cmp);
+    let at = |share: f64| found[(share * (RESAMPLES - 1) as f64).round() as usize];
+    Interval { value: statistic(&every), low: at(TAIL), high: at(1.0 - TAIL) }
 }
 
 #[cfg(test)]

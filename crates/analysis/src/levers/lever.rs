@@ -1,0 +1,136 @@
+//! Levers as they are reported: each with its ends, and what helps most in a sentence.
+
+use insertion::evaluation::INDIFFERENCE_MM;
+use insertion::space::Design;
+use serde::{Deserialize, Serialize};
+
+/// What moves the range of one finger on one task; ranges are those around a taught start.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Levers {
+    /// Name of the task.
+    pub task: String,
+    /// The finger, and what else its design sets.
+    pub design: Design,
+    /// The finger as it is.
+    pub base: Base,
+    /// Smallest and largest range over infills, mm.
+    #[serde(rename = "infill_range_mm")]
+    pub infill: [f64; 2],
+    /// The levers, by how much they move the range, most first.
+    pub levers: Vec<Lever>,
+    /// Names of levers for which no windows were left.
+    pub left_out: Vec<String>,
+    /// Windows measured for all this.
+    pub windows: usize,
+}
+
+/// A finger as it is.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Base {
+    /// Its range, mm; 0 where no start inserts.
+    pub range_mm: f64,
+    /// Shift of the taught start from that of the task file, mm.
+    pub taught_start_mm: f64,
+}
+
+/// A number that a user could change, in its unit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Lever {
+    /// In words: `tilt`.
+    pub name: String,
+    /// What it sets: a path in the task or finger file, or a name as in `priors/bench.toml`.
+    pub key: String,
+    /// Unit of `value`, `low` and `high`; empty for none.
+    pub unit: String,
+    /// As it is.
+    pub value: f64,
+    /// At the lower bound of what it was tried at; of a stroke that is negative the shorter one.
+    pub low: f64,
+    /// At the upper bound.
+    pub high: f64,
+    /// Where the bounds come from.
+    pub source: String,
+    /// Ranges at `low` and at `high`, mm; `None` where no start inserts.
+    #[serde(rename = "range_mm")]
+    pub ends: [Option<f64>; 2],
+}
+
+impl Lever {
+    /// By how much the range differs between what was tried, the present value included, mm.
+    pub fn span_mm(&self, base: Base) -> f64 {
+        let all = self.ends.map(|end| end.unwrap_or(0.0));
+        let [low, high] = all
+            .iter()
+            .fold([base.range_mm; 2], |[low, high], &range| [low.min(range), high.max(range)]);
+        apart([low, high])
+    }
+
+    /// A value with its unit: `5°`, `0.2`, `100 mm/s`.
+    pub fn amount(&self, value: f64) -> String {
+        let space = if self.unit.is_empty() || self.unit == "°" { "" } else { " " };
+        format!("{}{space}{}", plain(value), self.unit)
+    }
+
+    /// The step from the present value to an end: `5° more tilt`.
+    fn step(&self, end: usize) -> String {
+        let by = [self.low, self.high][end].abs() - self.value.abs();
+        let word = if by < 0.0 { "less" } else { "more" };
+        format!("{} {word} {}", self.amount(by.abs()), self.name)
+    }
+}
+
+impl Levers {
+    /// What helps most, in one sentence; what moves the range by less than 0.3 mm is not named.
+    pub fn sentence(&self) -> String {
+        let of = |lever: &Lever, end: usize| {
+            (apart([self.base.range_mm, lever.ends[end].unwrap_or(0.0)]), lever.step(end))
+        };
+        let ends = || self.levers.iter().flat_map(|lever| [0, 1].map(|end| of(lever, end)));
+        // Of equals the first.
+        let most = |sign: f64| {
+            let better =
+                |a: (f64, String), b: (f64, String)| if sign * b.0 > sign * a.0 { b } else { a };
+            ends().reduce(better).filter(|(by, _)| counts(sign * by))
+        };
+        let infill = Some(apart(self.infill)).filter(|by| counts(*by));
+        let it = if infill.is_some() { "it" } else { &self.task };
+        let lever = match (most(1.0), most(-1.0)) {
+            (Some((by, step)), _) => Some(format!("{step} widens {it} by {by:.1} mm")),
+            (None, Some((by, step))) => {
+                let least = format!("nothing widens {it} by {INDIFFERENCE_MM} mm");
+                Some(format!("{least}, and {step} narrows it by {:.1} mm", -by))
+            }
+            (None, None) => None,
+        };
+        let infill = infill.map(|by| format!("the infill moves {} by {by:.1} mm", self.task));
+        let sentence = match (infill, lever) {
+            (Some(infill), Some(lever)) => format!("{infill}; {lever}."),
+            (Some(infill), None) => {
+                format!("{infill}; nothing else moves it by {INDIFFERENCE_MM} mm.")
+            }
+            (None, Some(lever)) => format!("{lever}."),
+            (None, None) => format!("nothing tried moves {} by {INDIFFERENCE_MM} mm.", self.task),
+        };
+        sentence[..1].to_uppercase() + &sentence[1..]
+    }
+}
+
+/// Whether a difference of ranges matters.
+pub fn counts(by_mm: f64) -> bool {
+    by_mm >= INDIFFERENCE_MM
+}
+
+/// Second less first, mm, without the rounding noise of ranges on the 0.1 mm grid.
+pub fn apart([first, second]: [f64; 2]) -> f64 {
+    ((second - first) * 10.0).round() / 10.0
+}
+
+/// A number in few digits.
+pub fn plain(value: f64) -> String {
+    // Adding 0 turns -0 into 0.
+    format!("{}", (value * 1e3).round() / 1e3 + 0.0)
+}
+
+#[cfg(test)]
+#[path = "tests.rs"]
+mod tests;

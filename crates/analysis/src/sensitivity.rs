@@ -1,0 +1,54 @@
+//! Varied inputs of an insertion: the keys of a space, and the errors of a cell.
+
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::evaluator::Evaluator;
+use insertion::evaluation::template::{Impossible, Template};
+use insertion::evaluation::tolerance::{self, Search};
+use insertion::evaluation::uncertainty::{Draw, Errors};
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space, Variable};
+use insertion::trial::Grasp;
+use parameters::Parameter;
+use parameters::numbers::Kind;
+use std::sync::atomic::AtomicBool;
+
+/// Returns the inputs that are varied together, in the order of the cube's axes: every key of the space
+/// with its bounds, then every error of the cell that is not 0.
+///
+/// # Errors
+/// If the space has no infill density or direction.
+pub fn inputs(space: &Space, errors: Option<&Errors>) -> Result<Vec<Parameter>, String> {
+    for key in [DENSITY_KEY, DIRECTION_KEY] {
+        if !space.parameters.iter().any(|variable| variable.key == key) {
+            return Err(format!("the space `{}` has no {key}", space.name));
+        }
+    }
+    let of_space = space.parameters.iter().map(Variable::parameter);
+    let of_space = of_space.filter(|variable| variable.low < variable.high);
+    Ok(of_space.chain(errors.map(Errors::parameters).unwrap_or_default()).collect())
+}
+
+/// Returns the evaluation of the insertion at a point of the unit cube of these inputs, by the
+/// coarse-to-fine search; worthless once `stop` is set.
+///
+/// # Errors
+/// If the point's design, specimen or rig is impossible.
+pub fn evaluate(
+    inputs: &[Parameter],
+    (evaluator, template): (&Evaluator, &Template),
+    unit: &[f64],
+    stop: &AtomicBool,
+) -> Result<Evaluation, Impossible> {
+    let at = |(input, unit): (&'_ Parameter, &f64)| input.at(unit.clamp(0.0, 1.0));
+    let values = inputs.iter().zip(unit).map(|both| (both.0, at(both)));
+    let (errors, numbers): (Vec<_>, Vec<_>) =
+        values.partition(|(input, _)| input.path.kind() == Kind::Error);
+    let design =
+        Design(numbers.iter().map(|(one, value)| (one.path.to_string(), *value)).collect());
+    let predicted = evaluator.predict(&design)?;
+    let specimen = evaluator.specimen(template, &design, predicted)?;
+    let rig = evaluator.rig(&specimen, evaluator.taught(&specimen, stop)?, 1.0)?;
+    let draw = Draw::under(errors.iter().map(|(one, value)| (one.path.as_str(), *value)));
+    let finger = draw.finger(&specimen.finger, &predicted);
+    let grasp = Grasp { finger, conditions: draw.conditions, stop };
+    Ok(tolerance::evaluate_in(&*rig, grasp, Search::Strides))
+}

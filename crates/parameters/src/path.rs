@@ -1,0 +1,232 @@
+//! Paths of numbers, checked against the table of all of them.
+
+use crate::numbers::{Kind, NUMBERS, Number};
+use input::numbers::unknown;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::ops::Deref;
+
+/// The path of a number in the table: `task.friction.plug_socket`. Its last word has the unit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct Path {
+    text: String,
+    number: &'static Number,
+}
+
+/// Error of a path that is not in the table; names the nearest that is.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct UnknownPath(String);
+
+impl Path {
+    /// Looks a path up.
+    ///
+    /// # Errors
+    /// If it is not in the table.
+    pub fn new(text: impl Into<String>) -> Result<Self, UnknownPath> {
+        let text = text.into();
+        let words: Vec<&str> = text.split('.').collect();
+        let found =
+            |number: &&Number| matches(&number.pattern.split('.').collect::<Vec<_>>(), &words);
+        match NUMBERS.iter().find(found) {
+            Some(number) => Ok(Path { text, number }),
+            None => {
+                let known: Vec<String> = NUMBERS
+                    .iter()
+                    .flat_map(Number::paths)
+                    .map(|path| filled(&path, &words))
+                    .collect();
+                let known: Vec<&str> = known.iter().map(String::as_str).collect();
+                Err(UnknownPath(unknown(&text, &known)))
+            }
+        }
+    }
+
+    /// The path as it is written.
+    pub fn as_str(&self) -> &str {
+        &self.text
+    }
+
+    /// How the number is set.
+    pub fn kind(&self) -> Kind {
+        self.number.kind
+    }
+
+    /// Smallest and largest plausible value, in the unit of the path.
+    pub fn bounds(&self) -> [f64; 2] {
+        self.number.bounds
+    }
+
+    /// The unit, with the space before it if it has one; empty for none.
+    pub fn unit(&self) -> &'static str {
+        label(self).1
+    }
+}
+
+/// Whether a pattern matches; in it `*` takes one word or more, since names may have dots.
+fn matches(pattern: &[&str], words: &[&str]) -> bool {
+    match (pattern, words) {
+        ([], []) => true,
+        (["*", rest @ ..], [_, words @ ..]) => {
+            matches(rest, words) || !words.is_empty() && matches(pattern, words)
+        }
+        ([first, pattern @ ..], [word, words @ ..]) => {
+            first.split('|').any(|one| one == *word) && matches(pattern, words)
+        }
+        _ => false,
+    }
+}
+
+/// A pattern with the words of a path in place of its `*`.
+fn filled(pattern: &str, words: &[&str]) -> String {
+    let word = |(i, own)| if own == "*" { words.get(i).copied().unwrap_or("*") } else { own };
+    pattern.split('.').enumerate().map(word).collect::<Vec<_>>().join(".")
+}
+
+impl TryFrom<String> for Path {
+    type Error = UnknownPath;
+    fn try_from(text: String) -> Result<Self, UnknownPath> {
+        Path::new(text)
+    }
+}
+
+impl From<Path> for String {
+    fn from(path: Path) -> String {
+        path.text
+    }
+}
+
+impl Deref for Path {
+    type Target = str;
+    fn deref(&self) -> &str {
+        &self.text
+    }
+}
+
+impl fmt::Display for Path {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+impl<T: AsRef<str> + ?Sized> PartialEq<T> for Path {
+    fn eq(&self, other: &T) -> bool {
+        self.text == other.as_ref()
+    }
+}
+
+/// Ends of paths, and the units they stand for.
+const UNITS: [(&str, &str); 10] = [
+    ("_gpa", " GPa"),
+    ("_percent", " %"),
+    ("_deg", "°"),
+    ("_mm_per_s", " mm/s"),
+    ("_n_per_mm", " N/mm"),
+    ("_nm_per_rad", " N m/rad"),
+    ("_mm", " mm"),
+    ("_n", " N"),
+    ("_kg", " kg"),
+    ("_s", " s"),
+];
+/// Tables of a task file that labels leave out.
+const TABLES: [&str; 5] = ["task", "strategy", "phase", "grip", "finger"];
+
+/// The name of a path in words, and its unit: `task.strategy.tilt_deg` is `tilt`, in `°`.
+pub fn label(path: &str) -> (String, &'static str) {
+    let mut unit = "";
+    let mut words = Vec::new();
+    for part in path.split('.').filter(|part| !TABLES.contains(part)) {
+        let found = UNITS.iter().find_map(|(end, unit)| Some((part.strip_suffix(end)?, *unit)));
+        let (word, of) = found.unwrap_or((part, ""));
+        unit = if of.is_empty() { unit } else { of };
+        words.push(word.replace('_', " "));
+    }
+    (words.join(" "), unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numbers::{DENSITY, FRICTION};
+    use input::numbers::NumberFile;
+    use input::shipped::{FINGERS, ROBOTS, Shipped, TASKS};
+
+    #[test]
+    fn every_number_of_the_shipped_files_is_in_the_table_and_within_its_bounds() {
+        let servo: Vec<Shipped> =
+            ROBOTS.iter().filter(|robot| robot.name == "servo").copied().collect();
+        let mut found = 0;
+        for (root, files) in [("task", TASKS), ("finger", FINGERS), ("robot", &servo)] {
+            for file in files {
+                let numbers = NumberFile::parse(root, file.text, file.file).unwrap();
+                for key in numbers.keys() {
+                    // Stiffnesses of the flange go together, by that along x.
+                    if key.starts_with("robot.") && key.contains("stiffness") {
+                        continue;
+                    }
+                    let path = Path::new(key).unwrap();
+                    let [low, high] = path.bounds();
+                    let value = numbers.number(&path).unwrap();
+                    assert!((low..=high).contains(&value), "{}: {path} is {value}", file.file);
+                    found += 1;
+                }
+            }
+        }
+        assert!(found > 300, "{found}");
+    }
+
+    #[test]
+    fn no_number_stands_twice_and_bounds_are_intervals() {
+        for number in NUMBERS {
+            for path in number.paths() {
+                let first = Path::new(path).unwrap();
+                assert!(std::ptr::eq(first.number, number), "{first} stands twice");
+            }
+            assert!(number.bounds[0] < number.bounds[1], "{}", number.pattern);
+        }
+    }
+
+    #[test]
+    fn an_unknown_path_names_the_nearest() {
+        for (path, words) in [
+            ("task.friction.plug_sokcet", "did you mean `task.friction.plug_socket`?"),
+            (
+                "task.strategy.phase.side.preload",
+                "did you mean `task.strategy.phase.side.preload_mm`?",
+            ),
+            ("finger.skin.thick_mm", "`finger.skin.` goes on with thickness_mm"),
+            ("robot.mass", "did you mean `robot.mass_kg`?"),
+            ("tilt", "a path begins with cell, finger, infill_density_percent,"),
+            ("task.clearance_mm.x", "unknown path `task.clearance_mm.x`"),
+            ("", "unknown path ``"),
+        ] {
+            let error = Path::new(path).unwrap_err().to_string();
+            assert!(error.contains(words), "{path}: {error}");
+        }
+    }
+
+    #[test]
+    fn names_may_have_dots_and_spaces() {
+        for path in ["task.plug.part.metal shell v1.2.x_mm.0", "task.strategy.phase.a.b.settle_s"] {
+            assert_eq!(Path::new(path).unwrap(), path);
+        }
+        assert!(Path::new("task.strategy.phase.settle_s").is_err());
+    }
+
+    #[test]
+    fn paths_in_words() {
+        for (path, words, unit) in [
+            (DENSITY, "infill density", " %"),
+            (FRICTION, "friction plug socket", ""),
+            ("task.strategy.tilt_deg", "tilt", "°"),
+            ("task.strategy.phase.side.move_mm.y", "side move y", " mm"),
+            ("task.strategy.phase.assembly.speed_mm_per_s", "assembly speed", " mm/s"),
+            ("task.grip.force_n", "force", " N"),
+            ("finger.rotation_x_nm_per_rad", "rotation x", " N m/rad"),
+            ("task.opening.0", "opening 0", ""),
+        ] {
+            assert_eq!(label(path), (words.to_owned(), unit));
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! One parameter at a time, from the present value of its number towards either bound.
+
+use crate::Parameter;
+
+/// Steps between the present value and a bound, of which the farthest that can be is taken.
+const STEPS: u32 = 100;
+
+/// Lower or upper bound of a parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// The lower bound.
+    Low,
+    /// The upper bound.
+    High,
+}
+
+/// Returns what a number becomes at a bound of its parameter, or as far on the way to it as can be; `at`
+/// gives `None` for an impossible value of the parameter. The impossible is looked for by bisection.
+pub fn farthest<T>(
+    parameter: &Parameter,
+    number: f64,
+    end: End,
+    at: impl Fn(f64) -> Option<T>,
+) -> Option<T> {
+    let neutral = parameter.neutral(number);
+    let bound = match end {
+        End::Low => parameter.low.min(neutral),
+        End::High => parameter.high.max(neutral),
+    };
+    let part = |steps: u32| at(neutral + f64::from(steps) / f64::from(STEPS) * (bound - neutral));
+    if let Some(whole) = part(STEPS) {
+        return Some(whole);
+    }
+    // Possible at `can`, impossible at `cannot`.
+    let (mut can, mut cannot) = (0, STEPS);
+    while cannot - can > 1 {
+        let middle = (can + cannot) / 2;
+        if part(middle).is_some() { can = middle } else { cannot = middle }
+    }
+    part(can)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Path, Transform};
+
+    #[test]
+    fn the_bound_is_taken_or_the_farthest_possible_step_towards_it() {
+        let path = Path::new("task.grip.force_n").unwrap();
+        let force = Parameter::uniform(path, [2.0, 10.0]);
+        let below = |most: f64| move |value: f64| (value <= most).then_some(value);
+        assert_eq!(farthest(&force, 5.0, End::High, below(99.0)), Some(10.0));
+        assert_eq!(farthest(&force, 5.0, End::Low, below(99.0)), Some(2.0));
+        // Steps of 0.05 from 5 up.
+        let found = farthest(&force, 5.0, End::High, below(7.02)).unwrap();
+        assert!((found - 7.0).abs() < 1e-12, "{found}");
+        assert_eq!(farthest(&force, 5.0, End::High, below(4.0)), None);
+        let outside = Parameter { low: 6.0, ..force.clone() };
+        assert_eq!(farthest(&outside, 5.0, End::Low, below(99.0)), Some(5.0), "as it is");
+        let factor = Parameter { transform: Transform::Factor, low: 0.5, high: 2.0, ..force };
+        assert_eq!(farthest(&factor, 5.0, End::Low, below(99.0)), Some(0.5));
+    }
+}

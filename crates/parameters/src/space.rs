@@ -1,0 +1,377 @@
+//! Search spaces: named, bounded, stepped parameters, and the designs in them.
+
+pub use crate::numbers::{DENSITY as DENSITY_KEY, DIRECTION as DIRECTION_KEY};
+use crate::numbers::{Kind, NUMBERS};
+use crate::{Parameter, Path, Scale};
+use ask_tell::GridPoint;
+use input::{Check, InputError, read, shown};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+fn is_linear(scale: &Scale) -> bool {
+    *scale == Scale::Linear
+}
+
+/// Design variable: a number that varies in levels; values are `low + k * step`, on a log scale `low * step^k`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Variable {
+    /// The number it sets (`infill_density_percent`).
+    pub key: Path,
+    /// Smallest value, in the unit of the key.
+    pub low: f64,
+    /// Largest value, in the unit of the key.
+    pub high: f64,
+    /// Smallest difference that can be made; on a log scale the factor between neighbours.
+    pub step: f64,
+    /// Spacing of the values.
+    #[serde(default, skip_serializing_if = "is_linear")]
+    pub scale: Scale,
+    /// Source of the bounds.
+    pub source: String,
+}
+
+impl Variable {
+    fn problem(&self) -> Option<String> {
+        let Variable { low, high, step, .. } = *self;
+        let [least, most] = self.key.bounds();
+        let (linear, levels) = (is_linear(&self.scale), self.steps());
+        let wide = linear && high > low && step > (high - low) * (1.0 + 1e-9);
+        let uneven = (levels - levels.round()).abs() > 1e-6 || levels > 1e6;
+        let within = format!("must lie in {} .. {}", shown(least), shown(most));
+        let log = "on a log scale step must be above 1 and low above 0";
+        let settable = matches!(self.key.kind(), Kind::Infill | Kind::File | Kind::Finger);
+        let problems = [
+            (!settable, "is no number of a design, as those of its infill, task and finger are"),
+            (
+                ![low, high, step].iter().all(|v| v.is_finite()),
+                "low, high and step must be finite numbers",
+            ),
+            (low > high, "low must not be above high"),
+            (linear && step <= 0.0, "step must be above 0"),
+            (!linear && (step <= 1.0 || low <= 0.0), log),
+            (low < least || high > most, &within),
+            (step < FINEST_STEP, "step must be 1e-6 or more"),
+            (wide, "step must not be larger than high - low"),
+            (uneven, "high - low must be a whole number of steps, at most 1e6"),
+        ];
+        problems.into_iter().find(|(wrong, _)| *wrong).map(|(_, problem)| problem.to_owned())
+    }
+
+    /// Number of distinct values.
+    pub fn levels(&self) -> u32 {
+        self.steps().round() as u32 + 1
+    }
+
+    fn steps(&self) -> f64 {
+        self.steps_to(self.high)
+    }
+
+    fn steps_to(&self, value: f64) -> f64 {
+        match self.scale {
+            Scale::Linear => (value - self.low) / self.step,
+            Scale::Log => libm::log(value / self.low) / libm::log(self.step),
+        }
+    }
+
+    /// The level whose value is nearest.
+    pub fn nearest(&self, value: f64) -> u32 {
+        self.steps_to(value).round().clamp(0.0, f64::from(self.levels() - 1)) as u32
+    }
+
+    /// The value of level `k`, rounded so that it prints as it was written.
+    pub fn value(&self, level: u32) -> f64 {
+        match self.scale {
+            Scale::Linear => {
+                let value = self.low + f64::from(level) * self.step;
+                (value * 1e9).round() / 1e9
+            }
+            Scale::Log => {
+                let share = f64::from(level) / self.steps().round().max(1.0);
+                let value = self.low * libm::pow(self.high / self.low, share);
+                // Four digits.
+                format!("{value:.3e}").parse().unwrap_or(value)
+            }
+        }
+    }
+
+    /// Returns the same as a number that varies evenly between its bounds.
+    pub fn parameter(&self) -> Parameter {
+        let source = self.source.clone();
+        Parameter { source, ..Parameter::uniform(self.key.clone(), [self.low, self.high]) }
+    }
+
+    /// Returns the smallest and the largest value, and the one nearest to zero.
+    pub fn extremes(&self) -> Vec<f64> {
+        let last = self.levels() - 1;
+        let zero = (-self.low / self.step).round().clamp(0.0, f64::from(last)) as u32;
+        let mut levels = vec![0, zero, last];
+        levels.sort_unstable();
+        levels.dedup();
+        levels.into_iter().map(|level| self.value(level)).collect()
+    }
+}
+
+/// Returns all combinations of extreme values; a variable that would make them above `most` is left out.
+pub fn corners<'a>(parameters: impl IntoIterator<Item = &'a Variable>, most: usize) -> Vec<Design> {
+    let mut designs = vec![Design::default()];
+    for parameter in parameters {
+        let values = parameter.extremes();
+        if values.len() <= most / designs.len() {
+            let with = |mut design: Design, value| {
+                design.0.insert(parameter.key.to_string(), value);
+                design
+            };
+            let each = |design: &Design| values.iter().map(|&v| with(design.clone(), v)).collect();
+            designs = designs.iter().flat_map::<Vec<Design>, _>(each).collect();
+        }
+    }
+    designs
+}
+
+/// A checked search space.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "RawSpace")]
+pub struct Space {
+    /// Name in study folders.
+    pub name: String,
+    /// One-line description for lists.
+    pub description: String,
+    /// The variables in file order: the order of the unit cube's axes.
+    #[serde(rename = "parameter")]
+    pub parameters: Vec<Variable>,
+}
+
+/// A design: values by key, in the units the keys carry.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Design(pub BTreeMap<String, f64>);
+
+impl Design {
+    /// A design of infill density (percent) and direction (degrees).
+    pub fn infill(density_percent: f64, direction_deg: f64) -> Self {
+        Design::default().with(DENSITY_KEY, density_percent).with(DIRECTION_KEY, direction_deg)
+    }
+
+    /// The same, if there are such fingers; `given` names who gave it.
+    ///
+    /// # Errors
+    /// If a value lies beyond its bounds, or is not a number.
+    pub fn checked_infill(
+        density_percent: f64,
+        direction_deg: f64,
+        given: &str,
+    ) -> Result<Self, InputError> {
+        let infill = NUMBERS.iter().filter(|number| number.kind == Kind::Infill);
+        for (number, value) in infill.zip([density_percent, direction_deg]) {
+            let [least, most] = number.bounds;
+            // Written so that a NaN is outside.
+            let inside = (least..=most).contains(&value);
+            let must = format!("lie in {least} .. {most}");
+            Check { file: given }.require(number.pattern, value, inside, &must)?;
+        }
+        Ok(Design::infill(density_percent, direction_deg))
+    }
+
+    /// The design with this value under a key, in the unit of the key.
+    pub fn with(&self, key: &str, value: f64) -> Self {
+        let mut design = self.clone();
+        design.0.insert(key.to_owned(), value);
+        design
+    }
+
+    /// The value of a key, in the unit of the key.
+    pub fn get(&self, key: &str) -> Option<f64> {
+        self.0.get(key).copied()
+    }
+
+    /// `infill density 20 %, infill direction 10°`: for readers.
+    pub fn labelled(&self) -> String {
+        let value = |(key, value): (&String, &f64)| {
+            let (name, unit) = crate::label(key);
+            format!("{name} {value}{unit}")
+        };
+        self.0.iter().map(value).collect::<Vec<_>>().join(", ")
+    }
+}
+
+impl std::fmt::Display for Design {
+    /// `infill_density_percent = 20, infill_direction_deg = 10`
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let values: Vec<String> = self.0.iter().map(|(k, v)| format!("{k} = {v}")).collect();
+        f.write_str(&values.join(", "))
+    }
+}
+
+const MOST_PARAMETERS: usize = 100;
+/// Smallest step: a thousand times the digit to which values are rounded.
+const FINEST_STEP: f64 = 1e-6;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawSpace {
+    name: String,
+    description: String,
+    parameter: Vec<Variable>,
+}
+
+/// A space inside another file, which is named by whoever reads that.
+impl TryFrom<RawSpace> for Space {
+    type Error = InputError;
+    fn try_from(raw: RawSpace) -> Result<Self, InputError> {
+        Space::check(raw, "[space]")
+    }
+}
+
+impl Space {
+    /// Reads and checks a space; `file` is named in errors.
+    ///
+    /// # Errors
+    /// If the text is not such a file, or a value cannot be used.
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        Self::check(read(text, file)?, file)
+    }
+
+    fn check(raw: RawSpace, file: &str) -> Result<Self, InputError> {
+        let fail = |key: &str, problem: &str| Check { file }.fail(key, problem);
+        if !(1..=MOST_PARAMETERS).contains(&raw.parameter.len()) {
+            let problem = format!("a space needs one [[parameter]] to {MOST_PARAMETERS} of them");
+            return fail("parameter", &problem);
+        }
+        for (i, parameter) in raw.parameter.iter().enumerate() {
+            let key = &parameter.key;
+            if raw.parameter[..i].iter().any(|other| other.key == *key) {
+                return fail(key, "is given twice; each key may stand once");
+            }
+            if let Some(problem) = parameter.problem() {
+                return fail(key, &problem);
+            }
+        }
+        Ok(Space { name: raw.name, description: raw.description, parameters: raw.parameter })
+    }
+
+    /// Levels per axis: what an optimizer may know of the space.
+    pub fn levels(&self) -> Vec<u32> {
+        self.parameters.iter().map(Variable::levels).collect()
+    }
+
+    /// The grid point nearest to a design.
+    pub fn point(&self, design: &Design) -> GridPoint {
+        let level = |p: &Variable| p.nearest(design.get(&p.key).unwrap_or(p.low));
+        GridPoint(self.parameters.iter().map(level).collect())
+    }
+
+    /// The design at a grid point (one level per parameter, each below its count).
+    pub fn design(&self, point: &GridPoint) -> Design {
+        let values = self.parameters.iter().zip(&point.0);
+        Design(values.map(|(p, &level)| (p.key.to_string(), p.value(level))).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const GOOD: &str = r#"
+name = "s"
+description = "d"
+[[parameter]]
+key = "infill_density_percent"
+low = 10.0
+high = 30.0
+step = 1.0
+source = "paper"
+"#;
+
+    #[test]
+    fn a_linear_scale_holds_its_ends_and_finds_the_nearest_level() {
+        let space = Space::parse(GOOD, "s.toml").unwrap();
+        assert_eq!(space.levels(), vec![21]);
+        assert_eq!(space.design(&GridPoint(vec![20])).get(DENSITY_KEY), Some(30.0));
+        let parameter = &space.parameters[0];
+        assert_eq!([0.0, 12.4, 30.0].map(|value| parameter.nearest(value)), [0, 2, 20]);
+    }
+
+    #[test]
+    fn a_log_scale_has_equal_factors_and_holds_its_ends() {
+        let text = GOOD.replace("low = 10.0", "low = 0.5").replace("high = 30.0", "high = 4.0");
+        let text = text.replace("step = 1.0", "step = 1.189207115\nscale = 'log'");
+        let space = Space::parse(&text, "s.toml").unwrap();
+        let parameter = &space.parameters[0];
+        assert_eq!(parameter.levels(), 13);
+        let values = [0, 1, 4, 8, 12].map(|level| parameter.value(level));
+        assert_eq!(values, [0.5, 0.5946, 1.0, 2.0, 4.0]);
+        assert_eq!([0.1, 1.03, 2.0, 9.0].map(|value| parameter.nearest(value)), [0, 4, 8, 12]);
+        let error = Space::parse(&text.replace("low = 0.5", "low = 0.0"), "s.toml").unwrap_err();
+        assert!(error.to_string().contains("log scale"), "{error}");
+        let again: Space = toml::from_str(&toml::to_string(&space).unwrap()).unwrap();
+        assert_eq!(again, space);
+    }
+
+    #[test]
+    fn a_design_in_words() {
+        let label = Design::infill(20.0, 7.5).labelled();
+        assert_eq!(label, "infill density 20 %, infill direction 7.5°");
+    }
+
+    #[test]
+    fn what_no_design_sets_is_refused_and_an_unknown_key_names_the_nearest() {
+        for (key, words) in [
+            ("task.friction.plug_sokcet", "line 5, column 7"),
+            ("task.friction.plug_sokcet", "did you mean `task.friction.plug_socket`?"),
+            ("robot.mass_kg", "s.toml: robot.mass_kg: is no number of a design"),
+            ("task.clearance_mm", "is no number of a design"),
+        ] {
+            let error = Space::parse(&GOOD.replace(DENSITY_KEY, key), "s.toml").unwrap_err();
+            assert!(error.to_string().contains(words), "{error}");
+        }
+    }
+
+    proptest! {
+        /// Whatever is accepted has levels that can be counted, and each is the nearest to its value.
+        #[test]
+        fn accepted_levels_are_few_and_found_again(
+            low in -1e3..1e3f64,
+            span in 0..9u32,
+            exponent in -7..7i32,
+            log in any::<bool>(),
+            share in 0.0..=1.0f64,
+        ) {
+            let step = libm::pow(10.0, f64::from(exponent)) + f64::from(u32::from(log));
+            let high = if log { low * libm::pow(step, f64::from(span)) } else { low + f64::from(span) * step };
+            let (scale, source) = (if log { Scale::Log } else { Scale::Linear }, String::new());
+            let key = Path::new("task.strategy.start_mm.x").unwrap();
+            let parameter = Variable { key, low, high, step, scale, source };
+            let raw = RawSpace { name: String::new(), description: String::new(), parameter: vec![parameter] };
+            if let Ok(space) = Space::check(raw, "s.toml") {
+                let parameter = &space.parameters[0];
+                prop_assert!((1..=1_000_001).contains(&parameter.levels()));
+                let level = (share * f64::from(parameter.levels() - 1)) as u32;
+                // Values are rounded to nine decimals, on a log scale to four digits.
+                let nearest = parameter.nearest(parameter.value(level));
+                prop_assert!(log || nearest == level);
+                prop_assert!(nearest < parameter.levels());
+            }
+        }
+    }
+
+    #[test]
+    fn each_bad_field_is_named() {
+        for (from, to, word) in [
+            ("low = 10.0", "low = nan", "finite"),
+            ("low = 10.0", "low = 40.0", "above high"),
+            ("step = 1.0", "step = -1.0", "above 0"),
+            ("step = 1.0", "step = 3.0", "whole number"),
+            ("step = 1.0", "step = 1e9", "larger than high - low"),
+            ("step = 1.0", "step = 1e-7", "1e-6 or more"),
+            ("low = 10.0", "low = 0.0", "must lie in 0.1 .. 100"),
+            ("low = 10.0", "low = -1000.0", "must lie in 0.1 .. 100"),
+            ("high = 30.0", "high = 900.0", "must lie in 0.1 .. 100"),
+            ("step = 1.0", "stepp = 1.0", "stepp"),
+        ] {
+            let error = Space::parse(&GOOD.replace(from, to), "s.toml").unwrap_err().to_string();
+            assert!(error.contains(word) && error.contains("s.toml"), "{error}");
+        }
+    }
+}

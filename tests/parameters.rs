@@ -1,0 +1,94 @@
+//! Paths of numbers: an unknown one is refused wherever it stands, with the nearest that is known.
+
+mod common;
+
+use common::{Ran, Studies, optimize_line};
+
+const CELL: &str = include_str!("fixtures/v0.5.0/cell.toml");
+const BENCH: &str = include_str!("../priors/bench.toml");
+const CODESIGN: &str = include_str!("../spaces/codesign.toml");
+
+const EVALUATE: &str = "evaluate --task usb --density 20 --direction 10";
+const CALIBRATE: &str = "calibrate --task usb --measurements published --simulations 20 --no-cache";
+
+/// The fake engine, a closed formula.
+fn fake(line: &str) -> Ran {
+    optimize_line(&format!("{line} --engine fake"))
+}
+
+fn changed(text: &str, [from, to]: [&str; 2]) -> String {
+    assert!(text.contains(from), "{from}");
+    text.replace(from, to)
+}
+
+#[test]
+fn an_unknown_path_is_refused_in_every_file_and_option_with_file_line_and_the_nearest() {
+    let studies = Studies::new();
+    let (typo, near) = (
+        ["task.friction.plug_socket", "task.friction.plug_sokcet"],
+        "unknown path `task.friction.plug_sokcet`; did you mean `task.friction.plug_socket`?",
+    );
+    for (option, text) in [("--cell", CELL), ("--uncertainty", CELL), ("--uncertainty", BENCH)] {
+        let file = studies.file("typo.toml", changed(text, typo));
+        fake(&format!("{EVALUATE} {option} {file}")).fails(2, &["typo.toml", "line", near]);
+    }
+    let priors = studies.file("priors.toml", changed(BENCH, typo));
+    fake(&format!("{CALIBRATE} --priors {priors}")).fails(2, &["priors.toml", "line", near]);
+    let tilt = ["task.strategy.tilt_deg", "task.strategy.tild_deg"];
+    let space = studies.file("space.toml", changed(CODESIGN, tilt));
+    let near_tilt = "did you mean `task.strategy.tilt_deg`?";
+    studies.study("s", 4, &["--space", &space]).fails(2, &["space.toml", "line", near_tilt]);
+    fake(&format!("{EVALUATE} --set task.friction.plug_sokcet=0.2")).fails(2, &[near]);
+    let shape =
+        "finger --density 20 --direction 10 --finger finray9 --set finger.skin.thicknes_mm=0.5";
+    optimize_line(shape).fails(2, &["did you mean `finger.skin.thickness_mm`?"]);
+    let errors = include_str!("../uncertainties/typical.toml").replace("sd_deg", "sd_rad");
+    let errors = studies.file("errors.toml", errors);
+    fake(&format!("{EVALUATE} --uncertainty {errors}"))
+        .fails(2, &["errors.toml", "line", "sd_deg"]);
+}
+
+/// A path that other tasks may have, but not that of the cell.
+#[test]
+fn a_cell_of_a_task_sets_nothing_that_its_task_does_not_have() {
+    let studies = Studies::new();
+    let phase = ["phase.touch.preload_mm", "phase.tuoch.preload_mm"];
+    let near = "did you mean `task.strategy.phase.touch.preload_mm`?";
+    let file = studies.file("phase.toml", changed(CELL, phase));
+    for option in ["--cell", "--uncertainty"] {
+        fake(&format!("{EVALUATE} {option} {file}")).fails(2, &["phase.toml: preload", near]);
+    }
+    fake(&format!("{CALIBRATE} --priors {file}")).fails(2, &["phase.toml: preload", near]);
+    // Rows of another task are left alone.
+    let ket8 = EVALUATE.replace("usb", "ket8");
+    fake(&format!("{ket8} --cell {file}")).succeeds();
+}
+
+/// Springs of the finger and numbers of the robot vary by a row alone, as those of files do.
+#[test]
+fn every_number_of_finger_and_robot_can_be_a_row_of_a_cell() {
+    let studies = Studies::new();
+    let row = |path: &str, transform: &str, low: f64, high: f64| {
+        format!(
+            "\n[[parameter]]\nname = \"added\"\nsets = \"{path}\"\nas = \"{transform}\"\nscale = \"linear\"\n\
+             value = {high:?}\nsd = 0.1\nlow = {low:?}\nhigh = {high:?}\nshared = true\nsource = \"test\"\n"
+        )
+    };
+    let evaluate = |name: &str, row: String| {
+        let file = studies.file(name, format!("{CELL}{row}"));
+        optimize_line(&format!("{EVALUATE} --cell {file} --json"))
+    };
+    let range = |text: String| evaluate("cell.toml", text).json()["peak_force_n"].as_f64().unwrap();
+    let own = range(String::new());
+    for (path, transform, low, high) in [
+        ("finger.mass_g", "value", 1.0, 200.0),
+        ("robot.mass_kg", "factor", 0.5, 4.0),
+        ("robot.damping_ratio", "value", 0.5, 4.0),
+    ] {
+        assert_ne!(range(row(path, transform, low, high)), own, "{path}");
+    }
+    evaluate("shift.toml", row("finger.mass_g", "shift", 1.0, 2.0)).fails(2, &["stays above 0"]);
+    evaluate("low.toml", row("finger.mass_g", "value", -1.0, 2.0)).fails(2, &["must lie in 1e-9"]);
+    evaluate("error.toml", row("cell.clearance_mm", "shift", 0.1, 0.2))
+        .fails(2, &["`cell.clearance_mm` is no number of a cell"]);
+}

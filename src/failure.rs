@@ -1,7 +1,7 @@
 //! Why a request failed, and the exit code that says so.
 
 use calibration::experiments::Problems;
-use clap::error::{ContextKind, ContextValue};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use connector::draft::DraftError;
 use connector::mesh::MeshError;
 use finray::FingerError;
@@ -90,6 +90,12 @@ impl Failure {
 
     /// Bad usage as clap finds it, with the option first.
     pub fn of_clap(error: clap::Error) -> Self {
+        if let (ErrorKind::MissingRequiredArgument, Some(ContextValue::Strings(missing))) =
+            (error.kind(), error.get(ContextKind::InvalidArg))
+        {
+            let named: Vec<String> = missing.iter().map(|usage| options(usage)).collect();
+            return Failure::usage(format!("give {}", named.join(" and ")));
+        }
         let context = |kind| match error.get(kind) {
             Some(ContextValue::String(text)) => Some(text.as_str()),
             Some(ContextValue::Strings(texts)) => texts.first().map(String::as_str),
@@ -176,6 +182,13 @@ impl fmt::Display for Failure {
             Failure::Interrupted(Some(hint)) => write!(f, "interrupted; {hint}"),
         }
     }
+}
+
+/// Returns the options of a usage as clap prints it: `--plug` or `--round` of `<--plug <WxHxL>|--round <DxL>>`.
+fn options(usage: &str) -> String {
+    let names = usage.split(['<', '>', '|', ' ', '[', ']']);
+    let names: Vec<&str> = names.filter(|name| name.starts_with("--")).collect();
+    if names.is_empty() { usage.to_owned() } else { names.join(" or ") }
 }
 
 /// Longest line of a message, and most lines, in characters: what it quotes of a file may be anything.

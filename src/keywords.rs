@@ -1,9 +1,9 @@
 //! Keywords of another program as the options of a command.
 
-use crate::command::{Called, Command, Request, parse};
+use crate::command::{Called, Command};
 use crate::context::Context;
 use crate::failure::Failure;
-use clap::{Arg, ArgAction};
+use clap::{Arg, ArgAction, Args};
 use serde_json::{Map, Value};
 use std::ffi::OsString;
 
@@ -33,10 +33,13 @@ pub fn call(
 ///
 /// # Errors
 /// If there is no such option, or a value cannot be used.
-pub fn request<R: Request>(keywords: &Map<String, Value>) -> Result<R, Failure> {
-    let mut program = Command::of::<R>(&["request"]).clap();
+pub fn request<R: Args>(keywords: &Map<String, Value>) -> Result<R, Failure> {
+    // Options of a study exclude this one.
+    let json = Arg::new("json").long("json").action(ArgAction::SetTrue);
+    let mut program = R::augment_args(clap::Command::new("request").arg(json)).no_binary_name(true);
     program.build();
-    parse(words(&program, keywords)?)
+    let matches = program.clone().try_get_matches_from(words(&program, keywords)?);
+    R::from_arg_matches(&matches.map_err(Failure::of_clap)?).map_err(Failure::of_clap)
 }
 
 /// Returns the words of a command line with these options.
@@ -52,19 +55,30 @@ fn words(program: &clap::Command, keywords: &Map<String, Value>) -> Result<Vec<O
             |arg: &&Arg| arg.get_long().unwrap_or(arg.get_id().as_str()).replace('_', "-") == name;
         let arg = program.get_arguments().find(named);
         let arg = arg.ok_or_else(|| Failure::usage(format!("unknown option `{keyword}`")))?;
-        let several = match value {
+        let several: Vec<String> = match value {
             Value::Null | Value::Bool(false) => continue,
-            Value::Array(values) if several(arg) => values.iter().map(text).collect(),
-            Value::Array(values) => vec![values.iter().map(text).collect::<Vec<_>>().join(",")],
+            Value::Array(values) if values.is_empty() => continue,
+            Value::Array(values) if several(arg) => {
+                values.iter().map(|value| joined(value, arg)).collect()
+            }
             Value::Object(fields) if name == "set" => {
                 fields.iter().map(|(key, value)| format!("{key}={}", text(value))).collect()
             }
-            value => vec![text(value)],
+            value => vec![joined(value, arg)],
         };
+        // Where it is the default it may stand without the options that it requires.
+        let default = arg.get_default_values().iter().map(|value| value.to_string_lossy());
+        if several.iter().map(String::as_str).eq(default) {
+            continue;
+        }
         match (arg.is_positional(), arg.get_action()) {
             (true, _) => positional.extend(several),
             (false, ArgAction::SetTrue) => words.push(format!("--{name}")),
             (false, _) if *value == Value::Bool(true) => words.push(format!("--{name}")),
+            (false, ArgAction::Append) if least(arg) > 1 => {
+                words.push(format!("--{name}"));
+                words.extend(several);
+            }
             (false, _) => words.extend(several.iter().map(|value| format!("--{name}={value}"))),
         }
     }
@@ -76,6 +90,18 @@ fn words(program: &clap::Command, keywords: &Map<String, Value>) -> Result<Vec<O
 fn several(arg: &Arg) -> bool {
     let many = arg.get_num_args().is_some_and(|count| count.max_values() > 1);
     matches!(arg.get_action(), ArgAction::Append) && arg.get_value_delimiter().is_none() || many
+}
+
+fn least(arg: &Arg) -> usize {
+    arg.get_num_args().map_or(1, |count| count.min_values())
+}
+
+/// Returns a value of several parts as the name of the option's value has them: `WxHxL`, else by commas.
+fn joined(value: &Value, arg: &Arg) -> String {
+    let Value::Array(parts) = value else { return text(value) };
+    let by_x =
+        arg.get_value_names().is_some_and(|names| names.iter().any(|name| name.contains('x')));
+    parts.iter().map(text).collect::<Vec<_>>().join(if by_x { "x" } else { "," })
 }
 
 fn text(value: &Value) -> String {

@@ -3,6 +3,8 @@
 use crate::program::program;
 use clap::{Arg, ArgAction};
 use serde_json::{Value, json};
+use std::any::TypeId;
+use std::path::PathBuf;
 
 /// The reference of all commands as a page: what `--help` says of each.
 pub fn reference() -> String {
@@ -24,21 +26,19 @@ pub fn reference() -> String {
     page
 }
 
-/// All commands with their options, by Python's words for them; the study is `study`.
+/// All commands with their options, by Python's words for them; `hidden` are options that only other programs give.
 pub fn commands() -> Value {
     fn below(command: &clap::Command, path: &str, found: &mut Vec<Value>) {
-        let name = match path {
-            "" => "study",
-            path => path,
-        };
         let nested =
             || command.get_subcommands().filter(|c| !c.is_hide_set() && c.get_name() != "help");
-        if path.is_empty() || nested().next().is_none() {
-            let arguments = command.get_arguments().filter(|argument| !argument.is_hide_set());
-            let arguments =
-                arguments.filter(|a| !["help", "version"].contains(&a.get_id().as_str()));
-            let options: Vec<Value> = arguments.map(option).collect();
-            found.push(json!({"name": name, "options": options}));
+        if nested().next().is_none() {
+            let own = |a: &&Arg| !["help", "version"].contains(&a.get_id().as_str());
+            let (hidden, shown): (Vec<&Arg>, Vec<&Arg>) =
+                command.get_arguments().filter(own).partition(|argument| argument.is_hide_set());
+            let [options, hidden] =
+                [shown, hidden].map(|some| some.into_iter().map(option).collect::<Vec<_>>());
+            let about = command.get_long_about().or(command.get_about()).map(ToString::to_string);
+            found.push(json!({"name": path, "about": about, "options": options, "hidden": hidden}));
         }
         for command in nested() {
             below(command, format!("{path} {}", command.get_name()).trim_start(), found);
@@ -56,6 +56,7 @@ fn option(argument: &Arg) -> Value {
     let default = argument.get_default_values().iter().map(|value| value.to_string_lossy());
     let name = argument.get_long().unwrap_or(argument.get_id().as_str()).replace('-', "_");
     let takes = argument.get_action().takes_values();
+    let value = argument.get_value_names().and_then(|names| names.first());
     json!({
         "name": name,
         "positional": argument.is_positional(),
@@ -63,8 +64,22 @@ fn option(argument: &Arg) -> Value {
         "multiple": matches!(argument.get_action(), ArgAction::Append)
             || argument.get_num_args().is_some_and(|count| count.max_values() > 1),
         "flag": !takes,
+        "kind": kind(argument),
+        "value": value.filter(|_| takes).map(ToString::to_string),
         "words": words.filter(|_| takes).collect::<Vec<_>>(),
         "default": default.filter(|_| takes).collect::<Vec<_>>().join(","),
         "help": argument.get_help().map(ToString::to_string),
     })
+}
+
+/// Returns what the value of an option is.
+fn kind(argument: &Arg) -> &'static str {
+    let parsed = argument.get_value_parser().type_id();
+    let integers = [TypeId::of::<u16>(), TypeId::of::<u32>(), TypeId::of::<u64>()];
+    match () {
+        () if parsed == TypeId::of::<f64>() => "number",
+        () if integers.into_iter().any(|integer| parsed == integer) => "integer",
+        () if parsed == TypeId::of::<PathBuf>() => "path",
+        () => "text",
+    }
 }

@@ -1,7 +1,9 @@
 //! What the documents promise: links that lead somewhere, as many words as a person reads, and
 //! every command.
 
+use finger_opt::commands::COMMANDS;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -60,14 +62,41 @@ fn changelog_and_citation_are_of_this_version() {
     assert!(citation.contains(&released), "CITATION.cff lacks {released}");
 }
 
-/// `RENEW=1 cargo test --release --test documents` writes the page again.
 #[test]
 fn the_command_reference_is_what_the_program_says() {
-    let page = root().join("docs/cli.md");
-    let reference = finger_opt::manual::reference();
-    if std::env::var_os("RENEW").is_some() {
-        std::fs::write(&page, &reference).unwrap();
+    let page = std::fs::read_to_string(root().join("docs/cli.md"));
+    let same = page.is_ok_and(|text| text == finger_opt::manual::reference());
+    assert!(same, "docs/cli.md is not what --help says: scripts/generate.py writes it");
+}
+
+#[test]
+fn every_file_of_a_command_is_in_the_list() {
+    let (root, mut found) = (root().join("src/commands"), Vec::new());
+    let mut folders = vec![root.clone()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "rs") {
+                let name = path.with_extension("").strip_prefix(&root).unwrap().to_owned();
+                found.push(name.display().to_string().replace('_', "-").replace(['/', '\\'], " "));
+            }
+        }
     }
-    let same = std::fs::read_to_string(&page).is_ok_and(|text| text == reference);
-    assert!(same, "docs/cli.md is not what --help says: renew it with RENEW=1");
+    found.retain(|name| name != "mod");
+    found.sort();
+    let mut listed: Vec<String> = COMMANDS.iter().map(|command| command.path.join(" ")).collect();
+    listed.sort();
+    assert_eq!(found, listed, "scripts/generate.py writes src/commands/mod.rs");
+}
+
+#[test]
+fn what_is_written_of_the_commands_is_current() {
+    let mut script = Command::new("python3");
+    let script = script.arg(root().join("scripts/generate.py")).arg("--check");
+    let Ok(done) = script.arg(env!("CARGO_BIN_EXE_optimize")).output() else {
+        return eprintln!("left out, for want of python3");
+    };
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
 }

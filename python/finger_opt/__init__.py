@@ -49,36 +49,28 @@ from typing import TYPE_CHECKING
 
 # Each by its own name: these, and nothing else, are what a user calls.
 from ._answer import Answer as Answer
-from ._calibration import (
-    Advice as Advice, Calibration as Calibration, Measurements as Measurements, calibrate as calibrate,
-    measuring_sheet as measuring_sheet, next_print as next_print,
-)
-from ._connector import (
-    NewTask as NewTask, TaskCheck as TaskCheck, Tuned as Tuned, check_task as check_task, new_task as new_task,
-    tune_task as tune_task,
-)
-from ._evaluation import Evaluation as Evaluation, Springs as Springs, evaluate as evaluate
-from ._export import export_finger as export_finger, export_mjcf as export_mjcf
-from ._identify import Cell as Cell, identify as identify
-from ._lists import robots as robots, tasks as tasks
-from ._map import CaptureMap as CaptureMap, Levers as Levers, capture_map as capture_map, levers as levers
+from ._calibration import Advice as Advice, Calibration as Calibration, Measurements as Measurements
+from ._commands import *
+from ._commands import _FURTHER
+from ._connector import NewTask as NewTask, TaskCheck as TaskCheck, Tuned as Tuned
+from ._evaluation import Evaluation as Evaluation, Springs as Springs
+from ._identify import Cell as Cell
+from ._map import CaptureMap as CaptureMap, Levers as Levers
 from ._native import __version__ as __version__
 from ._optimizer import Optimizer as Optimizer, Point as Point
 from ._parts import Imported as Imported, import_parts as import_parts
 from ._run import perform as perform
-from ._springs import (
-    Finger as Finger, StiffnessModel as StiffnessModel, finger as finger, stiffness as stiffness,
-)
-from ._study import (
-    Comparison as Comparison, Sensitivity as Sensitivity, Study as Study, compare as compare,
-    load_study as load_study, sensitivity as sensitivity,
-)
+from ._springs import Finger as Finger, StiffnessModel as StiffnessModel, stiffness as stiffness
+from ._study import Comparison as Comparison, Sensitivity as Sensitivity, Study as Study
 from ._sweep import sweep as sweep
 from ._task import Task as Task
-from ._trial import Film as Film, Series as Series, Trial as Trial, trial as trial
+from ._trial import Film as Film, Series as Series, Trial as Trial
 from .errors import (
     InputError as InputError, Interrupted as Interrupted, StudyError as StudyError, TaskError as TaskError,
 )
+
+# What this page does not name.
+__doc__ = (__doc__ or "") + _FURTHER
 
 if TYPE_CHECKING:
     from . import gym as gym

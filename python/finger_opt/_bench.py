@@ -7,11 +7,12 @@ import datetime
 import os
 from pathlib import Path
 
-from . import _native
 from ._attempts import Attempts, newest
+from ._call import called
 from ._ends import Search
 from ._measurement import Measurement
 from ._native import InputError, StudyError, __version__
+from ._result import Found
 from ._task import Given, Task
 
 #: How the note of a line begins.
@@ -93,7 +94,8 @@ class Bench:
             task = str(own)
         density, direction = self.finger.values()
         try:
-            _native.add_measurement(file, task=task, density=density, direction=direction, **cells)
+            line = {"file": file, "task": task, "density": density, "direction": direction, **cells}
+            called("measure add", line, Found)
         except (InputError, StudyError) as failed:
             raise error(str(failed).replace(str(file), str(self.out))) from None
 

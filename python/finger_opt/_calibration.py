@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import html
-import json
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
-from . import _native
-from ._call import checked, given, without, wrong
-from ._result import REST, Result
-from ._task import Given, sources
-from ._words import Engine, FingerModel, Numbers, RobotName, SpaceName, Start, StrPath
+from ._call import called, checked, given, without
+from ._result import REST, Found, Result
+from ._words import Numbers, StrPath
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -57,8 +54,8 @@ class Measurements:
         Raises:
             InputError: What is wrong, with its line.
         """
-        found = json.loads(_native.measurements(self.file, self._tasks))
-        return tuple(sorted((Line.from_json(line) for line in found["lines"]), key=lambda line: line.line))
+        found = called("measure check", {"file": self.file, "task": self._tasks, "rows": True}, Found)
+        return tuple(sorted((Line.from_json(line) for line in found["rows"]), key=lambda line: line.line))
 
     def to_dataframe(self) -> DataFrame:
         """A row for each line, checked, with the columns of the file."""
@@ -109,34 +106,13 @@ class Measurements:
         """
         if not_measurable:
             without("not_measurable", "there is no range", range_mm=range_mm, negative_mm=negative_mm, positive_mm=positive_mm)
-        return _native.add_measurement(self.file, **given(locals()))
+        return int(called("measure add", {"file": self.file, **given(locals())}, Found)["lines"])
 
     def __fspath__(self) -> str:
         return self.file
 
     def __repr__(self) -> str:
         return f"<Measurements {self.file}>"
-
-
-@checked
-def measuring_sheet(task: StrPath, fingers: Sequence[tuple[float, float]], out: StrPath) -> None:
-    """Writes a page to print and fill in, to measure windows by hand, as ``optimize measure sheet`` does.
-
-    Args:
-        task: A shipped name, or the path of a task file.
-        fingers: Infill density, percent, and direction, degrees, of each.
-        out: File to write, ``.html``.
-
-    Raises:
-        InputError: A value or a file that cannot be used.
-    """
-    try:
-        pairs = [(float(density), float(direction)) for density, direction in fingers]
-    except (TypeError, ValueError):
-        raise wrong("fingers", "has to be pairs of density, percent, and direction, degrees: [(20, 10)]") from None
-    if not pairs:
-        raise wrong("fingers", "has to name one at least")
-    _native.measuring_sheet(os.fspath(task), pairs, os.fspath(out))
 
 
 @dataclass(frozen=True, repr=False)
@@ -245,46 +221,6 @@ def _tables(found: Calibration) -> str:
     return "".join(pieces)
 
 
-@checked
-def calibrate(
-    measurements: StrPath,
-    task: Given | Iterable[Given] | None = None,
-    *,
-    priors: StrPath = "bench",
-    simulations: int | None = None,
-    samples: int | None = None,
-    seed: int = 0,
-    cache: StrPath | None = None,
-    no_cache: bool = False,
-    out: StrPath | None = None,
-    space: SpaceName | StrPath = "infill",
-    robot: RobotName | StrPath | None = None,
-    cell: StrPath | None = None,
-    stiffness_data: StrPath | None = None,
-    engine: Engine = "direct",
-    finger_model: FingerModel | None = None,
-    finger: StrPath = "finray9",
-    start: Start | None = None,
-) -> Calibration:
-    """Predicts what every finger does on the bench, as ``optimize calibrate`` does. Takes minutes.
-
-    Args:
-        measurements: What was measured: a file, or ``"published"``.
-        task: That of the measurements unless given; or several.
-        priors: What nobody measured, and its bounds: ``"bench"``, a file, or a cell of :func:`identify`.
-        simulations: Simulations for each task; 200 unless given.
-        samples: Samples of the posterior; 300 unless given.
-        seed: The same seed gives the same answer.
-        cache: Folder of simulations shared with studies; ``results/.cache`` unless given.
-        no_cache: Simulate anew, and keep nothing.
-        out: Folder that tables are written to.
-
-    The rest, and what is raised, is as for :func:`evaluate`.
-    """
-    tasks = [] if task is None else sources(task)
-    return Calibration.from_json(json.loads(_native.calibrate(tasks, **given(locals(), "task", "tasks"))))
-
-
 @dataclass(frozen=True, repr=False)
 class Print(Result):
     """A finger to print next: 80 % of such ranges lie between low and high."""
@@ -307,40 +243,3 @@ class Advice(Result):
     best_known_mm: float | None
     next: tuple[Print, ...]
     stop: bool
-
-
-@checked
-def next_print(
-    measurements: StrPath,
-    task: Given | Iterable[Given] | None = None,
-    *,
-    count: int = 1,
-    among: Literal["space", "published"] = "space",
-    print_cost_mm: float = 0.1,
-    priors: StrPath = "bench",
-    simulations: int | None = None,
-    samples: int | None = None,
-    seed: int = 0,
-    cache: StrPath | None = None,
-    no_cache: bool = False,
-    space: SpaceName | StrPath = "infill",
-    robot: RobotName | StrPath | None = None,
-    cell: StrPath | None = None,
-    stiffness_data: StrPath | None = None,
-    engine: Engine = "direct",
-    finger_model: FingerModel | None = None,
-    finger: StrPath = "finray9",
-    start: Start | None = None,
-) -> Advice:
-    """Says which finger to print next, and when to stop printing, as ``optimize next`` does. Takes minutes.
-
-    Args:
-        measurements: What was measured: a file, which need not be there yet, or ``"published"``.
-        count: Fingers to print at a time.
-        among: The fingers of the space, or the 11 of the publication.
-        print_cost_mm: Gain of range that is worth the print and the measurement, mm.
-
-    The rest is as for :func:`calibrate`.
-    """
-    tasks = [] if task is None else sources(task)
-    return Advice.from_json(json.loads(_native.next_print(tasks, **given(locals(), "task", "tasks"))))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import functools
 import inspect
+import json
 import os
 import re
 import types
@@ -14,12 +15,15 @@ from typing import Any, Literal, ParamSpec, TypeGuard, TypeVar, Union, get_args,
 
 import numpy as np
 
-from ._json import is_tuple
-from ._native import InputError
-from ._result import plain
+from ._json import dumps, is_table, is_tuple, word
+from ._native import InputError, call as run
+from ._result import Result, plain, suffixed
 
 P = ParamSpec("P")
 R = TypeVar("R")
+T = TypeVar("T", bound=Result)
+#: Options that are pictures to write.
+PICTURES = ("svg", "plot")
 
 
 def checked(call: Callable[P, R]) -> Callable[P, R]:
@@ -54,15 +58,15 @@ def _in_python(error: InputError, signature: inspect.Signature) -> None:
     named: list[str] = []
 
     def parameter(found: re.Match[str]) -> str:
-        word = found[1].replace("-", "_")
-        name = next((name for name in (word, f"{word}_") if name in signature.parameters), None)
+        option = found[1].replace("-", "_")
+        name = next((name for name in (option, f"{option}_", f"{option}s") if name in signature.parameters), None)
         named.extend([] if name is None else [name])
         return found[0] if name is None else name
 
     text = re.sub(r"(?<![\w-])--([a-z][a-z-]*)", parameter, str(error))
     if named:
         error.args = (text,)
-        error.key = error.key or named[0]
+        error.key = named[0] if error.key is None or f"{error.key}s" == named[0] else error.key
 
 
 def without(key: str, reason: str, **others: object) -> None:
@@ -72,10 +76,23 @@ def without(key: str, reason: str, **others: object) -> None:
             raise wrong(name, f"cannot be given with {key}: {reason}")
 
 
+def called(command: str, words: Mapping[str, Any], kind: type[T]) -> T:
+    """Runs a command of ``optimize`` with these options; gives its result."""
+    for name in PICTURES:
+        suffixed(words.get(name), ".svg")
+    text, picture = run(command, keywords(words))
+    found = json.loads(text)
+    return kind.from_json(found if is_table(found) else {"text": found}, picture)
+
+
+def keywords(words: Mapping[str, Any]) -> str:
+    """Options for the library, without those that say nothing."""
+    return dumps({name: word(value) for name, value in words.items() if value is not None and value is not False})
+
+
 def given(words: Mapping[str, Any], *without: str) -> dict[str, Any]:
-    """The words of a call that say something: all but these, and those that are ``None`` or ``False``."""
-    left_out = {"self", "cls", *without}
-    return {name: value for name, value in words.items() if name not in left_out and value is not None and value is not False}
+    """The words of a call without these."""
+    return {name: value for name, value in words.items() if name not in {"self", "cls", *without}}
 
 
 def wrong(key: str, problem: str) -> InputError:

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
-from . import _native
-from ._call import checked, given, without, wrong
 from ._drawn import COLOURS
 from ._plot import axes as axes_of, text
-from ._result import DRAWN, Result, save
-from ._task import Given, Task, sources
-from ._words import Engine, Outcome, RobotName, StrPath, TaskName
+from ._result import PICTURE, Result
+from ._task import Task
+from ._words import Outcome
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes as Drawing
@@ -62,7 +59,7 @@ class TaskCheck(Result):
     nominal: Nominal | None
     #: By what a task that does not insert would, if by anything.
     mended_by: Step | None = None
-    svg: str = field(default="", repr=False, metadata=DRAWN)
+    svg: str = field(default="", repr=False, metadata=PICTURE)
 
     @property
     def inserts(self) -> bool:
@@ -86,71 +83,6 @@ class NewTask(Result):
     def task(self) -> Task:
         """The task of the file."""
         return Task.from_toml(self.out)
-
-
-@checked
-def new_task(
-    name: str,
-    *,
-    plug: tuple[float, float, float] | None = None,
-    round: tuple[float, float] | None = None,
-    clearance: float | None = None,
-    body: tuple[float, float, float] | None = None,
-    like: StrPath | None = None,
-    out: StrPath | None = None,
-    engine: Engine = "direct",
-) -> NewTask:
-    """Writes a commented task file from a few dimensions, as ``optimize task new`` does, and tries it.
-
-    Args:
-        name: Letters, digits, - and _.
-        plug: What goes in: width (y, between the jaws), height (x), length, mm.
-        round: What goes in, if it is a cylinder: diameter, length, mm.
-        clearance: Opening less plug in x and y, mm: both sides together.
-        body: What the fingers hold, above the plug: width, height, length, mm; the plug itself unless given.
-        like: In place of all that another task, whose copy is written.
-        out: File to write; ``NAME.toml`` unless given.
-        engine: Contact engine that tries the nominal start.
-
-    Raises:
-        InputError: Dimensions that cannot be, or a file that is there already.
-        Interrupted: Ctrl-C.
-    """
-    if plug is not None:
-        without("plug", "one of them goes in", round=round)
-    if plug is None and round is None:
-        without("no plug", "they go with plug or round", clearance=clearance, body=body)
-    elif clearance is None:
-        raise wrong("clearance", "is missing: opening less plug in x and y, mm, both sides together")
-    words = given(locals(), "name", "plug", "round", "body")
-    sizes = {"plug": plug, "round": round, "body": body}
-    words |= {key: "x".join(f"{length:.10g}" for length in size) for key, size in sizes.items() if size is not None}
-    return NewTask.from_json(json.loads(_native.new_task(name, **words)))
-
-
-@checked
-def check_task(
-    task: Given, *, svg: StrPath | None = None, robot: RobotName | StrPath = "servo", engine: Engine = "direct"
-) -> TaskCheck:
-    """Looks for what cannot work in a task, and tries its nominal start, as ``optimize task check`` does.
-
-    >>> import finger_opt as fo
-    >>> fo.check_task("usb").inserts
-    True
-
-    Args:
-        task: A shipped name, the path of a task file, or a :class:`Task`.
-        svg: Write the drawing.
-        robot: Robot: a name or a file.
-        engine: Contact engine.
-
-    Raises:
-        InputError: A file that cannot be read. What is wrong in it is a result, not an error.
-        Interrupted: Ctrl-C.
-    """
-    text, picture = _native.check_task(sources(task)[0], **given(locals(), "task", "svg"))
-    save(picture, svg)
-    return TaskCheck.from_json({**json.loads(text), "svg": picture})
 
 
 @dataclass(frozen=True, repr=False)
@@ -238,32 +170,3 @@ def _strategies(found: Tuned, ax: Drawing | None) -> Drawing:
     axes.set(xlabel="strategy tried", ylabel="narrowest window of three fingers, mm", title=text(f"{found.task}: {found.by.what}"))
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
     return axes
-
-
-@checked
-def tune_task(
-    task: TaskName | StrPath,
-    *,
-    robot: RobotName | StrPath = "servo",
-    engine: Engine = "direct",
-    seed: int = 0,
-    out: StrPath | None = None,
-    dry_run: bool = False,
-    svg: StrPath | None = None,
-) -> Tuned:
-    """Finds a start and a strategy by which a connector inserts, as ``optimize task tune`` does, within a minute.
-
-    Args:
-        task: The path of a task file, which is written anew, or with ``out`` a shipped name, too.
-        robot: Robot: a name or a file.
-        engine: Contact engine.
-        seed: Seed of the search.
-        out: Write this new file in place of the task's own.
-        dry_run: Write no task file.
-        svg: Write a drawing of the search before and after.
-
-    Raises:
-        InputError: A task that cannot be used; :class:`TaskError` if its file is wrong.
-        Interrupted: Ctrl-C.
-    """
-    return Tuned.from_json(json.loads(_native.tune_task(task, **given(locals(), "task"))))

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import html
-import json
 import textwrap
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from . import _native
-from ._call import checked, given
 from ._drawn import COLOURS, colour, ending, finger
 from ._plot import axes as axes_of
 from ._result import Result
-from ._task import Given, sources
-from ._words import End, Engine, FingerModel, Numbers, Outcome, RobotName, SpaceName, Start, StrPath
+from ._words import End, FingerModel, Outcome
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes as Drawing
@@ -179,62 +175,3 @@ def _card(found: Evaluation) -> str:
         f"role='img' aria-label='window from {low} to {high} mm'>{drawn}{line}{marks}</svg><br>"
         f"below: {ending(found.failure_negative)}; above: {ending(found.failure_positive)}</div>"
     )
-
-
-@checked
-def evaluate(
-    task: Given,
-    density: float | None = None,
-    direction: float | None = None,
-    *,
-    stiffness_compliance: float | None = None,
-    stiffness_assembly: float | None = None,
-    set: Numbers | None = None,
-    walk: bool = False,
-    uncertainty: StrPath | None = None,
-    seed: int | None = None,
-    repeat: int | None = None,
-    repeat_seed: int | None = None,
-    space: SpaceName | StrPath = "infill",
-    robot: RobotName | StrPath | None = None,
-    cell: StrPath | None = None,
-    stiffness_data: StrPath | None = None,
-    engine: Engine = "direct",
-    finger_model: FingerModel | None = None,
-    finger: StrPath = "finray9",
-    start: Start | None = None,
-) -> Evaluation:
-    """Measures the tolerance window of one finger by simulation, as ``optimize evaluate`` does.
-
-    Takes about a second, without the interpreter's lock; Ctrl-C ends it.
-
-    >>> import finger_opt as fo
-    >>> fo.evaluate("usb", density=20, direction=10).range_mm
-    7.2
-
-    Args:
-        task: A shipped name, the path of a task file, or a :class:`Task`.
-        density: Infill density, percent.
-        direction: Infill direction, degrees.
-        stiffness_compliance: N/mm, with ``stiffness_assembly`` in place of an infill.
-        stiffness_assembly: N/mm.
-        set: Numbers of task and finger by their keys: ``{"task.strategy.tilt_deg": 8}``.
-        walk: Step by step to the first failure: sees gaps narrower than 0.5 mm, three times the trials.
-        uncertainty: Success rate and robust range under these errors, too: ``"typical"``, or a file.
-        seed: Seed of the drawn errors.
-        repeat: How often to repeat the ends of the window, with friction, start and time step varied.
-        repeat_seed: Seed of the repeats.
-        space: Search space, which says what may be set: a name or a file.
-        robot: Robot: a name (:func:`robots`) or a file; ``servo`` unless given.
-        cell: File of one's own cell, as :func:`identify` writes it.
-        stiffness_data: File of one's own stiffness measurements, in place of the shipped ones.
-        engine: Contact engine.
-        finger_model: Where springs come from that nobody measured.
-        finger: Finger file for ``finger_model="computed"``.
-        start: Where the nominal start is: ``given`` by the task file, or ``taught`` in the middle of the window.
-
-    Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        Interrupted: Ctrl-C.
-    """
-    return Evaluation.from_json(json.loads(_native.evaluate(sources(task), **given(locals(), "task"))))

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, field
 from typing import Literal
 
-from . import _native
-from ._call import checked, given
 from ._drawn import framed
-from ._result import DRAWN, Result
-from ._task import Given, sources
-from ._words import Engine, FingerModel, Outcome, RobotName, SpaceName, Start, StrPath
+from ._result import PICTURE, Result
+from ._words import Outcome
 
 
 @dataclass(frozen=True, repr=False)
@@ -114,42 +110,7 @@ class Cell(Result):
     phases: tuple[Misfit, ...]
     attempts: tuple[Replayed, ...]
     #: The page with the curves, measured and simulated.
-    page: str = field(repr=False, metadata=DRAWN)
+    page: str = field(repr=False, metadata=PICTURE)
 
     def _repr_html_(self) -> str:
         return framed(self.page)
-
-
-@checked
-def identify(
-    task: Given,
-    runs: StrPath,
-    out: StrPath | None = None,
-    *,
-    frame: StrPath | None = None,
-    report: StrPath | None = None,
-    priors: StrPath = "bench",
-    seed: int = 0,
-    space: SpaceName | StrPath = "infill",
-    robot: RobotName | StrPath | None = None,
-    cell: StrPath | None = None,
-    stiffness_data: StrPath | None = None,
-    engine: Engine = "direct",
-    finger_model: FingerModel | None = None,
-    finger: StrPath = "finray9",
-    start: Start | None = None,
-) -> Cell:
-    """Tells from a robot's logs what its cell is like, as ``optimize identify`` does. Takes a minute.
-
-    Args:
-        runs: Table of the logs, as :func:`finger_opt.robot.measure_window` writes it.
-        out: Write the cell: for ``cell``, ``priors`` and ``uncertainty`` of other calls.
-        frame: File with the task's frame in the robot's base, of logs that are not in the task's frame.
-        report: Write a page with the curves, measured and simulated.
-        priors: Bounds of what the logs may not tell: ``"bench"``, or a file.
-        seed: Seed of the fit.
-
-    The rest, and what is raised, is as for :func:`evaluate`; an :class:`InputError` names the line of a log.
-    """
-    text, page = _native.identify(sources(task), **given(locals(), "task"))
-    return Cell.from_json({**json.loads(text), "page": page})

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 
-from . import _native
 from ._result import Result
 
 
@@ -46,18 +44,3 @@ class Robots(Result):
 
     robots: tuple[RobotModel, ...]
     own_file: str
-
-
-def tasks() -> Tasks:
-    """Tasks, search spaces and uncertainties, as ``optimize tasks`` lists them.
-
-    >>> import finger_opt as fo
-    >>> [task.name for task in fo.tasks().tasks]
-    ['ket8', 'ket12', 'rj45', 'usb']
-    """
-    return Tasks.from_json(json.loads(_native.tasks()))
-
-
-def robots() -> Robots:
-    """Robots by the cells that they stand for, as ``optimize robots`` lists them."""
-    return Robots.from_json(json.loads(_native.robots()))

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _native
-from ._call import checked, given
 from ._drawn import COLOURS, WORDS
 from ._evaluation import Subject
 from ._plot import axes as axes_of
-from ._result import DRAWN, Result, equal, save, suffixed
-from ._task import Given, sources
-from ._words import Axes, Engine, FingerModel, Numbers, RobotName, SpaceName, Start, StrPath
+from ._result import PICTURE, Result, equal
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes as Drawing
@@ -52,7 +47,7 @@ class CaptureMap(Subject):
     area: float
     area_unit: str
     taught_start_mm: float | None = None
-    svg: str = field(repr=False, metadata=DRAWN)
+    svg: str = field(repr=False, metadata=PICTURE)
 
     def __eq__(self, other: object) -> bool:
         return equal(self, other)
@@ -85,39 +80,6 @@ def _outcomes(found: CaptureMap, ax: Drawing | None) -> Drawing:
     axes.set(xlabel=labels[0], ylabel=labels[1],
              title=f"{found.task}: {found.area:.3g} {found.area_unit.replace('mm2', 'mm²')} insert")
     return axes
-
-
-@checked
-def capture_map(
-    task: Given,
-    density: float | None = None,
-    direction: float | None = None,
-    *,
-    axes: Axes = "y,x",
-    stiffness_compliance: float | None = None,
-    stiffness_assembly: float | None = None,
-    set: Numbers | None = None,
-    svg: StrPath | None = None,
-    space: SpaceName | StrPath = "infill",
-    robot: RobotName | StrPath | None = None,
-    cell: StrPath | None = None,
-    stiffness_data: StrPath | None = None,
-    engine: Engine = "direct",
-    finger_model: FingerModel | None = None,
-    finger: StrPath = "finray9",
-    start: Start | None = None,
-) -> CaptureMap:
-    """Traces the capture map of one finger, as ``optimize map`` does, with at most 300 trials (10 to 20 s).
-
-    Args:
-        axes: The two errors of the start: y in mm, x in mm, yaw or tilt in degrees.
-        svg: Write the picture.
-
-    The rest, and what is raised, is as for :func:`evaluate`.
-    """
-    suffixed(svg, ".svg")
-    text, picture = _native.capture_map(sources(task), **given(locals(), "task"))
-    return CaptureMap.from_json({**json.loads(text), "svg": picture})
 
 
 @dataclass(frozen=True, repr=False)
@@ -159,7 +121,7 @@ class Levers(Result):
     left_out: tuple[str, ...]
     #: Windows that were simulated.
     windows: int
-    svg: str = field(default="", repr=False, metadata=DRAWN)
+    svg: str = field(default="", repr=False, metadata=PICTURE)
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the ranges at both ends of each lever; gives the axes."""
@@ -187,32 +149,3 @@ def _tornado(found: Levers, ax: Drawing | None) -> Drawing:
     axes.set(xlabel="tolerable range, mm", title=found.sentence)
     axes.margins(x=0.15)
     return axes
-
-
-@checked
-def levers(
-    task: Given,
-    density: float | None = None,
-    direction: float | None = None,
-    *,
-    stiffness_compliance: float | None = None,
-    stiffness_assembly: float | None = None,
-    set: Numbers | None = None,
-    svg: StrPath | None = None,
-    space: SpaceName | StrPath = "infill",
-    robot: RobotName | StrPath | None = None,
-    cell: StrPath | None = None,
-    stiffness_data: StrPath | None = None,
-    engine: Engine = "direct",
-    finger_model: FingerModel | None = None,
-    finger: StrPath = "finray9",
-    start: Start | None = None,
-) -> Levers:
-    """What would help a finger more than its infill, as ``optimize levers`` finds it: tilt, strokes, preload, speed,
-    grip, friction, clearance, chamfer, robot, one at a time, each from a start taught for it (3 to 8 s).
-
-    Words, numbers and what is raised are as for :func:`evaluate`.
-    """
-    text, picture = _native.levers(sources(task), **given(locals(), "task", "svg"))
-    save(picture, svg)
-    return Levers.from_json({**json.loads(text), "svg": picture})

@@ -10,7 +10,7 @@ from typing import Any, Literal, TypeGuard
 
 from . import _native
 from ._call import checked, wrong
-from ._json import dumps
+from ._json import dumps, word
 from ._words import OptimizerName, SpaceName, StrPath
 
 
@@ -55,7 +55,7 @@ class Optimizer:
         batch: int | None = None,
     ) -> None:
         if isinstance(space, (str, os.PathLike)):
-            parameters = json.loads(_native.space(space))
+            parameters = json.loads(_native.space(word(space)))
         elif _by_name(space):
             keys = ("low", "high", "step")
             for name, bounds in space.items():

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from . import _native, _step
-from ._call import checked
+from . import _step
+from ._call import called, checked
 from ._connector import Step, TaskCheck
 from ._native import InputError
 from ._result import Result
@@ -141,9 +140,8 @@ def import_parts(
             _step.write(side, Path(folder, f"{place}.obj")) if isinstance(side, list) else side
             for place, side in enumerate(sides)
         ]
-        given = {name: value for name, value in settings.items() if value is not None}
-        measured = _native.import_parts(meshes[0], meshes[1] if len(meshes) > 1 else None, out, **given)
-    return Imported.from_json(json.loads(measured))
+        settings |= {"plug": meshes[0], "socket": meshes[1] if len(meshes) > 1 else None, "out": out}
+        return called("task import", settings, Imported)
 
 
 def _without(unneeded: list[str], bodies: dict[Path, list[Body]]) -> dict[Path, list[Body]]:

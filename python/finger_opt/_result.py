@@ -21,6 +21,8 @@ T = TypeVar("T", bound="Result")
 REST: dict[str, bool] = {"rest": True}
 #: Marks what ``--json`` does not have: drawings, pages, arrays.
 DRAWN: dict[str, bool] = {"drawn": True}
+#: Marks the field that takes the drawing or the page of the result.
+PICTURE: dict[str, bool] = {**DRAWN, "picture": True}
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
@@ -28,9 +30,10 @@ class Result:
     """Fields carry the names and units of ``--json``; a notebook shows them."""
 
     @classmethod
-    def from_json(cls: type[T], fields: Mapping[str, Any]) -> T:
-        """The result of such fields of JSON."""
-        return _built(cls, fields)
+    def from_json(cls: type[T], fields: Mapping[str, Any], picture: str | None = None) -> T:
+        """The result of such fields of JSON, and a picture or a page of it."""
+        drawn = [field.name for field in dataclasses.fields(cls) if field.metadata.get("picture")]
+        return _built(cls, {**fields, **dict.fromkeys(drawn, picture or "")})
 
     def to_dict(self) -> dict[str, Any]:
         """The fields as plain lists, numbers and texts, without what there is not."""
@@ -43,6 +46,25 @@ class Result:
 
     def _repr_html_(self) -> str:
         return _table(self)
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class Found(Result):
+    """What a command found, by the keys of ``--json``: as attributes and as items."""
+
+    _found: dict[str, Any] = dataclasses.field(default_factory=dict[str, Any], metadata=REST)
+    svg: str = dataclasses.field(default="", repr=False, metadata=PICTURE)
+
+    def __getitem__(self, key: str) -> Any:
+        return self._found[key]
+
+    def __getattr__(self, key: str) -> Any:
+        if key.startswith("_") or key not in self._found:
+            raise AttributeError(key)
+        return self._found[key]
+
+    def __dir__(self) -> list[str]:
+        return [*self._found, *super().__dir__()]
 
 
 def equal(one: Any, other: Any) -> bool:
@@ -67,20 +89,6 @@ def suffixed(file: str | os.PathLike[str] | None, suffix: str) -> None:
         error = InputError(f"{os.fspath(file)}: what is written is {suffix[1:].upper()}; let its name end in {suffix}")
         error.file = os.fspath(file)
         raise error
-
-
-def save(text: str, file: str | os.PathLike[str] | None) -> None:
-    """Writes a drawing, if a file is named."""
-    if file is None:
-        return
-    suffixed(file, ".svg")
-    try:
-        with open(file, "w", encoding="utf-8") as written:
-            written.write(text)
-    except OSError as failed:
-        error = InputError(f"{os.fspath(file)}: cannot be written: {failed.strerror}")
-        error.file = os.fspath(file)
-        raise error from None
 
 
 @functools.cache

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from ._attempts import Attempt
+from ._commands import trial
 from ._native import InputError
 from ._task import Given
-from ._trial import trial
 from ._words import Engine, StrPath
 
 

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
 from . import _native
-from ._call import checked, given, without
+from ._call import called, checked, without
 from ._evaluation import Springs
+from ._native import InputError
 from ._plot import axes as axes_of
-from ._result import DRAWN, Result, save
-from ._words import Numbers, StrPath
+from ._result import DRAWN, PICTURE, Result
+from ._words import StrPath
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes as Drawing
@@ -51,7 +52,7 @@ class StiffnessModel(Result):
     stiffness_data: str | None = field(default=None, metadata=DRAWN)
     finger: str = field(default="finray9", metadata=DRAWN)
     #: The measurements, and what the models make of them.
-    svg: str = field(default="", repr=False, metadata=DRAWN)
+    svg: str = field(default="", repr=False, metadata=PICTURE)
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the stiffness in the compliance direction over density and direction; gives the axes."""
@@ -110,15 +111,14 @@ def stiffness(
         InputError: A value or a file that cannot be used.
     """
     if density is None and direction is None:
-        text, picture = _native.stiffness(stiffness_data=stiffness_data, finger=finger)
-        save(picture, svg)
+        model = called("stiffness", {"stiffness_data": stiffness_data, "finger": finger, "svg": svg}, StiffnessModel)
         data = None if stiffness_data is None else str(stiffness_data)
-        found = {**json.loads(text), "stiffness_data": data, "finger": str(finger), "svg": picture}
-        return StiffnessModel.from_json(found)
+        return replace(model, stiffness_data=data, finger=str(finger))
     without("an infill", "the drawing is of all designs", svg=svg)
     if density is None or direction is None:
-        raise _native.InputError("give density and direction, or neither")
-    return Springs.from_json(json.loads(_native.predict(density, direction, stiffness_data=stiffness_data, finger=finger)))
+        raise InputError("give density and direction, or neither")
+    words = {"density": density, "direction": direction, "stiffness_data": stiffness_data, "finger": finger}
+    return called("stiffness", words, Springs)
 
 
 @dataclass(frozen=True, repr=False)
@@ -160,41 +160,7 @@ class Finger(Result):
     pad: Pad
     pad_and_roof: Pad
     across: Across
-    svg: str = field(default="", repr=False, metadata=DRAWN)
+    svg: str = field(default="", repr=False, metadata=PICTURE)
 
     def _repr_html_(self) -> str:
         return self.svg
-
-
-@checked
-def finger(
-    density: float | None = None,
-    direction: float | None = None,
-    *,
-    finger: StrPath = "finray9",
-    phase_mm: float | None = None,
-    set: Numbers | None = None,
-    load_n: tuple[float, float] = (-5.0, 0.0),
-    svg: StrPath | None = None,
-) -> Finger:
-    """The mechanics of a printed finger, as ``optimize finger`` computes them from its ribs.
-
-    >>> import finger_opt as fo
-    >>> 4 < fo.finger(20, 20).mass_g < 6
-    True
-
-    Args:
-        density: Infill density, percent.
-        direction: Infill direction, degrees.
-        finger: ``finray9``, or a finger file.
-        phase_mm: Where the first rib lies, mm.
-        set: Numbers of the finger file: ``{"finger.skin.thickness_mm": 0.8}``.
-        load_n: Force on its pad in the drawing, N: y towards the part, z up.
-        svg: Write the drawing.
-
-    Raises:
-        InputError: A value or a file that cannot be used.
-    """
-    text, picture = _native.finger(**given(locals(), "svg"))
-    save(picture, svg)
-    return Finger.from_json({**json.loads(text), "svg": picture})

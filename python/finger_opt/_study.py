@@ -6,32 +6,30 @@ import html
 import io
 import json
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _native
 from ._answer import Answer, Recommended
-from ._call import checked, given, wrong
+from ._asked import Asked
+from ._call import called, checked, keywords, wrong
 from ._drawn import COLOURS
 from ._plot import axes as axes_of, text
-from ._result import DRAWN, Result, save
+from ._result import PICTURE, Found, Result
 from ._run import run_open
-from ._task import Given, sources
-from ._words import (
-    Aggregate, Engine, FingerModel, Objective, OptimizerName, RobotName, SpaceName, Start, StrPath,
-)
+from ._words import StrPath
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes as Drawing
     from pandas import DataFrame
 
 
-class Study:
-    """A study in a folder. Make one with :meth:`create`, open one with :func:`load_study`.
+class Study(Asked):
+    """A study in a folder. Make one with :meth:`create`, open one with :func:`finger_opt.load_study`.
 
     >>> import finger_opt as fo
     >>> study = fo.Study.create("rj45", budget=8, out="rj45-study", no_levers=True, no_map=True)
@@ -47,83 +45,17 @@ class Study:
         self._asked = asked
 
     @classmethod
-    @checked
-    def create(
-        cls,
-        task: Given | Iterable[Given],
-        *,
-        budget: int | None = None,
-        seed: int = 0,
-        out: StrPath | None = None,
-        space: SpaceName | StrPath = "infill",
-        optimizer: OptimizerName = "gp",
-        objective: Objective | Sequence[Objective] = "range",
-        constraint: str | Sequence[str] = (),
-        uncertainty: StrPath | None = None,
-        measurements: StrPath | None = None,
-        priors: StrPath | None = None,
-        aggregate: Aggregate | None = None,
-        weights: Sequence[float] = (),
-        indifference_mm: float = 0.3,
-        polish: int = 0,
-        batch: int | None = None,
-        async_: bool = False,
-        robot: RobotName | StrPath | None = None,
-        cell: StrPath | None = None,
-        stiffness_data: StrPath | None = None,
-        engine: Engine = "direct",
-        finger_model: FingerModel | None = None,
-        finger: StrPath = "finray9",
-        start: Start | None = None,
-        threads: int | None = None,
-        cache: StrPath | None = None,
-        no_cache: bool = False,
-        no_confirm: bool = False,
-        no_levers: bool = False,
-        no_map: bool = False,
-        accept_changed: bool = False,
-        simulations: int | None = None,
-        samples: int | None = None,
-    ) -> Study:
-        """A study of this task (or several), which :meth:`run` begins or continues.
+    def asked(cls, words: Mapping[str, Any]) -> Study:
+        """The study of these words, all checked; :meth:`run`, which knows the number of workers, makes its folder."""
+        return cls(_native.Asked(keywords(words)))
 
-        All is checked here; the folder is made by :meth:`run`, which knows the number of workers.
-
-        Args:
-            task: A shipped name, the path of a task file, or a :class:`Task`; or several.
-            budget: Evaluations. Without, it ends once no design is expected to gain 0.3 mm, after 500 at most
-                (other optimizers than ``gp`` and other objectives than ranges: after 200).
-            seed: The same seed gives the same study.
-            out: Folder; ``results/<task>-<optimizer>-seed<seed>`` unless given.
-            space: Search space: a name or a file.
-            optimizer: Search method.
-            objective: What is optimized; two or three give a front.
-            constraint: What a design must keep to: ``"peak-force<=30"``; one or several.
-            uncertainty: Errors for success rate and robust range: ``"typical"``, or a file.
-            measurements: What was measured on the bench: the study then ends with the finger best there.
-            priors: What nobody measured, for ``measurements``.
-            aggregate: What is made of the values of several tasks.
-            weights: Weight of each task.
-            indifference_mm: Difference of ranges that a bench cannot tell, mm.
-            polish: Then so many evaluations more, by Nelder-Mead from the best design.
-            batch: Designs proposed at a time; the number of workers unless given, 4 without executor.
-            async_: Tell each result as it comes; the journal then depends on who was fast.
-            threads: Threads, which change no result.
-            cache: Folder of evaluations that studies share; ``results/.cache`` unless given.
-            no_cache: Measure every design anew, and keep nothing.
-            no_confirm: Leave out what confirms the recommendation.
-            no_levers: Leave out what would help the finger more than its infill.
-            no_map: Leave out the capture maps.
-            accept_changed: Go on with a study that another version measured.
-            simulations: Simulations per task of a prediction for the bench.
-            samples: Samples of its posterior.
-
-        Robot, cell, stiffness data, engine, finger model and start are as for :func:`evaluate`.
-
-        Raises:
-            InputError: A value or a file that cannot be used; :class:`TaskError` if it is a task.
-        """
-        return cls(_native.study(sources(task), **given(locals(), "task")))
+    @classmethod
+    def resumed(cls, folder: StrPath, words: Mapping[str, Any] | None = None) -> Study:
+        """The study in a folder; :meth:`run` continues it by these words."""
+        if not os.path.isfile(os.path.join(folder, "study.toml")):
+            raise wrong("folder", f"{os.fspath(folder)} is not a study: it has no study.toml")
+        _native.Recorded(os.fspath(folder))
+        return cls(_native.Asked.resumed(os.fspath(folder), keywords(words or {})))
 
     @checked
     def run(
@@ -157,8 +89,7 @@ class Study:
 
     def report(self) -> str:
         """Writes tables and plots again, as ``optimize report`` does; gives the path of the page."""
-        written: dict[str, str] = json.loads(_native.report(self.path))
-        return written["page"]
+        return str(called("report", {"dir": self.path}, Found)["page"])
 
     def _open(self, workers: int | None) -> _native.Guided:
         return self._asked.open(workers)
@@ -220,12 +151,15 @@ class Study:
     def __reduce__(self) -> tuple[Any, tuple[str]]:
         if not self._begun():
             raise TypeError(f"{self!r} has not begun: run it before it is pickled")
-        return load_study, (os.path.abspath(self.path),)
+        return Study.resumed, (self.path,)
 
     def _repr_html_(self) -> str:
         if not self._begun():
             return f"<p>a study not begun yet: {html.escape(self.path)}</p>"
         return self._read().card()
+
+    def __fspath__(self) -> str:
+        return self.path
 
     def __repr__(self) -> str:
         return f"<Study {self.path}>"
@@ -283,31 +217,6 @@ def _surface(study: Study, ax: Drawing | None) -> Drawing:
     return axes
 
 
-@checked
-def load_study(
-    folder: StrPath,
-    *,
-    threads: int | None = None,
-    cache: StrPath | None = None,
-    no_cache: bool = False,
-    no_confirm: bool = False,
-    no_levers: bool = False,
-    no_map: bool = False,
-    accept_changed: bool = False,
-    simulations: int | None = None,
-    samples: int | None = None,
-) -> Study:
-    """The study in a folder; its :meth:`~Study.run` continues it. The words are those of :meth:`Study.create`.
-
-    Raises:
-        InputError: What is no study.
-    """
-    if not os.path.isfile(os.path.join(folder, "study.toml")):
-        raise wrong("folder", f"{os.fspath(folder)} is not a study: it has no study.toml")
-    _native.Recorded(os.fspath(folder))
-    return Study(_native.resume(os.fspath(folder), **given(locals(), "folder")))
-
-
 @dataclass(frozen=True, repr=False)
 class Quartiles(Result):
     """Quartiles over seeds; none where too few got there."""
@@ -338,30 +247,10 @@ class Comparison(Result):
     best_known_mm: float
     target_mm: float
     optimizers: tuple[Compared, ...]
-    svg: str = field(default="", repr=False, metadata=DRAWN)
+    svg: str = field(default="", repr=False, metadata=PICTURE)
 
     def _repr_html_(self) -> str:
         return self.svg
-
-
-@checked
-def compare(
-    studies: Iterable[Study | StrPath], *, svg: StrPath | None = None, html: StrPath | None = None
-) -> Comparison:
-    """Compares optimizers over studies of the same task and objective, as ``optimize compare`` does.
-
-    Args:
-        studies: Studies, or their folders; several seeds of an optimizer give its quartiles.
-        svg: Write a picture of the best so far.
-        html: Write table and picture as a page.
-
-    Raises:
-        InputError: Studies that cannot be compared, or what is no study.
-    """
-    folders: list[StrPath] = [study.path if isinstance(study, Study) else os.fspath(study) for study in studies]
-    text, picture = _native.compare(folders, **given({"html": html}))
-    save(picture, svg)
-    return Comparison.from_json({**json.loads(text), "svg": picture})
 
 
 @dataclass(frozen=True, repr=False)
@@ -389,41 +278,7 @@ class Sensitivity(Result):
     diverged: int
     nominal_start_fails: int
     factors: tuple[Factor, ...]
-    svg: str = field(default="", repr=False, metadata=DRAWN)
+    svg: str = field(default="", repr=False, metadata=PICTURE)
 
     def _repr_html_(self) -> str:
         return self.svg
-
-
-@checked
-def sensitivity(
-    task: Given,
-    *,
-    objective: Literal["range", "centred-range"] = "range",
-    uncertainty: StrPath = "typical",
-    samples: int = 64,
-    seed: int = 0,
-    svg: StrPath | None = None,
-    space: SpaceName | StrPath = "infill",
-    robot: RobotName | StrPath | None = None,
-    cell: StrPath | None = None,
-    stiffness_data: StrPath | None = None,
-    engine: Engine = "direct",
-    finger_model: FingerModel | None = None,
-    finger: StrPath = "finray9",
-    start: Start | None = None,
-) -> Sensitivity:
-    """Finds out which input matters: of the design, the task and the cell, as ``optimize sensitivity`` does.
-
-    Args:
-        objective: What is varied.
-        uncertainty: Errors of the cell that are varied, too: ``"typical"``, ``"none"``, or a file.
-        samples: Rows of the sample: evaluations are this times (inputs + 2). Takes minutes.
-        seed: Seed of the sample.
-        svg: Write the chart.
-
-    The rest, and what is raised, is as for :func:`evaluate`.
-    """
-    text, picture = _native.sensitivity(sources(task), **given(locals(), "task", "svg"))
-    save(picture, svg)
-    return Sensitivity.from_json({**json.loads(text), "svg": picture})

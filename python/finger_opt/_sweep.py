@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._call import checked, given, wrong
+from ._call import checked, given, keywords, wrong
 from ._result import suffixed
 from ._run import workers_of
-from ._task import Given, sources
+from ._task import Given, listed, sources
 from ._words import Engine, FingerModel, RobotName, SpaceName, Start, StrPath
 
 if TYPE_CHECKING:
@@ -32,8 +32,7 @@ COUNTED = ("failure_negative", "failure_positive", "trials")
 #: The first columns; the rest follows by name.
 FIRST = ("task", "infill_density_percent", "infill_direction_deg", "range_mm", "negative_mm", "positive_mm",
          "failure_negative", "failure_positive", "peak_force_n", "slip_mm", "nominal")
-#: A task as the library takes it, and designs: a column for each number.
-Task = Union[str, os.PathLike[str], tuple[str, str]]
+#: Designs: a column for each number.
 Rows = dict[str, list[float]]
 
 
@@ -93,7 +92,7 @@ def sweep(
     # What is missing is said before anything is measured.
     from ._frame import pandas
 
-    frames, tasks = pandas(), sources(task)
+    frames, tasks = pandas(), listed(task)
     if not tasks:
         raise wrong("task", "has to name one at least")
     if out is not None and not os.path.isdir(os.path.dirname(os.path.abspath(out))):
@@ -101,14 +100,16 @@ def sweep(
     suffixed(out, ".parquet")
     chunks: Iterator[Columns]
     if executor is None:
-        measuring = [_native.Sweep([one], **words) for one in tasks]
+        measuring = [_native.Sweep(keywords({"task": sources(one), **words})) for one in tasks]
         chunks = (chunk for one in measuring for chunk in _measured(one, rows))
     else:
         if not callable(getattr(executor, "submit", None)):
             raise wrong("executor", f"has to have a method submit, which {type(executor).__name__} has not")
         if workers is not None and workers < 1:
             raise wrong("workers", f"is {workers}; has to be at least 1")
-        chunks = _handed_out(executor, workers or workers_of(executor), tasks, rows, words)
+        # The cache is of this machine.
+        alone = [{"task": sources(one), **words, "threads": 1, "cache": None, "no_cache": True} for one in tasks]
+        chunks = _handed_out(executor, workers or workers_of(executor), [keywords(one) for one in alone], rows)
     found = _written(chunks, out) if out is not None else [_frame(chunk) for chunk in chunks]
     table: DataFrame = frames.concat(found, ignore_index=True)
     return table
@@ -150,27 +151,26 @@ def _place(name: str) -> tuple[int, str]:
     return (FIRST.index(name) if name in FIRST else len(FIRST), name)
 
 
-def _part(task: Task, rows: Rows, words: dict[str, Any]) -> list[Columns]:
+def _part(words: str, rows: Rows) -> list[Columns]:
     """The unit of work of an executor."""
-    return list(_measured(_native.Sweep([task], **words, threads=1, no_cache=True), rows))
+    return list(_measured(_native.Sweep(words), rows))
 
 
 def _handed_out(
-    executor: Executor | Any, workers: int, tasks: Iterable[Task], rows: Rows, words: dict[str, Any]
+    executor: Executor | Any, workers: int, tasks: Iterable[str], rows: Rows
 ) -> Iterator[Columns]:
     """The same, measured elsewhere; twice as many pieces of work are out as there are workers."""
     count = len(rows["density"])
     # So that every worker has some.
     size = max(1, min(PART, -(-count // (4 * workers))))
     parts = [(task, at) for task in tasks for at in range(0, count, size)]
-    words = {name: value for name, value in words.items() if name not in ("threads", "cache", "no_cache")}
     out: deque[Future[list[Columns]]] = deque()
     try:
         for task, at in parts:
             if len(out) >= 2 * workers:
                 yield from out.popleft().result()
             part = {name: values[at : at + size] for name, values in rows.items()}
-            out.append(executor.submit(_part, task, part, words))
+            out.append(executor.submit(_part, task, part))
         while out:
             yield from out.popleft().result()
     except KeyboardInterrupt:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Union
 
 from . import _native
-from ._json import dumps, is_list, is_table
+from ._json import dumps, is_list, is_table, word
 from ._words import StrPath, TaskName
 
 
@@ -126,7 +126,7 @@ class Task(Fields):
         """The task of a shipped name (``"usb"``), of the file at a path, or of a TOML text."""
         if isinstance(source, str) and "\n" in source:
             return cls("task", source)
-        return cls(*_native.task(source))
+        return cls(*_native.task(word(source)))
 
     def to_toml(self) -> str:
         """The text of the task file, without the comments of the original."""
@@ -140,7 +140,22 @@ class Task(Fields):
 Given = Union[TaskName, str, os.PathLike[str], Task]
 
 
-def sources(task: Given | Iterable[Given]) -> list[str | os.PathLike[str] | tuple[str, str]]:
-    """Tasks for the library: names as they are, and of a :class:`Task` what messages call it and its text."""
-    given = [task] if isinstance(task, (str, os.PathLike, Task)) else list(task)
-    return [(one.file, one.to_toml()) if isinstance(one, Task) else one for one in given]
+def sources(task: Given | Iterable[Given] | None) -> str | None:
+    """Tasks for the library: names, and of a :class:`Task` what messages call it and its text."""
+    if task is None:
+        return None
+    found: list[str | dict[str, str]] = []
+    for one in listed(task):
+        if isinstance(one, Task):
+            found.append({"file": one.file, "text": one.to_toml()})
+        elif isinstance(one, str) and not os.path.isfile(one):
+            found += [name.strip() for name in one.split(",") if name]
+        else:
+            # A path may have a comma in it.
+            found.append(os.fspath(one))
+    return "\0" + dumps(word(found))
+
+
+def listed(task: Given | Iterable[Given]) -> list[Given]:
+    """One task, or several."""
+    return [task] if isinstance(task, (str, os.PathLike, Task)) else list(task)

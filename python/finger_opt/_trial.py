@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import json
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _native
-from ._call import checked, given, without, wrong
 from ._drawn import COLOURS, WORDS, framed
 from ._evaluation import Subject
+from ._native import InputError
 from ._plot import axes as axes_of, text
-from ._result import DRAWN, Result, equal, suffixed
-from ._task import Given, sources
-from ._words import Engine, FingerModel, Numbers, Outcome, RobotName, SpaceName, Start, StrPath
+from ._result import DRAWN, Result, equal
+from ._words import Outcome, StrPath
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes as Drawing
@@ -60,9 +58,9 @@ class Series:
         return equal(self, other)
 
     @classmethod
-    def of(cls, columns: dict[str, bytes]) -> Series:
-        """Of columns of little-endian float64."""
-        found = {name: np.frombuffer(column, dtype="<f8") for name, column in columns.items()}
+    def of(cls, columns: Mapping[str, Any]) -> Series:
+        """Of lists of numbers."""
+        found = {name: np.asarray(column, dtype=np.float64) for name, column in columns.items()}
         shaped = {name: found[name].reshape(-1, 3) for name in ("tcp_mm", "tip_mm", "force_n")}
         rest = {name: found[name] for name in ("time_s", "tilt_deg", "slip_mm")}
         return cls(phase=found["phase"].astype(np.int64), **rest, **shaped)
@@ -91,6 +89,10 @@ class Trial(Subject):
     #: The film as HTML, if it was asked for.
     film: str | None = field(default=None, repr=False, metadata=DRAWN)
 
+    @classmethod
+    def from_json(cls, fields: Mapping[str, Any], picture: str | None = None) -> Trial:
+        return super().from_json({**fields, "series": Series.of(fields["series"])}, picture)
+
     def __eq__(self, other: object) -> bool:
         return equal(self, other)
 
@@ -101,7 +103,7 @@ class Trial(Subject):
     def replay(self) -> Film:
         """The film of the trial, which a notebook plays; of a trial made with ``film=True``."""
         if self.film is None:
-            raise _native.InputError("replay: needs a trial that was made with film=True")
+            raise InputError("replay: needs a trial that was made with film=True")
         return Film(self.film)
 
     def _repr_html_(self) -> str:
@@ -141,62 +143,3 @@ class Film:
 
     def _repr_html_(self) -> str:
         return framed(self.html)
-
-
-@checked
-def trial(
-    task: Given,
-    density: float | None = None,
-    direction: float | None = None,
-    offset_mm: float = 0.0,
-    *,
-    stiffness_compliance: float | None = None,
-    stiffness_assembly: float | None = None,
-    set: Numbers | None = None,
-    every_s: float = 0.001,
-    repeat: int | None = None,
-    repeat_seed: int | None = None,
-    film: bool = False,
-    record: StrPath | None = None,
-    plot: StrPath | None = None,
-    svg: StrPath | None = None,
-    log: StrPath | None = None,
-    probe: bool = False,
-    space: SpaceName | StrPath = "infill",
-    robot: RobotName | StrPath | None = None,
-    cell: StrPath | None = None,
-    stiffness_data: StrPath | None = None,
-    engine: Engine = "direct",
-    finger_model: FingerModel | None = None,
-    finger: StrPath = "finray9",
-    start: Start | None = None,
-) -> Trial:
-    """Simulates one insertion, as ``optimize trial`` does, and samples its course.
-
-    >>> import finger_opt as fo
-    >>> found = fo.trial("usb", density=20, direction=10, offset_mm=0.5)
-    >>> found.outcome, found.series.force_n.shape[1]
-    ('inserted', 3)
-
-    Args:
-        offset_mm: Shift of the start along y, mm.
-        every_s: Simulated time between two samples of the series, s.
-        repeat: How often to repeat it, with friction, start and time step varied.
-        repeat_seed: Seed of the repeats.
-        film: Make the film for :meth:`Trial.replay`, too.
-        record: Write the course: ``.csv``, or ``.html`` for the film.
-        plot: Write a picture of the forces, ``.svg``.
-        svg: Write a picture of the phases, ``.svg``.
-        log: Write force and pose as a robot's log, ``.csv``.
-        probe: In place of the insertion slide over a flat face, which tells the friction to :func:`identify`.
-
-    The rest, and what is raised, is as for :func:`evaluate`.
-    """
-    if probe:
-        if log is None:
-            raise wrong("probe", "needs log, the file to write")
-        without("probe", "it is no insertion", repeat=repeat, svg=svg, record=record, plot=plot, film=film)
-    suffixed(plot, ".svg")
-    suffixed(svg, ".svg")
-    text, columns, drawn = _native.trial(sources(task), **given(locals(), "task"))
-    return Trial.from_json({**json.loads(text), "series": Series.of(columns), "film": drawn})

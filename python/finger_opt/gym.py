@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._call import checked, given
+from ._call import checked, given, keywords
 from ._task import Given, sources
 from ._words import Engine, FingerModel, Numbers, RobotName, SpaceName, Start, StrPath
 
@@ -99,7 +99,7 @@ class InsertionEnv(gymnasium.Env[Floats, Floats]):
             raise _native.InputError("offset_mm: is (from, to), mm, within 1000 of 0")
         if not (0.0 < speed_mm_per_s < float("inf") and 0.0 < time_limit_s < float("inf")):
             raise _native.InputError("speed_mm_per_s, time_limit_s: have to be above 0 and finite")
-        self._insertion = _native.Insertion(sources(task), **words)
+        self._insertion = _native.Insertion(keywords({"task": sources(task), **words}))
         self._offsets, self._limit_s = offset_mm, time_limit_s
         self._offset, self._distance, self._ended = 0.0, 0.0, True
         self._speed = float(speed_mm_per_s)

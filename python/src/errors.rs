@@ -1,6 +1,6 @@
 //! Failures as exceptions, with the texts of the command line.
 
-use finger_opt::session::Failure;
+use finger_opt::failure::Failure;
 use input::Place;
 use pyo3::PyTypeInfo;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyValueError};

@@ -1,42 +1,39 @@
 //! A trial that Python drives.
 
-use crate::errors::raise;
-use crate::keywords::{Keywords, TaskWord, wrong};
-use crate::measure::interruptible;
-use finger_opt::session;
+use crate::call::{interruptible, read};
+use crate::errors::{InputError, placed, raise};
+use finger_opt::commands::evaluate::Request;
+use finger_opt::keywords::request;
+use finger_opt::setup::driven;
+use input::Place;
 use insertion::trial::State;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
-use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A grasped part in front of its socket.
 #[pyclass(frozen)]
-pub struct Insertion(Mutex<session::Insertion>);
+pub struct Insertion(Mutex<driven::Insertion>);
 
 /// The numbers of a state in the order of its fields, how it ended, and the failure class.
 type Stand = (Vec<f64>, Option<&'static str>, Option<u8>);
 
 impl Insertion {
-    fn open(&self) -> MutexGuard<'_, session::Insertion> {
+    fn open(&self) -> MutexGuard<'_, driven::Insertion> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 #[pymethods]
 impl Insertion {
+    /// Of the task and the finger of an evaluation.
     #[new]
-    #[pyo3(signature = (tasks, /, **settings))]
-    fn new<'py>(
-        py: Python<'py>,
-        tasks: Vec<TaskWord>,
-        settings: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Self> {
-        let words = Keywords::new(py, settings)?;
-        let (setup, finger) = (words.setup(tasks)?, words.finger()?);
-        words.finish()?;
-        let make = |stop: &AtomicBool| session::Insertion::new(&setup, &finger, stop);
-        Ok(Insertion(Mutex::new(interruptible(py, make)?.map_err(raise)?)))
+    fn new(py: Python<'_>, keywords: &str) -> PyResult<Self> {
+        let keywords = read(keywords)?;
+        let made = interruptible(py, |stop| {
+            let Request { setup, finger, .. } = request(&keywords)?;
+            driven::Insertion::new(&setup, &finger, stop)
+        })?;
+        Ok(Insertion(Mutex::new(made.map_err(raise)?)))
     }
 
     /// Begins anew.
@@ -55,7 +52,10 @@ impl Insertion {
 fn finite(what: &str, numbers: &[f64]) -> PyResult<()> {
     match numbers.iter().all(|number| number.is_finite()) {
         true => Ok(()),
-        false => Err(wrong(what, "has to be finite")),
+        false => {
+            let error = InputError::new_err(format!("{what}: has to be finite"));
+            Err(placed(Place::default().key(what), error))
+        }
     }
 }
 

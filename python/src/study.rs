@@ -1,15 +1,21 @@
 //! Studies: read from their folders, and run by whoever measures.
 
+use crate::call::{interruptible, read, released, watched};
 use crate::errors::{InputError, Refused, StudyError, raise};
-use crate::keywords::{Keywords, TaskWord};
-use crate::measure::{interruptible, released, watched};
 use ::study::{Ending, SOURCES, StudyRecord, evaluations_csv};
-use finger_opt::cli::call;
-use finger_opt::session::{
-    self, AnyStudy, Failure, NotTaken, Order, POLISH, ResumeRequest, StudyRequest,
-};
+use finger_opt::command::parse;
+use finger_opt::commands::resume;
+use finger_opt::context::Context;
+use finger_opt::failure::Failure;
+use finger_opt::keywords::request;
+use finger_opt::studies::guided::{self, NotTaken, Order};
+use finger_opt::studies::recommended::{Advice, Recommendation};
+use finger_opt::studies::request::AnyStudy;
+use finger_opt::studies::summary::{Summary, word};
+use finger_opt::studies::text;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::PyBytes;
+use report::answer::Answer;
 use serde_json::json;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -41,7 +47,7 @@ pub fn perform<'py>(
     stop: &Stop,
 ) -> PyResult<Bound<'py, PyBytes>> {
     let work = work.to_vec();
-    let done = watched(py, &stop.0, || session::perform(&work, worker, &stop.0))?;
+    let done = watched(py, &stop.0, || guided::perform(&work, worker, &stop.0))?;
     // Ended by `stop`: nobody pressed Ctrl-C here.
     let failed = |failure| match failure {
         Failure::Interrupted(_) => StudyError::new_err(failure.to_string()),
@@ -56,93 +62,86 @@ pub fn source_sha256() -> &'static str {
     SOURCES
 }
 
-/// A study that is asked for.
+/// A study that is asked for, and what is shown of it.
 #[pyclass(frozen)]
-pub struct Asked(call::Asked);
+pub struct Asked {
+    study: AnyStudy,
+    executor: Option<String>,
+    quiet: bool,
+    shown: Shown,
+}
+
+/// How the result of a study is printed.
+#[derive(Clone, Copy, Default)]
+struct Shown {
+    json: bool,
+    verbose: bool,
+}
 
 impl Asked {
     fn of(study: AnyStudy) -> Self {
-        Asked(call::Asked { study, executor: None, shown: call::Shown::default() })
+        Asked { study, executor: None, quiet: false, shown: Shown::default() }
     }
-}
-
-/// The study of these tasks and keywords.
-#[pyfunction]
-#[pyo3(signature = (tasks, /, **settings))]
-pub fn study<'py>(
-    py: Python<'py>,
-    tasks: Vec<TaskWord>,
-    settings: Option<&Bound<'py, PyDict>>,
-) -> PyResult<Asked> {
-    let words = Keywords::new(py, settings)?;
-    let budget = words.take("budget")?;
-    let usual = StudyRequest::new(words.setup(tasks)?, budget);
-    let request = StudyRequest {
-        polish: words.number_or("polish", POLISH)?.unwrap_or(usual.polish),
-        indifference_mm: words.take("indifference_mm")?.unwrap_or(usual.indifference_mm),
-        optimizer: words.listed("optimizer")?.unwrap_or(usual.optimizer),
-        objective: words.listed("objective")?.unwrap_or(usual.objective),
-        constraints: words.parsed("constraint")?,
-        uncertainty: words.text("uncertainty")?,
-        measurements: words.text("measurements")?,
-        priors: words.text("priors")?,
-        aggregate: words.choice("aggregate")?,
-        weights: words.numbers("weights")?,
-        seed: words.take("seed")?.unwrap_or(usual.seed),
-        batch: words.take("batch")?,
-        asynchronous: words.flag("async")?,
-        out: words.take("out")?,
-        run: words.run()?,
-        ..usual
-    };
-    words.finish()?;
-    Ok(Asked::of(AnyStudy::Asked(Box::new(request))))
-}
-
-/// The study in a folder, to be gone on with.
-#[pyfunction]
-#[pyo3(signature = (folder, /, **settings))]
-pub fn resume<'py>(
-    py: Python<'py>,
-    folder: PathBuf,
-    settings: Option<&Bound<'py, PyDict>>,
-) -> PyResult<Asked> {
-    let words = Keywords::new(py, settings)?;
-    let request = ResumeRequest { dir: folder, run: words.run()? };
-    words.finish()?;
-    Ok(Asked::of(AnyStudy::Resumed(request)))
-}
-
-/// The study of these words of the command line.
-#[pyfunction]
-pub fn asked(words: Vec<OsString>) -> PyResult<Asked> {
-    call::asked(&words).map(Asked).map_err(raise)
 }
 
 #[pymethods]
 impl Asked {
+    /// The study of these keywords.
+    #[new]
+    fn new(keywords: &str) -> PyResult<Self> {
+        let request = request(&read(keywords)?).map_err(raise)?;
+        Ok(Asked::of(AnyStudy::asked(request)))
+    }
+
+    /// The study in a folder, to be gone on with by these keywords.
+    #[staticmethod]
+    fn resumed(folder: PathBuf, keywords: &str) -> PyResult<Self> {
+        let run = request(&read(keywords)?).map_err(raise)?;
+        Ok(Asked::of(AnyStudy::Resumed(resume::Request { dir: folder, run, verbose: false })))
+    }
+
+    /// The study of these words of the command line.
+    #[staticmethod]
+    fn in_words(words: Vec<OsString>) -> PyResult<Self> {
+        let has = |flag: &str| words.iter().any(|word| word == flag);
+        let (json, quiet) = (has("--json"), has("--quiet"));
+        let read = match words.split_first() {
+            Some((first, rest)) if first == "resume" => parse(rest).map(AnyStudy::Resumed),
+            Some((first, rest)) if first == "study" => parse(rest).map(AnyStudy::asked),
+            _ => parse(&words).map(AnyStudy::asked),
+        };
+        let study = read.map_err(raise)?;
+        let (run, verbose) = study.how();
+        let (executor, shown) = (run.executor.clone(), Shown { json, verbose });
+        Ok(Asked { study, executor, quiet, shown })
+    }
+
     /// Where it is measured.
     #[getter]
     fn executor(&self) -> Option<&str> {
-        self.0.executor.as_deref()
+        self.executor.as_deref()
     }
 
     /// Whether no progress is shown.
     #[getter]
     fn quiet(&self) -> bool {
-        self.0.shown.quiet
+        self.quiet
     }
 
     /// Its folder, with all checked that is asked for.
     fn folder(&self, py: Python<'_>) -> PyResult<PathBuf> {
-        released(py, || self.0.study.folder())?.map_err(raise)
+        released(py, || self.study.folder())?.map_err(raise)
     }
 
     /// Begins it or goes on with it.
     fn open(&self, py: Python<'_>, workers: Option<u64>) -> PyResult<Guided> {
-        let open = || self.0.study.open(workers).and_then(|open| call::warned(open)?.guided());
+        let open = || {
+            let open = self.study.open(workers)?;
+            open.warn(&Context::terminal(self.shown.json, true))?;
+            open.guided()
+        };
         let opened = released(py, open)?.map_err(raise)?;
-        Ok(Guided { open: Mutex::new(Some(opened)), shown: self.0.shown })
+        Ok(Guided { open: Mutex::new(Some(opened)), shown: self.shown })
     }
 }
 
@@ -177,11 +176,11 @@ impl Recorded {
     }
 
     fn best(&self) -> String {
-        call::best(&self.record).to_string()
+        json!(Recommendation::best(&Answer::of(&self.record))).to_string()
     }
 
     fn answer(&self) -> String {
-        call::answer(&self.record, &self.folder).to_string()
+        json!(Advice::of(&Answer::of(&self.record), &self.folder)).to_string()
     }
 
     /// The text of `evaluations.csv`.
@@ -198,16 +197,16 @@ impl Recorded {
 /// A study that is open and whose measuring the caller does.
 #[pyclass(frozen)]
 pub struct Guided {
-    open: Mutex<Option<session::Guided>>,
+    open: Mutex<Option<guided::Guided>>,
     /// Whether its result is printed as JSON.
-    shown: call::Shown,
+    shown: Shown,
 }
 
 /// Work to be measured (none: wait for a result), and how the study ended, if it did.
 type Next<'py> = (Vec<(u64, Bound<'py, PyBytes>)>, Option<&'static str>);
 
 impl Guided {
-    fn study(&self) -> MutexGuard<'_, Option<session::Guided>> {
+    fn study(&self) -> MutexGuard<'_, Option<guided::Guided>> {
         self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -215,19 +214,20 @@ impl Guided {
     fn with<T: Send>(
         &self,
         py: Python<'_>,
-        what: impl FnOnce(&mut session::Guided) -> T + Send,
+        what: impl FnOnce(&mut guided::Guided) -> T + Send,
     ) -> PyResult<T> {
         let done = released(py, || self.study().as_mut().map(what))?;
         done.ok_or_else(|| StudyError::new_err("the study is closed"))
     }
 }
 
-const ENDINGS: [(Ending, &str); 5] = [
-    (Ending::BudgetSpent, "budget_spent"),
-    (Ending::SpaceExhausted, "space_exhausted"),
-    (Ending::Converged, "converged"),
-    (Ending::Settled, "settled"),
-    (Ending::NothingInserts, "nothing_inserts"),
+const ENDINGS: [Ending; 6] = [
+    Ending::BudgetSpent,
+    Ending::SpaceExhausted,
+    Ending::Converged,
+    Ending::Settled,
+    Ending::NothingInserts,
+    Ending::Interrupted,
 ];
 
 #[pymethods]
@@ -243,10 +243,7 @@ impl Guided {
                 let bytes = |(proposal, work): (u64, Vec<u8>)| (proposal, PyBytes::new(py, &work));
                 (work.into_iter().map(bytes).collect(), None)
             }
-            Order::Finish(ending) => {
-                let word = ENDINGS.iter().find(|(known, _)| *known == ending);
-                (Vec::new(), Some(word.map_or("interrupted", |(_, word)| word)))
-            }
+            Order::Finish(ending) => (Vec::new(), Some(word(ending))),
         })
     }
 
@@ -272,8 +269,7 @@ impl Guided {
 
     /// Output of the command at the end, and why it fails all the same, if so.
     fn finish(&self, py: Python<'_>, ending: &str) -> PyResult<(String, Option<String>)> {
-        let ending = ENDINGS.iter().find(|(_, word)| *word == ending);
-        let ending = ending.map(|(ending, _)| *ending);
+        let ending = ENDINGS.into_iter().find(|known| word(*known) == ending);
         let ending = ending.ok_or_else(|| InputError::new_err("ending: is none"))?;
         let finish =
             |stop: &AtomicBool| self.study().as_mut().map(|study| study.finish(ending, stop));
@@ -282,7 +278,14 @@ impl Guided {
         let ended = ended.map_err(raise)?;
         let unusable = ended.unusable.as_ref().map(ToString::to_string);
         let around = interruptible(py, |stop: &AtomicBool| ended.around(stop))?.map_err(raise)?;
-        Ok((call::text(&ended, &around, self.shown), unusable))
+        let text = match self.shown.json {
+            true => {
+                let answer = Answer::of(&ended.record);
+                json!(Summary::new(&ended, &answer, &around)).to_string() + "\n"
+            }
+            false => text::ended(&ended, self.shown.verbose) + &text::around(&around),
+        };
+        Ok((text, unusable))
     }
 
     /// Lets other processes open the study.

@@ -1,21 +1,35 @@
 //! Windows of many fingers, as columns.
 
-use crate::errors::raise;
-use crate::keywords::{Keywords, TaskWord, wrong};
-use crate::measure::{interruptible, released, windows};
-use finger_opt::cli;
-use finger_opt::session::{self, FingerRequest};
+use crate::call::{interruptible, read, released};
+use crate::errors::{InputError, raise};
+use finger_opt::commands::evaluate::Request;
+use finger_opt::keywords::request;
+use finger_opt::setup::finger::FingerRequest;
+use finger_opt::setup::request::SetupRequest;
+use finger_opt::setup::run::RunRequest;
+use finger_opt::studies::sweep;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
 /// The columns that are no numbers.
 const WORDS: [&str; 6] = ["task", "robot", "cell", "finger_model", "rcc_from", "nominal"];
 
+/// How windows are measured.
+#[derive(clap::Args)]
+struct Windows {
+    #[command(flatten)]
+    setup: SetupRequest,
+    #[arg(long)]
+    walk: bool,
+    #[command(flatten)]
+    run: RunRequest,
+}
+
 /// Measures fingers on a task, as many at a time as it is given.
 #[pyclass(frozen)]
-pub struct Sweep(session::Sweep);
+pub struct Sweep(sweep::Sweep);
 
 /// Numbers, little-endian float64 with NaN for none, and words, by their columns.
 type Columns<'py> = (Bound<'py, PyDict>, BTreeMap<&'static str, Vec<Option<String>>>);
@@ -23,17 +37,12 @@ type Columns<'py> = (Bound<'py, PyDict>, BTreeMap<&'static str, Vec<Option<Strin
 #[pymethods]
 impl Sweep {
     #[new]
-    #[pyo3(signature = (tasks, /, **settings))]
-    fn new<'py>(
-        py: Python<'py>,
-        tasks: Vec<TaskWord>,
-        settings: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Self> {
-        let words = Keywords::new(py, settings)?;
-        let run = words.run()?;
-        let windows = windows(&words, tasks)?;
-        words.finish()?;
-        let sweep = released(py, || session::Sweep::new(&windows, &run))?;
+    fn new(py: Python<'_>, keywords: &str) -> PyResult<Self> {
+        let keywords = read(keywords)?;
+        let sweep = released(py, || {
+            let Windows { setup, walk, run } = request(&keywords)?;
+            sweep::Sweep::new(&Request { setup, walk, ..Request::default() }, &run)
+        })?;
         Ok(Sweep(sweep.map_err(raise)?))
     }
 
@@ -53,7 +62,7 @@ impl Sweep {
         let fingers = fingers(&columns)?;
         let done = interruptible(py, |stop| {
             let found = self.0.measure(&fingers, stop)?;
-            Ok(found.iter().map(|found| flat(cli::evaluate::json(found))).collect::<Vec<_>>())
+            Ok(found.iter().map(|found| flat(json!(found))).collect::<Vec<_>>())
         })?;
         let rows: Vec<BTreeMap<String, Value>> = done.map_err(raise)?;
         let numbers = PyDict::new(py);
@@ -82,7 +91,8 @@ fn fingers(columns: &BTreeMap<String, Vec<f64>>) -> PyResult<Vec<FingerRequest>>
     let mut fingers = vec![FingerRequest::default(); rows];
     for (name, numbers) in columns {
         if numbers.len() != rows {
-            return Err(wrong(name, format!("has {} rows, another column {rows}", numbers.len())));
+            let problem = format!("{name}: has {} rows, another column {rows}", numbers.len());
+            return Err(InputError::new_err(problem));
         }
         for (finger, number) in fingers.iter_mut().zip(numbers) {
             match name.as_str() {

@@ -17,7 +17,7 @@ CALLS = {
     "predicted stiffness": "fo.stiffness(20, 10)",
     "new study": "fo.Study.create('usb', budget=2, out='forked')",
     "study": "study.run(progress=False)",
-    "insertion": "_native.Insertion(['usb'], density=20, direction=10)",
+    "insertion": """_native.Insertion('{"task": "usb", "density": 20, "direction": 10}')""",
 }
 
 START = """

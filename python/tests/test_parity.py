@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib
 import inspect
 import json
 import pickle
 import pydoc
 import subprocess
 import sys
+from pathlib import Path
 from typing import Literal, get_args, get_origin, get_type_hints
 
 import pytest
@@ -74,7 +76,17 @@ def commands():
 
 
 def test_every_command_has_a_counterpart_or_a_reason():
-    assert set(commands()) == set(COUNTERPARTS) | set(SHELL_ONLY)
+    assert set(COUNTERPARTS) | set(SHELL_ONLY) <= set(commands())
+    for name in set(commands()) - set(COUNTERPARTS) - set(SHELL_ONLY):
+        assert callable(getattr(fo, name.replace(" ", "_").replace("-", "_"))), name
+
+
+def test_the_calls_are_those_that_their_script_writes(monkeypatch):
+    monkeypatch.syspath_prepend(Path(__file__).parents[2] / "scripts")
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    modules = importlib.import_module("python_modules").modules
+    for name, text in modules(json.loads(_native.commands())).items():
+        assert Path(fo.__file__).with_name(name).read_text() == text, f"{name}: scripts/generate.py writes it"
 
 
 @pytest.mark.parametrize("name", COUNTERPARTS)
@@ -119,10 +131,10 @@ def test_the_names_in_signatures_are_those_that_are_shipped():
 def test_the_words_of_a_study_are_those_that_the_library_takes():
     for word, hint in (("optimizer", _words.OptimizerName), ("objective", _words.Objective)):
         with pytest.raises(fo.InputError) as raised:
-            _native.study(["usb"], **{word: "nothing"})
+            _native.Asked(json.dumps({"task": "usb", word: "nothing"}))
         assert all(name in str(raised.value) for name in get_args(hint)), raised.value
         for name in get_args(hint):
-            _native.study(["usb"], **{word: name})
+            _native.Asked(json.dumps({"task": "usb", word: name}))
 
 
 WRONG = [

@@ -3,6 +3,7 @@
 use super::open::OpenStudy;
 use crate::commands::{resume, study};
 use crate::failure::Failure;
+use crate::setup::run::RunRequest;
 use std::path::PathBuf;
 
 /// A study that is begun, or gone on with.
@@ -15,6 +16,19 @@ pub enum AnyStudy {
 }
 
 impl AnyStudy {
+    /// Returns the study that is asked for by what it measures.
+    pub fn asked(request: study::Request) -> Self {
+        AnyStudy::Asked(Box::new(request))
+    }
+
+    /// Returns how it is run, and whether all numbers behind the answer are printed.
+    pub fn how(&self) -> (&RunRequest, bool) {
+        match self {
+            AnyStudy::Asked(request) => (&request.run, request.verbose),
+            AnyStudy::Resumed(request) => (&request.run, request.verbose),
+        }
+    }
+
     /// Opens it; where no batch is given a new study's is `workers`.
     pub fn open(&self, workers: Option<u64>) -> Result<OpenStudy, Failure> {
         match self {

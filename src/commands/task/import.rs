@@ -80,7 +80,7 @@ pub struct Request {
     #[arg(long, value_enum, default_value_t)]
     pub engine: EngineKind,
     /// What to call plug and socket in messages and in the task's file, if not by their paths
-    #[arg(long, hide = true, num_args = 2)]
+    #[arg(long, hide = true, num_args = 2, allow_hyphen_values = true)]
     pub names: Vec<String>,
 }
 

@@ -1,0 +1,127 @@
+"""The words of a study. Written by scripts/generate.py."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, TypeVar
+
+from ._call import checked
+from ._task import Given, sources
+from ._words import Aggregate, Engine, FingerModel, Objective, OptimizerName, RobotName, SpaceName, Start, StrPath
+
+S = TypeVar("S", bound="Asked")
+
+
+class Asked:
+    """What is asked for by the words of ``optimize``."""
+
+    @classmethod
+    def asked(cls: type[S], words: Mapping[str, Any]) -> S:
+        """Of these words."""
+        raise NotImplementedError
+
+    @classmethod
+    @checked
+    def create(
+        cls: type[S],
+        task: Given | Iterable[Given],
+        *,
+        space: SpaceName | StrPath = "infill",
+        robot: RobotName | StrPath | None = None,
+        cell: StrPath | None = None,
+        stiffness_data: StrPath | None = None,
+        engine: Engine = "direct",
+        finger_model: FingerModel | None = None,
+        finger: StrPath = "finray9",
+        start: Start | None = None,
+        budget: int | None = None,
+        polish: int = 0,
+        indifference_mm: float = 0.3,
+        optimizer: OptimizerName = "gp",
+        objective: Objective | Sequence[Objective] = "range",
+        constraint: str | Sequence[str] = (),
+        uncertainty: StrPath | None = None,
+        measurements: StrPath | None = None,
+        priors: StrPath | None = None,
+        aggregate: Aggregate | None = None,
+        weights: Sequence[float] = (),
+        seed: int = 0,
+        batch: int | None = None,
+        async_: bool = False,
+        out: StrPath | None = None,
+        threads: int | None = None,
+        cache: StrPath | None = None,
+        no_cache: bool = False,
+        no_confirm: bool = False,
+        no_levers: bool = False,
+        no_map: bool = False,
+        accept_changed: bool = False,
+        simulations: int | None = None,
+        samples: int | None = None,
+    ) -> S:
+        """Find the finger that tolerates the largest shift: propose, simulate, search, as ``optimize study`` does.
+
+        Running the same command again continues the study. The name may be left out.
+
+        Args:
+            task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
+            space: Search space: infill, codesign, finger, or the path of a space file.
+            robot: see `optimize robots`, or the path of a robot file [default: servo].
+            cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
+            stiffness_data: Your own stiffness measurements in place of the shipped ones.
+            engine: Contact engine.
+            finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
+                computed for a space with numbers of the printed finger].
+            finger: Finger file of finger_model computed: finray9, or the path of one.
+            start: What becomes of the nominal start, in place of what the task file says.
+            budget: Evaluations in all; run the same command with a larger one to go on [default: until no
+                design is expected to gain 0.3 mm, at most 500; 200 for other optimizers and objectives].
+            polish: Then up to N evaluations more, by Nelder-Mead from the best design; the budget of such a
+                study cannot be raised.
+            indifference_mm: Difference of ranges that a bench cannot tell, mm: designs that lose less are as
+                good.
+            optimizer: gp, cma-es, random, sobol or grid.
+            objective: What is optimized: range, centred-range, success-rate, robust-range, peak-force or slip;
+                two or three, by commas, give a front.
+            constraint: What a design must keep to, as in 'peak-force<=30' or 'success-rate>=0.9'.
+            uncertainty: Errors for success-rate and robust-range: typical, or the path of a file [default:
+                typical].
+            measurements: What was measured on the bench, published or the path of a file: the study then ends
+                with the finger that is best there, predicted from all simulations and these measurements.
+            priors: What nobody measured, and its bounds, for measurements: bench, or the path of a file
+                [default: bench].
+            aggregate: What is made of the values of several tasks [default: min].
+            weights: Weight of each task, by commas, for aggregate weighted.
+            seed: Seed; the same seed gives the same study.
+            batch: Designs proposed and evaluated at a time; part of the study, unlike threads [default: that of
+                the study if it goes on, else 4, with executor the number of its workers].
+            async_: Tell each result as it comes and ask for one more design, so that no worker waits for the
+                slowest of a batch; the journal then depends on who was fast.
+            out: Folder of the study [default: results/<task>-<optimizer>-seed<seed>].
+            threads: Threads [default: one per processor]; changes no result.
+            cache: Folder of evaluations that studies share; safe to delete [default: results/.cache].
+            no_cache: Measure every design anew, and keep nothing.
+            no_confirm: Leave out what confirms the recommendation: the best designs walked, and repeated at
+                their ends.
+            no_levers: Leave out what would help the finger more than its infill.
+            no_map: Leave out the maps of how insertions end over two errors of the start.
+            accept_changed: Go on with a study that was measured by another program version, engine setting or
+                input file, in a new segment; the best design is then taken from that.
+            simulations: Simulations per task that the emulator of a bench prediction is made of; one in eight
+                measures its error [default: 200, or as the study has it].
+            samples: Samples of a bench prediction's posterior [default: 300, or as the study has it].
+
+        Raises:
+            InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+            StudyError: It fails while it runs, or cannot write a file.
+            Interrupted: Ctrl-C.
+        """
+        return cls.asked({
+            "task": sources(task), "space": space, "robot": robot, "cell": cell, "stiffness_data": stiffness_data,
+            "engine": engine, "finger_model": finger_model, "finger": finger, "start": start, "budget": budget,
+            "polish": polish, "indifference_mm": indifference_mm, "optimizer": optimizer, "objective": objective,
+            "constraint": constraint, "uncertainty": uncertainty, "measurements": measurements, "priors": priors,
+            "aggregate": aggregate, "weights": weights, "seed": seed, "batch": batch, "async": async_, "out": out,
+            "threads": threads, "cache": cache, "no_cache": no_cache, "no_confirm": no_confirm, "no_levers": no_levers,
+            "no_map": no_map, "accept_changed": accept_changed, "simulations": simulations, "samples": samples,
+        })

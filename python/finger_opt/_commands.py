@@ -1,0 +1,889 @@
+"""The commands of ``optimize`` as functions. Written by scripts/generate.py."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Literal
+
+from ._calibration import Advice, Calibration
+from ._call import called, checked, without, wrong
+from ._connector import NewTask, TaskCheck, Tuned
+from ._evaluation import Evaluation
+from ._export import Files
+from ._identify import Cell
+from ._lists import Robots, Tasks
+from ._map import CaptureMap, Levers
+from ._result import Found
+from ._springs import Finger
+from ._study import Comparison, Sensitivity, Study
+from ._task import Given, sources
+from ._trial import Trial
+from ._words import Axes, Engine, FingerModel, Numbers, RobotName, SpaceName, Start, StrPath, TaskName
+
+__all__ = [
+    "calibrate", "capture_map", "check_task", "compare", "evaluate", "export_finger", "export_mjcf", "finger",
+    "identify", "levers", "load_study", "measuring_sheet", "new_task", "next_print", "robots", "sensitivity",
+    "tasks", "trial", "tune_task",
+]
+#: Those that the page of the package does not name.
+_FURTHER = """"""
+
+
+@checked
+def load_study(
+    folder: StrPath,
+    *,
+    threads: int | None = None,
+    cache: StrPath | None = None,
+    no_cache: bool = False,
+    no_confirm: bool = False,
+    no_levers: bool = False,
+    no_map: bool = False,
+    accept_changed: bool = False,
+    simulations: int | None = None,
+    samples: int | None = None,
+) -> Study:
+    """Continue a study after an interruption or a crash, as ``optimize resume`` does.
+
+    Args:
+        folder: Folder of the study.
+        threads: Threads [default: one per processor]; changes no result.
+        cache: Folder of evaluations that studies share; safe to delete [default: results/.cache].
+        no_cache: Measure every design anew, and keep nothing.
+        no_confirm: Leave out what confirms the recommendation: the best designs walked, and repeated at
+            their ends.
+        no_levers: Leave out what would help the finger more than its infill.
+        no_map: Leave out the maps of how insertions end over two errors of the start.
+        accept_changed: Go on with a study that was measured by another program version, engine setting or
+            input file, in a new segment; the best design is then taken from that.
+        simulations: Simulations per task that the emulator of a bench prediction is made of; one in eight
+            measures its error [default: 200, or as the study has it].
+        samples: Samples of a bench prediction's posterior [default: 300, or as the study has it].
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    return Study.resumed(folder, {
+        "threads": threads, "cache": cache, "no_cache": no_cache, "no_confirm": no_confirm, "no_levers": no_levers,
+        "no_map": no_map, "accept_changed": accept_changed, "simulations": simulations, "samples": samples,
+    })
+
+
+@checked
+def evaluate(
+    task: Given,
+    density: float | None = None,
+    direction: float | None = None,
+    *,
+    space: SpaceName | StrPath = "infill",
+    robot: RobotName | StrPath | None = None,
+    cell: StrPath | None = None,
+    stiffness_data: StrPath | None = None,
+    engine: Engine = "direct",
+    finger_model: FingerModel | None = None,
+    finger: StrPath = "finray9",
+    start: Start | None = None,
+    stiffness_compliance: float | None = None,
+    stiffness_assembly: float | None = None,
+    set: Numbers | None = None,
+    walk: bool = False,
+    uncertainty: StrPath | None = None,
+    seed: int | None = None,
+    repeat: int | None = None,
+    repeat_seed: int | None = None,
+) -> Evaluation:
+    """Measure the tolerance window of one finger, as ``optimize evaluate`` does.
+
+    >>> import finger_opt as fo
+    >>> fo.evaluate("usb", density=20, direction=10).range_mm
+    7.2
+
+    Args:
+        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
+        density: Infill density, percent.
+        direction: Infill direction, degrees.
+        space: Search space: infill, codesign, finger, or the path of a space file.
+        robot: see `optimize robots`, or the path of a robot file [default: servo].
+        cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
+        stiffness_data: Your own stiffness measurements in place of the shipped ones.
+        engine: Contact engine.
+        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
+            computed for a space with numbers of the printed finger].
+        finger: Finger file of finger_model computed: finray9, or the path of one.
+        start: What becomes of the nominal start, in place of what the task file says.
+        stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
+        stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
+        set: A number of the task or the finger, as in spaces/codesign.toml.
+        walk: Go step by step to the first failure: sees gaps narrower than 0.5 mm, three times the trials.
+        uncertainty: Success rate and robust range under these errors, too: typical, or the path of a file.
+        seed: Seed of the drawn errors: those of the study with this seed.
+        repeat: Then N times more with friction within 10 %, start within 0.02 mm, and half the step by
+            turns.
+        repeat_seed: Seed of the repeats.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    if (density is None) != (direction is None):
+        raise wrong("density", "goes with direction")
+    return called("evaluate", {
+        "task": sources(task), "density": density, "direction": direction, "space": space, "robot": robot,
+        "cell": cell, "stiffness_data": stiffness_data, "engine": engine, "finger_model": finger_model,
+        "finger": finger, "start": start, "stiffness_compliance": stiffness_compliance,
+        "stiffness_assembly": stiffness_assembly, "set": set, "walk": walk, "uncertainty": uncertainty, "seed": seed,
+        "repeat": repeat, "repeat_seed": repeat_seed, "no_ribs": True,
+    }, Evaluation)
+
+
+@checked
+def trial(
+    task: Given,
+    density: float | None = None,
+    direction: float | None = None,
+    offset_mm: float = 0.0,
+    *,
+    space: SpaceName | StrPath = "infill",
+    robot: RobotName | StrPath | None = None,
+    cell: StrPath | None = None,
+    stiffness_data: StrPath | None = None,
+    engine: Engine = "direct",
+    finger_model: FingerModel | None = None,
+    finger: StrPath = "finray9",
+    start: Start | None = None,
+    stiffness_compliance: float | None = None,
+    stiffness_assembly: float | None = None,
+    set: Numbers | None = None,
+    repeat: int | None = None,
+    repeat_seed: int | None = None,
+    record: StrPath | None = None,
+    plot: StrPath | None = None,
+    log: StrPath | None = None,
+    probe: bool = False,
+    svg: StrPath | None = None,
+    every_s: float = 0.001,
+    film: bool = False,
+) -> Trial:
+    """Simulate one insertion, as ``optimize trial`` does.
+
+    >>> import finger_opt as fo
+    >>> found = fo.trial("usb", density=20, direction=10, offset_mm=0.5)
+    >>> found.outcome, found.series.force_n.shape[1]
+    ('inserted', 3)
+
+    Args:
+        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
+        density: Infill density, percent.
+        direction: Infill direction, degrees.
+        offset_mm: Shift of the start along y, mm.
+        space: Search space: infill, codesign, finger, or the path of a space file.
+        robot: see `optimize robots`, or the path of a robot file [default: servo].
+        cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
+        stiffness_data: Your own stiffness measurements in place of the shipped ones.
+        engine: Contact engine.
+        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
+            computed for a space with numbers of the printed finger].
+        finger: Finger file of finger_model computed: finray9, or the path of one.
+        start: What becomes of the nominal start, in place of what the task file says.
+        stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
+        stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
+        set: A number of the task or the finger, as in spaces/codesign.toml.
+        repeat: Then N times more with friction within 10 %, start within 0.02 mm, and half the step by
+            turns.
+        repeat_seed: Seed of the repeats.
+        record: Record the trial: a page that plays it, or a table of every millisecond.
+        plot: Draw force against depth.
+        log: Write force and pose at 500 Hz, as a robot logs them, from the search on.
+        probe: In place of an insertion, slide the part on a flat plate: 8 mm along y and back at 5 N, for
+            `identify`.
+        svg: Draw plug, fingertips and socket at the end of each phase.
+        every_s: Simulated time between two samples of the course, s, in the JSON.
+        film: Give the page that plays it in the result.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    if probe:
+        if log is None:
+            raise wrong("probe", "needs log, the file to write")
+        without("probe", "it is no insertion", repeat=repeat, svg=svg, record=record, plot=plot, film=film)
+    if (density is None) != (direction is None):
+        raise wrong("density", "goes with direction")
+    return called("trial", {
+        "task": sources(task), "density": density, "direction": direction, "offset_mm": offset_mm, "space": space,
+        "robot": robot, "cell": cell, "stiffness_data": stiffness_data, "engine": engine,
+        "finger_model": finger_model, "finger": finger, "start": start, "stiffness_compliance": stiffness_compliance,
+        "stiffness_assembly": stiffness_assembly, "set": set, "repeat": repeat, "repeat_seed": repeat_seed,
+        "record": record, "plot": plot, "log": log, "probe": probe, "svg": svg, "every_s": every_s, "film": film,
+    }, Trial)
+
+
+@checked
+def capture_map(
+    task: Given,
+    density: float | None = None,
+    direction: float | None = None,
+    *,
+    space: SpaceName | StrPath = "infill",
+    robot: RobotName | StrPath | None = None,
+    cell: StrPath | None = None,
+    stiffness_data: StrPath | None = None,
+    engine: Engine = "direct",
+    finger_model: FingerModel | None = None,
+    finger: StrPath = "finray9",
+    start: Start | None = None,
+    stiffness_compliance: float | None = None,
+    stiffness_assembly: float | None = None,
+    set: Numbers | None = None,
+    axes: Axes = "y,x",
+    svg: StrPath | None = None,
+) -> CaptureMap:
+    """Trace the capture map of one finger, as ``optimize map`` does.
+
+    A tolerance window is one line through it: along y, without a second error. At most 300 trials; what
+    lies between two that end alike is taken over from them.
+
+    Args:
+        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
+        density: Infill density, percent.
+        direction: Infill direction, degrees.
+        space: Search space: infill, codesign, finger, or the path of a space file.
+        robot: see `optimize robots`, or the path of a robot file [default: servo].
+        cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
+        stiffness_data: Your own stiffness measurements in place of the shipped ones.
+        engine: Contact engine.
+        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
+            computed for a space with numbers of the printed finger].
+        finger: Finger file of finger_model computed: finray9, or the path of one.
+        start: What becomes of the nominal start, in place of what the task file says.
+        stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
+        stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
+        set: A number of the task or the finger, as in spaces/codesign.toml.
+        axes: The two errors of the start: mm, degrees.
+        svg: Draw the map.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    if (density is None) != (direction is None):
+        raise wrong("density", "goes with direction")
+    return called("map", {
+        "task": sources(task), "density": density, "direction": direction, "space": space, "robot": robot,
+        "cell": cell, "stiffness_data": stiffness_data, "engine": engine, "finger_model": finger_model,
+        "finger": finger, "start": start, "stiffness_compliance": stiffness_compliance,
+        "stiffness_assembly": stiffness_assembly, "set": set, "axes": axes, "svg": svg,
+    }, CaptureMap)
+
+
+@checked
+def finger(
+    density: float | None = None,
+    direction: float | None = None,
+    *,
+    finger: StrPath = "finray9",
+    phase_mm: float | None = None,
+    set: Numbers | None = None,
+    svg: StrPath | None = None,
+    load_n: tuple[float, float] = (-5.0, 0.0),
+) -> Finger:
+    """Compute the stiffness of a printed finger from its ribs, as ``optimize finger`` does.
+
+    Plane stress on the exact profile: free stiffnesses at the pad's middle at the modulus of the finger
+    file, before any measured correction. Nothing is fitted. Trials and studies use it with finger_model
+    computed.
+
+    >>> import finger_opt as fo
+    >>> 4 < fo.finger(20, 20).mass_g < 6
+    True
+
+    Args:
+        density: Infill density, percent.
+        direction: Infill direction, degrees.
+        finger: finray9, or the path of a finger file.
+        phase_mm: Where the first rib lies, mm [default: the finger file's].
+        set: A number of the finger file, as finger.skin.thickness_mm=0.8.
+        svg: Draw the finger, at rest and under a force on its pad.
+        load_n: That force, N: y towards the part, z up; as -5,0 is a grasp, 0,10 a part that pulls up.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    if (density is None) != (direction is None):
+        raise wrong("density", "goes with direction")
+    return called("finger", {
+        "density": density, "direction": direction, "finger": finger, "phase_mm": phase_mm, "set": set, "svg": svg,
+        "load_n": load_n,
+    }, Finger)
+
+
+@checked
+def compare(
+    studies: Iterable[StrPath],
+    *,
+    svg: StrPath | None = None,
+    html: StrPath | None = None,
+) -> Comparison:
+    """Compare optimizers over studies of the same task and objective, as ``optimize compare`` does.
+
+    Args:
+        studies: Folders of the studies; several seeds of an optimizer give its median and quartiles.
+        svg: Draw the best so far of each optimizer.
+        html: Write table and picture as a page.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    return called("compare", {"dirs": studies, "svg": svg, "html": html}, Comparison)
+
+
+@checked
+def sensitivity(
+    task: Given,
+    *,
+    space: SpaceName | StrPath = "infill",
+    robot: RobotName | StrPath | None = None,
+    cell: StrPath | None = None,
+    stiffness_data: StrPath | None = None,
+    engine: Engine = "direct",
+    finger_model: FingerModel | None = None,
+    finger: StrPath = "finray9",
+    start: Start | None = None,
+    objective: Literal["range", "centred-range"] = "range",
+    uncertainty: StrPath = "typical",
+    samples: int = 64,
+    seed: int = 0,
+    svg: StrPath | None = None,
+) -> Sensitivity:
+    """Find out which input matters: of the design, the task and the cell, as ``optimize sensitivity`` does.
+
+    Args:
+        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
+        space: Search space: infill, codesign, finger, or the path of a space file.
+        robot: see `optimize robots`, or the path of a robot file [default: servo].
+        cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
+        stiffness_data: Your own stiffness measurements in place of the shipped ones.
+        engine: Contact engine.
+        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
+            computed for a space with numbers of the printed finger].
+        finger: Finger file of finger_model computed: finray9, or the path of one.
+        start: What becomes of the nominal start, in place of what the task file says.
+        objective: range or centred-range.
+        uncertainty: Errors of the cell that are varied, too: typical, none, or the path of a file.
+        samples: Rows of the sample: evaluations are this times (inputs + 2).
+        seed: Seed of the sample.
+        svg: Write a chart of the shares.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    return called("sensitivity", {
+        "task": sources(task), "space": space, "robot": robot, "cell": cell, "stiffness_data": stiffness_data,
+        "engine": engine, "finger_model": finger_model, "finger": finger, "start": start, "objective": objective,
+        "uncertainty": uncertainty, "samples": samples, "seed": seed, "svg": svg,
+    }, Sensitivity)
+
+
+@checked
+def levers(
+    task: Given,
+    density: float | None = None,
+    direction: float | None = None,
+    *,
+    space: SpaceName | StrPath = "infill",
+    robot: RobotName | StrPath | None = None,
+    cell: StrPath | None = None,
+    stiffness_data: StrPath | None = None,
+    engine: Engine = "direct",
+    finger_model: FingerModel | None = None,
+    finger: StrPath = "finray9",
+    start: Start | None = None,
+    stiffness_compliance: float | None = None,
+    stiffness_assembly: float | None = None,
+    set: Numbers | None = None,
+    svg: StrPath | None = None,
+) -> Levers:
+    """Find out what would help a finger more than its infill: tilt, strokes, grip, friction, robot, as ``optimize levers`` does.
+
+    Args:
+        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
+        density: Infill density, percent.
+        direction: Infill direction, degrees.
+        space: Search space: infill, codesign, finger, or the path of a space file.
+        robot: see `optimize robots`, or the path of a robot file [default: servo].
+        cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
+        stiffness_data: Your own stiffness measurements in place of the shipped ones.
+        engine: Contact engine.
+        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
+            computed for a space with numbers of the printed finger].
+        finger: Finger file of finger_model computed: finray9, or the path of one.
+        start: What becomes of the nominal start, in place of what the task file says.
+        stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
+        stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
+        set: A number of the task or the finger, as in spaces/codesign.toml.
+        svg: Draw the ranges at both ends of each lever.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    if (density is None) != (direction is None):
+        raise wrong("density", "goes with direction")
+    return called("levers", {
+        "task": sources(task), "density": density, "direction": direction, "space": space, "robot": robot,
+        "cell": cell, "stiffness_data": stiffness_data, "engine": engine, "finger_model": finger_model,
+        "finger": finger, "start": start, "stiffness_compliance": stiffness_compliance,
+        "stiffness_assembly": stiffness_assembly, "set": set, "svg": svg,
+    }, Levers)
+
+
+@checked
+def calibrate(
+    measurements: StrPath,
+    task: Given | Iterable[Given] | None | None = None,
+    *,
+    space: SpaceName | StrPath = "infill",
+    robot: RobotName | StrPath | None = None,
+    cell: StrPath | None = None,
+    stiffness_data: StrPath | None = None,
+    engine: Engine = "direct",
+    finger_model: FingerModel | None = None,
+    finger: StrPath = "finray9",
+    start: Start | None = None,
+    priors: StrPath = "bench",
+    simulations: int | None = None,
+    samples: int | None = None,
+    seed: int = 0,
+    cache: StrPath | None = None,
+    no_cache: bool = False,
+    out: StrPath | None = None,
+) -> Calibration:
+    """Predict what every finger does on the bench, from simulation and few measurements, as ``optimize calibrate`` does.
+
+    Simulates the task under what nobody measured (friction, preload, robot, finger), compares with the
+    measurements, learns what no parameter explains as a process over the stiffness, and says how far the
+    result is to be trusted: each measured finger predicted without it.
+
+    Args:
+        measurements: What was measured on the bench: published, or the path of a file.
+        task: ket8, ket12, rj45, usb, or the path of a task file; several by commas [default: that of the
+            measurements, if they are of one].
+        space: Search space: infill, codesign, finger, or the path of a space file.
+        robot: see `optimize robots`, or the path of a robot file [default: servo].
+        cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
+        stiffness_data: Your own stiffness measurements in place of the shipped ones.
+        engine: Contact engine.
+        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
+            computed for a space with numbers of the printed finger].
+        finger: Finger file of finger_model computed: finray9, or the path of one.
+        start: What becomes of the nominal start, in place of what the task file says.
+        priors: What nobody measured, and its bounds: bench, or the path of a file.
+        simulations: Simulations per task that the emulator of a bench prediction is made of; one in eight
+            measures its error [default: 200, or as the study has it].
+        samples: Samples of a bench prediction's posterior [default: 300, or as the study has it].
+        seed: Seed; the same seed gives the same answer.
+        cache: Folder of simulations shared with studies; safe to delete [default: results/.cache].
+        no_cache: Simulate anew, and keep nothing.
+        out: Folder that tables are written to.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    return called("calibrate", {
+        "measurements": measurements, "task": sources(task), "space": space, "robot": robot, "cell": cell,
+        "stiffness_data": stiffness_data, "engine": engine, "finger_model": finger_model, "finger": finger,
+        "start": start, "priors": priors, "simulations": simulations, "samples": samples, "seed": seed,
+        "cache": cache, "no_cache": no_cache, "out": out,
+    }, Calibration)
+
+
+@checked
+def identify(
+    task: Given,
+    runs: StrPath,
+    out: StrPath | None = None,
+    *,
+    space: SpaceName | StrPath = "infill",
+    robot: RobotName | StrPath | None = None,
+    cell: StrPath | None = None,
+    stiffness_data: StrPath | None = None,
+    engine: Engine = "direct",
+    finger_model: FingerModel | None = None,
+    finger: StrPath = "finray9",
+    start: Start | None = None,
+    frame: StrPath | None = None,
+    report: StrPath | None = None,
+    priors: StrPath = "bench",
+    seed: int = 0,
+) -> Cell:
+    """Tell from the robot's logs what its cell is like: friction, stiffness, preload, pads, edges, as ``optimize identify`` does.
+
+    The attempts are simulated along their commanded paths. What force and pose tell by themselves is read
+    by formulas, the rest is fitted to the curves; what these logs cannot tell is named and left as it was.
+
+    Args:
+        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
+        runs: Table of the logs: log, infill_density_percent, infill_direction_deg, offset_mm, outcome.
+        out: Write the cell, for cell, priors and uncertainty.
+        space: Search space: infill, codesign, finger, or the path of a space file.
+        robot: see `optimize robots`, or the path of a robot file [default: servo].
+        cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
+        stiffness_data: Your own stiffness measurements in place of the shipped ones.
+        engine: Contact engine.
+        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
+            computed for a space with numbers of the printed finger].
+        finger: Finger file of finger_model computed: finray9, or the path of one.
+        start: What becomes of the nominal start, in place of what the task file says.
+        frame: Task's frame in the robot's base: origin_mm and axis_angle_rad, as a pendant shows them;
+            force_sign = 1 or -1, tool_mass_kg; and upright_axis_angle_rad of the TCP, gravity_compensated =
+            false if need be.
+        report: Write a page with the curves, measured and simulated, and the table of numbers.
+        priors: Bounds of what the logs may not tell: bench, or the path of a file.
+        seed: Seed of the fit.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    return called("identify", {
+        "task": sources(task), "runs": runs, "out": out, "space": space, "robot": robot, "cell": cell,
+        "stiffness_data": stiffness_data, "engine": engine, "finger_model": finger_model, "finger": finger,
+        "start": start, "frame": frame, "report": report, "priors": priors, "seed": seed,
+    }, Cell)
+
+
+@checked
+def next_print(
+    measurements: StrPath,
+    task: Given | Iterable[Given] | None | None = None,
+    *,
+    space: SpaceName | StrPath = "infill",
+    robot: RobotName | StrPath | None = None,
+    cell: StrPath | None = None,
+    stiffness_data: StrPath | None = None,
+    engine: Engine = "direct",
+    finger_model: FingerModel | None = None,
+    finger: StrPath = "finray9",
+    start: Start | None = None,
+    count: int = 1,
+    among: Literal["space", "published"] = "space",
+    print_cost_mm: float = 0.1,
+    priors: StrPath = "bench",
+    simulations: int | None = None,
+    samples: int | None = None,
+    seed: int = 0,
+    cache: StrPath | None = None,
+    no_cache: bool = False,
+) -> Advice:
+    """Say which finger to print next, and when to stop printing, as ``optimize next`` does.
+
+    The finger with the largest expected gain of the best known bench range, by simulation and by what was
+    measured; the file of measurements may have no line yet, or not be there.
+
+    Args:
+        measurements: What was measured on the bench: published, or the path of a file.
+        task: ket8, ket12, rj45, usb, or the path of a task file; several by commas [default: that of the
+            measurements, if they are of one].
+        space: Search space: infill, codesign, finger, or the path of a space file.
+        robot: see `optimize robots`, or the path of a robot file [default: servo].
+        cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
+        stiffness_data: Your own stiffness measurements in place of the shipped ones.
+        engine: Contact engine.
+        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
+            computed for a space with numbers of the printed finger].
+        finger: Finger file of finger_model computed: finray9, or the path of one.
+        start: What becomes of the nominal start, in place of what the task file says.
+        count: Fingers to print at a time.
+        among: Fingers that may be printed.
+        print_cost_mm: Gain of range that is worth the print and the measurement, mm; below it: stop.
+        priors: What nobody measured, and its bounds: bench, or the path of a file.
+        simulations: Simulations per task that the emulator of a bench prediction is made of; one in eight
+            measures its error [default: 200, or as the study has it].
+        samples: Samples of a bench prediction's posterior [default: 300, or as the study has it].
+        seed: Seed; the same seed gives the same answer.
+        cache: Folder of simulations shared with studies; safe to delete [default: results/.cache].
+        no_cache: Simulate anew, and keep nothing.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    return called("next", {
+        "measurements": measurements, "task": sources(task), "space": space, "robot": robot, "cell": cell,
+        "stiffness_data": stiffness_data, "engine": engine, "finger_model": finger_model, "finger": finger,
+        "start": start, "count": count, "among": among, "print_cost_mm": print_cost_mm, "priors": priors,
+        "simulations": simulations, "samples": samples, "seed": seed, "cache": cache, "no_cache": no_cache,
+    }, Advice)
+
+
+@checked
+def measuring_sheet(
+    task: TaskName | StrPath,
+    fingers: Sequence[tuple[float, float]],
+    out: StrPath,
+) -> None:
+    """Write a sheet to print and fill in, to measure windows by hand, as ``optimize measure sheet`` does.
+
+    Args:
+        task: ket8, ket12, rj45, usb, or the path of a task file.
+        fingers: Infill density, percent, and direction, degrees, of a finger.
+        out: File to write.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    called("measure sheet", {"task": task, "finger": fingers, "out": out}, Found)
+
+
+@checked
+def export_mjcf(
+    task: Given,
+    density: float | None = None,
+    direction: float | None = None,
+    *,
+    out: StrPath,
+    space: SpaceName | StrPath = "infill",
+    robot: RobotName | StrPath | None = None,
+    cell: StrPath | None = None,
+    stiffness_data: StrPath | None = None,
+    finger_model: FingerModel | None = None,
+    finger: StrPath = "finray9",
+    start: Start | None = None,
+    stiffness_compliance: float | None = None,
+    stiffness_assembly: float | None = None,
+    set: Numbers | None = None,
+) -> Path:
+    """The scene of a trial as MJCF, the model format of MuJoCo and its viewer, as ``optimize export mjcf`` does.
+
+    The part stands at its pick-up place and the jaws are open. In the viewer the sliders move the robot's
+    command and close the jaws. Needs no MuJoCo.
+
+    Args:
+        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
+        density: Infill density, percent.
+        direction: Infill direction, degrees.
+        out: File to write.
+        space: Search space: infill, codesign, finger, or the path of a space file.
+        robot: see `optimize robots`, or the path of a robot file [default: servo].
+        cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
+        stiffness_data: Your own stiffness measurements in place of the shipped ones.
+        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
+            computed for a space with numbers of the printed finger].
+        finger: Finger file of finger_model computed: finray9, or the path of one.
+        start: What becomes of the nominal start, in place of what the task file says.
+        stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
+        stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
+        set: A number of the task or the finger, as in spaces/codesign.toml.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    if (density is None) != (direction is None):
+        raise wrong("density", "goes with direction")
+    return called("export mjcf", {
+        "task": sources(task), "density": density, "direction": direction, "out": out, "space": space, "robot": robot,
+        "cell": cell, "stiffness_data": stiffness_data, "finger_model": finger_model, "finger": finger,
+        "start": start, "stiffness_compliance": stiffness_compliance, "stiffness_assembly": stiffness_assembly,
+        "set": set,
+    }, Files).paths[0]
+
+
+@checked
+def export_finger(
+    study: StrPath | None = None,
+    *,
+    format: Literal["stl", "3mf", "svg", "dxf", "sheet", "cura", "prusaslicer"],
+    out: StrPath,
+    density: float | None = None,
+    direction: float | None = None,
+    finger: StrPath | None = None,
+    phase_mm: float | None = None,
+) -> tuple[Path, ...]:
+    """A finger for the printer: the best of a study, or of an infill, as ``optimize export finger`` does.
+
+    Both fingers of a gripper are this part. STL, 3MF, DXF and SVG have every rib of it; the settings for
+    slicers are for its outline, which is written beside them and which the slicer fills with its own ribs.
+
+    Args:
+        study: Folder of a study: its best design.
+        format: What to write.
+        out: File to write.
+        density: Infill density, percent.
+        direction: Infill direction, degrees.
+        finger: finray9, or the path of a finger file [default: the study's, or finray9].
+        phase_mm: Where the first rib lies, mm [default: the finger file's].
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    if study is not None:
+        without("study", "its best design is exported", density=density, direction=direction)
+    elif density is None:
+        raise wrong("density", "is missing: give the folder of a study, or density and direction")
+    if (density is None) != (direction is None):
+        raise wrong("density", "goes with direction")
+    return called("export finger", {
+        "dir": study, "format": format, "out": out, "density": density, "direction": direction, "finger": finger,
+        "phase_mm": phase_mm,
+    }, Files).paths
+
+
+@checked
+def robots() -> Robots:
+    """List robots by the cells that they stand for, and write one's own, as ``optimize robots`` does.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    return called("robots", {}, Robots)
+
+
+@checked
+def tasks() -> Tasks:
+    """List tasks, spaces and uncertainties, as ``optimize tasks`` does.
+
+    >>> import finger_opt as fo
+    >>> [task.name for task in fo.tasks().tasks]
+    ['ket8', 'ket12', 'rj45', 'usb']
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    return called("tasks", {}, Tasks)
+
+
+@checked
+def new_task(
+    name: str,
+    *,
+    plug: tuple[float, float, float] | None = None,
+    round: tuple[float, float] | None = None,
+    clearance: float | None = None,
+    body: tuple[float, float, float] | None = None,
+    like: StrPath | None = None,
+    out: StrPath | None = None,
+    engine: Engine = "direct",
+) -> NewTask:
+    """Write a commented task file from a few dimensions, or like another task, as ``optimize task new`` does.
+
+    With plug or round, start, tilt, strokes and success depth are derived from the geometry. With like
+    alone the file is a copy of that task; with both, friction and grasp force are that task's. With neither
+    it is a USB-C plug.
+
+    Args:
+        name: Name of the task: letters, digits, - and _.
+        plug: What goes in: width (y, between the jaws) x height (x) x length, mm.
+        round: What goes in, if it is a cylinder: diameter x length, mm.
+        clearance: Opening less plug in x and y, mm: both sides together.
+        body: What the fingers hold, above the plug: width x height x length, mm [default: the plug itself].
+        like: Another task: ket8, ket12, rj45, usb, or the path of a task file.
+        out: File to write [default: NAME.toml].
+        engine: Contact engine that tries the nominal start.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    if plug is not None:
+        without("plug", "one of them goes in", round=round)
+    if plug is None and round is None:
+        without("no plug", "they go with plug or round", clearance=clearance, body=body)
+    return called("task new", {
+        "name": name, "plug": plug, "round": round, "clearance": clearance, "body": body, "like": like, "out": out,
+        "engine": engine,
+    }, NewTask)
+
+
+@checked
+def check_task(
+    task: Given,
+    *,
+    svg: StrPath | None = None,
+    robot: RobotName | StrPath = "servo",
+    engine: Engine = "direct",
+) -> TaskCheck:
+    """Look for what cannot work in a task file, draw it and try its nominal start, as ``optimize task check`` does.
+
+    Exit code 0 if nothing is wrong and the plug goes in, 2 otherwise.
+
+    >>> import finger_opt as fo
+    >>> fo.check_task("usb").inserts
+    True
+
+    Args:
+        task: Task file, or the name of a shipped task.
+        svg: Draw plug, socket, clearances, fingertips and search path.
+        robot: see `optimize robots`, or the path of a robot file.
+        engine: Contact engine.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    return called("task check", {"file": sources(task), "svg": svg, "robot": robot, "engine": engine}, TaskCheck)
+
+
+@checked
+def tune_task(
+    task: TaskName | StrPath,
+    *,
+    robot: RobotName | StrPath = "servo",
+    engine: Engine = "direct",
+    seed: int = 0,
+    out: StrPath | None = None,
+    dry_run: bool = False,
+    svg: StrPath | None = None,
+) -> Tuned:
+    """Find a start and a strategy by which a connector inserts, before fingers are compared, as ``optimize task tune`` does.
+
+    A start taught with a medium finger; then the strategies of the shipped tasks, carried over to this
+    opening; then a search over tilt, strokes, preload and push speed for the widest least range of a soft,
+    a medium and a stiff finger from one start. Exit code 1 if nothing inserts.
+
+    Args:
+        task: Task file, which is written anew; or the name of a shipped task, with out.
+        robot: see `optimize robots`, or the path of a robot file.
+        engine: Contact engine.
+        seed: Seed of the search.
+        out: Write this new file in place of FILE.
+        dry_run: Write no task file.
+        svg: Draw the search before and after.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    return called("task tune", {
+        "file": task, "robot": robot, "engine": engine, "seed": seed, "out": out, "dry_run": dry_run, "svg": svg,
+    }, Tuned)

@@ -1,0 +1,79 @@
+//! Commands, run without the interpreter's lock.
+
+use crate::errors::{InputError, StudyError, not_forked, raise, signalled};
+use finger_opt::command::Called;
+use finger_opt::commands::COMMANDS;
+use finger_opt::context::Context;
+use finger_opt::keywords;
+use pyo3::prelude::*;
+use serde_json::{Map, Value};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
+
+/// How often a long call looks for Ctrl-C.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// Runs `work`, which may use the threads that all share, without the interpreter's lock.
+pub fn released<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    not_forked()?;
+    Ok(py.allow_threads(work))
+}
+
+/// The same for what takes long: Ctrl-C sets the flag that `work` is given, and is raised when
+/// `work` has ended.
+pub fn interruptible<T: Send>(
+    py: Python<'_>,
+    work: impl FnOnce(&AtomicBool) -> T + Send,
+) -> PyResult<T> {
+    not_forked()?;
+    let stop = AtomicBool::new(false);
+    watched(py, &stop, || work(&stop))
+}
+
+/// Runs `work`, which shares no threads, without the interpreter's lock. Ctrl-C sets `stop`, and is
+/// raised when `work` has ended.
+pub fn watched<T: Send>(
+    py: Python<'_>,
+    stop: &AtomicBool,
+    work: impl FnOnce() -> T + Send,
+) -> PyResult<T> {
+    py.allow_threads(|| {
+        std::thread::scope(|scope| {
+            let (sender, receiver) = mpsc::channel();
+            // The receiver is there until the scope ends.
+            scope.spawn(move || sender.send(work()));
+            let mut signal = Ok(());
+            loop {
+                match receiver.recv_timeout(LOOK) {
+                    Ok(done) => return signal.map(|()| done),
+                    Err(RecvTimeoutError::Timeout) if signal.is_ok() => {
+                        signal = Python::with_gil(|py| py.check_signals()).map_err(signalled);
+                        stop.fetch_or(signal.is_err(), Ordering::SeqCst);
+                    }
+                    Err(RecvTimeoutError::Timeout) => {}
+                    Err(RecvTimeoutError::Disconnected) => {
+                        return Err(StudyError::new_err("the simulation broke off"));
+                    }
+                }
+            }
+        })
+    })
+}
+
+/// Reads keywords: an object of JSON.
+pub fn read(keywords: &str) -> PyResult<Map<String, Value>> {
+    serde_json::from_str(keywords).map_err(|error| InputError::new_err(error.to_string()))
+}
+
+/// Runs a command by its name, `task new`, with its options as an object of JSON; gives its result as JSON, and
+/// a picture or a page of it, if there is one.
+#[pyfunction]
+pub fn call(py: Python<'_>, command: &str, keywords: &str) -> PyResult<(String, Option<String>)> {
+    let keywords = read(keywords)?;
+    let called = interruptible(py, |stop| {
+        keywords::call(COMMANDS, command, &keywords, &Context::silent(stop))
+    })?;
+    let Called { json, picture } = called.map_err(raise)?;
+    Ok((json, picture))
+}

@@ -1,0 +1,98 @@
+#!/usr/bin/env python3
+"""Writes what follows from the commands: their list, their reference page, and their functions in Python.
+
+Usage: generate.py [--check] [PROGRAM]. PROGRAM is the program `optimize`, built unless given; with --check nothing is
+written, and the exit code is 1 if a file is not current.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).parent))
+
+from python_modules import modules  # noqa: E402
+
+ROOT = Path(__file__).resolve().parents[1]
+COMMANDS = ROOT / "src/commands"
+BUILD = ["cargo", "build", "--release", "--locked", "--quiet", "--bin", "optimize"]
+
+
+def paths() -> list[tuple[str, ...]]:
+    """The modules of the commands: a file is a command, a folder a group of them."""
+    files = (file.relative_to(COMMANDS).with_suffix("") for file in COMMANDS.rglob("*.rs"))
+    return sorted(file.parts for file in files if file.name != "mod")
+
+
+def command_list() -> str:
+    """The text of `src/commands/mod.rs`."""
+    alone = [path[0] for path in paths() if len(path) == 1]
+    groups = sorted({path[0] for path in paths() if len(path) > 1})
+    lines = [
+        "//! The commands of `optimize`, one file each. Written by `scripts/generate.py` from the files in this folder.",
+        "",
+        *(f"pub mod {name};" for name in alone),
+    ]
+    for group in groups:
+        members = [f"    pub mod {path[1]};" for path in paths() if path[0] == group and len(path) > 1]
+        lines += ["", f"/// `optimize {group}`.", f"pub mod {group} {{", *members, "}"]
+    lines += ["", "use crate::command::Command;", "", "/// All commands.", "pub static COMMANDS: &[Command] = &["]
+    for path in paths():
+        words = ", ".join(f'"{word.replace("_", "-")}"' for word in path)
+        lines.append(f"    Command::of::<{'::'.join(path)}::Request>(&[{words}]),")
+    return "\n".join([*lines, "];", ""])
+
+
+def said(program: str, form: str) -> str:
+    """What the program says of its commands."""
+    done = subprocess.run([program, "man", "--format", form], stdout=subprocess.PIPE, text=True, check=True)
+    return done.stdout
+
+
+def files(program: str | None) -> dict[Path, str]:
+    """The files with their texts; the list of commands is written first, so that the program has all of them."""
+    found = {COMMANDS / "mod.rs": command_list()}
+    if program is None:
+        write(found)
+        subprocess.run(BUILD, cwd=ROOT, check=True)
+        program = str(ROOT / "target/release/optimize")
+    found[ROOT / "docs/cli.md"] = said(program, "markdown")
+    for name, text in modules(json.loads(said(program, "json"))).items():
+        found[ROOT / "python/finger_opt" / name] = text
+    return found
+
+
+def write(found: dict[Path, str]) -> None:
+    """Writes what is not current."""
+    for file, text in found.items():
+        if not current(file, text):
+            file.write_text(text, encoding="utf-8")
+
+
+def current(file: Path, text: str) -> bool:
+    """Whether a file has this text."""
+    return file.exists() and file.read_text(encoding="utf-8") == text
+
+
+def main(words: list[str]) -> int:
+    """Writes the files, or says which are not current."""
+    check = "--check" in words
+    programs = [word for word in words if not word.startswith("--")]
+    if check and not programs:
+        sys.exit("generate.py: --check needs PROGRAM")
+    found = files(programs[0] if programs else None)
+    if not check:
+        write(found)
+        return 0
+    stale = [str(file.relative_to(ROOT)) for file, text in found.items() if not current(file, text)]
+    for file in stale:
+        print(f"{file} is not current: scripts/generate.py writes it", file=sys.stderr)
+    return 1 if stale else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,272 @@
+"""The commands as functions of the Python package: signatures, types and docstrings from their options.
+
+A command becomes a function of its own name that gives a `Found`, unless `python_calls.py` says otherwise.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import textwrap
+from dataclasses import dataclass
+from typing import Any
+
+from python_calls import BY_HAND, CALLS, INFILL, Call
+
+#: How a result is printed, and where a study is measured: Python's calls do not have these.
+LEFT_OUT = {"json", "quiet", "verbose", "executor"}
+#: Types that an option's kind does not say.
+TYPES = {
+    "task": "Given", "space": "SpaceName | StrPath", "robot": "RobotName | StrPath", "optimizer": "OptimizerName",
+    "objective": "Objective | Sequence[Objective]", "constraint": "str | Sequence[str]", "engine": "Engine",
+    "finger_model": "FingerModel", "start": "Start", "axes": "Axes", "aggregate": "Aggregate",
+}
+#: What is refused of an infill.
+WHOLE_INFILL = """\
+if (density is None) != (direction is None):
+    raise wrong("density", "goes with direction")"""
+#: How other parts of the package go by: their modules.
+FROM = {
+    "_call": ["called", "checked", "without", "wrong"],
+    "_result": ["Found"],
+    "_task": ["Given", "sources"],
+    "_words": [
+        "Aggregate", "Axes", "Engine", "FingerModel", "Numbers", "Objective", "OptimizerName", "RobotName", "SpaceName",
+        "Start", "StrPath", "TaskName",
+    ],
+}
+RAISES = """\
+Raises:
+    InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+    StudyError: It fails while it runs, or cannot write a file.
+    Interrupted: Ctrl-C.
+"""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a function, and the option that it is."""
+
+    option: str
+    name: str
+    type: str
+    #: Empty if it has to be given.
+    default: str
+    help: str
+
+    def declared(self) -> str:
+        """Its place in the signature."""
+        return f"{self.name}: {self.type}" + (f" = {self.default}" if self.default else "")
+
+    def given(self) -> str:
+        """What the library is given."""
+        return f"sources({self.name})" if "Given" in self.type else self.name
+
+
+def parameter(option: dict[str, Any], call: Call) -> Parameter:
+    """The parameter of an option."""
+    name = call.names.get(option["name"], option["name"])
+    kind, default = kind_of(option, call), option["default"]
+    if option["flag"]:
+        default = "False"
+    elif option["name"] in call.more:
+        default = call.more[option["name"]]
+    elif option["name"] in call.unset:
+        kind, default = f"{kind} | None", "None"
+    elif default:
+        default = literal(kind, default)
+    elif option["multiple"] or kind.startswith("Sequence["):
+        default = "" if option["required"] else "()"
+    elif not option["required"] or option["name"] in INFILL:
+        kind, default = f"{kind} | None", "None"
+    if default == "()" and kind == "Numbers":
+        kind, default = "Numbers | None", "None"
+    if option["name"] == "task" and "measurements" in call.positional:
+        kind, default = f"{kind} | None", "None"
+    # A word of Python has a stroke behind it.
+    name = f"{name}_" if name == "async" else name
+    help = told(option["help"] or "").removeprefix(f"{option['name'].capitalize()}: ")
+    return Parameter(option["name"], name, kind, default, help)
+
+
+def kind_of(option: dict[str, Any], call: Call) -> str:
+    """The type of an option's values."""
+    name, value = option["name"], option["value"] or ""
+    if name in call.types or name in TYPES:
+        return call.types.get(name) or TYPES[name]
+    if option["flag"]:
+        return "bool"
+    if option["words"]:
+        return f"Literal[{', '.join(repr(word) for word in option['words'])}]".replace("'", '"')
+    if value == "KEY=VALUE":
+        return "Numbers"
+    parts = re.fullmatch(r"[A-Z]+(?:[,x][A-Z]+)+", value)
+    if parts:
+        numbers = ", ".join(["float"] * len(re.split("[,x]", value)))
+        kind = f"tuple[{numbers}]"
+    else:
+        kind = {"number": "float", "integer": "int", "path": "StrPath"}.get(option["kind"], "str")
+        if kind == "str" and re.match(r"(NAME|FILE|DIR|T)\b", value) and not name.endswith("body"):
+            kind = "StrPath"
+    if option["multiple"] or value.endswith(".."):
+        kind = f"Iterable[{kind}]" if kind == "StrPath" else f"Sequence[{kind}]"
+    return kind
+
+
+def literal(kind: str, default: str) -> str:
+    """A default as Python writes it."""
+    if kind.startswith("tuple["):
+        return f"({', '.join(repr(float(part)) for part in default.split(','))})"
+    if kind in ("int", "float"):
+        return repr(int(default) if kind == "int" else float(default))
+    return f'"{default}"'
+
+
+def told(text: str) -> str:
+    """Help as Python says it: options by the names of parameters."""
+    text = text.replace("; may be given several times", "").replace("; may be given\nseveral times", "")
+    return re.sub(r"(?<![\w-])--([a-z][a-z-]*)", lambda found: found[1].replace("-", "_"), text)
+
+
+def docstring(command: dict[str, Any], call: Call, parameters: list[Parameter]) -> str:
+    """What the function does, and its parameters."""
+    first, *rest = told(command["about"]).split("\n\n")
+    text = f"{first.rstrip('.')}, as ``optimize {command['name']}`` does.\n\n"
+    text += "".join(f"{textwrap.fill(' '.join(part.split()), 104)}\n\n" for part in rest)
+    if call.example:
+        text += f">>> import finger_opt as fo\n>>> {call.example}\n\n"
+    if parameters:
+        text += "Args:\n"
+    for one in parameters:
+        line = f"{one.name}: {' '.join(one.help.split())}."
+        text += textwrap.fill(line, 104, initial_indent="    ", subsequent_indent="        ") + "\n"
+    text += ("\n" if parameters else "") + RAISES
+    return f'"""{text}"""'.replace("\\", "\\\\")
+
+
+def function(command: dict[str, Any], call: Call) -> str:
+    """The function of a command."""
+    options = [option for option in command["options"] if option["name"] not in LEFT_OUT]
+    options += [option for option in command["hidden"] if option["name"] in call.more]
+    parameters = {one.name: one for one in (parameter(option, call) for option in options)}
+    bare = [parameter(option, call).name for option in options if option["positional"]]
+    ordered = [parameters.pop(name) for name in call.positional or bare]
+    # What has to be given stands first.
+    named = sorted(parameters.values(), key=lambda one: one.default != "")
+    both = [*ordered, *named]
+    words = [f'"{one.option}": {one.given()}' for one in both]
+    words += [f'"{name}": {value}' for name, value in call.always.items()]
+    kind = call.result.split(".")[-1]
+    method = command["name"] == "study"
+    signature = (["cls: type[S]"] if method else []) + [one.declared() for one in ordered]
+    signature += ["*", *(one.declared() for one in named)] if named else []
+    what, then = call.gives or ("S" if method else kind, "")
+    given = "{" + ", ".join(words) + "}"
+    if command["name"] == "study":
+        body = f"return cls.asked({given})"
+    elif command["name"] == "resume":
+        words = ", ".join(word for word in words if not word.startswith('"dir"'))
+        body = f"return {kind}.resumed({ordered[0].name}, {{{words}}})"
+    else:
+        found = f'called("{command["name"]}", {given}, {kind})'
+        body = found if what == "None" else f"return {found}{then}"
+    head = [f"def {call.name}(", *(f"    {one}," for one in signature), f") -> {what}:"]
+    lines = ["@checked", *(head if signature else [f"def {call.name}() -> {what}:"])]
+    infill = WHOLE_INFILL if {*INFILL} <= {one.name for one in both} else ""
+    for part in (docstring(command, call, both), call.refuses, infill, broken(body)):
+        lines += [f"    {line}" if line else "" for line in part.splitlines()]
+    if method:
+        lines = [f"    {line}" if line else "" for line in ["@classmethod", *lines]]
+    return "\n".join(lines) + "\n"
+
+
+def broken(body: str) -> str:
+    """A statement in lines of at most 116 letters."""
+    if len(body) <= 116:
+        return body
+    before, rest = body.split("{", 1)
+    words, after = rest.rsplit("}", 1)
+    return f"{before}{{\n{packed(words.split(', '))}\n}}{after}"
+
+
+def packed(words: list[str]) -> str:
+    """Indented lines of at most 114 letters, a comma behind each word."""
+    lines = ["   "]
+    for word in words:
+        if len(lines[-1]) + len(word) > 112:
+            lines.append("   ")
+        lines[-1] += f" {word},"
+    return "\n".join(lines)
+
+
+def module(about: str, body: str, results: list[str]) -> str:
+    """The text of a module: what it imports, and its body."""
+    sources = {name: list(names) for name, names in FROM.items()}
+    for result in results:
+        home, kind = result.split(".")
+        sources.setdefault(home, []).append(kind)
+    lines = [f'"""{about} Written by scripts/generate.py."""', "", "from __future__ import annotations", ""]
+    for home, names in {
+        "collections.abc": ["Iterable", "Mapping", "Sequence"], "pathlib": ["Path"],
+        "typing": ["Any", "Literal", "TypeVar"],
+    }.items():
+        lines += imported(home, names, body)
+    lines += [""]
+    for home in sorted(sources):
+        lines += imported(f".{home}", sources[home], body)
+    return "\n".join(lines) + body
+
+
+def imported(home: str, names: list[str], body: str) -> list[str]:
+    """The line that imports what a body uses."""
+    body = re.sub(r'"{3}.*?"{3}', "", body, flags=re.DOTALL)
+    used = sorted({name for name in names if re.search(rf"(?<![\w.`\"]){name}\b(?!`)", body)})
+    line = f"from {home} import {', '.join(used)}"
+    if len(line) > 118:
+        line = f"from {home} import (\n{packed(used)}\n)"
+    return [line] if used else []
+
+
+CREATED = '''
+
+S = TypeVar("S", bound="Asked")
+
+
+class Asked:
+    """What is asked for by the words of ``optimize``."""
+
+    @classmethod
+    def asked(cls: type[S], words: Mapping[str, Any]) -> S:
+        """Of these words."""
+        raise NotImplementedError
+
+'''
+
+
+def modules(commands: list[dict[str, Any]]) -> dict[str, str]:
+    """The modules by their names."""
+    functions, results, names = list[str](), list[str](), list[str]()
+    created, further = "", ""
+    for command in commands:
+        name = command["name"]
+        if name in BY_HAND:
+            continue
+        call = CALLS.get(name) or Call(name.replace(" ", "_").replace("-", "_"))
+        if name == "study":
+            created = CREATED + function(command, call)
+            continue
+        functions.append(function(command, call))
+        results.append(call.result)
+        names.append(call.name)
+        if name not in CALLS:
+            further += f"\n    {call.name}  {command['about'].splitlines()[0]}"
+    return {
+        "_asked.py": module("The words of a study.", created, []),
+        "_commands.py": module(
+            "The commands of ``optimize`` as functions.",
+            f"\n\n__all__ = [\n{packed([json.dumps(name) for name in sorted(names)])}\n]\n#: Those that the page of the package does not name.\n"
+            f'_FURTHER = """{further}"""\n\n\n'
+            + "\n\n".join(functions),
+            results,
+        ),
+    }

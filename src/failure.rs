@@ -109,7 +109,17 @@ impl Failure {
         let text = text.split("\n\nFor more information").next().unwrap_or(text);
         let value = context(ContextKind::InvalidValue);
         Failure::usage(match (option, value, text.split_once("': ")) {
-            (Some(option), Some(value), Some((_, why))) => format!("{option} {value}: {why}"),
+            (Some(option), Some(value), Some((_, why))) => {
+                // Of a range clap says `0 is not in 1..=10000`.
+                let range =
+                    why.split_once(" is not in ").and_then(|(_, range)| range.split_once("..="));
+                match range {
+                    Some((least, most)) => {
+                        format!("{option} {value}: must lie between {least} and {most}")
+                    }
+                    None => format!("{option} {value}: {why}"),
+                }
+            }
             (Some(option), ..) if option.starts_with("--") => format!("{option}: {text}"),
             _ => text.to_owned(),
         })
@@ -188,7 +198,11 @@ impl fmt::Display for Failure {
 fn options(usage: &str) -> String {
     let names = usage.split(['<', '>', '|', ' ', '[', ']']);
     let names: Vec<&str> = names.filter(|name| name.starts_with("--")).collect();
-    if names.is_empty() { usage.to_owned() } else { names.join(" or ") }
+    if names.is_empty() {
+        usage.trim_matches(['<', '>', '[', ']', '.']).to_owned()
+    } else {
+        names.join(" or ")
+    }
 }
 
 /// Longest line of a message, and most lines, in characters: what it quotes of a file may be anything.

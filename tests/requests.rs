@@ -63,7 +63,7 @@ fn keywords_are_refused_by_their_option() {
         refused(request.and_then(|request| AnyStudy::Asked(Box::new(request)).folder()))
     };
     for (more, said) in [
-        (json!({"task": "usb", "budget": 0}), "--budget 0: 0 is not in 1.."),
+        (json!({"task": "usb", "budget": 0}), "--budget 0: must lie between 1 and "),
         (json!({"task": "usb", "budget": "abc"}), "--budget abc"),
         (json!({"task": "usb", "seed": u64::MAX}), "--seed"),
         (json!({"task": "usb", "batch": 0}), "--batch"),

@@ -96,8 +96,8 @@ fn fingers(columns: &BTreeMap<String, Vec<f64>>) -> PyResult<Vec<FingerRequest>>
         }
         for (finger, number) in fingers.iter_mut().zip(numbers) {
             match name.as_str() {
-                "density" => finger.density = Some(*number),
-                "direction" => finger.direction = Some(*number),
+                "density" => finger.infill.density = Some(*number),
+                "direction" => finger.infill.direction = Some(*number),
                 "stiffness_compliance" => finger.stiffness_compliance = Some(*number),
                 "stiffness_assembly" => finger.stiffness_assembly = Some(*number),
                 key => finger.set.push((key.to_owned(), *number)),

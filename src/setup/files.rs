@@ -13,34 +13,37 @@ use insertion::surrogate::{self, Model};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A finger file, read once: of fingers that are computed.
+/// The finger file of a setup: one that fingers are computed from, else the shipped one.
 pub(crate) struct Fingers {
-    /// The file's text.
+    /// The file's text, if fingers are computed.
     pub source: Option<Source>,
-    file: Option<FingerFile>,
+    file: FingerFile,
 }
 
 impl Fingers {
     pub fn parse(source: Option<Source>) -> Result<Self, Failure> {
-        let parse = |Source { file, text }: &Source| FingerFile::parse(text, file);
-        let file = source.as_ref().map(parse).transpose().map_err(Failure::input)?;
+        let shipped = || find("finger", FINGERS, DEFAULT_FINGER);
+        let Source { file, text } = source.clone().map_or_else(shipped, Ok)?;
+        let file = FingerFile::parse(&text, &file).map_err(Failure::input)?;
         Ok(Fingers { source, file })
     }
 
-    /// The finger whose stiffness was measured: of the file; without one, the shipped finger.
-    pub fn measured_finger(&self) -> Result<PrintedFinger, Failure> {
-        match &self.file {
-            Some(file) => Ok(file.finger.clone()),
-            None => printed_finger(DEFAULT_FINGER),
+    /// Returns the finger whose stiffness was measured.
+    pub fn measured_finger(&self) -> &PrintedFinger {
+        &self.file.finger
+    }
+
+    /// Returns the source of fingers of a design.
+    pub fn made(&self) -> FingerSource {
+        match self.source {
+            None => FingerSource::Paper,
+            Some(_) => self.computed(),
         }
     }
 
-    /// Source of fingers of a design.
-    pub fn made(self) -> FingerSource {
-        match self.file {
-            None => FingerSource::Paper,
-            Some(file) => FingerSource::Computed(Box::new(ComputedFingers::new(file))),
-        }
+    /// Returns fingers computed from the ribs of the file.
+    pub fn computed(&self) -> FingerSource {
+        FingerSource::Computed(Box::new(ComputedFingers::new(self.file.clone())))
     }
 }
 

@@ -40,6 +40,7 @@ use study::{BENCH_ROLES, CELL, FINGER, Inputs, Provenance, sha256};
 pub struct Setup {
     /// Measures designs.
     pub evaluator: Evaluator,
+    fingers: Fingers,
     /// Search space.
     pub space: Space,
     /// The errors under which designs are measured, if they are.
@@ -111,12 +112,14 @@ impl Setup {
         let finger = fingers.source.iter().map(|source| (FINGER.to_owned(), source));
         let sources = roles.chain(others).chain(finger);
         let inputs = sources.map(|(role, source)| (role, source.text.clone())).collect();
-        let surrogate = surrogate(stiffness_source, &fingers.measured_finger()?)?;
-        let fingers = fingers.made();
-        let evaluator = Evaluator { surrogate, fingers, templates, robot, engine, cell: None };
+        let surrogate = surrogate(stiffness_source, fingers.measured_finger())?;
+        let made = fingers.made();
+        let evaluator =
+            Evaluator { surrogate, fingers: made, templates, robot, engine, cell: None };
         fit_together(&evaluator, &space, &space_source.file)?;
         let task_files = tasks.iter().map(|task| task.file.clone()).collect();
-        Ok(Setup { inputs, evaluator, uncertainty: None, measured: None, space, task_files })
+        let (uncertainty, measured) = (None, None);
+        Ok(Setup { inputs, evaluator, fingers, uncertainty, measured, space, task_files })
     }
 
     /// The evaluator with springs computed from the ribs of the shipped finger, if its own are the
@@ -126,10 +129,9 @@ impl Setup {
         if own.fingers.kind() != FingerModelKind::Paper {
             return None;
         }
-        let source = find("finger", FINGERS, DEFAULT_FINGER).ok()?;
         let evaluator = Evaluator {
             surrogate: Arc::clone(&own.surrogate),
-            fingers: Fingers::parse(Some(source)).ok()?.made(),
+            fingers: self.fingers.computed(),
             templates: own.templates.clone(),
             robot: own.robot.clone(),
             engine: own.engine,
@@ -278,6 +280,6 @@ fn finger_input(inputs: &Inputs) -> Result<Option<Source>, Failure> {
 
 /// The stiffness model of a study, from the copies in its folder.
 pub(crate) fn surrogate_of(inputs: &Inputs) -> Result<Arc<Model>, Failure> {
-    let finger = Fingers::parse(finger_input(inputs)?)?.measured_finger()?;
-    surrogate(&input(inputs, STIFFNESS_DATA)?, &finger)
+    let fingers = Fingers::parse(finger_input(inputs)?)?;
+    surrogate(&input(inputs, STIFFNESS_DATA)?, fingers.measured_finger())
 }

@@ -3,7 +3,7 @@
 use crate::holes::{Holes, RawHoles};
 use crate::outline::Outline;
 use input::units::{DEG, MM};
-use input::{Check, InputError, read, syntax};
+use input::{Check, Document, InputError, syntax};
 use nalgebra::Point2;
 use serde::Deserialize;
 
@@ -111,7 +111,15 @@ impl PrintedFinger {
     /// # Errors
     /// If the text is not such a file, or a value cannot be used.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        PrintedFinger::checked(read(text, file)?, file)
+        PrintedFinger::read(&Document::parse(text, file)?)
+    }
+
+    /// Reads and checks the finger of a parsed file.
+    ///
+    /// # Errors
+    /// As of [`PrintedFinger::parse`].
+    pub fn read(document: &Document<'_>) -> Result<Self, InputError> {
+        PrintedFinger::checked(document.read()?, document.file())
     }
 
     /// [`PrintedFinger::parse`] of a file that was read as TOML already.

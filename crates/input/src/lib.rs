@@ -100,6 +100,11 @@ impl<'a> Document<'a> {
         Ok(Document { text, file, tree })
     }
 
+    /// Returns the file as given.
+    pub fn file(&self) -> &str {
+        self.file
+    }
+
     /// Reads a value of the whole document.
     ///
     /// # Errors

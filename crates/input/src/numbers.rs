@@ -1,7 +1,7 @@
 //! TOML files, the numbers of which a design may set by their paths.
 
 use crate::shipped::nearest;
-use crate::{Check, InputError, read};
+use crate::{Check, Document, InputError};
 use std::collections::BTreeSet;
 use toml::{Table, Value};
 
@@ -22,12 +22,12 @@ pub struct NumberFile {
 }
 
 impl NumberFile {
-    /// Reads a file; `file` is named in errors.
+    /// Reads the numbers of a file.
     ///
     /// # Errors
-    /// If the text is not TOML.
-    pub fn parse(root: &'static str, text: &str, file: &str) -> Result<Self, InputError> {
-        Ok(NumberFile { root, file: file.to_owned(), table: read(text, file)? })
+    /// If the file has a control character.
+    pub fn read(root: &'static str, document: &Document<'_>) -> Result<Self, InputError> {
+        Ok(NumberFile { root, file: document.file().to_owned(), table: document.read()? })
     }
 
     /// The keys of all numbers, in alphabetical order.

@@ -149,6 +149,7 @@ pub fn label(path: &str) -> (String, &'static str) {
 mod tests {
     use super::*;
     use crate::numbers::{DENSITY, FRICTION};
+    use input::Document;
     use input::numbers::NumberFile;
     use input::shipped::{FINGERS, ROBOTS, Shipped, TASKS};
 
@@ -159,7 +160,9 @@ mod tests {
         let mut found = 0;
         for (root, files) in [("task", TASKS), ("finger", FINGERS), ("robot", &servo)] {
             for file in files {
-                let numbers = NumberFile::parse(root, file.text, file.file).unwrap();
+                let numbers = Document::parse(file.text, file.file)
+                    .and_then(|file| NumberFile::read(root, &file))
+                    .unwrap();
                 for key in numbers.keys() {
                     // Stiffnesses of the flange go together, by that along x.
                     if key.starts_with("robot.") && key.contains("stiffness") {

@@ -6,8 +6,8 @@
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use finray::infill;
 use finray::printed::PrintedFinger;
-use input::InputError;
 use input::numbers::NumberFile;
+use input::{Document, InputError};
 
 /// A finger file, the numbers of which a design may set.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,8 +40,9 @@ impl FingerFile {
     /// # Errors
     /// As of [`PrintedFinger::parse`].
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        let finger = PrintedFinger::parse(text, file)?;
-        Ok(FingerFile { numbers: NumberFile::parse("finger", text, file)?, finger })
+        let document = Document::parse(text, file)?;
+        let finger = PrintedFinger::read(&document)?;
+        Ok(FingerFile { numbers: NumberFile::read("finger", &document)?, finger })
     }
 
     /// The finger with the numbers that a design sets; keys of anything else are left alone.

@@ -9,7 +9,7 @@ use super::{
     Success, Task,
 };
 use input::units::{DEG, GRAM, MM};
-use input::{Check, InputError, read, shown, syntax};
+use input::{Check, Document, InputError, shown, syntax};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -127,7 +127,15 @@ impl Task {
     /// # Errors
     /// If the text is not such a file, or a value cannot be used.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        check(read(text, file)?, file)
+        Task::read(&Document::parse(text, file)?)
+    }
+
+    /// Reads and checks the task of a parsed file.
+    ///
+    /// # Errors
+    /// As of [`Task::parse`].
+    pub fn read(document: &Document<'_>) -> Result<Self, InputError> {
+        check(document.read()?, document.file())
     }
 
     /// Checks a task file that was read as TOML already; `file` is named in errors.

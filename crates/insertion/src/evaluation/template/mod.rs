@@ -19,7 +19,7 @@ use crate::task::Task;
 use crate::trial::run::RigError;
 use finray::FingerError;
 use input::numbers::{DESIGN, NumberFile};
-use input::{InputError, Place, Placed};
+use input::{Document, InputError, Place, Placed};
 use parameters::Path;
 use parameters::numbers::{Kind, paths};
 
@@ -66,8 +66,9 @@ impl Template {
     /// # Errors
     /// As of [`Task::parse`].
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        let task = Task::parse(text, file)?;
-        Ok(Template { numbers: NumberFile::parse("task", text, file)?, task })
+        let document = Document::parse(text, file)?;
+        let task = Task::read(&document)?;
+        Ok(Template { numbers: NumberFile::read("task", &document)?, task })
     }
 
     /// The task, and the finger of this stiffness at its pad, with the values that the design

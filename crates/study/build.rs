@@ -9,6 +9,7 @@ const SIMULATION: [&str; 10] = [
     "Cargo.lock",
     "crates/ask-tell/src/normal.rs",
     "crates/ask-tell/src/process",
+    "crates/ask-tell/src/statistics.rs",
     "crates/ask-tell/src/stream.rs",
     "crates/contact",
     "crates/finray",

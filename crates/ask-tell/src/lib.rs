@@ -19,6 +19,7 @@ mod proposed;
 pub mod protocol;
 mod sequence;
 mod sobol;
+pub mod statistics;
 pub mod stream;
 
 pub use informed::Informed;

@@ -94,22 +94,6 @@ pub fn chi_squared<R: Rng + ?Sized>(freedom: f64, random: &mut R) -> f64 {
     }
 }
 
-/// Returns the probability with which a standard normal number stays below this one.
-pub fn cumulative(number: f64) -> f64 {
-    0.5 * libm::erfc(-number * std::f64::consts::FRAC_1_SQRT_2)
-}
-
-/// Returns the number that a standard normal one stays below with this probability, by bisection.
-pub fn quantile(probability: f64) -> f64 {
-    let (mut low, mut high) = (-40.0, 40.0);
-    for _ in 0..100 {
-        let middle = (low + high) / 2.0;
-        let below = cumulative(middle) < probability;
-        *(if below { &mut low } else { &mut high }) = middle;
-    }
-    low
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

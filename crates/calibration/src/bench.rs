@@ -2,6 +2,7 @@
 
 use super::process::{COORDINATES, Conditioned, Finger, Hyperparameters, Place};
 use ask_tell::normal::StandardNormal;
+use ask_tell::statistics::normal_cdf;
 use rand::{Rng, RngExt};
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -36,14 +37,9 @@ pub struct Bench<'a> {
     pub first: usize,
 }
 
-/// The share of the prior below a standard normal coordinate.
-pub fn share(coordinate: f64) -> f64 {
-    0.5 * libm::erfc(-coordinate * std::f64::consts::FRAC_1_SQRT_2)
-}
-
 impl Bench<'_> {
     pub fn shares(&self, state: &[f64]) -> Vec<f64> {
-        self.parameters.iter().map(|&coordinate| share(state[coordinate])).collect()
+        self.parameters.iter().map(|&coordinate| normal_cdf(state[coordinate])).collect()
     }
 
     pub fn fingers(&self, numbers: &[usize], state: &[f64]) -> Vec<Finger> {

@@ -3,8 +3,8 @@
 use super::bench::{Bench, Settings, sampled};
 use super::predict::{Of, Predicted, draws, predict};
 use super::process::COORDINATES;
-use super::statistics::{mean, spearman};
 use super::subject::Subject;
+use ask_tell::statistics::{mean, spearman};
 use ask_tell::stream::stream;
 use parameters::Parameter;
 use rayon::prelude::*;
@@ -148,12 +148,11 @@ impl TaskResult {
         let percent = |one: &LeftOut| {
             100.0 * (one.predicted.mean_mm - one.measured_mm).abs() / one.measured_mm
         };
-        let deviations: Vec<f64> = wide.map(percent).collect();
         let pairs: Vec<(f64, f64)> =
             left_out.iter().map(|one| (one.predicted.mean_mm, one.measured_mm)).collect();
         LeaveOneOut {
             fingers: left_out.len(),
-            mean_deviation_percent: mean(&deviations),
+            mean_deviation_percent: mean(wide.map(percent)),
             spearman: spearman(&pairs),
             inside: left_out.iter().filter(|one| one.inside()).count(),
             emulator_error_mm,
@@ -184,7 +183,7 @@ pub fn leave_one_out(
         let predicted = predict(&benches[task], &posterior, fold, Of::Measurement);
         let left_out = |(&finger, predicted): (&usize, Predicted)| {
             let own = known().filter(|one| one.finger == finger).map(|one| one.range_mm);
-            let measured_mm = mean(&own.collect::<Vec<f64>>())?;
+            let measured_mm = mean(own)?;
             Some(LeftOut { finger, measured_mm, predicted })
         };
         (settings.done)([count.fetch_add(1, Ordering::Relaxed) + 1, folds]);

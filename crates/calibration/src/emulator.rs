@@ -5,6 +5,7 @@
 use super::simulation::Simulation;
 use ask_tell::SobolSequence;
 use ask_tell::gp::{FitEffort, Gp, fit_until};
+use ask_tell::statistics::Moments;
 use insertion::evaluation::template::Impossible;
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::{Design, Space, Variable};
@@ -104,10 +105,8 @@ impl Emulator {
 
     fn fitted(runs: Vec<Run>, simulations: usize, stopped: &dyn Fn() -> bool) -> Option<Self> {
         let (known, fresh) = runs.split_at(simulations.min(runs.len()));
-        let n = known.len() as f64;
-        let mean_mm = known.iter().map(|run| run.range_mm).sum::<f64>() / n;
-        let variance = known.iter().map(|run| (run.range_mm - mean_mm).powi(2)).sum::<f64>() / n;
-        let sd_mm = variance.sqrt().max(ROUNDING_MM);
+        let moments = Moments::of(known.iter().map(|run| run.range_mm));
+        let (mean_mm, sd_mm) = (moments.mean, moments.deviation().max(ROUNDING_MM));
         let x: Vec<Vec<f64>> = known.iter().map(|run| run.at.clone()).collect();
         let y: Vec<f64> = known.iter().map(|run| (run.range_mm - mean_mm) / sd_mm).collect();
         let floor = (ROUNDING_MM / sd_mm).powi(2);

@@ -24,7 +24,6 @@ pub mod predict;
 pub mod process;
 pub mod published;
 pub mod simulation;
-pub mod statistics;
 pub mod subject;
 pub mod table;
 #[cfg(test)]

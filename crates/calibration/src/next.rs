@@ -8,6 +8,7 @@
 use super::bench::Bench;
 use super::predict::{INTERVAL, draws};
 use super::process::Place;
+use ask_tell::statistics::{mean, quantile, sorted};
 use rand::Rng;
 use std::collections::BTreeSet;
 
@@ -48,30 +49,26 @@ pub fn advise(
     let all: Vec<usize> = measured.iter().chain(new).copied().collect();
     let drawn = draws(bench, posterior, &all, DRAWS, random);
     let known = measured.len();
-    let all_draws = drawn.len().max(1) as f64;
-    let mean = |column: usize| drawn.iter().map(|draw| draw[column]).sum::<f64>() / all_draws;
+    let expected = |column: usize| mean(drawn.iter().map(|draw| draw[column])).unwrap_or(0.0);
     // Without a measured finger there is nothing to lose.
     let mut best: Vec<f64> =
         drawn.iter().map(|draw| draw[..known].iter().copied().fold(0.0, f64::max)).collect();
-    let best_known_mm = (0..known).map(mean).reduce(f64::max);
+    let best_known_mm = (0..known).map(expected).reduce(f64::max);
     let mut left: Vec<usize> = (known..all.len()).collect();
     let mut next: Vec<Print> = Vec::new();
     while next.len() < count && !left.is_empty() {
         let gain = |column: usize| {
             let more = drawn.iter().zip(&best).map(|(draw, best)| (draw[column] - best).max(0.0));
-            more.sum::<f64>() / all_draws
+            mean(more).unwrap_or(0.0)
         };
         let gains: Vec<f64> = left.iter().map(|&column| gain(column)).collect();
         let first = (0..gains.len()).rev().max_by(|&a, &b| gains[a].total_cmp(&gains[b]));
         let Some(at) = first else { break };
         let (column, gain) = (left.remove(at), gains[at]);
-        let mut values: Vec<f64> = drawn.iter().map(|draw| draw[column]).collect();
-        values.sort_by(f64::total_cmp);
-        let tail = |share: f64| {
-            values.get((share * (all_draws - 1.0)).round() as usize).copied().unwrap_or(0.0)
-        };
+        let values = sorted(drawn.iter().map(|draw| draw[column]));
+        let tail = |share: f64| quantile(&values, share).unwrap_or(0.0);
         let (low_mm, high_mm) = (tail((1.0 - INTERVAL) / 2.0), tail((1.0 + INTERVAL) / 2.0));
-        let expected_mm = mean(column);
+        let expected_mm = expected(column);
         let tried = measured.iter().copied().chain(next.iter().map(|print| print.finger));
         let tried: Vec<Place> = tried.map(|finger| bench.places[finger]).collect();
         let reason = reason(bench.places[all[column]], &tried, expected_mm, high_mm, best_known_mm);

@@ -1,7 +1,7 @@
 //! How far our simulation ranks the fingers of a task as the bench does.
 
 use crate::published::{Origin, Published, of_task};
-use crate::statistics::spearman;
+use ask_tell::statistics::{mean, spearman};
 use input::shipped::TASKS;
 use insertion::evaluation::objective::Measure;
 use insertion::finger::model::FingerModelKind;
@@ -87,7 +87,7 @@ pub fn errors_percent() -> [f64; 2] {
     let errors = TASKS.iter().filter_map(|task| {
         let pairs = validated(task.name);
         let missed = pairs.iter().map(|(ours, bench)| (ours - bench).abs() / bench);
-        (!pairs.is_empty()).then(|| 100.0 * missed.sum::<f64>() / pairs.len() as f64)
+        mean(missed).map(|mean| 100.0 * mean)
     });
     errors.fold([f64::INFINITY, 0.0], |[least, most], error| [least.min(error), most.max(error)])
 }

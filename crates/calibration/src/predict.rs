@@ -3,6 +3,7 @@
 use super::bench::Bench;
 use super::process::{Conditioned, Finger, Hyperparameters, TERMS};
 use ask_tell::normal::{StandardNormal, chi_squared};
+use ask_tell::statistics::{mean, normal_cdf, sorted};
 use ask_tell::stream::stream;
 use rand::{Rng, RngExt};
 use rayon::prelude::*;
@@ -59,8 +60,7 @@ pub fn predict(
             [mean, libm::hypot(sd, noise), finger.simulated].map(|value| value * bench.scale_mm)
         };
         let parts: Vec<[f64; 3]> = states.iter().map(part).collect();
-        let mean =
-            |i: usize| parts.iter().map(|part| part[i]).sum::<f64>() / parts.len().max(1) as f64;
+        let mean = |i: usize| mean(parts.iter().map(|part| part[i])).unwrap_or(0.0);
         Predicted {
             mean_mm: mean(0).max(0.0),
             low_mm: quantile(&parts, TAIL).max(0.0),
@@ -92,15 +92,14 @@ fn from_draws(
     }
     let simulated = |number: &usize| {
         let one = |state: &Vec<f64>| bench.fingers(&[*number], state)[0].simulated * bench.scale_mm;
-        posterior.iter().map(one).sum::<f64>() / posterior.len().max(1) as f64
+        mean(posterior.iter().map(one)).unwrap_or(0.0)
     };
     let one = |(i, number): (usize, &usize)| {
-        let mut values: Vec<f64> = drawn.iter().map(|draw| draw[i]).collect();
-        values.sort_by(f64::total_cmp);
+        let values = sorted(drawn.iter().map(|draw| draw[i]));
         let at =
             |share: f64| values.get((share * values.len() as f64) as usize).copied().unwrap_or(0.0);
         Predicted {
-            mean_mm: values.iter().sum::<f64>() / values.len().max(1) as f64,
+            mean_mm: mean(&values).unwrap_or(0.0),
             low_mm: at(TAIL).max(0.0),
             high_mm: at(1.0 - TAIL).max(0.0),
             simulated_mm: simulated(number),
@@ -116,9 +115,10 @@ fn quantile(parts: &[[f64; 3]], probability: f64) -> f64 {
     let mut high = wide(1.0).fold(f64::NEG_INFINITY, f64::max);
     for _ in 0..50 {
         let middle = (low + high) / 2.0;
-        let below = |[mean, sd, _]: &[f64; 3]| super::bench::share((middle - mean) / sd.max(1e-9));
-        let share = parts.iter().map(below).sum::<f64>() / parts.len() as f64;
-        *(if share < probability { &mut low } else { &mut high }) = middle;
+        let below = |[mean, sd, _]: &[f64; 3]| normal_cdf((middle - mean) / sd.max(1e-9));
+        let share = mean(parts.iter().map(below));
+        *(if share.is_some_and(|share| share < probability) { &mut low } else { &mut high }) =
+            middle;
     }
     (low + high) / 2.0
 }

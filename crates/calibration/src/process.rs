@@ -14,8 +14,8 @@
 //! in `kz`. Offset, `r`, `b1` and `b2` are normal about 0 and integrated out; `d` is a Matern 5/2
 //! process.
 
-use ask_tell::gp::log_normal_cdf;
 use ask_tell::process::{Process, distance2, matern52};
+use ask_tell::statistics::normal_log_cdf;
 use nalgebra::{DMatrix, DVector};
 
 /// A finger's place: its standardised `1 / ky` and `kz`.
@@ -124,7 +124,7 @@ impl Conditioned {
     pub fn log_likelihood(&self) -> f64 {
         let bound = |(finger, bound): &(Finger, f64)| {
             let (mean, sd) = self.predict(finger);
-            log_normal_cdf((mean - bound) / libm::hypot(sd, self.hyperparameters.noise))
+            normal_log_cdf((mean - bound) / libm::hypot(sd, self.hyperparameters.noise))
         };
         self.process.log_likelihood() + self.bounds.iter().map(bound).sum::<f64>()
     }

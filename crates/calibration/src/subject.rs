@@ -6,6 +6,7 @@ use super::process::Place;
 use crate::experiments::Experiment;
 use ask_tell::GridPoint;
 use ask_tell::SobolSequence;
+use ask_tell::statistics::Moments;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::template::Template;
 use insertion::outcome::FailureClass;
@@ -186,11 +187,8 @@ fn shares(space: &Space, design: &Design) -> Vec<f64> {
 /// Less the mean, over the standard deviation, of the first `reference` rows.
 fn standardised(rows: &[[f64; 2]], reference: usize) -> Vec<Place> {
     let scale = [0, 1].map(|axis| {
-        let values = || rows.iter().take(reference).map(|row| row[axis]);
-        let mean = values().sum::<f64>() / reference.max(1) as f64;
-        let variance =
-            values().map(|value| (value - mean).powi(2)).sum::<f64>() / reference.max(1) as f64;
-        (mean, variance.sqrt().max(f64::MIN_POSITIVE))
+        let moments = Moments::of(rows.iter().take(reference).map(|row| row[axis]));
+        (moments.mean, moments.deviation().max(f64::MIN_POSITIVE))
     });
     rows.iter().map(|row| [0, 1].map(|axis| (row[axis] - scale[axis].0) / scale[axis].1)).collect()
 }

@@ -4,7 +4,7 @@ use super::calibrate::{Calibration, Coordinate, LeftOut, Prediction, TaskResult}
 use super::predict::{INTERVAL, Predicted};
 use super::subject::Subject;
 use crate::experiments::Experiment;
-use crate::statistics::mean;
+use ask_tell::statistics::{Moments, normal_cdf, pearson, quantile, sorted};
 use insertion::evaluation::Evaluation;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use serde_json::{Map, Value, json};
@@ -29,23 +29,16 @@ pub struct Moved {
 
 pub fn moved(calibration: &Calibration) -> Vec<Moved> {
     let one = |(i, Coordinate { parameter, task }): (usize, &Coordinate)| {
-        let values = coordinate(calibration, i);
-        let average = mean(&values).unwrap_or(0.0);
-        let squares: Vec<f64> = values.iter().map(|z| (z - average).powi(2)).collect();
-        let sd = mean(&squares).unwrap_or(1.0).sqrt();
-        let mut sorted = values;
-        sorted.sort_by(f64::total_cmp);
-        let at = |share: f64| {
-            let place = (share * (sorted.len().max(1) - 1) as f64).round() as usize;
-            sorted.get(place).copied().unwrap_or(0.0)
-        };
+        let values = sorted(coordinate(calibration, i));
+        let moments = Moments::of(&coordinate(calibration, i));
+        let at = |share: f64| quantile(&values, share).unwrap_or(0.0);
         let shares = [0.1, 0.5, 0.9];
         Moved {
             name: parameter.name.clone(),
             task: task.clone(),
             prior: shares.map(|share| parameter.at(share)),
-            posterior: shares.map(|share| parameter.at(super::bench::share(at(share)))),
-            moved: sd < MOVED.0 || average.abs() > MOVED.1,
+            posterior: shares.map(|share| parameter.at(normal_cdf(at(share)))),
+            moved: moments.deviation() < MOVED.0 || moments.mean.abs() > MOVED.1,
         }
     };
     calibration.layout.coordinates.iter().enumerate().map(one).collect()
@@ -62,7 +55,7 @@ pub fn together(calibration: &Calibration) -> Vec<(String, String, f64)> {
     for i in 0..names.len() {
         for j in 0..i {
             let (a, b) = (coordinate(calibration, j), coordinate(calibration, i));
-            let correlation = correlation(&a, &b);
+            let correlation = pearson(&a, &b).unwrap_or(0.0);
             if correlation.abs() > TOGETHER {
                 found.push((
                     names[j].parameter.name.clone(),
@@ -73,14 +66,6 @@ pub fn together(calibration: &Calibration) -> Vec<(String, String, f64)> {
         }
     }
     found
-}
-
-fn correlation(a: &[f64], b: &[f64]) -> f64 {
-    let (Some(ma), Some(mb)) = (mean(a), mean(b)) else { return 0.0 };
-    let sum =
-        |f: &dyn Fn(f64, f64) -> f64| a.iter().zip(b).map(|(x, y)| f(x - ma, y - mb)).sum::<f64>();
-    let scale = (sum(&|x, _| x * x) * sum(&|_, y| y * y)).sqrt();
-    if scale > 0.0 { sum(&|x, y| x * y) / scale } else { 0.0 }
 }
 
 /// Caveats on a task's predictions, a line each.

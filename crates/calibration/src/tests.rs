@@ -1,9 +1,10 @@
 //! Made-up benches, whose truth is known.
 
-use super::bench::{Bench, Effort, Observation, Settings, Simulator, sampled, share};
+use super::bench::{Bench, Effort, Observation, Settings, Simulator, sampled};
 use super::predict::{Of, Predicted, draws, predict};
 use super::process::{COORDINATES, Place};
 use ask_tell::normal::StandardNormal;
+use ask_tell::statistics::{Moments, normal_cdf};
 use ask_tell::stream::stream;
 use insertion::trial::NEVER;
 use rand::{Rng, RngExt};
@@ -74,7 +75,7 @@ fn calibrated(number: u64, discrepancy: f64, noise: f64) -> Outcome {
     let hidden = [normal(), normal()];
     let [a, b, c] = [normal(), normal(), 0.5 * normal()].map(|sd| SCALE_MM * discrepancy * sd);
     let all: Vec<usize> = (0..FINGERS).collect();
-    let simulated = simulator.ranges_mm(&all, &hidden.map(share));
+    let simulated = simulator.ranges_mm(&all, &hidden.map(normal_cdf));
     let beside = |[x, y]: &Place| a + b * x + c * libm::sin(2.0 * y);
     let truth: Vec<f64> = simulated
         .iter()
@@ -96,9 +97,8 @@ fn calibrated(number: u64, discrepancy: f64, noise: f64) -> Outcome {
 }
 
 fn moments(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let values: Vec<f64> = values.collect();
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    (mean, (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt())
+    let moments = Moments::of(values.collect::<Vec<_>>());
+    (moments.mean, moments.deviation())
 }
 
 /// Percent of the unmeasured fingers whose truth lies in the interval.

@@ -1,5 +1,6 @@
 //! Measured fingers: the CSV file and its checks.
 
+use ask_tell::statistics::median;
 use finray::FingerError;
 use input::shipped::STIFFNESS;
 use input::units::N_PER_MM;
@@ -178,7 +179,10 @@ const OTHER_UNIT: f64 = 100.0;
 fn unit(found: Vec<Measurement>, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
     let shipped = rows(STIFFNESS[0].text, STIFFNESS[0].file)?;
     for (axis, column) in [(Axis::Assembly, HEADER[3]), (Axis::Compliance, HEADER[4])] {
-        let [own, usual] = [&found, &shipped].map(|all| median(all, axis) / N_PER_MM);
+        let middle = |all: &[Measurement]| {
+            median(all.iter().map(|one| one.stiffness(axis))).unwrap_or(f64::NAN) / N_PER_MM
+        };
+        let (own, usual) = (middle(&found), middle(&shipped));
         let question = match own / usual {
             ratio if ratio > OTHER_UNIT => "are these N/m? divide them by 1000",
             ratio if ratio < 1.0 / OTHER_UNIT => "are these N/um or kN/mm? multiply them by 1000",
@@ -191,12 +195,6 @@ fn unit(found: Vec<Measurement>, file: &str) -> Result<Vec<Measurement>, Surroga
         return Err(refused(Place::file(file))((column, problem)));
     }
     Ok(found)
-}
-
-fn median(all: &[Measurement], axis: Axis) -> f64 {
-    let mut values: Vec<f64> = all.iter().map(|one| one.stiffness(axis)).collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 /// Checks measurements that were not read from a file.

@@ -2,7 +2,7 @@
 
 use crate::numbers::Kind;
 use crate::path::Path;
-use ask_tell::normal::{cumulative, quantile};
+use ask_tell::statistics::{normal_cdf, normal_quantile};
 use ask_tell::stream::stream;
 use input::{Check, InputError, shown};
 use rand::RngExt;
@@ -182,8 +182,8 @@ impl Parameter {
 
 /// The standard normal number that this share of those between two others lies below.
 fn cut_normal(share: f64, from: f64, to: f64) -> f64 {
-    let [below, above] = [from, to].map(cumulative);
-    quantile(below + share * (above - below))
+    let [below, above] = [from, to].map(normal_cdf);
+    normal_quantile(below + share * (above - below))
 }
 
 /// Goes before the path in the name of a stream: parameters more or less leave the others as they were.

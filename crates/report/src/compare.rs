@@ -7,6 +7,7 @@ use super::elements::{document, figure, table};
 use super::marks::{line, stairs};
 use super::page::PLOT;
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE, RED};
+use ask_tell::statistics::{interpolated_quantile, sorted};
 use insertion::evaluation::objective::{Aggregate, Constraint};
 use maud::html;
 use plotters::prelude::*;
@@ -33,15 +34,10 @@ pub struct Quartiles {
 
 impl Quartiles {
     /// By linear interpolation between the sorted values; `None` where that meets an infinity.
-    fn of(mut values: Vec<f64>) -> Self {
-        values.sort_by(f64::total_cmp);
-        let quantile = |share: f64| {
-            let place = share * values.len().checked_sub(1)? as f64;
-            let (low, high) = (values[place.floor() as usize], values[place.ceil() as usize]);
-            let part = place - place.floor();
-            let value = if part == 0.0 { low } else { low + part * (high - low) };
-            value.is_finite().then_some(value)
-        };
+    fn of(values: Vec<f64>) -> Self {
+        let values = sorted(values);
+        let quantile =
+            |share| interpolated_quantile(&values, share).filter(|value| value.is_finite());
         Quartiles { q25: quantile(0.25), median: quantile(0.5), q75: quantile(0.75) }
     }
 

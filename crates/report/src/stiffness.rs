@@ -4,6 +4,7 @@ use super::ReportError;
 use super::chart::{Area, Drawn, around, axes, legend, message, sheet, words};
 use super::marks::{PointMark, dashed, line, points};
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE};
+use ask_tell::statistics::sorted;
 use input::units::N_PER_MM;
 use insertion::stiffness::{Axis, Measurement};
 use insertion::surrogate::{Estimate, Model};
@@ -209,8 +210,7 @@ fn mark(level: f64, curves: &[f64]) -> PointMark {
 
 /// Smallest, middle and largest of the distinct values.
 fn levels(values: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut sorted: Vec<f64> = values.collect();
-    sorted.sort_by(f64::total_cmp);
+    let mut sorted = sorted(values);
     sorted.dedup();
     match sorted.len() {
         0..=3 => sorted,

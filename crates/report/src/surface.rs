@@ -2,6 +2,7 @@
 //! through the evaluations, as the optimizer `gp` has one.
 
 use ask_tell::gp::{FitEffort, Gp, fit};
+use ask_tell::statistics::Moments;
 use insertion::space::Variable;
 use serde_json::{Value, json};
 use study::StudyRecord;
@@ -36,9 +37,8 @@ impl Model {
             .collect();
         let every = known.len().div_ceil(MOST).max(1);
         let (x, y): (Vec<Vec<f64>>, Vec<f64>) = known.into_iter().step_by(every).unzip();
-        let count = y.len() as f64;
-        let mean = y.iter().sum::<f64>() / count;
-        let sd = (y.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / count).sqrt();
+        let moments = Moments::of(&y);
+        let (mean, sd) = (moments.mean, moments.deviation());
         if y.len() < 5 || sd.is_nan() || sd < 1e-9 {
             return None;
         }

@@ -1,7 +1,7 @@
 //! Windows of the same fingers in two ways, and the differences of their ends.
 
 use super::{Subject, TaskWays, Way, each, subject_json, window_json, window_words};
-use calibration::statistics::mean;
+use ask_tell::statistics::mean;
 use insertion::evaluation::{Evaluation, OffsetStep, Window, grid_mm};
 use insertion::stiffness::Measurement;
 use serde_json::{Value, json};
@@ -57,8 +57,7 @@ pub fn measure(tasks: &[TaskWays], designs: &[Measurement]) -> Vec<WindowPair> {
 
 /// Mean distance of the ends of the two windows, mm; `None` without pairs.
 pub fn mean_end_difference_mm(pairs: &[WindowPair]) -> Option<f64> {
-    let ends = pairs.iter().flat_map(WindowPair::moved_mm).map(f64::abs);
-    mean(&ends.collect::<Vec<_>>())
+    mean(pairs.iter().flat_map(WindowPair::moved_mm).map(f64::abs))
 }
 
 /// Table at most 80 columns wide with a summary, and verdicts if so many grid steps are `allowed`.

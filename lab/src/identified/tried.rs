@@ -3,8 +3,8 @@
 use super::logs::LOGGED;
 use super::truth::{Known, window};
 use super::{HIDDEN, HiddenCell};
+use ask_tell::statistics::{mean, spearman};
 use calibration::identify::question::IdentifyDone;
-use calibration::statistics::{mean, spearman};
 use finger_opt::command::Request as _;
 use finger_opt::commands::identify;
 use finger_opt::context::Context;
@@ -92,8 +92,8 @@ impl Tried {
     fn judged(&self) -> [(f64, f64); 2] {
         [2, 1].map(|way| {
             let pairs: Vec<(f64, f64)> = self.ranges.iter().map(|row| (row[0], row[way])).collect();
-            let errors: Vec<f64> = pairs.iter().map(|(a, b)| (a - b).abs()).collect();
-            (mean(&errors).unwrap_or(f64::NAN), spearman(&pairs).unwrap_or(f64::NAN))
+            let errors = pairs.iter().map(|(a, b)| (a - b).abs());
+            (mean(errors).unwrap_or(f64::NAN), spearman(&pairs).unwrap_or(f64::NAN))
         })
     }
 
@@ -135,10 +135,7 @@ pub fn table(all: &[Tried]) -> String {
     // Of numbers that are all above 0 and drawn over their logarithms.
     let inside =
         told().filter(|[is, found, sd]| libm::log(is / found).abs() <= EIGHTY * sd / found);
-    let errors = |way: usize| {
-        let each: Vec<f64> = all.iter().map(|one| one.judged()[way].0).collect();
-        mean(&each).unwrap_or(f64::NAN)
-    };
+    let errors = |way: usize| mean(all.iter().map(|one| one.judged()[way].0)).unwrap_or(f64::NAN);
     text + &format!(
         "\n{} cells. Friction within 15 %: {}; stiffness of the robot along z within 10 %: {}. 80 % intervals \
          hold {} of {} hidden numbers that were told. Mean error of the ranges {:.2} mm, in the nominal cell \

@@ -1,7 +1,7 @@
 //! True windows of measured fingers in hidden cells, and the windows that our engine has for them.
 
 use super::{HIDDEN, HiddenCell};
-use calibration::statistics::{mean, spearman};
+use ask_tell::statistics::{mean, spearman};
 use finger_opt::failure::Failure;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::evaluation::taught::{Moved, Taught, teach};
@@ -172,14 +172,13 @@ pub fn summary(rows: &Rows) -> String {
         let pairs = |way| rows.iter().map(|row| (range(0, row), range(way, row))).collect();
         let judged = [2, 1].map(|way| {
             let pairs: Vec<(f64, f64)> = pairs(way);
-            let errors: Vec<f64> =
-                pairs.iter().map(|(truth, found)| (truth - found).abs()).collect();
+            let errors = pairs.iter().map(|(truth, found)| (truth - found).abs());
             let order = spearman(&pairs).map_or("-".to_owned(), |found| format!("{found:+.2}"));
-            format!("{order} | {:.2}", mean(&errors).unwrap_or_default())
+            format!("{order} | {:.2}", mean(errors).unwrap_or_default())
         });
-        let truth: Vec<f64> = rows.iter().map(|row| range(0, row)).collect();
+        let truth = rows.iter().map(|row| range(0, row));
         let about = rows[0][2..4 + HIDDEN.len()].join(" | ");
-        let (fingers, mean) = (rows.len(), mean(&truth).unwrap_or_default());
+        let (fingers, mean) = (rows.len(), mean(truth).unwrap_or_default());
         text += &format!("| {cell} | {about} | {fingers} | {mean:.2} | {} |\n", judged.join(" | "));
     }
     text

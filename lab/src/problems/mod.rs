@@ -11,6 +11,7 @@ pub use landscape::Landscape;
 pub use settled::{settle, settled_markdown};
 
 use ask_tell::cmaes::{Restarts, Solution, StartBox, Tolerances};
+use ask_tell::statistics::mean;
 use ask_tell::{Grid, GridPoint, Observation, Optimizer, OptimizerKind, build};
 use rayon::prelude::*;
 
@@ -163,8 +164,7 @@ impl Runs {
     }
 
     pub fn mean(&self) -> Option<f64> {
-        let sum: usize = self.evaluations.iter().flatten().sum();
-        (self.reached() > 0).then(|| sum as f64 / self.reached() as f64)
+        mean(self.evaluations.iter().flatten().map(|&run| run as f64))
     }
 
     /// The quartile `q` of 0 .. 4, runs that failed being worse than all others; of an even

@@ -1,5 +1,7 @@
 //! Reasons to end a run that lie in its values: appendix B.3 of the tutorial.
 
+use crate::statistics::median;
+
 /// Limits of a run in the tutorial's names; the defaults are pycma's.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tolerances {
@@ -62,7 +64,9 @@ impl History {
         let part = length * 3 / 10;
         let worse = |values: &[f64]| {
             let window = &values[values.len() - length..];
-            median(&window[length - part..]) >= median(&window[..part])
+            let [old, new] =
+                [0..part, length - part..length].map(|part| window[part].iter().copied());
+            median(new) >= median(old)
         };
         worse(&self.best) && worse(&self.median)
     }
@@ -73,12 +77,6 @@ fn range(values: &[f64]) -> f64 {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if low == high { 0.0 } else { high - low }
-}
-
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
 }
 
 #[cfg(test)]

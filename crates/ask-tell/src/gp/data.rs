@@ -1,6 +1,7 @@
 //! Values in the units of a model.
 
 use super::warp::{Warp, warp};
+use crate::statistics::Moments;
 
 /// Values by which the exponent of the transformation is chosen, at most.
 const WARPED_BY: usize = 250;
@@ -46,9 +47,8 @@ pub(super) fn standardise(values: &[Option<f64>], noise_floor: f64) -> Option<St
     let unit = finite().map(f64::abs).fold(f64::MIN_POSITIVE, f64::max);
     let filled: Vec<f64> =
         values.iter().map(|v| v.filter(|v| v.is_finite()).unwrap_or(worst) / unit).collect();
-    let n = filled.len() as f64;
-    let mean = filled.iter().sum::<f64>() / n;
-    let deviation = (filled.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n).sqrt();
+    let moments = Moments::of(&filled);
+    let (mean, deviation) = (moments.mean, moments.deviation());
     if deviation < 1e-13 {
         return Some(Standardised {
             values: vec![0.0; filled.len()],

@@ -26,8 +26,6 @@ mod search;
 mod trained;
 mod training;
 mod warp;
-
-pub use acquisition::log_normal_cdf;
 pub use fit::{FitEffort, fit, fit_until};
 pub use hyperparameters::Hyperparameters;
 pub use model::Gp;

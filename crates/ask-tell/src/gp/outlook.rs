@@ -6,17 +6,16 @@
 //! negative, has a second one over the same axes. A search is settled when no point, measured or
 //! not, is likely to beat the best confirmed one by more than a difference that matters.
 
-use super::acquisition::log_normal_cdf;
 use super::data::{Standardised, spread, standardise};
 use super::fit::{FitEffort, fit};
 use super::model::Gp;
 use super::search::Room;
 use crate::process::{Process, distance2, matern52};
 use crate::proposed::Proposed;
+use crate::statistics::{normal_log_cdf, normal_pdf};
 use crate::{Grid, GridPoint, Observation};
 use libm::{exp, sqrt};
 use nalgebra::{DMatrix, DVector};
-use std::f64::consts::{PI, SQRT_2};
 
 /// Length scale of the drops, in edges of a square; in more dimensions as a share of the diagonal.
 /// Fitted to the few drops that are known it came out too long, and one large drop was believed of
@@ -231,7 +230,7 @@ impl<'a> Outlook<'a> {
         let probability = match () {
             // A drop is never negative; values are compared on their grid.
             () if room <= 1e-9 => 0.0,
-            () if deviation > 0.0 => exp(log_normal_cdf((room - mean) / deviation)),
+            () if deviation > 0.0 => exp(normal_log_cdf((room - mean) / deviation)),
             () => f64::from(u8::from(mean < room)),
         };
         Some((value - positive_part(mean, deviation), probability))
@@ -259,7 +258,7 @@ impl<'a> Outlook<'a> {
     fn unseen(&self, searched: &Model, x: &[f64], bar: f64) -> bool {
         let Model { gp, data } = searched;
         let above = |(mean, variance): (f64, f64), bar: f64| {
-            exp(log_normal_cdf((mean - data.of(bar)) / sqrt(variance)))
+            exp(normal_log_cdf((mean - data.of(bar)) / sqrt(variance)))
         };
         let rough = gp.bound(x);
         if rough.0 < data.of(bar) && above(rough, bar) < self.gain.probability {
@@ -288,7 +287,7 @@ fn positive_part(mean: f64, deviation: f64) -> f64 {
         return mean.max(0.0);
     }
     let z = mean / deviation;
-    mean * exp(log_normal_cdf(z)) + deviation * exp(-0.5 * z * z) / (SQRT_2 * sqrt(PI))
+    mean * exp(normal_log_cdf(z)) + deviation * normal_pdf(z)
 }
 
 #[cfg(test)]

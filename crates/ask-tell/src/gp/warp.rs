@@ -5,6 +5,7 @@
 //! normal is chosen by maximum likelihood. The transformation rises strictly, so
 //! the order of the values is kept.
 
+use crate::statistics::Moments;
 use libm::{exp, log, log1p, pow};
 
 /// A transformation: the power, then mean 0 and variance 1 again.
@@ -46,10 +47,9 @@ fn warped(values: &[f64], lambda: f64) -> (f64, Vec<f64>, Warp) {
     // log of the transformation's slope is (lambda - 1) times this, summed over the values.
     let log_slope: f64 = values.iter().map(|y| y.signum() * log1p(y.abs())).sum();
     let bent: Vec<f64> = values.iter().map(|&y| yeo_johnson(y, lambda)).collect();
-    let mean = bent.iter().sum::<f64>() / n;
-    let variance = bent.iter().map(|t| (t - mean) * (t - mean)).sum::<f64>() / n;
-    let likelihood = -0.5 * n * log(variance) + (lambda - 1.0) * log_slope;
-    let deviation = variance.sqrt();
+    let moments = Moments::of(&bent);
+    let likelihood = -0.5 * n * log(moments.variance()) + (lambda - 1.0) * log_slope;
+    let (mean, deviation) = (moments.mean, moments.deviation());
     let values = bent.iter().map(|t| (t - mean) / deviation).collect();
     let slope = exp((lambda - 1.0) * log_slope / n) / deviation;
     (likelihood, values, Warp { lambda, mean, deviation, slope })

@@ -3,6 +3,7 @@
 use super::log::{Ended, Log, Moment, Run};
 use super::read::median_gap;
 use super::touch::{Air, after, air, any_touch, mean, touch};
+use ask_tell::statistics::Moments;
 use input::units::{DEG, MM};
 use insertion::outcome::FailureClass;
 use insertion::task::Task;
@@ -244,7 +245,7 @@ fn slope(
     bias: Vector3<f64>,
     noise: Vector3<f64>,
 ) -> (Vector3<f64>, Vector3<f64>) {
-    let middle = moments.iter().map(|moment| moment.time_s).sum::<f64>() / moments.len() as f64;
+    let middle = Moments::of(moments.iter().map(|moment| moment.time_s)).mean;
     let late = |moment: &Moment| moment.time_s - middle;
     let spread: f64 = moments.iter().map(|moment| late(moment).powi(2)).sum::<f64>().max(1e-12);
     let sum: Vector3<f64> = moments.iter().map(|moment| (moment.force - bias) * late(moment)).sum();

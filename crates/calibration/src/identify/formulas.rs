@@ -1,6 +1,7 @@
 //! What stands in the logs by itself: stiffness of the robot, preload, friction.
 
 use super::curves::{Curves, STEP_S, accelerations, rates, smoothed};
+use ask_tell::statistics::{Moments, mean};
 use insertion::surrogate::Estimate;
 use nalgebra::{DMatrix, DVector, Vector3};
 use std::ops::Range;
@@ -43,10 +44,8 @@ pub fn flange(all: &[Curves], axis: usize) -> Option<Flange> {
         solve(others).map(|fit| fit.terms[0])
     };
     let left_out: Vec<f64> = (0..sums.len()).filter_map(without).collect();
-    let n = left_out.len() as f64;
-    let mean = left_out.iter().sum::<f64>() / n.max(1.0);
-    let spread: f64 = left_out.iter().map(|k| (k - mean).powi(2)).sum();
-    let jackknife = if n > 1.0 { ((n - 1.0) / n * spread).sqrt() } else { f64::INFINITY };
+    let Moments { count: n, squares, .. } = Moments::of(&left_out);
+    let jackknife = if n > 1.0 { ((n - 1.0) / n * squares).sqrt() } else { f64::INFINITY };
     let [stiffness, damping, mass] = fit.terms;
     let known = stiffness > 0.0 && jackknife < stiffness;
     known.then_some(Flange {
@@ -133,11 +132,10 @@ pub fn preload(all: &[Curves]) -> Option<Estimate> {
 
 /// Mean, and its standard deviation from the scatter, at least `floor` of it.
 fn estimate(values: &[f64], floor: f64) -> Option<Estimate> {
-    let n = values.len() as f64;
-    let mean = (n > 0.0).then(|| values.iter().sum::<f64>() / n)?;
-    let scatter = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
-    let sd = if n > 1.0 { (scatter / (n - 1.0) / n).sqrt() } else { 0.0 };
-    Some(Estimate { mean, sd: sd.max(floor * mean.abs()) })
+    let moments = Moments::of(values);
+    let Moments { count, mean, .. } = moments;
+    let sd = if count > 1.0 { (moments.sample_variance() / count).sqrt() } else { 0.0 };
+    (count > 0.0).then(|| Estimate { mean, sd: sd.max(floor * mean.abs()) })
 }
 
 /// One slide of a probe.
@@ -207,9 +205,7 @@ pub fn friction(probe: &Curves) -> Option<Friction> {
 /// The force less a line through what the sensor shows in the air before and after the contact: where
 /// the TCP is higher than where it slides.
 fn undrifted(probe: &Curves, sliding: impl Fn(usize) -> bool) -> Option<Vec<Vector3<f64>>> {
-    let on: Vec<f64> =
-        (0..probe.tcp.len()).filter(|&i| sliding(i)).map(|i| probe.tcp[i].z).collect();
-    let face = (!on.is_empty()).then(|| on.iter().sum::<f64>() / on.len() as f64)?;
+    let face = mean((0..probe.tcp.len()).filter(|&i| sliding(i)).map(|i| probe.tcp[i].z))?;
     let in_air = |i: &usize| probe.tcp[*i].z > face + LIFTED;
     let first = (0..probe.tcp.len()).take_while(in_air).count();
     let last = (0..probe.tcp.len()).rev().take_while(in_air).count();

@@ -9,6 +9,7 @@ use super::replay::{Logged, Replay};
 use super::smoother::{Datum, Predicted, Settings, Smoothed, smooth};
 use super::touch::bias;
 use super::unknown::{From, Unknown, advice, fit, not_fitted, told, untold, values, with};
+use ask_tell::statistics::{Moments, mean};
 use input::units::MM;
 use insertion::evaluation::cell::Priors;
 use insertion::evaluation::evaluator::Evaluator;
@@ -207,22 +208,18 @@ impl Question<'_> {
                 let to = one.push.min(target.len() - 1);
                 Some((target[to].y - target[from].y) / MM)
             };
-            let strokes: Vec<f64> = attempts.iter().filter_map(stroke).collect();
-            let mean = (!strokes.is_empty())
-                .then(|| strokes.iter().sum::<f64>() / strokes.len() as f64)?;
+            let mean = mean(attempts.iter().filter_map(stroke))?;
             return Some(with(prior, mean, 0.01, "commanded from the touch to the push"));
         }
         if *path == FRICTION {
             let said: Vec<Estimate> =
                 probes.iter().filter_map(|(_, found)| found.coefficient).collect();
-            let n = said.len() as f64;
-            let mean = (n > 0.0).then(|| said.iter().map(|one| one.mean).sum::<f64>() / n)?;
-            let scatter = said.iter().map(|one| (one.mean - mean).powi(2)).sum::<f64>() / n;
-            let sd = said.iter().map(|one| one.sd).sum::<f64>() / n;
+            let sd = mean(said.iter().map(|one| one.sd))?;
+            let means = Moments::of(said.iter().map(|one| one.mean));
             return Some(with(
                 prior,
-                mean,
-                libm::hypot(sd, scatter.sqrt()),
+                means.mean,
+                libm::hypot(sd, means.deviation()),
                 "probe: slides both ways",
             ));
         }

@@ -2,6 +2,7 @@
 
 use super::frame::Frame;
 use super::log::{COLUMNS, Log, MOST, Moment, TARGETS, Target};
+use ask_tell::statistics::median;
 use input::files;
 use input::units::{DEG, MM};
 use input::{Fault, Place, shown};
@@ -84,9 +85,7 @@ fn check_units(log: &Log) -> Result<(), String> {
 
 /// Median time between two moments, s.
 pub(super) fn median_gap(log: &Log) -> f64 {
-    let mut gaps: Vec<f64> = log.moments.windows(2).map(|w| w[1].time_s - w[0].time_s).collect();
-    gaps.sort_by(f64::total_cmp);
-    gaps.get(gaps.len() / 2).copied().unwrap_or(0.0)
+    median(log.moments.windows(2).map(|w| w[1].time_s - w[0].time_s)).unwrap_or(0.0)
 }
 
 /// How a log was recorded, with the frame that it needs.

@@ -6,6 +6,7 @@
 //! happen to fit do not make the spread collapse.
 
 use ask_tell::normal::StandardNormal;
+use ask_tell::statistics::Moments;
 use ask_tell::stream::stream;
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
@@ -107,11 +108,10 @@ impl Known {
         let (mut kept, mut rows) = (Vec::new(), Vec::new());
         for (i, datum) in data.iter().enumerate() {
             let said: Vec<Option<f64>> = predicted.iter().map(|member| member[i]).collect();
-            let count = said.iter().flatten().count();
-            if (count as f64) < ENOUGH * members as f64 || count == 0 {
+            let Moments { count, mean, .. } = Moments::of(said.iter().flatten());
+            if count < ENOUGH * members as f64 || count == 0.0 {
                 continue;
             }
-            let mean = said.iter().flatten().sum::<f64>() / count as f64;
             kept.push(*datum);
             rows.extend(said.into_iter().map(|value| value.unwrap_or(mean)));
         }
@@ -244,10 +244,8 @@ mod tests {
         let covariance = a.try_inverse().unwrap();
         let mean = &covariance * b;
         for i in 0..2 {
-            let values: Vec<f64> = found.members.iter().map(|member| member[i]).collect();
-            let n = values.len() as f64;
-            let m = values.iter().sum::<f64>() / n;
-            let sd = (values.iter().map(|v| (v - m).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
+            let moments = Moments::of(found.members.iter().map(|member| member[i]));
+            let (m, sd) = (moments.mean, moments.sample_deviation());
             let known = covariance[(i, i)].sqrt();
             assert!((m - mean[i]).abs() < 0.15 * known, "{m} and {}", mean[i]);
             assert!((sd / known - 1.0).abs() < 0.15, "{sd} and {known}");

@@ -1,7 +1,7 @@
 //! A number of the cell before and after the logs were read.
 
 use super::smoother::Smoothed;
-use ask_tell::normal::cumulative;
+use ask_tell::statistics::{Moments, normal_cdf};
 use parameters::numbers::{CLEARANCE, FRICTION, Kind, PAD_FRICTION, STIFFNESS};
 use parameters::{Parameter, Scale};
 
@@ -40,7 +40,7 @@ pub struct Unknown {
 
 /// The values of rows at these standard normal coordinates.
 pub(super) fn values<'a>(rows: &[&'a Parameter], z: &[f64]) -> Vec<(&'a Parameter, f64)> {
-    rows.iter().zip(z).map(|(row, &z)| (*row, row.at(cumulative(z)))).collect()
+    rows.iter().zip(z).map(|(row, &z)| (*row, row.at(normal_cdf(z)))).collect()
 }
 
 /// A row with a value, within its bounds, which give way to a measurement.
@@ -72,7 +72,8 @@ pub(super) fn fit(
     i: usize,
 ) -> Unknown {
     let z: Vec<f64> = smoothed.members.iter().map(|member| member[i]).collect();
-    let (mean, sd) = moments(&z);
+    let own = Moments::of(&z);
+    let (mean, sd) = (own.mean, own.sample_deviation());
     let left = Some([smoothed.expected_sd[i], INFLATION * sd]);
     if let Some(known) = known {
         // What was measured by itself is not bent to make up for what the model lacks elsewhere.
@@ -82,10 +83,11 @@ pub(super) fn fit(
         return untold(prior.clone(), left);
     }
     let row = prior;
-    let at = |z: &f64| row.at(cumulative(mean + INFLATION * (z - mean)));
+    let at = |z: &f64| row.at(normal_cdf(mean + INFLATION * (z - mean)));
     let log = row.scale == Scale::Log;
     let drawn: Vec<f64> = z.iter().map(at).map(|v| if log { libm::log(v) } else { v }).collect();
-    let (mean, sd) = moments(&drawn);
+    let moments = Moments::of(&drawn);
+    let (mean, sd) = (moments.mean, moments.sample_deviation());
     let (value, sd) = if log { (libm::exp(mean), sd * libm::exp(mean)) } else { (mean, sd) };
     let posterior = Parameter {
         value: Some(value.clamp(row.low, row.high)),
@@ -94,13 +96,6 @@ pub(super) fn fit(
         ..row.clone()
     };
     Unknown { left, ..told(prior.clone(), posterior, From::Fit) }
-}
-
-fn moments(values: &[f64]) -> (f64, f64) {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0);
-    (mean, variance.sqrt())
 }
 
 /// Returns whether the curves would have to give way to a number: other numbers' errors end in these, which

@@ -10,6 +10,7 @@ use crate::finger::model::ComputedFingers;
 use crate::space::Design;
 use crate::stiffness::Measurement;
 use crate::surrogate::{Estimate, Prediction};
+use ask_tell::statistics::Moments;
 use finray::FingerError;
 use finray::mechanics::FingerStiffness;
 
@@ -65,11 +66,9 @@ fn scatter(fingers: &ComputedFingers, measured: &[Measurement]) -> Result<[f64; 
         Ok([libm::log(m.compliance / compliance), libm::log(m.assembly / assembly)])
     });
     let ratios: Vec<[f64; 2]> = ratios.collect::<Result<_, FingerError>>()?;
-    let count = ratios.len() as f64;
     Ok([0, 1].map(|axis| {
-        let mean = ratios.iter().map(|ratio| ratio[axis]).sum::<f64>() / count;
-        let squares = ratios.iter().map(|ratio| (ratio[axis] - mean).powi(2));
-        if count > 1.0 { (squares.sum::<f64>() / (count - 1.0)).sqrt() } else { 1.0 }
+        let scatter = Moments::of(ratios.iter().map(|ratio| ratio[axis])).sample_deviation();
+        if scatter.is_nan() { 1.0 } else { scatter }
     }))
 }
 

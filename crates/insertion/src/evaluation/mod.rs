@@ -13,7 +13,7 @@ pub mod uncertainty;
 
 use crate::outcome::Outcome;
 use crate::surrogate::null_is_nan;
-use ask_tell::normal::quantile;
+use ask_tell::statistics::{Moments, normal_quantile};
 use serde::{Deserialize, Serialize};
 
 /// Difference of two ranges that a bench cannot tell, mm: measured windows of the publication differ by 0.1
@@ -192,7 +192,7 @@ impl SuccessRate {
     pub fn interval(&self) -> [f64; 2] {
         let Some(rate) = self.rate() else { return [0.0, 1.0] };
         let n = f64::from(self.counted());
-        let z = quantile(0.5 + self.confidence / 2.0);
+        let z = normal_quantile(0.5 + self.confidence / 2.0);
         let centre = (rate + z * z / (2.0 * n)) / (1.0 + z * z / n);
         let half = z / (1.0 + z * z / n) * (rate * (1.0 - rate) / n + z * z / (4.0 * n * n)).sqrt();
         [(centre - half).max(0.0), (centre + half).min(1.0)]
@@ -219,17 +219,12 @@ pub struct RobustRange {
 impl RobustRange {
     /// Mean of the ranges, mm; NaN if there are none.
     pub fn mean_mm(&self) -> f64 {
-        self.ranges_mm.iter().sum::<f64>() / self.ranges_mm.len() as f64
+        Moments::of(&self.ranges_mm).mean
     }
 
     /// Standard deviation of the ranges (with n - 1), mm; NaN for fewer than two.
     pub fn sd_mm(&self) -> f64 {
-        let mean = self.mean_mm();
-        let squares: f64 = self.ranges_mm.iter().map(|range| (range - mean).powi(2)).sum();
-        match self.ranges_mm.len() {
-            0 | 1 => f64::NAN,
-            n => (squares / (n - 1) as f64).sqrt(),
-        }
+        Moments::of(&self.ranges_mm).sample_deviation()
     }
 }
 

@@ -22,6 +22,7 @@ mod ridge;
 mod tests;
 
 use crate::stiffness::{Axis, Infill};
+use ask_tell::statistics::Moments;
 use input::units::N_PER_MM;
 use linfa::prelude::Dataset;
 use ndarray::{Array1, Array2, Ix1};
@@ -172,10 +173,8 @@ struct Standard {
 impl Standard {
     /// Of these values, their variance the sum of squares over as many less `lost`.
     pub fn of(values: &[f64], lost: usize) -> Self {
-        let n = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / n;
-        let squares = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
-        let variance = squares / (n - lost as f64);
+        let Moments { count, mean, squares } = Moments::of(values);
+        let variance = squares / (count - lost as f64);
         Standard { mean, sd: if variance > 0.0 { variance.sqrt() } else { 1.0 } }
     }
 

@@ -1,5 +1,6 @@
 use super::*;
 use crate::stiffness::{Measurement, SurrogateError, parse};
+use ask_tell::statistics::Moments;
 use finray::printed::PrintedFinger;
 use input::shipped::{FINGERS, STIFFNESS};
 use input::units::N_PER_MM;
@@ -236,9 +237,7 @@ fn the_shipped_fingers_scatter_about_the_computed_ones_as_said() {
             libm::log(m.stiffness(axis) / computed().stiffness(axis, m.infill()).unwrap())
         };
         let logs: Vec<f64> = shipped.iter().map(log).collect();
-        let mean = logs.iter().sum::<f64>() / logs.len() as f64;
-        let squares: f64 = logs.iter().map(|each| (each - mean).powi(2)).sum();
-        let scatter = (squares / super::computed::FREEDOM).sqrt();
+        let scatter = (Moments::of(&logs).squares / super::computed::FREEDOM).sqrt();
         assert!((scatter - said).abs() < 0.005, "{axis:?}: {scatter}");
     }
 }

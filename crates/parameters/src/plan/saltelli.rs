@@ -8,6 +8,7 @@
 //! independent samples A and B, and for each input A with that input from B.
 
 use ask_tell::SobolSequence;
+use ask_tell::statistics::Moments;
 use ask_tell::stream::stream;
 use rand::RngExt;
 
@@ -97,10 +98,7 @@ impl Sample {
 
 /// Variance of both samples together over some rows.
 fn variance(of_a: &[f64], of_b: &[f64], rows: &[usize]) -> f64 {
-    let both = || rows.iter().flat_map(|&row| [of_a[row], of_b[row]]);
-    let count = 2.0 * rows.len() as f64;
-    let mean = both().sum::<f64>() / count;
-    both().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0)
+    Moments::of(rows.iter().flat_map(|&row| [of_a[row], of_b[row]])).sample_variance()
 }
 
 /// Bootstrap interval of `statistic` over independent rows.

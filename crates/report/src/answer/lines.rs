@@ -2,6 +2,7 @@
 
 use super::words::{self, ends_mm, evaluated, interval, mm, span};
 use super::{Answer, AsGood, Front, OnTask, Recommended, Spread};
+use ask_tell::statistics::mean;
 use calibration::order::Order;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::REPEATS;
@@ -194,9 +195,8 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
 fn raced(answer: &Answer) -> Option<Line> {
     let raced = || answer.record.current().iter().filter(|recorded| recorded.raced());
     let rates = raced().flat_map(|recorded| &recorded.tasks).flat_map(|task| &task.success);
-    let tried: Vec<f64> = rates.filter_map(|rate| rate.raced()).map(f64::from).collect();
-    let mean = tried.iter().sum::<f64>() / tried.len() as f64;
-    (!tried.is_empty()).then(|| {
+    let tried = rates.filter_map(|rate| rate.raced()).map(f64::from);
+    mean(tried).map(|mean| {
         let [designs, of] = [raced().count(), answer.designs];
         let early =
             format!("{designs} of {of} designs ended early, after {mean:.0} draws in the mean");

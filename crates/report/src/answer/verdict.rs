@@ -3,6 +3,7 @@
 use super::trust::Measured;
 use super::words::{evaluated, finger, interval, mm, outcome, span};
 use super::{Answer, AsGood, Recommended};
+use ask_tell::statistics::mean;
 use insertion::evaluation::objective::Measure;
 use insertion::outcome::Outcome;
 use insertion::space::Design;
@@ -63,18 +64,16 @@ impl<'a> Verdict<'a> {
         }
         if let Some(best) = answer.record.on_bench.as_ref().and_then(|found| found.best.first()) {
             let design = &best.design;
-            let own = || measured.iter().filter(|measured| measured.design == *design);
+            let own = measured.iter().filter(|measured| measured.design == *design);
             // A finger may be measured on several days.
-            let mean_mm = own().map(|one| one.range_mm).sum::<f64>() / own().count() as f64;
+            let range_mm = mean(own.map(|one| one.range_mm));
             let mut bounds = answer.record.on_bench.iter().flat_map(|found| &found.bounds);
             let bound = bounds.find(|(printed, _)| printed == design).map(|(_, mm)| *mm);
-            return match (mean_mm.is_nan(), bound) {
-                (true, None) => Verdict::Print(design),
-                (unknown, bound) => Verdict::MeasuredBefore {
-                    design,
-                    range_mm: (!unknown).then_some(mean_mm),
-                    at_least_mm: bound.flatten(),
-                },
+            return match (range_mm, bound) {
+                (None, None) => Verdict::Print(design),
+                (range_mm, bound) => {
+                    Verdict::MeasuredBefore { design, range_mm, at_least_mm: bound.flatten() }
+                }
             };
         }
         let Some(found) = &answer.recommended else { return Verdict::NoneFeasible };

@@ -9,6 +9,7 @@ mod tests;
 
 use super::pairs::{self, WindowPair};
 use super::{Subject, TaskWays, Way, each, subject_json};
+use ask_tell::statistics::{mean, median, quantile, sorted};
 use insertion::evaluation::{OffsetStep, Window, grid_mm, tolerance};
 use insertion::outcome::Outcome;
 use insertion::stiffness::Measurement;
@@ -145,10 +146,9 @@ pub fn text(check: &CrossCheck, [first, second]: [&str; 2]) -> String {
         total - others.len(),
         verdict(check.agreement() >= AGREEMENT)
     );
-    let mut tips: Vec<f64> = check.trials.iter().filter_map(|pair| pair.tip_mm).collect();
-    tips.sort_by(f64::total_cmp);
+    let tips = sorted(check.trials.iter().filter_map(|pair| pair.tip_mm));
     let count = tips.len();
-    if let (Some(median), Some(largest)) = (tips.get(count / 2), tips.last()) {
+    if let (Some(median), Some(largest)) = (quantile(&tips, 0.5), tips.last()) {
         text += &format!(
             "tips of the {count} plugs that both insert: {median:.3} mm apart (median), {largest:.3} mm at most\n"
         );
@@ -227,15 +227,11 @@ pub fn time(tasks: &[TaskWays], designs: &[Measurement]) -> Vec<Timing> {
                 ends[i] = (trial.outcome, trial.simulated_s);
             }
         }
-        let median = |mut walls: Vec<f64>| {
-            walls.sort_by(f64::total_cmp);
-            walls[RUNS / 2]
-        };
         Timing {
             subject,
             outcomes: ends.map(|end| end.0),
             simulated_s: ends.map(|end| end.1),
-            wall_s: walls.map(median),
+            wall_s: walls.map(|walls| median(walls).unwrap_or(f64::NAN)),
         }
     };
     tasks.iter().flat_map(|task| designs.iter().map(move |design| timing(task, design))).collect()
@@ -258,6 +254,6 @@ pub fn time_text(rows: &[Timing], [first, second]: [&str; 2]) -> String {
             if alike(row.outcomes) { "" } else { "  another outcome" }
         );
     }
-    let mean = rows.iter().map(Timing::ratio).sum::<f64>() / rows.len() as f64;
+    let mean = mean(rows.iter().map(Timing::ratio)).unwrap_or(f64::NAN);
     text + &format!("mean ratio of wall to simulated time: {mean:.3}\n")
 }

@@ -7,8 +7,8 @@ mod tests;
 pub use table::{accuracy, csv, json};
 
 use super::failures;
+use ask_tell::statistics::{mean, spearman};
 use calibration::published::{self, Origin, Published};
-use calibration::statistics::{mean, spearman};
 use insertion::evaluation::Window;
 use insertion::evaluation::taught::{Moved, teach};
 use insertion::evaluation::template::Impossible;
@@ -142,9 +142,8 @@ impl Agreement {
             });
             both.filter(|(_, reference)| reference.is_some())
         };
-        let over = |measure: &dyn Fn(f64, f64) -> f64| {
-            mean(&pairs.iter().map(|&(a, b)| measure(a, b)).collect::<Vec<_>>())
-        };
+        let over =
+            |measure: &dyn Fn(f64, f64) -> f64| mean(pairs.iter().map(|&(a, b)| measure(a, b)));
         let matched_ends = ends().filter(|(a, b)| a == b).count();
         Agreement {
             source,

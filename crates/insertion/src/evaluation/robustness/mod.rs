@@ -14,6 +14,7 @@ use crate::finger::Finger;
 use crate::outcome::Outcome;
 use crate::surrogate::Prediction;
 use crate::trial::{Grasp, Rig};
+use ask_tell::statistics::{mean, sorted};
 use race::Race;
 use rayon::prelude::*;
 
@@ -134,10 +135,8 @@ fn statistic(robust: &RobustRange, of: Statistic) -> Option<f64> {
     Some(match of {
         Statistic::MeanMinusSd(factor) => robust.mean_mm() - factor * robust.sd_mm(),
         Statistic::LowerTail(share) => {
-            let mut sorted = robust.ranges_mm.clone();
-            sorted.sort_by(f64::total_cmp);
-            let tail = &sorted[..((share * count as f64).round() as usize).max(1)];
-            tail.iter().sum::<f64>() / tail.len() as f64
+            let tail = ((share * count as f64).round() as usize).max(1);
+            mean(&sorted(robust.ranges_mm.iter().copied())[..tail])?
         }
     })
 }

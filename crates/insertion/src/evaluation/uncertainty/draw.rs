@@ -183,6 +183,7 @@ mod tests {
     use super::*;
     use crate::evaluation::uncertainty::Uncertainty;
     use crate::fixtures::predicted;
+    use ask_tell::statistics::Moments;
     use input::shipped::UNCERTAINTIES;
     use parameters::numbers::{Kind, paths};
 
@@ -191,11 +192,8 @@ mod tests {
     }
 
     fn moments(values: impl Iterator<Item = f64>) -> (f64, f64) {
-        let values: Vec<f64> = values.collect();
-        let n = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / n;
-        let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0);
-        (mean, variance.sqrt())
+        let moments = Moments::of(values.collect::<Vec<_>>());
+        (moments.mean, moments.sample_deviation())
     }
 
     fn near((mean, sd): (f64, f64), expected_mean: f64, expected_sd: f64) {

@@ -1,0 +1,208 @@
+//! Statistics of samples, and the normal distribution.
+
+use libm::{erfc, exp, log, log1p, sqrt};
+use std::borrow::Borrow;
+use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2};
+
+/// Returns the mean; `None` without values.
+pub fn mean(values: impl IntoIterator<Item = impl Borrow<f64>>) -> Option<f64> {
+    let mut count = 0.0;
+    let counted = values.into_iter().map(|value| *value.borrow()).inspect(|_| count += 1.0);
+    let sum: f64 = counted.sum();
+    (count > 0.0).then(|| sum / count)
+}
+
+/// Number, mean and spread of values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moments {
+    /// Number of values.
+    pub count: f64,
+    /// Mean; NaN without values.
+    pub mean: f64,
+    /// Sum of the squared differences from the mean.
+    pub squares: f64,
+}
+
+impl Moments {
+    /// Returns the moments of values, which are iterated twice.
+    pub fn of<I>(values: I) -> Self
+    where
+        I: IntoIterator<Item: Borrow<f64>, IntoIter: Clone>,
+    {
+        let values = values.into_iter().map(|value| *value.borrow());
+        let count = values.clone().count() as f64;
+        let mean = values.clone().sum::<f64>() / count;
+        Moments { count, mean, squares: values.map(|value| (value - mean).powi(2)).sum() }
+    }
+
+    /// Returns the variance of the values, the mean square; NaN without values.
+    pub fn variance(&self) -> f64 {
+        self.squares / self.count
+    }
+
+    /// Returns the square root of [`Moments::variance`].
+    pub fn deviation(&self) -> f64 {
+        self.variance().sqrt()
+    }
+
+    /// Returns the unbiased variance of the population, over n - 1; NaN for fewer than two values.
+    pub fn sample_variance(&self) -> f64 {
+        if self.count > 1.0 { self.squares / (self.count - 1.0) } else { f64::NAN }
+    }
+
+    /// Returns the square root of [`Moments::sample_variance`].
+    pub fn sample_deviation(&self) -> f64 {
+        self.sample_variance().sqrt()
+    }
+}
+
+/// Returns the median, of an even number of values the upper of the two in the middle; `None`
+/// without values.
+pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    quantile(&sorted(values), 0.5)
+}
+
+/// Returns values in ascending order.
+pub fn sorted(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
+    let mut values: Vec<f64> = values.into_iter().collect();
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+/// Returns the value that a share (0 to 1) of sorted values lies below, by the nearest rank; `None`
+/// without values.
+pub fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
+    let place = share * sorted.len().checked_sub(1)? as f64;
+    sorted.get(place.round() as usize).copied()
+}
+
+/// Returns the same as [`quantile`] by linear interpolation between the two nearest ranks.
+pub fn interpolated_quantile(sorted: &[f64], share: f64) -> Option<f64> {
+    let place = share * sorted.len().checked_sub(1)? as f64;
+    let [low, high] = [place.floor(), place.ceil()].map(|at| sorted.get(at as usize).copied());
+    let part = place - place.floor();
+    if part == 0.0 { low } else { Some(low? + part * (high? - low?)) }
+}
+
+/// Returns Pearson's correlation of pairs; `None` if one side does not vary.
+pub fn pearson(first: &[f64], second: &[f64]) -> Option<f64> {
+    let (first_mean, second_mean) = (mean(first)?, mean(second)?);
+    let sum = |of: fn(f64, f64) -> f64| -> f64 {
+        first.iter().zip(second).map(|(a, b)| of(a - first_mean, b - second_mean)).sum()
+    };
+    let scale = (sum(|a, _| a * a) * sum(|_, b| b * b)).sqrt();
+    (scale > 0.0).then(|| sum(|a, b| a * b) / scale)
+}
+
+/// Returns Spearman's rank correlation of pairs; `None` below 3 pairs or if one side does not vary.
+pub fn spearman(pairs: &[(f64, f64)]) -> Option<f64> {
+    let (first, second): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
+    if pairs.len() < 3 { None } else { pearson(&ranks(&first), &ranks(&second)) }
+}
+
+/// Ranks from 0; equal values share the mean of their ranks.
+fn ranks(values: &[f64]) -> Vec<f64> {
+    let rank = |v: &f64| {
+        let below = values.iter().filter(|other| *other < v).count() as f64;
+        let equal = values.iter().filter(|other| *other == v).count() as f64;
+        below + (equal - 1.0) / 2.0
+    };
+    values.iter().map(rank).collect()
+}
+
+/// Returns the density of the standard normal distribution.
+pub fn normal_pdf(z: f64) -> f64 {
+    exp(-0.5 * z * z) / (SQRT_2 * sqrt(PI))
+}
+
+/// Returns the logarithm of [`normal_pdf`].
+pub fn normal_log_pdf(z: f64) -> f64 {
+    -0.5 * z * z - 0.5 * log(2.0 * PI)
+}
+
+/// Returns the probability that a standard normal number lies below `z`.
+pub fn normal_cdf(z: f64) -> f64 {
+    0.5 * erfc(-z * FRAC_1_SQRT_2)
+}
+
+/// Returns the logarithm of [`normal_cdf`], also where that underflows.
+pub fn normal_log_cdf(z: f64) -> f64 {
+    if z > -30.0 {
+        return log(normal_cdf(z));
+    }
+    // The first terms of Mills' ratio (1 - cdf) / pdf at x = -z: 1/x - 1/x^3 + 3/x^5 - ...
+    let inverse = 1.0 / (z * z);
+    normal_log_pdf(z) - log(-z) + log1p(-inverse * (1.0 - 3.0 * inverse))
+}
+
+/// Returns the inverse of [`normal_cdf`], by bisection between -40 and 40.
+pub fn normal_quantile(probability: f64) -> f64 {
+    let (mut low, mut high) = (-40.0, 40.0);
+    for _ in 0..100 {
+        let middle = (low + high) / 2.0;
+        let below = normal_cdf(middle) < probability;
+        *(if below { &mut low } else { &mut high }) = middle;
+    }
+    low
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moments_and_quantiles_by_hand() {
+        let values = [4.0, 1.0, 7.0, 2.0];
+        let moments = Moments::of(values);
+        assert_eq!((moments.mean, moments.squares), (3.5, 21.0));
+        assert_eq!((moments.variance(), moments.sample_variance()), (5.25, 7.0));
+        assert!(Moments::of(values[..1].iter()).sample_deviation().is_nan());
+        assert_eq!((mean(values), mean([0.0; 0])), (Some(3.5), None));
+        assert_eq!((median(values), median([])), (Some(4.0), None));
+        let sorted = sorted(values);
+        assert_eq!(
+            [0.0, 0.25, 0.75, 1.0].map(|at| quantile(&sorted, at)),
+            [1., 2., 4., 7.].map(Some)
+        );
+        assert_eq!(
+            [0.0, 0.25, 0.5, 1.0].map(|at| interpolated_quantile(&sorted, at)),
+            [1., 1.75, 3., 7.].map(Some)
+        );
+    }
+
+    #[test]
+    fn rank_correlations_by_hand() {
+        // Ranks 0 1 2 3 against 1 0 3 2: 1 - 6 * 4 / (4 * 15) = 0.6.
+        let close = |found: Option<f64>, r: f64| (found.unwrap() - r).abs() < 1e-12;
+        assert!(close(spearman(&[(1.0, 20.0), (2.0, 10.0), (3.0, 40.0), (9.0, 30.0)]), 0.6));
+        // Centred ranks -1 0 1 against 0.5 0.5 -1: -1.5 / sqrt(2 * 1.5).
+        assert!(close(spearman(&[(1.0, 5.0), (2.0, 5.0), (3.0, 4.0)]), -0.75f64.sqrt()));
+        assert_eq!(spearman(&[(1.0, 1.0), (2.0, 1.0), (3.0, 1.0)]), None);
+        assert_eq!(spearman(&[(1.0, 1.0), (2.0, 2.0)]), None);
+    }
+
+    #[test]
+    fn the_log_of_the_distribution_is_smooth_where_the_formulas_meet() {
+        // log Phi(-1.96), log Phi(0) and log Phi(-35), computed with 60 digits (mpmath).
+        for (z, expected) in [
+            (0.0, -std::f64::consts::LN_2),
+            (-1.96, -3.688_963_651_729_639),
+            (-35.0, -616.975_101_261_922_5),
+        ] {
+            let error = (normal_log_cdf(z) / expected - 1.0).abs();
+            assert!(error < 1e-8, "{z}: {} not {expected}", normal_log_cdf(z));
+        }
+        let (above, below) = (normal_log_cdf(-29.999_999), normal_log_cdf(-30.000_001));
+        assert!(above > below && above - below < 1e-4);
+    }
+
+    #[test]
+    fn the_quantile_inverts_the_distribution_whose_slope_is_the_density() {
+        for z in [-6.0, -1.96, 0.0, 0.5, 3.0] {
+            assert!((normal_quantile(normal_cdf(z)) - z).abs() < 1e-9 * normal_pdf(z).recip());
+            let slope = (normal_cdf(z + 1e-4) - normal_cdf(z - 1e-4)) / 2e-4;
+            assert!((slope / normal_pdf(z) - 1.0).abs() < 1e-5, "{z}");
+            assert!((exp(normal_log_pdf(z)) / normal_pdf(z) - 1.0).abs() < 1e-14);
+        }
+    }
+}

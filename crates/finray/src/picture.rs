@@ -9,9 +9,9 @@ use super::mesh::MeshError;
 use super::meshed::{Body, MeshedFinger};
 use super::stiffness::PlanarStiffness;
 use crate::outline::Outline;
+use drawing::{Drawing, Font, Style, View};
 use input::units::MM;
 use nalgebra::{Point2, Vector2, Vector3};
-use std::fmt::Write;
 
 /// Pixels per millimetre.
 const SCALE: f64 = 12.0;
@@ -22,43 +22,37 @@ const LONGEST: f64 = 5.0;
 /// Length of the scale bar, mm.
 const BAR: f64 = 10.0;
 
-/// Stand-alone SVG of the finger at rest (light) and under a force on its pad, y and z in N
-/// (dark). The part touches the pad alone and does not hold it from turning.
+/// Draws the finger at rest (light) and under a force on its pad, y and z in N (dark), as a
+/// stand-alone SVG. The part touches the pad alone and does not hold it from turning.
 ///
 /// # Errors
 /// If the finger's stiffness cannot be computed.
 pub fn svg(geometry: &Geometry, force: [f64; 2]) -> Result<String, FingerError> {
     let bent = Bent::new(geometry, force).map_err(|error| FingerError::mesh(geometry, error))?;
-    let outline = &geometry.finger.outline;
-    let [left, top, right, bottom] = MARGIN;
-    let (wide, height) = (outline.length / MM + left + right, outline.width / MM + top + bottom);
-    let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0} {:.0}\" \
-         font-family=\"sans-serif\" font-size=\"14\">\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-        wide * SCALE,
-        height * SCALE,
-    );
-    words(&mut out, geometry, force, bent.exaggeration, height);
+    let [left, top, right, bottom] = MARGIN.map(|mm| mm * SCALE);
+    let view = View { origin: Point2::new(left, top), scale: SCALE / MM };
+    let Outline { length, width, clamped, .. } = geometry.finger.outline;
+    let [long, wide] = [length, width].map(|size| size * view.scale);
+    let mut drawing = Drawing::default();
+    drawing.paper();
+    words(&mut drawing, geometry, force, bent.exaggeration);
     let boundary = bent.meshed.mesh.boundary();
-    let rings = |at: &dyn Fn(usize) -> Point2<f64>| {
-        boundary.iter().map(|ring| path(ring.iter().map(|&node| at(node)))).collect::<String>()
+    let mut shape = |at: &dyn Fn(usize) -> Point2<f64>, colour| {
+        let ring = |ring: &Vec<usize>| ring.iter().map(|&node| view.place(at(node))).collect();
+        let rings: Vec<Vec<_>> = boundary.iter().map(ring).collect();
+        drawing.rings(rings, Style::fill(colour));
     };
-    shape(&mut out, &rings(&|node| bent.meshed.mesh.nodes[node]), "#d9dde3");
-    shape(&mut out, &rings(&|node| bent.moved(node)), "#33507a");
-    let Outline { length, width, clamped, .. } = *outline;
-    let (start, back) = (length - clamped, -width);
-    let base = [[start, 0.0], [length, 0.0], [length, back], [start, back]];
-    shape(&mut out, &path(base.into_iter().map(Point2::from)), "#8a8f98");
-    let [tip, corner] = [outline.tip_point(), outline.corner()]
-        .map(|p| pixels(p + bent.rigid(outline, &p) * bent.exaggeration));
-    // Writing to a string cannot fail.
-    let _ = writeln!(
-        out,
-        "<polyline points=\"{tip} {corner}\" fill=\"none\" stroke=\"#e8a33d\" \
-         stroke-width=\"4\"/>\n</svg>"
-    );
-    Ok(out)
+    shape(&|node| bent.meshed.mesh.nodes[node], "#d9dde3");
+    shape(&|node| bent.moved(node), "#33507a");
+    let base = [[length - clamped, 0.0], [length, -width]].map(|p| view.place(p.into()));
+    drawing.rectangle(base, 0.0, Style::fill("#8a8f98"));
+    let outline = &geometry.finger.outline;
+    let pad = [outline.tip_point(), outline.corner()]
+        .map(|p| view.place(p + bent.rigid(outline, &p) * bent.exaggeration));
+    drawing.line(pad, Style::line("#e8a33d", 4.0));
+    let bar = Point2::new(left, top + wide + bottom / 2.0);
+    drawing.scale_bar(bar, BAR * SCALE, &format!("{BAR} mm"), 14.0);
+    Ok(drawing.svg([left + long + right, top + wide + bottom], ""))
 }
 
 /// Finger under load.
@@ -108,7 +102,7 @@ fn round(value: f64) -> f64 {
     [5.0, 2.0, 1.0].map(|step| step * decade).into_iter().find(|&n| n <= value).unwrap_or(decade)
 }
 
-fn words(out: &mut String, geometry: &Geometry, [y, z]: [f64; 2], factor: f64, height: f64) {
+fn words(drawing: &mut Drawing, geometry: &Geometry, [y, z]: [f64; 2], factor: f64) {
     let (name, design) = (&geometry.finger.name, &geometry.design);
     let title = format!(
         "{name}: infill {} %, {}°; {y:.1} N in y and {z:.1} N in z on the pad",
@@ -118,30 +112,7 @@ fn words(out: &mut String, geometry: &Geometry, [y, z]: [f64; 2], factor: f64, h
         "light: at rest; dark: under load, displacements × {factor}; orange: pad, rigid; \
          grey: clamped"
     );
-    let [left, _, _, bottom] = MARGIN;
-    let (x, bar) = (left * SCALE, (height - bottom + 6.0) * SCALE);
-    let _ = write!(
-        out,
-        "<text x=\"{x:.0}\" y=\"28\" font-size=\"18\">{}</text>\n\
-         <text x=\"{x:.0}\" y=\"50\" fill=\"#555\">{note}</text>\n\
-         <path d=\"M{x:.0} {bar:.0} h{:.0}\" stroke=\"#000\" stroke-width=\"3\"/>\n\
-         <text x=\"{x:.0}\" y=\"{:.0}\">{BAR} mm</text>\n",
-        title.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;"),
-        BAR * SCALE,
-        bar + 20.0,
-    );
-}
-
-fn shape(out: &mut String, path: &str, fill: &str) {
-    let _ = writeln!(out, "<path d=\"{path}\" fill=\"{fill}\" fill-rule=\"evenodd\"/>");
-}
-
-fn path(points: impl Iterator<Item = Point2<f64>>) -> String {
-    let points: Vec<String> = points.map(pixels).collect();
-    format!("M{}Z", points.join("L"))
-}
-
-fn pixels(point: Point2<f64>) -> String {
-    let [left, top, ..] = MARGIN;
-    format!("{:.1},{:.1}", (point.x / MM + left) * SCALE, (top - point.y / MM) * SCALE)
+    let x = MARGIN[0] * SCALE;
+    drawing.text(Point2::new(x, 28.0), &title, Font::new(18.0));
+    drawing.text(Point2::new(x, 50.0), &note, Font::new(14.0).colour("#555"));
 }

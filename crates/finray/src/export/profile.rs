@@ -2,36 +2,30 @@
 
 use super::rings;
 use crate::geometry::Geometry;
+use drawing::{Drawing, Style, View};
 use input::units::MM;
-use maud::html;
+use nalgebra::Point2;
 use std::fmt::Write;
 
 /// SVG of the profile, one unit a millimetre, its front side above: for laser cutters and drawings.
 pub fn svg(geometry: &Geometry, title: &str) -> String {
     let outline = &geometry.finger.outline;
     let (length, width) = (outline.length / MM, outline.width / MM);
-    let svg = html! {
-        svg xmlns="http://www.w3.org/2000/svg" width={ (length) "mm" } height={ (width) "mm" }
-            viewBox={ "0 0 " (length) " " (width) } {
-            title { (title) }
-            path d=(path(geometry, |[x, y]| [x, -y])) fill="#33507a" fill-rule="evenodd" {}
-        }
-    };
-    svg.into_string() + "\n"
+    let mut drawing = Drawing::default();
+    drawing.title(title);
+    profile(
+        &mut drawing,
+        geometry,
+        View { origin: Point2::origin(), scale: 1.0 },
+        Style::fill("#33507a"),
+    );
+    drawing.svg([length, width], "mm")
 }
 
-/// Path data of the rings, their points (mm; X from the tip, Y from the front side) moved by `to`.
-pub(super) fn path(geometry: &Geometry, to: impl Fn([f64; 2]) -> [f64; 2]) -> String {
-    let mut out = String::new();
-    for ring in geometry.rings_mm() {
-        for (i, point) in ring.into_iter().enumerate() {
-            let [x, y] = to(point);
-            // Writing to a string cannot fail.
-            let _ = write!(out, "{}{x:.3},{y:.3}", if i == 0 { 'M' } else { 'L' });
-        }
-        out.push('Z');
-    }
-    out
+/// Draws the profile in a view in mm.
+pub(super) fn profile(drawing: &mut Drawing, geometry: &Geometry, view: View, style: Style) {
+    let ring = |ring: Vec<[f64; 2]>| ring.into_iter().map(move |point| view.place(point.into()));
+    drawing.rings(geometry.rings_mm().into_iter().map(ring), style);
 }
 
 /// DXF (R12, for every program) of the outline and the openings as polylines on two layers, mm.

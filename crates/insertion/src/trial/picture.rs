@@ -8,12 +8,15 @@ use crate::task::Task;
 use crate::task::geometry::convex_outline;
 use contact::ContactPoint;
 use contact::scene::{Geom, Pose};
+use drawing::{Drawing, Font, Style, View};
 use input::units::MM;
-use nalgebra::Point2;
-use std::fmt::Write;
+use nalgebra::{Point2, Point3, Vector2};
 
+/// Pixels per millimetre.
 const SCALE: f64 = 3.2;
+/// Room around the bodies of a panel, mm.
 const ROOM: f64 = 3.0;
+const FONT: Font = Font::new(13.0);
 /// Room for the title above and the legend below, pixels.
 const HEAD: f64 = 44.0;
 const FOOT: f64 = 34.0;
@@ -26,67 +29,60 @@ const PLUG: &str = "#e8a33d";
 const FINGER: &str = "#5b8c5a";
 const FORCE: &str = "#b42318";
 
-/// Extent of a panel: lowest and highest of the horizontal coordinate and of z, mm.
+/// Extent of a panel, mm.
 #[derive(Clone, Copy)]
-struct View {
+struct Extent {
+    /// Horizontal coordinate: 0 is x, 1 is y.
+    axis: usize,
     across: [f64; 2],
     up: [f64; 2],
 }
 
-impl View {
-    fn width(&self) -> f64 {
-        self.across[1] - self.across[0]
+impl Extent {
+    /// Width and height, pixels.
+    fn size(&self) -> [f64; 2] {
+        [self.across, self.up].map(|[low, high]| (high - low) * SCALE)
     }
 }
 
-/// One row of panels per view, one column per phase, as a stand-alone SVG; `label` says what was
-/// tried. All panels have one scale, and nothing sticks out of them.
+/// Draws a row of panels for each view, a column for each phase, as a stand-alone SVG; `label` says
+/// what was tried. All panels have one scale, and nothing sticks out of them.
 pub fn svg(task: &Task, pad: &Pad, trial: &Trial, label: &str) -> String {
-    let mut views = [1, 0].map(|axis| (axis, view(task, pad, &trial.phases, axis)));
-    let widest = views.iter().map(|(_, view)| view.width()).fold(0.0, f64::max);
-    for (_, view) in &mut views {
-        let room = (widest - view.width()) / 2.0;
-        view.across = [view.across[0] - room, view.across[1] + room];
+    let mut rows = [1, 0].map(|axis| extent(task, pad, &trial.phases, axis));
+    let [a, b] = rows.map(|row| row.across[1] - row.across[0]);
+    for (row, other) in rows.iter_mut().zip([b - a, a - b]) {
+        let room = other.max(0.0) / 2.0;
+        row.across = [row.across[0] - room, row.across[1] + room];
     }
-    let size = |view: &View| [view.across, view.up].map(|[low, high]| (high - low) * SCALE);
-    let column = widest * SCALE;
-    let columns = trial.phases.len().max(1) as f64;
-    let height: f64 = views.iter().map(|(_, view)| size(view)[1]).sum();
+    let column = rows[0].size()[0];
     // Wide enough for the title.
-    let width = (columns * column).max(560.0);
-    let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {:.0}\" \
-         font-family=\"sans-serif\" font-size=\"13\">\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
-         <text x=\"8\" y=\"18\" font-size=\"15\">{}</text>\n<text x=\"8\" y=\"36\">{}</text>\n",
-        HEAD + height + FOOT,
-        escape(label),
-        escape(&outcome(trial)),
-    );
+    let width = (trial.phases.len().max(1) as f64 * column).max(560.0);
+    let mut drawing = Drawing::default();
+    drawing.paper();
+    drawing.text(Point2::new(8.0, 18.0), label, Font::new(15.0));
+    drawing.text(Point2::new(8.0, 36.0), &outcome(trial), FONT);
     let mut y = HEAD;
-    for (axis, view) in &views {
+    for row in &rows {
         for (i, phase) in trial.phases.iter().enumerate() {
-            panel(&mut out, (task, pad), phase, *axis, view, [i as f64 * column, y]);
+            let (at, axis) =
+                (Point2::new(i as f64 * column, y), if row.axis == 1 { "y" } else { "x" });
+            let title = format!("{} ({axis}, z)", phase.name);
+            panel(&mut drawing, &bodies(task, pad, phase), (phase, &title), row, at);
         }
-        y += size(view)[1];
+        y += row.size()[1];
     }
-    legend(&mut out, y + 22.0);
-    out.push_str("</svg>\n");
-    out
+    legend(&mut drawing, y + 22.0);
+    drawing.svg([width, y + FOOT], "")
 }
 
-/// How a trial ended, seen along x, as a stand-alone SVG without words; empty if it did not begin.
+/// Draws how a trial ended, seen along x, as a stand-alone SVG without words; empty if it did not
+/// begin.
 pub fn ended(task: &Task, pad: &Pad, trial: &Trial) -> String {
     let Some(phase) = trial.phases.last() else { return String::new() };
-    let phase = PhaseEnd { name: String::new(), ..phase.clone() };
-    let view = view(task, pad, std::slice::from_ref(&phase), 1);
-    let [width, height] = [view.across, view.up].map(|[low, high]| (high - low) * SCALE);
-    let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\">\n"
-    );
-    panel(&mut out, (task, pad), &phase, 1, &view, [0.0, 0.0]);
-    out.push_str("</svg>\n");
-    out
+    let extent = extent(task, pad, std::slice::from_ref(phase), 1);
+    let mut drawing = Drawing::default();
+    panel(&mut drawing, &bodies(task, pad, phase), (phase, ""), &extent, Point2::origin());
+    drawing.svg(extent.size(), "")
 }
 
 fn outcome(trial: &Trial) -> String {
@@ -100,8 +96,11 @@ fn outcome(trial: &Trial) -> String {
     )
 }
 
-/// The bodies at the end of a phase: shapes, pose and colour.
-fn bodies(task: &Task, pad: &Pad, phase: &PhaseEnd) -> Vec<(Vec<Geom>, Pose, &'static str)> {
+/// Shapes of a body, its pose and colour.
+type Body = (Vec<Geom>, Pose, &'static str);
+
+/// Returns the bodies at the end of a phase.
+fn bodies(task: &Task, pad: &Pad, phase: &PhaseEnd) -> Vec<Body> {
     let shoulder = task.grip.shoulder();
     let [left, right] = phase.poses.fingers;
     let mut bodies = vec![
@@ -115,143 +114,81 @@ fn bodies(task: &Task, pad: &Pad, phase: &PhaseEnd) -> Vec<(Vec<Geom>, Pose, &'s
     bodies
 }
 
-/// Extent that holds every phase, seen along x (axis 1) or y (axis 0).
-fn view(task: &Task, pad: &Pad, phases: &[PhaseEnd], axis: usize) -> View {
-    let empty = [f64::INFINITY, f64::NEG_INFINITY];
-    let mut view = View { across: empty, up: empty };
-    let wider = |[low, high]: [f64; 2], at: f64| [low.min(at), high.max(at)];
-    for phase in phases {
-        for (geoms, body, _) in bodies(task, pad, phase) {
-            for point in geoms.iter().flat_map(|geom| projected(geom, &body, axis)) {
-                view.across = wider(view.across, point.x);
-                view.up = wider(view.up, -point.y);
-            }
-        }
-    }
-    if phases.is_empty() {
-        return View { across: [-1.0, 1.0], up: [-1.0, 1.0] };
-    }
-    let room = |[low, high]: [f64; 2], top: f64| [low - ROOM, high + ROOM + top];
+/// Returns the extent that holds every phase, seen along x (axis 1) or y (axis 0).
+fn extent(task: &Task, pad: &Pad, phases: &[PhaseEnd], axis: usize) -> Extent {
+    let bodies = phases.iter().flat_map(|phase| bodies(task, pad, phase));
+    let points: Vec<Point2<f64>> = bodies
+        .flat_map(|(geoms, body, _)| {
+            geoms.iter().flat_map(|geom| projected(geom, &body, axis)).collect::<Vec<_>>()
+        })
+        .collect();
+    let reach = |of: fn(&Point2<f64>) -> f64, room: f64| match points.is_empty() {
+        true => [-1.0, 1.0],
+        false => [
+            points.iter().map(of).fold(f64::INFINITY, f64::min) - ROOM,
+            points.iter().map(of).fold(f64::NEG_INFINITY, f64::max) + ROOM + room,
+        ],
+    };
     // The name of the phase stands above.
-    View { across: room(view.across, 0.0), up: room(view.up, 6.0) }
+    Extent { axis, across: reach(|p| p.x, 0.0), up: reach(|p| p.y, 6.0) }
 }
 
 fn panel(
-    out: &mut String,
-    (task, pad): (&Task, &Pad),
-    phase: &PhaseEnd,
-    axis: usize,
-    view: &View,
-    at: [f64; 2],
+    drawing: &mut Drawing,
+    bodies: &[Body],
+    (phase, title): (&PhaseEnd, &str),
+    extent: &Extent,
+    at: Point2<f64>,
 ) {
-    let ([left, right], [low, high]) = (view.across, view.up);
-    let (width, height) = (right - left, high - low);
-    let label = if axis == 1 { "y" } else { "x" };
-    // Writing to a String cannot fail.
-    let _ = write!(
-        out,
-        "<svg x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" \
-         viewBox=\"{left:.2} {:.2} {width:.2} {height:.2}\">\n\
-         <rect x=\"{left:.2}\" y=\"{:.2}\" width=\"{width:.2}\" height=\"{height:.2}\" \
-         fill=\"none\" stroke=\"#ccc\" stroke-width=\"0.3\"/>\n",
-        at[0],
-        at[1],
-        width * SCALE,
-        height * SCALE,
-        -high,
-        -high
-    );
-    for (geoms, pose, fill) in bodies(task, pad, phase) {
-        for geom in &geoms {
-            polygon(out, geom, &pose, axis, fill);
+    let ([left, _], [_, high]) = (extent.across, extent.up);
+    let view = View { origin: Point2::new(-left, high) * SCALE, scale: SCALE };
+    drawing.panel(at, extent.size(), |drawing| {
+        for (geoms, pose, fill) in bodies {
+            for geom in geoms {
+                let outline = convex_outline(projected(geom, pose, extent.axis));
+                let style = Style::fill(fill).opacity(0.45).outlined("#333", 0.48);
+                drawing.polygon(outline.into_iter().map(|point| view.place(point)), style);
+            }
         }
-    }
-    phase.contacts.iter().for_each(|contact| arrow(out, contact, axis));
-    let _ = write!(
-        out,
-        "<text x=\"{:.2}\" y=\"{:.2}\" font-size=\"3.6\">{} ({label}, z)</text>\n</svg>\n",
-        left + 1.0,
-        4.5 - high,
-        escape(&phase.name)
-    );
+        phase.contacts.iter().for_each(|contact| force(drawing, contact, extent.axis, view));
+        drawing.text(Point2::new(3.2, 14.4), title, Font::new(11.5));
+    });
 }
 
-/// An arrow that ends where the socket presses the plug.
-fn arrow(out: &mut String, contact: &ContactPoint, axis: usize) {
-    let force = Point2::new(contact.force[axis], -contact.force.z);
-    let size = force.coords.norm();
+/// Draws an arrow that ends where the socket presses the plug.
+fn force(drawing: &mut Drawing, contact: &ContactPoint, axis: usize, view: View) {
+    let force = Vector2::new(contact.force[axis], contact.force.z);
+    let size = force.norm();
     if size < LEAST_FORCE {
         return;
     }
-    let tip = Point2::new(contact.point[axis], -contact.point.z) / MM;
-    let along = force.coords / size;
-    let length = (size * ARROW.0).min(ARROW.1).max(1.5);
-    let (neck, from) = (tip - along, tip - along * length);
-    let across = nalgebra::Vector2::new(-along.y, along.x) * 0.6;
-    let (a, b) = (neck + across, neck - across);
-    let _ = writeln!(
-        out,
-        "<path d=\"M{:.2} {:.2}L{:.2} {:.2}M{:.2} {:.2}L{:.2} {:.2}L{:.2} {:.2}z\" fill=\"{FORCE}\" \
-         stroke=\"{FORCE}\" stroke-width=\"0.4\"/>",
-        from.x, from.y, neck.x, neck.y, a.x, a.y, tip.x, tip.y, b.x, b.y
-    );
+    let tip = Point2::new(contact.point[axis], contact.point.z) / MM;
+    let from = tip - force / size * (size * ARROW.0).min(ARROW.1).max(1.5);
+    drawing.arrow([from, tip].map(|point| view.place(point)), SCALE, FORCE);
 }
 
-/// Colours, a bar of 10 mm, and what an arrow means; its line `y` pixels down.
-fn legend(out: &mut String, y: f64) {
-    let mut x = 8.0;
-    let bar = 10.0 * SCALE;
-    let _ = writeln!(
-        out,
-        "<path d=\"M{x} {y}h{bar}m0 -4v8m-{bar} -8v8\" stroke=\"#333\" fill=\"none\"/>\
-         <text x=\"{:.0}\" y=\"{:.0}\">10 mm</text>",
-        x + bar + 6.0,
-        y + 4.0
-    );
-    x += bar + 66.0;
+/// Draws a bar of 10 mm, the colours, and what an arrow means; its line `y` pixels down.
+fn legend(drawing: &mut Drawing, y: f64) {
+    drawing.scale_bar(Point2::new(8.0, y), 10.0 * SCALE, "10 mm", 13.0);
+    let mut at = Point2::new(106.0, y);
     for (fill, name) in [(SOCKET, "socket"), (PLUG, "plug"), (FINGER, "fingertips")] {
-        let _ = writeln!(
-            out,
-            "<rect x=\"{x}\" y=\"{:.0}\" width=\"12\" height=\"12\" fill=\"{fill}\"/>\
-             <text x=\"{:.0}\" y=\"{:.0}\">{name}</text>",
-            y - 6.0,
-            x + 17.0,
-            y + 4.0
-        );
-        x += 84.0;
+        let corners = [at - Vector2::y() * 6.0, at + Vector2::new(12.0, 6.0)];
+        drawing.rectangle(corners, 0.0, Style::fill(fill));
+        drawing.text(at + Vector2::new(17.0, 4.0), name, FONT);
+        at.x += 84.0;
     }
-    let _ = writeln!(
-        out,
-        "<path d=\"M{x} {y}h{:.1}\" stroke=\"{FORCE}\" stroke-width=\"2\"/>\
-         <text x=\"{:.0}\" y=\"{:.0}\">the socket presses the plug, 20 N</text>",
-        20.0 * ARROW.0 * SCALE,
-        x + 20.0 * ARROW.0 * SCALE + 6.0,
-        y + 4.0
-    );
+    let tip = at + Vector2::new(20.0 + 20.0 * ARROW.0 * SCALE, 0.0);
+    drawing.arrow([at + Vector2::x() * 20.0, tip], SCALE, FORCE);
+    let words = "the socket presses the plug, 20 N";
+    drawing.text(tip + Vector2::new(6.0, 4.0), words, FONT);
 }
 
-/// The corners of a geom, mm, projected along x (axis 1) or y (axis 0); z goes up, so y is -z.
+/// Returns the corners of a geom, mm, projected along x (axis 1) or y (axis 0).
 fn projected(geom: &Geom, body: &Pose, axis: usize) -> Vec<Point2<f64>> {
     let pose = body * geom.pose;
-    let project = |corner: &nalgebra::Point3<f64>| {
+    let project = |corner: &Point3<f64>| {
         let p = (pose * corner).coords / MM;
-        Point2::new(p[axis], -p.z)
+        Point2::new(p[axis], p.z)
     };
     geom.shape.corners().iter().map(project).collect()
-}
-
-fn polygon(out: &mut String, geom: &Geom, body: &Pose, axis: usize, fill: &str) {
-    let outline = convex_outline(projected(geom, body, axis));
-    let text: Vec<_> = outline.iter().map(|p| format!("{:.2},{:.2}", p.x, p.y)).collect();
-    let _ = writeln!(
-        out,
-        "<polygon points=\"{}\" fill=\"{fill}\" fill-opacity=\"0.45\" stroke=\"#333\" \
-         stroke-width=\"0.15\"/>",
-        text.join(" ")
-    );
-}
-
-/// A text for XML.
-pub fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

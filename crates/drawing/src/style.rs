@@ -1,0 +1,109 @@
+//! Looks of shapes and words.
+
+use std::fmt::{Display, Formatter, Result};
+
+/// Fill and line of a shape.
+#[derive(Debug, Clone, Copy)]
+pub struct Style {
+    fill: &'static str,
+    opacity: f64,
+    stroke: &'static str,
+    width: f64,
+    dashed: bool,
+}
+
+impl Style {
+    /// Returns a fill of a colour (`#33507a`) without a line.
+    pub const fn fill(colour: &'static str) -> Self {
+        Style { fill: colour, opacity: 1.0, stroke: "none", width: 0.0, dashed: false }
+    }
+
+    /// Returns a line of a colour and width without a fill.
+    pub const fn line(colour: &'static str, width: f64) -> Self {
+        Style::fill("none").outlined(colour, width)
+    }
+
+    /// Returns the same with a line of a colour and width.
+    pub const fn outlined(self, colour: &'static str, width: f64) -> Self {
+        Style { stroke: colour, width, ..self }
+    }
+
+    /// Returns the same with a fill of an opacity, 0 to 1.
+    pub const fn opacity(self, opacity: f64) -> Self {
+        Style { opacity, ..self }
+    }
+
+    /// Returns the same with a dashed line.
+    pub const fn dashed(self) -> Self {
+        Style { dashed: true, ..self }
+    }
+}
+
+impl Display for Style {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        write!(f, " fill=\"{}\"", self.fill)?;
+        if self.opacity < 1.0 {
+            write!(f, " fill-opacity=\"{}\"", self.opacity)?;
+        }
+        if self.width > 0.0 {
+            write!(f, " stroke=\"{}\" stroke-width=\"{}\"", self.stroke, self.width)?;
+        }
+        if self.dashed {
+            let [dash, gap] = [5.0, 3.0].map(|widths| super::number(widths * self.width));
+            write!(f, " stroke-dasharray=\"{dash} {gap}\"")?;
+        }
+        Ok(())
+    }
+}
+
+/// Size, colour and alignment of words, in units of the drawing.
+#[derive(Debug, Clone, Copy)]
+pub struct Font {
+    size: f64,
+    colour: &'static str,
+    anchor: &'static str,
+    bold: bool,
+}
+
+impl Font {
+    /// Returns a dark font of a size, whose words begin at their point.
+    pub const fn new(size: f64) -> Self {
+        Font { size, colour: "#222", anchor: "start", bold: false }
+    }
+
+    /// Returns the same in a colour.
+    pub const fn colour(self, colour: &'static str) -> Self {
+        Font { colour, ..self }
+    }
+
+    /// Returns the same with words about their point.
+    pub const fn middle(self) -> Self {
+        Font { anchor: "middle", ..self }
+    }
+
+    /// Returns the same with words that end at their point.
+    pub const fn end(self) -> Self {
+        Font { anchor: "end", ..self }
+    }
+
+    /// Returns the same in bold.
+    pub const fn bold(self) -> Self {
+        Font { bold: true, ..self }
+    }
+
+    /// Returns the same, smaller if words need it to fit a width: at least `least`.
+    pub fn fitting(self, words: &str, width: f64, least: f64) -> Self {
+        let fits = width / (0.52 * words.chars().count() as f64);
+        Font { size: self.size.min(fits.max(least)), ..self }
+    }
+}
+
+impl Display for Font {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        write!(f, " font-size=\"{}\" fill=\"{}\"", super::number(self.size), self.colour)?;
+        if self.anchor != "start" {
+            write!(f, " text-anchor=\"{}\"", self.anchor)?;
+        }
+        if self.bold { f.write_str(" font-weight=\"bold\"") } else { Ok(()) }
+    }
+}

@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// What decides the evaluation of a design.
-const SIMULATION: [&str; 10] = [
+const SIMULATION: [&str; 11] = [
     "Cargo.lock",
     "crates/ask-tell/src/normal.rs",
     "crates/ask-tell/src/process",

@@ -114,16 +114,15 @@ fn a_call_gives_what_the_request_does() {
 fn a_cancelled_command_ends_as_interrupted() {
     let stop = AtomicBool::new(true);
     let context = Context::silent(&stop);
-    for (name, more) in [
-        ("evaluate", json!({})),
-        ("trial", json!({})),
-        ("levers", json!({})),
-        (
-            "calibrate",
-            json!({"density": null, "direction": null, "measurements": "published", "simulations": 16}),
-        ),
+    let calibrate =
+        json!({"task": "usb", "engine": "fake", "measurements": "published", "simulations": 16});
+    for (name, words) in [
+        ("evaluate", words(json!({}))),
+        ("trial", words(json!({}))),
+        ("levers", words(json!({}))),
+        ("calibrate", calibrate.as_object().unwrap().clone()),
     ] {
-        let ended = keywords::call(COMMANDS, name, &words(more), &context);
+        let ended = keywords::call(COMMANDS, name, &words, &context);
         assert!(matches!(ended.err(), Some(Failure::Interrupted(None))), "{name}");
     }
 }

@@ -80,9 +80,8 @@ class Asked:
                 study cannot be raised.
             indifference_mm: Difference of ranges that a bench cannot tell, mm: designs that lose less are as
                 good.
-            optimizer: gp, cma-es, random, sobol or grid.
-            objective: What is optimized: range, centred-range, success-rate, robust-range, peak-force or slip;
-                two or three, by commas, give a front.
+            optimizer: Optimizer.
+            objective: Measure that is optimized; two or three, by commas, give a front.
             constraint: What a design must keep to, as in 'peak-force<=30' or 'success-rate>=0.9'.
             uncertainty: Errors for success-rate and robust-range: typical, or the path of a file [default:
                 typical].

@@ -379,7 +379,7 @@ def sensitivity(
             computed for a space with numbers of the printed finger].
         finger: Finger file of finger_model computed: finray9, or the path of one.
         start: What becomes of the nominal start, in place of what the task file says.
-        objective: range or centred-range.
+        objective: Range that is looked at.
         uncertainty: Errors of the cell that are varied, too: typical, none, or the path of a file.
         samples: Rows of the sample: evaluations are this times (inputs + 2).
         seed: Seed of the sample.

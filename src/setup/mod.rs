@@ -18,7 +18,7 @@ pub mod words;
 use crate::failure::{Failure, bad_config};
 use files::{Fingers, find, surrogate};
 use input::Place;
-use input::shipped::{FINGERS, Source, UNCERTAINTIES};
+use input::shipped::{Source, UNCERTAINTIES};
 use insertion::evaluation::cell::Priors;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::objective::Measure;
@@ -32,7 +32,6 @@ use insertion::surrogate::Model;
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
 use measured::Measured;
-use request::DEFAULT_FINGER;
 use std::sync::Arc;
 use study::{BENCH_ROLES, CELL, FINGER, Inputs, Provenance, sha256};
 

@@ -1,7 +1,6 @@
 //! Options whose values are words of a list that the library has.
 
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
-use clap::error::ErrorKind;
 use clap::{Arg, Command, Error};
 use std::ffi::OsStr;
 use std::fmt::Display;
@@ -32,12 +31,8 @@ impl<T: FromStr<Err: Display> + Clone + Send + Sync + 'static> TypedValueParser 
     type Value = T;
 
     fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<T, Error> {
-        let text = StringValueParser::new().parse_ref(command, arg, value)?;
-        text.parse().map_err(|problem| {
-            let option = arg.map(ToString::to_string).unwrap_or_default();
-            let message = format!("invalid value '{text}' for '{option}': {problem}\n");
-            Error::raw(ErrorKind::ValueValidation, message).with_cmd(command)
-        })
+        let parse = |text: String| text.parse::<T>().map_err(|problem| problem.to_string());
+        StringValueParser::new().try_map(parse).parse_ref(command, arg, value)
     }
 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {

@@ -264,12 +264,12 @@ fn the_stiffness_report_has_every_model_and_both_axes() {
 #[test]
 fn other_spaces_have_a_page() {
     let mut study = study();
-    let text = include_str!("../../../spaces/infill.toml").replace(DENSITY_KEY, "wall_mm");
+    let text = include_str!("../../../spaces/infill.toml").replace(DENSITY_KEY, "task.grip.force_n");
     study.config.space = Space::parse(&text, "s.toml").unwrap();
     for recorded in &mut study.evaluations {
         let direction = recorded.design.get(DIRECTION_KEY).unwrap();
         recorded.design = Design(BTreeMap::from([
-            ("wall_mm".to_owned(), 1.2),
+            ("task.grip.force_n".to_owned(), 1.2),
             (DIRECTION_KEY.to_owned(), direction),
         ]));
     }

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-#: An infill may be given by other words.
-INFILL = ("density", "direction")
-
 
 @dataclass(frozen=True)
 class Call:
@@ -34,7 +31,8 @@ class Call:
 
 
 TASKS = "Given | Iterable[Given]"
-SUBJECT = ("task", "density", "direction")
+INFILL = ("density", "direction")
+SUBJECT = ("task", *INFILL)
 CALLS = {
     "evaluate": Call(
         "evaluate", "_evaluation.Evaluation", SUBJECT, unset=("seed", "repeat_seed"), always={"no_ribs": "True"},
@@ -74,9 +72,7 @@ if probe:
         "export_finger", "_export.Files", names={"dir": "study"}, gives=("tuple[Path, ...]", ".paths"),
         refuses="""\
 if study is not None:
-    without("study", "its best design is exported", density=density, direction=direction)
-elif density is None:
-    raise wrong("density", "is missing: give the folder of a study, or density and direction")""",
+    without("study", "its best design is exported", density=density, direction=direction)""",
     ),
     "export mjcf": Call("export_mjcf", "_export.Files", SUBJECT, gives=("Path", ".paths[0]")),
     "task new": Call(

@@ -11,7 +11,7 @@ import textwrap
 from dataclasses import dataclass
 from typing import Any
 
-from python_calls import BY_HAND, CALLS, INFILL, Call
+from python_calls import BY_HAND, CALLS, Call
 
 #: How a result is printed, and where a study is measured: Python's calls do not have these.
 LEFT_OUT = {"json", "quiet", "verbose", "executor"}
@@ -21,10 +21,6 @@ TYPES = {
     "objective": "Objective | Sequence[Objective]", "constraint": "str | Sequence[str]", "engine": "Engine",
     "finger_model": "FingerModel", "start": "Start", "axes": "Axes", "aggregate": "Aggregate",
 }
-#: What is refused of an infill.
-WHOLE_INFILL = """\
-if (density is None) != (direction is None):
-    raise wrong("density", "goes with direction")"""
 #: How other parts of the package go by: their modules.
 FROM = {
     "_call": ["called", "checked", "without", "wrong"],
@@ -77,7 +73,7 @@ def parameter(option: dict[str, Any], call: Call) -> Parameter:
         default = literal(kind, default)
     elif option["multiple"] or kind.startswith("Sequence["):
         default = "" if option["required"] else "()"
-    elif not option["required"] or option["name"] in INFILL:
+    elif not option["required"]:
         kind, default = f"{kind} | None", "None"
     if default == "()" and kind == "Numbers":
         kind, default = "Numbers | None", "None"
@@ -172,8 +168,7 @@ def function(command: dict[str, Any], call: Call) -> str:
         body = found if what == "None" else f"return {found}{then}"
     head = [f"def {call.name}(", *(f"    {one}," for one in signature), f") -> {what}:"]
     lines = ["@checked", *(head if signature else [f"def {call.name}() -> {what}:"])]
-    infill = WHOLE_INFILL if {*INFILL} <= {one.name for one in both} else ""
-    for part in (docstring(command, call, both), call.refuses, infill, broken(body)):
+    for part in (docstring(command, call, both), call.refuses, broken(body)):
         lines += [f"    {line}" if line else "" for line in part.splitlines()]
     if method:
         lines = [f"    {line}" if line else "" for line in ["@classmethod", *lines]]

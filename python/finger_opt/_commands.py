@@ -129,8 +129,6 @@ def evaluate(
         StudyError: It fails while it runs, or cannot write a file.
         Interrupted: Ctrl-C.
     """
-    if (density is None) != (direction is None):
-        raise wrong("density", "goes with direction")
     return called("evaluate", {
         "task": sources(task), "density": density, "direction": direction, "space": space, "robot": robot,
         "cell": cell, "stiffness_data": stiffness_data, "engine": engine, "finger_model": finger_model,
@@ -213,8 +211,6 @@ def trial(
         if log is None:
             raise wrong("probe", "needs log, the file to write")
         without("probe", "it is no insertion", repeat=repeat, svg=svg, record=record, plot=plot, film=film)
-    if (density is None) != (direction is None):
-        raise wrong("density", "goes with direction")
     return called("trial", {
         "task": sources(task), "density": density, "direction": direction, "offset_mm": offset_mm, "space": space,
         "robot": robot, "cell": cell, "stiffness_data": stiffness_data, "engine": engine,
@@ -273,8 +269,6 @@ def capture_map(
         StudyError: It fails while it runs, or cannot write a file.
         Interrupted: Ctrl-C.
     """
-    if (density is None) != (direction is None):
-        raise wrong("density", "goes with direction")
     return called("map", {
         "task": sources(task), "density": density, "direction": direction, "space": space, "robot": robot,
         "cell": cell, "stiffness_data": stiffness_data, "engine": engine, "finger_model": finger_model,
@@ -285,8 +279,8 @@ def capture_map(
 
 @checked
 def finger(
-    density: float | None = None,
-    direction: float | None = None,
+    density: float,
+    direction: float,
     *,
     finger: StrPath = "finray9",
     phase_mm: float | None = None,
@@ -318,8 +312,6 @@ def finger(
         StudyError: It fails while it runs, or cannot write a file.
         Interrupted: Ctrl-C.
     """
-    if (density is None) != (direction is None):
-        raise wrong("density", "goes with direction")
     return called("finger", {
         "density": density, "direction": direction, "finger": finger, "phase_mm": phase_mm, "set": set, "svg": svg,
         "load_n": load_n,
@@ -441,8 +433,6 @@ def levers(
         StudyError: It fails while it runs, or cannot write a file.
         Interrupted: Ctrl-C.
     """
-    if (density is None) != (direction is None):
-        raise wrong("density", "goes with direction")
     return called("levers", {
         "task": sources(task), "density": density, "direction": direction, "space": space, "robot": robot,
         "cell": cell, "stiffness_data": stiffness_data, "engine": engine, "finger_model": finger_model,
@@ -700,8 +690,6 @@ def export_mjcf(
         StudyError: It fails while it runs, or cannot write a file.
         Interrupted: Ctrl-C.
     """
-    if (density is None) != (direction is None):
-        raise wrong("density", "goes with direction")
     return called("export mjcf", {
         "task": sources(task), "density": density, "direction": direction, "out": out, "space": space, "robot": robot,
         "cell": cell, "stiffness_data": stiffness_data, "finger_model": finger_model, "finger": finger,
@@ -742,10 +730,6 @@ def export_finger(
     """
     if study is not None:
         without("study", "its best design is exported", density=density, direction=direction)
-    elif density is None:
-        raise wrong("density", "is missing: give the folder of a study, or density and direction")
-    if (density is None) != (direction is None):
-        raise wrong("density", "goes with direction")
     return called("export finger", {
         "dir": study, "format": format, "out": out, "density": density, "direction": direction, "finger": finger,
         "phase_mm": phase_mm,

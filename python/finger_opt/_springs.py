@@ -11,7 +11,6 @@ import numpy as np
 from . import _native
 from ._call import called, checked, without
 from ._evaluation import Springs
-from ._native import InputError
 from ._plot import axes as axes_of
 from ._result import DRAWN, PICTURE, Result
 from ._words import StrPath
@@ -115,8 +114,6 @@ def stiffness(
         data = None if stiffness_data is None else str(stiffness_data)
         return replace(model, stiffness_data=data, finger=str(finger))
     without("an infill", "the drawing is of all designs", svg=svg)
-    if density is None or direction is None:
-        raise InputError("give density and direction, or neither")
     words = {"density": density, "direction": direction, "stiffness_data": stiffness_data, "finger": finger}
     return called("stiffness", words, Springs)
 

@@ -18,8 +18,7 @@ use study::StudyRecord;
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct PrintRequest {
     /// Folder of a study: its best design
-    #[arg(value_name = "DIR", conflicts_with_all = ["density", "direction"],
-          required_unless_present = "density")]
+    #[arg(value_name = "DIR", conflicts_with_all = ["density", "direction"])]
     pub dir: Option<PathBuf>,
     /// Its infill.
     #[command(flatten)]

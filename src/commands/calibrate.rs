@@ -90,8 +90,8 @@ impl fmt::Display for Calibrated {
         let Calibrated { subjects, found, out } = self;
         let tasks = subjects.iter().zip(&found.tasks);
         let mut text: Vec<String> =
-            tasks.map(|(subject, result)| table::text(subject, result)).collect();
-        text.push(table::parameters_text(found));
+            tasks.map(|(subject, result)| report::calibrate::text(subject, result)).collect();
+        text.push(report::calibrate::parameters_text(found));
         text.extend(out.iter().map(|out| format!("tables are in {}\n", out.display())));
         f.write_str(&text.join("\n"))
     }

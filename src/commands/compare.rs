@@ -4,6 +4,7 @@ use crate::command;
 use crate::context::Context;
 use crate::failure::Failure;
 use report::compare::{Comparison, TOLERANCE_MM, compare, page, svg};
+use report::text_table;
 use serde::Serialize;
 use std::fmt;
 use std::path::PathBuf;
@@ -59,28 +60,20 @@ impl fmt::Display for Compared {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Compared(comparison) = self;
         let best = comparison.best_known_mm;
-        let mut text = format!(
-            "{}, {}: best known {best:.1} mm\nevaluations to {:.1} mm ({TOLERANCE_MM} mm below the best known)\n\n\
-             {:<14} {:>5} {:>8} {:>8} {:>8} {:>8} {:>8}\n",
+        let rows = comparison.groups.iter().map(|group| {
+            let number = |n: Option<f64>| n.map_or("-".to_owned(), |n| format!("{n:.1}"));
+            let [low, median, high] = group.evaluations_to_target.all().map(number);
+            let (batch, studies) = (group.batch.to_string(), group.studies.to_string());
+            [group.optimizer.clone(), batch, studies, group.reached.to_string(), low, median, high]
+        });
+        let head = ["optimizer", "batch", "studies", "reached", "25 %", "median", "75 %"];
+        write!(
+            f,
+            "{}, {}: best known {best:.1} mm\nevaluations to {:.1} mm ({TOLERANCE_MM} mm below the best known)\n\n{}",
             comparison.task,
             comparison.objective,
             comparison.target_mm,
-            "optimizer",
-            "batch",
-            "studies",
-            "reached",
-            "25 %",
-            "median",
-            "75 %"
-        );
-        for group in &comparison.groups {
-            let number = |n: Option<f64>| n.map_or("-".to_owned(), |n| format!("{n:.1}"));
-            let [low, median, high] = group.evaluations_to_target.all().map(number);
-            text.push_str(&format!(
-                "{:<14} {:>5} {:>8} {:>8} {low:>8} {median:>8} {high:>8}\n",
-                group.optimizer, group.batch, group.studies, group.reached,
-            ));
-        }
-        f.write_str(&text)
+            text_table(1, head, rows)
+        )
     }
 }

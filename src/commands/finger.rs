@@ -16,6 +16,7 @@ use insertion::space::Design;
 use insertion::surrogate::Prediction;
 use nalgebra::Matrix3;
 use report::answer::lines;
+use report::text_table;
 use serde::{Serialize, Serializer};
 use std::fmt;
 use std::path::PathBuf;
@@ -200,15 +201,15 @@ impl fmt::Display for Ribs {
         let (depth, cross) = (computed.cross.in_depth / N_PER_MM, &computed.cross);
         let model = measured.as_ref().map(|prediction| lines::stiffness(prediction)[0].1.clone());
         let model = model.unwrap_or_else(|| "no measured model of it".to_owned());
+        let rows = [("pad", &computed.pad), ("pad and roof", &computed.pad_and_roof)]
+            .map(|(name, found)| planar_row(name, found));
         write!(
             f,
             "finger        {}, {} %, {}°, first rib at {phase_mm} mm\n\
              material      {}, {} GPa ({})\n\
              area, mass    {area_mm2:.1} mm2, {mass_g:.2} g\n\
              stiffness     {model}\n\n\
-             from the ribs\n\
-             the part      compliance assembly   tilting    centre    centre  coupling\n\
-             touches           N/mm      N/mm    Nm/rad  below, mm front, mm       y-z\n{}{}\n\
+             from the ribs\n{}\n\
              across        {depth:.1} N/mm in x, {:.2} Nm/rad about y, {:.2} about z\n",
             finger.name,
             design.density_percent,
@@ -216,24 +217,34 @@ impl fmt::Display for Ribs {
             finger.material.name,
             finger.material.modulus / 1e9,
             finger.material.source,
-            planar_text("pad", &computed.pad),
-            planar_text("pad and roof", &computed.pad_and_roof),
+            text_table(1, PLANAR, rows),
             cross.about_y,
             cross.about_z,
         )
     }
 }
 
-fn planar_text(name: &str, found: &PlanarStiffness) -> String {
-    format!(
-        "{name:<13} {:>9.2} {:>9.1} {:>9.2} {:>9.1} {:>9.1} {:>9.2}\n",
-        found.in_compliance() / N_PER_MM,
-        found.in_assembly() / N_PER_MM,
-        found.tilting(),
-        found.centre_below_pad() / MM,
-        found.centre_in_front() / MM,
-        found.coupling_yz(),
-    )
+/// Heading of [`planar_row`].
+const PLANAR: [&str; 7] = [
+    "the part\ntouches",
+    "compliance\nN/mm",
+    "assembly\nN/mm",
+    "tilting\nNm/rad",
+    "centre\nbelow, mm",
+    "centre\nfront, mm",
+    "coupling\ny-z",
+];
+
+fn planar_row(name: &str, found: &PlanarStiffness) -> [String; 7] {
+    [
+        name.to_owned(),
+        format!("{:.2}", found.in_compliance() / N_PER_MM),
+        format!("{:.1}", found.in_assembly() / N_PER_MM),
+        format!("{:.2}", found.tilting()),
+        format!("{:.1}", found.centre_below_pad() / MM),
+        format!("{:.1}", found.centre_in_front() / MM),
+        format!("{:.2}", found.coupling_yz()),
+    ]
 }
 
 /// N/m, N/rad and N m/rad as N/mm, N and N mm.

@@ -56,7 +56,7 @@ impl command::Request for Request {
         let finger = (&chosen.design, given);
         let levers = levers(&setup, setup.only_task()?, finger, None, context.stop)?;
         if let Some(path) = &self.svg {
-            write_file(path, &shown::svg(&levers))?;
+            write_file(path, &shown::svg(&levers)?)?;
         }
         Ok(Found { sentence: levers.sentence(), levers })
     }
@@ -64,7 +64,7 @@ impl command::Request for Request {
 
 impl command::Response for Found {
     fn picture(&self) -> Result<Option<String>, Failure> {
-        Ok(Some(shown::svg(&self.levers)))
+        Ok(Some(shown::svg(&self.levers)?))
     }
 }
 

@@ -17,6 +17,7 @@ use insertion::outcome::Outcome;
 use insertion::trial::{Course, Grasp, PhaseEnd, Probe, Sample, Trial, picture};
 use report::answer::lines;
 use report::answer::words::number;
+use report::text_table;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -254,7 +255,7 @@ fn text(trial: &Trial) -> String {
         Outcome::Failed(class) => format!(": {} (class {})", class.label(), class.number()),
         Outcome::Inserted | Outcome::Diverged => String::new(),
     };
-    let mut text = format!(
+    let text = format!(
         "outcome       {}{reason}\ndepth         {}\ntilt          {}\npeak force    {}\n\
          slip          {}\n",
         trial.outcome.word(),
@@ -266,13 +267,13 @@ fn text(trial: &Trial) -> String {
     if trial.phases.is_empty() {
         return text;
     }
-    text += "\nphase         end s   tip x mm  tip y mm  tip z mm  tilt deg  slip mm  peak N\n";
-    for phase in &trial.phases {
-        let [x, y, z] = phase.tip_mm;
-        text.push_str(&format!(
-            "{:<12} {:6.2}  {x:9.2} {y:9.2} {z:9.2} {:9.2} {:8.2} {:7.1}\n",
-            phase.name, phase.time_s, phase.tilt_deg, phase.slip_mm, phase.peak_force_n
-        ));
-    }
-    text
+    let rows = trial.phases.iter().map(|phase| {
+        let [time, tilt, slip] =
+            [phase.time_s, phase.tilt_deg, phase.slip_mm].map(|value| format!("{value:.2}"));
+        let [x, y, z] = phase.tip_mm.map(|value| format!("{value:.2}"));
+        [phase.name.clone(), time, x, y, z, tilt, slip, format!("{:.1}", phase.peak_force_n)]
+    });
+    let head =
+        ["phase", "end s", "tip x mm", "tip y mm", "tip z mm", "tilt deg", "slip mm", "peak N"];
+    text + "\n" + &text_table(1, head, rows)
 }

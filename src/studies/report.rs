@@ -47,8 +47,9 @@ fn beside(dir: &Path, record: &StudyRecord) -> Result<Beside, Failure> {
     };
     let around = Around::read(dir, record);
     beside.robots = around.robots;
-    let levers = around.levers.iter();
-    beside.levers = levers.map(|found| (found.sentence(), report::levers::svg(found))).next();
+    if let Some(found) = &around.levers {
+        beside.levers = Some((found.sentence(), report::levers::svg(found)?));
+    }
     for map in &around.maps {
         beside.maps.push((map.caption(), report::map::svg(map)?));
     }

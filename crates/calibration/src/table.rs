@@ -1,7 +1,7 @@
 //! A calibration as JSON, as CSV, as text, and as a study keeps it.
 
 use super::calibrate::{Calibration, Coordinate, LeftOut, Prediction, TaskResult};
-use super::predict::{INTERVAL, Predicted};
+use super::predict::Predicted;
 use super::subject::Subject;
 use crate::experiments::Experiment;
 use ask_tell::statistics::{Moments, normal_cdf, pearson, quantile, sorted};
@@ -30,7 +30,7 @@ pub struct Moved {
 pub fn moved(calibration: &Calibration) -> Vec<Moved> {
     let one = |(i, Coordinate { parameter, task }): (usize, &Coordinate)| {
         let values = sorted(coordinate(calibration, i));
-        let moments = Moments::of(&coordinate(calibration, i));
+        let moments = Moments::of(coordinate(calibration, i));
         let at = |share: f64| quantile(&values, share).unwrap_or(0.0);
         let shares = [0.1, 0.5, 0.9];
         Moved {
@@ -235,76 +235,6 @@ pub fn parameters_csv(calibration: &Calibration) -> String {
     };
     let lines = moved(calibration).into_iter().zip(&calibration.layout.coordinates).map(line);
     head.to_owned() + &lines.collect::<String>()
-}
-
-const LISTED: usize = 5;
-
-/// A task's result within 80 columns.
-pub fn text(subject: &Subject, result: &TaskResult) -> String {
-    let accuracy = result.trust(subject.emulator.error_mm);
-    let emulator = &subject.emulator;
-    let mut lines = vec![format!(
-        "{}: {} measured fingers; {} simulations, emulated within {:.2} mm ({} fresh ones)",
-        subject.task,
-        subject.measured().len(),
-        emulator.simulations,
-        emulator.error_mm,
-        emulator.fresh
-    )];
-    if let Some(deviation) = accuracy.mean_deviation_percent {
-        let rank = accuracy.spearman.map_or("-".to_owned(), |rank| format!("{rank:+.2}"));
-        lines.push(format!(
-            "leave-one-out  {deviation:.1} % off on average, Spearman {rank}, {} of {} in the {:.0} % interval",
-            accuracy.inside, accuracy.fingers, 100.0 * INTERVAL
-        ));
-    }
-    lines.push(
-        "best on the bench                 range mm    80 % interval   is the best  simulated"
-            .to_owned(),
-    );
-    for prediction in by_range(result).iter().take(LISTED) {
-        let design = &subject.designs[prediction.finger];
-        let infill = format!(
-            "  density {} %, direction {}°",
-            design.get(DENSITY_KEY).unwrap_or(f64::NAN),
-            design.get(DIRECTION_KEY).unwrap_or(f64::NAN)
-        );
-        let range = &prediction.range;
-        lines.push(format!(
-            "{infill:<32} {:>9.1} {:>8.1} to {:>4.1} {:>11.1} % {:>10.1}",
-            range.mean_mm,
-            range.low_mm,
-            range.high_mm,
-            100.0 * prediction.best,
-            range.simulated_mm
-        ));
-    }
-    lines.extend(warnings(subject, result).into_iter().map(|words| format!("warning: {words}")));
-    lines.join("\n") + "\n"
-}
-
-/// Effect of the measurements on the parameters, within 80 columns.
-pub fn parameters_text(calibration: &Calibration) -> String {
-    let mut lines = vec![
-        "parameter (10 % to 90 %)                      before          after    moved".to_owned(),
-    ];
-    for parameter in moved(calibration) {
-        let name = match &parameter.task {
-            Some(task) => format!("{} ({task})", parameter.name),
-            None => parameter.name.clone(),
-        };
-        let span = |[low, _, high]: [f64; 3]| format!("{low:.2} to {high:.2}");
-        lines.push(format!(
-            "{name:<36} {:>15} {:>15} {:>6}",
-            span(parameter.prior),
-            span(parameter.posterior),
-            if parameter.moved { "yes" } else { "no" }
-        ));
-    }
-    for (a, b, correlation) in together(calibration) {
-        lines.push(format!("not told apart: {a} and {b} (correlation {correlation:+.2})"));
-    }
-    lines.join("\n") + "\n"
 }
 
 const KEPT: usize = 5;

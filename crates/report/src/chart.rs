@@ -40,22 +40,47 @@ pub(super) fn message(error: impl std::fmt::Display) -> String {
 /// One axis: label with unit, and range.
 pub(super) type Axis<'a> = (&'a str, Range<f64>);
 
-/// Axes with a grid; `title` may be empty.
+/// Draws axes with a grid; `title` may be empty.
 pub(super) fn axes<'a, 'b>(
     area: &'a Area<'b>,
     title: &str,
     x: Axis<'_>,
     y: Axis<'_>,
 ) -> Result<Chart<'a, 'b>, String> {
+    framed(area, title, x, y, 62, true)
+}
+
+/// Draws an x axis with a grid below so many rows, the first from y = 0 down to -1, with room for
+/// their names to the left, pixels.
+pub(super) fn rows<'a, 'b>(
+    area: &'a Area<'b>,
+    title: &str,
+    x: Axis<'_>,
+    count: usize,
+    left: u32,
+) -> Result<Chart<'a, 'b>, String> {
+    framed(area, title, x, ("", -(count.max(1) as f64)..0.0), left, false)
+}
+
+fn framed<'a, 'b>(
+    area: &'a Area<'b>,
+    title: &str,
+    x: Axis<'_>,
+    y: Axis<'_>,
+    left: u32,
+    y_grid: bool,
+) -> Result<Chart<'a, 'b>, String> {
     let mut builder = ChartBuilder::on(area);
-    builder.margin(10).margin_right(18).x_label_area_size(48).y_label_area_size(62);
+    builder.margin(10).margin_right(18).x_label_area_size(48).y_label_area_size(left);
     if !title.is_empty() {
         builder.caption(title, font(19).color(&INK.rgb()));
     }
     let mut chart = builder.build_cartesian_2d(x.1, y.1).map_err(message)?;
-    chart
-        .configure_mesh()
-        .x_desc(x.0)
+    let mut mesh = chart.configure_mesh();
+    if !y_grid {
+        mesh.disable_y_mesh().disable_y_axis();
+    }
+    mesh.x_desc(x.0)
         .y_desc(y.0)
         .x_labels(7)
         .y_labels(7)

@@ -10,6 +10,7 @@ pub mod answer;
 mod bar;
 mod bench;
 mod beside;
+pub mod calibrate;
 mod chart;
 pub mod compare;
 mod convergence;
@@ -34,6 +35,7 @@ pub mod stiffness;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod text_table;
 mod theme;
 
 pub use beside::{Beside, Film};
@@ -41,6 +43,7 @@ pub use convergence::svg as convergence_svg;
 pub use first::preferred;
 pub use front::svg as front_svg;
 pub use page::{card, page};
+pub use text_table::text_table;
 
 /// Why a plot could not be made: the drawing library refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -79,6 +79,29 @@ pub(super) fn dashed(chart: &mut Chart<'_, '_>, ends: [(f64, f64); 2]) -> Drawn 
     chart.draw_series(line).map(|_| ()).map_err(message)
 }
 
+/// Draws a bar between two values of x and two of y.
+pub(super) fn bar(
+    chart: &mut Chart<'_, '_>,
+    x: [f64; 2],
+    y: [f64; 2],
+    style: impl Into<ShapeStyle>,
+) -> Drawn {
+    let bar = Rectangle::new([(x[0], y[0]), (x[1], y[1])], style);
+    chart.draw_series([bar]).map(|_| ()).map_err(message)
+}
+
+/// Writes words at a point, moved by pixels.
+pub(super) fn label(
+    chart: &mut Chart<'_, '_>,
+    at: (f64, f64),
+    by: (i32, i32),
+    words: &str,
+    style: &TextStyle<'static>,
+) -> Drawn {
+    let words = EmptyElement::at(at) + Text::new(words.to_owned(), by, style);
+    chart.draw_series([words]).map(|_| ()).map_err(message)
+}
+
 /// The corners of stairs that rise (or fall) at each point.
 pub(super) fn stairs(points: impl IntoIterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
     let mut stairs: Vec<(f64, f64)> = Vec::new();

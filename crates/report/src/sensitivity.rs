@@ -1,12 +1,13 @@
 //! Which input matters: table, JSON and chart.
 
-use super::ReportError;
-use super::chart::{Area, Drawn, message, sheet, tick, words};
-use super::theme::{BLUE, INK, LINES, MUTED};
+use super::chart::{Area, Drawn, rows, sheet, tick, words};
+use super::marks::{bar, label, line};
+use super::theme::{BLUE, INK};
+use super::{ReportError, text_table};
 use insertion::evaluation::objective::Measure;
 use parameters::Parameter;
 use parameters::plan::saltelli::{Indices, Interval};
-use plotters::prelude::*;
+use plotters::prelude::Color;
 use plotters::style::text_anchor::{HPos, VPos};
 use serde_json::{Value, json};
 
@@ -63,30 +64,25 @@ pub fn json(found: &Found) -> Value {
 
 /// The same as a table of 80 columns.
 pub fn text(found: &Found) -> String {
-    let head = ["total", "95 %", "alone", "95 %"];
+    let head = ["input", "total", "95 %", "alone", "95 %"];
     let interval = |of: Interval| format!("{:.2} to {:.2}", of.low, of.high);
-    let mut lines = vec![
-        format!("{} of {}: which input matters, most first", found.objective, found.task),
-        format!("{:<33} {:>10} {:>14} {:>8} {:>12}", "input", head[0], head[1], head[2], head[3]),
-    ];
-    for (factor, Indices { first, total }) in found.bars() {
-        let (name, of, last) = (short(&factor.path), interval(total), interval(first));
-        let (value, alone) = (total.value, first.value);
-        lines.push(format!("{name:<33} {value:>10.2} {of:>14} {alone:>8.2} {last:>12}"));
-    }
-    lines.push(
-        "total: share of the variance that is left if all others are fixed; alone: share\n\
-         that goes if this one is fixed"
-            .to_owned(),
-    );
+    let rows = found.bars().into_iter().map(|(factor, Indices { first, total })| {
+        let [value, alone] = [total, first].map(|share| format!("{:.2}", share.value));
+        [short(&factor.path).to_owned(), value, interval(total), alone, interval(first)]
+    });
+    let table = text_table(1, head, rows);
     let counts =
         [(found.without_window, "fail at the nominal start"), (found.diverged, "diverge there")];
     let zeros = counts.iter().filter(|(count, _)| *count > 0);
     let zeros: Vec<String> =
         zeros.map(|(count, what)| format!("{count} {what} and count as 0")).collect();
     let zeros = zeros.iter().map(|zero| format!("; {zero}")).collect::<String>();
-    lines.push(format!("{} windows simulated{zeros}", found.evaluations));
-    lines.join("\n") + "\n"
+    format!(
+        "{} of {}: which input matters, most first\n{table}\
+         total: share of the variance that is left if all others are fixed; alone: share\n\
+         that goes if this one is fixed\n{} windows simulated{zeros}\n",
+        found.objective, found.task, found.evaluations
+    )
 }
 
 /// A key without the path that all keys of a task have in common.
@@ -95,44 +91,40 @@ fn short(key: &str) -> &str {
     key.strip_prefix("strategy.").map_or(key, |rest| rest.strip_prefix("phase.").unwrap_or(rest))
 }
 
-/// Left edge of the bars and height of one, pixels.
-const LEFT: i32 = 300;
-const ROW: i32 = 34;
+/// Width of the chart, height of a row and of what is above and below them, room for the names;
+/// pixels.
 const WIDTH: u32 = 900;
+const ROW: u32 = 34;
+const HEAD_AND_FOOT: u32 = 110;
+const LEFT: u32 = 300;
 
 /// A bar for each input with its interval, most first.
 pub fn svg(found: &Found) -> Result<String, ReportError> {
-    let height = 110 + ROW as u32 * found.factors.len() as u32;
+    let height = HEAD_AND_FOOT + ROW * found.factors.len() as u32;
     sheet("the sensitivity", (WIDTH, height), |area| draw(area, found))
 }
 
 fn draw(area: &Area<'_>, found: &Found) -> Drawn {
     let bars = found.bars();
     let largest = bars.iter().map(|(_, of)| of.total.high.max(of.total.value)).fold(1e-9, f64::max);
-    let pixels = f64::from(WIDTH as i32 - LEFT - 60) / largest;
-    let at = |value: f64| LEFT + (value.max(0.0) * pixels).round() as i32;
     let title = format!("{} of {}: shares of the variance", found.objective, found.task);
-    let note = "bar: with all it acts with (total), line: 95 %; dark: alone";
-    let style = |size, colour, h| words(size, colour, h, VPos::Center);
-    area.draw_text(&title, &style(20, INK, HPos::Left), (20, 24)).map_err(message)?;
-    area.draw_text(note, &style(15, MUTED, HPos::Left), (20, 50)).map_err(message)?;
+    let note = "share of the variance; bar: with all it acts with (total), line: 95 %; dark: alone";
+    let mut chart = rows(area, &title, (note, 0.0..1.1 * largest), bars.len(), LEFT)?;
     for (row, (factor, Indices { first, total })) in bars.iter().enumerate() {
-        let y = 86 + ROW * row as i32;
-        let rectangle = |to: i32, half: i32, style: ShapeStyle| {
-            Rectangle::new([(LEFT, y - half), (to, y + half)], style)
-        };
-        area.draw(&rectangle(at(total.value), 10, BLUE.rgb().mix(0.6).filled()))
-            .map_err(message)?;
-        area.draw(&rectangle(at(first.value), 5, INK.rgb().mix(0.7).filled())).map_err(message)?;
-        let ends = vec![(at(total.low), y), (at(total.high), y)];
-        area.draw(&PathElement::new(ends, INK.rgb().stroke_width(2))).map_err(message)?;
+        let y = -0.5 - row as f64;
+        let shares = [(total.value, 0.3, BLUE, 0.6), (first.value, 0.15, INK, 0.7)];
+        for (share, half, colour, opacity) in shares {
+            let style = colour.rgb().mix(opacity).filled();
+            bar(&mut chart, [0.0, share.max(0.0)], [y - half, y + half], style)?;
+        }
+        let [low, high] = [total.low, total.high].map(|share| (share.max(0.0), y));
+        line(&mut chart, vec![low, high], INK.rgb().stroke_width(2), "")?;
         let name =
             format!("{} ({} to {})", short(&factor.path), tick(factor.low), tick(factor.high));
-        area.draw_text(&name, &style(13, INK, HPos::Right), (LEFT - 8, y)).map_err(message)?;
-        let value = format!("{:.2}", total.value);
-        area.draw_text(&value, &style(14, INK, HPos::Left), (at(total.high) + 8, y))
-            .map_err(message)?;
+        let style = words(13, INK, HPos::Right, VPos::Center);
+        label(&mut chart, (0.0, y), (-8, 0), &name, &style)?;
+        let style = words(14, INK, HPos::Left, VPos::Center);
+        label(&mut chart, high, (8, 0), &format!("{:.2}", total.value), &style)?;
     }
-    let axis = vec![(LEFT, 66), (LEFT, 80 + ROW * bars.len() as i32 - ROW / 2)];
-    area.draw(&PathElement::new(axis, LINES.rgb().stroke_width(1))).map_err(message)
+    Ok(())
 }

@@ -1,9 +1,9 @@
 //! `optimize stiffness`: how well the stiffness model fits, as table, JSON and plot.
 
-use super::ReportError;
 use super::chart::{Area, Drawn, around, axes, legend, message, sheet, words};
 use super::marks::{PointMark, dashed, line, points};
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE};
+use super::{ReportError, text_table};
 use ask_tell::statistics::sorted;
 use input::units::N_PER_MM;
 use insertion::stiffness::{Axis, Measurement};
@@ -17,31 +17,25 @@ use std::fmt::Write;
 pub fn table(model: &Model) -> String {
     let mut text = format!(
         "Stiffness of one finger, fitted to {}{}.\n\
-         Errors are leave-one-out: each design is predicted by a model that never saw it.\n\n\
-         {:<16}{:<34}{:>12}{:>12}{:>14}\n",
+         Errors e are leave-one-out: each design is predicted by a model that never saw it.\n\
+         Root mean square, mean size, and root mean square in predicted deviations (sd):\n\n",
         model.counted(),
         if model.ratios { " and computed from its ribs" } else { "" },
-        "axis",
-        "model",
-        "RMSE N/mm",
-        "mean |e| %",
-        "RMS of e/sd",
     );
-    for row in &model.loo {
-        let chosen = if row.chosen { "  <- used" } else { "" };
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            text,
-            "{:<16}{:<34}{:>12}{:>12}{:>14}{chosen}",
-            row.axis.label(),
-            row.model.label(),
+    let rows = model.loo.iter().map(|row| {
+        [
+            row.axis.label().to_owned(),
+            row.model.label().to_owned(),
             decimals(row.rmse_n_per_mm, 3),
             decimals(row.mean_absolute_percent, 2),
             decimals(row.standardised_rms, 2),
-        );
-    }
+            if row.chosen { "<- used" } else { "" }.to_owned(),
+        ]
+    });
+    text += &text_table(2, ["axis", "model", "RMSE N/mm", "|e| %", "e/sd", ""], rows);
     text.push('\n');
     for axis in Axis::ALL {
+        // Writing to a string cannot fail.
         let _ = writeln!(text, "{}: {}", axis.label(), model.describe(axis));
         let widening = model.widening(axis);
         let note = if widening > 1.0 {

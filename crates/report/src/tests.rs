@@ -264,7 +264,8 @@ fn the_stiffness_report_has_every_model_and_both_axes() {
 #[test]
 fn other_spaces_have_a_page() {
     let mut study = study();
-    let text = include_str!("../../../spaces/infill.toml").replace(DENSITY_KEY, "task.grip.force_n");
+    let text =
+        include_str!("../../../spaces/infill.toml").replace(DENSITY_KEY, "task.grip.force_n");
     study.config.space = Space::parse(&text, "s.toml").unwrap();
     for recorded in &mut study.evaluations {
         let direction = recorded.design.get(DIRECTION_KEY).unwrap();
@@ -346,14 +347,16 @@ fn levers_are_drawn_largest_first_and_grey_where_they_matter_little() {
         "levers": [lever("tilt", [None, Some(4.5)]), lever("grip", [Some(3.9), Some(4.1)])],
     });
     let found = serde_json::from_value(found).unwrap();
-    let svg = levers::svg(&found);
+    let svg = levers::svg(&found).unwrap();
     let document = roxmltree::Document::parse(&svg).unwrap();
-    let texts: Vec<_> = document.descendants().filter_map(|node| node.text()).collect();
+    let texts: Vec<_> =
+        document.descendants().filter_map(|node| node.text()).map(str::trim).collect();
     let at = |text: &str| texts.iter().position(|&found| found == text).unwrap();
     assert!(
         at("tilt") < at("none at 1 mm") && at("tilt") < at("infill") && at("infill") < at("grip")
     );
-    let bars = document.descendants().filter_map(|node| node.attribute("fill-opacity"));
+    let bars = document.descendants().filter(|node| node.has_tag_name("rect"));
+    let bars = bars.filter_map(|node| node.attribute("opacity")).filter(|share| *share < "1");
     assert_eq!(bars.collect::<Vec<_>>(), ["0.85", "0.85", "0.85", "0.85", "0.45", "0.45"]);
     let text = levers::text(&found);
     assert!(text.contains("7 windows; none left for speed") && text.contains("grip: made <up>"));

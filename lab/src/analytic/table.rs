@@ -1,50 +1,28 @@
 //! Results of the checks as text.
 
 use super::{CheckRow, Tolerance};
+use report::text_table;
 
-/// Width of the quantities; the rest of a longer one goes to the next line.
-const QUANTITY: usize = 29;
-
-/// Aligned table at most 80 columns wide, and the verdict.
+/// Returns an aligned table at most 80 columns wide, and the verdict.
 pub fn table(rows: &[CheckRow]) -> String {
-    let mut text = format!(
-        "{:<4}{:<QUANTITY$}{:>9}{:>9} {:<6}{:>9} {:<7}\n",
-        "", "quantity", "expected", "measured", "unit", "error", "allowed"
-    );
-    for row in rows {
+    let cells = rows.iter().map(|row| {
         let (error, allowed) = match row.tolerance {
             Tolerance::Relative(share) => (percent(row.error()), percent(share)),
             Tolerance::Absolute(error) => (number(row.error()), number(error)),
         };
         let verdict = if row.passed { "ok" } else { "FAIL" };
-        let (quantity, rest) = broken(&row.quantity);
-        text += &format!(
-            "{:<4}{quantity:<QUANTITY$}{:>9}{:>9} {:<6}{error:>9} {allowed:<8}{verdict}\n",
-            row.check,
-            number(row.expected),
-            number(row.measured),
-            row.unit,
-        );
-        if !rest.is_empty() {
-            text += &format!("      {rest}\n");
-        }
-    }
+        let [expected, measured] = [row.expected, row.measured].map(number);
+        let unit = row.unit.to_owned();
+        let (check, quantity) = (row.check.to_owned(), row.quantity.clone());
+        [check, quantity, expected, measured, unit, error, allowed, verdict.to_owned()]
+    });
+    let head = ["", "quantity", "expected", "measured", "unit", "error", "allowed", ""];
     let failed = rows.iter().filter(|row| !row.passed).count();
-    text + &match failed {
-        0 => format!("pass: all {} checks\n", rows.len()),
-        failed => format!("fail: {failed} of {} checks\n", rows.len()),
-    }
-}
-
-/// Quantity split at the end of a word where its column ends.
-fn broken(quantity: &str) -> (&str, &str) {
-    match quantity.char_indices().nth(QUANTITY) {
-        None => (quantity, ""),
-        Some((end, _)) => match quantity[..end].rfind(' ') {
-            Some(space) => (&quantity[..space], &quantity[space + 1..]),
-            None => quantity.split_at(end),
-        },
-    }
+    text_table(2, head, cells)
+        + &match failed {
+            0 => format!("pass: all {} checks\n", rows.len()),
+            failed => format!("fail: {failed} of {} checks\n", rows.len()),
+        }
 }
 
 fn number(value: f64) -> String {
@@ -70,14 +48,15 @@ mod tests {
     use super::*;
     use contact::Diverged;
 
+    const LONG: &str = "bad, and named by more words than its column has room for";
+
     fn rows() -> Vec<CheckRow> {
-        let long = "bad, and named by more words than its column has room for";
         let row = |name: &str, expected, measured: Result<f64, Diverged>, unit| {
             CheckRow::new("T1", name, expected, measured, unit, Tolerance::Relative(0.01))
         };
         vec![
             row("good", 2.0, Ok(2.01), "mm"),
-            row(long, 7_175_000.0, Ok(-8e6), "rad/Nm"),
+            row(LONG, 7_175_000.0, Ok(-8e6), "rad/Nm"),
             row("diverged", 2.0, Err(Diverged), "mm"),
         ]
     }
@@ -90,7 +69,7 @@ mod tests {
         assert!(text.contains("quantity") && text.contains("unit"), "{text}");
         assert_eq!(text.matches("FAIL").count(), 2, "{text}");
         assert!(text.ends_with("\nfail: 2 of 3 checks\n"), "{text}");
-        // The long name is whole, in two lines.
-        assert!(text.contains("by more words ") && text.contains("\n      than its"), "{text}");
+        // The long name is whole, in several lines.
+        assert!(LONG.split(' ').all(|word| text.contains(word)), "{text}");
     }
 }

@@ -4,6 +4,7 @@ use super::{Subject, TaskWays, Way, each, subject_json, window_json, window_word
 use ask_tell::statistics::mean;
 use insertion::evaluation::{Evaluation, OffsetStep, Window, grid_mm};
 use insertion::stiffness::Measurement;
+use report::text_table;
 use serde_json::{Value, json};
 
 #[derive(Debug, Clone, PartialEq)]
@@ -63,28 +64,23 @@ pub fn mean_end_difference_mm(pairs: &[WindowPair]) -> Option<f64> {
 /// Table at most 80 columns wide with a summary, and verdicts if so many grid steps are `allowed`.
 pub fn text(pairs: &[WindowPair], allowed: Option<OffsetStep>) -> String {
     let first = pairs.first().map_or("", |pair| &pair.ways[0]);
-    let mut text = format!(
-        "{:<5}{:>4} {:>11}  {:<14}{:>14}{:>14}{:>10}\n{:36}{:>14}{:>14}{:>10}\n",
-        "task", "no.", "infill", "compared", first, "its window", "ends move", "", "mm", "mm", "mm"
-    );
-    for pair in pairs {
+    let rows = pairs.iter().map(|pair| {
         let [below, above] = pair.moved_mm();
         let [a, b] = pair.windows.each_ref().map(window_words);
         let verdict = match allowed.map(|allowed| pair.agrees(allowed)) {
             None => "",
-            Some(true) => " ok",
-            Some(false) => " FAIL",
+            Some(true) => "ok",
+            Some(false) => "FAIL",
         };
-        let design = &pair.subject.design;
-        text += &format!(
-            "{:<5}{:>4} {:>11}  {:<14}{a:>14}{b:>14}{below:>+5.1}{above:>+5.1}{verdict}\n",
-            pair.subject.task,
-            design.design,
-            pair.subject.infill(),
-            pair.ways[1],
-        );
-    }
-    text + &summary(pairs)
+        let subject = &pair.subject;
+        let [task, way] = [&subject.task, &pair.ways[1]].map(ToString::to_string);
+        let moved = format!("{below:+.1} {above:+.1}");
+        let number = subject.design.design.to_string();
+        [task, number, subject.infill(), way, a, b, moved, verdict.to_owned()]
+    });
+    let first = format!("{first}\nmm");
+    let head = ["task", "no.", "infill", "compared", &first, "its window\nmm", "ends move\nmm", ""];
+    text_table(4, head, rows) + &summary(pairs)
 }
 
 fn summary(pairs: &[WindowPair]) -> String {

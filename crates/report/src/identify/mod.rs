@@ -7,6 +7,7 @@ mod tests;
 pub use page::html;
 
 use crate::answer::words::number;
+use crate::text_table;
 use calibration::identify::formulas::Flange;
 use calibration::identify::misfit::{Misfit, misfits};
 use calibration::identify::question::{Compared, IdentifyDone};
@@ -103,13 +104,13 @@ pub fn text(done: &IdentifyDone) -> String {
         };
         text += &format!("robot, {axis}      {words}\n");
     }
-    text += "\nnumber                        prior                identified         from\n";
-    for Unknown { prior, posterior, from, .. } in &found.unknowns {
+    let numbers = found.unknowns.iter().map(|Unknown { prior, posterior, from, .. }| {
         let told = posterior.value.is_some();
-        let [before, after] = [prior, posterior].map(page::amount);
-        let after = if told { after } else { "as before".to_owned() };
-        text += &format!("{:<29} {before:<20} {after:<18} {}\n", posterior.name, origin(*from));
-    }
+        let after = if told { page::amount(posterior) } else { "as before".to_owned() };
+        [posterior.name.clone(), page::amount(prior), after, origin(*from).to_owned()]
+    });
+    text += "\n";
+    text += &text_table(4, ["number", "prior", "identified", "from"], numbers);
     for Unknown { posterior, advice, .. } in &found.unknowns {
         if let Some(advice) = advice {
             text += &format!("\n{}: {advice}", posterior.name);

@@ -14,6 +14,7 @@ use insertion::evaluation::{OffsetStep, Window, grid_mm, tolerance};
 use insertion::outcome::Outcome;
 use insertion::stiffness::Measurement;
 use insertion::trial::Trial;
+use report::text_table;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::time::Instant;
@@ -153,19 +154,17 @@ pub fn text(check: &CrossCheck, [first, second]: [&str; 2]) -> String {
             "tips of the {count} plugs that both insert: {median:.3} mm apart (median), {largest:.3} mm at most\n"
         );
     }
-    if !others.is_empty() {
-        text += &format!(
-            "\n{:<7}{:<13}{:>10}{:>15}  {first:<27}{second}\n",
-            "task", "finger", "offset mm", "beyond end mm"
-        );
+    if others.is_empty() {
+        return text;
     }
-    for pair in others {
-        let [a, b] = pair.outcomes.map(Outcome::label);
-        let (task, infill) = (&pair.subject.task, pair.subject.infill());
+    let rows = others.into_iter().map(|pair| {
+        let [a, b] = pair.outcomes.map(|outcome| outcome.label().to_owned());
         let [offset, beyond] = [pair.offset, pair.from_end].map(grid_mm);
-        text += &format!("{task:<7}{infill:<13}{offset:>10.1}{beyond:>15.1}  {a:<27}{b}\n");
-    }
-    text
+        let [offset, beyond] = [offset, beyond].map(|mm| format!("{mm:.1}"));
+        [pair.subject.task.to_string(), pair.subject.infill(), offset, beyond, a, b]
+    });
+    let head = ["task", "finger", "offset mm", "beyond end mm", first, second];
+    text + "\n" + &text_table(2, head, rows)
 }
 
 pub fn json(check: &CrossCheck, names: [&str; 2]) -> Value {
@@ -238,22 +237,17 @@ pub fn time(tasks: &[TaskWays], designs: &[Measurement]) -> Vec<Timing> {
 }
 
 pub fn time_text(rows: &[Timing], [first, second]: [&str; 2]) -> String {
-    let unit = "wall s (simulated)";
-    let mut text = format!(
-        "one nominal trial from the grasp to the end, one thread, medians of {RUNS}\n\n\
-         task   finger       {first:>20}{second:>20}   ratio\n{:20}{unit:>20}{unit:>20}{:8}\n",
-        "", ""
-    );
-    for row in rows {
+    let timings = rows.iter().map(|row| {
         let [a, b] = [0, 1].map(|i| format!("{:.3} ({:.2})", row.wall_s[i], row.simulated_s[i]));
-        text += &format!(
-            "{:<7}{:<13}{a:>20}{b:>20}{:>8.3}{}\n",
-            row.subject.task,
-            row.subject.infill(),
-            row.ratio(),
-            if alike(row.outcomes) { "" } else { "  another outcome" }
-        );
-    }
+        let other = if alike(row.outcomes) { "" } else { "another outcome" };
+        let (task, infill) = (row.subject.task.to_string(), row.subject.infill());
+        [task, infill, a, b, format!("{:.3}", row.ratio()), other.to_owned()]
+    });
+    let [first, second] = [first, second].map(|name| format!("{name}\nwall s (simulated)"));
     let mean = mean(rows.iter().map(Timing::ratio)).unwrap_or(f64::NAN);
-    text + &format!("mean ratio of wall to simulated time: {mean:.3}\n")
+    format!(
+        "one nominal trial from the grasp to the end, one thread, medians of {RUNS}\n\n{}\
+         mean ratio of wall to simulated time: {mean:.3}\n",
+        text_table(2, ["task", "finger", &first, &second, "ratio", ""], timings)
+    )
 }

@@ -58,7 +58,7 @@ impl PrintRequest {
             (Some(dir), _) => best(dir)?,
             (None, Ok([density, direction])) => (Design::infill(density, direction), None, None),
             (None, Err(_)) => {
-                let problem = "give the folder of a study, or --density and --direction";
+                let problem = "give DIR, the folder of a study, or --density and --direction";
                 return Err(Failure::usage(problem));
             }
         };

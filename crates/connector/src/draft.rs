@@ -123,14 +123,14 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
         name: name.to_owned(),
         description: String::new(),
         turn: like.map_or(0.0, |task| task.turn),
-        plug: Plug { parts: Vec::new(), mass: 0.0, latch: None },
+        plug: Plug::default(),
         socket: Vec::new(),
         opening: [[0.0; 2]; 2],
-        grip: Grip { tcp_z: 0.0, shoulder_z: 0.0, faces_y: [0.0; 2], force, hold, slip_limit },
+        grip: Grip { force, hold, slip_limit, ..Grip::default() },
         friction: like.map_or(friction, |task| task.friction),
         finger: like.map_or(FingerModel::default(), |task| task.finger),
         strategy: Strategy { tilt: 0.0, start: [0.0; 3], rule: StartRule::Given, phases: vec![] },
-        success: Success { depth: 0.0, tilt: 0.0 },
+        success: Success::default(),
     }
 }
 

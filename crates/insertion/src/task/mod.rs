@@ -50,7 +50,7 @@ pub struct Task {
 }
 
 /// The connector half that the fingers hold.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Plug {
     /// Convex parts, m.
     pub parts: Vec<Part>,
@@ -75,7 +75,7 @@ impl Plug {
 }
 
 /// Grasp of the plug, plug frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Grip {
     /// Height of the grasp point (TCP) on the plug's axis, m.
     pub tcp_z: f64,
@@ -100,10 +100,11 @@ impl Grip {
 
 /// When the jaws are held where the grasp left them, as by a non-backdrivable
 /// gear; otherwise they go on pressing with the grasp force and give way.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Hold {
     /// From the grasp on.
+    #[default]
     Always,
     /// During the assembly move only, as in the published simulation.
     Assembly,
@@ -211,7 +212,7 @@ pub struct Phase {
 }
 
 /// Criterion of an insertion.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Success {
     /// Depth of the tip below the socket's top, m.
     pub depth: f64,

@@ -1,7 +1,7 @@
 //! The form of a command: a request, which the command line or keywords give, and a response, which is printed as
 //! text or as JSON.
 
-use crate::context::Context;
+use crate::context::{Context, Program};
 use crate::failure::Failure;
 use crate::terminal;
 use clap::{Arg, ArgAction, ArgMatches, Args};
@@ -72,7 +72,7 @@ pub struct Command {
     /// Words that select it: `["task", "new"]`.
     pub path: &'static [&'static str],
     augment: fn(clap::Command) -> clap::Command,
-    print: fn(&ArgMatches) -> Result<(), Failure>,
+    print: fn(&ArgMatches, Program) -> Result<(), Failure>,
     call: fn(&ArgMatches, &Context<'_>) -> Result<Called, Failure>,
 }
 
@@ -95,12 +95,12 @@ impl Command {
         self.augment(clap::Command::new(self.path.last().copied().unwrap_or_default()))
     }
 
-    /// Runs the command and prints its result.
+    /// Runs the command of this program and prints its result.
     ///
     /// # Errors
     /// If the request fails, or the result says so ([`Response::verdict`]).
-    pub fn print(&self, matches: &ArgMatches) -> Result<(), Failure> {
-        (self.print)(matches)
+    pub fn print(&self, matches: &ArgMatches, program: Program) -> Result<(), Failure> {
+        (self.print)(matches, program)
     }
 
     /// Runs the command for another program.
@@ -137,11 +137,11 @@ fn request<R: Request>(matches: &ArgMatches) -> Result<R, Failure> {
     R::from_arg_matches(matches).map_err(Failure::of_clap)
 }
 
-fn print<R: Request>(matches: &ArgMatches) -> Result<(), Failure> {
+fn print<R: Request>(matches: &ArgMatches, program: Program) -> Result<(), Failure> {
     let set = |name| matches.try_get_one::<bool>(name).ok().flatten().copied().unwrap_or(false);
     let json = set(JSON);
     let request = request::<R>(matches)?;
-    let context = Context::terminal(json, set(QUIET));
+    let context = Context::terminal(json, set(QUIET), program);
     let response = request.run(&context)?;
     drop(context);
     match json {

@@ -1,39 +1,13 @@
 //! The surroundings of a running command: what may cancel it, and who sees how far it is.
 
 use crate::failure::Failure;
-use crate::progress::Progress;
+use crate::progress::{Part, Progress};
 use crate::terminal::{self, say};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use study::{Recorded, Study};
-
-/// A part of a long phase.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Part {
-    /// The phase and what was done: `confirming 10 %, 26°`.
-    pub what: String,
-    /// Parts of the phase that are done.
-    pub done: usize,
-    /// Parts of the phase.
-    pub of: usize,
-    /// Cost of such a part, in evaluations of the search, roughly.
-    pub cost: f64,
-}
-
-/// Costs of the parts, in evaluations of the search. Measured on usb and ket8; they decide nothing but the
-/// time that is said to be left.
-pub mod cost {
-    /// A design that is repeated at its ends.
-    pub const REPEATED: f64 = 4.0;
-    /// A design that is walked.
-    pub const WALKED: f64 = 12.0;
-    /// A simulation for an emulator.
-    pub const SIMULATION: f64 = 1.2;
-    /// A calibration with fingers left out.
-    pub const FOLD: f64 = 4.0;
-}
 
 /// Time that a study has to end by itself once it is cancelled.
 const GRACE: Duration = Duration::from_millis(400);
@@ -47,7 +21,11 @@ pub struct Context<'a> {
     shown: Option<Shown>,
 }
 
+/// Makes the command line of the program.
+pub type Program = fn() -> clap::Command;
+
 struct Shown {
+    program: Program,
     json: bool,
     quiet: bool,
     progress: Mutex<Option<Progress>>,
@@ -125,6 +103,17 @@ impl<'a> Context<'a> {
         }
     }
 
+    /// Returns the command line of the program.
+    ///
+    /// # Errors
+    /// If the command was not typed.
+    pub fn program(&self) -> Result<clap::Command, Failure> {
+        let shown = self.shown.as_ref();
+        let shown =
+            shown.ok_or_else(|| Failure::usage("describes the command line: run `optimize`"))?;
+        Ok((shown.program)())
+    }
+
     /// Writes a line on standard error.
     pub fn note(&self, text: &str) {
         let Some(shown) = &self.shown else { return };
@@ -147,10 +136,10 @@ impl<'a> Context<'a> {
 }
 
 impl Context<'static> {
-    /// Returns the context of a command that was typed.
-    pub fn terminal(json: bool, quiet: bool) -> Self {
+    /// Returns the context of a command of this program that was typed.
+    pub fn terminal(json: bool, quiet: bool, program: Program) -> Self {
         let progress = Mutex::new(None);
-        Context { stop: &INTERRUPTED, shown: Some(Shown { json, quiet, progress }) }
+        Context { stop: &INTERRUPTED, shown: Some(Shown { program, json, quiet, progress }) }
     }
 }
 

@@ -40,7 +40,7 @@ pub mod keywords;
 mod layout;
 pub mod manual;
 pub mod program;
-mod progress;
+pub mod progress;
 pub mod setup;
 pub mod studies;
 pub mod terminal;

@@ -1,13 +1,12 @@
 //! The command line described: reference page, and a list for other languages.
 
-use crate::program::program;
 use clap::{Arg, ArgAction};
 use serde_json::{Value, json};
 use std::any::TypeId;
 use std::path::PathBuf;
 
 /// The reference of all commands as a page: what `--help` says of each.
-pub fn reference() -> String {
+pub fn reference(program: clap::Command) -> String {
     fn section(command: &mut clap::Command, path: &str, page: &mut String) {
         let help = command.render_long_help().to_string();
         let plain: String = help.lines().map(|line| line.trim_end().to_owned() + "\n").collect();
@@ -20,14 +19,14 @@ pub fn reference() -> String {
     }
     let mut page =
         "# Commands and options\n\nWhat `optimize --help` says of each command.\n".into();
-    let mut command = program().term_width(100);
+    let mut command = program.term_width(100);
     command.build();
     section(&mut command, "optimize", &mut page);
     page
 }
 
 /// All commands with their options, by Python's words for them; `hidden` are options that only other programs give.
-pub fn commands() -> Value {
+pub fn commands(mut program: clap::Command) -> Value {
     fn below(command: &clap::Command, path: &str, found: &mut Vec<Value>) {
         let nested =
             || command.get_subcommands().filter(|c| !c.is_hide_set() && c.get_name() != "help");
@@ -44,9 +43,9 @@ pub fn commands() -> Value {
             below(command, format!("{path} {}", command.get_name()).trim_start(), found);
         }
     }
-    let (mut found, mut command) = (Vec::new(), program());
-    command.build();
-    below(&command, "", &mut found);
+    let mut found = Vec::new();
+    program.build();
+    below(&program, "", &mut found);
     Value::Array(found)
 }
 
@@ -75,7 +74,8 @@ fn option(argument: &Arg) -> Value {
 /// Returns what the value of an option is.
 fn kind(argument: &Arg) -> &'static str {
     let parsed = argument.get_value_parser().type_id();
-    let integers = [TypeId::of::<u16>(), TypeId::of::<u32>(), TypeId::of::<u64>()];
+    let integers =
+        [TypeId::of::<u16>(), TypeId::of::<u32>(), TypeId::of::<u64>(), TypeId::of::<usize>()];
     match () {
         () if parsed == TypeId::of::<f64>() => "number",
         () if integers.into_iter().any(|integer| parsed == integer) => "integer",

@@ -107,7 +107,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         // Only options of a study hold where it is measured.
         match matches.try_get_one::<String>("executor").ok().flatten() {
             Some(executor) => executor::run(executor, words.get(1..).unwrap_or_default()),
-            None => command.print(matches).map(|()| ExitCode::SUCCESS),
+            None => command.print(matches, program).map(|()| ExitCode::SUCCESS),
         }
     });
     done.unwrap_or_else(|failure| {

@@ -1,13 +1,38 @@
 //! Progress on standard error, through all phases: a bar on a terminal, a line every few seconds
 //! elsewhere.
 
-use crate::context::{Part, cost};
 use crate::studies::standing::Standing;
 use crate::terminal::say;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, stderr};
 use std::time::{Duration, Instant};
 use study::{Recorded, Study};
+
+/// A part of a long phase.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// The phase and what was done: `confirming 10 %, 26°`.
+    pub what: String,
+    /// Parts of the phase that are done.
+    pub done: usize,
+    /// Parts of the phase.
+    pub of: usize,
+    /// Cost of such a part, in evaluations of the search, roughly.
+    pub cost: f64,
+}
+
+/// Costs of the parts, in evaluations of the search. Measured on usb and ket8; they decide nothing but the
+/// time that is said to be left.
+pub mod cost {
+    /// A design that is repeated at its ends.
+    pub const REPEATED: f64 = 4.0;
+    /// A design that is walked.
+    pub const WALKED: f64 = 12.0;
+    /// A simulation for an emulator.
+    pub const SIMULATION: f64 = 1.2;
+    /// A calibration with fingers left out.
+    pub const FOLD: f64 = 4.0;
+}
 
 /// Time between two lines where there is no terminal.
 const EVERY: Duration = Duration::from_secs(3);

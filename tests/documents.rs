@@ -65,7 +65,8 @@ fn changelog_and_citation_are_of_this_version() {
 #[test]
 fn the_command_reference_is_what_the_program_says() {
     let page = std::fs::read_to_string(root().join("docs/cli.md"));
-    let same = page.is_ok_and(|text| text == finger_opt::manual::reference());
+    let same = page
+        .is_ok_and(|text| text == finger_opt::manual::reference(finger_opt::program::program()));
     assert!(same, "docs/cli.md is not what --help says: scripts/generate.py writes it");
 }
 

@@ -8,8 +8,7 @@ use common::memory::{self, Memory};
 use common::{Studies, sealed};
 use finger_opt::command::parse;
 use finger_opt::commands::study;
-use finger_opt::studies::guided::{Order, perform};
-use finger_opt::studies::open::OpenStudy;
+use finger_opt::studies::guided::{Guided, Order, perform};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluate, Measured};
 use insertion::evaluation::robustness::race::{self, Race};
@@ -183,7 +182,7 @@ fn by_workers(studies: &Studies, errors: &str) -> String {
     let words = line.split(' ').map(str::to_owned).chain([errors.to_owned()]);
     let mut request: study::Request = parse(words).unwrap();
     request.out = Some(studies.dir("workers"));
-    let Ok(mut guided) = request.open(None).and_then(OpenStudy::guided) else { panic!("no study") };
+    let Ok(mut guided) = request.open(None).and_then(Guided::new) else { panic!("no study") };
     while let Ok(Order::Measure(works)) = guided.order(&AtomicBool::new(false)) {
         for (proposal, work) in works.into_iter().rev() {
             let result = perform(&work, "a worker", &NEVER).unwrap_or_else(|e| panic!("{e}"));

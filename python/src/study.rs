@@ -8,6 +8,7 @@ use finger_opt::commands::resume;
 use finger_opt::context::Context;
 use finger_opt::failure::Failure;
 use finger_opt::keywords::request;
+use finger_opt::program::program;
 use finger_opt::studies::guided::{self, NotTaken, Order};
 use finger_opt::studies::recommended::{Advice, Recommendation};
 use finger_opt::studies::request::AnyStudy;
@@ -137,8 +138,8 @@ impl Asked {
     fn open(&self, py: Python<'_>, workers: Option<u64>) -> PyResult<Guided> {
         let open = || {
             let open = self.study.open(workers)?;
-            open.warn(&Context::terminal(self.shown.json, true))?;
-            open.guided()
+            open.warn(&Context::terminal(self.shown.json, true, program))?;
+            guided::Guided::new(open)
         };
         let opened = released(py, open)?.map_err(raise)?;
         Ok(Guided { open: Mutex::new(Some(opened)), shown: self.shown })

@@ -1,8 +1,9 @@
 //! `optimize calibrate`: what few measurements say of every finger.
 
 use crate::command;
-use crate::context::{Context, cost};
+use crate::context::Context;
 use crate::failure::Failure;
+use crate::progress::cost;
 use crate::setup::bench::{BenchRequest, HowCalibrated, Prepared, folds};
 use crate::setup::measured;
 use calibration::bench::Settings;

@@ -3,7 +3,6 @@
 use crate::command::{self, Text};
 use crate::context::Context;
 use crate::failure::Failure;
-use crate::program::program;
 use clap_complete::Shell;
 
 /// Print a completion script for a shell
@@ -18,9 +17,9 @@ impl command::Request for Request {
     type Response = Text;
     const JSON: bool = false;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Text, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Text, Failure> {
         let mut script = Vec::new();
-        clap_complete::generate(self.shell, &mut program(), "optimize", &mut script);
+        clap_complete::generate(self.shell, &mut context.program()?, "optimize", &mut script);
         Ok(Text(String::from_utf8_lossy(&script).into_owned()))
     }
 }

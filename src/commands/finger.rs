@@ -3,9 +3,9 @@
 use crate::command;
 use crate::context::Context;
 use crate::failure::Failure;
+use crate::setup::files::DEFAULT_FINGER;
 use crate::setup::finger::{InfillRequest, setting};
 use crate::setup::printed::{finger_file, measured_model};
-use crate::setup::request::DEFAULT_FINGER;
 use finray::geometry::Geometry;
 use finray::mechanics::{self, FingerStiffness};
 use finray::picture;

@@ -4,7 +4,6 @@ use crate::command::{self, Text};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::manual;
-use crate::program::program;
 
 /// Print the manual page
 #[derive(Debug, clap::Args)]
@@ -31,14 +30,15 @@ impl command::Request for Request {
     type Response = Text;
     const JSON: bool = false;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Text, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Text, Failure> {
+        let program = context.program()?;
         match self.format {
             Format::Man => {}
-            Format::Markdown => return Ok(Text(manual::reference())),
-            Format::Json => return Ok(Text(manual::commands().to_string() + "\n")),
+            Format::Markdown => return Ok(Text(manual::reference(program))),
+            Format::Json => return Ok(Text(manual::commands(program).to_string() + "\n")),
         }
         let mut page = Vec::new();
-        clap_mangen::Man::new(program())
+        clap_mangen::Man::new(program)
             .render(&mut page)
             .map_err(|error| Failure::running(format!("cannot write the manual page: {error}")))?;
         Ok(Text(String::from_utf8_lossy(&page).into_owned()))

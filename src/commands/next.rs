@@ -1,8 +1,9 @@
 //! `optimize next`: which finger to print next.
 
 use crate::command;
-use crate::context::{Context, cost};
+use crate::context::Context;
 use crate::failure::Failure;
+use crate::progress::cost;
 use crate::setup::bench::{BenchRequest, HowCalibrated, Prepared};
 use crate::setup::measured;
 use ask_tell::stream::stream;

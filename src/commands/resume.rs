@@ -5,7 +5,8 @@ use crate::context::Context;
 use crate::failure::Failure;
 use crate::setup::Setup;
 use crate::setup::run::RunRequest;
-use crate::studies::open::{Concluded, OpenStudy};
+use crate::studies::concluded::{self, Concluded};
+use crate::studies::open::OpenStudy;
 use std::path::PathBuf;
 use study::Study;
 
@@ -28,7 +29,7 @@ impl command::Request for Request {
     const PROGRESS: bool = true;
 
     fn run(&self, context: &Context<'_>) -> Result<Concluded, Failure> {
-        self.open()?.to_its_end(context, self.verbose)
+        concluded::run(self.open()?, context, self.verbose)
     }
 }
 

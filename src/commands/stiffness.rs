@@ -3,9 +3,9 @@
 use crate::command;
 use crate::context::Context;
 use crate::failure::Failure;
+use crate::setup::files::DEFAULT_FINGER;
 use crate::setup::files::{printed_finger, stiffness_data, surrogate};
 use crate::setup::finger::InfillRequest;
-use crate::setup::request::DEFAULT_FINGER;
 use insertion::space::Design;
 use insertion::surrogate::{Model, Prediction};
 use report::stiffness as shown;

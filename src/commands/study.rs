@@ -9,8 +9,9 @@ use crate::setup::request::SetupRequest;
 use crate::setup::run::RunRequest;
 use crate::setup::words::Words;
 use crate::setup::{Setup, measured};
+use crate::studies::concluded::{self, Concluded};
 use crate::studies::on_bench;
-use crate::studies::open::{Concluded, OpenStudy};
+use crate::studies::open::OpenStudy;
 use ask_tell::OptimizerKind;
 use input::shipped::PRIORS;
 use insertion::evaluation::INDIFFERENCE_MM;
@@ -118,7 +119,7 @@ impl command::Request for Request {
     const PROGRESS: bool = true;
 
     fn run(&self, context: &Context<'_>) -> Result<Concluded, Failure> {
-        self.open(None)?.to_its_end(context, self.verbose)
+        concluded::run(self.open(None)?, context, self.verbose)
     }
 }
 

@@ -1,6 +1,5 @@
 //! From names to files: shipped ones, or those at a path.
 
-use super::request::DEFAULT_FINGER;
 use crate::failure::Failure;
 use finray::printed::PrintedFinger;
 use input::shipped::{self, FINGERS, ROBOTS, STIFFNESS, Shipped, Source};
@@ -12,6 +11,9 @@ use insertion::stiffness::SurrogateError;
 use insertion::surrogate::{self, Model};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
+
+/// Finger file used unless another is named.
+pub const DEFAULT_FINGER: &str = "finray9";
 
 /// The finger file of a setup: one that fingers are computed from, else the shipped one.
 pub(crate) struct Fingers {

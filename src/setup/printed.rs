@@ -1,8 +1,8 @@
 //! A finger to be printed, and how stiff measured ones are.
 
+use super::files::DEFAULT_FINGER;
 use super::files::{find, stiffness_data, surrogate};
 use super::finger::InfillRequest;
-use super::request::DEFAULT_FINGER;
 use crate::failure::Failure;
 use finray::geometry::Geometry;
 use finray::printed::PrintedFinger;

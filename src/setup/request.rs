@@ -1,7 +1,7 @@
 //! Which tasks, space, robot and finger model: names on the way to files.
 
 use super::Setup;
-use super::files::{Fingers, find, stiffness_data};
+use super::files::{DEFAULT_FINGER, Fingers, find, stiffness_data};
 use crate::failure::Failure;
 use input::files::{LARGEST_INPUT, read_named};
 use input::shipped::{FINGERS, ROBOTS, SPACES, Source, TASKS, resolve};
@@ -17,8 +17,6 @@ use std::path::Path;
 
 /// Robot used unless another is named.
 pub const DEFAULT_ROBOT: &str = "servo";
-/// Finger file used unless another is named.
-pub const DEFAULT_FINGER: &str = "finray9";
 /// Search space used unless another is named.
 pub const DEFAULT_SPACE: &str = "infill";
 

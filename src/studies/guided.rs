@@ -52,7 +52,11 @@ pub enum NotTaken {
 }
 
 impl Guided {
-    pub(crate) fn new(open: OpenStudy) -> Result<Self, Failure> {
+    /// Returns an open study whose measuring the caller does.
+    ///
+    /// # Errors
+    /// If the optimizer cannot be made.
+    pub fn new(open: OpenStudy) -> Result<Self, Failure> {
         let optimizer = optimizer::optimizer(&open.setup, &open.study.config)?;
         let (course, standing) = (Course::new(&open.study), Standing::new(&open.study));
         let kept = Kept::read(&open.study);

@@ -1,6 +1,8 @@
 //! Studies: opened, run on the threads of this process or guided from outside, concluded and reported.
 
+pub mod after;
 pub mod around;
+pub mod concluded;
 mod film;
 pub mod guided;
 pub mod on_bench;

@@ -1,16 +1,12 @@
 //! A study that is open: measured on the threads of this process, or guided from outside.
 
-use super::around::Around;
-use super::guided::Guided;
-use super::summary::Summary;
-use super::{film, on_bench, optimizer, printable, report, text, unusable};
-use crate::command;
-use crate::context::{Context, Part, cost};
+use super::{film, on_bench, optimizer, printable, report, unusable};
+use crate::context::Context;
 use crate::failure::{Failure, bad_config};
+use crate::progress::{Part, cost};
 use crate::setup::Setup;
 use crate::setup::run::RunRequest;
 use crate::setup::task::nominal_start;
-use ::report::answer::Answer;
 use ::report::answer::command::mend;
 use ::report::answer::words::outcome;
 use insertion::evaluation::evaluator::Evaluator;
@@ -22,11 +18,8 @@ use insertion::space::label;
 use insertion::task::StartRule;
 use insertion::trial::NEVER;
 use rayon::ThreadPool;
-use serde::{Serialize, Serializer};
-use std::fmt;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
-use std::sync::{Mutex, PoisonError};
 use study::{
     Cache, Confirmed, Confirmer, Ending, Kept, Recorded, Runner, Simulated, Study, StudyConfig,
     StudyError, StudyRecord,
@@ -42,16 +35,6 @@ pub struct OpenStudy {
     pub(crate) cache: Option<Cache>,
     /// Lines of measurement on its task that it has not seen before.
     pub new_measurements: usize,
-}
-
-/// Output of a study.
-pub struct Concluded {
-    ended: Ended,
-    around: Around,
-    /// What remains to be printed.
-    rest: String,
-    /// Why levers and maps are missing, if that failed.
-    failed: Mutex<Option<Failure>>,
 }
 
 /// A study that has ended.
@@ -112,28 +95,6 @@ impl OpenStudy {
         Ok(warnings)
     }
 
-    /// Runs the study to its end, shows how far it is, and prints its answer before levers and maps are measured.
-    ///
-    /// # Errors
-    /// If a design cannot be simulated or a file cannot be written; if it is cancelled meanwhile.
-    pub fn to_its_end(self, context: &Context<'_>, all: bool) -> Result<Concluded, Failure> {
-        context.stop_on_interrupt(self.study().dir())?;
-        self.warn(context)?;
-        context.begin_study(self.study());
-        let ended = self.run(context)?;
-        context.end();
-        let remarks = ended.record.remarks();
-        remarks.iter().for_each(|remark| context.note(&format!("warning: {remark}")));
-        context.print(&text::ended(&ended, all))?;
-        // The answer stands without them.
-        let (around, failed) = match ended.around(context.stop) {
-            Ok(around) => (around, None),
-            Err(failure) => (Around::default(), Some(failure)),
-        };
-        let rest = text::around(&around);
-        Ok(Concluded { ended, around, rest, failed: Mutex::new(failed) })
-    }
-
     /// Writes what is to be known of the study before it starts.
     ///
     /// # Errors
@@ -146,14 +107,6 @@ impl OpenStudy {
         let warnings = self.warnings()?;
         warnings.iter().for_each(|warning| context.note(&format!("warning: {warning}")));
         Ok(())
-    }
-
-    /// Leaves the measuring to the caller.
-    ///
-    /// # Errors
-    /// If the optimizer cannot be made.
-    pub fn guided(self) -> Result<Guided, Failure> {
-        Guided::new(self)
     }
 
     /// Runs the study until its budget is spent, confirms and writes the report.
@@ -228,30 +181,6 @@ impl OpenStudy {
             return Err(Failure::Interrupted(Some(resume_hint(study))));
         }
         Ok(Ended { dir, record, ending, known, unusable, how: how.clone() })
-    }
-}
-
-impl Serialize for Concluded {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let answer = Answer::of(&self.ended.record);
-        Summary::new(&self.ended, &answer, &self.around).serialize(serializer)
-    }
-}
-
-impl fmt::Display for Concluded {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.rest)
-    }
-}
-
-impl command::Response for Concluded {
-    fn verdict(&self) -> Result<(), Failure> {
-        let failed = self.failed.lock().unwrap_or_else(PoisonError::into_inner).take();
-        match (failed, &self.ended.unusable) {
-            (Some(failure), _) => Err(failure),
-            (None, Some(why)) => Err(Failure::running(why.to_string())),
-            (None, None) => Ok(()),
-        }
     }
 }
 

@@ -9,8 +9,7 @@ use connector::mesh::{Surface, read};
 use finger_opt::command::parse;
 use finger_opt::commands::study;
 use finger_opt::failure::Failure;
-use finger_opt::studies::guided::{NotTaken, Order, perform};
-use finger_opt::studies::open::OpenStudy;
+use finger_opt::studies::guided::{Guided, NotTaken, Order, perform};
 use input::units::MM;
 use insertion::trial::NEVER;
 use nalgebra::Point3;
@@ -208,7 +207,7 @@ fn lied_to(mutations: &[Mutation], out: &Path) -> How {
         parse(line).map_err(|failure| anyhow::anyhow!("{failure}"))?;
     request.out = Some(out.to_owned());
     let failed = |failure: Failure| anyhow::anyhow!("{failure}");
-    let mut guided = request.open(None).and_then(OpenStudy::guided).map_err(failed)?;
+    let mut guided = request.open(None).and_then(Guided::new).map_err(failed)?;
     let mut how = "accepted";
     loop {
         let works = match guided.order(&NEVER).map_err(failed)? {

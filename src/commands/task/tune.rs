@@ -1,9 +1,10 @@
 //! `optimize task tune`: a strategy by which a connector inserts.
 
 use crate::command;
-use crate::context::{Context, Part, not_stopped};
+use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout::{lines, wrapped};
+use crate::progress::Part;
 use crate::setup::files::robot;
 use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
 use crate::setup::task::TaskFile;

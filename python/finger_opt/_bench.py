@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import datetime
 import os
+import threading
 from pathlib import Path
+from typing import get_args
 
 from ._attempts import Attempts, newest
 from ._call import called
@@ -13,7 +14,9 @@ from ._ends import Search
 from ._measurement import Measurement
 from ._native import InputError, StudyError, __version__
 from ._result import Found
+from ._table import rows
 from ._task import Given, Task
+from ._words import TaskName
 
 #: How the note of a line begins.
 NOTE = "50 % points"
@@ -25,10 +28,11 @@ class Bench:
     def __init__(self, out: Path, task: Given, density: float, direction: float) -> None:
         if not out.parent.is_dir():
             raise InputError(f"{out}: there is no folder {out.parent}")
-        self.out = out
+        # Wherever the robot goes: it may change the folder in which this process works.
+        self.out = Path(os.path.abspath(out))
         self.task = task if isinstance(task, Task) else Task.from_toml(task)
         #: The name or the file of the task, if it has one: the caller may have changed a task.
-        self.named = None if isinstance(task, Task) or "\n" in str(task) else str(task)
+        self.named = None if isinstance(task, Task) or "\n" in str(task) else _from_anywhere(str(task))
         infill = {"infill_density_percent": density, "infill_direction_deg": direction}
         self.finger = {key: f"{float(value):.10g}" for key, value in infill.items()}
 
@@ -49,23 +53,15 @@ class Bench:
         wanted = {"task": self.task.name, **self.finger, "date": date}
         if not self.out.exists():
             return False
-        with self.out.open(newline="", encoding="utf-8-sig") as file:
-            lines = (line for line in file if not line.startswith("#"))
-            rows = [row for row in csv.DictReader(lines) if wanted.items() <= row.items()]
-        return any((row.get("note") or "").startswith(NOTE) for row in rows)
+        header, *lines = rows(self.out, self.out.read_bytes()) or [[]]
+        found = [row for row in (dict(zip(header, line)) for line in lines) if wanted.items() <= row.items()]
+        return any(row.get("note", "").startswith(NOTE) for row in found)
 
     def check(self, date: str) -> None:
         """Whether a line of that day could be added, before the robot moves."""
         if self.written(date):
             return
-        # In the same folder, from which the file names the files of tasks.
-        copy = self.out.with_name(f".{self.out.stem}-{os.getpid()}.csv")
-        try:
-            if self.out.exists():
-                copy.write_bytes(self.out.read_bytes())
-            self.add(copy, {"range_mm": "1", "date": date}, InputError)
-        finally:
-            copy.unlink(missing_ok=True)
+        self.add({"range_mm": "1", "date": date}, True)
 
     def write(self, measured: Measurement, date: str) -> None:
         """Adds the line, unless it is there."""
@@ -83,21 +79,36 @@ class Bench:
             if getattr(measured, key) is not None:
                 cells[key] = str(getattr(measured, key))
         cells |= {"peak_force_n": f"{measured.peak_force_n:.1f}", "date": date, "note": _note(measured)}
-        self.add(self.out, cells, StudyError)
+        self.add(cells)
 
-    def add(self, file: Path, cells: dict[str, str], error: type[Exception]) -> None:
+    def add(self, cells: dict[str, str], dry_run: bool = False) -> None:
+        """Adds a line, or only checks that it can be added."""
         task = self.named
         if task is None:
             # Beside the measurements, which name it.
             own = self.out.with_name(f"{self.out.stem}-{self.task.name}.toml")
-            own.write_text(self.task.to_toml(), encoding="utf-8")
+            _write(own, self.task.to_toml())
             task = str(own)
         density, direction = self.finger.values()
         try:
-            line = {"file": file, "task": task, "density": density, "direction": direction, **cells}
-            called("measure add", line, Found)
-        except (InputError, StudyError) as failed:
-            raise error(str(failed).replace(str(file), str(self.out))) from None
+            line = {"file": self.out, "task": task, "density": density, "direction": direction, **cells}
+            called("measure add", {**line, "dry_run": dry_run}, Found)
+        except InputError as failed:
+            if dry_run:
+                raise
+            raise StudyError(str(failed)) from None
+
+
+def _from_anywhere(task: str) -> str:
+    """The name of a shipped task, or the path of a file from wherever this process is later."""
+    return task if task in get_args(TaskName) else os.path.abspath(task)
+
+
+def _write(path: Path, text: str) -> None:
+    """Writes a whole file at once: another finger of the task may be measured at the same time."""
+    whole = path.with_name(f"{path.name}-{os.getpid()}-{threading.get_ident()}")
+    whole.write_text(text, encoding="utf-8")
+    os.replace(whole, path)
 
 
 def _note(measured: Measurement) -> str:

@@ -6,16 +6,18 @@ import difflib
 import functools
 import inspect
 import json
+import math
 import os
 import re
 import types
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from decimal import Decimal
 from numbers import Integral, Real
 from typing import Any, Literal, ParamSpec, TypeGuard, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from ._json import dumps, is_table, is_tuple, word
+from ._json import dumps, is_numpy, is_table, is_tuple, word
 from ._native import InputError, call as run
 from ._result import Result, plain, suffixed
 
@@ -102,6 +104,37 @@ def wrong(key: str, problem: str) -> InputError:
     return error
 
 
+def misplaced(file: str | os.PathLike[str], line: int | None, key: str | None, problem: str) -> InputError:
+    """The error of a wrong value in a file."""
+    parts = (os.fspath(file), None if line is None else f"line {line}", key, problem)
+    error = InputError(": ".join(part for part in parts if part is not None))
+    error.file, error.line, error.key = os.fspath(file), line, key
+    return error
+
+
+def shown(value: object) -> str:
+    """A value in a message: never long, whatever it is."""
+    try:
+        text = repr(value)
+    except Exception:
+        text = f"a {type(value).__name__}"
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def number(value: object) -> float | None:
+    """The finite number that a value is, also one of NumPy or a fraction; None if it is none."""
+    if is_numpy(value) and np.ndim(value) == 0:
+        value = value.tolist()
+    if not isinstance(value, (Real, Decimal)) or isinstance(value, bool):
+        return None
+    try:
+        found = float(value)
+    except Exception:
+        # Larger than any float, or a number of the caller's making.
+        return None
+    return found if math.isfinite(found) else None
+
+
 def _hints(call: Callable[..., Any]) -> dict[str, Any]:
     """The types of its parameters. What it gives may be of a module that is not imported."""
 
@@ -121,12 +154,40 @@ def _check(name: str, value: object, hint: Any) -> None:
     if not _fits(value, hint):
         more = "; fo.sweep takes several" if name in ("density", "direction") and _several(value) else ""
         raise TypeError(f"{name}: has to be {' or '.join(_named(hint))}, not {_kind(value)}{more}")
+    _check_size(name, value)
+    if isinstance(value, (str, os.PathLike)):
+        _check_text(name, os.fspath(value), path=hint is not str)
     words = _words(hint)
     if isinstance(value, str) and words and value not in words:
         near = difflib.get_close_matches(value, words, 1)
         meant = f"; did you mean `{near[0]}`?" if near else ""
         known = ", ".join(word for word in words if word != "fake")
         raise wrong(name, f"`{value}` is none of {known}{meant}")
+
+
+def _check_size(name: str, value: object) -> None:
+    """Refuses whole numbers that no float holds, by themselves or among several."""
+    if isinstance(value, Integral):
+        try:
+            float(value)
+        except OverflowError:
+            raise wrong(name, f"is {shown(value)}; has to be a number of size 1e308 or less") from None
+    elif isinstance(value, Mapping):
+        for key, one in value.items():
+            _check_size(str(key), one)
+    elif isinstance(value, (list, tuple)):
+        for one in value:
+            _check_size(name, one)
+
+
+def _check_text(name: str, text: str | bytes, path: bool) -> None:
+    """Refuses what is no text and, as the name of a file, no path."""
+    if isinstance(text, bytes):
+        raise wrong(name, "has to be a path of text, not of bytes")
+    if "\0" in text:
+        raise wrong(name, "has a NUL character, which no name has")
+    if not path and not text.isascii() and any("\ud800" <= letter <= "\udfff" for letter in text):
+        raise wrong(name, "has to be text that UTF-8 can hold")
 
 
 def _kind(value: object) -> str:
@@ -158,7 +219,7 @@ def _fits(value: object, hint: Any) -> bool:
         number = isinstance(value, Real if hint is float else Integral)
         return number and not isinstance(value, (bool, np.bool_))
     if origin is tuple:
-        if not _several(value) or (args[-1] is not Ellipsis and len(value) != len(args)):
+        if not _several(value) or getattr(value, "ndim", 1) == 0 or (args[-1] is not Ellipsis and len(value) != len(args)):
             return False
         return all(_fits(one, args[0]) for one in value)
     kind = origin if isinstance(origin, type) else hint

@@ -1,6 +1,9 @@
 """The library behind PyO3; the package's other modules give it its Python shape."""
 
 __version__: str
+#: Bounds of what a measurement file takes for newtons and millimetres.
+LARGEST_FORCE_N: float
+LARGEST_LENGTH_MM: float
 
 class InputError(ValueError):
     file: str | None
@@ -47,7 +50,7 @@ class Sweep:
     known: int
     def __init__(self, keywords: str) -> None: ...
     def measure(
-        self, columns: dict[str, list[float]]
+        self, columns: dict[str, list[float]], stop: Stop | None = None
     ) -> tuple[dict[str, bytes], dict[str, list[str | None]]]: ...
 
 class Stop:

@@ -8,8 +8,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from numbers import Integral
 from typing import Any, Literal, TypeGuard
 
+import numpy as np
+
 from . import _native
-from ._call import checked, wrong
+from ._call import checked, number, shown, wrong
 from ._json import dumps, word
 from ._words import OptimizerName, SpaceName, StrPath
 
@@ -26,6 +28,21 @@ class Point(dict[str, float]):
 
 def _by_name(space: object) -> TypeGuard[Mapping[str, Sequence[float]]]:
     return isinstance(space, Mapping)
+
+
+def _id(point: object) -> int:
+    if isinstance(point, Point):
+        return point.id
+    if isinstance(point, Integral) and not isinstance(point, bool):
+        return int(point)
+    raise wrong("points", f"{shown(point)} is neither a point that was asked for nor the id of one")
+
+
+def _value(value: object) -> float | None:
+    found = number(value)
+    if found is None and value is not None:
+        raise wrong("values", f"{shown(value)} is no finite number; give None for a point that failed")
+    return found
 
 
 class Optimizer:
@@ -59,11 +76,14 @@ class Optimizer:
         elif _by_name(space):
             keys = ("low", "high", "step")
             for name, bounds in space.items():
-                if not isinstance(bounds, Sequence) or len(bounds) not in (2, 3):
-                    raise wrong(str(name), "has to be (low, high) or (low, high, step)")
-            parameters = [{"name": name, **dict(zip(keys, bounds))} for name, bounds in space.items()]
+                known = isinstance(bounds, (Sequence, np.ndarray)) and [number(bound) for bound in bounds]
+                if not known or len(known) not in (2, 3) or None in known:
+                    raise wrong(str(name), "has to be (low, high) or (low, high, step), each a finite number")
+            parameters = [{"name": str(name), **dict(zip(keys, bounds))} for name, bounds in space.items()]
         else:
-            several: Any = space
+            several: list[Any] = list(space)
+            if not all(isinstance(parameter, Mapping) for parameter in several):
+                raise wrong("space", "has to be a mapping of names to bounds, or a list of mappings with name, low, high")
             parameters = [dict(parameter) for parameter in several]
         header = {
             "parameters": parameters,
@@ -79,6 +99,7 @@ class Optimizer:
         self._session = _native.Session()
         self._say(header)
 
+    @checked
     def ask(self, n: int = 1) -> list[Point]:
         """Up to ``n`` new points, no point twice; none once the space is exhausted."""
         asked = self._say({"ask": n})["asked"]
@@ -88,13 +109,17 @@ class Optimizer:
         self, points: Point | int | Iterable[Point | int], values: float | None | Iterable[float | None]
     ) -> None:
         """The values of points (or of their ids), in any order; ``None`` for a failed one."""
+        given: Any = points
         numbers: Any = values
         if isinstance(points, (Point, int, Integral)):
-            points, numbers = [points], [values]
-        ids = [point.id if isinstance(point, Point) else int(point) for point in points]
-        told = [None if value is None else float(value) for value in numbers]
+            given, numbers = [points], [values]
+        for name, several in (("points", given), ("values", numbers)):
+            if not isinstance(several, Iterable) or isinstance(several, (str, bytes, Mapping)):
+                raise wrong(name, f"is {shown(several)}; there have to be as many points as values")
+        ids = [_id(point) for point in given]
+        told = [_value(value) for value in numbers]
         if len(ids) != len(told):
-            raise _native.InputError(f"tell: {len(told)} values for {len(ids)} points")
+            raise wrong("values", f"{len(told)} values for {len(ids)} points")
         answer = self._say({"tell": [{"id": i, "value": v} for i, v in zip(ids, told)]})
         self.best, self.stop = answer["best"], answer["stop"]
 

@@ -195,5 +195,9 @@ class Course:
 
 
 def named(error: BaseException) -> str:
-    text = str(error).strip()
+    """The class of an error, and its text, if it has one."""
+    try:
+        text = str(error).strip()
+    except Exception:
+        text = ""
     return f"{type(error).__name__}: {text}" if text else type(error).__name__

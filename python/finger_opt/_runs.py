@@ -10,7 +10,9 @@ import warnings
 from pathlib import Path
 
 from ._attempts import Attempts, Tried
+from ._lock import locked
 from ._native import InputError
+from ._table import rows
 
 #: Its columns.
 COLUMNS = ["log", "infill_density_percent", "infill_direction_deg", "offset_mm", "outcome"]
@@ -22,26 +24,20 @@ class Runs:
     def __init__(self, folder: Path, task: str, finger: dict[str, str], attempts: Attempts) -> None:
         """Adds what the attempts have and the file, since a measurement was killed, has not."""
         self.path, self.task, self.finger = folder / "runs.csv", task, finger
-        for log in self._logs(self._whole()):
+        for log in self._logs(self.path.read_bytes() if self.path.exists() else b""):
             self._check(log)
         if attempts.probed is not None:
             self.add_probe(attempts.probed)
         for tried in attempts.tried:
             self.add(tried)
 
-    def _whole(self) -> bytes:
-        """The lines so far; one that was cut off does not count."""
-        text = self.path.read_bytes() if self.path.exists() else b""
-        return text[: text.rfind(b"\n") + 1]
-
     def _logs(self, text: bytes) -> list[str]:
-        lines = text.decode("utf-8-sig", "replace").splitlines()
-        rows = csv.DictReader(line for line in lines if not line.startswith("#"))
-        columns = list(rows.fieldnames or COLUMNS)
-        if columns[: len(COLUMNS)] != COLUMNS:
-            raise InputError(f"{self.path}: line 1: begins with {','.join(columns)}, not {','.join(COLUMNS)}; "
+        """The logs of the whole lines; one that was cut off does not count."""
+        header, *lines = rows(self.path, text[: text.rfind(b"\n") + 1]) or [COLUMNS]
+        if header[: len(COLUMNS)] != COLUMNS:
+            raise InputError(f"{self.path}: line 1: begins with {','.join(header)}, not {','.join(COLUMNS)}; "
                              "move the file away to begin anew")
-        return [row["log"] for row in rows]
+        return [cells[0] for cells in lines]
 
     def _check(self, log: str) -> None:
         """Whether the log, as its folder is named, is of this task."""
@@ -62,23 +58,28 @@ class Runs:
         self._add(log, "", "probe")
 
     def _add(self, log: Path, offset: str, outcome: str) -> None:
-        """Appends a line, unless the log has one, and returns once it is on the disk."""
+        """Appends a line, unless the log has one, and returns once it is on the disk.
+
+        Other fingers may be measured into the folder at the same time: the file is locked meanwhile.
+        """
         if not log.is_file():
             warnings.warn(f"{log}: the robot names this log, and there is no such file; {self.path} leaves it out",
                           stacklevel=2)
             return
-        whole = self._whole()
         named = Path(os.path.relpath(log, self.path.parent)).as_posix()
-        if named in self._logs(whole):
-            return
         line = io.StringIO()
         writer = csv.writer(line, lineterminator="\n")
-        if not whole:
-            writer.writerow(COLUMNS)
-        writer.writerow((named, *self.finger.values(), offset, outcome))
-        with self.path.open("r+b" if self.path.exists() else "x+b") as file:
-            file.truncate(len(whole))
-            file.seek(len(whole))
+        with self.path.open("a+b") as file:
+            locked(file, wait=True)
+            file.seek(0)
+            text = file.read()
+            if named in self._logs(text):
+                return
+            whole = text.rfind(b"\n") + 1
+            if not whole:
+                writer.writerow(COLUMNS)
+            writer.writerow((named, *self.finger.values(), offset, outcome))
+            file.truncate(whole)
             file.write(line.getvalue().encode())
             file.flush()
             os.fsync(file.fileno())

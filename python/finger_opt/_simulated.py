@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from ._attempts import Attempt
+from ._call import checked, shown, wrong
 from ._commands import trial
-from ._native import InputError
 from ._task import Given
 from ._words import Engine, StrPath
 
@@ -27,6 +27,7 @@ class SimulatedRobot:
     rises to ``force_drift_n`` until the log ends, N. All is drawn with ``seed``.
     """
 
+    @checked
     def __init__(
         self,
         task: Given,
@@ -43,7 +44,9 @@ class SimulatedRobot:
         for name, value, unit in (("noise", noise, "a width in mm"), ("force_noise_n", force_noise_n, "a force in N"),
                                   ("force_drift_n", force_drift_n, "a force in N")):
             if not 0.0 <= value <= 100.0:
-                raise InputError(f"{name}: is {value}; it is {unit}, 0 to 100")
+                raise wrong(name, f"is {value}; it is {unit}, 0 to 100")
+        if seed < 0:
+            raise wrong("seed", f"is {shown(seed)}; it is a whole number, 0 or above")
         self._finger: dict[str, Any] = {"task": task, "density": density, "direction": direction}
         self._settings: dict[str, Any] = {"engine": engine, **_hidden(cell)}
         self._scale, self._drawn = noise / (2.0 * math.log(9.0)), np.random.default_rng(seed)
@@ -85,10 +88,10 @@ class SimulatedRobot:
 def _hidden(cell: Mapping[str, Any] | StrPath | None) -> dict[str, Any]:
     """The settings of a trial that a cell is."""
     if cell is None or isinstance(cell, Mapping):
-        words = {name: value for name, value in (cell or {}).items() if "." not in name}
-        numbers = {name: value for name, value in (cell or {}).items() if "." in name}
+        words = {str(name): value for name, value in (cell or {}).items() if "." not in str(name)}
+        numbers = {str(name): value for name, value in (cell or {}).items() if "." in str(name)}
         return {**words, "set": {**words.get("set", {}), **numbers}}
     path = Path(cell)
     # A robot file has no unknowns.
-    unknowns = path.suffix == ".toml" and path.is_file() and "[[parameter]]" in path.read_text(encoding="utf-8")
+    unknowns = path.suffix == ".toml" and path.is_file() and "[[parameter]]" in path.read_text("utf-8", "replace")
     return {"cell" if unknowns else "robot": cell}

@@ -157,7 +157,13 @@ def _mesh(path: str | os.PathLike[str], tolerance_mm: float, limit_s: float) -> 
     last = said.strip().splitlines()[-1:] or [f"exit code {done.returncode}"]
     syntax = re.search(r"Line \d+: [^*\n]*", said)
     why = syntax.group().strip() if syntax else last[0]
-    raise InputError(f"{path}: is no whole STEP file that Open Cascade can read: {why}")
+    raise InputError(f"{path}: is no whole STEP file that Open Cascade can read: {plain(why)}")
+
+
+def plain(text: str) -> str:
+    """What another program said, without the colours and cursor moves that it meant for a terminal."""
+    text = re.sub(r"\x1b\[[0-9;?]*[ -/]*[@-~]", "", text)
+    return "".join(letter if letter.isprintable() else " " for letter in text).strip()
 
 
 def _products(glb: bytes) -> list[Body]:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, Future
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 from . import _native
 from ._call import checked, given, keywords, wrong
 from ._result import suffixed
-from ._run import workers_of
+from ._run import LOOK, workers_of
 from ._task import Given, listed, sources
 from ._words import Engine, FingerModel, RobotName, SpaceName, Start, StrPath
 
@@ -25,8 +24,12 @@ if TYPE_CHECKING:
 Several = Union[float, Sequence[float], NDArray[Any]]
 #: Columns by name.
 Columns = dict[str, NDArray[Any]]
-#: Rows that are measured, and written, at a time; of an executor, those of one piece of work.
+#: Rows that are measured, and written, at a time; those of one piece of work for workers elsewhere.
 CHUNK, PART = 2000, 64
+#: Executors of this machine: they get row by row, so that there is little to wait for when it is interrupted.
+LOCAL = (ProcessPoolExecutor, ThreadPoolExecutor)
+#: Pieces of work of each worker that may have ended before an earlier one.
+AHEAD = 16
 #: What is counted, so no fraction: a class of 1 to 4, -1 for a simulation that diverged, none where none is met.
 COUNTED = ("failure_negative", "failure_positive", "trials")
 #: The first columns; the rest follows by name.
@@ -121,7 +124,7 @@ def _rows(given: Mapping[str, Several], grid: bool) -> Rows:
     for name, several in given.items():
         try:
             values = np.atleast_1d(np.asarray(several, dtype=float))
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             values = np.empty(0)
         if isinstance(several, str) or values.ndim != 1 or not len(values) or not np.isfinite(values).all():
             raise wrong(name, "has to be a number or a list of numbers, all finite, at least one")
@@ -136,10 +139,10 @@ def _rows(given: Mapping[str, Several], grid: bool) -> Rows:
     return {name: np.broadcast_to(values, length).tolist() for name, values in columns.items()}
 
 
-def _measured(measuring: _native.Sweep, rows: Rows) -> Iterator[Columns]:
+def _measured(measuring: _native.Sweep, rows: Rows, stop: _native.Stop | None = None) -> Iterator[Columns]:
     """The rows with their windows, in their order."""
     for at in range(0, len(rows["density"]), CHUNK):
-        numbers, texts = measuring.measure({name: values[at : at + CHUNK] for name, values in rows.items()})
+        numbers, texts = measuring.measure({name: values[at : at + CHUNK] for name, values in rows.items()}, stop)
         found: Columns = {name: np.asarray(column, dtype=object) for name, column in texts.items()}
         found |= {name: np.frombuffer(column, dtype="<f8") for name, column in numbers.items()}
         # The clock is no result.
@@ -151,32 +154,53 @@ def _place(name: str) -> tuple[int, str]:
     return (FIRST.index(name) if name in FIRST else len(FIRST), name)
 
 
-def _part(words: str, rows: Rows) -> list[Columns]:
-    """The unit of work of an executor."""
-    return list(_measured(_native.Sweep(words), rows))
+class Part:
+    """The unit of work of an executor, which the end of the sweep ends in this process, too."""
+
+    def __init__(self) -> None:
+        self.stop = _native.Stop()
+        # Dask names tasks by it.
+        self.__name__ = "sweep"
+
+    def __call__(self, words: str, rows: Rows) -> list[Columns]:
+        return list(_measured(_native.Sweep(words), rows, self.stop))
+
+    def __reduce__(self) -> tuple[type[Part], tuple[()]]:
+        # Another process knows nothing of the sweep.
+        return Part, ()
 
 
 def _handed_out(
     executor: Executor | Any, workers: int, tasks: Iterable[str], rows: Rows
 ) -> Iterator[Columns]:
-    """The same, measured elsewhere; twice as many pieces of work are out as there are workers."""
+    """The same, measured elsewhere; no more pieces of work are out than there are workers."""
     count = len(rows["density"])
     # So that every worker has some.
-    size = max(1, min(PART, -(-count // (4 * workers))))
+    size = 1 if isinstance(executor, LOCAL) else max(1, min(PART, -(-count // (4 * workers))))
     parts = [(task, at) for task in tasks for at in range(0, count, size)]
-    out: deque[Future[list[Columns]]] = deque()
+    part = Part()
+    running: dict[Future[list[Columns]], int] = {}
+    ended: dict[int, list[Columns]] = {}
+    begun = given = 0
     try:
-        for task, at in parts:
-            if len(out) >= 2 * workers:
-                yield from out.popleft().result()
-            part = {name: values[at : at + size] for name, values in rows.items()}
-            out.append(executor.submit(_part, task, part))
-        while out:
-            yield from out.popleft().result()
+        while given < len(parts):
+            # What is out cannot be taken back from every executor.
+            while begun < len(parts) and len(running) < workers and begun - given < AHEAD * workers:
+                task, at = parts[begun]
+                columns = {name: values[at : at + size] for name, values in rows.items()}
+                running[executor.submit(part, task, columns)] = begun
+                begun += 1
+            done, _ = wait(running, timeout=LOOK, return_when=FIRST_COMPLETED)
+            for future in done:
+                ended[running.pop(future)] = future.result()
+            while given in ended:
+                yield from ended.pop(given)
+                given += 1
     except KeyboardInterrupt:
         raise _native.Interrupted("interrupted") from None
     finally:
-        for future in out:
+        part.stop.set()
+        for future in running:
             future.cancel()
 
 

@@ -7,23 +7,22 @@
 
 from __future__ import annotations
 
-import math
 import os
 import threading
 from collections import Counter
 from collections.abc import Callable
-from contextlib import suppress
-from numbers import Real
+from contextlib import closing, suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Protocol, TypeGuard, TypeVar
 
-import numpy as np
-
-from ._attempts import Attempt, Attempts, Tried
+from ._attempts import Attempt, Attempts, Tried, taken
 from ._bench import Bench
+from ._call import checked, number, shown, wrong
 from ._ends import INTERVAL, Gap, Search, Side, Window
 from ._measurement import Measurement
 from ._native import InputError, StudyError
+from ._run import named
 from ._runs import Runs
 from ._simulated import SimulatedRobot
 from ._task import Given
@@ -34,6 +33,8 @@ __all__ = ["Attempt", "Gap", "Measurement", "Probing", "Robot", "SimulatedRobot"
 
 #: How long an attempt may take unless the robot says otherwise (``timeout_s``), s.
 TIMEOUT_S = 120.0
+#: Longest that may be: a day, s.
+LONGEST_S = 86_400.0
 #: What was inserted is at least so deep, as a share of the depth at which the task counts it as inserted.
 LEAST_DEPTH = 0.5
 #: How many attempts in a row may be doubtful.
@@ -61,6 +62,7 @@ class Probing(Robot, Protocol):
         ...
 
 
+@checked
 def measure_window(
     robot: Robot,
     *,
@@ -92,27 +94,39 @@ def measure_window(
     attempts, as far as the robot records and it is known how they ended, are lines of ``runs.csv`` beside
     ``out``, which all fingers measured into that folder share: what ``optimize identify`` reads.
 
-    Raises :class:`InputError` for wrong arguments, before the robot moves, and :class:`StudyError` if the
-    robot raises, takes longer than its ``timeout_s``, reports what cannot be (three times in a row; once it is
-    marked and tried again), or if the taught start does not insert.
+    Raises :class:`InputError`, before the robot moves, for wrong arguments and while another process measures the
+    same finger into the same folder; and :class:`StudyError` if the robot raises, takes longer than its
+    ``timeout_s``, reports what cannot be (three times in a row; once it is marked and tried again), if a file
+    cannot be written, or if the taught start does not insert.
     """
-    search = _checked(Search(step_mm, resolution_mm, limit_mm, repeats), attempts_max)
+    search = _checked(Search(float(step_mm), float(resolution_mm), float(limit_mm), int(repeats)), attempts_max)
+    timeout_s = _timeout(robot)
     prober = robot if probe and _can_probe(robot) else None
     if probe and prober is None:
         raise InputError(f"probe: {type(robot).__name__} has no method probe(log); give it one, or probe=False")
     bench = Bench(Path(out), task, density, direction)
-    attempts = bench.attempts(search)
-    ended = bench.written(attempts.settings["date"])
     try:
-        runs = Runs(bench.out.parent, bench.task.name, bench.finger, attempts)
-        course = _Course(robot, search, attempts, runs, bench.task.success.depth_mm)
-        if prober is not None and attempts.probed is None:
-            course.probe(prober)
-        measured = course.run(0 if ended else attempts_max)
-    finally:
-        attempts.close()
-    bench.write(measured, attempts.settings["date"])
+        with closing(bench.attempts(search)) as attempts:
+            date = attempts.settings["date"]
+            ended = bench.written(date)
+            runs = Runs(bench.out.parent, bench.task.name, bench.finger, attempts)
+            course = _Course(robot, search, attempts, runs, bench.task.success.depth_mm, timeout_s)
+            if prober is not None and attempts.probed is None:
+                course.probe(prober)
+            measured = course.run(0 if ended else attempts_max)
+            bench.write(measured, date)
+    except OSError as error:
+        raise StudyError(f"{error.filename or bench.out}: {error.strerror or error}") from error
     return measured
+
+
+def _timeout(robot: object) -> float:
+    """How long an attempt of a robot may take, s."""
+    given = getattr(robot, "timeout_s", TIMEOUT_S)
+    found = number(given)
+    if found is None or not 0.0 < found <= LONGEST_S:
+        raise wrong("robot", f"its timeout_s is {shown(given)}; it must be a time above 0, {LONGEST_S:g} s at most")
+    return found
 
 
 def _can_probe(robot: Robot) -> TypeGuard[Probing]:
@@ -138,8 +152,11 @@ def _checked(search: Search, attempts_max: int) -> Search:
 class _Course:
     """The attempts of one measurement, one after the other."""
 
-    def __init__(self, robot: Robot, search: Search, attempts: Attempts, runs: Runs, depth_mm: float) -> None:
-        self.robot, self.search, self.attempts, self.runs, self.depth_mm = robot, search, attempts, runs, depth_mm
+    def __init__(
+        self, robot: Robot, search: Search, attempts: Attempts, runs: Runs, depth_mm: float, timeout_s: float
+    ) -> None:
+        self.robot, self.search, self.attempts, self.runs = robot, search, attempts, runs
+        self.depth_mm, self.timeout_s = depth_mm, timeout_s
 
     def run(self, attempts_max: int) -> Measurement:
         in_doubt = 0
@@ -178,12 +195,18 @@ class _Course:
         name = f"{self.attempts.made + 1:03}"
         done = self.asked(offset, name, lambda log: self.robot.insert(offset, log))
         if not isinstance(done, Attempt):
-            raise self.stopped(offset, f"the robot returned {done!r}, which is no Attempt")
-        doubt = self.doubt(done)
-        if doubt:
-            depth, force = (x if _finite(x) else 0.0 for x in (done.depth_mm, done.peak_force_n))
-            done = Attempt(done.inserted is True, None, depth, force, done.log)
-        return Tried(offset, done, doubt)
+            raise self.stopped(offset, f"the robot returned {shown(done)}, which is no Attempt")
+        # What can be believed of it, and why not all of it.
+        doubts: list[str] = []
+        known: dict[str, Any] = {"inserted": False, "failure": None, "depth_mm": 0.0, "peak_force_n": 0.0, "log": None}
+        for key in known:
+            try:
+                known[key] = taken(key, getattr(done, key))
+            except ValueError as doubt:
+                doubts.append(str(doubt))
+        done = Attempt(**known)
+        doubt = doubts[0] if doubts else self.doubt(done)
+        return Tried(offset, replace(done, failure=None) if doubt else done, doubt)
 
     def asked(self, what: float | str, name: str, ask: Callable[[Path], T]) -> T:
         """What the robot answers, given where to record; the measurement stops if it raises."""
@@ -191,8 +214,8 @@ class _Course:
         folder.mkdir(exist_ok=True)
         try:
             return self.in_time(lambda: ask(folder / f"{name}.csv"))
-        except Exception as error:
-            raise self.stopped(what, f"the robot raised {type(error).__name__}: {error}") from error
+        except (Exception, SystemExit) as error:
+            raise self.stopped(what, f"the robot raised {named(error)}") from error
         finally:
             # Of use only to a robot that records.
             with suppress(OSError):
@@ -200,7 +223,6 @@ class _Course:
 
     def in_time(self, ask: Callable[[], T]) -> T:
         """What the robot returns, or raises; itself an error if that takes too long."""
-        limit = float(getattr(self.robot, "timeout_s", TIMEOUT_S))
         ended: list[T] = []
         failed: list[BaseException] = []
 
@@ -213,21 +235,15 @@ class _Course:
         # A thread that hangs does not keep the process.
         thread = threading.Thread(target=answer, daemon=True)
         thread.start()
-        thread.join(limit)
+        thread.join(self.timeout_s)
         if failed:
             raise failed[0]
         if not ended:
-            raise TimeoutError(f"no answer within {limit:g} s; look at the robot before it goes on")
+            raise TimeoutError(f"no answer within {self.timeout_s:g} s; look at the robot before it goes on")
         return ended[0]
 
     def doubt(self, done: Attempt) -> str | None:
-        """Why an attempt cannot be as it is reported."""
-        if not isinstance(done.inserted, (bool, np.bool_)):
-            return f"inserted is {done.inserted!r}, neither True nor False"
-        if not (_finite(done.depth_mm) and _finite(done.peak_force_n) and done.peak_force_n >= 0.0):
-            return f"depth {done.depth_mm} mm and peak force {done.peak_force_n} N are no measured numbers"
-        if done.failure not in (None, 1, 2, 3, 4):
-            return f"{done.failure} is no failure class; there are 1 to 4"
+        """Why an attempt cannot be as it is reported, though each of its numbers could."""
         if done.inserted and done.failure is not None:
             return f"inserted, and failed with class {done.failure}"
         if done.inserted and done.depth_mm < LEAST_DEPTH * self.depth_mm:
@@ -276,10 +292,6 @@ class _Course:
         within = max(s for s in inserted if s < run[0]), min(s for s in inserted if s > run[-1])
         failed = _outward(side.sign, run[0], run[-1])
         return Gap(failed, _outward(side.sign, *within), self.failure(side, run))
-
-
-def _finite(number: Any) -> bool:
-    return isinstance(number, Real) and math.isfinite(number)
 
 
 def _outward(sign: int, near: float, far: float) -> tuple[float, float]:

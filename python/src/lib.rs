@@ -10,6 +10,7 @@ mod study;
 mod sweep;
 mod task;
 
+use calibration::experiments::line::{LARGEST_FORCE_N, LARGEST_LENGTH_MM};
 use finger_opt::{manual, program};
 use pyo3::prelude::*;
 use std::ffi::OsString;
@@ -32,6 +33,8 @@ fn commands() -> String {
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("LARGEST_FORCE_N", LARGEST_FORCE_N)?;
+    module.add("LARGEST_LENGTH_MM", LARGEST_LENGTH_MM)?;
     errors::register(module)?;
     module.add_function(wrap_pyfunction!(main, module)?)?;
     module.add_function(wrap_pyfunction!(commands, module)?)?;

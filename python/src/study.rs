@@ -25,7 +25,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Ends what a run still performs in this process.
 #[pyclass(frozen)]
-pub struct Stop(AtomicBool);
+pub struct Stop(pub AtomicBool);
 
 #[pymethods]
 impl Stop {

@@ -1,7 +1,8 @@
 //! Windows of many fingers, as columns.
 
-use crate::call::{interruptible, read, released};
-use crate::errors::{InputError, raise};
+use crate::call::{read, released, watched};
+use crate::errors::{InputError, not_forked, raise};
+use crate::study::Stop;
 use finger_opt::commands::evaluate::Request;
 use finger_opt::keywords::request;
 use finger_opt::setup::finger::FingerRequest;
@@ -12,6 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
+use std::sync::atomic::AtomicBool;
 
 /// The columns that are no numbers.
 const WORDS: [&str; 6] = ["task", "robot", "cell", "finger_model", "rcc_from", "nominal"];
@@ -53,14 +55,19 @@ impl Sweep {
     }
 
     /// The windows of fingers, each of a row of these columns: `density`, `direction`, numbers of task
-    /// and finger by their keys.
+    /// and finger by their keys. Ends early once `stop` is set.
+    #[pyo3(signature = (columns, stop=None))]
     fn measure<'py>(
         &self,
         py: Python<'py>,
         columns: BTreeMap<String, Vec<f64>>,
+        stop: Option<&Stop>,
     ) -> PyResult<Columns<'py>> {
         let fingers = fingers(&columns)?;
-        let done = interruptible(py, |stop| {
+        let own = AtomicBool::new(false);
+        let stop = stop.map_or(&own, |Stop(stop)| stop);
+        not_forked()?;
+        let done = watched(py, stop, || {
             let found = self.0.measure(&fingers, stop)?;
             Ok(found.iter().map(|found| flat(json!(found))).collect::<Vec<_>>())
         })?;

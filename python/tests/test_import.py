@@ -103,6 +103,18 @@ def test_wrong_files_are_refused(occ, parts, meshes, fake, tmp_path, wrong):
     assert not (tmp_path / "mine.toml").exists()
 
 
+def test_what_open_cascade_says_moves_no_cursor(occ, meshes, fake, tmp_path):
+    from finger_opt._step import plain
+
+    file = tmp_path / "bodiless.step"
+    file.write_text("ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('a','2020-01-01',(''),(''),'','','');\n"
+                    "FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n")
+    with pytest.raises(fo.InputError, match="Open Cascade") as raised:
+        imported(fake, tmp_path, file, meshes[1])
+    assert str(raised.value).isprintable()
+    assert plain("\x1b[31;1mred\x1b[0m, \x9b2J, \x1b]0;title\x07 and \u202eturned") == "red,  2J,  ]0;title  and  turned"
+
+
 def test_the_program_and_a_lack_of_open_cascade_name_the_extra(parts, meshes, fake, tmp_path, command, monkeypatch):
     file = step_files.write(tmp_path / "plug.step", {"plug": parts["plug"]})
     words = ["--plug", str(file), "--socket", str(meshes[1]), "--unit", "mm", "--out", str(tmp_path / "mine.toml")]

@@ -55,6 +55,33 @@ def test_the_lines_are_those_of_the_command(command):
     assert [{"id": point.id, "values": dict(point)} for point in here] == there
 
 
+@pytest.mark.parametrize("points, values, word", [
+    ([{"x": 99}], [1], "points: {'x': 99} is neither a point that was asked for nor the id of one"),
+    ([True], [1], "points: True"), ([1.5], [1], "points: 1.5"), (["0"], [1], "points: '0'"), ([None], [1], "points: None"),
+    ("ab", [1, 2], "points: is 'ab'"), (None, [1], "points: is None"), ([0], ["a"], "values: 'a' is no finite number"),
+    ([0], [float("nan")], "values: nan is no finite number"), ([0], [10**400], "values: 1000"), ([0], [[1]], r"values: [1]"),
+    ([0], 1.0, "values: is 1.0"), ([0, 1], [1], "values: 1 values for 2 points"), (0, "a", "values: 'a'"),
+])
+def test_what_is_told_is_checked_by_name(points, values, word):
+    optimizer = fo.Optimizer(SPACE, "random")
+    optimizer.ask(2)
+    with pytest.raises(fo.InputError) as raised:
+        optimizer.tell(points, values)
+    assert str(raised.value).startswith(word)
+    # It goes on, with numbers of any type.
+    optimizer.tell(np.array([0, 1]), np.array([1, 2], dtype=np.float32))
+    assert optimizer.best["value"] == 2.0
+
+
+@pytest.mark.parametrize("space, word", [
+    (["usb"], "space: "), ([1], "space: "), ({"x": (1,)}, "x: "), ({"x": (1, "a")}, "x: "), ({"x": (0, 10**400)}, "x: "),
+    ({"x": (0, float("nan"))}, "x: "), ({"x": "12"}, "x: "), ("infil", "did you mean `infill`"), ("a\0b.toml", "space: "),
+])
+def test_a_space_is_checked_by_name(space, word):
+    with pytest.raises(fo.InputError, match=word):
+        fo.Optimizer(space)
+
+
 def test_shipped_spaces_and_errors():
     point = fo.Optimizer("infill", "sobol").ask(1)[0]
     assert set(point) == {"infill_density_percent", "infill_direction_deg"}

@@ -114,10 +114,10 @@ def test_a_robot_that_hangs_stops_it(out):
 
 @pytest.mark.parametrize("lie, said", [
     ({"depth_mm": 0.0}, "inserted at a depth of 0 mm; the task counts from 12 mm on"),
-    ({"depth_mm": float("nan")}, "no measured numbers"),
-    ({"failure": 7, "inserted": False}, "7 is no failure class"),
+    ({"depth_mm": float("nan")}, "depth_mm is nan; it must be a depth of at most 100 mm"),
+    ({"failure": 7, "inserted": False}, "failure is 7; it must be a failure class from 1 to 4"),
     ({"failure": 2}, "inserted, and failed with class 2"),
-    ({"inserted": "yes"}, "neither True nor False"),
+    ({"inserted": "yes"}, "inserted is 'yes'; it must be True or False"),
 ])
 def test_a_lie_is_marked_and_tried_again(out, lie, said):
     def once(count, done):

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
+import time
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from multiprocessing import get_context
 
 import numpy as np
 import pytest
+from test_stop import SOON_S
 
 import finger_opt as fo
 
@@ -67,3 +72,45 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024)
     import pyarrow.parquet
 
     assert pyarrow.parquet.read_metadata(tmp_path / "table.parquet").num_rows == 100_000
+
+
+def test_processes_change_nothing_either(fake):
+    fingers = {"density": [10, 20, 30], "direction": [0, 10]}
+    expected = fo.sweep(["usb", "rj45"], **fingers, no_cache=True, **fake)
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as processes:
+        pandas.testing.assert_frame_equal(fo.sweep(["usb", "rj45"], **fingers, executor=processes, **fake), expected)
+
+
+STOPPED = """
+import finger_opt as fo, multiprocessing, signal, sys, time
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+if __name__ == "__main__":
+    # A process begun in a shell's background inherits that Ctrl-C is ignored.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    executor = (ThreadPoolExecutor(2) if sys.argv[1] == "threads"
+                else ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")))
+    # The workers have begun when these are done.
+    fo.sweep("usb", [10, 20], [0, 10], executor=executor, engine="fake")
+    print("begun", flush=True)
+    try:
+        fo.sweep("usb", list(range(10, 31)), list(range(0, 41)), executor=executor)
+    except fo.Interrupted:
+        print("interrupted", flush=True)
+"""
+
+
+@pytest.mark.parametrize("executor", ["threads", "processes"])
+def test_ctrl_c_ends_a_sweep_its_executor_and_its_process(executor, fake, tmp_path):
+    (tmp_path / "stopped.py").write_text(STOPPED)
+    process = subprocess.Popen([sys.executable, "stopped.py", executor], cwd=tmp_path, stdout=subprocess.PIPE,
+                               stderr=subprocess.DEVNULL, text=True, start_new_session=True)
+    assert process.stdout.readline() == "begun\n"
+    time.sleep(1.0)
+    # As a terminal does: to the workers, too.
+    os.killpg(process.pid, signal.SIGINT)
+    try:
+        said, _ = process.communicate(timeout=SOON_S)
+    finally:
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+    assert said == "interrupted\n"

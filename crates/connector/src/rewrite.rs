@@ -4,7 +4,10 @@ use super::write;
 use insertion::task::{Strategy, Task};
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TomlError, Value};
 
-/// The text of a task file with another strategy.
+/// Byte order mark, with which editors on Windows begin a file.
+const MARK: char = '\u{feff}';
+
+/// The text of a task file with another strategy; line ends and byte order mark stay.
 ///
 /// # Errors
 /// If the text is no TOML.
@@ -32,7 +35,16 @@ pub fn strategy(text: &str, task: &Task, after: &Strategy) -> Result<String, Tom
             }
         }
     }
-    Ok(file.to_string())
+    Ok(ended_as(text, file.to_string()))
+}
+
+/// A text with the byte order mark and the line ends of another, which TOML does not keep.
+fn ended_as(other: &str, text: String) -> String {
+    let [crlf, lines] = ["\r\n", "\n"].map(|end| other.matches(end).count());
+    let text = text.replace("\r\n", "\n");
+    let text = if 2 * crlf > lines { text.replace('\n', "\r\n") } else { text };
+    let marked = other.starts_with(MARK) && !text.starts_with(MARK);
+    if marked { format!("{MARK}{text}") } else { text }
 }
 
 fn phases(strategy: &mut Table) -> Option<&mut ArrayOfTables> {
@@ -147,6 +159,13 @@ mod tests {
             }
             let unchanged = strategy(file.text, &task, &task.strategy).unwrap();
             assert_eq!(unchanged, file.text, "{}", file.name);
+            let windows = format!("{MARK}{}", file.text.replace('\n', "\r\n"));
+            assert_eq!(strategy(&windows, &task, &task.strategy).unwrap(), windows);
+            let peg = Family::Peg.of(&task).unwrap();
+            let plain = strategy(file.text, &task, &peg).unwrap();
+            let written = strategy(&windows, &task, &peg).unwrap();
+            assert_eq!(written, format!("{MARK}{}", plain.replace('\n', "\r\n")));
+            assert!(Task::parse(&written, "written").is_ok());
         }
     }
 

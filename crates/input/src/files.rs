@@ -5,7 +5,7 @@
 //! that could block is opened.
 
 use std::fmt::Write as _;
-use std::fs::{self, File, Metadata, OpenOptions};
+use std::fs::{self, File, Metadata, OpenOptions, Permissions};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -93,20 +93,26 @@ fn text(bytes: Vec<u8>) -> io::Result<String> {
     String::from_utf8(bytes).map_err(|_| io::Error::new(io::ErrorKind::InvalidData, problem))
 }
 
-/// Writes a file that the user has named: a plain file, or one that is not there yet, whole
-/// or not at all; a device, a pipe or what a link leads to in place.
+/// Writes a file that the user has named: a plain file, which keeps its mode, or one that is not there
+/// yet, whole or not at all; a device, a pipe or what a link leads to in place.
 ///
 /// # Errors
-/// If it cannot be written.
+/// If it cannot be written, or is read-only.
 pub fn write_named(path: &Path, content: &[u8]) -> io::Result<()> {
     match fs::symlink_metadata(path) {
-        Ok(found) if !found.is_file() && !found.is_dir() => {
+        Ok(found) if found.is_file() && found.permissions().readonly() => Err(read_only()),
+        Ok(found) if found.is_file() => write_whole(path, content, Some(found.permissions())),
+        Ok(found) if !found.is_dir() => {
             let mut file = File::create(path)?;
             file.write_all(content)?;
             file.flush()
         }
-        _ => write_own(path, content),
+        _ => write_whole(path, content, None),
     }
+}
+
+fn read_only() -> io::Error {
+    io::Error::new(io::ErrorKind::PermissionDenied, "it is read-only")
 }
 
 /// Writes a whole file or, if that fails or the process dies, none of it. A link is replaced.
@@ -114,9 +120,15 @@ pub fn write_named(path: &Path, content: &[u8]) -> io::Result<()> {
 /// # Errors
 /// If it cannot be written.
 pub fn write_own(path: &Path, content: &[u8]) -> io::Result<()> {
+    write_whole(path, content, None)
+}
+
+fn write_whole(path: &Path, content: &[u8], mode: Option<Permissions>) -> io::Result<()> {
     let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty());
     let (temporary, mut file) = temporary(folder.unwrap_or(Path::new(".")))?;
     let written = (|| {
+        // Before there is anything to read in it.
+        mode.map_or(Ok(()), |mode| file.set_permissions(mode))?;
         file.write_all(content)?;
         file.sync_all()?;
         fs::rename(&temporary, path)
@@ -151,7 +163,7 @@ impl Table {
                 return Err(io::Error::other("it is a folder, a pipe or a device"));
             }
             if found.permissions().readonly() {
-                return Err(io::Error::new(io::ErrorKind::PermissionDenied, "it is read-only"));
+                return Err(read_only());
             }
             file.lock()?;
             // Who had it before may have removed or replaced it.
@@ -173,35 +185,37 @@ impl Table {
     /// # Errors
     /// If it cannot be written; the file is then as it was.
     pub fn replace(&mut self, new: &str) -> io::Result<()> {
-        let kept = new.strip_prefix(&self.text).map_or(0, |_| self.text.len());
-        let written = match kept == self.text.len() {
-            true => self.rewrite(kept, new),
-            false => {
-                // A copy, for the case that the process dies in between; nobody's file is written over.
-                let mut name = self.path.file_name().unwrap_or_default().to_owned();
-                name.push(".before");
-                let copy = self.path.with_file_name(name);
-                let taken = |error: io::Error| {
-                    let problem = format!("{}: {error}; remove it first", copy.display());
-                    io::Error::new(error.kind(), problem)
-                };
-                let mut file =
-                    File::options().write(true).create_new(true).open(&copy).map_err(taken)?;
-                file.write_all(self.text.as_bytes())?;
-                file.sync_all()?;
-                let written = self.rewrite(0, new);
-                if written.is_ok() {
-                    fs::remove_file(copy)?;
-                }
-                written
-            }
-        };
-        match written {
-            Ok(()) => self.text = new.to_owned(),
-            // If this fails, too, nothing can be done.
-            Err(_) => drop(self.rewrite(kept, &self.text)),
+        let appends = new.starts_with(&self.text);
+        let kept = if appends { self.text.len() } else { 0 };
+        let copy = if appends { None } else { Some(self.copied()?) };
+        let written = self.rewrite(kept, new);
+        let whole = written.is_ok() || self.rewrite(kept, &self.text).is_ok();
+        if let (Some(copy), true) = (copy, whole) {
+            fs::remove_file(copy)?;
         }
-        written
+        written.map(|()| new.clone_into(&mut self.text))
+    }
+
+    /// A copy, for the case that the process dies while the file is written anew, or that it cannot be
+    /// written back; nobody's file is written over.
+    fn copied(&self) -> io::Result<PathBuf> {
+        let mut name = self.path.file_name().unwrap_or_default().to_owned();
+        name.push(".before");
+        let copy = self.path.with_file_name(name);
+        let taken = |error: io::Error| {
+            let problem = format!("{}: {error}; remove it first", copy.display());
+            io::Error::new(error.kind(), problem)
+        };
+        let mut file = File::options().write(true).create_new(true).open(&copy).map_err(taken)?;
+        let mode = self.file.metadata()?.permissions();
+        let written = file
+            .set_permissions(mode)
+            .and_then(|()| file.write_all(self.text.as_bytes()))
+            .and_then(|()| file.sync_all());
+        if written.is_err() {
+            let _ = fs::remove_file(&copy);
+        }
+        written.map(|()| copy)
     }
 
     fn rewrite(&self, kept: usize, text: &str) -> io::Result<()> {
@@ -323,6 +337,26 @@ mod tests {
         remove_abandoned(dir.path());
         let left = |name: &str| dir.path().join(name).exists();
         assert_eq!([old, new, other].map(left), [false, true, true]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_of_the_users_keeps_its_mode_and_a_read_only_one_its_contents() {
+        use std::os::unix::fs::PermissionsExt;
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("task.toml");
+        let mode = || fs::metadata(&path).unwrap().permissions().mode() & 0o7777;
+        for private in [0o600, 0o640, 0o664, 0o700] {
+            fs::write(&path, "old").unwrap();
+            fs::set_permissions(&path, Permissions::from_mode(private)).unwrap();
+            write_named(&path, b"new").unwrap();
+            assert_eq!((mode(), fs::read_to_string(&path).unwrap().as_str()), (private, "new"));
+        }
+        fs::set_permissions(&path, Permissions::from_mode(0o444)).unwrap();
+        let error = write_named(&path, b"newer").unwrap_err();
+        assert_eq!(error.to_string(), "it is read-only");
+        assert_eq!((mode(), fs::read_to_string(&path).unwrap().as_str()), (0o444, "new"));
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1, "no temporary file");
     }
 
     #[test]

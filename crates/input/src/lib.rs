@@ -150,6 +150,28 @@ pub fn control_character(table: &toml::Table) -> Option<String> {
     Some(if plain(found.0) { found.0.clone() } else { "a key".to_owned() })
 }
 
+/// Line of CSV, from 1, in which a quoted cell runs over the end of the line: the reader would take the
+/// lines below for a part of it. Lines that begin with `#` are comments.
+pub fn unclosed_quote(text: &str) -> Option<usize> {
+    let runs_over = |line: &str| {
+        // A quotation mark opens a cell only at its beginning; twice, it stands for itself.
+        let (mut quoted, mut opens) = (false, true);
+        for c in line.chars() {
+            (quoted, opens) = match c {
+                '"' if quoted => (false, true),
+                '"' => (opens, false),
+                _ => (quoted, !quoted && c == ','),
+            };
+        }
+        quoted
+    };
+    text.lines().position(|line| !line.starts_with('#') && runs_over(line)).map(|at| at + 1)
+}
+
+/// Problem of a line that [`unclosed_quote`] finds.
+pub const UNCLOSED: &str = "a quoted cell runs over the end of the line; close its quotation mark \
+                            there (a mark within a quoted cell is written twice)";
+
 /// A number as messages show it: never hundreds of digits.
 pub fn shown(value: f64) -> String {
     let plain = value == 0.0 || (1e-6..1e12).contains(&value.abs()) || !value.is_finite();

@@ -106,25 +106,60 @@ impl Mounted {
     }
 }
 
+/// Drives of a robot file.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Kind {
+    Rigid,
+    Servo,
+    Arm,
+}
+
+/// The one key that says which others there are. Not a tagged enum, the errors of which have no line.
 #[derive(Deserialize)]
-#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
-enum RawRobot {
-    Rigid {
-        name: String,
-        description: String,
-        stop_force_n: f64,
-    },
-    Servo {
-        name: String,
-        description: String,
-        stop_force_n: f64,
-        stiffness_n_per_mm: [f64; 3],
-        rotational_stiffness_nm_per_rad: [f64; 3],
-        mass_kg: f64,
-        inertia_kg_m2: f64,
-        damping_ratio: f64,
-    },
-    Arm(Box<RawArm>),
+struct Tagged {
+    kind: Kind,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawRigid {
+    #[serde(rename = "kind")]
+    _kind: Kind,
+    name: String,
+    description: String,
+    stop_force_n: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawServo {
+    #[serde(rename = "kind")]
+    _kind: Kind,
+    name: String,
+    description: String,
+    stop_force_n: f64,
+    stiffness_n_per_mm: [f64; 3],
+    rotational_stiffness_nm_per_rad: [f64; 3],
+    mass_kg: f64,
+    inertia_kg_m2: f64,
+    damping_ratio: f64,
+}
+
+impl RawServo {
+    fn checked(&self, check: Check<'_>) -> Result<Servo, InputError> {
+        let positive = |key: &str, value: f64| check.positive(key, value);
+        let positives = |key: &str, values| check.each(key, values, Check::positive);
+        let rotational = "rotational_stiffness_nm_per_rad";
+        Ok(Servo {
+            stiffness: positives("stiffness_n_per_mm", self.stiffness_n_per_mm)?
+                .map(|k| k * N_PER_MM),
+            rotational_stiffness: positives(rotational, self.rotational_stiffness_nm_per_rad)?,
+            mass: positive("mass_kg", self.mass_kg)?,
+            inertia: positive("inertia_kg_m2", self.inertia_kg_m2)?,
+            damping_ratio: positive("damping_ratio", self.damping_ratio)?,
+        })
+    }
 }
 
 impl Robot {
@@ -133,43 +168,53 @@ impl Robot {
     /// # Errors
     /// If the text is not such a file, or a value cannot be used.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        let raw: RawRobot = read(text, file)?;
         let check = Check { file };
-        let positive = |key: &str, value: f64| check.positive(key, value);
-        let (name, description, stop_force_n, drive) = match raw {
-            RawRobot::Rigid { name, description, stop_force_n } => {
-                (name, description, stop_force_n, Drive::Ideal)
+        let (name, description, stop_force_n, drive) = match read::<Tagged>(text, file)?.kind {
+            Kind::Rigid => {
+                let raw: RawRigid = read(text, file)?;
+                (raw.name, raw.description, raw.stop_force_n, Drive::Ideal)
             }
-            RawRobot::Servo {
-                name,
-                description,
-                stop_force_n,
-                stiffness_n_per_mm,
-                rotational_stiffness_nm_per_rad,
-                mass_kg,
-                inertia_kg_m2,
-                damping_ratio,
-            } => {
-                let positives = |key: &str, values| check.each(key, values, Check::positive);
-                let stiffness = positives("stiffness_n_per_mm", stiffness_n_per_mm)?;
-                let servo = Servo {
-                    stiffness: stiffness.map(|k| k * N_PER_MM),
-                    rotational_stiffness: positives(
-                        "rotational_stiffness_nm_per_rad",
-                        rotational_stiffness_nm_per_rad,
-                    )?,
-                    mass: positive("mass_kg", mass_kg)?,
-                    inertia: positive("inertia_kg_m2", inertia_kg_m2)?,
-                    damping_ratio: positive("damping_ratio", damping_ratio)?,
-                };
-                (name, description, stop_force_n, Drive::Servo(servo))
+            Kind::Servo => {
+                let raw: RawServo = read(text, file)?;
+                let servo = Drive::Servo(raw.checked(check)?);
+                (raw.name, raw.description, raw.stop_force_n, servo)
             }
-            RawRobot::Arm(raw) => {
+            Kind::Arm => {
+                let raw: RawArm = read(text, file)?;
                 let arm = Drive::Arm(Box::new(arm(check, &raw)?));
                 (raw.name, raw.description, raw.stop_force_n, arm)
             }
         };
-        let stop_force = positive("stop_force_n", stop_force_n)?;
+        let stop_force = check.positive("stop_force_n", stop_force_n)?;
         Ok(Robot { name, description, drive, stop_force })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use input::shipped::ROBOTS;
+    use input::{Place, Placed};
+
+    #[test]
+    fn a_value_of_a_wrong_type_is_told_with_its_line() {
+        for robot in ROBOTS {
+            Robot::parse(robot.text, robot.file).unwrap();
+            for (at, line) in robot.text.lines().enumerate() {
+                let Some((key, _)) = line.split_once(" = ") else { continue };
+                if key.starts_with('#') || line.ends_with("true") || line.ends_with("false") {
+                    continue;
+                }
+                for wrong in ["[1.0, 2.0]", "true"] {
+                    let mut lines: Vec<&str> = robot.text.lines().collect();
+                    let new = format!("{key} = {wrong}");
+                    lines[at] = &new;
+                    let error = Robot::parse(&lines.join("\n"), "r.toml").unwrap_err();
+                    let Place { file, line, .. } = error.place();
+                    assert_eq!((file.as_deref(), line), (Some("r.toml"), Some(at + 1)), "{error}");
+                    assert!(error.to_string().contains(&new), "{error}");
+                }
+            }
+        }
     }
 }

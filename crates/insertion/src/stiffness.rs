@@ -4,7 +4,7 @@ use ask_tell::statistics::median;
 use finray::FingerError;
 use input::shipped::STIFFNESS;
 use input::units::N_PER_MM;
-use input::{Fault, Place, Placed};
+use input::{Fault, Place, Placed, UNCLOSED, unclosed_quote};
 
 /// A direction in which a finger yields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -149,8 +149,11 @@ pub fn three(mut designs: Vec<Measurement>) -> Vec<Measurement> {
 fn rows(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
     // The reader counts a line of a "\r\n" file too few.
     let text = text.replace("\r\n", "\n");
-    let mut reader = csv::Reader::from_reader(text.as_bytes());
     let at = |line: u64| Place::file(file).line(line as usize);
+    if let Some(line) = unclosed_quote(&text) {
+        return Err(at(line as u64).fault(UNCLOSED).into());
+    }
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
     let syntax = |error: csv::Error| match error.position() {
         Some(position) => at(position.line()).fault(error.to_string()),
         None => Place::file(file).fault(error.to_string()),

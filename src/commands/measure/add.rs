@@ -74,6 +74,9 @@ pub struct Request {
     /// A further design parameter, as in spaces/codesign.toml; may be given several times
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,
+    /// Check the line, and write nothing: before a robot measures it
+    #[arg(long, hide = true)]
+    pub dry_run: bool,
 }
 
 fn setting(text: &str) -> Result<(String, String), String> {
@@ -101,7 +104,7 @@ impl command::Request for Request {
         if cells.is_empty() {
             cells = asked(&mut io::stdin().lock())?;
         }
-        Ok(Added { file: file.clone(), lines: added(file, cells)?.len() })
+        Ok(Added { file: file.clone(), lines: added(file, cells, self.dry_run)?.len() })
     }
 }
 
@@ -120,8 +123,12 @@ fn not_shipped(file: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Adds a line of these columns and returns all lines.
-fn added(file: &str, mut cells: Vec<(&str, String)>) -> Result<Vec<Experiment>, Failure> {
+/// Adds a line of these columns, or with `dry_run` only checks that it can be added, and returns all lines.
+fn added(
+    file: &str,
+    mut cells: Vec<(&str, String)>,
+    dry_run: bool,
+) -> Result<Vec<Experiment>, Failure> {
     let mut own = None;
     if let Some((_, name)) = cells.iter_mut().find(|(column, _)| *column == "task") {
         let TaskFile { source, task } = read_task(name)?;
@@ -143,7 +150,9 @@ fn added(file: &str, mut cells: Vec<(&str, String)>) -> Result<Vec<Experiment>, 
     let comment = own.filter(new).map_or(String::new(), |(name, path)| own_task(&name, &path));
     let new = appended(table.text(), &comment, &cells).map_err(Failure::input)?;
     let found = parse(&new, file).map_err(Failure::input)?;
-    table.replace(&new).map_err(full)?;
+    if !dry_run {
+        table.replace(&new).map_err(full)?;
+    }
     Ok(found)
 }
 

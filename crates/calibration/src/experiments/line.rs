@@ -136,11 +136,11 @@ fn twice(new: &Experiment, before: &[Experiment]) -> Option<Fault> {
 }
 
 /// Largest length that is taken for millimetres: no connector tolerates more.
-const MOST_MM: f64 = 100.0;
+pub const LARGEST_LENGTH_MM: f64 = 100.0;
 /// Smallest that is not 0: a start is not set finer.
 const LEAST_MM: f64 = 0.02;
 /// Largest force that is taken for newtons.
-const MOST_N: f64 = 5000.0;
+pub const LARGEST_FORCE_N: f64 = 5000.0;
 
 fn number(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -172,7 +172,7 @@ fn direction(text: &str) -> Result<f64, String> {
 
 pub(crate) fn length(text: &str) -> Result<f64, String> {
     match number(text)? {
-        long if long.abs() > MOST_MM => {
+        long if long.abs() > LARGEST_LENGTH_MM => {
             Err(format!("{long} looks like micrometres; give millimetres, as in {}", long / 1e3))
         }
         short if short != 0.0 && short.abs() < LEAST_MM => {
@@ -209,7 +209,7 @@ fn repeats(text: &str) -> Result<u32, String> {
 
 fn force(text: &str) -> Result<f64, String> {
     match number(text)? {
-        large if large > MOST_N => {
+        large if large > LARGEST_FORCE_N => {
             Err(format!("{large} looks like millinewtons; give newtons, as in {}", large / 1e3))
         }
         below if below < 0.0 => Err(format!("is {below}; a largest force is 0 or above")),

@@ -9,7 +9,7 @@ mod tests;
 
 use csv::StringRecord;
 use input::shipped::nearest;
-use input::{Fault, Place, Placed};
+use input::{Fault, Place, Placed, UNCLOSED, unclosed_quote};
 use insertion::outcome::FailureClass;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use line::{Cells, is_of_space};
@@ -178,12 +178,15 @@ pub(crate) fn rows<T>(
     mut one: impl FnMut(&mut Cells<'_>, &[T]) -> T,
 ) -> Result<Vec<T>, Problems> {
     // The reader counts a line of a "\r\n" file too few; spreadsheets begin with a mark.
-    let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
+    let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n").replace('\r', "\n");
     if is_empty(&text) {
         return Ok(Vec::new());
     }
-    let mut reader = reader().trim(csv::Trim::All).from_reader(text.as_bytes());
     let fault = |problem: Fault| Problems::of(file, vec![problem]);
+    if let Some(line) = unclosed_quote(&text) {
+        return Err(fault(problem(line as u64, "", UNCLOSED)));
+    }
+    let mut reader = reader().trim(csv::Trim::All).from_reader(text.as_bytes());
     let wrong = |error: csv::Error| fault(syntax(&text, &error));
     let header = reader.headers().map_err(wrong)?.clone();
     check_header(&header, columns, line_at(&text, header.position())).map_err(fault)?;

@@ -1,9 +1,10 @@
 use super::*;
 use input::shipped::MEASUREMENTS;
 
+const HEADER: &str = "task,infill_density_percent,infill_direction_deg,negative_mm,positive_mm,range_mm,failure_negative,repeats,date,note";
+
 fn of(lines: &str) -> Result<Vec<Experiment>, Problems> {
-    let header = "task,infill_density_percent,infill_direction_deg,negative_mm,positive_mm,range_mm,failure_negative,repeats,date,note";
-    parse(&format!("{header}\n{lines}\n"), "m.csv")
+    parse(&format!("{HEADER}\n{lines}\n"), "m.csv")
 }
 
 #[test]
@@ -61,6 +62,33 @@ fn what_looks_wrong_is_told_with_line_and_column() {
     }
     let both = of("ket8,0.2,0,,,7,,,,\nket8,20,x,,,7,,,,").unwrap_err();
     assert_eq!(both.0.len(), 2);
+}
+
+#[test]
+fn a_quoted_cell_that_runs_over_the_line_is_an_error_where_it_opened() {
+    let line =
+        |note: &str| format!("ket8,20,0,,,7,,,,{note}\nket8,30,0,,,7,,,,\nket8,40,0,,,7,,,,");
+    let runs_over =
+        ["\"5 mm pad", "\"a \"\"b", "\"", "\"two\nlines\"", "\"a\r\nb\"", "\"a\"\"\"\"\" b"];
+    for note in runs_over {
+        let said = of(&format!("# a \" comment\n{}", line(note))).unwrap_err().to_string();
+        assert!(said.starts_with("m.csv: line 3: a quoted cell runs over"), "{note}: {said}");
+    }
+    let said = of(&format!("{}\nket8,50,0,,,7,,,,\"last", line(""))).unwrap_err().to_string();
+    assert!(said.starts_with("m.csv: line 5: "), "{said}");
+    for (cell, note) in [
+        ("\"a, \"\"b\"\"\"", "a, \"b\""),
+        ("5\" pad", "5\" pad"),
+        ("\"\"", ""),
+        ("\"a\"b\"", "ab\""),
+    ] {
+        let found = of(&line(cell)).unwrap();
+        assert_eq!((found.len(), found[0].note.as_str()), (3, note), "{cell}");
+    }
+    // A file of an old spreadsheet: its lines end with a carriage return alone.
+    let old = format!("{HEADER}\n{}\nket8,x,0,,,7,,,,", line("")).replace('\n', "\r");
+    let said = parse(&old, "m.csv").unwrap_err().to_string();
+    assert!(said.starts_with("m.csv: line 5: infill_density_percent"), "{said}");
 }
 
 #[test]

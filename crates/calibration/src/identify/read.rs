@@ -3,6 +3,7 @@
 use super::frame::Frame;
 use super::log::{COLUMNS, Log, MOST, Moment, TARGETS, Target};
 use ask_tell::statistics::median;
+use crate::experiments::line::LARGEST_FORCE_N;
 use input::files;
 use input::units::{DEG, MM};
 use input::{Fault, Place, shown};
@@ -16,8 +17,6 @@ pub const LARGEST_LOG: u64 = 64 << 20;
 const FARTHEST: f64 = 10.0;
 /// A TCP stays not so near to the opening all the time, mm.
 const NEAREST_MM: f64 = 1.0;
-/// Largest force that is taken for newtons.
-const MOST_N: f64 = 5000.0;
 /// Nothing is recorded so seldom, s.
 const SLOWEST_S: f64 = 0.5;
 
@@ -189,7 +188,7 @@ impl<'a> Table<'a> {
         let numbers = |places: &[usize]| places.iter().map(number).collect::<Result<Vec<f64>, _>>();
         let (numbers, goal) = (numbers(&self.places)?, numbers(&self.targets)?);
         let force = &numbers[numbers.len() - 3..];
-        if let Some(large) = force.iter().find(|force| force.abs() > MOST_N) {
+        if let Some(large) = force.iter().find(|force| force.abs() > LARGEST_FORCE_N) {
             let large = shown(*large);
             return Err(format!("a force of {large} looks like millinewtons; give newtons"));
         }

@@ -208,6 +208,7 @@ fn a_table_of_runs_names_logs_beside_it() {
         ("a.csv,20,10,,inserted", "line 3: offset_mm: `` is not a number"),
         ("a.csv,20,10,0.001,inserted", "looks like metres"),
         ("a.csv,20,10,1,inserted\na.csv,20,10,2,3", "line 4: log: same log as in line 3"),
+        ("\"a.csv,20,10,1,3\np.csv,20,10,,probe", "line 3: a quoted cell runs over the end"),
         ("p.csv,20,10,,probe", "has no attempt"),
         ("b.csv,20,10,0,inserted", "b.csv: cannot be read"),
     ] {

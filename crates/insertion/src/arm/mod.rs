@@ -14,6 +14,7 @@ mod reduced;
 pub use kinematics::{Posture, displacement};
 pub use reduced::Reduced;
 
+use crate::robot::Kind;
 use crate::task::geometry::Axis;
 use contact::scene::{Inertia, Pose};
 use input::units::{DEG, MM};
@@ -78,6 +79,8 @@ pub enum ArmError {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RawArm {
+    #[serde(rename = "kind")]
+    _kind: Kind,
     pub name: String,
     pub description: String,
     pub stop_force_n: f64,

@@ -19,7 +19,7 @@ impl Start {
     pub fn of(window_mm: [f64; 2]) -> Option<Self> {
         let [low, high] = window_mm;
         (low <= 0.0 && high >= 0.0 && high > low)
-            .then(|| Start { window_mm, to_middle_mm: (low + high) / 2.0 })
+            .then(|| Start { window_mm, to_middle_mm: micrometres((low + high) / 2.0) })
     }
 
     /// Whether one side is so small that the start should be taught elsewhere.
@@ -38,6 +38,11 @@ impl Start {
     }
 }
 
+/// A length in mm without what a sum of tenths has beyond micrometres.
+fn micrometres(mm: f64) -> f64 {
+    (mm * 1e3).round() / 1e3
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -51,5 +56,10 @@ mod tests {
         assert_eq!(Start::of([-3.0, 1.0]).unwrap().advice(), None);
         assert!(Start::of([-0.9, 3.1]).unwrap().one_sided());
         assert_eq!(Start::of([0.0, 0.0]), None, "no window");
+        // In floating point the half of -3.3 + 0.4 is -1.4500000000000002.
+        for (low, high, middle) in [(-33_i8, 4_i8, "-1.45"), (-33, 1, "-1.6"), (-1, 2, "0.05")] {
+            let window = [low, high].map(|tenths| f64::from(tenths) * 0.1);
+            assert_eq!(Start::of(window).unwrap().to_middle_mm.to_string(), middle);
+        }
     }
 }

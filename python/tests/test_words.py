@@ -1,0 +1,53 @@
+"""Values that no parameter takes: each is refused by its name, before anything is written."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import finger_opt as fo
+
+HUGE = 10**400
+PLUG = {"plug": (8, 2.4, 25), "clearance": 0.1}
+
+
+@pytest.mark.parametrize("word, call", [
+    ("density", lambda: fo.stiffness(HUGE, 10)),
+    ("density", lambda: fo.sweep("usb", [HUGE], [0], engine="fake")),
+    ("density", lambda: fo.sweep("usb", HUGE, [0], engine="fake")),
+    ("density", lambda: fo.evaluate("usb", HUGE, 10)),
+    ("task.friction.plug_socket", lambda: fo.evaluate("usb", 20, 10, set={"task.friction.plug_socket": HUGE})),
+    ("plug", lambda: fo.new_task("m", plug=(HUGE, 2, 3), clearance=0.1)),
+    ("plug", lambda: fo.new_task("m", plug=np.array(20.0), clearance=0.1)),
+    ("clearance", lambda: fo.new_task("m", plug=(8, 2.4, 25), clearance=HUGE)),
+    ("name", lambda: fo.new_task("\udcff", **PLUG)),
+    ("name", lambda: fo.new_task("a\0b", **PLUG)),
+    ("plug", lambda: fo.import_parts("a\0b", out="o.toml")),
+    ("task", lambda: fo.evaluate("a\0b", 20, 10)),
+    ("out", lambda: fo.export_finger(density=20, direction=10, format="stl", out="a\0b.stl")),
+    ("seed", lambda: fo.Study.create("usb", seed=HUGE)),
+])
+def test_what_no_parameter_takes_is_refused_by_name(word, call, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises((fo.InputError, TypeError), match=word):
+        call()
+    assert not list(tmp_path.iterdir())
+
+
+def test_names_that_are_no_utf_8_are_written(tmp_path):
+    folder = tmp_path / os.fsdecode(b"\xff")
+    folder.mkdir()
+    for format in ("stl", "svg", "cura"):
+        files = fo.export_finger(density=20, direction=10, format=format, out=folder / os.fsdecode(b"\xfe.f"))
+        assert files[0].name == os.fsdecode(b"\xfe.f") and all(file.stat().st_size for file in files)
+    scene = fo.export_mjcf("usb", 20, 10, out=folder / os.fsdecode(b"\xfe.xml"))
+    assert isinstance(scene, Path) and scene.stat().st_size
+
+
+def test_the_page_of_a_study_in_a_folder_that_is_no_utf_8(tmp_path, fake):
+    study = fo.Study.create("usb", budget=2, no_cache=True, out=tmp_path / os.fsdecode(b"\xff"), **fake)
+    study.run(progress=False)
+    assert Path(study.report()).stat().st_size

@@ -85,3 +85,81 @@ fn a_bad_log_is_named_and_nothing_is_written() {
     optimize_line(&identify).fails(2, &["30-1.csv: line 100: target_z_mm", "is no finite number"]);
     assert!(!folder.dir("cell.toml").exists() && !folder.dir("page.html").exists());
 }
+
+/// A fault of a log: scales columns, or swaps two.
+enum Fault {
+    Scaled(&'static [&'static str], f64),
+    Swapped([&'static str; 2]),
+}
+
+impl Fault {
+    /// The text of a log with this fault.
+    fn of(&self, log: &str) -> String {
+        let header = log.lines().next().unwrap();
+        let place = |name: &str| header.split(',').position(|other| other == name).unwrap();
+        let line = |line: &str| {
+            let mut cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+            match self {
+                Fault::Scaled(names, by) => names.iter().for_each(|name| cells[place(name)] *= by),
+                Fault::Swapped([a, b]) => cells.swap(place(a), place(b)),
+            }
+            cells.iter().map(f64::to_string).collect::<Vec<_>>().join(",")
+        };
+        let lines: Vec<String> = log.lines().skip(1).map(line).collect();
+        format!("{header}\n{}\n", lines.join("\n"))
+    }
+}
+
+#[test]
+fn each_fault_of_the_columns_draws_its_own_remark() {
+    let folder = Studies::new();
+    logged(&folder);
+    let runs = folder.read("runs.csv");
+    // One finger is enough, and so is one unknown.
+    let few: Vec<&str> = runs.lines().filter(|line| !line.starts_with("30-")).collect();
+    let table = folder.file("few.csv", few.join("\n"));
+    let (head, _) = FEW.rsplit_once("[[parameter]]").unwrap();
+    let priors = folder.file("one.toml", head);
+    let identify = format!("identify --task usb --runs {table} --priors {priors}");
+    let remarks = || {
+        let found = optimize_line(&format!("{identify} --json")).json();
+        let all: Vec<Value> = found["remarks"].as_array().unwrap().clone();
+        all.iter().map(|one| format!("{} {}\n", one["serious"], one["text"])).collect::<String>()
+    };
+    let names = few[1..].iter().map(|line| line.split(',').next().unwrap());
+    let logs: Vec<(&str, String)> = names.map(|name| (name, folder.read(name))).collect();
+    assert_eq!(remarks(), "");
+    let (forces, targets) =
+        (&["fx_n", "fy_n", "fz_n"], &["target_x_mm", "target_y_mm", "target_z_mm"]);
+    for (fault, words) in [
+        (Fault::Scaled(forces, 1.0 / 9.80665), "the forces look too small, "),
+        (Fault::Scaled(forces, 10.0), "the forces look too large, "),
+        (Fault::Scaled(&["fy_n"], -1.0), "y_mm or fy_n is mirrored"),
+        (Fault::Scaled(targets, 1e-3), "they look like metres; give millimetres"),
+        (Fault::Scaled(&["y_mm", "target_y_mm"], -1.0), "y looks mirrored"),
+        (Fault::Swapped(["fx_n", "fy_n"]), "fy_n is mirrored, or swapped"),
+        (Fault::Swapped(["x_mm", "y_mm"]), "two columns look swapped"),
+    ] {
+        for (name, log) in &logs {
+            folder.file(name, fault.of(log));
+        }
+        let found = remarks();
+        let said = found.lines().any(|line| line.starts_with("true") && line.contains(words));
+        assert!(said, "{words}: {found}");
+    }
+    // The text says the same as JSON.
+    let text = optimize_line(&identify);
+    let text = text.succeeds().split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(text.contains("measured along y: two columns look swapped"), "{text}");
+
+    // Upside down, nothing touches: nothing is learnt, and no cell is written.
+    for (name, log) in logs.iter().filter(|(name, _)| !name.ends_with("-3.csv")) {
+        folder.file(name, Fault::Scaled(forces, -1.0).of(log));
+    }
+    let attempts: Vec<&str> = few.iter().copied().filter(|line| !line.contains("probe")).collect();
+    folder.file("few.csv", attempts.join("\n"));
+    let cell = folder.word("cell.toml");
+    optimize_line(&format!("{identify} --out {cell}"))
+        .fails(1, &["these logs tell nothing of the cell; no cell is written", "`force_sign`"]);
+    assert!(!folder.dir("cell.toml").exists());
+}

@@ -123,7 +123,8 @@ def shown(value: object) -> str:
 
 def number(value: object) -> float | None:
     """The finite number that a value is, also one of NumPy or a fraction; None if it is none."""
-    if is_numpy(value) and np.ndim(value) == 0:
+    if is_numpy(value):
+        # Of an array with several it is a list.
         value = value.tolist()
     if not isinstance(value, (Real, Decimal)) or isinstance(value, bool):
         return None
@@ -156,7 +157,7 @@ def _check(name: str, value: object, hint: Any) -> None:
         raise TypeError(f"{name}: has to be {' or '.join(_named(hint))}, not {_kind(value)}{more}")
     _check_size(name, value)
     if isinstance(value, (str, os.PathLike)):
-        _check_text(name, os.fspath(value), path=hint is not str)
+        _check_text(name, value, path=hint is not str)
     words = _words(hint)
     if isinstance(value, str) and words and value not in words:
         near = difflib.get_close_matches(value, words, 1)
@@ -180,9 +181,14 @@ def _check_size(name: str, value: object) -> None:
             _check_size(name, one)
 
 
-def _check_text(name: str, text: str | bytes, path: bool) -> None:
+def _check_text(name: str, value: str | os.PathLike[Any], path: bool) -> None:
     """Refuses what is no text and, as the name of a file, no path."""
-    if isinstance(text, bytes):
+    try:
+        text = os.fspath(value)
+    except Exception:
+        # A path of the caller's making.
+        text = b""
+    if not isinstance(text, str):
         raise wrong(name, "has to be a path of text, not of bytes")
     if "\0" in text:
         raise wrong(name, "has a NUL character, which no name has")
@@ -225,10 +231,11 @@ def _fits(value: object, hint: Any) -> bool:
     kind = origin if isinstance(origin, type) else hint
     if hint is Any or not isinstance(kind, type) or getattr(kind, "_is_protocol", False):
         return True
-    return isinstance(value, kind) and not (isinstance(value, str) and kind in _SEVERAL)
+    one = isinstance(value, str) or getattr(value, "ndim", 1) == 0
+    return isinstance(value, kind) and not (one and kind in _SEVERAL)
 
 
-#: What text is not, though it has letters one after the other.
+#: What text is not, though it has letters one after the other, nor an array of a single number.
 _SEVERAL = (Iterable, Sequence)
 
 

@@ -202,8 +202,8 @@ class _Course:
         for key in known:
             try:
                 known[key] = taken(key, getattr(done, key))
-            except ValueError as doubt:
-                doubts.append(str(doubt))
+            except ValueError as lie:
+                doubts.append(str(lie))
         done = Attempt(**known)
         doubt = doubts[0] if doubts else self.doubt(done)
         return Tried(offset, replace(done, failure=None) if doubt else done, doubt)

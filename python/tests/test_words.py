@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import inspect
 import os
+import random
 from pathlib import Path
 
 import numpy as np
 import pytest
+from test_lies import VALUES
 
 import finger_opt as fo
+from finger_opt.robot import SimulatedRobot
 
 HUGE = 10**400
 PLUG = {"plug": (8, 2.4, 25), "clearance": 0.1}
@@ -51,3 +55,35 @@ def test_the_page_of_a_study_in_a_folder_that_is_no_utf_8(tmp_path, fake):
     study = fo.Study.create("usb", budget=2, no_cache=True, out=tmp_path / os.fsdecode(b"\xff"), **fake)
     study.run(progress=False)
     assert Path(study.report()).stat().st_size
+
+
+CALLS = (
+    fo.evaluate, fo.trial, fo.stiffness, fo.finger, fo.check_task, fo.export_finger, fo.export_mjcf, fo.Optimizer, fo.sweep,
+    fo.compare, fo.load_study, fo.Study.create, SimulatedRobot,
+)
+#: What parameters may be; the closed formula takes no time.
+RIGHT = {"engine": "fake", "task": "usb", "density": 20, "direction": 10, "format": "stl", "out": "o.stl", "space": "infill"}
+MORE = ("usb", "nope.toml", "--help", "x" * 500, {1: 2}, {"task.friction.plug_socket": "x"}, [None], (1, 2, 3), 1 << 70, "[]")
+
+
+def test_keywords_of_any_type_end_in_a_result_or_in_an_error_with_their_name(tmp_path, monkeypatch, fake):
+    monkeypatch.chdir(tmp_path)
+    chance = random.Random(5)
+    refused = 0
+    for _ in range(int(os.environ.get("FINGER_OPT_CALLS", "120"))):
+        call = chance.choice(CALLS)
+        words = {}
+        for name, parameter in inspect.signature(call).parameters.items():
+            needed = parameter.default is parameter.empty
+            if name in RIGHT and (name == "engine" or chance.random() < 0.7):
+                words[name] = RIGHT[name]
+            elif needed or chance.random() < 0.15:
+                words[name] = chance.choice((*VALUES, *MORE))
+        try:
+            call(**words)
+        except TypeError as error:
+            refused += 1
+            assert any(name in str(error) for name in inspect.signature(call).parameters), (call, words, error)
+        except (fo.InputError, fo.StudyError, ImportError):
+            refused += 1
+    assert refused > 20

@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 import os
 import random
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -41,20 +40,16 @@ def test_what_no_parameter_takes_is_refused_by_name(word, call, tmp_path, monkey
     assert not list(tmp_path.iterdir())
 
 
-def test_names_that_are_no_utf_8_are_written(tmp_path):
-    folder = tmp_path / os.fsdecode(b"\xff")
-    folder.mkdir()
-    for format in ("stl", "svg", "cura"):
-        files = fo.export_finger(density=20, direction=10, format=format, out=folder / os.fsdecode(b"\xfe.f"))
-        assert files[0].name == os.fsdecode(b"\xfe.f") and all(file.stat().st_size for file in files)
-    scene = fo.export_mjcf("usb", 20, 10, out=folder / os.fsdecode(b"\xfe.xml"))
-    assert isinstance(scene, Path) and scene.stat().st_size
-
-
-def test_the_page_of_a_study_in_a_folder_that_is_no_utf_8(tmp_path, fake):
-    study = fo.Study.create("usb", budget=2, no_cache=True, out=tmp_path / os.fsdecode(b"\xff"), **fake)
-    study.run(progress=False)
-    assert Path(study.report()).stat().st_size
+@pytest.mark.parametrize("call", [
+    lambda out: fo.export_finger(density=20, direction=10, format="stl", out=out),
+    lambda out: fo.export_mjcf("usb", 20, 10, out=out),
+    lambda out: fo.new_task("mine", **PLUG, out=out),
+    lambda out: fo.tune_task("usb", out=out, engine="fake"),
+])
+def test_a_name_that_is_no_utf_8_is_refused_before_it_is_written(call, tmp_path):
+    with pytest.raises(fo.InputError, match="UTF-8"):
+        call(tmp_path / os.fsdecode(b"\xff.stl"))
+    assert not list(tmp_path.iterdir())
 
 
 CALLS = (

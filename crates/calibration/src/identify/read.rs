@@ -2,8 +2,8 @@
 
 use super::frame::Frame;
 use super::log::{COLUMNS, Log, MOST, Moment, TARGETS, Target};
-use ask_tell::statistics::median;
 use crate::experiments::line::LARGEST_FORCE_N;
+use ask_tell::statistics::median;
 use input::files;
 use input::units::{DEG, MM};
 use input::{Fault, Place, shown};

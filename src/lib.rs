@@ -1,7 +1,7 @@
 //! Finds the compliant finger that makes a connector insertion most robust.
 //!
 //! Data flows one way, and no crate reaches back up the flow; `docs/architecture.md` draws it. This crate holds the
-//! [commands](commands) of the program `optimize`: each is a request, whose fields are its options, and a response,
+//! [`commands`] of the program `optimize`: each is a request, whose fields are its options, and a response,
 //! which is printed as text or JSON.
 //!
 //! Inside the library every quantity is in SI units; millimetres, newtons per millimetre and degrees appear only in

@@ -318,7 +318,7 @@ impl ImportedTask {
             insert_along: value(*along),
             jaws: value(imported.jaws),
             found: said.iter().map(|(what, why)| format!("{what} {why}")).collect::<Vec<_>>(),
-            clearance_mm: clearance_mm,
+            clearance_mm,
             clearance_x_mm: play[0],
             clearance_y_mm: play[1],
             chamfer_x_mm: chamfer[0],

@@ -190,7 +190,7 @@ impl<'a> State<'a> {
             range_mm: window.range_mm(),
         };
         State {
-            start_mm: strategy.start.map(|at| (at / MM * 1e4).round() / 1e4).into(),
+            start_mm: strategy.start.map(|at| (at / MM * 1e4).round() / 1e4),
             tilt_deg: (strategy.tilt / DEG * 100.0).round() / 100.0,
             fingers: fingers.iter().zip(windows).map(of).collect(),
         }

@@ -163,7 +163,7 @@ impl TaskResult {
 /// Most times that a calibration is repeated with fingers left out.
 const MOST_FOLDS: usize = 20;
 
-/// Predicts the measured fingers of one bench without them, at most [`MOST_FOLDS`] times.
+/// Predicts the measured fingers of one bench without them, at most `MOST_FOLDS` times.
 pub fn leave_one_out(
     benches: &[Bench<'_>],
     task: usize,

@@ -152,8 +152,12 @@ class Attempts:
             yield fields
 
     def _field(self, line: dict[str, Any], key: str, field: str, at: int) -> Any:
+        value = line.get(key)
+        if field == "log" and isinstance(value, str) and (self.path.parent / value).is_file():
+            # Up to 0.5.0 as the robot was given it: from its working folder, most often this one.
+            value = self.path.parent / value
         try:
-            return taken(field, line.get(key))
+            return taken(field, value)
         except ValueError as wrong:
             raise misplaced(self.path, at, key, str(wrong).replace(f"{field} ", "", 1)) from None
 

@@ -23,9 +23,6 @@ use std::fmt;
 use std::path::PathBuf;
 use study::write_file;
 
-/// Most remarks in the text of an error.
-const SHOWN: usize = 5;
-
 /// Tell from the robot's logs what its cell is like: friction, stiffness, preload, pads, edges
 ///
 /// The attempts are simulated along their commanded paths. What force and pose tell by themselves is read
@@ -85,7 +82,7 @@ impl command::Request for Request {
         });
         let frame = frame.transpose()?;
         let runs = runs::read(&self.runs, frame.as_ref()).map_err(Failure::input)?;
-        let mut remarks: Vec<Remark> =
+        let remarks: Vec<Remark> =
             runs.iter().flat_map(|run| remarks(run, &template.task)).collect();
         let question = Question {
             evaluator: &setup.evaluator,
@@ -98,10 +95,6 @@ impl command::Request for Request {
         };
         let found = question.answer().map_err(Failure::input)?;
         not_stopped(stop)?;
-        if !found.is_learnt() {
-            return Err(nothing_learnt(&remarks));
-        }
-        remarks.extend(found.remarks(&self.runs.to_string_lossy(), &remarks));
         let cell = cell(&setup, &found, runs.len()).checked("the cell").map_err(Failure::input)?;
         let done = IdentifyDone { task: template.task.name.clone(), remarks, found, cell };
         if let Some(path) = &self.out {
@@ -132,13 +125,6 @@ impl fmt::Display for Done {
         let text = layout::wrapped(&shown::text(&self.done));
         write!(f, "{text}{}", layout::wrote(&self.written))
     }
-}
-
-/// Error of logs that tell nothing of their cell, with what is wrong with them.
-fn nothing_learnt(remarks: &[Remark]) -> Failure {
-    let serious = remarks.iter().filter(|remark| remark.serious);
-    let lines: String = serious.take(SHOWN).map(|remark| format!("\n{remark}")).collect();
-    Failure::running(format!("these logs tell nothing of the cell; no cell is written{lines}"))
 }
 
 /// What was identified, as a cell file.

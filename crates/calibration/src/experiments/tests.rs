@@ -68,8 +68,7 @@ fn what_looks_wrong_is_told_with_line_and_column() {
 fn a_quoted_cell_that_runs_over_the_line_is_an_error_where_it_opened() {
     let line =
         |note: &str| format!("ket8,20,0,,,7,,,,{note}\nket8,30,0,,,7,,,,\nket8,40,0,,,7,,,,");
-    let runs_over =
-        ["\"5 mm pad", "\"a \"\"b", "\"", "\"two\nlines\"", "\"a\r\nb\"", "\"a\"\"\"\"\" b"];
+    let runs_over = ["\"5 mm pad", "\"a \"\"b", "\"", "\"two\nlines\"", "\"a\r\nb\""];
     for note in runs_over {
         let said = of(&format!("# a \" comment\n{}", line(note))).unwrap_err().to_string();
         assert!(said.starts_with("m.csv: line 3: a quoted cell runs over"), "{note}: {said}");

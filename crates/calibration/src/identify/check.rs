@@ -1,6 +1,5 @@
 //! What is wrong with a log, in sentences for who recorded it, before anything is fitted to it.
 
-use super::axes::{axes, cause};
 use super::log::{Ended, Log, Moment, Run};
 use super::read::median_gap;
 use super::touch::{Air, after, air, any_touch, mean, touch};
@@ -17,17 +16,13 @@ const STEP: f64 = 5.0;
 /// So many moments alike at the largest force, N, beyond the bias are a saturated sensor.
 const SATURATED: (usize, f64) = (10, 10.0);
 /// Bias, N, and its slope, N/s, that are worth a word.
-const DRIFT: (f64, f64) = (5.0, 2.0);
+const DRIFT: (f64, f64) = (3.0, 2.0);
 /// Farthest first position from the task's start, m.
 const ASTRAY: f64 = 30.0 * MM;
 /// Largest difference of the tilt from the task's, rad.
 const TILTED: f64 = 2.0 * DEG;
 /// A pose within the first, m, while the target moves by the second, stands still.
 const STILL: (f64, f64) = (1e-6, 1e-3);
-/// Forces that are so many times others are in another unit: fingers and their friction differ by less.
-const SCALED: f64 = 3.0;
-/// Least force of a touch, N.
-const LEAST_N: f64 = 1.0;
 /// Time after a touch over which its force is averaged, s.
 const TOUCH_S: f64 = 0.02;
 
@@ -57,19 +52,14 @@ impl std::fmt::Display for Remark {
 }
 
 /// What was found in one log.
-pub(super) struct Remarks<'a> {
-    pub(super) log: &'a Log,
+struct Remarks<'a> {
+    log: &'a Log,
     found: Vec<Remark>,
 }
 
 impl Remarks<'_> {
     /// Says something of the moments between two indices.
-    pub(super) fn say(
-        &mut self,
-        serious: bool,
-        between: Option<[usize; 2]>,
-        text: impl Into<String>,
-    ) {
+    fn say(&mut self, serious: bool, between: Option<[usize; 2]>, text: impl Into<String>) {
         let last = self.log.moments.len() - 1;
         let lines = between.map(|ends| ends.map(|at| self.log.moments[at.min(last)].line));
         self.found.push(Remark { file: self.log.file.clone(), lines, text: text.into(), serious });
@@ -83,28 +73,10 @@ pub fn remarks(run: &Run, task: &Task) -> Vec<Remark> {
     pose(&mut remarks, run, task);
     let touched = contact(&mut remarks);
     sensor(&mut remarks, touched);
-    axes(&mut remarks, run, task, touched);
     if let Some(touched) = touched {
         phases(&mut remarks, run, task, touched);
     }
     remarks.found
-}
-
-/// What the size of the measured forces says of their unit: `ratio` is that to the forces with which the
-/// finger would push along the measured path; `file` has the runs.
-pub(super) fn force_scale(file: &str, ratio: f64) -> Option<Remark> {
-    let [how, times] = if ratio < 1.0 { ["small", "less"] } else { ["large", "more"] };
-    let factor = ratio.max(1.0 / ratio);
-    let hint = "newtons are 9.8 times the number in kgf, 4.4 times that in lbf";
-    (factor > SCALED).then(|| Remark {
-        file: file.to_owned(),
-        lines: None,
-        text: format!(
-            "the forces look too {how}, {factor:.1} times {times} than the finger makes along the measured \
-             path: check their unit ({hint}), or the scale of the sensor"
-        ),
-        serious: true,
-    })
 }
 
 /// Sampling rate and steps of the clock.
@@ -140,11 +112,11 @@ fn pose(remarks: &mut Remarks<'_>, run: &Run, task: &Task) {
     let probe = run.ended == Ended::Probe;
     if far > ASTRAY {
         let text = format!(
-            "it begins at ({}) mm, {:.0} mm from the start of the task and offset, ({}) mm: {}",
+            "it begins at ({}) mm, {:.0} mm from the start of the task and offset, ({}) mm: check \
+             frame and units",
             shown(first.position / MM, 1),
             far / MM,
-            shown(start / MM, 1),
-            cause(first.position, start)
+            shown(start / MM, 1)
         );
         remarks.say(!probe, Some([0, 0]), text);
     }
@@ -192,18 +164,15 @@ fn standstill(moments: &[Moment]) -> Option<[usize; 2]> {
 /// Whether and how it touches: index of the touch, if its direction is right.
 fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
     let log = remarks.log;
-    let push = |any: usize| {
-        let to = after(log, any, 3.0 * TOUCH_S);
-        let force = mean(&log.moments[after(log, any, TOUCH_S).min(to - 1)..to])
-            - Air::of(air(log, Some(any))).bias;
-        (force.norm() > LEAST_N).then_some(([any, to], force))
-    };
-    let Some(([from, to], force)) = any_touch(log).and_then(push) else {
+    let Some(any) = any_touch(log) else {
         let text = "nothing is touched: the force never leaves the noise of the air for good; the \
-                    log has only the approach, no force, or one in another unit than newtons";
+                    log has only the approach, or no force";
         remarks.say(true, None, text);
         return None;
     };
+    let [from, to] = [any, after(log, any, 3.0 * TOUCH_S)];
+    let force = mean(&log.moments[after(log, any, TOUCH_S).min(to - 1)..to])
+        - Air::of(air(log, Some(any))).bias;
     let [x, y, z]: [f64; 3] = force.abs().into();
     let words = format!("the force on the tool becomes ({}) N", shown(force, 1));
     if z >= x.max(y) && force.z < 0.0 {
@@ -216,7 +185,7 @@ fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
         let along = if x > y { "x" } else { "y" };
         let text = format!(
             "at the touch {words}: the frame looks turned, since the force is along {along} and not \
-             along z; check `axis_angle_rad`, or whether f{along}_n and fz_n are swapped"
+             along z; check `axis_angle_rad`"
         );
         remarks.say(true, Some([from, to]), text);
     } else {

@@ -32,7 +32,13 @@ pub struct Flange {
 /// The flange along an axis of the tool, 0 x to 2 z, by least squares over attempts; its error is that of leaving out
 /// one attempt at a time. `None` without targets, or where no force moves the robot.
 pub fn flange(all: &[Curves], axis: usize) -> Option<Flange> {
-    let (delay, sums, fit) = delayed(all, [axis, axis])?;
+    let all: Vec<Curves> = all.iter().map(Curves::in_tool).collect();
+    let fits = (0..=DELAYS).filter_map(|delay| {
+        let sums: Vec<Sums> = all.iter().filter_map(|one| Sums::of(one, axis, delay)).collect();
+        let fit = solve(sums.iter())?;
+        Some((delay, sums, fit))
+    });
+    let (delay, sums, fit) = fits.max_by(|a, b| a.2.explained.total_cmp(&b.2.explained))?;
     let without = |i: usize| {
         let others = sums.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, sums)| sums);
         solve(others).map(|fit| fit.terms[0])
@@ -49,24 +55,6 @@ pub fn flange(all: &[Curves], axis: usize) -> Option<Flange> {
         delay_s: delay as f64 * STEP_S,
         explained: fit.explained,
     })
-}
-
-/// Delay, sums and fit of the force along one axis to the motion along another, with the delay that
-/// explains most.
-fn delayed(all: &[Curves], axes: [usize; 2]) -> Option<(usize, Vec<Sums>, Fit)> {
-    let all: Vec<Curves> = all.iter().map(Curves::in_tool).collect();
-    let fits = (0..=DELAYS).filter_map(|delay| {
-        let sums: Vec<Sums> = all.iter().filter_map(|one| Sums::of(one, axes, delay)).collect();
-        let fit = solve(sums.iter())?;
-        Some((delay, sums, fit))
-    });
-    fits.max_by(|a, b| a.2.explained.total_cmp(&b.2.explained))
-}
-
-/// Share of the variance of the force along one axis, the first, that a spring along another explains;
-/// below 0, if the robot gives way against the force.
-pub fn explained(all: &[Curves], axes: [usize; 2]) -> f64 {
-    delayed(all, axes).map_or(0.0, |(.., fit)| fit.explained.copysign(fit.terms[0]))
 }
 
 /// A column less its line: the bias of the sensor, and its drift.
@@ -91,19 +79,19 @@ struct Fit {
 }
 
 impl Sums {
-    fn of(one: &Curves, [force_axis, axis]: [usize; 2], delay: usize) -> Option<Self> {
+    fn of(one: &Curves, axis: usize, delay: usize) -> Option<Self> {
         let count = one.tcp.len().checked_sub(delay).filter(|&count| count > 4 * REACH)?;
         let target = smoothed(&smoothed(one.target.as_ref()?, REACH), REACH);
         let tcp = smoothed(&smoothed(&one.tcp, REACH), REACH);
         let force = smoothed(&smoothed(&one.force, REACH), REACH);
         let behind: Vec<Vector3<f64>> = target.iter().zip(&tcp).map(|(to, at)| to - at).collect();
         let (rate, acceleration) = (rates(&behind), accelerations(&tcp));
-        let column = |values: &[Vector3<f64>], from: usize, axis: usize, sign: f64| {
+        let column = |values: &[Vector3<f64>], from: usize, sign: f64| {
             level(DVector::from_fn(count, |i, _| sign * values[i + from][axis]))
         };
         let columns = [(&behind, -1.0), (&rate, -1.0), (&acceleration, 1.0)];
-        let columns = columns.map(|(values, sign)| column(values, 0, axis, sign));
-        let force = column(&force, delay, force_axis, 1.0);
+        let columns = columns.map(|(values, sign)| column(values, 0, sign));
+        let force = column(&force, delay, 1.0);
         Some(Sums {
             products: DMatrix::from_fn(3, 3, |i, j| columns[i].dot(&columns[j])),
             with_force: DVector::from_fn(3, |i, _| columns[i].dot(&force)),

@@ -4,10 +4,8 @@
 //! 2. `frame`: the task's frame in the robot's base, and what its force means.
 //! 3. `runs`: which finger, offset and outcome belong to which log.
 //! 4. `touch`: where the tool touches, and the force before.
-//! 5. `check`: what is wrong with a log, before anything is fitted to it; `axes`: whether its columns go
-//!    together.
+//! 5. `check`: what is wrong with a log, before anything is fitted to it.
 
-mod axes;
 pub mod check;
 pub mod curves;
 #[cfg(any(test, feature = "fixtures"))]

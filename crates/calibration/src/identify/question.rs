@@ -1,7 +1,6 @@
 //! From the logs of attempts to the numbers of their cell.
 
-use super::axes::{slides, springs};
-use super::check::{Remark, force_scale};
+use super::check::Remark;
 use super::curves::Curves;
 use super::flange;
 use super::formulas::{self, Flange, Friction};
@@ -16,7 +15,7 @@ use insertion::evaluation::cell::Priors;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::template::{Impossible, Template};
 use insertion::outcome::Outcome;
-use insertion::robot::{Drive, Robot};
+use insertion::robot::Robot;
 use insertion::surrogate::Estimate;
 use parameters::numbers::{FLANGE, FRICTION, Kind};
 use parameters::{Parameter, Scale, Transform};
@@ -62,33 +61,6 @@ pub struct Identified {
     pub unknowns: Vec<Unknown>,
     pub smoothed: Smoothed,
     pub compared: Vec<Compared>,
-    /// Measured forces over those with which the fingers push along the measured path: 1 but for what
-    /// is not known of fingers and task, unless a unit is wrong.
-    pub force_scale: Option<f64>,
-}
-
-impl Identified {
-    /// What only all logs together show to be wrong with them; `file` has the runs, `each` is what is
-    /// wrong with one by itself.
-    pub fn remarks(&self, file: &str, each: &[Remark]) -> Vec<Remark> {
-        let curves: Vec<Curves> =
-            self.compared.iter().map(|one| one.logged.curves.clone()).collect();
-        let scaled = self.force_scale.and_then(|ratio| force_scale(file, ratio));
-        let mut found = slides(&self.probes);
-        // Motion that is wrong by itself makes no springs.
-        if each.iter().all(|remark| !remark.serious) {
-            found.extend(springs(file, &curves));
-        }
-        found.extend(scaled);
-        found
-    }
-
-    /// Whether the logs tell anything of the cell.
-    pub fn is_learnt(&self) -> bool {
-        let told = |one: &Unknown| matches!(one.from, From::Formula | From::Fit);
-        let attempts = !self.compared.is_empty() && self.unknowns.iter().any(told);
-        attempts || !self.probes.is_empty() || self.flange.iter().any(Option::is_some)
-    }
 }
 
 /// The logs of one cell, what was noticed in them, and what they say.
@@ -142,33 +114,8 @@ impl Question<'_> {
             .map(|(i, (prior, known))| fit(prior, known.as_ref(), &smoothed, i))
             .chain(rest)
             .collect();
-        let force_scale = self.force_scale(&replay, &attempts)?;
         let compared = self.compared(&replay, attempts, &unknowns)?;
-        Ok(Identified { robot, flange, preload, probes, unknowns, smoothed, compared, force_scale })
-    }
-
-    /// Median over the attempts; nothing of the robot is in it, whose stiffness would make up for a unit.
-    fn force_scale(
-        &self,
-        replay: &Replay<'_>,
-        attempts: &[Logged],
-    ) -> Result<Option<f64>, Impossible> {
-        let own = &self.evaluator.robot;
-        let rigid = Robot { drive: Drive::Ideal, stop_force: f64::MAX, ..own.clone() };
-        let along: Vec<Logged> = attempts.iter().filter_map(Logged::along_pose).collect();
-        let replayed = Replay { robot: &rigid, ..*replay }.curves(&along, &[])?;
-        let ratio = |(logged, (curves, _)): (&Logged, &(Curves, Outcome))| {
-            let [measured, made] = [&logged.curves.force, &curves.force].map(|forces| {
-                let both = logged.curves.force.len().min(curves.force.len());
-                let touched = forces.get(logged.touch..both).unwrap_or_default();
-                touched.iter().map(|force| force.norm_squared()).sum::<f64>()
-            });
-            (measured / made).sqrt()
-        };
-        let ratios = along.iter().zip(&replayed).map(ratio).filter(|ratio| ratio.is_finite());
-        let mut ratios: Vec<f64> = ratios.filter(|ratio| *ratio > 0.0).collect();
-        ratios.sort_by(f64::total_cmp);
-        Ok(ratios.get(ratios.len() / 2).copied())
+        Ok(Identified { robot, flange, preload, probes, unknowns, smoothed, compared })
     }
 
     /// A row that is not fitted, at the number of the files, with the deviation of its prior.
@@ -269,9 +216,6 @@ impl Question<'_> {
                 probes.iter().filter_map(|(_, found)| found.coefficient).collect();
             let sd = mean(said.iter().map(|one| one.sd))?;
             let means = Moments::of(said.iter().map(|one| one.mean));
-            if means.mean <= 0.0 {
-                return None;
-            }
             return Some(with(
                 prior,
                 means.mean,

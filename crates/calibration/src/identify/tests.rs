@@ -184,65 +184,8 @@ fn remarks_say_what_is_wrong_and_where() {
         (said_of(|(_, m)| m.position.z = m.position.z.max(0.0446)), "the tip never is deeper"),
         (said_of(|(i, m)| m.position.z += if i > 590 { 0.03 } else { 0.0 }), "ends in the air"),
         (said_of(|(_, m)| m.position = Vector3::new(0.0, -1.2, 51.0) * MM), "stands still"),
-        (said_of(|(_, m)| m.force *= 0.02), "or one in another unit than newtons"),
-        (said_of(|(_, m)| m.target.as_mut().unwrap().position *= 1e-3), "look like metres"),
-        (said_of(|(_, m)| m.position.y *= -1.0), "along y the measured position goes against"),
-        (
-            said_of(|(_, m)| m.position = m.position.yxz()),
-            "along y is measured along x: two columns",
-        ),
-        (
-            said_of(|(_, m)| m.position.z *= -1.0),
-            "102 mm from the start of the task and offset, (0.0, 0.0, 51.0) mm: z looks mirrored",
-        ),
-        (said_of(|(_, m)| m.position = m.position.zyx()), "x and z look swapped"),
-        (said_of(|(_, m)| m.position = m.position.xzy()), "y and z look swapped"),
     ] {
         assert!(found.contains(words), "{words}: {found}");
-    }
-}
-
-#[test]
-fn two_attempts_in_a_log_and_a_search_that_goes_another_way_are_noticed() {
-    let one = made(0.5, 1.0);
-    let again = one.moments.iter().map(|moment| Moment {
-        line: moment.line + 600,
-        time_s: moment.time_s + 1.2,
-        ..*moment
-    });
-    let both = Log::new("a.csv", one.moments.iter().copied().chain(again).collect()).unwrap();
-    let found = said(both);
-    let twice = found.iter().find(|remark| remark.text.contains("two attempts in this log"));
-    assert_eq!(twice.unwrap().lines.map(|[up, _]| up), Some(602), "{found:?}");
-
-    // The way of the search of the task, from its start or from where it has come near, and mirrored.
-    let way = |skipped: usize, sign: Vector3<f64>| {
-        let mut log = made(0.0, 0.0);
-        let mut at = Vector3::new(0.0, -1.2, 51.0) * MM;
-        let corners: Vec<_> = usb().strategy.phases[skipped..]
-            .iter()
-            .map(|phase| {
-                let from = at;
-                at += Vector3::from(phase.displacement).component_mul(&sign);
-                (from, at)
-            })
-            .collect();
-        for (i, moment) in log.moments.iter_mut().enumerate() {
-            let (phase, share) = (i * corners.len() / 600, i as f64 * corners.len() as f64 / 600.0);
-            let (from, to) = corners[phase];
-            let place = from + (to - from) * share.fract();
-            moment.position = place;
-            moment.target.as_mut().unwrap().position = place;
-        }
-        let found = said(log).into_iter().map(|remark| remark.text);
-        found.filter(|text| text.contains("its search goes another way")).collect::<String>()
-    };
-    for skipped in [0, 1] {
-        assert_eq!(way(skipped, Vector3::new(1.0, 1.0, 1.0)), "");
-        for (sign, words) in [([1.0, -1.0, 1.0], "y looks"), ([-1.0, 1.0, 1.0], "x looks")] {
-            let found = way(skipped, sign.into());
-            assert!(found.ends_with(&format!("{words} mirrored")), "{skipped}: {found}");
-        }
     }
 }
 

@@ -43,7 +43,6 @@ fn done() -> IdentifyDone {
     let slide = |forth: bool| Slide { forth, ratio: 0.2, rising: !forth };
     let probe = Friction { slides: vec![slide(true), slide(false)], coefficient: None };
     let found = Identified {
-        force_scale: None,
         robot: Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap(),
         flange: [None; 3],
         preload: Some(Estimate { mean: 2.5e-4, sd: 1e-5 }),

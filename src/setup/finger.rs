@@ -65,8 +65,6 @@ impl InfillRequest {
 
 /// Which finger: by its infill, or by its springs.
 #[derive(Debug, Clone, Default, clap::Args)]
-#[command(mut_arg("density", |density| density.required_unless_present("stiffness_compliance")))]
-#[command(mut_arg("direction", |direction| direction.required_unless_present("stiffness_compliance")))]
 pub struct FingerRequest {
     /// Its infill.
     #[command(flatten)]

@@ -3,7 +3,7 @@
 use crate::arm::arm;
 use crate::arm::{Arm, ArmError, RawArm, Reduced};
 use input::units::N_PER_MM;
-use input::{Check, InputError, read};
+use input::{Check, Document, InputError};
 use nalgebra::Vector3;
 use serde::Deserialize;
 
@@ -168,19 +168,19 @@ impl Robot {
     /// # Errors
     /// If the text is not such a file, or a value cannot be used.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        let check = Check { file };
-        let (name, description, stop_force_n, drive) = match read::<Tagged>(text, file)?.kind {
+        let (document, check) = (Document::parse(text, file)?, Check { file });
+        let (name, description, stop_force_n, drive) = match document.read::<Tagged>()?.kind {
             Kind::Rigid => {
-                let raw: RawRigid = read(text, file)?;
+                let raw: RawRigid = document.read()?;
                 (raw.name, raw.description, raw.stop_force_n, Drive::Ideal)
             }
             Kind::Servo => {
-                let raw: RawServo = read(text, file)?;
+                let raw: RawServo = document.read()?;
                 let servo = Drive::Servo(raw.checked(check)?);
                 (raw.name, raw.description, raw.stop_force_n, servo)
             }
             Kind::Arm => {
-                let raw: RawArm = read(text, file)?;
+                let raw: RawArm = document.read()?;
                 let arm = Drive::Arm(Box::new(arm(check, &raw)?));
                 (raw.name, raw.description, raw.stop_force_n, arm)
             }

@@ -45,7 +45,8 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
         if not hints:
             hints.update(_hints(call))
         for name, value in given.items():
-            _check(name, value, hints.get(name, Any))
+            if name not in ("self", "cls"):
+                _check(name, value, hints.get(name, Any))
         try:
             return call(*args, **kwargs)
         except InputError as error:

@@ -9,14 +9,14 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from ._call import misplaced, number, shown
 from ._json import dumps, is_table
 from ._lock import locked
-from ._native import LARGEST_FORCE_N, LARGEST_LENGTH_MM, InputError
+from ._native import LARGEST_FORCE_N, LARGEST_LENGTH_MM
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def _whole(value: object) -> int | None:
 
 
 def _truth(value: object) -> bool | None:
-    return bool(value) if isinstance(value, (bool, np.bool_)) else None
+    return bool(cast("bool", value)) if isinstance(value, (bool, np.bool_)) else None
 
 
 def _within(low: float, high: float) -> Callable[[object], float | None]:
@@ -66,7 +66,7 @@ def _within(low: float, high: float) -> Callable[[object], float | None]:
 def _path(value: object) -> Path | None:
     """The path that a value is, from wherever this process is later; it can stand in a line of a file."""
     try:
-        text = os.fspath(value) if isinstance(value, (str, os.PathLike)) else b""
+        text: object = os.fspath(cast("os.PathLike[Any]", value)) if isinstance(value, (str, os.PathLike)) else b""
     except Exception:
         # A path of the caller's making.
         return None

@@ -13,7 +13,7 @@ import types
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from decimal import Decimal
 from numbers import Integral, Real
-from typing import Any, Literal, ParamSpec, TypeGuard, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Any, Literal, ParamSpec, TypeGuard, TypeVar, Union, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -158,7 +158,8 @@ def _check(name: str, value: object, hint: Any) -> None:
         raise TypeError(f"{name}: has to be {' or '.join(_named(hint))}, not {_kind(value)}{more}")
     _check_size(name, value)
     if isinstance(value, (str, os.PathLike)):
-        _check_text(name, value, path=hint is not str)
+        text: Any = value
+        _check_text(name, text, path=hint is not str)
     words = _words(hint)
     if isinstance(value, str) and words and value not in words:
         near = difflib.get_close_matches(value, words, 1)
@@ -175,10 +176,10 @@ def _check_size(name: str, value: object) -> None:
         except OverflowError:
             raise wrong(name, f"is {shown(value)}; has to be a number of size 1e308 or less") from None
     elif isinstance(value, Mapping):
-        for key, one in value.items():
+        for key, one in cast("Mapping[object, object]", value).items():
             _check_size(str(key), one)
     elif isinstance(value, (list, tuple)):
-        for one in value:
+        for one in cast("Sequence[object]", value):
             _check_size(name, one)
 
 

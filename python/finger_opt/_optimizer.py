@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from numbers import Integral
-from typing import Any, Literal, TypeGuard
+from typing import Any, Literal, TypeGuard, cast
 
 import numpy as np
 
@@ -115,7 +115,7 @@ class Optimizer:
             given, numbers = [points], [values]
         for name, several in (("points", given), ("values", numbers)):
             if not isinstance(several, Iterable) or isinstance(several, (str, bytes, Mapping)):
-                raise wrong(name, f"is {shown(several)}; there have to be as many points as values")
+                raise wrong(name, f"is {shown(cast('object', several))}; there have to be as many points as values")
         ids = [_id(point) for point in given]
         told = [_value(value) for value in numbers]
         if len(ids) != len(told):

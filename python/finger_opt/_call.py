@@ -158,8 +158,7 @@ def _check(name: str, value: object, hint: Any) -> None:
         raise TypeError(f"{name}: has to be {' or '.join(_named(hint))}, not {_kind(value)}{more}")
     _check_size(name, value)
     if isinstance(value, (str, os.PathLike)):
-        text: Any = value
-        _check_text(name, text, path=hint is not str)
+        _check_text(name, cast(Any, value), path=hint is not str)
     words = _words(hint)
     if isinstance(value, str) and words and value not in words:
         near = difflib.get_close_matches(value, words, 1)

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Hard tests of studies, with their figures: scripts/matrix.sh [kills] [threads] [disks] [cache]
-# Everything if nothing is named. KILLS (443 unless set) is how often a study is killed;
+# Hard tests of studies, with their figures: scripts/matrix.sh [kills] [commands] [threads] [disks] [cache]
+# Everything if nothing is named. KILLS (443 unless set) is how often a study is killed; PYTHON is a Python with the
+# package, whose `measure_window` is then killed, too;
 # ENGINE=direct kills studies that simulate. OPTIMIZE names a program
 # that is built already; it needs the feature `fake-engine`.
 set -euo pipefail
@@ -57,6 +58,47 @@ kills() {
     done
     echo "kills         $done kills and $torn torn tails of $studies studies of ${#kinds[@]} kinds: every" \
         "journal and walk the same"
+}
+
+# Commands that write a file of their own, killed at random moments: the file is absent, or what it was, or whole; and
+# the command run again writes what it writes without a kill.
+commands() {
+    local wanted=${KILLS:-200} done=0 count=0 ms id line out log
+    local finger="--task usb --density 20 --direction 10"
+    printf 'log,infill_density_percent,infill_direction_deg,offset_mm,outcome\nlog.csv,20,10,0,inserted\n' >runs.csv
+    # shellcheck disable=SC2086
+    "$optimize" trial $finger --log log.csv >/dev/null
+    cp "$root/tasks/usb.toml" task.toml
+    local lines=("levers $finger --engine direct --svg OUT.svg" "map $finger --engine direct --svg OUT.svg"
+        "task tune task.toml --engine fake --out OUT.toml" "identify --task usb --runs runs.csv --out OUT.toml")
+    for line in "${lines[@]}"; do
+        out=${line##* } log=whole-$count
+        # shellcheck disable=SC2086
+        ms=$(date +%s%N) && "$optimize" ${line/OUT/$log} >/dev/null 2>&1 && ms=$((($(date +%s%N) - ms) / 1000000))
+        for ((i = 0; i < wanted / 4; i++)); do
+            # shellcheck disable=SC2086
+            "$optimize" ${line/OUT/killed} >/dev/null 2>&1 &
+            id=$!
+            local at=$((RANDOM * 32768 % (ms + 20)))
+            sleep "$((at / 1000)).$(printf %03d $((at % 1000)))"
+            if kill -KILL "$id" 2>/dev/null; then done=$((done + 1)); fi
+            wait "$id" 2>/dev/null || true
+            if [ -e "${out/OUT/killed}" ]; then
+                cmp -s "${out/OUT/killed}" "${out/OUT/$log}" || fail "killed: $line leaves a part of its file"
+                rm "${out/OUT/killed}"
+            fi
+        done
+        # shellcheck disable=SC2086
+        "$optimize" ${line/OUT/killed} >/dev/null 2>&1
+        cmp -s "${out/OUT/killed}" "${out/OUT/$log}" || fail "after kills: $line writes something else"
+        rm -f "${out/OUT/killed}"
+        count=$((count + 1))
+    done
+    if [ -n "${PYTHON:-}" ]; then
+        "$PYTHON" "$root/scripts/killed_windows.py" "$((wanted / 4))" "$work/windows" || fail "measure_window"
+        count=$((count + 1)) done=$((done + wanted / 4))
+    fi
+    echo "commands      $done kills of $count commands: no file in part, the same result afterwards"
 }
 
 # Optimizers, tasks, batches and threads: the journal does not depend on the threads.
@@ -160,6 +202,6 @@ cache() {
     echo "cache         6 studies at once, then $entries damaged entries: the same journals"
 }
 
-for part in "${@:-kills threads disks cache}"; do
+for part in "${@:-kills commands threads disks cache}"; do
     for name in $part; do "$name"; done
 done

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use common::{Ran, Studies, optimize};
 use connector::check::problems;
 use connector::draft::{Dimensions, Size, draft};
-use connector::mesh::import::{Along, Imported, Mesh, Request, Unit, import};
+use connector::mesh::import::{Along, Imported, Mesh, Request, Unit, few_faces, import};
 use connector::mesh::place::placed;
 use connector::mesh::{Surface, pick, read};
 use connector::nominal::explain;
@@ -464,6 +464,15 @@ fn over(surface: Surface, resolution: u32) -> Result<Imported, String> {
     };
     let socket = Mesh { file: "socket.stl".to_owned(), surface };
     import(mesh("keyed-plug"), socket, &request).map_err(|error| error.to_string())
+}
+
+/// As of a body whose faces cross one another: nothing of it has mass.
+#[test]
+fn a_mesh_that_encloses_nothing_is_refused_by_its_volume() {
+    let Mesh { file, mut surface } = mesh("keyed-plug");
+    surface.points.iter_mut().for_each(|point| point.coords *= 1e-3);
+    let error = few_faces(Mesh { file, surface }).map(|_| ()).unwrap_err().to_string();
+    assert!(error.contains("plug") && error.contains("its faces enclose 0.000 mm3"), "{error}");
 }
 
 /// A bore of 64 flats with a chamfer and a floor.

@@ -11,6 +11,7 @@ from typing import Any, Union
 from . import _native
 from ._json import dumps, is_list, is_table, word
 from ._words import StrPath, TaskName
+from .errors import InputError
 
 
 class Fields:
@@ -73,7 +74,14 @@ class Fields:
         raise AttributeError(f"no field is called `{key}`{there}")
 
     def __setattr__(self, key: str, value: Any) -> None:
-        self[key] = value
+        try:
+            self[key] = value
+        except InputError as error:
+            # Files refuse a key that they do not know; an attribute that does not exist is Python's own error.
+            unknown = f"unknown field `{key}`"
+            if unknown not in str(error):
+                raise
+            raise AttributeError(unknown + str(error).rpartition(unknown)[2], name=key) from None
 
     def __iter__(self) -> Iterator[Any]:
         if is_table(self._table):

@@ -38,8 +38,8 @@ def test_what_cannot_be_is_refused_and_changes_nothing():
     before = task.to_toml()
     with pytest.raises(fo.InputError, match="mass_g"):
         task.plug.mass_g = -1
-    with pytest.raises(fo.InputError, match="tilt"):
-        task.strategy.tiltt = 3
+    with pytest.raises(AttributeError, match="^unknown field `tilt_degg`.*did you mean `tilt_deg`"):
+        task.strategy.tilt_degg = 3
     with pytest.raises(AttributeError, match="no field is called `stratgy`"):
         task.stratgy
     with pytest.raises(KeyError, match="side"):

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 /// Names of what a case is about.
 pub const KINDS: &str = "task space robot uncertainty stiffness finger config journal \
-    sealed-journal walk ask-tell command-line trial measurements loop priors mesh mesh-size worker";
+    sealed-journal walk ask-tell command-line trial measurements loop priors cell mesh mesh-size worker";
 
 /// Outcome of a case that is as it should be.
 type How = Result<&'static str>;
@@ -152,6 +152,10 @@ pub fn run_case(kind: &str, mutations: &[Mutation], number: u64, base: &Base) ->
         "priors" => {
             let priors = file(include_str!("../../priors/bench.toml"), "f.toml")?;
             ended(&format!("{CALIBRATE} --measurements published --priors {priors}"))
+        }
+        "cell" => {
+            let cell = file(include_str!("../fixtures/v0.5.0/cell.toml"), "f.toml")?;
+            ended(&format!("trial --json --task usb --density 20 --direction 10 --cell {cell}"))
         }
         "mesh" => {
             let bodies = &base.meshes[number % 2];

@@ -69,8 +69,18 @@ pub fn syntax(file: &str, text: &str, error: &toml::de::Error) -> InputError {
     InputError::Syntax {
         file: file.to_owned(),
         line: before.map(|before| 1 + before.matches('\n').count()),
-        message: error.to_string().trim_end().to_owned(),
+        message: error.to_string().trim_end().to_owned() + &suggestion(error.message()),
     }
+}
+
+/// Returns the accepted word nearest to the one that serde refuses, as a question; else nothing.
+fn suggestion(message: &str) -> String {
+    let mut words = message.split('`').skip(1).step_by(2);
+    let (Some(given), accepted) = (words.next(), words.collect::<Vec<_>>()) else {
+        return String::new();
+    };
+    let near = shipped::nearest(given, &accepted).filter(|_| message.starts_with("unknown "));
+    near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default()
 }
 
 /// A TOML text that was parsed once, from which typed values are read.
@@ -262,5 +272,28 @@ impl Check<'_> {
     pub fn distance(&self, key: &str, mm: f64) -> Result<f64, InputError> {
         let fits = self.finite(key, mm)?.abs() <= LONGEST_MM;
         self.require(key, mm, fits, &format!("lie in -{LONGEST_MM} .. {LONGEST_MM} (mm)"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug, serde::Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Friction {
+        #[expect(dead_code, reason = "only its name is read")]
+        plug_socket: f64,
+    }
+
+    #[test]
+    fn an_unknown_key_is_named_with_its_line_and_the_nearest_key() {
+        let error = read::<Friction>("\nplug_sockt = 0.3", "task.toml").unwrap_err();
+        assert_eq!(error.place().line, Some(2));
+        let text = error.to_string();
+        assert!(text.ends_with("expected `plug_socket`; did you mean `plug_socket`?"), "{text}");
+        assert!(
+            !read::<Friction>("other = 0.3", "task.toml").unwrap_err().to_string().contains("mean")
+        );
     }
 }

@@ -78,9 +78,20 @@ pub struct Imported {
     pub intrusion: Option<(f64, Point3<f64>, &'static str)>,
 }
 
+/// Smallest volume of a plug or socket, mm3.
+const LEAST_MM3: f64 = 1.0;
+
 /// The mesh with faces that can be cut, few enough to be cut in seconds, and what was reduced.
 pub fn few_faces(mesh: Mesh) -> Result<(Mesh, Option<String>), MeshError> {
     let Mesh { file, surface } = mesh;
+    let volume_mm3 = surface.volume() / (MM * MM * MM);
+    if volume_mm3 < LEAST_MM3 {
+        let problem = format!(
+            "its faces enclose {volume_mm3:.3} mm3, at least {LEAST_MM3} mm3 are expected: they cross one another or \
+             are turned inside out; repair the body where it was drawn"
+        );
+        return Err(MeshError::File(file, problem));
+    }
     let before = surface.faces.len();
     if before <= MANY_FACES {
         return Ok((Mesh { file, surface }, None));

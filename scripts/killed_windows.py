@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+"""Kills `measure_window` at random moments: scripts/killed_windows.py KILLS FOLDER
+
+Each window is begun again until it is measured: its line and its attempts have to be those of a window that was not
+killed, none twice and none lost. Needs the package, built with the feature `fake-engine`.
+"""
+import random
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+CODE = """
+import sys, time
+from finger_opt.robot import SimulatedRobot, measure_window
+class Slow(SimulatedRobot):
+    def insert(self, offset_mm, log=None):
+        time.sleep(0.01)
+        return super().insert(offset_mm, log)
+print("ready", flush=True)
+measure_window(Slow("usb", 20, 10, engine="fake"), out=sys.argv[1], task="usb", density=20, direction=10)
+"""
+
+
+def attempts(folder):
+    """Lines of the file of attempts, without times."""
+    lines = []
+    for file in sorted(folder.glob("bench-*.jsonl")):
+        lines += [line for line in file.read_text().splitlines() if "stopped" not in line]
+    return lines
+
+
+def begun(folder):
+    """A process that measures into this folder and has imported the package."""
+    folder.mkdir(parents=True, exist_ok=True)
+    process = subprocess.Popen(
+        [sys.executable, "-c", CODE, folder / "bench.csv"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process.stdout.readline()
+    return process
+
+
+def ended(process, folder):
+    """Waits for a process, which has to succeed; gives its table and its number of attempts."""
+    _, error = process.communicate()
+    if process.returncode != 0:
+        sys.exit(f"killed_windows: {folder}: {error}")
+    return (folder / "bench.csv").read_text(), len(attempts(folder))
+
+
+def main():
+    kills, folder = int(sys.argv[1]), Path(sys.argv[2])
+    process, clock = begun(folder / "whole"), time.monotonic()
+    whole = ended(process, folder / "whole")
+    length, chance, done, windows = time.monotonic() - clock, random.Random(1), 0, 0
+    while done < kills:
+        one = folder / str(windows)
+        for _ in range(5):
+            process = begun(one)
+            time.sleep(chance.random() * length)
+            done += process.poll() is None
+            process.kill()
+            process.communicate()
+        if ended(begun(one), one) != whole:
+            sys.exit(f"killed_windows: {one} differs from {folder / 'whole'}")
+        windows += 1
+    print(f"windows       {done} kills of {windows} windows: the same line, {whole[1]} attempts each")
+
+
+main()

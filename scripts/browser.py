@@ -1,7 +1,7 @@
-"""Drives Chromium over its pipe (the DevTools protocol), with nothing but Python: pages of one
-file each, looked at without a network. `check_pages.py` and `pictures.py` use it.
+"""Controls Chromium through a pipe (the DevTools protocol) with the Python standard library only.
+Opens single-file pages without a network. Used by `check_pages.py` and `pictures.py`.
 
-Whatever a page says on its console, throws, or asks for beyond itself is kept in `problems`.
+Console messages, exceptions and external requests of a page are collected in `problems`.
 """
 import base64
 import json
@@ -19,12 +19,12 @@ PATIENCE_S = 20
 
 
 def chromium():
-    """The path of Chromium, or None."""
+    """Returns the path of Chromium, or None."""
     return next(filter(None, map(shutil.which, ["chromium", "chromium-browser", "google-chrome"])), None)
 
 
 class Browser:
-    """A Chromium of its own, with a profile that goes with it."""
+    """A separate Chromium process with a temporary profile."""
 
     def __enter__(self):
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
@@ -32,7 +32,7 @@ class Browser:
         self.inn, from_child = os.pipe()
 
         def three_and_four():
-            # First away from 3 and 4, which may be among them.
+            # Moved away from 3 and 4 first, which may be among them.
             a, b = os.dup(to_child), os.dup(from_child)
             os.dup2(a, 3)
             os.dup2(b, 4)
@@ -57,7 +57,7 @@ class Browser:
         self.profile.cleanup()
 
     def call(self, method, session=None, **params):
-        """The answer to a command; events that come before it go to their page."""
+        """Returns the response to a command; events before it are passed to their page."""
         self.number += 1
         message = {"id": self.number, "method": method, "params": params}
         if session:
@@ -76,7 +76,7 @@ class Browser:
         while b"\0" not in self.rest:
             more = os.read(self.inn, 1 << 20)
             if not more:
-                raise RuntimeError("Chromium has gone")
+                raise RuntimeError("Chromium has exited")
             self.rest += more
         line, _, self.rest = self.rest.partition(b"\0")
         return json.loads(line)
@@ -86,7 +86,7 @@ class Browser:
 
 
 class Page:
-    """One file in a tab of its own."""
+    """One file in a separate tab."""
 
     def __init__(self, browser, file, width, height, dark):
         self.browser, self.problems = browser, []
@@ -125,7 +125,7 @@ class Page:
             self.call("Page.handleJavaScriptDialog", accept=True)
 
     def js(self, expression):
-        """The value of an expression; promises are waited for."""
+        """Returns the value of an expression; awaits promises."""
         found = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in found:
             raise RuntimeError(f"{expression}: {found['exceptionDetails']}")
@@ -135,15 +135,15 @@ class Page:
         end = time.monotonic() + PATIENCE_S
         while not self.js(f"Boolean({expression})"):
             if time.monotonic() > end:
-                raise RuntimeError(f"did not come true in {PATIENCE_S} s: {expression}")
+                raise RuntimeError(f"not true within {PATIENCE_S} s: {expression}")
             time.sleep(0.05)
 
     def rest(self):
-        """Until what was asked for is drawn."""
+        """Waits until pending drawing is finished."""
         self.js("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))")
 
     def middle(self, selector):
-        """The middle of an element, scrolled into view."""
+        """Scrolls an element into view and returns its centre."""
         return self.js(f"""(() => {{ const e = document.querySelector({json.dumps(selector)});
             e.scrollIntoView({{block: "center", behavior: "instant"}});
             const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; }})()""")
@@ -169,7 +169,7 @@ class Page:
         self.rest()
 
     def picture(self, file, whole=False, clip=None, scale=1):
-        """A PNG of what is seen, of the whole page, or of a part [x, y, width, height] of it."""
+        """Returns a PNG of the viewport, of the whole page, or of a part [x, y, width, height] of it."""
         if whole:
             clip = [0, 0, *self.js("[innerWidth, document.documentElement.scrollHeight]")]
         more = {}

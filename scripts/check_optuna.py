@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Checks that Optuna and its dashboard read one of our journals as it is.
+"""Checks that Optuna and its dashboard read one of our journals unmodified.
 
     python3 -m venv venv && venv/bin/pip install optuna==5.0.0 optuna-dashboard==0.21.0
     venv/bin/python scripts/check_optuna.py results/usb-gp-seed0
 
-Compares what `optuna.load_study` returns, and what the dashboard answers on the
-loopback, with the lines of the journal; ends with an error at the first difference.
+Compares the study from `optuna.load_study`, and the dashboard's responses on the loopback
+interface, with the lines of the journal. Exits with an error at the first difference.
 The journal is not changed.
 """
 import json
@@ -28,7 +28,7 @@ STATES = ["Running", "Complete", "Pruned", "Fail", "Waiting"]
 
 
 def check_best(study, directions, trials):
-    """Optuna's best trials are those that keep all constraints and that no other such one beats."""
+    """Checks that Optuna's best trials are the feasible ones not dominated by another feasible one."""
     kept = [line for line in trials if line["values"] is not None
             and all(c <= 0 for c in line["system_attrs"].get("constraints", []))]
     gains = [[v if d == MAXIMIZE else -v for v, d in zip(line["values"], directions)] for line in kept]
@@ -66,12 +66,12 @@ def get(port, path):
 def wait_for(port, server):
     end = time.monotonic() + DASHBOARD_S
     while time.monotonic() < end:
-        assert server.poll() is None, "the dashboard ended by itself"
+        assert server.poll() is None, "the dashboard exited"
         try:
             return get(port, "/api/studies")
         except OSError:
             time.sleep(0.2)
-    raise TimeoutError(f"the dashboard does not answer within {DASHBOARD_S} s")
+    raise TimeoutError(f"no response from the dashboard within {DASHBOARD_S} s")
 
 
 def check_dashboard(path, create, trials):
@@ -99,7 +99,7 @@ def check_dashboard(path, create, trials):
 
 def main(folder):
     for package, pinned in PINNED.items():
-        assert version(package) == pinned, f"{package} {pinned} is wanted, not {version(package)}"
+        assert version(package) == pinned, f"{package} {pinned} is required, not {version(package)}"
     path = Path(folder) / "journal.jsonl"
     before = path.read_bytes()
     lines = [json.loads(line) for line in before.splitlines()]

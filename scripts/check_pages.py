@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Looks at the pages that the program writes as a reader does, in Chromium without a window.
+"""Tests the pages written by the program in headless Chromium.
 
     scripts/check_pages.py target/debug/optimize
 
-A small study and a recorded trial, whose space, robot and phase have names that would do harm if
-a page let them, a study of thousands of designs and one in which nothing inserts; light and dark,
-desktop and phone. No word on the console, no request, nothing wider than the screen; what a first
-screen must have; contrast and size of the text; hover, click, keys, film. Ends with an error at the
-first thing that is not so. Needs Chromium; nothing is fetched.
+Pages: a small study and a recorded trial with malicious names of space, robot and phase, a study
+of thousands of designs, and one in which nothing inserts; light and dark, desktop and phone.
+Checks: no console messages, no requests, nothing wider than the screen, required parts of the first
+screen, contrast and size of text, hover, click, keyboard, film. Exits with an error at the first
+failed check. Needs Chromium; nothing is downloaded.
 """
 import subprocess
 import sys
@@ -19,14 +19,14 @@ from browser import Browser
 
 ROOT = Path(__file__).resolve().parent.parent
 EVIL = """</title><script>window.harmed=1</script><img src=x onerror=harmed=1>"'"""
-# The ratio of contrast of two colours (WCAG 2.1, 1.4.11).
+# Contrast ratio of two colours (WCAG 2.1, 1.4.11).
 CONTRAST = """(a, b) => { const light = (c) => { const [r, g, b] = c.match(/[\\d.]+/g).map((v) => { v /= 255;
   return v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; }); return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
   const [x, y] = [light(a), light(b)]; return (Math.max(x, y) + 0.05) / (Math.min(x, y) + 0.05); }"""
 
 
 def harmful(folder, source, name):
-    """A copy of a shipped file with a harmful name in place of this one."""
+    """Writes a copy of a shipped file with a malicious name instead of this one."""
     text = (ROOT / source).read_text().replace(f'name = "{name}"', f"name = '''{EVIL}'''", 1)
     file = folder / Path(source).name
     file.write_text(text)
@@ -34,7 +34,7 @@ def harmful(folder, source, name):
 
 
 def make(program, folder):
-    """The report of a study with a film in it, and a replay."""
+    """Creates the report of a study with a film, and a replay."""
     space, robot = harmful(folder, "spaces/infill.toml", "infill"), harmful(folder, "robots/servo.toml", "servo")
     task, study, replay = harmful(folder, "tasks/usb.toml", "back"), folder / "study", folder / "replay.html"
 
@@ -44,7 +44,7 @@ def make(program, folder):
     run("--task", task, "--space", space, "--robot", robot, "--engine", "fake", "--budget", 40,
         "--no-cache", "--quiet", "--out", study)
     run("trial", "--task", task, "--robot", robot, "--density", 20, "--direction", 10, "--record", replay)
-    # Where a study keeps its films; the fake engine makes none.
+    # The folder for films of a study; the fake engine creates none.
     (study / "replay").mkdir(exist_ok=True)
     for end in ["positive", "negative"]:
         (study / "replay" / f"1-{end}.html").write_bytes(replay.read_bytes())
@@ -70,15 +70,15 @@ def check(holds, what):
 
 
 def whole(page, where):
-    """Nothing said, asked for, run, or cut off."""
+    """Checks for console messages, requests, executed names and overflow."""
     check(not page.problems, f"{where}: {page.problems}")
-    check(not page.js("window.harmed"), f"{where}: a name has run as a script")
+    check(not page.js("window.harmed"), f"{where}: a name was executed as a script")
     check(page.js("document.title").startswith(("usb", EVIL[:8])), f"{where}: the title is {page.js('document.title')}")
     check(page.js("document.documentElement.scrollWidth <= innerWidth"), f"{where}: wider than the screen")
 
 
 def surface(page, where):
-    """The recommended mark is seen on what is about it; hover, click and keys choose."""
+    """Checks the contrast of the recommended mark, and selection by hover, click and keyboard."""
     seen = page.js(f"""(() => {{ const contrast = {CONTRAST}, best = document.querySelector("#surface .best");
         const [halo, ring] = [".halo", ".ring"].map((name) => getComputedStyle(best.querySelector(name)).fill);
         return Math.min(...[...document.querySelectorAll("#surface rect")].map((cell) => {{
@@ -87,18 +87,18 @@ def surface(page, where):
     check(seen >= 3, f"{where}: the best mark has a contrast of {seen:.1f} to 1")
     page.hover("#surface .mark:not(.best) .core")
     tip = page.js('document.querySelector("#tip").hidden ? "" : document.querySelector("#tip").textContent')
-    check("evaluation" in tip and "infill density" in tip, f"{where}: hover says {tip!r}")
+    check("evaluation" in tip and "infill density" in tip, f"{where}: the tooltip is {tip!r}")
     selected = 'document.querySelector("#selected").textContent'
     page.click("#designs tbody tr:nth-child(3) td")
     chosen = page.js(selected)
     check("(recommended)" not in chosen and "optimize trial" in chosen and page.js('document.querySelectorAll(".chosen").length') == 2,
-          f"{where}: a click on a line chose {chosen!r}")
+          f"{where}: a click on a row selected {chosen!r}")
     page.js('document.querySelector("#explore").focus()')
     page.key("ArrowRight", 39)
-    check(page.js(selected) != chosen, f"{where}: the arrow key chose nothing")
+    check(page.js(selected) != chosen, f"{where}: the arrow key selected nothing")
     page.click("#selected .card:last-child button:last-child")
     page.click("#designs tbody tr:nth-child(2) td")
-    check(page.js('document.querySelectorAll("#selected .card").length') == 2, f"{where}: two are not compared")
+    check(page.js('document.querySelectorAll("#selected .card").length') == 2, f"{where}: two designs are not compared")
     colours = '[...document.querySelectorAll("#surface rect")].map((cell) => cell.getAttribute("fill")).join()'
     mean = page.js(colours)
     page.click("#shown input[value=sd]")
@@ -111,17 +111,17 @@ def surface(page, where):
     check(page.js(first) != before, f"{where}: the table is not sorted")
 
 
-# Whether all of an element is on the screen as it opens.
+# Tests whether an element is fully visible on the first screen.
 SEEN = """(selector) => { const e = document.querySelector(selector); if (!e) return false;
   const b = e.getBoundingClientRect(); return b.width > 0 && b.top + scrollY >= 0 && b.bottom + scrollY <= innerHeight; }"""
-# The least contrast of what is read outside of pictures, and what has it.
+# The lowest contrast of text outside of images, and that text.
 FAINT = f"""(() => {{ const contrast = {CONTRAST};
   const under = (e) => {{ for (; e; e = e.parentElement) {{ const c = getComputedStyle(e).backgroundColor;
       if (/^rgb\\(/.test(c)) return c; }} return "rgb(255, 255, 255)"; }};
   const own = (e) => [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
   return [...document.querySelectorAll("body *:not(script):not(style)")].filter((e) => own(e) && !e.closest("svg") && e.getClientRects().length)
     .map((e) => [contrast(getComputedStyle(e).color, under(e)), e.textContent.slice(0, 40)]).sort((a, b) => a[0] - b[0])[0]; }})()"""
-# The smallest text as it is seen, px.
+# The smallest rendered text, px.
 SMALL = """(() => { const own = (e) => [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
   const size = (e) => { const px = parseFloat(getComputedStyle(e).fontSize), svg = e.closest("svg");
     return svg ? px * svg.getBoundingClientRect().width / svg.viewBox.baseVal.width : px; };
@@ -130,7 +130,7 @@ SMALL = """(() => { const own = (e) => [...e.childNodes].some((n) => n.nodeType 
 
 
 def legible(page, where, width):
-    """Text stands out, and is large enough on a phone."""
+    """Checks the contrast of text, and its size on a phone."""
     faint, what = page.js(FAINT)
     check(faint >= 4.5, f"{where}: {what!r} has a contrast of {faint:.2f} to 1")
     small, what = page.js(SMALL)
@@ -138,17 +138,17 @@ def legible(page, where, width):
 
 
 def opens(page, where, parts):
-    """A first screen without scrolling has these parts."""
+    """Checks that the first screen contains these parts without scrolling."""
     for part in parts:
         check(page.js(f"({SEEN})({part!r})"), f"{where}: {part} is not on the first screen")
 
 
 def film(page, where):
-    """Stands at its end in a frame that reaches nothing outside, and plays after one click."""
-    check(page.js('document.querySelector("#film").sandbox.value') == "allow-scripts", f"{where}: the frame is open")
+    """Checks that the film shows its end in a sandboxed frame, and plays after one click."""
+    check(page.js('document.querySelector("#film").sandbox.value') == "allow-scripts", f"{where}: the frame is not sandboxed")
     state = 'document.querySelector("#film").dataset.state'
     page.wait(f'{state} === "ready"')
-    check(page.js('document.querySelector("#film").contentDocument') is None, f"{where}: the film reaches the page")
+    check(page.js('document.querySelector("#film").contentDocument') is None, f"{where}: the film has access to the page")
     page.click("button[data-film]")
     page.wait(f'{state} === "playing"')
     page.click("button[data-film='1']")
@@ -157,7 +157,7 @@ def film(page, where):
 
 
 def play(page, where):
-    """The clock runs while it plays."""
+    """Checks that the clock advances during playback."""
     clock = 'document.querySelector("#clock").textContent'
     page.wait(clock)
     before = page.js(clock)
@@ -167,7 +167,7 @@ def play(page, where):
 
 
 def scrub(page, where):
-    """At the end the outcome stands there, and something is drawn."""
+    """Checks that the outcome and a drawing are shown at the end."""
     page.js("""(() => { const time = document.querySelector("#time"); time.value = time.max;
         time.dispatchEvent(new Event("input")); })()""")
     page.rest()
@@ -218,7 +218,7 @@ def main(program):
         whole(page, "many designs")
         check(size < 1_000_000 and took < 2, f"many designs: {size} bytes, {took:.1f} s")
         page.close()
-    print("the pages are whole: light and dark, desktop and phone")
+    print("all checks of the pages passed: light and dark, desktop and phone")
 
 
 if __name__ == "__main__":

@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# Tries what scripts/release.sh has built as users do, without Rust:
+# Tests the packages built by scripts/release.sh as users would, without Rust:
 #
 #     scripts/check_release.sh [PROGRAM]
 #
-# The wheel in fresh environments of the oldest and the newest Python at hand: time of installation and import,
-# README's Python lines, the command `optimize`. The static program in an empty folder as its root: README's
-# first study prints README's block. The same study by PROGRAM, a build from the sources (that of `cargo build
-# --release` without it), by the wheels and by the static program: journals equal but for times of the clock.
+# The wheel is installed in fresh environments of the oldest and the newest Python available: installation and import
+# time, the Python example of the README, the command `optimize`. The static program runs in an empty root directory:
+# the first study of the README must print the README's block. The same study must give the same journal, except for
+# clock times, with PROGRAM (a build from the sources; by default that of `cargo build --release`), with the wheels and
+# with the static program.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -16,7 +17,7 @@ wheel=$(realpath dist/*.whl)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 failed() { echo "scripts/check_release.sh: $1" >&2; exit 1; }
-# within SECONDS WHAT COMMAND..: runs it, says what it took, and fails above the limit.
+# within SECONDS WHAT COMMAND..: runs the command, prints the elapsed time, and fails above the limit.
 within() {
     local limit=$1 what=$2 began seconds
     shift 2
@@ -26,10 +27,10 @@ within() {
     echo "$what: $seconds s (limit $limit s)"
     awk -v s="$seconds" -v l="$limit" 'BEGIN { exit s > l }' || failed "$what takes too long"
 }
-# README's text between the fences of the first block that has this line.
+# Prints the first fenced block of the README that contains this line.
 block() { awk -v line="$1" '/^```/ { if (found) exit; text = ""; next } { text = text $0 "\n" }
     index($0, line) { found = 1 } END { printf "%s", text }' "$readme"; }
-# study NAME COMMAND..: a short study, its journal without times of the clock.
+# study NAME COMMAND..: runs a short study and extracts its journal without clock times.
 study() {
     local name=$1
     shift
@@ -38,14 +39,14 @@ study() {
         "$scratch/$name/journal.jsonl" > "$scratch/$name.jsonl"
     if [ "$name" != sources ]; then
         cmp "$scratch/sources.jsonl" "$scratch/$name.jsonl" || failed "the journal of $name is not that of $program"
-        echo "journal of $name: $(wc -l < "$scratch/$name.jsonl") lines as by the build from the sources"
+        echo "journal of $name: $(wc -l < "$scratch/$name.jsonl") lines, identical to the build from the sources"
     fi
 }
 
 (cd dist && sha256sum --quiet -c SHA256SUMS)
 study sources "$program"
 
-# The static program, alone in the root of its file system.
+# The static program, alone in its root directory.
 mkdir "$scratch/alone"
 tar xzf dist/finger-opt-*-musl.tar.gz -C "$scratch" --wildcards '*/optimize' --strip-components 1
 mv "$scratch/optimize" "$scratch/alone"
@@ -62,7 +63,7 @@ echo "static program in an empty root: optimize $first prints README's block"
 static() { (cd "$scratch/alone" && alone "$@") && mv "$scratch/alone/static" "$scratch"; }
 study static static
 
-# Wheels. Nothing of Rust may be found.
+# Wheels. Rust must not be in PATH.
 PATH=$(tr : '\n' <<< "$PATH" | grep -v cargo | paste -s -d :)
 if command -v cargo rustc; then failed "Rust is in PATH"; fi
 pythons=()
@@ -73,7 +74,7 @@ for minor in 10 11 12 13 14 15; do
 done
 [ ${#pythons[@]} -gt 0 ] || failed "no CPython 3.10 or later"
 block "import finger_opt as fo" > "$scratch/readme.py"
-# Processor time of an import, s: other work on the machine does not count.
+# Processor time of an import in s, which does not depend on other load.
 imported() { TIMEFORMAT='%U %S'; { time "$1" -c 'import finger_opt'; } 2>&1 | awk '{ print $1 + $2 }'; }
 for python in $(printf '%s\n' "${pythons[0]}" "${pythons[-1]}" | uniq); do
     name=wheel-$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')

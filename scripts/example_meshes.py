@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Makes the meshes in examples/meshes/ again, each one closed surface as a CAD program exports it.
+"""Regenerates the meshes in examples/meshes/, each a single closed surface as exported by a CAD program.
 
-With a folder as argument: the parts on which the import is tried, into it.
+With a folder as argument, writes the test parts for the import to it.
 Needs `pip install trimesh==5.2.0 manifold3d numpy`. Lengths in mm.
 """
 
@@ -33,7 +33,7 @@ def write(name, solid, folder=FOLDER, unit=1.0, turn=(0, 0, 0)):
 
 
 def usb():
-    """The shipped task's plug and socket."""
+    """Writes the shipped usb task's plug and socket."""
     taper = m.Manifold.hull_points(
         [[x, y, z] for x in (-3.8, 3.7) for y, z in
          [(-7.75, 32.2), (7.75, 32.2), (5.38, 36.2), (-5.38, 36.2)]])
@@ -50,7 +50,7 @@ def usb():
 
 
 def keyed(grow):
-    """Outline of a keyed plug, 9 x 4 mm with bevelled corners and a rib at +x; x, y."""
+    """Returns the outline (x, y) of a keyed plug, 9 x 4 mm with bevelled corners and a rib at +x."""
     x, y, bevel = 2.0 + grow, 4.5 + grow, 0.8
     rib, out = 0.75 + grow, 0.8
     return [(-x + bevel, -y), (x - bevel, -y), (x, -y + bevel), (x, -rib), (x + out, -rib),
@@ -59,7 +59,7 @@ def keyed(grow):
 
 
 def example():
-    """A keyed plug with a body, and its socket with a lead-in chamfer 0.4 mm deep."""
+    """Returns a keyed plug with a body, and its socket with a lead-in chamfer 0.4 mm deep."""
     body = box((-4, 4), (-6, 6), (8, 26))
     write("keyed-plug.stl", extruded(keyed(0.0), (0, 8)) + body)
     pocket = extruded(keyed(0.1), (-8.5, 1))
@@ -74,17 +74,17 @@ def rectangle(x, y):
 
 
 def d_shape():
-    """A circle of 9 mm with a flat at -x."""
+    """Returns a circle of 9 mm with a flat at -x."""
     return m.CrossSection.circle(4.5, 32) - rectangle(4, 20).translate((-5.2, 0))
 
 
 def peg_with_key():
-    """A peg of 8 mm with a key of 2 mm that stands out by 1 mm at +x."""
+    """Returns a peg of 8 mm with a key of 2 mm that protrudes by 1 mm at +x."""
     return m.CrossSection.circle(4, 32) + rectangle(2, 2).translate((4, 0))
 
 
 def oval():
-    """Two half circles of 4 mm, 10 mm long in y."""
+    """Returns an oval of two half circles of 4 mm, 10 mm long in y."""
     return m.CrossSection.batch_hull([m.CrossSection.circle(2, 32).translate((0, y)) for y in (-3, 3)])
 
 
@@ -93,18 +93,18 @@ def keyed_square():
 
 
 def trapezoid():
-    """As of a D-sub connector: 9 and 8 mm wide in y, 5 mm high in x."""
+    """Returns a D-sub trapezoid: 9 and 8 mm wide in y, 5 mm high in x."""
     return m.CrossSection([[(-2.5, -4.0), (2.5, -4.5), (2.5, 4.5), (-2.5, 4.0)]])
 
 
 def pair(folder, name, section, clearance, chamfer, depth=8.0, body=(8, 12, 18), flange=0.0, **form):
-    """A plug of this section under a body, x y z; a socket about it with a chamfer in three steps."""
+    """Returns a plug with this section below a body (x, y, z), and its socket with a chamfer in three steps."""
     x, y, length = body
     plug = section.extrude(depth) + box((-x / 2, x / 2), (-y / 2, y / 2), (depth, depth + length))
     if flange:
         x, y = x + 4, y + 4
         plug += box((-x / 2, x / 2), (-y / 2, y / 2), (depth, depth + flange))
-    # Offset as a mitre keeps the corners: the clearance is the same on all sides.
+    # A mitred offset keeps the corners, so the clearance is the same on all sides.
     grown = lambda by: section.offset(by, m.JoinType.Miter, 2.0)
     left, low, right, high = section.bounds()
     block = box((left - 5, right + 5), (low - 5, high + 5), (-depth - 3, 0))
@@ -117,7 +117,7 @@ def pair(folder, name, section, clearance, chamfer, depth=8.0, body=(8, 12, 18),
 
 
 def parts(folder):
-    """The parts on which the import is tried."""
+    """Writes the test parts for the import."""
     pair(folder, "d-shape", d_shape(), 0.1, 0.5, body=(10, 12, 18), flange=1.5)
     pair(folder, "peg-key", peg_with_key(), 0.15, 0.5, body=(12, 12, 18))
     pair(folder, "peg-key-inch", peg_with_key(), 0.15, 0.5, body=(12, 12, 18), unit=25.4, turn=(0, -90, 0))

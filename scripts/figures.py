@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the committed tables of ranges: needs matplotlib.
+"""Plots the committed tables of ranges. Needs matplotlib.
 
     scripts/figures.py results/reference/validation   ranges.svg from validation.csv
     scripts/figures.py results/reference/bench        ranges.svg from leave_one_out_*.csv
@@ -26,7 +26,7 @@ def rows(path):
 
 
 def validation(folder, axes):
-    """Range over the compliance stiffness: ours, the published simulation's and the robot's."""
+    """Plots the range over the compliance stiffness: ours, the published simulation's and the robot's."""
     table = rows(folder / "validation.csv")
     for task, ax in zip(TASKS, axes):
         own = [row for row in table if row["task"] == task]
@@ -41,7 +41,7 @@ def validation(folder, axes):
 
 
 def bench(folder, axes):
-    """Calibrated range of each measured finger, predicted without it, with its 80 % interval."""
+    """Plots the leave-one-out prediction of each measured finger with its 80 % interval."""
     for task, ax in zip(TASKS, axes):
         own = rows(folder / f"leave_one_out_{task}.csv")
         measured, found = ([row[key] for row in own] for key in ("measured_mm", "range_mm"))

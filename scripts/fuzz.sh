@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Mutates everything that the program reads for MINUTES: scripts/fuzz.sh MINUTES [SEED]
-# Prints the cases by kind and how they ended, and every failure with its fewest mutations.
-# FINGER_OPT_FUZZ_PROGRAM names a program in place of the one that is built.
+# Fuzzes all inputs of the program for MINUTES: scripts/fuzz.sh MINUTES [SEED]
+# Prints the outcomes by kind of case, and every failure reduced to the fewest mutations.
+# FINGER_OPT_FUZZ_PROGRAM sets an existing program instead of building one.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

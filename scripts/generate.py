@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes what follows from the commands: their list, their reference page, and their functions in Python.
+"""Generates files from the commands: their list, their reference page, and the Python functions.
 
-Usage: generate.py [--check] [PROGRAM]. PROGRAM is the program `optimize`, built unless given; with --check nothing is
-written, and the exit code is 1 if a file is not current.
+Usage: generate.py [--check] [PROGRAM]. PROGRAM is the program `optimize`, which is built if omitted. With --check
+nothing is written, and the exit code is 1 if a file is out of date.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ BUILD = ["cargo", "build", "--release", "--locked", "--quiet", "--bin", "optimiz
 
 
 def paths() -> list[tuple[str, ...]]:
-    """The modules of the commands: a file is a command, a folder a group of them."""
+    """Returns the modules of the commands: a file is a command, a folder a group of commands."""
     files = (file.relative_to(COMMANDS).with_suffix("") for file in COMMANDS.rglob("*.rs"))
     return sorted(file.parts for file in files if file.name != "mod")
 
 
 def command_list() -> str:
-    """The text of `src/commands/mod.rs`."""
+    """Returns the text of `src/commands/mod.rs`."""
     alone = [path[0] for path in paths() if len(path) == 1]
     groups = sorted({path[0] for path in paths() if len(path) > 1})
     lines = [
@@ -48,13 +48,13 @@ def command_list() -> str:
 
 
 def said(program: str, form: str) -> str:
-    """What the program says of its commands."""
+    """Returns the program's description of its commands."""
     done = subprocess.run([program, "man", "--format", form], stdout=subprocess.PIPE, text=True, check=True)
     return done.stdout
 
 
 def files(program: str | None) -> dict[Path, str]:
-    """The files with their texts; the list of commands is written first, so that the program has all of them."""
+    """Returns the files with their texts; writes the list of commands first, so that the program has them all."""
     found = {COMMANDS / "mod.rs": command_list()}
     if program is None:
         write(found)
@@ -67,19 +67,19 @@ def files(program: str | None) -> dict[Path, str]:
 
 
 def write(found: dict[Path, str]) -> None:
-    """Writes what is not current."""
+    """Writes the files that are out of date."""
     for file, text in found.items():
         if not current(file, text):
             file.write_text(text, encoding="utf-8")
 
 
 def current(file: Path, text: str) -> bool:
-    """Whether a file has this text."""
+    """Returns whether a file has this text."""
     return file.exists() and file.read_text(encoding="utf-8") == text
 
 
 def main(words: list[str]) -> int:
-    """Writes the files, or says which are not current."""
+    """Writes the files, or lists those that are out of date."""
     check = "--check" in words
     programs = [word for word in words if not word.startswith("--")]
     if check and not programs:
@@ -90,7 +90,7 @@ def main(words: list[str]) -> int:
         return 0
     stale = [str(file.relative_to(ROOT)) for file, text in found.items() if not current(file, text)]
     for file in stale:
-        print(f"{file} is not current: scripts/generate.py writes it", file=sys.stderr)
+        print(f"{file} is out of date: run scripts/generate.py", file=sys.stderr)
     return 1 if stale else 0
 
 

@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
-# Counts the instructions of one trial and compares them with the committed count: a number
-# that is the same on a busy machine, unlike a time.
+# Counts the instructions of one trial and compares them with the committed count. Unlike
+# time, the count does not depend on machine load.
 #
-#     scripts/instructions.sh [PROGRAM]          exit 1 if it is above by more than the margin
+#     scripts/instructions.sh [PROGRAM]          exit 1 if the count exceeds the margin
 #     scripts/instructions.sh [PROGRAM] --renew  writes the count of this compiler
 #
-# PROGRAM is the one that `cargo test` has built; without it, it is built here.
+# PROGRAM is the program built by `cargo test`; it is built here if omitted.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 committed=results/reference/instructions.txt
-# Percent. Linking order and small changes of the compiler move the count by about 1 %.
+# Percent. Linking order and minor compiler changes affect the count by about 1 %.
 margin=5
 program=${CARGO_TARGET_DIR:-target}/release/optimize
 if [ -n "${1:-}" ] && [ "$1" != --renew ]; then
@@ -43,13 +43,13 @@ expected=$(awk '/^instructions/ { print $2 }' "$committed")
 change=$(awk -v a="$count" -v b="$expected" 'BEGIN { printf "%+.2f", 100 * (a / b - 1) }')
 echo "one usb trial: $count instructions, committed $expected, $change % (margin $margin %)"
 echo "compiled by $compiler; the committed count by $(sed -n 's/^compiler //p' "$committed")"
-# outside SIGN: whether the change lies outside the margin, above (1) or below (-1).
+# outside SIGN: tests whether the change is outside the margin, above (1) or below (-1).
 outside() { awk -v c="$change" -v m="$margin" -v s="$1" 'BEGIN { exit !(s * c > m) }'; }
 if outside -1; then
-    echo "the trial has become cheaper: run scripts/instructions.sh --renew, or the count will not notice its return"
+    echo "the trial has become cheaper: run scripts/instructions.sh --renew to detect a later regression"
 fi
 if outside 1; then
-    echo "the trial costs more instructions than committed; if that is meant," \
-        "run scripts/instructions.sh --renew and say why in the commit" >&2
+    echo "the trial takes more instructions than committed; if this is intended," \
+        "run scripts/instructions.sh --renew and give the reason in the commit message" >&2
     exit 1
 fi

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Kills `measure_window` at random moments: scripts/killed_windows.py KILLS FOLDER
+"""Kills `measure_window` at random times: scripts/killed_windows.py KILLS FOLDER
 
-Each window is begun again until it is measured: its line and its attempts have to be those of a window that was not
-killed, none twice and none lost. Needs the package, built with the feature `fake-engine`.
+Each window is restarted until it is complete. Its line and its attempts must be those of an uninterrupted window, with
+no attempt duplicated or lost. Needs the package, built with the feature `fake-engine`.
 """
 import random
 import subprocess
@@ -23,7 +23,7 @@ measure_window(Slow("usb", 20, 10, engine="fake"), out=sys.argv[1], task="usb", 
 
 
 def attempts(folder):
-    """Lines of the file of attempts, without times."""
+    """Returns the lines of the attempts file, without times."""
     lines = []
     for file in sorted(folder.glob("bench-*.jsonl")):
         lines += [line for line in file.read_text().splitlines() if "stopped" not in line]
@@ -31,7 +31,7 @@ def attempts(folder):
 
 
 def begun(folder):
-    """A process that measures into this folder and has imported the package."""
+    """Starts a process that measures into this folder; returns once the package is imported."""
     folder.mkdir(parents=True, exist_ok=True)
     process = subprocess.Popen(
         [sys.executable, "-c", CODE, folder / "bench.csv"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

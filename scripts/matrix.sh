@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Hard tests of studies, with their figures: scripts/matrix.sh [kills] [commands] [threads] [disks] [cache]
-# Everything if nothing is named. KILLS (443 unless set) is how often a study is killed; PYTHON is a Python with the
-# package, whose `measure_window` is then killed, too;
-# ENGINE=direct kills studies that simulate. OPTIMIZE names a program
-# that is built already; it needs the feature `fake-engine`.
+# Stress tests of studies, with statistics: scripts/matrix.sh [kills] [commands] [threads] [disks] [cache]
+# Runs all of them by default. KILLS is the number of kills (443 by default); with
+# ENGINE=direct, the killed studies use the real simulation. OPTIMIZE sets an existing
+# program, which needs the feature `fake-engine`. PYTHON sets an interpreter with the
+# package; if set, its `measure_window` is killed, too.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -20,8 +20,8 @@ same_walk() { [ ! -e "$2/walk.json" ] || cmp -s "$1/walk.json" "$2/walk.json"; }
 same() { cmp -s <(body "$1") <(body "$2"); }
 fail() { echo "matrix: $*" >&2; exit 1; }
 
-# Studies of several kinds, killed at random moments of their whole run, resumed and killed again,
-# their tails torn.
+# Studies of several kinds, killed at random times, resumed and killed again, and with truncated
+# journals.
 kills() {
     local wanted=${KILLS:-443} done=0 torn=0 studies=0 lengths=() begun kinds=(
         "--budget 22" "--budget 14 --polish 6" "--budget 14 --optimizer sobol --objective range,peak-force")
@@ -60,8 +60,8 @@ kills() {
         "journal and walk the same"
 }
 
-# Commands that write a file of their own, killed at random moments: the file is absent, or what it was, or whole; and
-# the command run again writes what it writes without a kill.
+# Commands that write a file, killed at random times: the file must be absent, unchanged or complete, and running
+# the command again must write the same file as without a kill.
 commands() {
     local wanted=${KILLS:-200} done=0 count=0 ms id line out log
     local finger="--task usb --density 20 --direction 10"
@@ -84,13 +84,13 @@ commands() {
             if kill -KILL "$id" 2>/dev/null; then done=$((done + 1)); fi
             wait "$id" 2>/dev/null || true
             if [ -e "${out/OUT/killed}" ]; then
-                cmp -s "${out/OUT/killed}" "${out/OUT/$log}" || fail "killed: $line leaves a part of its file"
+                cmp -s "${out/OUT/killed}" "${out/OUT/$log}" || fail "killed: $line leaves a partial file"
                 rm "${out/OUT/killed}"
             fi
         done
         # shellcheck disable=SC2086
         "$optimize" ${line/OUT/killed} >/dev/null 2>&1
-        cmp -s "${out/OUT/killed}" "${out/OUT/$log}" || fail "after kills: $line writes something else"
+        cmp -s "${out/OUT/killed}" "${out/OUT/$log}" || fail "after kills: $line writes a different file"
         rm -f "${out/OUT/killed}"
         count=$((count + 1))
     done
@@ -101,7 +101,7 @@ commands() {
     echo "commands      $done kills of $count commands: no file in part, the same result afterwards"
 }
 
-# Optimizers, tasks, batches and threads: the journal does not depend on the threads.
+# Optimizers, tasks, batches and threads: the journal must not depend on the number of threads.
 threads() {
     local count=0
     for optimizer in gp cma-es random sobol grid "gp --polish 6"; do
@@ -122,13 +122,13 @@ threads() {
     echo "threads       $count combinations of optimizer, tasks, batch and threads: the same journals"
 }
 
-# Disks that are full, from no space to almost enough, and read-only ones. Every command that writes.
+# Full disks, from no space to almost enough, and read-only disks, with every command that writes.
 disks() {
     local count=0 code
     "$optimize" "${common[@]}" --budget 22 --no-cache --out whole >/dev/null
     mkdir -p disk
     for kilobytes in 4 16 24 32 48 64 96 128 192 256; do
-        mount -t tmpfs -o size=${kilobytes}k none disk || { echo "disks: left out, mounting is not allowed" >&2; return; }
+        mount -t tmpfs -o size=${kilobytes}k none disk || { echo "disks: skipped, mounting is not permitted" >&2; return; }
         code=0
         "$optimize" "${common[@]}" --budget 22 --no-cache --out disk/s >/dev/null 2>error || code=$?
         case $code in
@@ -177,7 +177,7 @@ disks() {
     echo "disks         $((count + 1)) full or read-only disks: a message, exit code 1, nothing lost"
 }
 
-# Studies that share a cache, at the same time; then one whose entries were damaged.
+# Concurrent studies that share a cache; then a cache with damaged entries.
 cache() {
     "$optimize" "${common[@]}" --budget 22 --no-cache --out alone >/dev/null
     local ids=()

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""How well `finger_opt.robot.measure_window` measures windows whose ends are known: a table in Markdown.
+"""Accuracy of `finger_opt.robot.measure_window` on windows with known ends: prints a table in Markdown.
 
-20 synthetic robots, each end drawn 0.5 to 5 mm from the taught start, the probability to insert a logistic with
-0.6 mm from 90 to 10 %; every fourth has a gap of 0.3 mm, at least 0.5 mm from the start and from the end, in which
-nothing inserts. The method (priors, lapse, odds of a gap) was fixed on the seeds 1000 to 1399; 101 to 120 are counted.
+20 synthetic robots. Each end is drawn 0.5 to 5 mm from the taught start; the insertion probability is a logistic
+function, 0.6 mm wide from 90 to 10 %. Every fourth window has a gap of 0.3 mm, at least 0.5 mm from the start and from
+the end, in which nothing inserts. The method (priors, lapse, odds of a gap) was tuned on the seeds 1000 to 1399; the
+table is for the seeds 101 to 120.
 
     python scripts/measure_window.py [FIRST SEED] [COUNT] [WIDTH mm]
 """
@@ -29,7 +30,7 @@ class Synthetic:
 
     def drawn_gap(self) -> tuple[float, float]:
         side = int(self.drawn.random() >= 0.5)
-        # On the other side where there is no room for it.
+        # On the other side if there is not enough space.
         side = side if abs(self.ends[side]) >= 1.5 else 1 - side
         near = self.drawn.uniform(0.5, max(0.51, abs(self.ends[side]) - 0.8))
         return (near, near + 0.3) if side else (-near - 0.3, -near)

@@ -4,7 +4,7 @@
 #
 #     eval "$(scripts/mujoco.sh)"
 #
-# Needs python3 with pip. Does nothing but print if the library is already there.
+# Needs python3 with pip. Only prints the settings if the library is already installed.
 set -euo pipefail
 version=3.17.0
 folder=${1:-"$(dirname "$0")/../target/mujoco"}
@@ -21,11 +21,11 @@ if [ ! -e "$library" ]; then
     trap 'rm -rf "$download"' EXIT
     if ! python3 -m pip download --quiet --disable-pip-version-check --no-deps \
         --only-binary :all: --dest "$download" "mujoco==$version" >&2; then
-        echo "scripts/mujoco.sh: could not download the wheel mujoco==$version: is there a network," \
-            "and a wheel for this machine?" >&2
+        echo "scripts/mujoco.sh: could not download the wheel mujoco==$version: check the network connection," \
+            "and that a wheel exists for this platform" >&2
         exit 1
     fi
-    # A wheel is a zip archive; the licence comes along.
+    # A wheel is a zip archive; the licence is extracted, too.
     python3 - "$download"/mujoco-*.whl "$download" "libmujoco.so.$version" <<'PYTHON' >&2
 import pathlib, sys, zipfile
 wheel, folder, library = sys.argv[1:]
@@ -35,12 +35,12 @@ with zipfile.ZipFile(wheel) as archive:
             (pathlib.Path(folder) / pathlib.Path(name).name).write_bytes(archive.read(name))
 PYTHON
     if [ ! -e "$download/libmujoco.so.$version" ]; then
-        echo "scripts/mujoco.sh: the wheel holds no libmujoco.so.$version: only Linux is supported" >&2
+        echo "scripts/mujoco.sh: the wheel contains no libmujoco.so.$version: only Linux is supported" >&2
         exit 1
     fi
     ln -sf "libmujoco.so.$version" "$folder/libmujoco.so"
     if [ -e "$download/LICENSE" ]; then mv "$download/LICENSE" "$folder/LICENSE"; fi
-    # Last, so that a broken download is not taken for an installation.
+    # Last, so that an interrupted download does not count as an installation.
     mv "$download/libmujoco.so.$version" "$library"
 fi
 

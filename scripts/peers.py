@@ -9,9 +9,9 @@
     target/release/optimize bench optimizers --csv ours.csv
     venv/bin/python scripts/peers.py ratios ours.csv pycma.csv peers.csv
 
-`run` prints a line per problem and adds every run to the CSV (columns as those of
+`run` prints a line per problem and appends every run to the CSV (with the columns of
 `optimize bench optimizers --csv`); `ratios` prints Markdown. pycma needs neither
-optuna nor torch, tpe no torch.
+optuna nor torch, tpe needs no torch.
 """
 import argparse
 import csv
@@ -80,7 +80,7 @@ UNBOUNDED = {"sphere": sphere, "rosenbrock": rosenbrock,
 
 @dataclass
 class Problem:
-    """To be maximised on a grid of whole numbers, up to a target."""
+    """Function to maximise on an integer grid, up to a target."""
 
     name: str
     levels: list
@@ -132,8 +132,8 @@ def optuna_run(make, problem, seed):
 def botorch_run(problem, seed):
     """SingleTaskGP and LogExpectedImprovement with their defaults, after a Sobol start.
 
-    On a small grid the acquisition is maximised over all points not evaluated yet; else over
-    the cube, and the best of its maxima that is new on the grid is taken.
+    On a small grid the acquisition function is maximised over all points not evaluated yet;
+    otherwise over the cube, where the best maximum that is new on the grid is used.
     """
     import torch
     from botorch.acquisition import LogExpectedImprovement
@@ -206,8 +206,8 @@ def pycma_run(f, n, seed):
             raise Reached
         return value
 
-    # pycma adds 1 to its seed at each restart: with seeds side by side the runs of one
-    # would be, from the second on, those of the next.
+    # pycma adds 1 to its seed at each restart: with consecutive seeds, the second run of one
+    # seed would equal the first run of the next.
     first = 1 + 1000 * seed
     np.random.seed(first)
     start = lambda: np.random.uniform(-4, 4, n)
@@ -220,7 +220,7 @@ def pycma_run(f, n, seed):
 
 
 def work(methods, problems):
-    """Yields problem, method and what runs a seed."""
+    """Yields problem, method and a function that runs a seed."""
     if "pycma" in methods:
         for (name, f), n in itertools.product(UNBOUNDED.items(), (2, 5)):
             yield f"{name} {n}-D to 1e-8", "pycma", lambda s, f=f, n=n: pycma_run(f, n, s)
@@ -234,7 +234,7 @@ def run(arguments):
     need = {"pycma": "cma", "tpe": "optuna", "gpsampler": "optuna", "botorch": "botorch"}
     for package in {need[method] for method in arguments.methods}:
         found = version(package)
-        assert found == PINNED[package], f"{package} {PINNED[package]} is wanted, not {found}"
+        assert found == PINNED[package], f"{package} {PINNED[package]} is required, not {found}"
     problems = functions() + [landscape(file) for file in arguments.landscape]
     with open(arguments.csv, "a", newline="") as file:
         out = csv.writer(file, lineterminator="\n")
@@ -254,7 +254,7 @@ def run(arguments):
 
 
 def median(runs):
-    """The upper of the two middle ones; a failed run is worse than all others."""
+    """Returns the upper median; a failed run is worse than all others."""
     return sorted(float("inf") if r is None else r for r in runs)[len(runs) // 2]
 
 
@@ -263,7 +263,7 @@ def mean(runs):
 
 
 def interval(ours, theirs, of):
-    """Of the ratio, 95 %, by 2000 bootstrap samples of the runs of both."""
+    """Returns the 95 % interval of the ratio, by 2000 bootstrap samples of both sets of runs."""
     draw = random.Random(0)
     ratios = sorted(ratio(of(draw.choices(ours, k=len(ours))), of(draw.choices(theirs, k=len(theirs))))
                     for _ in range(2000))
@@ -310,7 +310,7 @@ if __name__ == "__main__":
     command.add_argument("--csv", required=True)
     command.add_argument("--seeds", type=int, default=20)
     command.add_argument("--landscape", nargs="*", default=[])
-    command.add_argument("--only", help="problems with this in their name")
+    command.add_argument("--only", help="only problems whose name contains this text")
     command.set_defaults(run=run)
     command = commands.add_parser("ratios")
     command.add_argument("csv", nargs="+")

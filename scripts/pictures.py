@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The pictures of docs/: a report on a desktop and on a phone, and a film.
+"""Creates the images of docs/: a report on a desktop and on a phone, and a film.
 
     scripts/pictures.py STUDY/report.html STUDY/replay/1-positive.html docs
     scripts/pictures.py STUDY/report.html FILE.png    the first screen alone
@@ -9,12 +9,12 @@ from pathlib import Path
 
 from browser import Browser
 
-# Seconds into the film: the plug that will insert has fallen in, the other one jams.
+# Time in the film, s: the plug that will insert has dropped in, the other one jams.
 MOMENT = 1.17
 
 
 def first(report, file):
-    """The first screen of a page."""
+    """Captures the first screen of a page."""
     with Browser() as browser:
         page = browser.open(report, 1280, 900)
         if page.js('document.querySelector("#film") !== null'):

@@ -1,4 +1,4 @@
-"""What the options of the commands do not say of their functions in Python."""
+"""Properties of the Python functions that do not follow from the options of the commands."""
 
 from __future__ import annotations
 
@@ -7,25 +7,25 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class Call:
-    """What the options of a command do not say of its function."""
+    """Properties of a Python function that do not follow from the options of its command."""
 
     name: str
     #: Module and class of the result.
     result: str = "_result.Found"
-    #: Parameters that may be given without their names, in order.
+    #: Positional parameters, in order.
     positional: tuple[str, ...] = ()
-    #: Names of parameters by options.
+    #: Parameter names by option.
     names: dict[str, str] = field(default_factory=dict)
     types: dict[str, str] = field(default_factory=dict)
     #: Hidden options that are parameters, with their defaults.
     more: dict[str, str] = field(default_factory=dict)
-    #: Options that say nothing unless they are given, though they have a default.
+    #: Options whose default is not shown and not passed.
     unset: tuple[str, ...] = ()
-    #: Hidden options that are always given.
+    #: Hidden options that are always passed.
     always: dict[str, str] = field(default_factory=dict)
-    #: What the function gives, if not the result: its type, and how it is had from the result.
+    #: Type and expression of the return value, if it is not the result itself.
     gives: tuple[str, str] | None = None
-    #: What it refuses that the command line would take, or names otherwise.
+    #: Python code of additional checks of the arguments.
     refuses: str = ""
     example: str = ""
 
@@ -93,7 +93,7 @@ if plug is None and round is None:
     "study": Call("create", positional=("task",), types={"task": TASKS}),
     "resume": Call("load_study", "_study.Study", names={"dir": "folder"}),
 }
-#: Commands that are more than a call in Python, and what they are there.
+#: Commands implemented by hand in Python, and their counterparts.
 BY_HAND = {
     "ask-tell": "Optimizer", "completions": "a script for a shell", "man": "help()", "measure add": "Measurements.add",
     "measure check": "Measurements.check", "report": "Study.report", "stiffness": "stiffness",

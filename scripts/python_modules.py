@@ -1,6 +1,6 @@
-"""The commands as functions of the Python package: signatures, types and docstrings from their options.
+"""Generates the Python functions of the commands: signatures, types and docstrings from their options.
 
-A command becomes a function of its own name that gives a `Found`, unless `python_calls.py` says otherwise.
+A command becomes a function of the same name that returns a `Found`, unless `python_calls.py` specifies otherwise.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from typing import Any
 
 from python_calls import BY_HAND, CALLS, Call
 
-#: How a result is printed, and where a study is measured: Python's calls do not have these.
+#: Options for output and execution, which the Python functions do not have.
 LEFT_OUT = {"json", "quiet", "verbose", "executor"}
-#: Types that an option's kind does not say.
+#: Types that do not follow from the kind of an option.
 TYPES = {
     "task": "Given", "space": "SpaceName | StrPath", "robot": "RobotName | StrPath", "optimizer": "OptimizerName",
     "objective": "Objective | Sequence[Objective]", "constraint": "str | Sequence[str]", "engine": "Engine",
     "finger_model": "FingerModel", "start": "Start", "axes": "Axes", "aggregate": "Aggregate",
 }
-#: How other parts of the package go by: their modules.
+#: Names from other modules of the package.
 FROM = {
     "_call": ["called", "checked", "without", "wrong"],
     "_result": ["Found"],
@@ -41,26 +41,26 @@ Raises:
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a function, and the option that it is."""
+    """Parameter of a function, and its option."""
 
     option: str
     name: str
     type: str
-    #: Empty if it has to be given.
+    #: Empty if the parameter is required.
     default: str
     help: str
 
     def declared(self) -> str:
-        """Its place in the signature."""
+        """Returns the parameter as written in the signature."""
         return f"{self.name}: {self.type}" + (f" = {self.default}" if self.default else "")
 
     def given(self) -> str:
-        """What the library is given."""
+        """Returns the expression passed to the library."""
         return f"sources({self.name})" if "Given" in self.type else self.name
 
 
 def parameter(option: dict[str, Any], call: Call) -> Parameter:
-    """The parameter of an option."""
+    """Returns the parameter of an option."""
     name = call.names.get(option["name"], option["name"])
     kind, default = kind_of(option, call), option["default"]
     if option["flag"]:
@@ -79,14 +79,14 @@ def parameter(option: dict[str, Any], call: Call) -> Parameter:
         kind, default = "Numbers | None", "None"
     if option["name"] == "task" and "measurements" in call.positional:
         kind, default = f"{kind} | None", "None"
-    # A word of Python has a stroke behind it.
+    # Python keywords get a trailing underscore.
     name = f"{name}_" if name == "async" else name
     help = told(option["help"] or "").removeprefix(f"{option['name'].capitalize()}: ")
     return Parameter(option["name"], name, kind, default, help)
 
 
 def kind_of(option: dict[str, Any], call: Call) -> str:
-    """The type of an option's values."""
+    """Returns the Python type of an option's values."""
     name, value = option["name"], option["value"] or ""
     if name in call.types or name in TYPES:
         return call.types.get(name) or TYPES[name]
@@ -110,7 +110,7 @@ def kind_of(option: dict[str, Any], call: Call) -> str:
 
 
 def literal(kind: str, default: str) -> str:
-    """A default as Python writes it."""
+    """Returns a default as Python source."""
     if kind.startswith("tuple["):
         return f"({', '.join(repr(float(part)) for part in default.split(','))})"
     if kind in ("int", "float"):
@@ -119,13 +119,13 @@ def literal(kind: str, default: str) -> str:
 
 
 def told(text: str) -> str:
-    """Help as Python says it: options by the names of parameters."""
+    """Returns help with options replaced by parameter names."""
     text = text.replace("; may be given several times", "").replace("; may be given\nseveral times", "")
     return re.sub(r"(?<![\w-])--([a-z][a-z-]*)", lambda found: found[1].replace("-", "_"), text)
 
 
 def docstring(command: dict[str, Any], call: Call, parameters: list[Parameter]) -> str:
-    """What the function does, and its parameters."""
+    """Returns the docstring: purpose and parameters."""
     first, *rest = told(command["about"]).split("\n\n")
     text = f"{first.rstrip('.')}, as ``optimize {command['name']}`` does.\n\n"
     text += "".join(f"{textwrap.fill(' '.join(part.split()), 104)}\n\n" for part in rest)
@@ -141,13 +141,13 @@ def docstring(command: dict[str, Any], call: Call, parameters: list[Parameter]) 
 
 
 def function(command: dict[str, Any], call: Call) -> str:
-    """The function of a command."""
+    """Returns the source of a command's function."""
     options = [option for option in command["options"] if option["name"] not in LEFT_OUT]
     options += [option for option in command["hidden"] if option["name"] in call.more]
     parameters = {one.name: one for one in (parameter(option, call) for option in options)}
     bare = [parameter(option, call).name for option in options if option["positional"]]
     ordered = [parameters.pop(name) for name in call.positional or bare]
-    # What has to be given stands first.
+    # Required parameters come first.
     named = sorted(parameters.values(), key=lambda one: one.default != "")
     both = [*ordered, *named]
     words = [f'"{one.option}": {one.given()}' for one in both]
@@ -176,7 +176,7 @@ def function(command: dict[str, Any], call: Call) -> str:
 
 
 def broken(body: str) -> str:
-    """A statement in lines of at most 116 letters."""
+    """Wraps a statement to lines of at most 116 characters."""
     if len(body) <= 116:
         return body
     before, rest = body.split("{", 1)
@@ -185,7 +185,7 @@ def broken(body: str) -> str:
 
 
 def packed(words: list[str]) -> str:
-    """Indented lines of at most 114 letters, a comma behind each word."""
+    """Returns indented lines of at most 114 characters, with a comma after each word."""
     lines = ["   "]
     for word in words:
         if len(lines[-1]) + len(word) > 112:
@@ -195,7 +195,7 @@ def packed(words: list[str]) -> str:
 
 
 def module(about: str, body: str, results: list[str]) -> str:
-    """The text of a module: what it imports, and its body."""
+    """Returns the text of a module: imports and body."""
     sources = {name: list(names) for name, names in FROM.items()}
     for result in results:
         home, kind = result.split(".")
@@ -213,7 +213,7 @@ def module(about: str, body: str, results: list[str]) -> str:
 
 
 def imported(home: str, names: list[str], body: str) -> list[str]:
-    """The line that imports what a body uses."""
+    """Returns the import line for the names used in a body."""
     body = re.sub(r'"{3}.*?"{3}', "", body, flags=re.DOTALL)
     used = sorted({name for name in names if re.search(rf"(?<![\w.`\"]){name}\b(?!`)", body)})
     line = f"from {home} import {', '.join(used)}"
@@ -239,7 +239,7 @@ class Asked:
 
 
 def modules(commands: list[dict[str, Any]]) -> dict[str, str]:
-    """The modules by their names."""
+    """Returns the modules by name."""
     functions, results, names = list[str](), list[str](), list[str]()
     created, further = "", ""
     for command in commands:

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# Makes every figure under results/reference from the present sources, and notes which sources
-# those were (scripts/stale.sh). The one entry; parts can be named:
+# Regenerates every figure under results/reference from the current sources, and records the hash
+# of these sources (scripts/stale.sh). Parts can be selected:
 #
 #     scripts/reference.sh                          all parts but the last six
 #     scripts/reference.sh validation               one part
-#     scripts/reference.sh landscapes firm settled maps identify peers   what it leaves out unless named
+#     scripts/reference.sh landscapes firm settled maps identify peers   the parts omitted by default
 #
-# Landscapes are recorded functions that optimizers are measured on, not figures of the
-# present model: renewing them means renewing all of results/reference/optimizers.md. Peers
-# needs the Python packages named there, and hours.
+# Landscapes are recorded functions for benchmarking optimizers, not figures of the current
+# model: if they change, all of results/reference/optimizers.md must be regenerated. Peers
+# needs the Python packages listed there, and takes hours.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -17,7 +17,7 @@ cargo build --release
 optimize=${OPTIMIZE:-target/release/optimize}
 lab=${LAB:-target/release/lab}
 reference=results/reference
-# The landscapes that optimizers are compared on.
+# The landscapes for comparing optimizers.
 recorded="usb ket8 ket12 rj45 finger6 codesign6"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -33,7 +33,7 @@ stiffness() {
     record windows "$reference"/stiffness.{svg,txt}
 }
 
-# What the ribs say of the measured designs, and one of them drawn.
+# Stiffness of the measured designs computed from their ribs, and a drawing of one.
 finger() {
     local folder="$reference/finger" design density direction assembly compliance
     mkdir -p "$folder"
@@ -52,7 +52,7 @@ finger() {
     record windows "$folder"/*
 }
 
-# What the published experiments say of every finger, each measured one predicted without it.
+# Calibration on the published experiments, with leave-one-out predictions.
 bench() {
     local folder="$reference/bench" task
     mkdir -p "$folder"
@@ -64,14 +64,14 @@ bench() {
         done
     done
     figures "$folder"
-    # The key that turns in the grasp (docs/notes/bench.md): ket8 with the pressed patch and twice the preload.
+    # The key rotating in the grasp (docs/notes/bench.md): ket8 with the contact patch and twice the preload.
     sed 's/^finger_plug_torsion_mm = .*/finger_plug_torsion_mm = "patch"/' tasks/ket8.toml > "$work/patch.toml"
     "$optimize" trial --task "$work/patch.toml" --robot ur5e_position --density 30 --direction 0 \
         --set task.strategy.phase.touch.preload_mm=0.6 --svg "$folder/ket8_turns_about_y.svg" > /dev/null
     record bench "$folder"/*.{txt,csv,json,svg}
 }
 
-# What would help a finger more than its infill: that with the widest range of each task.
+# Levers of the finger with the widest range of each task.
 levers() {
     local folder="$reference/levers" task density direction
     mkdir -p "$folder"
@@ -94,10 +94,10 @@ check() {
     record checks "$reference/check.txt"
 }
 
-# Half the step against production on three fingers, the quick search against the walk on all.
+# Half the step against the production step on three fingers, and coarse-to-fine against exhaustive search on all.
 windows() {
     "$lab" check --convergence > "$reference/convergence.txt" ||
-        echo "a window moves with the step: $reference/convergence.txt" >&2
+        echo "a window changes with the step: $reference/convergence.txt" >&2
     "$lab" check --searches --fingers all > "$reference/window_search.txt" ||
         echo "the searches differ: $reference/window_search.txt" >&2
     record windows "$reference"/{convergence,window_search}.txt
@@ -125,7 +125,7 @@ trials() {
     record windows "$reference"/trial-*.{svg,txt}
 }
 
-# What the shape of the finger adds to its infill.
+# Study of the finger's shape in addition to its infill.
 shapes() {
     local folder="$reference/finger/rj45"
     mkdir -p "$folder"
@@ -137,7 +137,7 @@ shapes() {
     record studies "$folder"/*
 }
 
-# What a study decides by is kept, so that `report` and `compare` open it; not what they make of it.
+# Keeps the files that `report` and `compare` need to open a study, but not their output.
 studies() {
     local task kept
     for task in usb ket8 ket12 rj45; do
@@ -155,7 +155,7 @@ studies() {
     done
 }
 
-# The pictures of docs/: a task, and a report with a film on a desktop and on a phone.
+# Images for docs/: a task, and a report with a film on a desktop and on a phone.
 pictures() {
     "$optimize" task check usb --svg docs/task-usb.svg > /dev/null
     if ! command -v chromium > /dev/null; then
@@ -168,18 +168,18 @@ pictures() {
     python3 scripts/pictures.py "$work"/usb/{report.html,replay/1-positive.html} docs
 }
 
-# What is said first of each kind of answer: terminal, JSON, first screen of the page.
+# Summary of each kind of answer: terminal, JSON, first screen of the page.
 answers() {
     local folder="$reference/answers" tilted="$work/tilted.toml" keyed="$work/keyed.toml"
     mkdir -p "$folder"
-    # So far that the plug passes by its opening.
+    # So far that the plug misses its opening.
     sed -e 's/^name = "usb"/name = "tilted"/' -e '0,/^tilt_deg = .*/s//tilt_deg = 25.0/' tasks/usb.toml > "$tilted"
     "$optimize" task import --plug examples/meshes/keyed-plug.stl --socket examples/meshes/keyed-socket.stl \
         --out "$keyed" > /dev/null 2>&1
-    # Its start near the edge of its window.
+    # The start is near the edge of the window.
     sed -i -E 's/^start_mm = \[([^,]*), [^,]*,/start_mm = [\1, 3.5,/' "$keyed"
     answer() {
-        # Not in the folders of `studies`, which would be gone on with.
+        # Not in the folders of `studies`, because those studies would be continued.
         local study="$work/answers/$1"
         "$optimize" "${@:2}" --no-cache --out "$study" --quiet > "$folder/$1.txt" || true
         "$optimize" resume "$study" --quiet --json > "$folder/$1.json" || true
@@ -194,7 +194,7 @@ answers() {
     record studies "$folder"/*
 }
 
-# Objectives, constraints and tasks of docs/guide/objectives.md.
+# Objectives, constraints and tasks for docs/guide/objectives.md.
 objectives() {
     local folder="$reference/objectives" few="$work/few.toml"
     mkdir -p "$folder"
@@ -224,7 +224,7 @@ instructions() {
     record windows "$reference/instructions.txt"
 }
 
-# Every run behind the tables of results/reference/optimizers.md that are ours.
+# All runs of our optimizers for the tables of results/reference/optimizers.md.
 optimizers() {
     local folder="$reference/optimizers" landscapes=() task
     for task in $recorded; do
@@ -240,15 +240,15 @@ optimizers() {
     record optimizers "$folder/ours.csv"
 }
 
-# The named columns of a table without commas in its cells, without the header.
+# Prints the selected columns of a table without commas in its cells, without the header.
 columns() {
     awk -F, -v names="$1" 'BEGIN { n = split(names, name, ",") }
         NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
         { for (i = 1; i <= n; i++) printf "%s%s", $(at[name[i]]), i < n ? "," : "\n" }'
 }
 
-# Every design of its space: those of two numbers, coarse ones for the processor time, and those of
-# six numbers on the few levels of the space files beside the tables.
+# All designs of each space: the two-parameter spaces on a coarse grid to save processor time, the
+# six-parameter spaces on the few levels of the space files next to the tables.
 landscapes() {
     local folder="$reference/landscapes" name task space study axes header
     sed 's/step = 1.0/step = 2.0/' spaces/infill.toml > "$work/coarse.toml"
@@ -272,8 +272,8 @@ EOF
     record windows "$folder"/*.csv
 }
 
-# Every design of the four tasks as it is found today, and what is firm of the widest and of random ones:
-# an hour and a half of processor time.
+# All designs of the four tasks with the current sources, and the firm ranges of the widest and of random ones.
+# Takes an hour and a half of processor time.
 firm() {
     local folder="$reference/landscapes/firm" task
     mkdir -p "$folder"
@@ -283,7 +283,7 @@ firm() {
     record windows "$folder"/*.csv
 }
 
-# Studies without a budget, ten seeds on each task, beside the best firm range of all designs.
+# Studies without a budget, ten seeds on each task, compared with the best firm range of all designs.
 settled() {
     local file="$reference/landscapes/firm/studies.csv" task seed
     echo "task,seed,evaluations,confirmed,walked,trials,firm_range_mm,best_firm_range_mm" > "$file"
@@ -298,7 +298,7 @@ settled() {
     record studies "$file"
 }
 
-# Capture maps of each task's finger, and how many places a trial at each has otherwise.
+# Capture maps of a finger for each task, and the number of grid points at which a full grid of trials differs.
 maps() {
     local folder="$reference/maps" finger task density direction other
     mkdir -p "$folder"
@@ -312,7 +312,7 @@ maps() {
     record maps "$folder"/*
 }
 
-# Hidden cells in MuJoCo, identified from their logs: an hour and more; needs `lab` with the feature mujoco.
+# Identification of hidden cells in MuJoCo from their logs. Takes over an hour; needs `lab` with the feature mujoco.
 identify() {
     local folder="$reference/identify" half
     cargo build --release -p lab --features mujoco
@@ -345,6 +345,6 @@ peers() {
 for part in ${*:-$parts}; do
     case " $parts landscapes firm settled maps identify peers " in
         *" $part "*) echo "== $part" >&2; "$part" ;;
-        *) echo "no part is called $part; there are: $parts landscapes firm settled maps identify peers" >&2; exit 2 ;;
+        *) echo "unknown part $part; available: $parts landscapes firm settled maps identify peers" >&2; exit 2 ;;
     esac
 done

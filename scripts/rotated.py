@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""`cma-es` beside pycma on rotated functions in 3 and 6 dimensions within -5..5.
+"""Compares `cma-es` with pycma on rotated functions in 3 and 6 dimensions within -5..5.
 
     pip install cma==4.5.0
     python scripts/rotated.py target/release/optimize 40            # seeds; a table in Markdown
     python scripts/rotated.py target/release/optimize 40 sphere cigar
 
-Each seed has a rotation, a minimum in -2..2 and a start in -4..4 of its own, the same for both, and a
-first step of 3. Evaluations to 1e-8, at most 300 000; both restart by BIPOP.
+Each seed has its own rotation, minimum in -2..2 and start in -4..4, the same for both optimizers; the
+first step is 3. Evaluations to 1e-8, at most 300 000; both restart by BIPOP.
 """
 import itertools
 import json
@@ -44,7 +44,7 @@ class Reached(Exception):
 
 
 def problem(name, n, seed):
-    """The function, which ends the run at the target with the count, and a start."""
+    """Returns a function that ends the run at the target with the evaluation count, and a start."""
     draw = np.random.default_rng([seed, n])
     rotation, _ = np.linalg.qr(draw.normal(size=(n, n)))
     minimum, start = draw.uniform(-2, 2, n), draw.uniform(-4, 4, n)
@@ -75,7 +75,7 @@ def ours(name, n, seed):
             return json.loads(program.stdout.readline()) if answered else None
 
         say(first, answered=False)
-        # It begins at what it is told; its first step is 0.3 of the range: 3.
+        # The optimizer starts at the given point; its first step is 0.3 of the range: 3.
         say({"tell": [known]})
         for _ in range(LIMIT):
             point = say({"ask": 1})["asked"][0]
@@ -92,7 +92,7 @@ def pycmas(name, n, seed):
 
 
 def evaluations(run, name, n, seeds):
-    """Of the seeds that reached the target."""
+    """Evaluations of the seeds that reached the target."""
     found = []
     for seed in range(seeds):
         try:
@@ -103,7 +103,7 @@ def evaluations(run, name, n, seeds):
 
 
 def interval(a, b):
-    """Of the ratio of means, 95 %, by 1000 bootstrap samples."""
+    """Returns the 95 % interval of the ratio of means, by 1000 bootstrap samples."""
     draw = random.Random(0)
     mean = lambda runs: statistics.fmean(draw.choices(runs, k=len(runs)))
     ratios = sorted(mean(a) / mean(b) for _ in range(1000))

@@ -1,4 +1,4 @@
-"""A line of the table of settled studies: a study's folder, its JSON, the landscape of its task."""
+"""Prints a row of the table of settled studies, from a study's folder, its JSON and the landscape of its task."""
 
 import csv
 import json
@@ -13,7 +13,7 @@ with open(f"{folder}/evaluations.csv") as file:
     trials = sum(int(row["trials"]) for row in csv.DictReader(file))
 walked = [design["walked"] for design in designs if "walked" in design]
 trials += sum(firm["trials"] for design in designs for firm in design["firm"])
-# What was repeated anew after a walk counts; the same windows kept their repeats.
+# Counts windows repeated after an exhaustive search; unchanged windows kept their repeats.
 for design in designs:
     if "walked" in design:
         again = [firm for firm in design["walked"]["firm"] if firm not in design["firm"]]

@@ -1,24 +1,23 @@
 #!/usr/bin/env bash
-# Which committed figures are older than the sources that decide them.
+# Lists the committed figures that are older than their sources.
 #
-#     scripts/stale.sh                        lists them; no failure, since any edit of a source counts
-#     scripts/stale.sh --record SCOPE FILE..  notes that these files were made from the present sources
+#     scripts/stale.sh                        lists them; never fails, because every edit of a source counts
+#     scripts/stale.sh --record SCOPE FILE..  records that these files were generated from the current sources
 #
-# results/reference/SOURCE holds a line for each file: scope, hash of the scope's sources, path.
-# Sources are the rooms that decide numbers, not how they are drawn: a scope counts neither
-# tests nor reports.
+# results/reference/SOURCE contains one line per file: scope, hash of the scope's sources, path.
+# The sources of a scope are the folders that affect numbers; tests and reports are excluded.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export LC_ALL=C
 reference=results/reference
 record=$reference/SOURCE
 
-# What decides an evaluation, as crates/study/build.rs has it.
+# The sources that affect an evaluation, as listed in crates/study/build.rs.
 simulation=$(sed -n '/^const SIMULATION/,/^];/s/^ *"\(crates.*\)",$/\1/p' crates/study/build.rs)
-# The libraries that compute, which Cargo.toml pins; the others may change without changing a number.
+# The numerical libraries, pinned in Cargo.toml; other libraries do not affect numbers.
 libraries="^name = \"($(sed -n 's/^\([a-z0-9_-]*\) = .*"=[0-9].*/\1/p' Cargo.toml | paste -sd '|'))\""
 
-# The folders and files of a scope.
+# Prints the folders and files of a scope.
 sources() {
     case $1 in
         windows) paths="$simulation data tasks robots" ;;
@@ -28,7 +27,7 @@ sources() {
         bench) paths="$simulation crates/ask-tell crates/study crates/calibration data tasks robots spaces priors" ;;
         levers) paths="$simulation crates/calibration crates/connector crates/analysis/src/levers data tasks robots spaces priors" ;;
         optimizers) paths="crates/ask-tell lab/src/problems results/reference/landscapes" ;;
-        *) echo "scripts/stale.sh: no scope is called $1" >&2; exit 2 ;;
+        *) echo "scripts/stale.sh: unknown scope $1" >&2; exit 2 ;;
     esac
     echo "$paths"
 }
@@ -64,7 +63,7 @@ done < <(cat "$record" 2> /dev/null || true)
 old=0
 while read -r file; do
     if [ -z "${recorded[$file]:-}" ]; then
-        echo "not known from which sources: $file"
+        echo "unknown sources: $file"
         old=$((old + 1))
         continue
     fi
@@ -75,4 +74,4 @@ while read -r file; do
         old=$((old + 1))
     fi
 done < <(find "$reference" -type f \( ! -name "*.md" -o -name accuracy.md \) ! -name SOURCE | sort)
-echo "$old figures are older than their sources; scripts/reference.sh makes them again"
+echo "$old figures are older than their sources; scripts/reference.sh regenerates them"

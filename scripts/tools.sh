@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Installs optional tools on Debian by their package names; those already there are left alone.
+# Installs optional tools on Debian by package name, unless they are already installed.
 #
-#     scripts/tools.sh                     what .ci/run uses: valgrind, Python, prusa-slicer
+#     scripts/tools.sh                     the tools of .ci/run: valgrind, Python, prusa-slicer
 #     scripts/tools.sh chromium slurm-wlm  these
 #
-# Needs root or sudo. Says what it could not install, and exits with 1 then; whatever needs a
-# tool that is missing is left out and says so.
+# Needs root or sudo. If a package cannot be installed, prints its name and exits with 1; steps that need
+# a missing tool are skipped with a message.
 set -euo pipefail
 
 packages=("$@")
@@ -16,13 +16,13 @@ missing=()
 for package in "${packages[@]}"; do
     case $package in
         gcc | libc6-dev | valgrind | python3-venv | python3-pip | chromium | prusa-slicer | slurm-wlm | munge | nodejs | npm) ;;
-        *) echo "scripts/tools.sh: no part of this project uses the package $package" >&2; exit 2 ;;
+        *) echo "scripts/tools.sh: unknown package $package: not used by this project" >&2; exit 2 ;;
     esac
     if ! dpkg -s "$package" > /dev/null 2>&1; then missing+=("$package"); fi
 done
 if [ ${#missing[@]} -eq 0 ]; then exit; fi
 if ! command -v apt-get > /dev/null; then
-    echo "scripts/tools.sh: no apt-get here; install by other means: ${missing[*]}" >&2
+    echo "scripts/tools.sh: apt-get not found; install manually: ${missing[*]}" >&2
     exit 1
 fi
 root=()

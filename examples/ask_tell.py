@@ -1,4 +1,4 @@
-"""Minimise a function through `optimize ask-tell`: python3 examples/ask_tell.py [OPTIMIZE]."""
+"""Minimises a function with `optimize ask-tell`: python3 examples/ask_tell.py [OPTIMIZE]."""
 import json, subprocess, sys
 
 program = subprocess.Popen([*(sys.argv[1:2] or ["optimize"]), "ask-tell"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)

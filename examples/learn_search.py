@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Learns a quicker and safer search for `usb` in `fo.gym.InsertionEnv`, with numpy alone.
+"""Learns a faster and safer search for `usb` in `fo.gym.InsertionEnv`, with numpy alone.
 
     pip install './python[gym]'
     python examples/learn_search.py               # about a minute
-    python examples/learn_search.py 2 4           # generations, candidates in each
+    python examples/learn_search.py 2 4           # generations, candidates per generation
 
-The search is the task's own, of four numbers: how far it presses, how far it moves back and to the
-side, and how fast. The cross-entropy method draws candidates from a normal distribution, tries each
-from several shifted starts, and fits the distribution to the best quarter.
+The search is that of the task with four parameters: preload, stroke back, stroke to the side, and
+speed. The cross-entropy method draws candidates from a normal distribution, evaluates each from
+several shifted starts, and fits the distribution to the best quarter.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from numpy.typing import NDArray
 import finger_opt as fo
 
 Floats = NDArray[np.float64]
-#: What is observed.
+#: Type of an observation.
 Seen = NDArray[np.float32]
 
-#: Preload mm, back mm, side mm, speed mm/s: the task's, and how far to look at first.
+#: Preload mm, back mm, side mm, speed mm/s: values of the task, and initial standard deviations.
 FIRST = np.array([0.3, 5.0, 10.0, 80.0])
 SPREAD = np.array([0.1, 1.0, 2.0, 10.0])
 LOWEST = np.array([0.0, 0.5, 1.0, 20.0])
@@ -32,7 +32,7 @@ SHIFTS_MM = (-2.0, 0.0, 2.0)
 
 
 def moves(numbers: Floats) -> Generator[Floats, Seen, None]:
-    """Velocities, mm/s, each for 1 ms; takes observations."""
+    """Yields velocities, mm/s, each for 1 ms; receives observations."""
     preload, back, side, speed = numbers
     observation = yield np.array([0.0, 0.0, -20.0])
     while np.linalg.norm(observation[6:]) < 0.05:
@@ -46,7 +46,7 @@ def moves(numbers: Floats) -> Generator[Floats, Seen, None]:
 
 
 def episode(env: fo.gym.InsertionEnv, numbers: Floats, shift_mm: float) -> tuple[float, str | None]:
-    """Sum of the rewards, and how it ended."""
+    """Returns the sum of the rewards and the outcome."""
     env.reset(options={"offset_mm": shift_mm})
     plan, total = moves(numbers), 0.0
     action = next(plan)
@@ -58,18 +58,18 @@ def episode(env: fo.gym.InsertionEnv, numbers: Floats, shift_mm: float) -> tuple
         try:
             action = plan.send(observation)
         except StopIteration:
-            # It waits in vain for what does not come any more.
+            # All moves are finished without an outcome.
             return total - 10.0, info["outcome"]
 
 
 def score(env: fo.gym.InsertionEnv, numbers: Floats) -> tuple[float, int]:
-    """Mean reward over the shifts, and how many of them insert."""
+    """Returns the mean reward over the shifts, and the number that insert."""
     found = [episode(env, numbers, shift) for shift in SHIFTS_MM]
     return float(np.mean([total for total, _ in found])), sum(end == "inserted" for _, end in found)
 
 
 def learn(env: fo.gym.InsertionEnv, generations: int, candidates: int, seed: int = 0) -> Floats:
-    """The best numbers found; says on the way how good they are."""
+    """Returns the best parameters found; prints the progress."""
     draw = np.random.default_rng(seed)
     mean, spread = FIRST, SPREAD
     best = (score(env, FIRST)[0], FIRST)

@@ -1,9 +1,9 @@
-"""A UR as the robot of `finger_opt.robot.measure_window`, over ur_rtde (pip install ur_rtde).
+"""A UR robot for `finger_opt.robot.measure_window`, controlled with ur_rtde (pip install ur_rtde).
 
-NOT TRIED ON HARDWARE. Its calls are checked against the signatures of ur_rtde 1.6.5, nothing more. Read it,
-change it to your cell, look at the moves that it prints (`dry_run=True`), and then run it slowly, with a
-person beside the robot who has a hand on the stop button. Set the safety limits of the robot first: simulated
-insertions reach more than 100 N. The gripper stays closed; this program does not move it.
+NOT TRIED ON HARDWARE. Only the signatures of its calls were checked, against ur_rtde 1.6.5. Read the code,
+adapt it to your cell, review the moves that it prints (`dry_run=True`), and then run it slowly, with a person
+next to the robot and a hand on the stop button. Set the safety limits of the robot first: simulated insertions
+reach more than 100 N. The gripper stays closed; this program does not move it.
 """
 
 from __future__ import annotations
@@ -20,22 +20,21 @@ from numpy.typing import ArrayLike
 import finger_opt as fo
 from finger_opt.robot import Attempt
 
-#: What the recorder of the RTDE client writes: a column for each number, in SI units.
+#: Columns recorded by the RTDE client, in SI units.
 RECORDED = ["timestamp", "actual_TCP_pose", "actual_TCP_force", "target_TCP_pose"]
 ACCELERATION_M_S2 = 0.5
 RETREAT_M_S = 0.02
-#: The probe: how hard it presses, how far it slides along y, how fast, and how far below its start it looks
-#: for the face.
+#: Probe: contact force, sliding distance along y, speed, and maximum distance of the face below the start.
 PROBE_N, PROBE_M, PROBE_M_S, PROBE_DEPTH_M = 5.0, 0.008, 0.005, 0.01
 
 
 class DryRun(RuntimeError):
-    """The moves were printed, and nothing moved."""
+    """Raised after printing the moves of a dry run, in which the robot does not move."""
 
 
 @dataclass(frozen=True)
 class Move:
-    """A straight move of the TCP in the base's frame, which ends where the force is reached."""
+    """A straight move of the TCP in the base frame, which ends when the force is reached."""
 
     name: str
     pose: list[float]
@@ -45,13 +44,13 @@ class Move:
 
 @dataclass
 class URRobot:
-    """Tries insertions with the strategy of a task file, each phase a guarded straight move.
+    """Attempts insertions with the strategy of a task file; each phase is a guarded straight move.
 
-    ``taught`` is the pose (x, y, z, rx, ry, rz; m, rad) of the TCP at the start that inserts; ``surface_m`` the
+    ``taught`` is the TCP pose (x, y, z, rx, ry, rz; m, rad) at the start that inserts; ``surface_m`` is the
     height of the TCP above it, along ``out_of_socket``, at which the tip touches the socket's top (below 0).
-    ``jaws`` and ``out_of_socket`` are the task's y and z in the base's frame. ``force_limit_n`` ends a move.
-    ``face`` is the pose of the TCP at which the plug stands upright, a few mm above a flat face beside the
-    opening: there :meth:`probe` tells the friction.
+    ``jaws`` and ``out_of_socket`` are the task's y and z in the base frame. ``force_limit_n`` ends a move.
+    ``face`` is the TCP pose at which the plug is upright, a few mm above a flat face beside the opening,
+    where :meth:`probe` measures the friction.
     """
 
     host: str
@@ -65,7 +64,7 @@ class URRobot:
     touch_n: float = 5.0
     dry_run: bool = True
     ask: Callable[[str], str] = input
-    #: A person has to answer; this is far longer than the moves take.
+    #: Time for the operator's answer, much longer than the moves.
     timeout_s: float = 600.0
     control: Any = field(default=None, repr=False)
     receive: Any = field(default=None, repr=False)
@@ -73,7 +72,7 @@ class URRobot:
     def __post_init__(self) -> None:
         y, z = np.array(self.jaws, float), np.array(self.out_of_socket, float)
         if not (np.isclose(np.linalg.norm(y), 1) and np.isclose(np.linalg.norm(z), 1) and abs(y @ z) < 1e-6):
-            raise ValueError("jaws and out_of_socket are directions of length 1, at right angles")
+            raise ValueError("jaws and out_of_socket must be perpendicular unit vectors")
         self.axes = np.column_stack([np.cross(y, z), y, z])
         if not self.dry_run and self.control is None:
             import rtde_control  # pyright: ignore[reportMissingImports]
@@ -83,13 +82,13 @@ class URRobot:
             self.receive = rtde_receive.RTDEReceiveInterface(self.host)
 
     def pose(self, shift_mm: ArrayLike, taught: Sequence[float] | None = None) -> list[float]:
-        """The taught pose, shifted in the task's frame."""
+        """Returns the taught pose, shifted in the task frame."""
         taught = self.taught if taught is None else taught
         place = np.array(taught[:3], float) + self.axes @ np.asarray(shift_mm, float) / 1000.0
         return [*place.tolist(), *taught[3:]]
 
     def program(self, offset_mm: float) -> list[Move]:
-        """The moves of an attempt: to the shifted start, then the phases of the task's strategy."""
+        """Returns the moves of an attempt: to the shifted start, then the phases of the task's strategy."""
         at = np.array([0.0, offset_mm, 0.0])
         moves = [Move("start", self.pose(at), RETREAT_M_S, self.touch_n)]
         for phase in self.task.strategy.phase:
@@ -100,30 +99,30 @@ class URRobot:
         return moves
 
     def probe_program(self, height_m: float = -PROBE_DEPTH_M) -> list[Move]:
-        """The moves of the probe; it slides at that height above ``face``: where the plug met the face."""
+        """Returns the moves of the probe, which slides at the height above ``face`` at which the plug met the face."""
         if self.face is None:
             raise ValueError("face: teach a pose above the flat face beside the opening")
         half, height = 500.0 * PROBE_M, 1000.0 * height_m
         above, down = [0.0, -half, 0.0], [0.0, -half, -1000.0 * PROBE_DEPTH_M]
         moves = [Move("above", self.pose(above, self.face), RETREAT_M_S, self.touch_n),
                  Move("down", self.pose(down, self.face), PROBE_M_S, PROBE_N)]
-        # The height is held, and the force changes: both of its components stand in the log.
+        # The height is constant and the force varies; the log contains both of its components.
         for y in (half, -half, half, -half):
             moves.append(Move("slide", self.pose([0.0, y, height], self.face), PROBE_M_S, 4.0 * PROBE_N))
         return [*moves, Move("up", self.pose(above, self.face), RETREAT_M_S, self.force_limit_n)]
 
     def probe(self, log: Path) -> None:
-        """Slides on the flat face beside the opening; with ``dry_run`` prints the moves and raises :class:`DryRun`."""
+        """Slides on the flat face beside the opening; with ``dry_run``, prints the moves and raises :class:`DryRun`."""
         above, down, *_ = moves = self.probe_program()
         assert self.face is not None
         self.check(moves)
         if self.guarded(above) >= above.force_n:
-            raise RuntimeError("something is in the way to the face")
+            raise RuntimeError("obstacle on the way to the face")
         self.control.zeroFtSensor()
         time.sleep(0.2)
         self.receive.startFileRecording(str(log), RECORDED)
         try:
-            # In the air, before and after, the log shows what the sensor says without a contact.
+            # Before and after, in the air, the log records the sensor without contact.
             time.sleep(0.2)
             if self.guarded(down) < down.force_n:
                 raise RuntimeError(f"no face within {1000.0 * PROBE_DEPTH_M:g} mm below its start")
@@ -135,14 +134,14 @@ class URRobot:
         finally:
             self.receive.stopFileRecording()
         if caught:
-            raise RuntimeError("the plug catches on the face; teach another place")
+            raise RuntimeError("the plug catches on the face; teach another position")
 
     def insert(self, offset_mm: float, log: Path | None = None) -> Attempt:
-        """One attempt; with ``dry_run`` it prints the moves and raises :class:`DryRun`."""
+        """Makes one attempt; with ``dry_run``, prints the moves and raises :class:`DryRun`."""
         start, *phases = moves = self.program(offset_mm)
         self.check(moves)
         if self.guarded(start) >= start.force_n:
-            raise RuntimeError("something is in the way to the start")
+            raise RuntimeError("obstacle on the way to the start")
         self.control.zeroFtSensor()
         time.sleep(0.2)
         if log is not None:
@@ -162,24 +161,24 @@ class URRobot:
         return Attempt(inserted, failure, depth_mm, peak, log)
 
     def check(self, moves: list[Move]) -> None:
-        """Whether the robot may go there; with ``dry_run`` prints the moves and raises."""
+        """Checks that the moves are within the safety limits; with ``dry_run``, prints them and raises."""
         if self.dry_run:
             for move in moves:
                 where = ", ".join(f"{number:+.4f}" for number in move.pose)
                 print(f"{move.name:<12} to [{where}] at {move.speed_m_s:.3f} m/s, until {move.force_n:g} N")
-            raise DryRun("nothing moved; give dry_run=False once these moves are right")
+            raise DryRun("dry run, nothing moved; pass dry_run=False once these moves are correct")
         for move in moves:
             if not self.control.isPoseWithinSafetyLimits(move.pose):
                 raise RuntimeError(f"{move.name}: {move.pose} is outside the safety limits")
 
     def guarded(self, move: Move) -> float:
-        """Moves until the pose or the force is reached; gives the largest force, N."""
+        """Moves until the pose or the force is reached; returns the largest force, N."""
         self.control.moveL(move.pose, move.speed_m_s, ACCELERATION_M_S2, True)
         peak = 0.0
         time.sleep(0.02)
         while self.control.getAsyncOperationProgress() >= 0:
             if self.receive.isProtectiveStopped() or self.receive.isEmergencyStopped():
-                raise RuntimeError(f"{move.name}: the robot has stopped; look at it before it goes on")
+                raise RuntimeError(f"{move.name}: the robot has stopped; inspect it before you continue")
             force = float(np.linalg.norm(self.receive.getActualTCPForce()[:3]))
             peak = max(peak, force)
             if force >= move.force_n:
@@ -189,22 +188,22 @@ class URRobot:
         return peak
 
     def depth_mm(self) -> float:
-        """How far the tip is below the socket's top, from where the TCP is."""
+        """Returns the depth of the tip below the socket's top, from the TCP pose."""
         below = np.array(self.receive.getActualTCPPose()[:3]) - np.array(self.taught[:3], float)
         return 1000.0 * (self.surface_m - float(self.axes[:, 2] @ below))
 
     def judged(self, depth_mm: float) -> tuple[bool, int | None]:
-        """Deep enough is not enough: a plug may stand beside the socket, or have left the fingers."""
+        """Asks the operator for the outcome: depth alone does not prove that the plug is inserted and still held."""
         said = self.ask(f"depth {depth_mm:.1f} mm. Inserted: +, else the failure class 1 to 4: ").strip()
         return said == "+", int(said) if said in ("1", "2", "3", "4") else None
 
     def retreat(self) -> None:
-        """Pulls straight out to the height of the start, along the axis of the socket."""
+        """Pulls the plug out to the height of the start, along the axis of the socket."""
         pose = self.receive.getActualTCPPose()
         up = self.axes[:, 2] * float(self.axes[:, 2] @ (np.array(self.taught[:3], float) - np.array(pose[:3])))
         out = [*(np.array(pose[:3]) + up).tolist(), *pose[3:]]
         if self.guarded(Move("retreat", out, RETREAT_M_S, self.force_limit_n)) >= self.force_limit_n:
-            raise RuntimeError("the plug does not come out; free it by hand")
+            raise RuntimeError("the plug is stuck; free it by hand")
 
 
 if __name__ == "__main__":

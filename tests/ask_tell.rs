@@ -204,7 +204,7 @@ fn a_bad_first_line_is_refused_and_a_good_one_may_follow() {
         (with("optimizer", json!("cma")), "valid names are gp, cma-es"),
         (with("direction", json!("down")), "minimize"),
         (with("seed", json!(-1)), "-1"),
-        (with("batch", json!(0)), "between 1 and 10000"),
+        (with("batch", json!(0)), "accepted: 1 to 10000"),
         (with("parameters", json!([])), "at least one"),
         (with("parameters", twice), "`a`: is given twice"),
         (with("parameters", steps), "whole number of steps"),
@@ -236,8 +236,14 @@ fn what_is_known_can_be_told_and_is_not_asked_again() {
         for (told, part) in [
             (r#"{"values":{"x":0,"n":3},"value":1}"#, "though it is known"),
             (r#"{"values":{"x":0},"value":1}"#, "`n` is missing"),
-            (r#"{"values":{"x":0.5,"n":1},"value":1}"#, "`x` must be low + k step"),
-            (r#"{"values":{"x":0,"n":1,"m":1},"value":1}"#, "`m` is no parameter"),
+            (
+                r#"{"values":{"x":0.5,"n":1},"value":1}"#,
+                "`x` is 0.5; accepted: -5 to 5 in steps of 1",
+            ),
+            (
+                r#"{"values":{"x":0,"n":1,"m":1},"value":1}"#,
+                "unknown parameter `m`; accepted: x, n",
+            ),
             (r#"{"values":{"x":0,"n":1}}"#, "value"),
             ("[0,1.5]", "must be an object"),
         ] {
@@ -284,6 +290,6 @@ fn sessions_beyond_any_use_are_refused_at_once() {
         .replace('\n', "");
     talk.error(&bounds, "too small beside");
     talk.say(&wide(10_000, "random").to_string());
-    talk.error(r#"{"ask":1000}"#, "more than 1000000 numbers");
+    talk.error(r#"{"ask":1000}"#, "1000000 numbers at once");
     assert_eq!(talk.ask(2).len(), 2);
 }

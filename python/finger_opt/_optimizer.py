@@ -30,28 +30,36 @@ def _by_name(space: object) -> TypeGuard[Mapping[str, Sequence[float]]]:
     return isinstance(space, Mapping)
 
 
-def _id(point: object) -> int:
+def _told(point: object, value: float | None) -> dict[str, Any]:
+    """The result of a point: one that was asked, its id, or the values of another."""
     if isinstance(point, Point):
-        return point.id
-    if isinstance(point, Integral) and not isinstance(point, bool):
-        return int(point)
-    raise wrong("points", f"{shown(point)} is neither a point that was asked for nor the id of one")
+        return {"id": point.id, "value": value}
+    if isinstance(point, Integral) and not isinstance(point, bool) and point >= 0:
+        return {"id": int(point), "value": value}
+    if not isinstance(point, Mapping):
+        raise wrong("points", f"{shown(point)}; accepted: points that were asked, their ids, or a dict of values by parameter")
+    values = {str(name): number(one) for name, one in point.items()}
+    for name, one in values.items():
+        if one is None:
+            raise wrong("points", f"`{name}` is {shown(point[name])}; accepted: a finite number")
+    return {"values": values, "value": value}
 
 
 def _value(value: object) -> float | None:
     found = number(value)
     if found is None and value is not None:
-        raise wrong("values", f"{shown(value)} is no finite number; give None for a point that failed")
+        raise wrong("values", f"{shown(value)}; accepted: a finite number, or None for a failed evaluation")
     return found
 
 
 class Optimizer:
-    """Asks for points and is told their values, as ``optimize ask-tell`` does.
+    """Optimizer by ask and tell, as ``optimize ask-tell``.
 
     ``space`` gives each parameter its bounds, and its step if it has one:
     ``{"x": (-5, 5), "n": (1, 9, 2)}``; a list of dicts with ``name``, ``low``, ``high`` and
-    ``step`` does, too, and the name or path of a space file (``"infill"``). ``optimizer`` is ``gp``, ``cma-es``, ``sobol``, ``grid`` or ``random``.
-    The same seed and values give the same points.
+    ``step``; or the name or path of a space file (``"infill"``). ``optimizer`` is ``gp``, ``cma-es``, ``sobol``, ``grid`` or ``random``.
+    The same seed and values give the same points. An optimizer can be pickled: it is restored by
+    repeating its calls.
 
     >>> optimizer = Optimizer({"x": (-5, 5)}, "gp", seed=1, direction="minimize")
     >>> for _ in range(3):
@@ -92,12 +100,24 @@ class Optimizer:
             "direction": direction,
             "batch": batch,
         }
-        #: Best point told so far: ``id``, ``values``, ``value``; ``None`` while there is none.
+        self._start()
+        self._say(header)
+
+    def _start(self) -> None:
+        #: Best result so far: ``id`` (``None`` for a known result), ``values``, ``value``; ``None`` before the first one.
         self.best: dict[str, Any] | None = None
         #: Why nothing more can be asked, if so.
         self.stop: str | None = None
         self._session = _native.Session()
-        self._say(header)
+        self._lines: list[str] = []
+
+    def __getstate__(self) -> list[str]:
+        return self._lines
+
+    def __setstate__(self, lines: Iterable[str]) -> None:
+        self._start()
+        for line in lines:
+            self._send(line)
 
     @checked
     def ask(self, n: int = 1) -> list[Point]:
@@ -106,26 +126,35 @@ class Optimizer:
         return [Point(one["id"], one["values"]) for one in asked]
 
     def tell(
-        self, points: Point | int | Iterable[Point | int], values: float | None | Iterable[float | None]
+        self,
+        points: Point | int | Mapping[str, float] | Iterable[Point | int | Mapping[str, float]],
+        values: float | None | Iterable[float | None],
     ) -> None:
-        """The values of points (or of their ids), in any order; ``None`` for a failed one."""
+        """Adds results, in any order; ``None`` is a failed evaluation.
+
+        ``points`` are points that were asked, or their ids. A dict of values by parameter
+        (``{"x": 0.5, "n": 3}``) is a known result of a point that was never asked.
+        """
         given: Any = points
         numbers: Any = values
-        if isinstance(points, (Point, int, Integral)):
+        if isinstance(points, (Mapping, int, Integral)):
             given, numbers = [points], [values]
         for name, several in (("points", given), ("values", numbers)):
             if not isinstance(several, Iterable) or isinstance(several, (str, bytes, Mapping)):
-                raise wrong(name, f"is {shown(cast('object', several))}; there have to be as many points as values")
-        ids = [_id(point) for point in given]
-        told = [_value(value) for value in numbers]
-        if len(ids) != len(told):
-            raise wrong("values", f"{len(told)} values for {len(ids)} points")
-        answer = self._say({"tell": [{"id": i, "value": v} for i, v in zip(ids, told)]})
-        self.best, self.stop = answer["best"], answer["stop"]
+                raise wrong(name, f"is {shown(cast('object', several))}; accepted: as many points as values")
+        given, numbers = list(given), [_value(value) for value in numbers]
+        told = [_told(point, value) for point, value in zip(given, numbers)]
+        if len(given) != len(numbers):
+            raise wrong("values", f"{len(numbers)} values for {len(given)} points")
+        self._say({"tell": told})
 
     def _say(self, line: Mapping[str, Any]) -> dict[str, Any]:
-        answer = self._session.answer(dumps(line))
+        return self._send(dumps(line))
+
+    def _send(self, line: str) -> dict[str, Any]:
+        answer = self._session.answer(line)
+        self._lines.append(line)
         found: dict[str, Any] = json.loads(answer) if answer is not None else {}
-        if "error" in found:
-            raise _native.InputError(found["error"])
+        if "told" in found:
+            self.best, self.stop = found["best"], found["stop"]
         return found

@@ -1,22 +1,25 @@
-//! An optimizer behind the lines of `optimize ask-tell`.
+//! Optimizers by ask and tell.
 
+use crate::errors::InputError;
 use ask_tell::protocol;
 use pyo3::prelude::*;
 use std::sync::{Mutex, PoisonError};
 
-/// A conversation; `docs/guide/python.md` describes its lines.
+/// Session with one optimizer; `docs/guide/python.md` describes its lines.
 #[pyclass]
+#[derive(Default)]
 pub struct Session(Mutex<protocol::Session>);
 
 #[pymethods]
 impl Session {
     #[new]
     fn new() -> Self {
-        Session(Mutex::new(protocol::Session::new()))
+        Session::default()
     }
 
-    /// The answer to a line; the first line, if it is good, has none.
-    fn answer(&self, py: Python<'_>, line: &str) -> Option<String> {
-        py.allow_threads(|| self.0.lock().unwrap_or_else(PoisonError::into_inner).answer(line))
+    /// Returns the answer to a line; a valid first line has none.
+    fn answer(&self, py: Python<'_>, line: &str) -> PyResult<Option<String>> {
+        let session = || self.0.lock().unwrap_or_else(PoisonError::into_inner).answer(line);
+        py.allow_threads(session).map_err(InputError::new_err)
     }
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -56,10 +57,12 @@ def test_the_lines_are_those_of_the_command(command):
 
 
 @pytest.mark.parametrize("points, values, word", [
-    ([{"x": 99}], [1], "points: {'x': 99} is neither a point that was asked for nor the id of one"),
+    ([{"x": 9}], [1], "tell: parameter `n` is missing; accepted: x, n"), ({"x": 9, "m": 1}, 1, "tell: unknown parameter `m`; accepted: x, n"),
+    ({"x": 9, "n": 1}, 1, "tell: `x` is 9; accepted: -5 to 5"), ({"x": 0, "n": 2}, 1, "tell: `n` is 2; accepted: 1 to 9 in steps of 2"),
+    ([{"x": None, "n": 1}], [1], "points: `x` is None"), ([-1], [1], "points: -1"),
     ([True], [1], "points: True"), ([1.5], [1], "points: 1.5"), (["0"], [1], "points: '0'"), ([None], [1], "points: None"),
-    ("ab", [1, 2], "points: is 'ab'"), (None, [1], "points: is None"), ([0], ["a"], "values: 'a' is no finite number"),
-    ([0], [float("nan")], "values: nan is no finite number"), ([0], [10**400], "values: 1000"), ([0], [[1]], r"values: [1]"),
+    ("ab", [1, 2], "points: is 'ab'"), (None, [1], "points: is None"), ([0], ["a"], "values: 'a'; accepted: a finite number"),
+    ([0], [float("nan")], "values: nan; accepted"), ([0], [10**400], "values: 1000"), ([0], [[1]], r"values: [1]"),
     ([0], 1.0, "values: is 1.0"), ([0, 1], [1], "values: 1 values for 2 points"), (0, "a", "values: 'a'"),
 ])
 def test_what_is_told_is_checked_by_name(points, values, word):
@@ -80,6 +83,26 @@ def test_what_is_told_is_checked_by_name(points, values, word):
 def test_a_space_is_checked_by_name(space, word):
     with pytest.raises(fo.InputError, match=word):
         fo.Optimizer(space)
+
+
+@pytest.mark.parametrize("name", ["gp", "cma-es", "random"])
+def test_known_results_are_dictionaries_and_an_optimizer_can_be_pickled(name):
+    known = [{"x": 1.0, "n": 5.0}, {"n": 3, "x": -2}]
+    optimizer = fo.Optimizer(SPACE, name, 3, batch=4)
+    optimizer.tell(known, [value(point) for point in known])
+    assert optimizer.best == {"id": None, "values": {"x": 1.0, "n": 5.0}, "value": 0.0}
+    with pytest.raises(fo.InputError, match="though it is known"):
+        optimizer.tell(known[0], 1.0)
+    points = [*optimizer.ask(2), *optimizer.ask(1)]
+    optimizer.tell(points[0], value(points[0]))
+    # Within a batch: one point is told, two are asked, one is left.
+    resumed, points = pickle.loads(pickle.dumps((optimizer, points)))
+    assert (resumed.best, resumed.stop) == (optimizer.best, optimizer.stop)
+    for one in (optimizer, resumed):
+        rest = [*points[1:], *one.ask(1)]
+        one.tell(rest, [value(point) for point in rest])
+    assert run(optimizer) == run(resumed)
+    assert optimizer.best == resumed.best
 
 
 def test_shipped_spaces_and_errors():

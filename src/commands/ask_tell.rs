@@ -1,10 +1,10 @@
-//! `optimize ask-tell`: the optimizers for problems that know nothing of insertions.
+//! `optimize ask-tell`: optimizers for any problem.
 
 use crate::command::{self, Text};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::terminal;
-use ask_tell::protocol::{LONGEST_LINE, Session};
+use ask_tell::protocol::{MAX_LINE_BYTES, Session};
 use std::io::{self, BufRead, Read};
 
 /// Optimize anything: JSON lines on standard input and output
@@ -19,27 +19,28 @@ impl command::Request for Request {
     type Response = Text;
     const JSON: bool = false;
 
-    /// Answers each line before it reads the next, until the input ends.
+    /// Answers each line before the next is read, until the input ends.
     fn run(&self, _context: &Context<'_>) -> Result<Text, Failure> {
-        let mut session = Session::new();
+        let mut session = Session::default();
         let mut input = io::stdin().lock();
-        let mut line = Vec::new();
         let unreadable = |error| Failure::running(format!("cannot read the input: {error}"));
         loop {
-            line.clear();
-            let read = (&mut input).take(LONGEST_LINE + 1).read_until(b'\n', &mut line);
-            if read.map_err(unreadable)? == 0 {
+            let mut line = Vec::new();
+            let mut limited = (&mut input).take(MAX_LINE_BYTES + 1);
+            if limited.read_until(b'\n', &mut line).map_err(unreadable)? == 0 {
                 return Ok(Text::default());
             }
-            if line.len() as u64 > LONGEST_LINE {
+            let answer = if line.len() as u64 <= MAX_LINE_BYTES {
+                // Text that is not UTF-8 is not JSON either: it is answered with an error.
+                session.answer(&String::from_utf8_lossy(&line))
+            } else {
                 if !line.ends_with(b"\n") {
                     input.skip_until(b'\n').map_err(unreadable)?;
                 }
-                terminal::print(&(Session::too_long() + "\n"))?;
-                continue;
-            }
-            // What is not UTF-8 is not JSON either: it is answered with an error.
-            if let Some(answer) = session.answer(&String::from_utf8_lossy(&line)) {
+                Err(Session::too_long())
+            };
+            let error = |error| Some(serde_json::json!({"error": error}).to_string());
+            if let Some(answer) = answer.unwrap_or_else(error) {
                 terminal::print(&(answer + "\n"))?;
             }
         }

@@ -172,12 +172,14 @@ impl Observation {
     }
 }
 
-/// Why an optimizer has nothing more to propose.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Reason why an optimizer has nothing more to propose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum StopReason {
     /// Every point of the grid has been proposed.
+    #[serde(rename = "space_exhausted")]
     GridExhausted,
-    /// It has found what it can find.
+    /// The search has converged.
     Converged,
 }
 

@@ -1,23 +1,28 @@
-//! The lines as they are read.
+//! Messages of a session.
 
-use super::parameter::ParameterLine;
-use serde::Deserialize;
+use super::parameter::Parameter;
+use crate::{OptimizerKind, StopReason};
 use serde::de::DeserializeOwned;
-use serde_json::Value;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
-/// Most points of one batch, and most that can be asked at once.
-pub(super) const LARGEST_BATCH: usize = 10_000;
+/// Longest accepted line in bytes; a line of 10000 points is far shorter.
+pub const MAX_LINE_BYTES: u64 = 4 << 20;
+/// Largest number of points of a batch or an ask.
+const MAX_POINTS: usize = 10_000;
+/// Largest number of parameter values of a batch or an ask.
+const MAX_NUMBERS: usize = 1_000_000;
 
-/// The first line.
+/// First line: the problem.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Header {
-    pub parameters: Vec<ParameterLine>,
-    pub optimizer: String,
+pub(super) struct Problem {
+    pub parameters: Vec<Parameter>,
+    optimizer: String,
     pub seed: u64,
     pub direction: Direction,
-    /// Points the optimizer proposes at a time; `None`: as many as each ask asks for.
+    /// Points proposed at a time; without it every ask is a batch.
     pub batch: Option<usize>,
 }
 
@@ -30,8 +35,8 @@ pub(super) enum Direction {
 }
 
 impl Direction {
-    /// A value as the optimizers want it, larger is better; and back again.
-    pub fn flip(self, value: f64) -> f64 {
+    /// Returns a value for which larger is better.
+    pub fn merit(self, value: f64) -> f64 {
         match self {
             Direction::Minimize => -value,
             Direction::Maximize => value,
@@ -39,29 +44,79 @@ impl Direction {
     }
 }
 
-/// Most bytes of a line: every line of fewer than 10000 points is far shorter.
-pub const LONGEST_LINE: u64 = 4 << 20;
-/// Most numbers that one ask, or the batch that it is taken from, may have.
-pub(super) const MOST_NUMBERS: usize = 1_000_000;
+impl Problem {
+    /// Checks the problem and returns its optimizer.
+    pub fn check(&self) -> Result<OptimizerKind, String> {
+        let count = self.parameters.len();
+        if count == 0 {
+            return Err("parameters: is empty; there must be at least one".to_owned());
+        }
+        for (i, parameter) in self.parameters.iter().enumerate() {
+            let name = &parameter.name;
+            if self.parameters[..i].iter().any(|other| other.name == *name) {
+                return Err(format!("parameter `{name}`: is given twice; names must differ"));
+            }
+            parameter.check().map_err(|problem| format!("parameter `{name}`: {problem}"))?;
+        }
+        let kind: OptimizerKind =
+            self.optimizer.parse().map_err(|error| format!("optimizer: {error}"))?;
+        let most = kind.most_parameters();
+        if count > most {
+            return Err(format!("parameters: there are {count}; {kind} takes {most} at most"));
+        }
+        if self.batch == Some(0) {
+            return Err(format!("batch: is 0; accepted: 1 to {MAX_POINTS}"));
+        }
+        check_count("batch", self.batch.unwrap_or(1), count)?;
+        Ok(kind)
+    }
+}
 
-/// The value of a point that was never asked.
+/// Checks the number of points of a batch or an ask.
+pub(super) fn check_count(key: &str, points: usize, parameters: usize) -> Result<(), String> {
+    if points <= MAX_POINTS && points * parameters <= MAX_NUMBERS {
+        return Ok(());
+    }
+    Err(format!(
+        "{key}: {points} points of {parameters} parameters; accepted: up to {MAX_POINTS} points \
+         and {MAX_NUMBERS} numbers at once"
+    ))
+}
+
+/// Result of a point that was asked (`id`) or evaluated elsewhere (`values`).
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct KnownValue {
-    pub values: BTreeMap<String, f64>,
-    /// Its value; `null` if the evaluation failed. It may not be left out.
+pub(super) struct PointResult {
+    pub id: Option<usize>,
+    pub values: Option<BTreeMap<String, f64>>,
+    /// `null` if the evaluation failed. Required.
     #[serde(deserialize_with = "Option::deserialize")]
     pub value: Option<f64>,
 }
 
-/// The value of one point.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct PointValue {
-    pub id: u64,
-    /// Its value; `null` if the evaluation failed. It may not be left out.
-    #[serde(deserialize_with = "Option::deserialize")]
-    pub value: Option<f64>,
+/// Point of an answer to `ask`.
+#[derive(Serialize)]
+pub(super) struct Asked {
+    pub id: usize,
+    pub values: Map<String, Value>,
+}
+
+/// Best result so far.
+#[derive(Clone, Serialize)]
+pub(super) struct Best {
+    /// `None` for a point that was not asked.
+    pub id: Option<usize>,
+    pub values: Map<String, Value>,
+    pub value: f64,
+}
+
+/// Answer to `tell`.
+#[derive(Serialize)]
+pub(super) struct Summary {
+    /// Number of results of the line.
+    pub told: usize,
+    pub best: Option<Best>,
+    pub stop: Option<StopReason>,
 }
 
 #[derive(Deserialize)]
@@ -73,54 +128,36 @@ struct AskLine {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TellLine {
-    tell: Vec<Value>,
+    tell: Vec<PointResult>,
 }
 
-/// A line that was understood.
+/// Parsed line.
 pub(super) enum Line {
-    Header(Header),
+    Problem(Problem),
     Ask(usize),
-    Tell(Vec<PointValue>, Vec<KnownValue>),
+    Tell(Vec<PointResult>),
 }
 
 impl Line {
     pub fn parse(text: &str) -> Result<Line, String> {
         let value: Value =
             serde_json::from_str(text).map_err(|error| format!("not a line of JSON: {error}"))?;
-        let has = |key| value.get(key).is_some();
-        if has("parameters") {
-            objects(&value, "parameters")?;
-            read(value, "parameters").map(Line::Header)
-        } else if has("ask") {
-            read(value, "ask").map(|line: AskLine| Line::Ask(line.ask))
-        } else if has("tell") {
-            objects(&value, "tell")?;
-            let line: TellLine = read(value, "tell")?;
-            let (mut asked, mut known) = (Vec::new(), Vec::new());
-            for entry in line.tell {
-                match entry.get("values") {
-                    None => asked.push(read(entry, "tell")?),
-                    Some(_) => known.push(read(entry, "tell")?),
-                }
-            }
-            Ok(Line::Tell(asked, known))
-        } else {
-            Err("not a known line; a line is {\"parameters\":[..],..}, {\"ask\":n} or \
-                 {\"tell\":[..]}"
-                .to_owned())
+        let key = ["parameters", "ask", "tell"].into_iter().find(|key| value.get(key).is_some());
+        match key {
+            Some("parameters") => read(value, "parameters").map(Line::Problem),
+            Some("ask") => read(value, "ask").map(|line: AskLine| Line::Ask(line.ask)),
+            Some(_) => read(value, "tell").map(|line: TellLine| Line::Tell(line.tell)),
+            None => Err("not a known line; accepted: {\"parameters\":[..],..}, {\"ask\":n} and \
+                         {\"tell\":[..]}"
+                .to_owned()),
         }
     }
 }
 
-/// A list in place of an object would be read field by field.
-fn objects(line: &Value, kind: &str) -> Result<(), String> {
-    let entries = line.get(kind).and_then(Value::as_array);
-    match entries.is_none_or(|entries| entries.iter().all(Value::is_object)) {
-        true => Ok(()),
-        false => Err(format!("in the `{kind}` line: every entry must be an object, in braces")),
+fn read<T: DeserializeOwned>(line: Value, key: &str) -> Result<T, String> {
+    // Serde would read an array in place of an object field by field.
+    if line[key].as_array().is_some_and(|entries| !entries.iter().all(Value::is_object)) {
+        return Err(format!("in the `{key}` line: every entry must be an object, in braces"));
     }
-}
-
-fn read<T: DeserializeOwned>(value: Value, kind: &str) -> Result<T, String> {
-    serde_json::from_value(value).map_err(|error| format!("in the `{kind}` line: {error}"))
+    serde_json::from_value(line).map_err(|error| format!("in the `{key}` line: {error}"))
 }

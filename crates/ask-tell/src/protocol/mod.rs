@@ -1,13 +1,11 @@
-//! `optimize ask-tell`: an optimizer behind JSON lines, for anything that can be measured.
+//! Optimizers of named parameters by ask and tell, as lines of JSON.
 //!
-//! The protocol is described in `docs/guide/python.md`. [`Session`] is all of it but the reading
-//! and writing: one line in, at most one line out.
+//! `docs/guide/python.md` describes the lines. [`Session`] is behind `optimize ask-tell` and
+//! `finger_opt.Optimizer`.
 
-mod batch;
-mod decimal;
 mod message;
 mod parameter;
 mod session;
 
-pub use message::LONGEST_LINE;
+pub use message::MAX_LINE_BYTES;
 pub use session::Session;

@@ -1,239 +1,220 @@
-//! A conversation: what has been said, and the answer to the next line.
+//! Session of one optimizer.
 
-use super::batch::Batch;
 use super::message::{
-    Direction, Header, KnownValue, LARGEST_BATCH, LONGEST_LINE, Line, MOST_NUMBERS, PointValue,
+    Asked, Best, Direction, Line, MAX_LINE_BYTES, PointResult, Problem, Summary, check_count,
 };
 use super::parameter::Parameter;
-use crate::{Grid, GridPoint, Observation, Optimizer, OptimizerKind, StopReason, build};
+use crate::{Grid, GridPoint, Observation, Optimizer, build};
+use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The best point told so far.
-struct Best {
-    /// `None` of one that was never asked.
-    id: Option<u64>,
-    point: GridPoint,
-    /// As it was told.
-    value: f64,
-}
-
-/// A conversation with one optimizer, begun or not.
+/// Session of ask and tell that starts with its first line, the problem.
 #[derive(Default)]
 pub struct Session {
-    begun: Option<Begun>,
+    search: Option<Search>,
 }
 
-struct Begun {
-    axes: Vec<Parameter>,
+struct Search {
+    parameters: Vec<Parameter>,
     direction: Direction,
-    /// Points proposed at a time; `None`: as many as are asked.
-    size: Option<usize>,
+    batch: Option<usize>,
     optimizer: Box<dyn Optimizer + Send>,
-    batch: Batch,
-    best: Option<Best>,
-    /// The points that were asked or are to be, with their ids, and those told by their values.
-    seen: BTreeMap<GridPoint, Option<u64>>,
-    /// Told by their values while a batch was open: the optimizer learns of them after it.
+    /// All proposed points by id.
+    proposals: Vec<Proposal>,
+    /// First id of the current batch. The optimizer learns from whole batches, in order.
+    first: usize,
+    /// Number of proposals that were handed out.
+    asked: usize,
+    /// Points evaluated elsewhere.
+    known: BTreeSet<GridPoint>,
+    /// Results of such points that the optimizer receives after the current batch.
     waiting: Vec<Observation>,
+    best: Option<Best>,
+}
+
+struct Proposal {
+    point: GridPoint,
+    /// Result, larger is better: `Some(None)` if the evaluation failed.
+    merit: Option<Option<f64>>,
 }
 
 impl Session {
-    /// One that waits for its first line.
-    pub fn new() -> Self {
-        Session::default()
-    }
-
-    /// The answer to a line, itself a line of JSON without its end; the first line, if it is
-    /// good, has none. A line answered with an `error` has changed nothing.
-    pub fn answer(&mut self, line: &str) -> Option<String> {
-        let answer = self.take(line).unwrap_or_else(|error| Some(json!({"error": error})));
-        answer.map(|answer| answer.to_string())
-    }
-
-    /// The answer to a line that is longer than [`LONGEST_LINE`] bytes.
-    pub fn too_long() -> String {
-        let error = format!("the line is longer than {LONGEST_LINE} bytes, the most of a line");
-        json!({"error": error}).to_string()
-    }
-
-    fn take(&mut self, line: &str) -> Result<Option<Value>, String> {
-        match (Line::parse(line)?, &mut self.begun) {
-            (Line::Header(header), None) => {
-                self.begun = Some(Begun::new(header)?);
-                Ok(None)
+    /// Answers a line with a line of JSON without its end; a valid problem has no answer.
+    ///
+    /// # Errors
+    /// If the line is not accepted; it changes nothing then.
+    pub fn answer(&mut self, line: &str) -> Result<Option<String>, String> {
+        let answer = match (Line::parse(line)?, &mut self.search) {
+            (Line::Problem(problem), None) => {
+                self.search = Some(Search::new(problem)?);
+                return Ok(None);
             }
-            (Line::Header(_), Some(_)) => {
-                Err("the parameters are given already; for others start another process".to_owned())
+            (Line::Problem(_), Some(_)) => {
+                return Err(
+                    "the parameters are given already; for others start another process".to_owned()
+                );
             }
-            (_, None) => Err("the first line must be {\"parameters\":[..],\
-                \"optimizer\":..,\"seed\":..,\"direction\":..}"
-                .to_owned()),
-            (Line::Ask(n), Some(begun)) => begun.ask(n).map(Some),
-            (Line::Tell(asked, known), Some(begun)) => begun.tell(asked, known).map(Some),
-        }
-    }
-}
-
-fn few_enough(points: usize, parameters: usize) -> Result<(), String> {
-    match points.saturating_mul(parameters) {
-        numbers if numbers <= MOST_NUMBERS => Ok(()),
-        _ => Err(format!(
-            "{points} points of {parameters} parameters are more than {MOST_NUMBERS} numbers, the \
-             most at once"
-        )),
-    }
-}
-
-impl Begun {
-    fn new(header: Header) -> Result<Self, String> {
-        if header.parameters.is_empty() {
-            return Err("parameters: is empty; there must be at least one".to_owned());
-        }
-        let mut names = BTreeSet::new();
-        if let Some(twice) = header.parameters.iter().find(|p| !names.insert(&p.name)) {
-            let name = &twice.name;
-            return Err(format!("parameter `{name}`: is given twice; each name may stand once"));
-        }
-        if let Some(size) = header.batch.filter(|size| !(1..=LARGEST_BATCH).contains(size)) {
-            return Err(format!("batch: {size} is not between 1 and {LARGEST_BATCH}"));
-        }
-        let axes =
-            header.parameters.into_iter().map(Parameter::new).collect::<Result<Vec<_>, _>>()?;
-        let kind: OptimizerKind =
-            header.optimizer.parse().map_err(|error| format!("optimizer: {error}"))?;
-        let (found, most) = (axes.len(), kind.most_parameters());
-        if found > most {
-            return Err(format!("parameters: there are {found}; {kind} takes {most} at most"));
-        }
-        few_enough(header.batch.unwrap_or(1), found)?;
-        let grid = Grid::new(axes.iter().map(Parameter::levels).collect());
-        Ok(Begun {
-            axes,
-            direction: header.direction,
-            size: header.batch,
-            optimizer: build(kind, grid, header.seed),
-            batch: Batch::default(),
-            best: None,
-            seen: BTreeMap::new(),
-            waiting: Vec::new(),
-        })
-    }
-
-    fn ask(&mut self, n: usize) -> Result<Value, String> {
-        if n > LARGEST_BATCH {
-            return Err(format!(
-                "ask: {n} is more than {LARGEST_BATCH}, the most that can be asked at once"
-            ));
-        }
-        few_enough(n, self.axes.len())?;
-        let mut asked = self.batch.hand_out(n);
-        if asked.is_empty() && n > 0 {
-            if !self.batch.complete() {
-                let ids = self.batch.untold();
-                return Err(format!(
-                    "ask: tell the values of {ids} first (null for one that failed)"
-                ));
+            (_, None) => {
+                return Err("the first line must be {\"parameters\":[..],\"optimizer\":..,\
+                            \"seed\":..,\"direction\":..}"
+                    .to_owned());
             }
-            let points = self.optimizer.ask(self.size.unwrap_or(n));
-            self.batch = self.batch.next(points);
-            self.seen.extend(self.batch.points().map(|(id, point)| (point.clone(), Some(id))));
-            asked = self.batch.hand_out(n);
-        }
-        let one = |(id, point): (u64, GridPoint)| json!({"id": id, "values": self.values(&point)});
-        Ok(json!({"asked": asked.into_iter().map(one).collect::<Vec<_>>()}))
-    }
-
-    fn tell(&mut self, asked: Vec<PointValue>, known: Vec<KnownValue>) -> Result<Value, String> {
-        let count = asked.len() + known.len();
-        self.batch.check(&asked)?;
-        let known = self.known(known)?;
-        let was_open = !self.batch.complete();
-        for (point, value) in known {
-            self.keep_best(None, &point, value);
-            self.seen.insert(point.clone(), None);
-            let value = value.map(|v| self.direction.flip(v));
-            self.waiting.push(Observation::new(point, value));
-        }
-        for PointValue { id, value } in asked {
-            let point = self.batch.keep(id, value.map(|v| self.direction.flip(v))).clone();
-            self.keep_best(Some(id), &point, value);
-        }
-        if was_open && self.batch.complete() {
-            self.optimizer.tell(&self.batch.observations());
-        }
-        if self.batch.complete() && !self.waiting.is_empty() {
-            self.optimizer.tell(&std::mem::take(&mut self.waiting));
-        }
-        let best = self.best.as_ref().map(
-            |best| json!({"id": best.id, "values": self.values(&best.point), "value": best.value}),
-        );
-        Ok(json!({"told": count, "best": best, "stop": self.stop()}))
-    }
-
-    /// The points told by their values, which must be new.
-    fn known(&self, told: Vec<KnownValue>) -> Result<Vec<(GridPoint, Option<f64>)>, String> {
-        let mut found: BTreeSet<GridPoint> = BTreeSet::new();
-        let mut known = Vec::new();
-        for KnownValue { values, value } in told {
-            let point = self.point(&values)?;
-            let seen = match self.seen.get(&point) {
-                Some(Some(id)) => format!("asked as id {id}"),
-                None if found.insert(point.clone()) => {
-                    known.push((point, value));
-                    continue;
-                }
-                _ => "known".to_owned(),
-            };
-            return Err(format!("tell: a point is told by its values though it is {seen}"));
-        }
-        Ok(known)
-    }
-
-    /// The grid point of values by name.
-    fn point(&self, values: &BTreeMap<String, f64>) -> Result<GridPoint, String> {
-        let fail = |name: &str, problem| Err(format!("tell: `{name}` {problem}"));
-        let named = |name: &str| self.axes.iter().any(|axis| axis.line.name == name);
-        if values.len() > self.axes.len()
-            && let Some(name) = values.keys().find(|name| !named(name))
-        {
-            return fail(name, "is no parameter");
-        }
-        let mut levels = Vec::with_capacity(self.axes.len());
-        for axis in &self.axes {
-            match values.get(&axis.line.name).map(|&value| axis.level(value)) {
-                None => return fail(&axis.line.name, "is missing"),
-                Some(None) => return fail(&axis.line.name, "must be low + k step, up to high"),
-                Some(Some(level)) => levels.push(level),
-            }
-        }
-        Ok(GridPoint(levels))
-    }
-
-    /// Keeps the best: of equals the one with the lower id, and one that was there before.
-    fn keep_best(&mut self, id: Option<u64>, point: &GridPoint, value: Option<f64>) {
-        let Some(value) = value else { return };
-        let better = |best: &Best| {
-            let earlier = id.zip(best.id).is_some_and(|(id, best)| id < best);
-            let (value, known) = (self.direction.flip(value), self.direction.flip(best.value));
-            value > known || (value == known && earlier)
+            (Line::Ask(n), Some(search)) => json!({"asked": search.ask(n)?}),
+            (Line::Tell(results), Some(search)) => json!(search.tell(results)?),
         };
-        if self.best.as_ref().is_none_or(better) {
-            self.best = Some(Best { id, point: point.clone(), value });
+        Ok(Some(answer.to_string()))
+    }
+
+    /// Returns the error of a line of more than [`MAX_LINE_BYTES`].
+    pub fn too_long() -> String {
+        format!("the line is longer than {MAX_LINE_BYTES} bytes")
+    }
+}
+
+impl Search {
+    fn new(problem: Problem) -> Result<Self, String> {
+        let kind = problem.check()?;
+        let grid = Grid::new(problem.parameters.iter().map(Parameter::levels).collect());
+        Ok(Search {
+            parameters: problem.parameters,
+            direction: problem.direction,
+            batch: problem.batch,
+            optimizer: build(kind, grid, problem.seed),
+            proposals: Vec::new(),
+            first: 0,
+            asked: 0,
+            known: BTreeSet::new(),
+            waiting: Vec::new(),
+            best: None,
+        })
+    }
+
+    fn ask(&mut self, n: usize) -> Result<impl Serialize, String> {
+        check_count("ask", n, self.parameters.len())?;
+        if n > 0 && self.asked == self.proposals.len() {
+            self.check_complete()?;
+            let points = self.optimizer.ask(self.batch.unwrap_or(n)).into_iter();
+            self.proposals.extend(points.map(|point| Proposal { point, merit: None }));
+        }
+        let end = self.proposals.len().min(self.asked + n);
+        let ids = std::mem::replace(&mut self.asked, end)..end;
+        let asked = |id: usize| Asked { id, values: self.values(&self.proposals[id].point) };
+        Ok(ids.map(asked).collect::<Vec<_>>())
+    }
+
+    fn check_complete(&self) -> Result<(), String> {
+        const SHOWN: usize = 8;
+        let open = (self.first..self.asked).filter(|&id| self.proposals[id].merit.is_none());
+        let ids: Vec<String> = open.map(|id| id.to_string()).collect();
+        let (shown, more) = (ids[..ids.len().min(SHOWN)].join(", "), ids.len() > SHOWN);
+        match ids.is_empty() {
+            true => Ok(()),
+            false => Err(format!(
+                "ask: tell the values of ids {shown}{} first (null for a failed evaluation)",
+                if more { ", .." } else { "" }
+            )),
         }
     }
 
-    /// Why nothing more can be asked, once all that was asked is told.
-    fn stop(&self) -> Option<&'static str> {
-        let stop = self.optimizer.stop().filter(|_| self.batch.complete());
-        stop.map(|reason| match reason {
-            StopReason::GridExhausted => "space_exhausted",
-            StopReason::Converged => "converged",
-        })
+    fn tell(&mut self, results: Vec<PointResult>) -> Result<Summary, String> {
+        let told = results.len();
+        let (mut points, mut checked) = (BTreeSet::new(), Vec::new());
+        for PointResult { id, values, value } in results {
+            let point = self.point(id, values)?;
+            if !points.insert(point.clone()) {
+                let which = id.map_or("a known point".to_owned(), |id| format!("id {id}"));
+                return Err(format!("tell: {which} is told twice; each point is told once"));
+            }
+            checked.push((id, point, value));
+        }
+        for (id, point, value) in checked {
+            self.update_best(id, &point, value);
+            let merit = value.map(|value| self.direction.merit(value));
+            match id {
+                Some(id) => self.proposals[id].merit = Some(merit),
+                None => {
+                    self.known.insert(point.clone());
+                    self.waiting.push(Observation::new(point, merit));
+                }
+            }
+        }
+        Ok(Summary { told, stop: self.learn(), best: self.best.clone() })
+    }
+
+    /// Passes results on once the batch is complete. Returns the reason why the search ended.
+    fn learn(&mut self) -> Option<crate::StopReason> {
+        let batch = &self.proposals[self.first..];
+        let result = |p: &Proposal| Some(Observation::new(p.point.clone(), p.merit?));
+        let results = batch.iter().map(result).collect::<Option<Vec<_>>>()?;
+        for results in [results, std::mem::take(&mut self.waiting)] {
+            if !results.is_empty() {
+                self.optimizer.tell(&results);
+            }
+        }
+        self.first = self.proposals.len();
+        self.optimizer.stop()
+    }
+
+    /// Returns the point of a result, which must be asked and open, or else new.
+    fn point(
+        &self,
+        id: Option<usize>,
+        values: Option<BTreeMap<String, f64>>,
+    ) -> Result<GridPoint, String> {
+        let problem = match (id, values) {
+            (Some(id), None) => match self.proposals[..self.asked].get(id) {
+                None => format!("id {id} was not asked"),
+                Some(Proposal { merit: Some(_), .. }) => {
+                    format!("id {id} is told twice; each point is told once")
+                }
+                Some(proposal) => return Ok(proposal.point.clone()),
+            },
+            (None, Some(values)) => {
+                let point = self.grid_point(&values).map_err(|error| format!("tell: {error}"))?;
+                let told = "a point is told by its values though it is";
+                match self.proposals.iter().position(|proposal| proposal.point == point) {
+                    Some(id) => format!("{told} asked as id {id}"),
+                    None if self.known.contains(&point) => format!("{told} known"),
+                    None => return Ok(point),
+                }
+            }
+            _ => "an entry must have either `id` or `values`".to_owned(),
+        };
+        Err(format!("tell: {problem}"))
+    }
+
+    fn grid_point(&self, values: &BTreeMap<String, f64>) -> Result<GridPoint, String> {
+        let names: Vec<&str> = self.parameters.iter().map(|one| one.name.as_str()).collect();
+        let accepted = || format!("accepted: {}", names.join(", "));
+        if let Some(name) = values.keys().find(|name| !names.contains(&name.as_str())) {
+            return Err(format!("unknown parameter `{name}`; {}", accepted()));
+        }
+        let level = |parameter: &Parameter| {
+            let value = values.get(&parameter.name);
+            let missing = || format!("parameter `{}` is missing; {}", parameter.name, accepted());
+            parameter.level(*value.ok_or_else(missing)?)
+        };
+        Ok(GridPoint(self.parameters.iter().map(level).collect::<Result<_, _>>()?))
+    }
+
+    /// Keeps the better result: of equal ones that of the lower id or the earlier one.
+    fn update_best(&mut self, id: Option<usize>, point: &GridPoint, value: Option<f64>) {
+        let Some(value) = value else { return };
+        let merit = |value| self.direction.merit(value);
+        let worse = |best: &Best| {
+            let earlier = id.zip(best.id).is_some_and(|(id, best)| id < best);
+            merit(value) < merit(best.value) || value == best.value && !earlier
+        };
+        if !self.best.as_ref().is_some_and(worse) {
+            self.best = Some(Best { id, values: self.values(point), value });
+        }
     }
 
     fn values(&self, point: &GridPoint) -> Map<String, Value> {
-        let values = self.axes.iter().zip(&point.0);
-        values.map(|(axis, &level)| (axis.line.name.clone(), json!(axis.value(level)))).collect()
+        let value = |(parameter, &level): (&Parameter, &u32)| {
+            (parameter.name.clone(), json!(parameter.value(level)))
+        };
+        self.parameters.iter().zip(&point.0).map(value).collect()
     }
 }

@@ -27,17 +27,13 @@ impl Path {
     pub fn new(text: impl Into<String>) -> Result<Self, UnknownPath> {
         let text = text.into();
         let words: Vec<&str> = text.split('.').collect();
-        let found =
-            |number: &&Number| matches(&number.pattern.split('.').collect::<Vec<_>>(), &words);
-        match NUMBERS.iter().find(found) {
-            Some(number) => Ok(Path { text, number }),
+        let all =
+            NUMBERS.iter().flat_map(|number| number.paths().into_iter().map(move |p| (p, number)));
+        let known: Vec<_> = all.map(|(path, number)| (filled(&path, &words), number)).collect();
+        match known.iter().find(|(path, _)| *path == text) {
+            Some((_, number)) => Ok(Path { text, number }),
             None => {
-                let known: Vec<String> = NUMBERS
-                    .iter()
-                    .flat_map(Number::paths)
-                    .map(|path| filled(&path, &words))
-                    .collect();
-                let known: Vec<&str> = known.iter().map(String::as_str).collect();
+                let known: Vec<&str> = known.iter().map(|(path, _)| path.as_str()).collect();
                 Err(UnknownPath(unknown(&text, &known)))
             }
         }
@@ -64,24 +60,18 @@ impl Path {
     }
 }
 
-/// Whether a pattern matches; in it `*` takes one word or more, since names may have dots.
-fn matches(pattern: &[&str], words: &[&str]) -> bool {
-    match (pattern, words) {
-        ([], []) => true,
-        (["*", rest @ ..], [_, words @ ..]) => {
-            matches(rest, words) || !words.is_empty() && matches(pattern, words)
-        }
-        ([first, pattern @ ..], [word, words @ ..]) => {
-            first.split('|').any(|one| one == *word) && matches(pattern, words)
-        }
-        _ => false,
-    }
-}
-
-/// A pattern with the words of a path in place of its `*`.
-fn filled(pattern: &str, words: &[&str]) -> String {
-    let word = |(i, own)| if own == "*" { words.get(i).copied().unwrap_or("*") } else { own };
-    pattern.split('.').enumerate().map(word).collect::<Vec<_>>().join(".")
+/// A path with the words of another in place of each `*`; the first takes several if there are more words,
+/// since names may have dots.
+fn filled(path: &str, words: &[&str]) -> String {
+    let own: Vec<&str> = path.split('.').collect();
+    let (mut at, mut more) = (0, words.len().saturating_sub(own.len()));
+    let fill = |word: &&str| {
+        let end = if *word == "*" { at + 1 + std::mem::take(&mut more) } else { at + 1 };
+        let taken = words.get(at..end).filter(|_| *word == "*");
+        at = end;
+        taken.map_or(word.to_string(), |words| words.join("."))
+    };
+    own.iter().map(fill).collect::<Vec<_>>().join(".")
 }
 
 impl TryFrom<String> for Path {

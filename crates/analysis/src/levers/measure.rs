@@ -81,7 +81,7 @@ impl Question<'_> {
     fn tried(&self, cells: &mut Vec<Cell>) -> Result<(Vec<Tried>, Vec<String>), Impossible> {
         let base = cells[0].clone();
         let (mut tried, mut left_out) = (Vec::new(), Vec::new());
-        for row in rows(self, &base.0.task)? {
+        for row in rows(self, &base.0)? {
             let (mut more, mut values, mut places) = (Vec::new(), [row.value; 2], [0; 2]);
             for (end, bound) in [End::Low, End::High].into_iter().enumerate() {
                 // A chamfer of 0 is the same shape in another form, which moves a window, too.

@@ -6,6 +6,7 @@ use connector::seat::section;
 use input::shipped::{LEVERS, PRIORS};
 use input::units::MM;
 use insertion::evaluation::cell::Priors;
+use insertion::evaluation::evaluator::Specimen;
 use insertion::evaluation::template::Impossible;
 use insertion::task::Task;
 use parameters::numbers::{CLEARANCE, Kind};
@@ -30,14 +31,14 @@ pub struct Row {
 }
 
 /// The rows that question's task, finger and robot have; a key of the space keeps to its bounds there.
-pub fn rows(question: &Question<'_>, task: &Task) -> Result<Vec<Row>, Impossible> {
+pub fn rows(question: &Question<'_>, specimen: &Specimen) -> Result<Vec<Row>, Impossible> {
     let own = Priors::parse(LEVERS.text, LEVERS.file)?.parameters;
     let bench = Priors::parse(PRIORS[0].text, PRIORS[0].file)?.parameters;
     let bench = bench.into_iter().filter(|row| OF_BENCH.contains(&&*row.name));
     let (last, first): (Vec<_>, Vec<_>) =
         own.into_iter().partition(|row| LAST.contains(&&*row.name));
     let row = |mut parameter: Parameter| {
-        let value = present(question, task, &parameter.path)?;
+        let value = present(question, specimen, &parameter.path)?;
         if let Some(of) = question.space.parameters.iter().find(|of| of.key == parameter.path) {
             let source = format!("the space `{}`: {}", question.space.name, of.source);
             let (low, high) = (of.low, of.high);
@@ -49,14 +50,18 @@ pub fn rows(question: &Question<'_>, task: &Task) -> Result<Vec<Row>, Impossible
 }
 
 /// Returns the present value of what a lever sets; `None` if there is no such thing here.
-fn present(question: &Question<'_>, task: &Task, path: &Path) -> Option<f64> {
+fn present(question: &Question<'_>, specimen: &Specimen, path: &Path) -> Option<f64> {
     let Question { evaluator, template, design, .. } = question;
     match path.kind() {
         Kind::File => design.get(path).or_else(|| evaluator.number(template, path)),
-        Kind::Added if *path == CLEARANCE => Some(clearance(task) / MM),
+        Kind::Added if *path == CLEARANCE => Some(clearance(&specimen.task) / MM),
         Kind::Added => Some(0.0),
         Kind::Robot => evaluator.robot.number(path),
-        Kind::Infill | Kind::Finger | Kind::Springs | Kind::Error => None,
+        Kind::Finger => {
+            let mut finger = specimen.finger;
+            finger.number(path).map(|(number, unit)| *number / unit)
+        }
+        Kind::Infill | Kind::Springs | Kind::Error => None,
     }
 }
 
@@ -83,5 +88,46 @@ impl Row {
         let cell = evaluator.under(template, (design, *given), &set).ok()?;
         evaluator.engine.rig(&cell.0.task, &cell.1, &cell.0.finger, 1.0).ok()?;
         Some((value, cell))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use finray::printed::PrintedFinger;
+    use input::shipped::{FINGERS, ROBOTS, SPACES, STIFFNESS, TASKS};
+    use insertion::evaluation::{evaluator::Evaluator, template::Template};
+    use insertion::finger::model::FingerSource;
+    use insertion::space::{Design, Space};
+    use insertion::{robot::Robot, stiffness, surrogate, trial::engine::EngineKind};
+    use parameters::numbers::{CENTRE, TILTING};
+
+    #[test]
+    fn a_spring_of_the_finger_has_a_present_value() {
+        let measured = stiffness::parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap();
+        let printed = PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
+        let evaluator = Evaluator {
+            surrogate: surrogate::fit(&measured, &printed).unwrap().into(),
+            fingers: FingerSource::Paper,
+            templates: vec![Template::parse(TASKS[0].text, TASKS[0].file).unwrap()],
+            robot: Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap(),
+            engine: EngineKind::Direct,
+            cell: None,
+        };
+        let (template, design) = (&evaluator.templates[0], Design::infill(20.0, 10.0));
+        let stiffness = evaluator.predict(&design).unwrap();
+        let specimen = evaluator.specimen(template, &design, stiffness).unwrap();
+        let space = Space::parse(SPACES[0].text, SPACES[0].file).unwrap();
+        let question = Question {
+            evaluator: &evaluator,
+            template,
+            space: &space,
+            design: &design,
+            given: None,
+        };
+        let value = |path| present(&question, &specimen, &Path::new(path).unwrap());
+        assert_eq!(value(TILTING), Some(specimen.finger.rotation[0]));
+        assert_eq!(value(CENTRE), Some(specimen.finger.rcc / MM));
+        assert_eq!(value("finger.stiffness"), None);
     }
 }

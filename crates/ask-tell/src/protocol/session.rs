@@ -186,15 +186,14 @@ impl Search {
 
     fn grid_point(&self, values: &BTreeMap<String, f64>) -> Result<GridPoint, String> {
         let names: Vec<&str> = self.parameters.iter().map(|one| one.name.as_str()).collect();
-        let accepted = || format!("accepted: {}", names.join(", "));
+        let fail = |problem: String| Err(format!("{problem}; accepted: {}", names.join(", ")));
         if let Some(name) = values.keys().find(|name| !names.contains(&name.as_str())) {
-            return Err(format!("unknown parameter `{name}`; {}", accepted()));
+            return fail(format!("unknown parameter `{name}`"));
         }
-        let level = |parameter: &Parameter| {
-            let value = values.get(&parameter.name);
-            let missing = || format!("parameter `{}` is missing; {}", parameter.name, accepted());
-            parameter.level(*value.ok_or_else(missing)?)
-        };
+        if let Some(name) = names.iter().find(|name| !values.contains_key(**name)) {
+            return fail(format!("parameter `{name}` is missing"));
+        }
+        let level = |parameter: &Parameter| parameter.level(values[&parameter.name]);
         Ok(GridPoint(self.parameters.iter().map(level).collect::<Result<_, _>>()?))
     }
 

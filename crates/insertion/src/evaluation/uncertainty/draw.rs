@@ -12,6 +12,8 @@ use parameters::{Parameter, Path};
 use rand::RngExt;
 
 const PURPOSE: &str = "errors";
+/// How much too low the part sits in the gripper: never too high.
+const GRASP_LOW: &str = "cell.grasp_low_mm";
 /// A stream of its own: errors that came later leave those before as they were.
 const PURPOSE_ACROSS: &str = "error of the start along x";
 
@@ -72,12 +74,27 @@ impl Draw {
     /// Returns the insertion under these errors of the cell, each in the unit of its path, and no others.
     pub fn under<'a>(errors: impl IntoIterator<Item = (&'a str, f64)>) -> Self {
         let mut draw = Draw::NOMINAL;
-        for (path, value) in errors {
-            if let Some((.., set)) = ERRORS.iter().find(|(own, ..)| *own == path) {
-                set(&mut draw, value);
-            }
-        }
+        errors.into_iter().for_each(|(path, value)| draw.set(path, value));
         draw
+    }
+
+    fn set(&mut self, path: &str, value: f64) {
+        let conditions = &mut self.conditions;
+        match path {
+            "cell.start_y_mm" => self.offset = value * MM,
+            START_ACROSS => conditions.start_across = value * MM,
+            START_TILT => conditions.start_tilt = value * DEG,
+            SOCKET_YAW => conditions.yaw = value * DEG,
+            "cell.friction_finger_percent" => conditions.friction_finger = 1.0 + value / 100.0,
+            "cell.friction_socket_percent" => conditions.friction_socket = 1.0 + value / 100.0,
+            "cell.clearance_mm" => conditions.clearance = value * MM,
+            "cell.grasp_across_mm" => conditions.grasp_across = value * MM,
+            GRASP_LOW => conditions.grasp_low = value * MM,
+            "cell.compliance_error_sd" => self.stiffness[0] = value,
+            "cell.assembly_error_sd" => self.stiffness[1] = value,
+            // A test holds this to the table of numbers.
+            _ => (),
+        }
     }
 
     /// A grasp by fingers that were to have the predicted stiffness, as it turns out.
@@ -101,73 +118,30 @@ impl Draw {
 /// Half width over which a normal error is varied, in standard deviations: 95 % of it.
 const NORMAL_WIDTH_SD: f64 = 2.0;
 
-/// An error of a cell by its path: between what it is varied, and what it sets.
-type CellError = (&'static str, fn(&Errors) -> [f64; 2], fn(&mut Draw, f64));
-
-fn both(half_width: f64) -> [f64; 2] {
-    [-half_width, half_width]
-}
-
-/// All errors of a cell. The shift along y is not varied: a window spans it.
-const ERRORS: [CellError; 11] = [
-    ("cell.start_y_mm", |_| both(0.0), |draw, value| draw.offset = value * MM),
-    (START_TILT, |_| both(0.0), |draw, value| draw.conditions.start_tilt = value * DEG),
-    (
-        SOCKET_YAW,
-        |errors| both(NORMAL_WIDTH_SD * errors.yaw_sd / DEG),
-        |draw, value| draw.conditions.yaw = value * DEG,
-    ),
-    (
-        START_ACROSS,
-        |errors| both(NORMAL_WIDTH_SD * errors.across_sd / MM),
-        |draw, value| draw.conditions.start_across = value * MM,
-    ),
-    (
-        "cell.friction_finger_percent",
-        |errors| both(100.0 * errors.friction_half_width),
-        |draw, value| draw.conditions.friction_finger = 1.0 + value / 100.0,
-    ),
-    (
-        "cell.friction_socket_percent",
-        |errors| both(100.0 * errors.friction_half_width),
-        |draw, value| draw.conditions.friction_socket = 1.0 + value / 100.0,
-    ),
-    (
-        "cell.clearance_mm",
-        |errors| both(errors.clearance_half_width / MM),
-        |draw, value| draw.conditions.clearance = value * MM,
-    ),
-    (
-        "cell.grasp_across_mm",
-        |errors| both(NORMAL_WIDTH_SD * errors.grasp_across_sd / MM),
-        |draw, value| draw.conditions.grasp_across = value * MM,
-    ),
-    (
-        "cell.grasp_low_mm",
-        |errors| [0.0, errors.grasp_low_max / MM],
-        |draw, value| draw.conditions.grasp_low = value * MM,
-    ),
-    (
-        "cell.compliance_error_sd",
-        |errors| both(NORMAL_WIDTH_SD * errors.stiffness_sd_factor),
-        |draw, value| draw.stiffness[0] = value,
-    ),
-    (
-        "cell.assembly_error_sd",
-        |errors| both(NORMAL_WIDTH_SD * errors.stiffness_sd_factor),
-        |draw, value| draw.stiffness[1] = value,
-    ),
-];
-
 impl Errors {
     /// Returns the errors that are not 0 as numbers that vary evenly: normal ones over two standard
-    /// deviations to either side.
+    /// deviations to either side. The shift along y is not varied: a window spans it.
     pub fn parameters(&self) -> Vec<Parameter> {
-        let varied = |(path, width, _): &CellError| {
-            let [low, high] = width(self);
-            Some(Parameter::uniform(Path::new(*path).ok()?, [low, high])).filter(|_| low < high)
+        let normal = |sd: f64, unit: f64| NORMAL_WIDTH_SD * sd / unit;
+        let friction = 100.0 * self.friction_half_width;
+        let stiffness = NORMAL_WIDTH_SD * self.stiffness_sd_factor;
+        let varied = |(path, half_width): (&str, f64)| {
+            let low = if path == GRASP_LOW { 0.0 } else { -half_width };
+            let varied = Parameter::uniform(Path::new(path).ok()?, [low, half_width]);
+            Some(varied).filter(|one| one.low < one.high)
         };
-        ERRORS.iter().filter_map(varied).collect()
+        let half_widths = [
+            (SOCKET_YAW, normal(self.yaw_sd, DEG)),
+            (START_ACROSS, normal(self.across_sd, MM)),
+            ("cell.friction_finger_percent", friction),
+            ("cell.friction_socket_percent", friction),
+            ("cell.clearance_mm", self.clearance_half_width / MM),
+            ("cell.grasp_across_mm", normal(self.grasp_across_sd, MM)),
+            (GRASP_LOW, self.grasp_low_max / MM),
+            ("cell.compliance_error_sd", stiffness),
+            ("cell.assembly_error_sd", stiffness),
+        ];
+        half_widths.into_iter().filter_map(varied).collect()
     }
 }
 
@@ -249,7 +223,7 @@ mod tests {
     #[test]
     fn every_error_of_the_table_of_numbers_is_set_by_its_path_alone() {
         let paths = paths(Kind::Error);
-        assert_eq!(paths.len(), ERRORS.len());
+        assert_eq!(paths.len(), 11);
         assert_eq!(Draw::under(paths.iter().map(|path| (&**path, 0.0))), Draw::NOMINAL);
         let set: Vec<Draw> = paths.iter().map(|path| Draw::under([(&**path, 1.0)])).collect();
         for (i, draw) in set.iter().enumerate() {

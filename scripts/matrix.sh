@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Stress tests of studies, with statistics: scripts/matrix.sh [kills] [commands] [threads] [disks] [cache]
-# Runs all of them by default. KILLS is the number of kills (443 by default); with
-# ENGINE=direct, the killed studies use the real simulation. OPTIMIZE sets an existing
+# Runs all of them by default. KILLS is the number of kills (443 by default; 200 for
+# commands); with ENGINE=direct, the killed studies use the real simulation. OPTIMIZE sets an existing
 # program, which needs the feature `fake-engine`. PYTHON sets an interpreter with the
 # package; if set, its `measure_window` is killed, too.
 set -euo pipefail

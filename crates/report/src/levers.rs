@@ -86,6 +86,8 @@ const WIDTH: u32 = 640;
 const ROW: u32 = 42;
 const HEAD_AND_FOOT: u32 = 110;
 const LEFT: u32 = 220;
+/// Size of the words: 12 pixels where the diagram is as wide as it was drawn.
+const TEXT: u32 = 15;
 
 /// Draws the ranges at both ends of each lever as bars from the range of the finger as it is, largest
 /// span first; the infill's in a colour of its own, grey what is too little to matter.
@@ -115,13 +117,13 @@ fn draw(area: &Area<'_>, levers: &Levers, bars: &[Bar<'_>]) -> Drawn {
         let y = -(row as f64);
         let now = lever.map(|lever| format!(", now at {}", lever.amount(lever.value)));
         let moves = format!("moves {span_mm:.1} mm{}", now.unwrap_or_default());
-        for (words, size, ink, down) in [(*name, 14, ink, 0.32), (&moves, 13, MUTED, 0.7)] {
-            let style = text_style(size, ink, HPos::Left, VPos::Center);
+        for (words, ink, down) in [(*name, ink, 0.32), (&moves, MUTED, 0.7)] {
+            let style = text_style(TEXT, ink, HPos::Left, VPos::Center);
             label(&mut chart, (left, y - down), (8 - LEFT as i32, 0), words, &style)?;
         }
         for ((mm, words), top) in ends.iter().zip([y - 0.13, y - 0.51]) {
             let (by, anchor) = if *mm < base { (-5, HPos::Right) } else { (5, HPos::Left) };
-            let style = text_style(13, ink, anchor, VPos::Center);
+            let style = text_style(TEXT, ink, anchor, VPos::Center);
             bar(&mut chart, [base, *mm], [top, top - 0.36], fill.rgb().mix(share).filled())?;
             label(&mut chart, (*mm, top - 0.18), (by, 0), words, &style)?;
         }

@@ -47,7 +47,7 @@ fn elementary_functions_and_draws_are_not_the_systems() {
     let mut found = Vec::new();
     for folder in ["crates", "src", "lab/src", "python/src"] {
         sources(&root.join(folder), &mut |path, text| {
-            // Its normal numbers take the system's logarithm; one test compares ours with them.
+            // Its numbers take the system's logarithm; `normal.rs` rounds them.
             let drawn = text.contains("rand_distr::") && !path.ends_with("ask-tell/src/normal.rs");
             found.extend(drawn.then(|| format!("{}: rand_distr", path.display())));
             let lines = text.lines().enumerate().filter(|(_, line)| calls_the_system(line));

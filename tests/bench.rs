@@ -200,13 +200,9 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
     assert!(next.succeeds().starts_with("mine: 2 fingers measured"), "{}", next.stdout);
     let found = line(&format!("calibrate --json {few} own/bench.csv")).json();
     assert_eq!(found["tasks"][0]["task"], "mine");
-    // Without the comment a study of these measurements knows it.
     let text = folder.read("own/bench.csv").replace("# task mine: mine.toml\n", "");
     folder.file("hand.csv", text);
     line(&format!("next {few} hand.csv")).fails(2, &["no file is known of the task `mine`"]);
-    let study = "--budget 12 --quiet --task own/mine.toml";
-    line(&format!("{study} {few} hand.csv")).succeeds();
-    assert!(line(&format!("next {few} hand.csv")).succeeds().starts_with("mine: 2 fingers"));
     // A file that has gone, or has another task, is not taken for it.
     folder.file("own/mine.toml", own.replace("\"mine\"", "\"other\""));
     line("measure check own/bench.csv").fails(2, &["is called `other`", "# task mine: .."]);

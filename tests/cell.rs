@@ -77,8 +77,8 @@ fn what_does_not_go_with_a_cell_is_named() {
     let tilt = row("tilt", "task.strategy.tilt_deg", "value", odd, false);
     let tilted = folder.file("tilted.toml", cell(&tilt));
     for (more, parts) in [
-        (format!("--cell {file} --robot rigid"), ["--cell holds a robot", "--robot"]),
-        (format!("--cell {bare}"), ["bare.toml: robot: is missing", "[robot]"]),
+        (format!("--cell {file} --robot rigid"), ["--cell contains a robot", "--robot"]),
+        (format!("--cell {bare}"), ["bare.toml: robot: missing", "[robot]"]),
         (format!("--cell {wild}"), ["wild.toml: [robot]", "arms"]),
         (format!("--cell {tilted}"), ["tilted.toml: tilt", "must lie in"]),
         ("--cell none.toml".to_owned(), ["none.toml", "cannot read the cell"]),
@@ -87,7 +87,7 @@ fn what_does_not_go_with_a_cell_is_named() {
     }
     let few = "--task usb --engine fake --measurements published --simulations 24 --samples 20";
     let calibrate = format!("calibrate {few} --json --no-cache --priors {file}");
-    optimize_line(&format!("{calibrate} --robot servo")).fails(2, &["--priors holds a robot"]);
+    optimize_line(&format!("{calibrate} --robot servo")).fails(2, &["--priors contains a robot"]);
     optimize_line(&format!("{calibrate} --cell {file}")).fails(2, &["so does --cell"]);
 }
 

@@ -69,7 +69,7 @@ fn what_was_hidden_is_found_and_goes_into_every_command() {
     let evaluate = format!("evaluate --task usb --density 20 --direction 10 --json --cell {cell}");
     let with = optimize_line(&evaluate).json();
     assert_eq!(with["cell"], "cell");
-    optimize_line(&format!("{evaluate} --robot servo")).fails(2, &["--cell holds a robot"]);
+    optimize_line(&format!("{evaluate} --robot servo")).fails(2, &["--cell contains a robot"]);
 }
 
 #[test]

@@ -116,7 +116,6 @@ fn recorded() -> impl Strategy<Value = Recorded> {
                 hull_distance: k.4,
             },
             tasks,
-            refused: None,
             timing: Timing {
                 datetime_start: "2026-01-02T03:04:05.678901".to_owned(),
                 datetime_complete: "2026-01-02T03:04:06.000000".to_owned(),

@@ -2,17 +2,17 @@
 
 use crate::call::{interruptible, read, released, watched};
 use crate::errors::{InputError, Refused, StudyError, raise};
-use ::study::{Ending, SOURCES, StudyRecord, evaluations_csv};
+use ::study::{SOURCES, StudyRecord, evaluations_csv};
 use finger_opt::command::parse;
 use finger_opt::commands::resume;
 use finger_opt::context::Context;
 use finger_opt::failure::Failure;
 use finger_opt::keywords::request;
 use finger_opt::program::program;
-use finger_opt::studies::guided::{self, NotTaken, Order};
-use finger_opt::studies::recommended::{Advice, Recommendation};
+use finger_opt::studies::ask_tell::{self, AskTellStudy, Order, RejectedResult};
+use finger_opt::studies::recommended;
 use finger_opt::studies::request::AnyStudy;
-use finger_opt::studies::summary::{Summary, word};
+use finger_opt::studies::summary::summary;
 use finger_opt::studies::text;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -48,7 +48,7 @@ pub fn perform<'py>(
     stop: &Stop,
 ) -> PyResult<Bound<'py, PyBytes>> {
     let work = work.to_vec();
-    let done = watched(py, &stop.0, || guided::perform(&work, worker, &stop.0))?;
+    let done = watched(py, &stop.0, || ask_tell::perform(&work, worker, &stop.0))?;
     // Ended by `stop`: nobody pressed Ctrl-C here.
     let failed = |failure| match failure {
         Failure::Interrupted(_) => StudyError::new_err(failure.to_string()),
@@ -139,7 +139,7 @@ impl Asked {
         let open = || {
             let open = self.study.open(workers)?;
             open.warn(&Context::terminal(self.shown.json, true, program))?;
-            guided::Guided::new(open)
+            AskTellStudy::new(open)
         };
         let opened = released(py, open)?.map_err(raise)?;
         Ok(Guided { open: Mutex::new(Some(opened)), shown: self.shown })
@@ -177,11 +177,11 @@ impl Recorded {
     }
 
     fn best(&self) -> String {
-        json!(Recommendation::best(&Answer::of(&self.record))).to_string()
+        recommended::best(&Answer::of(&self.record)).to_string()
     }
 
     fn answer(&self) -> String {
-        json!(Advice::of(&Answer::of(&self.record), &self.folder)).to_string()
+        recommended::advice(&Answer::of(&self.record), &self.folder).to_string()
     }
 
     /// The text of `evaluations.csv`.
@@ -191,23 +191,23 @@ impl Recorded {
 
     /// The answer as a piece of HTML.
     fn card(&self) -> String {
-        report::card(&self.record, &self.folder)
+        report::card(&Answer::of(&self.record), &self.folder)
     }
 }
 
 /// A study that is open and whose measuring the caller does.
 #[pyclass(frozen)]
 pub struct Guided {
-    open: Mutex<Option<guided::Guided>>,
+    open: Mutex<Option<AskTellStudy>>,
     /// Whether its result is printed as JSON.
     shown: Shown,
 }
 
 /// Work to be measured (none: wait for a result), and how the study ended, if it did.
-type Next<'py> = (Vec<(u64, Bound<'py, PyBytes>)>, Option<&'static str>);
+type Next<'py> = (Vec<(u64, Bound<'py, PyBytes>)>, Option<String>);
 
 impl Guided {
-    fn study(&self) -> MutexGuard<'_, Option<guided::Guided>> {
+    fn study(&self) -> MutexGuard<'_, Option<AskTellStudy>> {
         self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -215,21 +215,12 @@ impl Guided {
     fn with<T: Send>(
         &self,
         py: Python<'_>,
-        what: impl FnOnce(&mut guided::Guided) -> T + Send,
+        what: impl FnOnce(&mut AskTellStudy) -> T + Send,
     ) -> PyResult<T> {
         let done = released(py, || self.study().as_mut().map(what))?;
         done.ok_or_else(|| StudyError::new_err("the study is closed"))
     }
 }
-
-const ENDINGS: [Ending; 6] = [
-    Ending::BudgetSpent,
-    Ending::SpaceExhausted,
-    Ending::Converged,
-    Ending::Settled,
-    Ending::NothingInserts,
-    Ending::Interrupted,
-];
 
 #[pymethods]
 impl Guided {
@@ -244,15 +235,18 @@ impl Guided {
                 let bytes = |(proposal, work): (u64, Vec<u8>)| (proposal, PyBytes::new(py, &work));
                 (work.into_iter().map(bytes).collect(), None)
             }
-            Order::Finish(ending) => (Vec::new(), Some(word(ending))),
+            Order::Finish(ending) => {
+                let ending = json!(ending).as_str().map(str::to_owned);
+                (Vec::new(), ending)
+            }
         })
     }
 
     fn take(&self, py: Python<'_>, proposal: u64, result: &[u8]) -> PyResult<bool> {
         let result = result.to_vec();
         self.with(py, |study| study.take(proposal, &result))?.map_err(|why| match why {
-            NotTaken::Refused(error) => Refused::new_err(error.to_string()),
-            NotTaken::Failed(failure) => raise(failure),
+            RejectedResult::Refused(error) => Refused::new_err(error.to_string()),
+            RejectedResult::Failed(failure) => raise(failure),
         })
     }
 
@@ -270,21 +264,20 @@ impl Guided {
 
     /// Output of the command at the end, and why it fails all the same, if so.
     fn finish(&self, py: Python<'_>, ending: &str) -> PyResult<(String, Option<String>)> {
-        let ending = ENDINGS.into_iter().find(|known| word(*known) == ending);
-        let ending = ending.ok_or_else(|| InputError::new_err("ending: is none"))?;
+        let ending = serde_json::from_value(json!(ending));
+        let ending = ending.map_err(|error| InputError::new_err(format!("ending: {error}")))?;
         let finish =
             |stop: &AtomicBool| self.study().as_mut().map(|study| study.finish(ending, stop));
         let done = interruptible(py, finish)?;
         let ended = done.ok_or_else(|| StudyError::new_err("the study is closed"))?;
         let ended = ended.map_err(raise)?;
         let unusable = ended.unusable.as_ref().map(ToString::to_string);
-        let around = interruptible(py, |stop: &AtomicBool| ended.around(stop))?.map_err(raise)?;
+        let answer = Answer::of(&ended.record);
+        let analyse = |stop: &AtomicBool| ended.analyse(&answer, stop);
+        let analyses = interruptible(py, analyse)?.map_err(raise)?;
         let text = match self.shown.json {
-            true => {
-                let answer = Answer::of(&ended.record);
-                json!(Summary::new(&ended, &answer, &around)).to_string() + "\n"
-            }
-            false => text::ended(&ended, self.shown.verbose) + &text::around(&around),
+            true => summary(&ended, &answer, &analyses).to_string() + "\n",
+            false => text::ended(&ended, &answer, self.shown.verbose) + &text::analyses(&analyses),
         };
         Ok((text, unusable))
     }

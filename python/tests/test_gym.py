@@ -90,7 +90,7 @@ def test_an_episode_ends_and_says_so(env):
 
 
 def test_what_cannot_be_is_refused(fake):
-    with pytest.raises(fo.InputError, match="simulates nothing"):
+    with pytest.raises(fo.InputError, match="no driven simulation"):
         fo.gym.InsertionEnv("usb", 20, 10, **fake)
     with pytest.raises(fo.InputError, match="offset_mm"):
         fo.gym.InsertionEnv("usb", 20, 10, offset_mm=(1, -1))

@@ -222,7 +222,7 @@ impl Request {
             polish: self.polish,
             batch: self.batch.unwrap_or(DEFAULT_BATCH),
             asynchronous: self.asynchronous,
-            conclusion: self.run.conclusion(setup, None)?,
+            conclusion: self.run.conclusion(setup, None),
             provenance: setup.provenance(),
             space: setup.space.clone(),
         };

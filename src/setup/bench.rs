@@ -1,4 +1,4 @@
-//! Predictions of every finger from few measurements: simulations, measurements, priors together.
+//! Bench predictions of every finger from simulations, measurements and priors.
 
 use super::files::find;
 use super::request::SetupRequest;
@@ -20,11 +20,10 @@ use insertion::space::Design;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Priors unless others are named.
+/// Default priors.
 pub const DEFAULT_PRIORS: &str = "bench";
 
-/// Fingers on the bench: of which tasks, and what was measured of them. Without tasks it is the one
-/// that the measurements are of.
+/// Tasks and measurements of a bench; without tasks, the task of the measurements.
 #[derive(Debug, Clone, clap::Args)]
 #[command(mut_arg("tasks", |task| task.required(false).default_value("").hide_default_value(true).help(
     "Task: ket8, ket12, rj45, usb, or the path of a task file; several by commas [default: that of \
@@ -34,43 +33,43 @@ pub struct BenchRequest {
     /// Tasks, robot, space, finger model.
     #[command(flatten)]
     pub setup: SetupRequest,
-    /// What was measured on the bench: published, or the path of a file
+    /// Bench measurements: published, or the path of a file
     #[arg(long, value_name = "FILE")]
     pub measurements: String,
 }
 
-/// How a calibration is computed.
+/// Options of a calibration.
 #[derive(Debug, Clone, clap::Args)]
 #[command(mut_arg("cache", |cache| cache.help(
     "Folder of simulations shared with studies; safe to delete [default: results/.cache]"
 )))]
-#[command(mut_arg("no_cache", |off| off.help("Simulate anew, and keep nothing")))]
+#[command(mut_arg("no_cache", |off| off.help("Simulate again and store nothing")))]
 pub struct HowCalibrated {
-    /// What nobody measured, and its bounds: bench, or the path of a file
+    /// Priors of the parameters that were not measured: bench, or the path of a file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_PRIORS)]
     pub priors: String,
-    /// How much is computed.
+    /// Effort.
     #[command(flatten)]
     pub effort: EffortRequest,
     /// Seed; the same seed gives the same answer
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
-    /// Where simulations are kept.
+    /// Cache of simulations.
     #[command(flatten)]
     pub cache: CacheRequest,
 }
 
 pub(crate) struct Prepared<'a> {
-    /// The tasks' fingers, in order.
+    /// Fingers of the tasks, in order.
     pub subjects: Vec<Subject>,
     /// Meaning of each coordinate.
     pub layout: Layout,
-    /// How to sample.
+    /// Settings of the sampler.
     pub settings: Settings<'a>,
 }
 
 impl BenchRequest {
-    /// The setup, of the task of these measurements if none is given.
+    /// Returns the setup, by default of the task of the measurements.
     fn setup(&self, measurements: &Source, priors: &Priors) -> Result<Setup, Failure> {
         if !self.setup.tasks.is_empty() {
             return self.setup.setup_with(Some(priors));
@@ -81,13 +80,13 @@ impl BenchRequest {
 }
 
 impl HowCalibrated {
-    /// Simulations per task.
+    /// Returns the simulations per task.
     pub fn simulations(&self) -> usize {
         self.effort.count()
     }
 
-    /// Simulates the tasks, and reads what was measured on them; `more` are fingers that are
-    /// asked for beside those of the space.
+    /// Simulates the tasks and reads their measurements; `more` are fingers to predict besides those of the
+    /// space.
     pub(crate) fn prepare<'a>(
         &self,
         (bench, measurements): (&BenchRequest, &Source),
@@ -99,48 +98,49 @@ impl HowCalibrated {
         let setup = bench.setup(measurements, &priors)?;
         setup.evaluator.check_paths(&priors, &source.file).map_err(Failure::input)?;
         let experiments = measured::lines(measurements, &setup.task_names())?;
-        let effort = self.effort.or(None)?;
-        let ground = Ground {
+        let effort = self.effort.or(None);
+        let calibration = CalibrationContext {
             setup: &setup,
             priors: &priors,
             simulations: usize::from(effort.simulations),
             seed: self.seed,
-            cache: self.cache.folder(&setup)?,
+            cache: self.cache.folder(&setup),
             context,
         };
-        let (subjects, layout) = ground.subjects(&measurements.file, &experiments, more)?;
+        let (subjects, layout) = calibration.subjects(&measurements.file, &experiments, more)?;
         Ok(Prepared { subjects, layout, settings: settings(effort, self.seed, context.stop) })
     }
 }
 
-/// A calibration with fingers left out.
+/// Returns the progress of a calibration with fingers left out.
 pub(crate) fn folds(done: usize, of: usize) -> Part {
     Part { what: "fingers left out".to_owned(), done, of, cost: cost::FOLD }
 }
 
-pub(crate) struct Ground<'a> {
+/// Setup, priors and simulations of a calibration.
+pub(crate) struct CalibrationContext<'a> {
     /// Tasks, robot, fingers, space.
     pub setup: &'a Setup,
-    /// What nobody measured.
+    /// Priors of the parameters that were not measured.
     pub priors: &'a Priors,
     /// Simulations per task.
     pub simulations: usize,
-    /// Names their set.
+    /// Seed of the simulations.
     pub seed: u64,
-    /// Where they are kept, if they are.
+    /// Folder of the cache.
     pub cache: Option<PathBuf>,
-    /// What may cancel it, and who sees how far it is.
+    /// Cancellation and progress.
     pub context: &'a Context<'a>,
 }
 
-impl<'a> Ground<'a> {
+impl<'a> CalibrationContext<'a> {
     fn simulation(&self, template: &'a Template) -> Simulation<'a> {
         let evaluator = &self.setup.evaluator;
         let parameters = self.priors.of(&template.task.name);
         Simulation::new(evaluator, template, parameters, self.cache.clone(), self.context.stop)
     }
 
-    /// The tasks' fingers and their parameters; `measurements` is the file's name.
+    /// Returns the fingers of the tasks and their parameters; `measurements` is the name of the file.
     pub fn subjects(
         &self,
         measurements: &str,

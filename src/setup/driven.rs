@@ -1,4 +1,4 @@
-//! A simulated insertion that a caller drives.
+//! Simulated insertion driven by a caller.
 
 use super::finger::FingerRequest;
 use super::request::SetupRequest;
@@ -10,13 +10,12 @@ use insertion::trial::{Driven, Grasp, State};
 use nalgebra::Vector3;
 use std::sync::atomic::AtomicBool;
 
-/// Returns the error of an engine that simulates nothing that could be driven.
+/// Returns the error for an engine without a driven simulation.
 pub(crate) fn undriven() -> Failure {
-    Failure::usage("this engine simulates nothing that could be driven; use --engine direct")
+    Failure::usage("this engine has no driven simulation; use --engine direct")
 }
 
-/// A grasped part in front of its socket, which a caller commands step by step: no command of the
-/// command line has it.
+/// Grasped part in front of its socket, commanded step by step.
 pub struct Insertion {
     driven: Driven,
     /// The taught start, m.
@@ -24,10 +23,10 @@ pub struct Insertion {
 }
 
 impl Insertion {
-    /// A part between these fingers.
+    /// Returns a part between these fingers.
     ///
     /// # Errors
-    /// If task, robot and finger cannot be simulated, or the engine simulates nothing; if `stop` is
+    /// If task, robot and finger cannot be simulated, or the engine has no driven simulation; if `stop` is
     /// set meanwhile.
     pub fn new(
         setup: &SetupRequest,
@@ -44,12 +43,12 @@ impl Insertion {
         Ok(Insertion { driven, taught: taught.map_or(0.0, tolerance::offset) })
     }
 
-    /// Begins anew, with the start shifted by so much along y, mm.
+    /// Restarts with the start shifted along y, mm.
     pub fn start(&mut self, offset_mm: f64) -> State {
         self.driven.start(self.taught + offset_mm * MM)
     }
 
-    /// Commands a velocity of the TCP, mm/s, for a control step.
+    /// Commands a velocity of the TCP, mm/s, for one control step.
     pub fn step(&mut self, velocity_mm_per_s: [f64; 3]) -> State {
         self.driven.step(Vector3::from(velocity_mm_per_s) * MM)
     }

@@ -1,4 +1,4 @@
-//! From names to files: shipped ones, or those at a path.
+//! Input files by shipped name or path.
 
 use crate::failure::Failure;
 use finray::printed::PrintedFinger;
@@ -12,12 +12,12 @@ use insertion::surrogate::{self, Model};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Finger file used unless another is named.
+/// Default finger file.
 pub const DEFAULT_FINGER: &str = "finray9";
 
-/// The finger file of a setup: one that fingers are computed from, else the shipped one.
+/// Finger file of a setup: the one of computed fingers, else the shipped one.
 pub(crate) struct Fingers {
-    /// The file's text, if fingers are computed.
+    /// Text of the file, if fingers are computed.
     pub source: Option<Source>,
     file: FingerFile,
 }
@@ -49,10 +49,10 @@ impl Fingers {
     }
 }
 
-/// The measurements the surrogate is fitted to: those at `path`, else those that the finger file names.
+/// Returns the stiffness measurements for the surrogate: those at `path`, else those that the finger file names.
 ///
 /// # Errors
-/// If they cannot be read, or the finger file names none: those of another finger are not its own.
+/// If they cannot be read, or the finger file names none.
 pub fn stiffness_data(path: Option<&str>, finger: &PrintedFinger) -> Result<Source, Failure> {
     let find = |name: &str| find("stiffness data", STIFFNESS, name);
     match (path, &finger.measured) {
@@ -66,36 +66,36 @@ pub fn stiffness_data(path: Option<&str>, finger: &PrintedFinger) -> Result<Sour
         },
         (None, None) => Err(Failure::in_file(
             &finger.file,
-            "no `measured` names a table of its measured fingers; give one there or by \
-             --stiffness-data: one finger is enough",
+            "key `measured` (table of measured fingers) is missing; add it, or give --stiffness-data: one \
+             finger is enough",
         )),
     }
 }
 
-/// The shipped file of that name, or the file at that path.
+/// Returns the shipped file of that name, or the file at that path.
 pub fn find(kind: &'static str, shipped: &[Shipped], name: &str) -> Result<Source, Failure> {
     shipped::resolve(kind, shipped, name).map_err(Failure::input)
 }
 
-/// The robot of that name, or of the file at that path.
+/// Reads the robot of that name, or of the file at that path.
 pub fn robot(name: &str) -> Result<Robot, Failure> {
     let source = find("robot", ROBOTS, name)?;
     Robot::parse(&source.text, &source.file).map_err(Failure::input)
 }
 
-/// The finger of that name, or of the file at that path.
+/// Reads the finger of that name, or of the file at that path.
 pub fn printed_finger(name: &str) -> Result<PrintedFinger, Failure> {
     let source = find("finger", FINGERS, name)?;
     PrintedFinger::parse(&source.text, &source.file).map_err(Failure::input)
 }
 
-/// A model and what it was fitted to.
+/// Stiffness model with the data and the finger of its fit.
 type Fit = (Source, PrintedFinger, Arc<Model>);
 
-/// The last fit, which the next evaluation mostly needs again.
+/// Last fit, which the next evaluation usually needs again.
 static LAST: Mutex<Option<Fit>> = Mutex::new(None);
 
-/// Fits the stiffness model to a CSV of measurements of such fingers.
+/// Fits the stiffness model to a CSV of measurements of a finger.
 pub fn surrogate(data: &Source, finger: &PrintedFinger) -> Result<Arc<Model>, Failure> {
     let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((known, of, model)) = &*last()

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use study::write_file;
 
-/// What is made of a recorded trial.
+/// Outputs of a recorded trial.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct FilmRequest {
     /// Record the trial: a page that plays it, or a table of every millisecond
@@ -18,14 +18,14 @@ pub struct FilmRequest {
     /// Draw force against depth
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
-    /// Give the page that plays it in the result
+    /// Include the page that plays it in the result
     #[arg(long = "film", hide = true)]
     pub page: bool,
 }
 
 impl FilmRequest {
-    /// Records the trial at this offset and writes what was asked for; `None` if nothing was. The page
-    /// is there if it is to be kept.
+    /// Records the trial at this offset and writes the requested outputs; `None` if there are none. The page is
+    /// returned if it was requested.
     pub(crate) fn record(
         &self,
         rig: &dyn Rig,
@@ -68,11 +68,11 @@ fn recordable(text: &str) -> Result<PathBuf, String> {
     filmable(&file).map(|()| file)
 }
 
-/// Whether a trial can be recorded into a file of this name.
+/// Checks that a trial can be recorded into a file of this name.
 fn filmable(file: &Path) -> Result<(), String> {
     match extension(file).as_deref() {
         Some("html" | "csv") => Ok(()),
-        _ => Err("its name must end with .html or .csv, which says what is written".into()),
+        _ => Err("the name must end with .html or .csv".into()),
     }
 }
 
@@ -89,7 +89,7 @@ pub(crate) fn film<'a>(
     Film { label, task: &specimen.task, pad: &specimen.finger.pad, recording }
 }
 
-/// Returns the words for a shifted start.
+/// Returns a shifted start as text.
 pub(crate) fn shifted(offset_mm: f64) -> String {
     if offset_mm == 0.0 {
         return "nominal start".to_owned();

@@ -1,4 +1,4 @@
-//! Which finger a trial or an evaluation is of.
+//! Finger of a trial or an evaluation.
 
 use super::Setup;
 use crate::failure::Failure;
@@ -11,23 +11,18 @@ use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::Prediction;
 use report::answer::lines;
 use serde::{Serialize, Serializer};
+use serde_json::json;
 use std::ops::RangeInclusive;
 
-/// Stiffnesses that a caller may give in place of an infill, N/mm.
+/// Accepted stiffnesses in place of an infill, N/mm.
 const STIFFNESS_N_PER_MM: RangeInclusive<f64> = 1e-6..=1e6;
 
 fn stiffness(text: &str) -> Result<f64, String> {
-    given_stiffness(text.parse().unwrap_or(f64::NAN))
+    let given = text.parse().ok().filter(|n_per_mm| STIFFNESS_N_PER_MM.contains(n_per_mm));
+    given.ok_or_else(|| "a stiffness is a number above 0, 1e-6 to 1e6, in N/mm".to_owned())
 }
 
-fn given_stiffness(n_per_mm: f64) -> Result<f64, String> {
-    match STIFFNESS_N_PER_MM.contains(&n_per_mm) {
-        true => Ok(n_per_mm),
-        false => Err("a stiffness is a number above 0, 1e-6 to 1e6, in N/mm".to_owned()),
-    }
-}
-
-/// A number by its key, as `KEY=VALUE`.
+/// Parses a setting, `KEY=VALUE`.
 pub(crate) fn setting(text: &str) -> Result<(String, f64), String> {
     let parts = text.split_once('=').map(|(key, value)| (key.trim(), value.trim().parse()));
     match parts {
@@ -63,7 +58,7 @@ impl InfillRequest {
     }
 }
 
-/// Which finger: by its infill, or by its springs.
+/// Finger, by its infill or by its stiffness.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct FingerRequest {
     /// Its infill.
@@ -82,7 +77,7 @@ pub struct FingerRequest {
     pub set: Vec<(String, f64)>,
 }
 
-/// A finger on a task, and where its stiffness comes from.
+/// Finger on a task, with the source of its stiffness.
 pub struct Chosen {
     /// Task and finger.
     pub specimen: Specimen,
@@ -90,9 +85,9 @@ pub struct Chosen {
     pub robot: String,
     /// Name of the cell, if one is given.
     pub cell: Option<String>,
-    /// Where its springs come from that were not measured.
+    /// Source of its stiffnesses that were not measured.
     pub finger_model: FingerModelKind,
-    /// All that names the design: infill and what was set; empty for a stiffness alone.
+    /// Infill and settings; empty if only a stiffness is given.
     pub design: Design,
     /// Settings beside the infill.
     pub set: Design,
@@ -105,7 +100,7 @@ impl FingerRequest {
         self.by(setup, &setup.evaluator)
     }
 
-    /// The same finger by the models of another evaluator of the same setup.
+    /// Returns the finger by the models of another evaluator of the setup.
     pub(crate) fn by(&self, setup: &Setup, evaluator: &Evaluator) -> Result<Chosen, Failure> {
         let template = setup.only_task()?;
         let mut infill = Design::default();
@@ -121,13 +116,13 @@ impl FingerRequest {
         let set = self.settings(setup)?;
         let mut design = set.clone();
         design.0.extend(infill.0);
-        let springs = self.springs()?;
+        let springs = self.springs();
         let given = springs.is_some();
         let stiffness = match springs {
             Some(_) if evaluator.fingers.kind() == FingerModelKind::Computed => {
                 return Err(Failure::usage(
-                    "--stiffness-compliance and --stiffness-assembly are springs of the finger \
-                     model `paper`; --finger-model computed needs --density and --direction alone",
+                    "--stiffness-compliance and --stiffness-assembly need the finger model `paper`; \
+                     --finger-model computed takes --density and --direction only",
                 ));
             }
             Some(given) => given,
@@ -148,22 +143,13 @@ impl FingerRequest {
         })
     }
 
-    fn springs(&self) -> Result<Option<Prediction>, Failure> {
-        match (self.stiffness_compliance, self.stiffness_assembly) {
-            (Some(compliance), Some(assembly)) => {
-                for given in [compliance, assembly] {
-                    given_stiffness(given).map_err(Failure::usage)?;
-                }
-                Ok(Some(Prediction::exact(compliance * N_PER_MM, assembly * N_PER_MM)))
-            }
-            (None, None) => Ok(None),
-            _ => Err(Failure::usage(
-                "--stiffness-compliance and --stiffness-assembly go together: give both",
-            )),
-        }
+    /// Returns the given stiffness.
+    fn springs(&self) -> Option<Prediction> {
+        let (compliance, assembly) = self.stiffness_compliance.zip(self.stiffness_assembly)?;
+        Some(Prediction::exact(compliance * N_PER_MM, assembly * N_PER_MM))
     }
 
-    /// Settings beside the infill; a key of the space must keep to its bounds there.
+    /// Returns the settings without the infill; keys of the space must lie within its bounds.
     fn settings(&self, setup: &Setup) -> Result<Design, Failure> {
         let mut set = Design::default();
         for (key, value) in &self.set {
@@ -176,18 +162,18 @@ impl FingerRequest {
                 check(setup, "--set", key, *value)?;
             }
             if set.0.insert(key.clone(), *value).is_some() {
-                return Err(Failure::usage(format!("--set {key}: is given twice")));
+                return Err(Failure::usage(format!("--set {key}: given twice")));
             }
         }
         Ok(set)
     }
 }
 
-/// A value must lie within the bounds its key has in the space.
+/// Checks that a value lies within the bounds of its key in the space.
 fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure> {
     let parameters = &setup.space.parameters;
     match parameters.iter().find(|parameter| parameter.key == key) {
-        // Written so that a NaN is outside.
+        // NaN is outside.
         Some(parameter) if (parameter.low..=parameter.high).contains(&value) => Ok(()),
         Some(parameter) => Err(Failure::usage(format!(
             "{flag} {}: {key} must lie between {} and {} in the space `{}`",
@@ -204,39 +190,24 @@ fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure
 
 impl Serialize for Chosen {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        /// Keys that say which finger was simulated on which task.
-        #[derive(Serialize)]
-        struct Subject<'a> {
-            task: &'a str,
-            robot: &'a str,
-            cell: Option<&'a str>,
-            infill_density_percent: Option<f64>,
-            infill_direction_deg: Option<f64>,
-            set: &'a Design,
-            finger_model: &'a str,
-            rcc_mm: f64,
-            rcc_from: &'a str,
-            tilting_nm_per_rad: f64,
-            stiffness: &'a Prediction,
-        }
         let Specimen { task, finger, centre, stiffness, .. } = &self.specimen;
-        let subject = Subject {
-            task: &task.name,
-            robot: &self.robot,
-            cell: self.cell.as_deref(),
-            infill_density_percent: self.design.get(DENSITY_KEY),
-            infill_direction_deg: self.design.get(DIRECTION_KEY),
-            set: &self.set,
-            finger_model: self.finger_model.name(),
-            rcc_mm: finger.rcc / MM,
-            rcc_from: match centre {
+        let subject = json!({
+            "task": task.name,
+            "robot": self.robot,
+            "cell": self.cell,
+            "infill_density_percent": self.design.get(DENSITY_KEY),
+            "infill_direction_deg": self.design.get(DIRECTION_KEY),
+            "set": self.set,
+            "finger_model": self.finger_model.name(),
+            "rcc_mm": finger.rcc / MM,
+            "rcc_from": match centre {
                 CentreFrom::Model => "finger-model",
                 CentreFrom::TaskFile => "task",
                 CentreFrom::Design => "design",
             },
-            tilting_nm_per_rad: finger.rotation[0],
-            stiffness,
-        };
+            "tilting_nm_per_rad": finger.rotation[0],
+            "stiffness": stiffness,
+        });
         subject.serialize(serializer)
     }
 }

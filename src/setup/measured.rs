@@ -1,4 +1,4 @@
-//! Bench measurements, and the bounds of what nobody measured, as files have them.
+//! Files of bench measurements and priors.
 
 use super::Setup;
 use super::files::find;
@@ -13,19 +13,19 @@ use insertion::evaluation::cell::Priors;
 use insertion::evaluation::template::Template;
 use insertion::space::Space;
 use std::path::{Path, PathBuf};
-use study::{BENCH_ROLES, StudyRecord, input_path, read_config};
+use study::{BENCH_ROLES, StudyRecord};
 
-/// Measurements from the bench, and the bounds of what nobody measured.
+/// Bench measurements, and priors of the parameters that were not measured.
 pub struct Measured {
-    /// The measurements' file.
+    /// Name of the measurement file.
     pub file: String,
-    /// Its lines.
+    /// Its measurements.
     pub experiments: Vec<Experiment>,
-    /// The bounds.
+    /// Priors.
     pub priors: Priors,
 }
 
-/// The measurements of that name or at that path, checked; their tasks are shipped ones, those in
+/// Reads and checks the measurements of that name or at that path; their tasks are shipped ones, those in
 /// `more`, or have a comment line with the path of their file.
 pub fn read(name: &str, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
     let source = file(name)?;
@@ -36,7 +36,7 @@ pub fn read(name: &str, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
     lines(&source, more)
 }
 
-/// A shipped name, or else a path, whatever it looks like.
+/// Reads a measurement file by its path or its shipped name.
 pub fn file(name: &str) -> Result<Source, Failure> {
     if Path::new(name).is_file() {
         let text = read_named(Path::new(name), LARGEST_INPUT);
@@ -46,14 +46,14 @@ pub fn file(name: &str) -> Result<Source, Failure> {
     find("measurement file", MEASUREMENTS, name)
 }
 
-/// Whether it is the path of a file that is not there: such a file has no line yet.
+/// Returns whether this is the path of a missing file, which has no measurements yet.
 pub fn is_missing(name: &str) -> bool {
     let path = Path::new(name);
     (name.contains(['/', '\\']) || path.extension().is_some())
         && path.try_exists().is_ok_and(|there| !there)
 }
 
-/// Where the file of a task of one's own is, by the comment line that keeps it; `None` without one.
+/// Returns the path of the user's task file from its comment line; `None` without one.
 fn own_task(source: &Source, task: &str) -> Result<Option<PathBuf>, Failure> {
     let Source { file, text } = source;
     let Some(path) = experiments::own_tasks(text).remove(task) else { return Ok(None) };
@@ -69,22 +69,10 @@ fn own_task(source: &Source, task: &str) -> Result<Option<PathBuf>, Failure> {
     }
 }
 
-/// Folder in which studies are unless another is given.
-const STUDIES: &str = "results";
-
-/// The task file of the first study in `results` that was given these measurements of this task.
-fn of_study(file: &str, task: &str) -> Option<PathBuf> {
-    let folders = Path::new(STUDIES).read_dir().ok()?.flatten().map(|entry| entry.path());
-    let own = |dir: &PathBuf| {
-        read_config(dir).is_ok_and(|config| {
-            config.tasks == [task] && config.conclusion.measurements.as_deref() == Some(file)
-        })
-    };
-    folders.filter(own).min().map(|dir| input_path(&dir, 1, "task_1"))
-}
-
-/// The one task of which a file has lines, as a command takes it: by its comment line, as shipped or
-/// from a study of these measurements.
+/// Returns the only task of a measurement file, by its comment line or as shipped.
+///
+/// # Errors
+/// If there are several tasks, or the file of the task is not known.
 pub fn task(source: &Source) -> Result<TaskSource, Failure> {
     let Source { file, text } = source;
     let wrong = |problem: String| Failure::in_file(file, format!("{problem}; give --task"));
@@ -99,16 +87,16 @@ pub fn task(source: &Source) -> Result<TaskSource, Failure> {
         }));
     };
     let shipped = || TASKS.iter().any(|shipped| shipped.name == task).then(|| task.into());
-    let path = own_task(source, task)?.or_else(shipped).or_else(|| of_study(file, task));
+    let path = own_task(source, task)?.or_else(shipped);
     let path = path.ok_or_else(|| wrong(format!("no file is known of the task `{task}`")))?;
     Ok(TaskSource::Named(path.to_string_lossy().into_owned()))
 }
 
-/// Most fingers of a task: the process of so many takes a minute to sample.
+/// Largest number of fingers of a task; sampling their process takes a minute.
 const MOST_FINGERS: usize = 200;
 
-/// The lines of a file, in the one order that decides draws; their tasks are shipped ones, those in
-/// `more`, or have a comment line.
+/// Returns the measurements of a file in the order that determines the draws; their tasks are shipped ones,
+/// those in `more`, or have a comment line.
 pub fn lines(source: &Source, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
     let mut found = experiments::parse(&source.text, &source.file).map_err(Failure::input)?;
     let shipped = TASKS.iter().map(|task| task.name);
@@ -130,7 +118,7 @@ pub fn lines(source: &Source, more: &[&str]) -> Result<Vec<Experiment>, Failure>
     Ok(found)
 }
 
-/// Whether lines say something of the ranges of a task's fingers, and all of fingers in the space.
+/// Checks that there are ranges of the task and that all its fingers lie in the space.
 pub fn check(
     file: &str,
     lines: &[Experiment],
@@ -152,8 +140,8 @@ pub fn check(
     Ok(())
 }
 
-/// How many lines of its task a study in `dir` has not seen, if nothing else differs from this setup
-/// but that lines follow on those that it has: they change no simulated value.
+/// Returns the number of new measurements of the tasks of the study in `dir`; `None` if anything else
+/// differs from this setup. New measurements change no simulated value.
 pub fn more(dir: &Path, setup: &Setup) -> Option<usize> {
     let text = setup.inputs.get(BENCH_ROLES[0])?;
     let record = StudyRecord::load(dir).ok()?;

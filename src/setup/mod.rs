@@ -35,39 +35,39 @@ use measured::Measured;
 use std::sync::Arc;
 use study::{BENCH_ROLES, CELL, FINGER, Inputs, Provenance, sha256};
 
-/// Everything that is needed to measure a design.
+/// Everything that an evaluation of a design needs.
 pub struct Setup {
-    /// Measures designs.
+    /// Evaluator of designs.
     pub evaluator: Evaluator,
     fingers: Fingers,
     /// Search space.
     pub space: Space,
-    /// The errors under which designs are measured, if they are.
+    /// Distribution of errors, if there is one.
     pub uncertainty: Option<Uncertainty>,
-    /// Measurements on the bench, if a study asks for its fingers there.
+    /// Bench measurements, if there are any.
     pub measured: Option<Measured>,
-    /// The texts all this was read from.
+    /// Texts of the input files.
     pub inputs: Inputs,
-    /// What messages call the task files: their paths, as they were given.
+    /// Paths of the task files, as given.
     pub task_files: Vec<String>,
 }
 
-/// Roles of the input files beside the tasks and the errors.
+/// Roles of the input files other than tasks.
 const SPACE: &str = "space";
 const ROBOT: &str = "robot";
 const STIFFNESS_DATA: &str = "stiffness";
 const UNCERTAINTY: &str = "uncertainty";
 
-/// The role of a task, counted from 1.
+/// Returns the role of a task, counted from 1.
 fn task_role(number: usize) -> String {
     format!("task_{number}")
 }
 
 impl Setup {
-    /// From the copies kept in a study's folder.
+    /// Returns the setup of the input copies in a study's folder.
     pub(crate) fn from_inputs(inputs: &Inputs, engine: &str) -> Result<Self, Failure> {
         let engine = EngineKind::from_name(engine)
-            .ok_or_else(|| bad_config(format!("no engine is called `{engine}`")))?;
+            .ok_or_else(|| bad_config(format!("unknown engine `{engine}`")))?;
         let roles = (1..).map(task_role).take_while(|role| inputs.contains_key(role));
         let tasks = roles.map(|role| input(inputs, &role)).collect::<Result<Vec<_>, _>>()?;
         let [space, robot, stiffness] =
@@ -121,8 +121,8 @@ impl Setup {
         Ok(Setup { inputs, evaluator, fingers, uncertainty, measured, space, task_files })
     }
 
-    /// The evaluator with springs computed from the ribs of the shipped finger, if its own are the
-    /// paper's and the design space, the tasks and the engine have a place for others.
+    /// Returns the evaluator with stiffnesses computed from the ribs of the shipped finger, if its own are those
+    /// of the paper and space, tasks and engine support computed ones.
     pub(crate) fn by_ribs(&self) -> Option<Evaluator> {
         let own = &self.evaluator;
         if own.fingers.kind() != FingerModelKind::Paper {
@@ -140,7 +140,7 @@ impl Setup {
         Some(evaluator)
     }
 
-    /// The same in a cell, whose robot it has; of the cell's source.
+    /// Returns the setup in a cell with the cell's robot.
     pub(crate) fn within(mut self, source: Source, cell: Priors) -> Result<Self, Failure> {
         for row in &cell.parameters {
             self.evaluator.robot.change(row, row.middle());
@@ -151,7 +151,7 @@ impl Setup {
         Ok(self)
     }
 
-    /// The same with the errors of that name under which designs are measured.
+    /// Returns the setup with the distribution of errors of that name.
     pub(crate) fn under_named(self, name: &str) -> Result<Self, Failure> {
         self.under(find("uncertainty", UNCERTAINTIES, name)?)
     }
@@ -174,7 +174,7 @@ impl Setup {
         Ok(self)
     }
 
-    /// The same with measurements of its one task from the bench.
+    /// Returns the setup with bench measurements of its task.
     pub(crate) fn with_measurements(
         mut self,
         lines: Source,
@@ -194,17 +194,20 @@ impl Setup {
         Ok(self)
     }
 
-    /// The names of its tasks.
+    /// Returns the names of the tasks.
     pub fn task_names(&self) -> Vec<&str> {
         self.evaluator.templates.iter().map(|template| template.task.name.as_str()).collect()
     }
 
-    /// Provenance of all this, as a study records it.
+    /// Returns the provenance that a study records.
     pub fn provenance(&self) -> Provenance {
         Provenance::new(self.evaluator.engine, sha256(&self.inputs))
     }
 
-    /// The one task of a command that is not for several.
+    /// Returns the task of a command that takes only one.
+    ///
+    /// # Errors
+    /// If there are several.
     pub fn only_task(&self) -> Result<&Template, Failure> {
         match self.evaluator.templates.as_slice() {
             [template] => Ok(template),
@@ -212,7 +215,10 @@ impl Setup {
         }
     }
 
-    /// Plan of measurements beside the window, with the draws of this seed; `wanted` says which.
+    /// Returns the plan of the `wanted` measurements under errors drawn with this seed.
+    ///
+    /// # Errors
+    /// If there is no distribution of errors.
     pub fn plan(&self, seed: u64, wanted: impl Fn(Measure) -> bool) -> Result<Plan, Failure> {
         let (success, robust) = (wanted(Measure::SuccessRate), wanted(Measure::RobustRange));
         match &self.uncertainty {
@@ -223,7 +229,7 @@ impl Setup {
     }
 }
 
-/// Whether robot, engine, fingers and space, read from `file`, go with each task.
+/// Checks that robot, engine, fingers and space (of `file`) are compatible with each task.
 fn fit_together(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), Failure> {
     let Evaluator { fingers, templates, robot, engine, .. } = evaluator;
     if let FingerSource::Computed(fingers) = fingers {
@@ -237,7 +243,7 @@ fn fit_together(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), 
     printable::check_springs(evaluator, space, file).map_err(Failure::input)
 }
 
-/// A task that is given twice would count twice.
+/// Checks that no task is given twice.
 fn different(templates: &[Template]) -> Result<(), Failure> {
     let names: Vec<&str> = templates.iter().map(|template| &*template.task.name).collect();
     match names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
@@ -248,14 +254,14 @@ fn different(templates: &[Template]) -> Result<(), Failure> {
     }
 }
 
-/// The cell of a file, which has to hold a robot.
+/// Parses the file of a cell, which has to contain a robot.
 pub(crate) fn cell(Source { file, text }: &Source) -> Result<Priors, Failure> {
     let cell = Priors::parse(text, file).map_err(Failure::input)?;
     match cell.robot {
         Some(_) => Ok(cell),
         None => Err(Failure::in_file(
             file,
-            "robot: is missing; a cell has its robot in [robot], as a robot file",
+            "robot: missing; a cell needs a section [robot] with the keys of a robot file",
         )),
     }
 }
@@ -264,7 +270,10 @@ fn missing(role: &str) -> Failure {
     bad_config(format!("input_sha256 has no `{role}`"))
 }
 
-/// One of the inputs kept in a study's folder.
+/// Returns an input of a study's folder.
+///
+/// # Errors
+/// If it is missing.
 pub fn input(inputs: &Inputs, role: &str) -> Result<Source, Failure> {
     match inputs.get(role) {
         Some(text) => Ok(Source { file: format!("inputs/{role}"), text: text.clone() }),
@@ -272,12 +281,12 @@ pub fn input(inputs: &Inputs, role: &str) -> Result<Source, Failure> {
     }
 }
 
-/// The finger file kept in a study's folder, if its fingers are computed.
+/// Returns the finger file in a study's folder, if its fingers are computed.
 fn finger_input(inputs: &Inputs) -> Result<Option<Source>, Failure> {
     inputs.contains_key(FINGER).then(|| input(inputs, FINGER)).transpose()
 }
 
-/// The stiffness model of a study, from the copies in its folder.
+/// Returns the stiffness model of the inputs in a study's folder.
 pub(crate) fn surrogate_of(inputs: &Inputs) -> Result<Arc<Model>, Failure> {
     let fingers = Fingers::parse(finger_input(inputs)?)?;
     surrogate(&input(inputs, STIFFNESS_DATA)?, fingers.measured_finger())

@@ -1,4 +1,4 @@
-//! A finger to be printed, and how stiff measured ones are.
+//! Finger to print, and its measured stiffness.
 
 use super::files::DEFAULT_FINGER;
 use super::files::{find, stiffness_data, surrogate};
@@ -14,7 +14,7 @@ use report::answer::Answer;
 use std::path::{Path, PathBuf};
 use study::StudyRecord;
 
-/// Which finger to print: the best of a study, or of an infill.
+/// Finger to print: the best of a study, or with a given infill.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct PrintRequest {
     /// Folder of a study: its best design
@@ -26,33 +26,33 @@ pub struct PrintRequest {
     /// Finger: finray9, or the path of a finger file [default: the study's, or finray9]
     #[arg(long, value_name = "NAME")]
     pub finger: Option<String>,
-    /// Where the first rib lies, mm [default: the finger file's]
+    /// Position of the first rib, mm [default: as in the finger file]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub phase_mm: Option<f64>,
 }
 
 impl PrintRequest {
-    /// Its ribs.
+    /// Returns its geometry.
     ///
     /// # Errors
-    /// If a file cannot be used, the study recommends nothing, or there is no such finger.
+    /// If a file is invalid, the study recommends no design, or the finger cannot be built.
     pub fn geometry(&self) -> Result<Geometry, Failure> {
         let (design, file, _) = self.chosen()?;
         let finger = file.with(&design).map_err(Failure::input)?;
         Geometry::new(&finger, &infill(&design, self.phase_mm)).map_err(Failure::input)
     }
 
-    /// Its stiffness by the model of measured fingers: as the study predicted it, else by the table
-    /// that the finger file names. `None` if there is none.
+    /// Returns its stiffness by the model of measured fingers: as the study predicted it, else by the table that
+    /// the finger file names; `None` without a table.
     ///
     /// # Errors
-    /// As of [`PrintRequest::geometry`].
+    /// See [`PrintRequest::geometry`].
     pub fn measured_model(&self) -> Result<Option<Prediction>, Failure> {
         let (design, file, of_study) = self.chosen()?;
         of_study.map_or_else(|| measured_model(&file.finger, &design), |found| Ok(Some(found)))
     }
 
-    /// The design, the file of its finger, and the stiffness that a study predicted of both.
+    /// Returns the design, its finger file, and the stiffness that a study predicted.
     fn chosen(&self) -> Result<(Design, FingerFile, Option<Prediction>), Failure> {
         let (design, file, stiffness) = match (&self.dir, self.infill.both()) {
             (Some(dir), _) => best(dir)?,
@@ -73,14 +73,14 @@ impl PrintRequest {
 /// Reads the finger file of that name or at that path.
 ///
 /// # Errors
-/// If it cannot be used.
+/// If it is invalid.
 pub(crate) fn finger_file(name: &str) -> Result<FingerFile, Failure> {
     let source = find("finger", FINGERS, name)?;
     FingerFile::parse(&source.text, &source.file).map_err(Failure::input)
 }
 
-/// Returns the stiffness by the model that is fitted to the table of measured fingers which a finger file names;
-/// `None` without a table, of an infill that it cannot predict, or of another shape than measured.
+/// Returns the stiffness by the model of the table of measured fingers that a finger file names; `None` without
+/// a table, for an infill outside of the model, or for another shape than the measured one.
 pub(crate) fn measured_model(
     finger: &PrintedFinger,
     design: &Design,
@@ -95,8 +95,7 @@ pub(crate) fn measured_model(
     Ok(model.predict(density, direction).ok())
 }
 
-/// The design that a study recommends, the finger file of its fingers, and their stiffness, if the
-/// design was evaluated.
+/// Returns the recommended design of a study, its finger file, and its stiffness, if the design was evaluated.
 fn best(dir: &Path) -> Result<(Design, Option<FingerFile>, Option<Prediction>), Failure> {
     let record = StudyRecord::load(dir)?;
     let Some(best) = Answer::of(&record).verdict.finger().cloned() else {

@@ -1,4 +1,4 @@
-//! Repeats of a trial or an evaluation: do small changes change the outcome?
+//! Repeats of a trial or an evaluation with small variations.
 
 use super::Setup;
 use crate::context::not_stopped;
@@ -8,12 +8,13 @@ use insertion::evaluation::evaluator::Specimen;
 use insertion::evaluation::robustness::repeat::{Band, Bands, Repeats};
 use insertion::trial::Grasp;
 use serde::{Serialize, Serializer};
+use serde_json::json;
 use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
 
 const REPEATS: RangeInclusive<u32> = 2..=10_000;
 
-/// How often to repeat, with friction within 10 %, start within 0.02 mm, and half the step by turns.
+/// Number of repeats, with friction within 10 %, start within 0.02 mm, and alternately half the step.
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub struct RepeatRequest {
     /// Then N times more with friction within 10 %, start within 0.02 mm, and half the step by turns
@@ -32,7 +33,7 @@ pub struct RepeatRequest {
 }
 
 impl RepeatRequest {
-    /// Results of repeats of a finger on its task, from this taught start.
+    /// Calls `measure` with repeats of a finger on its task, from this taught start.
     pub(crate) fn of<T>(
         &self,
         setup: &Setup,
@@ -51,7 +52,7 @@ impl RepeatRequest {
     }
 }
 
-/// Returns the bands at a window's ends as lines.
+/// Returns the bands at the ends of a window as lines.
 pub fn bands_text(bands: &Bands) -> String {
     let width = |band: &Band| {
         band.width_mm().map_or("more than 2 mm".to_owned(), |width| format!("{width:.1} mm"))
@@ -83,18 +84,13 @@ pub fn serialize_bands<S: Serializer>(
     bands: &Option<Bands>,
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
-    #[derive(Serialize)]
-    struct Fields<'a> {
-        negative_band_mm: Option<f64>,
-        positive_band_mm: Option<f64>,
-        offsets_tried_inside: usize,
-        unsure_inside_mm: &'a [f64],
-    }
-    let fields = bands.as_ref().map(|bands| Fields {
-        negative_band_mm: bands.negative.width_mm(),
-        positive_band_mm: bands.positive.width_mm(),
-        offsets_tried_inside: bands.looked_at_inside,
-        unsure_inside_mm: &bands.unsure_inside,
+    let fields = bands.as_ref().map(|bands| {
+        json!({
+            "negative_band_mm": bands.negative.width_mm(),
+            "positive_band_mm": bands.positive.width_mm(),
+            "offsets_tried_inside": bands.looked_at_inside,
+            "unsure_inside_mm": bands.unsure_inside,
+        })
     });
     fields.serialize(serializer)
 }

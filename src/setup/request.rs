@@ -1,4 +1,4 @@
-//! Which tasks, space, robot and finger model: names on the way to files.
+//! Options for tasks, space, robot and finger model.
 
 use super::Setup;
 use super::files::{DEFAULT_FINGER, Fingers, find, stiffness_data};
@@ -15,24 +15,24 @@ use serde::Deserialize;
 use std::convert::Infallible;
 use std::path::Path;
 
-/// Robot used unless another is named.
+/// Default robot.
 pub const DEFAULT_ROBOT: &str = "servo";
-/// Search space used unless another is named.
+/// Default search space.
 pub const DEFAULT_SPACE: &str = "infill";
 
-/// A task by its name, or by the text of its file.
+/// Task by its name, or by the text of its file.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(untagged)]
 pub enum TaskSource {
-    /// A shipped task, or the path of a task file.
+    /// Shipped task, or path of a task file.
     Named(String),
-    /// The text of a task file, and what messages call it.
+    /// Text of a task file, and its name in messages.
     Given(Source),
 }
 
 impl TaskSource {
-    /// Returns the tasks of a list of names by commas, or the one file whose path has commas. Other programs
-    /// give names and texts as JSON behind a NUL, which no argument of a process can hold.
+    /// Returns the tasks of a list of names separated by commas, or the single file whose path contains commas.
+    /// Other programs pass names and texts as JSON after a NUL, which no command line can contain.
     pub fn list(names: &str) -> Vec<Self> {
         if let Some(given) =
             names.strip_prefix('\0').and_then(|json| serde_json::from_str(json).ok())
@@ -46,14 +46,14 @@ impl TaskSource {
         names.split(',').map(|name| TaskSource::Named(name.trim().to_owned())).collect()
     }
 
-    /// Returns the task of a name, or the one that another program gives.
+    /// Returns the task of a name, or the one passed by another program.
     pub fn one(name: &str) -> Self {
         let given = name.starts_with('\0').then(|| TaskSource::list(name));
         let given = given.and_then(|given| <[TaskSource; 1]>::try_from(given).ok());
         given.map_or_else(|| TaskSource::Named(name.to_owned()), |[one]| one)
     }
 
-    /// Reads its file, unchecked.
+    /// Reads its file without checking it.
     ///
     /// # Errors
     /// If there is no such task or file.
@@ -65,11 +65,11 @@ impl TaskSource {
     }
 }
 
-/// What a trial, an evaluation, a calibration and a study have in common.
+/// Options of a trial, an evaluation, a calibration and a study.
 #[derive(Debug, Clone, clap::Args)]
 pub struct SetupRequest {
     /// Task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas
-    // By its full path the whole list is one value of the option.
+    // With the full path of `Vec` the whole list is a single value of the option.
     #[arg(long = "task", value_name = "NAME", value_parser = |names: &str| Ok::<_, Infallible>(TaskSource::list(names)))]
     pub tasks: std::vec::Vec<TaskSource>,
     /// Search space: infill, codesign, finger, or the path of a space file
@@ -87,22 +87,22 @@ pub struct SetupRequest {
     /// Contact engine
     #[arg(long, value_enum, default_value_t)]
     pub engine: EngineKind,
-    /// Where the springs of a finger come from that were not measured.
+    /// Finger model.
     #[command(flatten)]
     pub finger_model: FingerModelRequest,
-    /// What becomes of the nominal start, in place of what the task file says
+    /// How the nominal start is chosen [default: as in the task file]
     #[arg(long, value_enum)]
     pub start: Option<StartRule>,
 }
 
-/// Where the springs of a finger come from that were not measured.
+/// Source of the stiffnesses of a finger that were not measured.
 #[derive(Debug, Clone, clap::Args)]
 pub struct FingerModelRequest {
-    /// Where a finger's remote centre and unmeasured springs come from [default: paper; computed
-    /// for a space with numbers of the printed finger]
+    /// Source of a finger's remote centre and unmeasured stiffnesses [default: paper; computed for a
+    /// space with parameters of the printed finger]
     #[arg(long = "finger-model", value_enum)]
     pub kind: Option<FingerModelKind>,
-    /// Finger file of --finger-model computed: finray9, or the path of one
+    /// Finger file for --finger-model computed: finray9, or the path of a file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_FINGER)]
     pub finger: String,
 }
@@ -123,12 +123,15 @@ impl Default for SetupRequest {
 }
 
 impl SetupRequest {
-    /// Reads and checks all that is named.
+    /// Reads and checks all input files.
+    ///
+    /// # Errors
+    /// If one is invalid.
     pub fn setup(&self) -> Result<Setup, Failure> {
         self.setup_with(None)
     }
 
-    /// The same with the robot that these priors hold, if they do.
+    /// Returns the setup, with the robot of these priors if they contain one.
     pub(crate) fn setup_with(&self, priors: Option<&Priors>) -> Result<Setup, Failure> {
         if self.tasks.is_empty() {
             return Err(Failure::usage("give --task"));
@@ -155,7 +158,7 @@ impl SetupRequest {
         }
     }
 
-    /// The file of the robot: of the one that priors or the cell hold, else of the one named.
+    /// Returns the robot file: that of the priors or the cell, else the named one.
     fn robot(
         &self,
         of_priors: Option<String>,
@@ -163,13 +166,13 @@ impl SetupRequest {
     ) -> Result<Source, Failure> {
         let held = |flag: &str, text| match &self.robot {
             Some(_) => {
-                Err(Failure::usage(format!("{flag} holds a robot: leave out --robot or {flag}")))
+                Err(Failure::usage(format!("{flag} contains a robot: leave out --robot or {flag}")))
             }
             None => Ok(Source { file: format!("{flag}: [robot]"), text }),
         };
         match (of_priors, cell.and_then(|(_, cell)| cell.robot_text())) {
             (Some(_), Some(_)) => Err(Failure::usage(
-                "--priors holds a robot, and so does --cell: leave out one of them",
+                "--priors and --cell both contain a robot: leave out one of them",
             )),
             (Some(text), None) => held("--priors", text),
             (None, Some(text)) => held("--cell", text),
@@ -179,20 +182,23 @@ impl SetupRequest {
 }
 
 impl FingerModelRequest {
-    /// Source of fingers where no space is searched.
+    /// Returns the source of fingers without a search space.
+    ///
+    /// # Errors
+    /// If the finger file is invalid.
     pub fn fingers(&self) -> Result<FingerSource, Failure> {
         Ok(Fingers::parse(self.file(None)?)?.made())
     }
 
-    /// The finger file, if fingers are computed: as those of a space with numbers of a printed
-    /// finger have to be.
+    /// Returns the finger file if fingers are computed, which a space with parameters of the printed finger
+    /// requires.
     fn file(&self, space: Option<&Space>) -> Result<Option<Source>, Failure> {
         let shape = |p: &&Variable| is_shape(&p.key);
         let shaped = space.and_then(|space| space.parameters.iter().find(shape));
         let kind = match (self.kind, shaped) {
             (Some(FingerModelKind::Paper), Some(Variable { key, .. })) => {
                 return Err(Failure::usage(format!(
-                    "the space sets {key}, which --finger-model computed knows, paper does not"
+                    "the space sets {key}, which needs --finger-model computed"
                 )));
             }
             (Some(kind), _) => kind,
@@ -201,7 +207,7 @@ impl FingerModelRequest {
         };
         match kind {
             FingerModelKind::Paper if self.finger != DEFAULT_FINGER => {
-                Err(Failure::usage("--finger goes with --finger-model computed"))
+                Err(Failure::usage("--finger needs --finger-model computed"))
             }
             FingerModelKind::Paper => Ok(None),
             FingerModelKind::Computed => find("finger", FINGERS, &self.finger).map(Some),
@@ -209,7 +215,7 @@ impl FingerModelRequest {
     }
 }
 
-/// The file of a cell, and what it says.
+/// Reads the file of a cell.
 fn cell(path: &str) -> Result<(Source, Priors), Failure> {
     let text = read_named(Path::new(path), LARGEST_INPUT)
         .map_err(|error| Failure::in_file(path, format!("cannot read the cell: {error}")))?;
@@ -218,7 +224,7 @@ fn cell(path: &str) -> Result<(Source, Priors), Failure> {
     Ok((source, cell))
 }
 
-/// A task file with this rule of its start. What is no task stays as it is, to be refused.
+/// Sets the rule of the start in a task file. Passes invalid input through; the parser reports it.
 fn started(task: Source, rule: StartRule) -> Source {
     let Ok(mut table) = task.text.parse::<toml::Table>() else { return task };
     let Some(toml::Value::Table(strategy)) = table.get_mut("strategy") else { return task };

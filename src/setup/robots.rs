@@ -1,4 +1,4 @@
-//! The shipped robots, the cells that they stand for, and what a plug feels of them.
+//! Shipped robots with the cells they represent, and their stiffness at the plug.
 
 use super::files::robot;
 use crate::failure::Failure;
@@ -6,29 +6,29 @@ use input::units::N_PER_MM;
 use insertion::robot::{Flange, Robot};
 use serde::{Deserialize, Serialize};
 
-/// A shipped robot and the cell that it stands for; in the file only what the robot's own does not say.
+/// Shipped robot and the cell it represents; the file contains only what the robot file does not.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ForCell {
-    /// The cell, in words of whoever has it.
+    /// Description of the cell.
     pub cell: String,
     /// Name of the robot.
     pub name: String,
-    /// Its description.
+    /// Description of the robot.
     #[serde(default)]
     pub description: String,
-    /// What it gives at the TCP along x, y and z, upright, N/mm; `None` of one that does not give.
+    /// Stiffness at the TCP along x, y and z, upright, N/mm; `None` if rigid.
     pub stiffness_n_per_mm: Option<[f64; 3]>,
-    /// By how much it trails a command of constant speed, s.
+    /// Lag behind a command of constant speed, s.
     #[serde(default)]
     pub lag_s: f64,
     /// Contact force at which it stops, N.
     #[serde(default)]
     pub stop_force_n: f64,
-    /// Where its numbers come from; its own file says it in full.
+    /// Source of its parameters; see the robot file for details.
     pub source: String,
 }
 
-/// The shipped robots, that of the likeliest cell first.
+/// Returns the shipped robots, that of the most common cell first.
 ///
 /// # Errors
 /// If a shipped file is damaged.
@@ -44,15 +44,15 @@ pub fn robots() -> Result<Vec<ForCell>, Failure> {
     Ok(robots)
 }
 
-/// Stiffness along x, y and z, N/mm, if it gives, and lag, s, of a robot at a task whose frame is turned
-/// about the base's z, the TCP tilted about its x, rad.
+/// Returns stiffness along x, y and z, N/mm (`None` if rigid), and lag, s, of a robot at a task whose frame is
+/// turned about the base's z and whose TCP is tilted about its x, rad.
 pub(crate) fn felt(
     robot: &Robot,
     [turn, tilt]: [f64; 2],
 ) -> Result<(Option<[f64; 3]>, f64), Failure> {
     let (stiffness, lag_s) = match robot.mount(turn, tilt).map_err(Failure::input)?.flange {
         Flange::Ideal => return Ok((None, 0.0)),
-        // Its damper acts on the rate of the error.
+        // The damper acts on the rate of the error.
         Flange::Servo(servo) => (servo.stiffness, 0.0),
         Flange::Arm(arm) => {
             let lag_s = if arm.feed_forward { 0.0 } else { arm.time_constant };

@@ -1,4 +1,4 @@
-//! Task and space files: read, checked, tried.
+//! Task and space files, and checks of a task.
 
 use super::files::{find, robot};
 use super::request::TaskSource;
@@ -22,12 +22,13 @@ use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
 use insertion::trial::{Grasp, Trial};
 use serde::{Serialize, Serializer};
+use serde_json::json;
 use std::sync::atomic::AtomicBool;
 
 /// A task file that was read.
 #[derive(Debug, Clone)]
 pub struct TaskFile {
-    /// Its text, and what messages call it.
+    /// Its text and its name in messages.
     pub source: Source,
     /// The task.
     pub task: Task,
@@ -40,13 +41,13 @@ impl TaskFile {
         Ok(TaskFile { source, task })
     }
 
-    /// The fields of a task file, checked.
+    /// Returns the fields of a task file, checked.
     pub fn fields(source: Source) -> Result<toml::Table, Failure> {
         let Source { file, text } = TaskFile::parse(source)?.source;
         input::read(&text, &file).map_err(Failure::input)
     }
 
-    /// The task file with these fields, checked; `file` is what messages call it.
+    /// Returns the task file with these fields, checked; `file` is its name in messages.
     pub fn of_fields(file: &str, fields: &serde_json::Value) -> Result<Self, Failure> {
         let text = toml::to_string(fields)
             .map_err(|error| Failure::task(Place::file(file).fault(error.to_string())))?;
@@ -54,31 +55,34 @@ impl TaskFile {
     }
 }
 
-/// The task of that name, or of the file at that path.
+/// Reads the task of that name, or of the file at that path.
 pub fn read_task(name: &str) -> Result<TaskFile, Failure> {
     TaskFile::parse(TaskSource::Named(name.to_owned()).read()?)
 }
 
-/// The space of that name, or of the file at that path.
+/// Reads the space of that name, or of the file at that path.
 pub fn read_space(name: &str) -> Result<Space, Failure> {
     let source = find("space", SPACES, name)?;
     Space::parse(&source.text, &source.file).map_err(Failure::input)
 }
 
-/// Problems of a task file, and whether its nominal start inserts.
+/// Check of a task file: its problems, and the trial at its nominal start.
 pub struct TaskCheck {
     /// The file.
     pub source: Source,
-    /// The task, if the file can be read.
+    /// The task, if the file is valid.
     pub task: Option<Task>,
-    /// Problems that keep it from working.
+    /// Problems.
     pub problems: Vec<Problem>,
-    /// The finger that tried the nominal start and what came of it, unless a problem forbids it.
+    /// Finger, trial and explanation of the nominal start; `None` if there are problems.
     pub nominal: Option<(Finger, Trial, String)>,
 }
 
 impl TaskCheck {
     /// Checks a task file with the robot of that name.
+    ///
+    /// # Errors
+    /// If the nominal start cannot be simulated; if `stop` is set meanwhile.
     pub fn of(
         source: Source,
         robot_name: &str,
@@ -103,11 +107,11 @@ impl TaskCheck {
         };
         Ok(TaskCheck { source, task: Some(task), problems, nominal })
     }
-}
 
-impl TaskCheck {
-    /// Stages of `task tune` until one mends a nominal start that fails; `None` if it inserts, or if
-    /// problems come first.
+    /// Tunes a task whose nominal start fails; `None` if it inserts, or if there are problems.
+    ///
+    /// # Errors
+    /// If the task cannot be simulated; if `stop` is set meanwhile.
     pub fn mend(
         &self,
         robot_name: &str,
@@ -124,7 +128,7 @@ impl TaskCheck {
     }
 }
 
-/// The middle one of the measured fingers, and its trial at the nominal start.
+/// Returns the measured finger of medium stiffness and its trial at the nominal start.
 pub(crate) fn nominal_start(
     task: &Task,
     robot: &Robot,
@@ -139,7 +143,7 @@ pub(crate) fn nominal_start(
     Ok((finger, trial))
 }
 
-/// The shipped measured finger of medium compliance stiffness.
+/// Returns the shipped measured finger of medium compliance stiffness.
 fn medium() -> Result<Finger, Failure> {
     let nothing = || Failure::running("no measured fingers are shipped");
     let [file] = STIFFNESS else { return Err(nothing()) };
@@ -151,28 +155,16 @@ fn medium() -> Result<Finger, Failure> {
 
 impl Serialize for TaskCheck {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Nominal<'a> {
-            #[serde(flatten)]
-            ended: Ended<'a>,
-            compliance_n_per_mm: f64,
-            assembly_n_per_mm: f64,
-            explanation: &'a str,
-        }
-        #[derive(Serialize)]
-        struct Fields<'a> {
-            valid: bool,
-            problems: &'a [Problem],
-            nominal: Option<Nominal<'a>>,
-        }
-        let nominal = self.nominal.as_ref().map(|(finger, trial, explanation)| Nominal {
-            ended: trial.into(),
-            compliance_n_per_mm: finger.compliance / N_PER_MM,
-            assembly_n_per_mm: finger.assembly / N_PER_MM,
-            explanation,
+        let nominal = self.nominal.as_ref().map(|(finger, trial, explanation)| {
+            let mut json = json!(Ended::from(trial));
+            json["compliance_n_per_mm"] = json!(finger.compliance / N_PER_MM);
+            json["assembly_n_per_mm"] = json!(finger.assembly / N_PER_MM);
+            json["explanation"] = json!(explanation);
+            json
         });
         let problems = &self.problems;
-        Fields { valid: problems.is_empty(), problems, nominal }.serialize(serializer)
+        let valid = problems.is_empty();
+        json!({"valid": valid, "problems": problems, "nominal": nominal}).serialize(serializer)
     }
 }
 
@@ -186,7 +178,7 @@ impl TaskCheck {
             ));
         }
         match &self.nominal {
-            None => text.push_str("nominal       not tried: mend the problems first\n"),
+            None => text.push_str("nominal       not tried: fix the problems first\n"),
             Some((finger, trial, explanation)) => text.push_str(&format!(
                 "geometry      no problems\n\
                  finger        compliance {} N/mm, assembly {} N/mm: the middle one of the measured\n\
@@ -201,10 +193,10 @@ impl TaskCheck {
         text
     }
 
-    /// Checks that nothing is wrong and that the nominal start inserts.
+    /// Checks that there are no problems and that the nominal start inserts.
     ///
     /// # Errors
-    /// If not: how many problems there are.
+    /// Otherwise, with the number of problems.
     pub fn verdict(&self) -> Result<(), Failure> {
         let file = &self.source.file;
         let outcome = self.nominal.as_ref().map(|(_, trial, _)| trial.outcome);
@@ -218,7 +210,7 @@ impl TaskCheck {
         }))
     }
 
-    /// Returns how a command ends that wrote a new task: well if its nominal start inserts.
+    /// Checks that the nominal start of a new task inserts.
     ///
     /// # Errors
     /// If it does not.

@@ -15,7 +15,7 @@ use insertion::trial::engine::EngineKind;
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 
-/// Returns the fingers that try strategies of a task.
+/// Returns the fingers for the trials of a task's strategies.
 ///
 /// # Errors
 /// If no measured fingers are shipped.
@@ -29,8 +29,8 @@ pub fn bench<'a>(
         .ok_or_else(|| Failure::running("no measured fingers are shipped"))
 }
 
-/// Returns a new task with its start taught and, where that is not enough, the strategy of a family; nothing
-/// was tried of one that has problems.
+/// Returns a new task with its start taught and, if that is not enough, the strategy of a family; a task with
+/// problems is not tuned.
 ///
 /// # Errors
 /// If the task cannot be simulated; if `stop` is set meanwhile.
@@ -48,7 +48,7 @@ pub fn begun(
     Ok((Task { strategy, ..task }, Some(tuned)))
 }
 
-/// Tries stages up to `last` until one of them is enough.
+/// Tries stages up to `last` until one succeeds.
 ///
 /// # Errors
 /// If the task cannot be simulated; if `stop` is set meanwhile.
@@ -65,7 +65,7 @@ pub fn mended(
     Ok(tuned)
 }
 
-/// A strategy that was tried: stage, what it changes, and ranges of a soft, a medium and a stiff finger.
+/// Tried strategy: stage, change, and ranges of a soft, a medium and a stiff finger.
 #[derive(Serialize)]
 pub struct Tried<'a> {
     stage: Stage,
@@ -87,12 +87,12 @@ impl<'a> From<&'a Step> for Tried<'a> {
     }
 }
 
-/// Returns what was chosen; `None` where nothing inserts.
+/// Returns the chosen strategy; `None` if none inserts.
 pub fn chosen(tuned: &Tuned) -> Option<Tried<'_>> {
     tuned.inserts().then(|| tuned.best().into())
 }
 
-/// Returns a line on what was chosen.
+/// Returns a line about the chosen strategy.
 pub fn brief(name: &str, tuned: &Tuned) -> String {
     let step = tuned.best();
     let range = outcome(step);
@@ -100,7 +100,7 @@ pub fn brief(name: &str, tuned: &Tuned) -> String {
     layout::lines([(name.to_owned(), text)])
 }
 
-/// Returns what was tried, the candidates of the search by their number.
+/// Returns the tried strategies as text; of the search only their number.
 pub fn tried(tuned: &Tuned) -> String {
     let searched = tuned.steps.iter().filter(|step| step.stage == Stage::Search).count();
     let named = tuned.steps.iter().filter(|step| step.stage != Stage::Search);
@@ -111,7 +111,7 @@ pub fn tried(tuned: &Tuned) -> String {
     all.join(", ")
 }
 
-/// Returns how a strategy ends with the fingers that tried it.
+/// Returns the result of a strategy as text.
 pub fn outcome(step: &Step) -> String {
     let turned = step.turned_mm.map_or(String::new(), |least_mm| {
         format!(", with the socket turned by {YAW_DEG}° at least {least_mm:.1} mm")
@@ -122,7 +122,7 @@ pub fn outcome(step: &Step) -> String {
     }
 }
 
-/// Returns `3.1, 3.3, 2.9 mm`, or how the nominal start fails where it does.
+/// Returns the ranges, `3.1, 3.3, 2.9 mm`; for a nominal start that fails, its outcome.
 pub fn ranges(windows: &[Window]) -> String {
     let inserts = |window: &Window| window.nominal == Outcome::Inserted;
     let all = windows.iter().all(inserts);

@@ -1,4 +1,4 @@
-//! Options whose values are words of a list that the library has.
+//! Options whose values are words of a list.
 
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Arg, Command, Error};
@@ -7,7 +7,7 @@ use std::fmt::Display;
 use std::marker::PhantomData;
 use std::str::FromStr;
 
-/// Parser of one word of a list, or of several by commas; the list stands in help texts.
+/// Parser of one word of a list, or of several separated by commas; the list is shown in help texts.
 #[derive(Debug)]
 pub struct Words<T> {
     words: Vec<&'static str>,
@@ -15,7 +15,7 @@ pub struct Words<T> {
 }
 
 impl<T> Words<T> {
-    /// Returns the parser of values written with these words.
+    /// Returns the parser for these words.
     pub fn new(words: impl IntoIterator<Item = &'static str>) -> Self {
         Words { words: words.into_iter().collect(), value: PhantomData }
     }

@@ -14,40 +14,39 @@ use report::replay::{self, ENDS, pair_file};
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use study::{StudyRecord, write_own_file};
+use study::write_own_file;
 
-/// Records the pair at each end of the recommended design's windows, the last offset that
-/// inserts beside the first that fails, into the study's folder; what an earlier run left there is
-/// replaced or, where there is no pair, removed. Ends early once `stop` is set.
+/// Records the pair at each end of the windows of the recommended design, the last offset that inserts and
+/// the first that fails, into the study's folder; replaces or removes those of an earlier run. Ends early
+/// once `stop` is set.
 pub(crate) fn boundary(
     dir: &Path,
-    record: &StudyRecord,
+    answer: &Answer,
     setup: &Setup,
     pool: &ThreadPool,
     stop: &AtomicBool,
 ) -> Result<(), Failure> {
-    // Of a front there is no one finger to show.
-    let found = record.config.objective.single().and_then(|_| Answer::of(record).shown());
+    // A front has no single finger to show.
+    let found = answer.record.config.objective.single().and_then(|_| answer.shown());
     for (at, template) in setup.evaluator.templates.iter().enumerate() {
         for (end, outward) in ENDS {
             let file = dir.join(pair_file(at, end));
-            let pair =
-                match found.as_ref().and_then(|(design, tasks)| Some((*design, *tasks.get(at)?))) {
-                    None => None,
-                    Some((design, task)) => {
-                        let stiffness = setup.evaluator.predict(design).map_err(Failure::input)?;
-                        let specimen = setup
-                            .evaluator
-                            .specimen(template, design, stiffness)
-                            .map_err(Failure::input)?;
-                        pair(setup, &specimen, task, (end, outward), (pool, stop))?
-                    }
-                };
-            // What was filmed meanwhile is worthless.
+            let on_task = found.as_ref().and_then(|(design, tasks)| Some((design, tasks.get(at)?)));
+            let page = match on_task {
+                None => None,
+                Some((design, task)) => {
+                    let evaluator = &setup.evaluator;
+                    let stiffness = evaluator.predict(design).map_err(Failure::input)?;
+                    let specimen =
+                        evaluator.specimen(template, design, stiffness).map_err(Failure::input)?;
+                    pair(setup, &specimen, task, (end, outward), (pool, stop))?
+                }
+            };
+            // After cancellation trials may have been skipped.
             if stop.load(Ordering::SeqCst) {
                 return Ok(());
             }
-            match pair {
+            match page {
                 Some(page) => {
                     let folder = file.parent().unwrap_or(dir);
                     fs::create_dir_all(folder).map_err(|error| {
@@ -55,7 +54,7 @@ pub(crate) fn boundary(
                     })?;
                     write_own_file(&file, &page)?;
                 }
-                // It need not be there.
+                // It may be missing.
                 None => drop(fs::remove_file(&file)),
             }
         }
@@ -63,7 +62,7 @@ pub(crate) fn boundary(
     Ok(())
 }
 
-/// A page of both trials; `None` if no trial failed there, or the engine shows nothing.
+/// Returns a page of both trials; `None` if no trial failed there, or the engine records nothing.
 fn pair(
     setup: &Setup,
     specimen: &Specimen,

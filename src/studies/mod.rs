@@ -1,10 +1,9 @@
-//! Studies: opened, run on the threads of this process or guided from outside, concluded and reported.
+//! Studies: opened, run on the threads of this process or measured by the caller, concluded and reported.
 
-pub mod after;
-pub mod around;
+pub mod analysis;
+pub mod ask_tell;
 pub mod concluded;
 mod film;
-pub mod guided;
 pub mod on_bench;
 pub mod open;
 mod optimizer;

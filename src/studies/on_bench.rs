@@ -1,9 +1,9 @@
-//! A study with measurements: which of its fingers is the best on the bench.
+//! Bench prediction of the fingers of a study with measurements.
 
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::setup::Setup;
-use crate::setup::bench::{Ground, folds};
+use crate::setup::bench::{CalibrationContext, folds};
 use crate::setup::run::{RunRequest, settings};
 use calibration::bench::Settings;
 use calibration::calibrate::Calibration;
@@ -13,10 +13,10 @@ use insertion::evaluation::objective::{Measure, Objectives};
 use rayon::ThreadPool;
 use study::{Study, StudyConfig, write_own_file};
 
-/// Every finger of the space as predicted, in the study's folder.
+/// Table of the predictions of all fingers of the space.
 const TABLE: &str = "bench_predictions.csv";
 
-/// Whether a study of this can end with a prediction for the bench.
+/// Checks that a study can end with a bench prediction.
 pub(crate) fn check(config: &StudyConfig) -> Result<(), Failure> {
     let refused = |what: &str| {
         Err(Failure::usage(format!("--measurements predicts the range of one task; {what}")))
@@ -31,39 +31,39 @@ pub(crate) fn check(config: &StudyConfig) -> Result<(), Failure> {
     }
 }
 
-/// Predicts every finger of the space on the bench, if there are measurements and it is not known
-/// yet, and keeps that with the study.
+/// Predicts every finger of the space on the bench and stores the prediction, if there are measurements
+/// and it is not stored yet.
 pub(crate) fn predict(
     (study, setup): (&Study, &Setup),
-    how: &RunRequest,
+    run: &RunRequest,
     pool: &ThreadPool,
     context: &Context<'_>,
 ) -> Result<(), Failure> {
     let wanted = setup.measured.as_ref().zip(study.config.conclusion.bench);
     let Some((measured, effort)) = wanted else { return Ok(()) };
-    if study.record().on_bench.is_some_and(|known| known.effort == effort) {
+    if study.record().on_bench.is_some_and(|found| found.effort == effort) {
         return Ok(());
     }
-    let ground = Ground {
+    let known = CalibrationContext {
         setup,
         priors: &measured.priors,
         simulations: usize::from(effort.simulations),
         seed: study.config.seed,
-        cache: how.cache.folder(setup)?,
+        cache: run.cache.folder(setup),
         context,
     };
     let provenance = study.provenance().clone();
     let (found, predictions) = pool.install(|| {
-        let (subjects, layout) = ground.subjects(&measured.file, &measured.experiments, &[])?;
+        let (subjects, layout) = known.subjects(&measured.file, &measured.experiments, &[])?;
         let done = |[done, of]: [usize; 2]| context.part(&folds(done, of));
-        let settings = Settings { done: &done, ..settings(effort, ground.seed, context.stop) };
+        let settings = Settings { done: &done, ..settings(effort, known.seed, context.stop) };
         let calibration = Calibration::new(layout, &subjects, &settings);
         context.check()?;
         let nothing = || Failure::running("the space has no finger to predict");
         let one = subjects.first().zip(calibration.tasks.first());
         let (subject, result) = one.ok_or_else(nothing)?;
         let best = by_range(result).first().map(|best| best.finger).ok_or_else(nothing)?;
-        let (task, cache) = (setup.only_task()?, ground.cache.clone());
+        let (task, cache) = (setup.only_task()?, known.cache.clone());
         let simulation = Simulation::new(&setup.evaluator, task, [].iter(), cache, context.stop);
         let simulated = simulation.window(&subject.designs[best], &[]).map_err(Failure::input)?;
         context.check()?;

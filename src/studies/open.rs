@@ -1,4 +1,4 @@
-//! A study that is open: measured on the threads of this process, or guided from outside.
+//! Open studies, and the run of a study on the threads of this process.
 
 use super::{film, on_bench, optimizer, printable, report, unusable};
 use crate::context::Context;
@@ -7,8 +7,10 @@ use crate::progress::{Part, cost};
 use crate::setup::Setup;
 use crate::setup::run::RunRequest;
 use crate::setup::task::nominal_start;
+use ::report::answer::Answer;
 use ::report::answer::command::mend;
 use ::report::answer::words::outcome;
+use ask_tell::Optimizer;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::Template;
@@ -19,63 +21,65 @@ use insertion::task::StartRule;
 use insertion::trial::NEVER;
 use rayon::ThreadPool;
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 use study::{
-    Cache, Confirmed, Confirmer, Ending, Kept, Recorded, Runner, Simulated, Study, StudyConfig,
-    StudyError, StudyRecord,
+    Cache, ConfirmationLog, Confirmed, Confirmer, Ending, Recorded, Runner, Simulated, Study,
+    StudyConfig, StudyError, StudyRecord,
 };
 
-/// A study that is open; no other process can open it meanwhile.
+/// Study that is open; no other process can open it.
 pub struct OpenStudy {
     pub(crate) study: Study,
     pub(crate) setup: Setup,
-    pub(crate) how: RunRequest,
-    /// Plan of the measurements beside the window.
+    pub(crate) run: RunRequest,
+    /// Plan of the measurements under drawn errors.
     pub(crate) plan: Plan,
     pub(crate) cache: Option<Cache>,
-    /// Lines of measurement on its task that it has not seen before.
+    /// Number of new measurements on its task.
     pub new_measurements: usize,
 }
 
-/// A study that has ended.
+/// Study that has ended.
 pub struct Ended {
     /// Its folder.
     pub dir: PathBuf,
-    /// Record of its measurements.
+    /// Record of its evaluations.
     pub record: StudyRecord,
-    /// How it ended.
+    /// Reason for which it ended.
     pub ending: Ending,
-    /// Evaluations that were known from other studies.
+    /// Evaluations that were in the cache.
     pub known: u64,
-    /// Why it is of no use, if no design inserts at the nominal start.
+    /// Failure if no design inserts at the nominal start.
     pub unusable: Option<Failure>,
-    pub(crate) how: RunRequest,
+    pub(crate) run: RunRequest,
 }
 
 impl OpenStudy {
-    pub(crate) fn new(mut study: Study, setup: Setup, how: RunRequest) -> Result<Self, Failure> {
+    pub(crate) fn new(mut study: Study, setup: Setup, run: RunRequest) -> Result<Self, Failure> {
         check(&study.config, &setup)?;
-        // Folders up to version 0.4.0 have it with the prediction only.
-        let predicted = || study.record().on_bench.map(|found| found.effort);
-        let known = study.config.conclusion.bench.or_else(predicted);
-        study.conclude_by(how.conclusion(&setup, known)?)?;
+        study.conclude_by(run.conclusion(&setup, study.config.conclusion.bench))?;
         let goals = study.config.goals();
         let plan = setup.plan(study.config.seed, |measure| goals.need(measure))?;
-        let cache = how.cache(&setup)?;
-        Ok(OpenStudy { study, setup, how, plan, cache, new_measurements: 0 })
+        let cache = run.cache(&setup);
+        Ok(OpenStudy { study, setup, run, plan, cache, new_measurements: 0 })
     }
 
-    /// The study as it stands.
-    pub fn study(&self) -> &Study {
-        &self.study
+    /// Returns a new optimizer of the study.
+    pub(super) fn optimizer(&self) -> Result<Box<dyn Optimizer + Send>, Failure> {
+        optimizer::optimizer(&self.setup, &self.study.config)
     }
 
-    /// A line for each task whose nominal start, not taught, fails with the middle one of the measured
-    /// fingers; nothing of a study that has begun.
+    /// Returns the evaluator of designs with its cache.
+    pub(super) fn simulated<'a>(&'a self, stop: &'a AtomicBool) -> Simulated<'a> {
+        simulated((&self.setup, self.cache.as_ref()), &self.plan, stop)
+    }
+
+    /// Returns a line for each task whose given nominal start fails with the finger of medium stiffness; none
+    /// for a study that has begun.
     ///
     /// # Errors
     /// If that cannot be simulated.
-    pub fn warnings(&self) -> Result<Vec<String>, Failure> {
+    fn warnings(&self) -> Result<Vec<String>, Failure> {
         let (mut warnings, record) = (Vec::new(), self.study.record());
         let Evaluator { templates, robot, engine, .. } = &self.setup.evaluator;
         for (place, Template { task, .. }) in templates.iter().enumerate() {
@@ -95,7 +99,7 @@ impl OpenStudy {
         Ok(warnings)
     }
 
-    /// Writes what is to be known of the study before it starts.
+    /// Shows new measurements and warnings before the study starts.
     ///
     /// # Errors
     /// If the nominal start cannot be simulated.
@@ -109,85 +113,91 @@ impl OpenStudy {
         Ok(())
     }
 
-    /// Runs the study until its budget is spent, confirms and writes the report.
+    /// Runs the study to its end on the threads of this process, confirms the recommended design and writes
+    /// the report.
     ///
     /// # Errors
     /// If a design cannot be simulated or a file cannot be written; if `stop` is set meanwhile.
     pub fn run(mut self, context: &Context<'_>) -> Result<Ended, Failure> {
-        let pool = self.how.pool()?;
-        let mut optimizer = optimizer::optimizer(&self.setup, &self.study.config)?;
-        let evaluator = Simulated {
-            evaluator: &self.setup.evaluator,
-            search: Search::default(),
-            plan: &self.plan,
-            cache: self.cache.as_ref(),
-            stop: context.stop,
+        let pool = self.run.pool()?;
+        let mut optimizer = self.optimizer()?;
+        let log = ConfirmationLog::open(&self.study);
+        let OpenStudy { study, setup, plan, cache, .. } = &mut self;
+        let (stop, cache) = (context.stop, cache.as_ref());
+        let evaluator = simulated((setup, cache), plan, stop);
+        let stagnates = |study: &Study, told: usize| {
+            with_confirmer((setup, cache), study, &pool, context, |confirmer| {
+                confirmer.stagnates(study, &log, told)
+            })
         };
-        let kept = Kept::read(&self.study);
-        let no_confirm = self.study.config.conclusion.no_confirm;
-        let judge = |study: &Study, told: usize| {
-            let known = (&self.setup, self.cache.as_ref());
-            confirmer(known, no_confirm, &pool, context, |it| it.judge(study, &kept, told))
-        };
-        let stop = context.stop;
-        let runner = Runner { evaluator: &evaluator, pool: &pool, stop, judge: &judge };
-        let mut measured = |recorded: &_| context.evaluated(recorded);
-        let ended = runner.run(&mut self.study, &mut *optimizer, &mut measured);
-        if let Some(problem) = self.cache.as_ref().and_then(Cache::problem) {
-            context
-                .note(&format!("warning: evaluations are not kept for other studies: {problem}"));
+        let runner = Runner { evaluator: &evaluator, pool: &pool, stop, stagnates: &stagnates };
+        let mut progress = |recorded: &_| context.evaluated(recorded);
+        let ended = runner.run(study, &mut *optimizer, &mut progress);
+        if let Some(problem) = cache.and_then(Cache::problem) {
+            let what = "evaluations are not stored for other studies";
+            context.note(&format!("warning: {what}: {problem}"));
         }
-        let ending = ended.map_err(|error| hint(error, &self.study))?;
-        self.conclude(ending, &kept, &pool, context)
+        let ending = ended.map_err(|error| hint(error, study))?;
+        self.conclude(ending, &log, &pool, context)
     }
 
-    /// Confirms what is recommended and writes the report of a study that has ended so.
-    pub(crate) fn conclude(
+    /// Confirms the recommended design of a study that has ended and writes its report.
+    pub(super) fn conclude(
         &mut self,
         ending: Ending,
-        kept: &Kept,
+        log: &ConfirmationLog,
         pool: &ThreadPool,
         context: &Context<'_>,
     ) -> Result<Ended, Failure> {
         let stop = context.stop;
         let known = self.cache.as_ref().map_or(0, Cache::found);
-        let OpenStudy { study, setup, how, cache, .. } = self;
-        let no_confirm = study.config.conclusion.no_confirm;
+        let OpenStudy { study, setup, run, cache, .. } = self;
         let interrupted = || ending == Ending::Interrupted || stop.load(Ordering::SeqCst);
         let settled = ending == Ending::Settled;
-        if ending != Ending::Interrupted && (settled || !no_confirm) {
+        if ending != Ending::Interrupted && (settled || !study.config.conclusion.no_confirm) {
             let known = (&*setup, cache.as_ref());
-            confirmer(known, no_confirm, pool, context, |it| it.confirm(study, kept, settled))
+            with_confirmer(known, study, pool, context, |it| it.confirm(study, log, settled))
                 .map_err(|error| hint(error, study))?;
         }
         study.check_journal()?;
         if !interrupted() {
-            let predicted = on_bench::predict((study, setup), how, pool, context);
-            // Interrupted, it says nothing; the report is written all the same.
+            let predicted = on_bench::predict((study, setup), run, pool, context);
+            // After cancellation the report is written all the same.
             predicted.or_else(|failure| if interrupted() { Ok(()) } else { Err(failure) })?;
         }
         let (dir, record) = (study.dir().to_owned(), study.record());
+        let answer = Answer::of(&record);
         if !interrupted() {
-            film::boundary(&dir, &record, setup, pool, stop)?;
+            film::boundary(&dir, &answer, setup, pool, stop)?;
         }
-        printable::write(&dir, &record, &setup.evaluator)?;
+        printable::write(&dir, &answer, &setup.evaluator)?;
         // Before the page, which shows its picture.
         let unusable = match interrupted() {
             true => None,
             false => unusable::check(&dir, &record, setup, stop).err(),
         };
-        report::write(&dir, &record, &setup.evaluator.surrogate)?;
+        report::write(&dir, &answer, &setup.evaluator.surrogate)?;
         if interrupted() {
             return Err(Failure::Interrupted(Some(resume_hint(study))));
         }
-        Ok(Ended { dir, record, ending, known, unusable, how: how.clone() })
+        Ok(Ended { dir, record, ending, known, unusable, run: run.clone() })
     }
 }
 
-/// Calls `what` with the confirmer of this setup.
-pub(crate) fn confirmer<T>(
+/// Returns the evaluator of a study's designs with its cache.
+pub(super) fn simulated<'a>(
+    (setup, cache): (&'a Setup, Option<&'a Cache>),
+    plan: &'a Plan,
+    stop: &'a AtomicBool,
+) -> Simulated<'a> {
+    let (evaluator, search) = (&setup.evaluator, Search::default());
+    Simulated { evaluator, search, plan, cache, stop }
+}
+
+/// Calls `what` with the confirmer of a study.
+pub(super) fn with_confirmer<T>(
     (setup, cache): (&Setup, Option<&Cache>),
-    no_confirm: bool,
+    study: &Study,
     pool: &ThreadPool,
     context: &Context<'_>,
     what: impl FnOnce(&Confirmer) -> T,
@@ -200,15 +210,15 @@ pub(crate) fn confirmer<T>(
         let what = format!("{word} {}", short(recorded));
         context.part(&Part { what, done, of, cost });
     };
-    let stop = context.stop;
+    let (stop, no_confirm) = (context.stop, study.config.conclusion.no_confirm);
     let (evaluator, search, plan) = (&setup.evaluator, Search::Walk, &Plan::WINDOW);
-    let walker = Simulated { evaluator, search, plan, cache, stop };
+    let walker = &Simulated { evaluator, search, plan, cache, stop };
     let by_ribs = setup.by_ribs();
-    let (walker, by_ribs) = (&walker, by_ribs.as_ref());
+    let by_ribs = by_ribs.as_ref();
     what(&Confirmer { walker, by_ribs, evaluator, pool, stop, no_confirm, done: &done })
 }
 
-/// A design in few letters: `10 %, 26°`, of many parameters the number of its evaluation.
+/// Returns the parameters of a design, `10 %, 26°`, or its number if there are more than two.
 fn short(recorded: &Recorded) -> String {
     let value = |(key, value): (&String, &f64)| format!("{value}{}", label(key).1);
     match recorded.design.0.len() {
@@ -230,26 +240,26 @@ fn check(config: &StudyConfig, setup: &Setup) -> Result<(), Failure> {
     ] {
         if !same {
             return Err(bad_config(format!(
-                "{key}: is not what the input files in the folder say; restore the file from a copy"
+                "{key}: differs from the input files in the folder; restore the file from a copy"
             )));
         }
     }
     Ok(())
 }
 
-/// The failure, and how to go on after it where the journal is as it was written.
-pub(crate) fn hint(error: StudyError, study: &Study) -> Failure {
-    let lost = matches!(error, StudyError::Interfered { .. });
+/// Adds how to resume the study to an error, unless the journal was changed.
+pub(super) fn hint(error: StudyError, study: &Study) -> Failure {
+    let changed = matches!(error, StudyError::Interfered { .. });
     match Failure::from(error) {
-        Failure::Run(error) if !lost => {
+        Failure::Run(error) if !changed => {
             Failure::running(format!("{error}\n{}", resume_hint(study)))
         }
         other => other,
     }
 }
 
-/// How far a study is, and how to go on.
-pub(crate) fn resume_hint(study: &Study) -> String {
+/// Returns the progress of a study and how to resume it.
+pub(super) fn resume_hint(study: &Study) -> String {
     let (done, dir) = (study.config.counted(study.evaluations.len()), study.dir().display());
     format!("{done} are safe; continue with: optimize resume {dir}")
 }

@@ -1,4 +1,4 @@
-//! The optimizer of a study: what it searches, and what it knows beforehand.
+//! Optimizer of a study: its search space and prior knowledge.
 
 use crate::failure::{Failure, bad_config};
 use crate::setup::Setup;
@@ -9,7 +9,7 @@ use insertion::space::{Design, Variable};
 use insertion::stiffness::Measurement;
 use study::StudyConfig;
 
-/// The optimizer of a study.
+/// Returns the optimizer of a study.
 pub(crate) fn optimizer(
     setup: &Setup,
     config: &StudyConfig,
@@ -33,8 +33,8 @@ pub(crate) fn optimizer(
     })
 }
 
-/// Of a space of printed fingers the points next to the measured ones, which have the shape of the
-/// finger file: what the other numbers add to the infill is told against those.
+/// Returns the points nearest to the measured fingers in a space of printed fingers; the measured ones have
+/// the shape of the finger file.
 fn measured_points(setup: &Setup) -> Vec<GridPoint> {
     let parameters = &setup.space.parameters;
     let FingerSource::Computed(fingers) = &setup.evaluator.fingers else { return Vec::new() };

@@ -1,4 +1,4 @@
-//! Studies for callers that measure themselves.
+//! Requests of studies whose designs the caller measures.
 
 use super::open::OpenStudy;
 use crate::commands::{resume, study};
@@ -6,22 +6,22 @@ use crate::failure::Failure;
 use crate::setup::run::RunRequest;
 use std::path::PathBuf;
 
-/// A study that is begun, or gone on with.
+/// Request to begin or resume a study.
 #[derive(Debug, Clone)]
 pub enum AnyStudy {
-    /// By what it measures.
+    /// Begin a study, or continue the one in its folder.
     Asked(Box<study::Request>),
-    /// By its folder.
+    /// Resume the study in a folder.
     Resumed(resume::Request),
 }
 
 impl AnyStudy {
-    /// Returns the study that is asked for by what it measures.
+    /// Returns the request to begin a study.
     pub fn asked(request: study::Request) -> Self {
         AnyStudy::Asked(Box::new(request))
     }
 
-    /// Returns how it is run, and whether all numbers behind the answer are printed.
+    /// Returns the options of the run, and whether all numbers of the answer are printed.
     pub fn how(&self) -> (&RunRequest, bool) {
         match self {
             AnyStudy::Asked(request) => (&request.run, request.verbose),
@@ -29,7 +29,10 @@ impl AnyStudy {
         }
     }
 
-    /// Opens it; where no batch is given a new study's is `workers`.
+    /// Opens the study; the default batch of a new one is `workers`.
+    ///
+    /// # Errors
+    /// If the request or the folder is invalid.
     pub fn open(&self, workers: Option<u64>) -> Result<OpenStudy, Failure> {
         match self {
             AnyStudy::Asked(request) => request.open(workers),
@@ -37,7 +40,10 @@ impl AnyStudy {
         }
     }
 
-    /// Its folder, with all checked that is asked for; nothing is written.
+    /// Checks the request without writing anything and returns the folder.
+    ///
+    /// # Errors
+    /// If the request is invalid.
     pub fn folder(&self) -> Result<PathBuf, Failure> {
         match self {
             AnyStudy::Asked(request) => Ok(request.look()?.2),

@@ -1,10 +1,10 @@
-//! The best of a study so far.
+//! Best designs of a study so far, for its progress.
 
 use ask_tell::pareto::Archive;
 use insertion::evaluation::objective::Goals;
 use study::{Recorded, Study};
 
-/// The front of the designs that keep all constraints.
+/// Front of the feasible designs.
 pub struct Standing {
     goals: Goals,
     /// Gains: larger is better.
@@ -12,26 +12,26 @@ pub struct Standing {
 }
 
 impl Standing {
-    /// Of what a study has measured.
+    /// Returns the front of a study.
     pub fn new(study: &Study) -> Self {
         let mut standing = Standing { goals: study.config.goals(), front: Archive::default() };
         study.evaluations.iter().for_each(|recorded| standing.add(recorded));
         standing
     }
 
-    /// With one more design.
+    /// Adds a design.
     pub fn add(&mut self, recorded: &Recorded) {
         if let Some(values) = recorded.feasible().filter(|_| !recorded.raced()) {
             self.front.add(self.goals.gains(values));
         }
     }
 
-    /// The best value, or how many designs there are on the front, in words.
+    /// Returns the best value, or the size of the front, as text.
     pub fn best(&self) -> String {
         match (self.goals.objectives.single(), self.front.points()) {
             (_, []) if self.goals.constraints.is_empty() => "no value yet".to_owned(),
-            (_, []) => "nothing keeps the constraints yet".to_owned(),
-            // The sign that makes gains of values makes values of gains.
+            (_, []) => "no feasible design yet".to_owned(),
+            // The sign of a gain is its own inverse.
             (Some(measure), [gains, ..]) => {
                 let values = self.goals.gains(gains);
                 format!("best {}", values.first().map_or(String::new(), |&v| measure.show(v)))

@@ -1,26 +1,20 @@
-//! The result of a study for other programs.
+//! JSON output of a study.
 
-use super::around::Around;
+use super::analysis::PostAnalysis;
 use super::open::Ended;
-use super::recommended::{Advice, Recommendation};
-use analysis::levers::Levers;
-use analysis::map::CaptureMap;
-use insertion::evaluation::Evaluation;
+use super::recommended::{advice, recommendation, values};
 use insertion::evaluation::objective::{Aggregate, Constraint, Objectives};
-use insertion::space::Design;
-use insertion::surrogate::Prediction;
 use report::answer::{Answer, UnderRobot};
-use serde::ser::SerializeMap;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
+use serde_json::{Value, json};
 use std::path::Path;
 use study::{Ending, Recorded, Segment, StudyRecord};
 
-/// Raised when a key changes its meaning or goes.
+/// Version of the output; raised when a key changes its meaning or is removed.
 const SCHEMA_VERSION: u32 = 1;
 
-/// Output of a study that has ended.
 #[derive(Serialize)]
-pub struct Summary<'a> {
+struct Summary<'a> {
     schema_version: u32,
     task: String,
     space: &'a str,
@@ -34,12 +28,12 @@ pub struct Summary<'a> {
     evaluations: usize,
     settled: bool,
     cached: u64,
-    ending: &'a str,
-    best: Option<Evaluated<'a>>,
+    ending: Ending,
+    best: Option<Value>,
     #[serde(flatten)]
-    recommendation: Recommendation<'a>,
+    recommendation: Value,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    walked: Vec<Evaluated<'a>>,
+    walked: Vec<Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
     segments: Option<&'a [Segment]>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -49,168 +43,107 @@ pub struct Summary<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     aggregate: Option<&'a Aggregate>,
     #[serde(flatten)]
-    front: Option<Front<'a>>,
-    answer: Advice<'a>,
-    levers: Option<OfLevers<'a>>,
-    maps: Vec<OfMap<'a>>,
+    front: Option<Value>,
+    answer: Value,
+    levers: Option<Value>,
+    maps: Vec<Value>,
     robots: &'a [UnderRobot],
     study: &'a Path,
 }
 
-/// Designs none of which is better than another in all objectives.
-#[derive(Serialize)]
-struct Front<'a> {
-    front: Vec<Evaluated<'a>>,
-    hypervolume: f64,
-    hypervolume_reference: Values,
-}
-
-/// A design with all that was measured of it.
-#[derive(Serialize)]
-struct Evaluated<'a> {
-    evaluation: u64,
-    stiffness: &'a Prediction,
-    #[serde(flatten)]
-    values: Option<Values>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    violations: Option<&'a [f64]>,
-    #[serde(flatten)]
-    design: &'a Design,
-    #[serde(flatten)]
-    one: Option<&'a Evaluation>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    tasks: Option<Vec<OnTask<'a>>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    firm_range_mm: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct OnTask<'a> {
-    task: &'a str,
-    #[serde(flatten)]
-    evaluation: &'a Evaluation,
-}
-
-/// Values by the keys of their objectives, in their order.
-struct Values(Vec<(String, f64)>);
-
-impl Values {
-    fn of(objectives: &Objectives, values: &[f64]) -> Self {
-        let keys = objectives.keys().into_iter().map(|key| key.to_string());
-        Values(keys.zip(values.iter().copied()).collect())
-    }
-}
-
-impl Serialize for Values {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.0.len()))?;
-        for (key, value) in &self.0 {
-            map.serialize_entry(key, value)?;
-        }
-        map.end()
-    }
-}
-
-#[derive(Serialize)]
-struct OfLevers<'a> {
-    sentence: String,
-    #[serde(flatten)]
-    levers: &'a Levers,
-}
-
-#[derive(Serialize)]
-struct OfMap<'a> {
-    axes: [&'a str; 2],
-    area: f64,
-    area_unit: &'a str,
-    trials: usize,
-}
-
-impl<'a> From<&'a CaptureMap> for OfMap<'a> {
-    fn from(map: &'a CaptureMap) -> Self {
+/// Returns the output of a study as JSON.
+pub fn summary(ended: &Ended, answer: &Answer, analyses: &PostAnalysis) -> Value {
+    let record = answer.record;
+    let config = &record.config;
+    let evaluated = |recorded: &Recorded| evaluated(record, recorded);
+    let walked = answer.walked.iter().map(|&(design, firm_range_mm)| {
+        let mut walked = evaluated(design);
+        walked["firm_range_mm"] = json!(firm_range_mm);
+        walked
+    });
+    let front = answer.front.as_ref().map(|front| {
+        let reference = front.volume.reference.iter().copied();
+        json!({
+            "front": front.designs.iter().map(|design| evaluated(design)).collect::<Vec<_>>(),
+            "hypervolume": front.volume.hypervolume,
+            "hypervolume_reference": values(&config.objective, reference),
+        })
+    });
+    let levers = analyses.levers.as_ref().map(|levers| {
+        let mut json = json!({"sentence": levers.sentence()});
+        extend(&mut json, json!(levers));
+        json
+    });
+    let maps = analyses.maps.iter().map(|map| {
         let axes = map.axes.each_ref().map(|axis| axis.name.as_ref());
-        OfMap { axes, area: map.area, area_unit: map.area_unit.as_ref(), trials: map.trials }
-    }
+        let axes: [&str; 2] = axes;
+        json!({
+            "axes": axes,
+            "area": map.area,
+            "area_unit": map.area_unit,
+            "trials": map.trials,
+        })
+    });
+    let constrained = !config.constraints.is_empty();
+    json!(Summary {
+        schema_version: SCHEMA_VERSION,
+        task: config.task_name(),
+        space: &config.space.name,
+        robot: &config.robot,
+        engine: record.segments.last().map(|segment| &*segment.provenance.engine.name),
+        optimizer: &config.optimizer,
+        objective: &config.objective,
+        seed: config.seed,
+        budget: config.budget,
+        polish: config.polish,
+        evaluations: record.evaluations.len(),
+        settled: record.settled,
+        cached: ended.known,
+        ending: ended.ending,
+        best: record.best().filter(|_| answer.front.is_none()).map(evaluated),
+        recommendation: recommendation(answer),
+        walked: walked.collect(),
+        segments: (record.segments.len() > 1).then_some(&record.segments[..]),
+        constraints: constrained.then_some(&config.constraints[..]),
+        feasible: constrained.then_some(answer.feasible),
+        aggregate: config.aggregate.as_ref(),
+        front,
+        answer: advice(answer, &ended.dir),
+        levers,
+        maps: maps.collect(),
+        robots: &analyses.robots,
+        study: &ended.dir,
+    })
 }
 
-impl<'a> Evaluated<'a> {
-    fn new(record: &'a StudyRecord, recorded: &'a Recorded) -> Self {
-        let config = &record.config;
-        let several = config.several_tasks();
-        let score = recorded.score.as_ref();
-        let violations = score.map(|score| score.violations.as_slice());
-        let tasks = || config.tasks().zip(recorded.tasks());
-        Evaluated {
-            evaluation: recorded.index,
-            stiffness: &recorded.stiffness,
-            values: score.map(|score| Values::of(&config.objective, &score.values)),
-            violations: violations.filter(|violations| !violations.is_empty()),
-            design: &recorded.design,
-            one: recorded.tasks.first().filter(|_| !several),
-            tasks: several
-                .then(|| tasks().map(|(task, evaluation)| OnTask { task, evaluation }).collect()),
-            firm_range_mm: None,
+/// Returns a design with all its measurements.
+fn evaluated(record: &StudyRecord, recorded: &Recorded) -> Value {
+    let config = &record.config;
+    let mut json = json!({"evaluation": recorded.index, "stiffness": recorded.stiffness});
+    if let Some(score) = &recorded.score {
+        let values = values(&config.objective, score.values.iter().copied());
+        extend(&mut json, values.into());
+        if !score.violations.is_empty() {
+            json["violations"] = json!(score.violations);
         }
     }
-}
-
-impl<'a> Summary<'a> {
-    /// Returns the output of a study.
-    pub fn new(ended: &'a Ended, answer: &'a Answer<'a>, around: &'a Around) -> Self {
-        let record = answer.record;
-        let config = &record.config;
-        let evaluated = |recorded| Evaluated::new(record, recorded);
-        let walked = answer.walked.iter().map(|&(design, firm_range_mm)| Evaluated {
-            firm_range_mm: Some(firm_range_mm),
-            ..evaluated(design)
-        });
-        let front = answer.front.as_ref().map(|front| Front {
-            front: front.designs.iter().map(|design| evaluated(design)).collect(),
-            hypervolume: front.volume.hypervolume,
-            hypervolume_reference: Values::of(&config.objective, &front.volume.reference),
-        });
-        let constrained = !config.constraints.is_empty();
-        let levers = around.levers.as_ref();
-        Summary {
-            schema_version: SCHEMA_VERSION,
-            task: config.task_name(),
-            space: &config.space.name,
-            robot: &config.robot,
-            engine: record.segments.last().map(|segment| &*segment.provenance.engine.name),
-            optimizer: &config.optimizer,
-            objective: &config.objective,
-            seed: config.seed,
-            budget: config.budget,
-            polish: config.polish,
-            evaluations: record.evaluations.len(),
-            settled: record.settled,
-            cached: ended.known,
-            ending: word(ended.ending),
-            best: record.best().filter(|_| answer.front.is_none()).map(evaluated),
-            recommendation: Recommendation::of(answer),
-            walked: walked.collect(),
-            segments: (record.segments.len() > 1).then_some(&record.segments[..]),
-            constraints: constrained.then_some(&config.constraints[..]),
-            feasible: constrained.then_some(answer.feasible),
-            aggregate: config.aggregate.as_ref(),
-            front,
-            answer: Advice::of(answer, &ended.dir),
-            levers: levers.map(|levers| OfLevers { sentence: levers.sentence(), levers }),
-            maps: around.maps.iter().map(OfMap::from).collect(),
-            robots: &around.robots,
-            study: &ended.dir,
-        }
+    extend(&mut json, json!(recorded.design));
+    if !config.several_tasks() {
+        extend(&mut json, json!(recorded.tasks.first()));
+        return json;
     }
+    let on_task = |(task, evaluation)| {
+        let mut json = json!({"task": task});
+        extend(&mut json, json!(evaluation));
+        json
+    };
+    json["tasks"] = config.tasks().zip(&recorded.tasks).map(on_task).collect();
+    json
 }
 
-/// Returns the word for the ending of a study.
-pub fn word(ending: Ending) -> &'static str {
-    match ending {
-        Ending::BudgetSpent => "budget_spent",
-        Ending::SpaceExhausted => "space_exhausted",
-        Ending::Converged => "converged",
-        Ending::Interrupted => "interrupted",
-        Ending::Settled => "settled",
-        Ending::NothingInserts => "nothing_inserts",
+/// Adds the fields of an object.
+fn extend(json: &mut Value, more: Value) {
+    if let (Value::Object(fields), Value::Object(more)) = (json, more) {
+        fields.extend(more);
     }
 }

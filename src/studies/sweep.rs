@@ -1,4 +1,4 @@
-//! Many fingers on one task, each measured as by itself.
+//! Windows of many fingers on one task.
 
 use crate::commands::evaluate::{Evaluated, Request as EvaluateRequest};
 use crate::context::not_stopped;
@@ -14,7 +14,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use study::{Cache, Simulated};
 
-/// Measures fingers on a task, on its own threads and through the cache that studies share.
+/// Evaluator of fingers on a task, with its own threads and the cache of the studies.
 pub struct Sweep {
     setup: Setup,
     search: Search,
@@ -24,21 +24,26 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// Of windows as they are asked for, but for the finger and repeats.
+    /// Returns the evaluator of windows; the finger of the request and its repeats are ignored.
+    ///
+    /// # Errors
+    /// If the request is invalid.
     pub fn new(windows: &EvaluateRequest, run: &RunRequest) -> Result<Self, Failure> {
-        run.check()?;
         let (setup, plan) = windows.prepared()?;
         setup.only_task()?;
-        let (cache, pool) = (run.cache(&setup)?, run.pool()?);
+        let (cache, pool) = (run.cache(&setup), run.pool()?);
         Ok(Sweep { setup, search: windows.search(), plan, cache, pool })
     }
 
-    /// How many windows were in the cache.
+    /// Returns the number of windows that were in the cache.
     pub fn known(&self) -> u64 {
         self.cache.as_ref().map_or(0, Cache::found)
     }
 
-    /// Measures these fingers, in their order.
+    /// Measures fingers.
+    ///
+    /// # Errors
+    /// That of the first finger that cannot be simulated; if `stop` is set meanwhile.
     pub fn measure(
         &self,
         fingers: &[FingerRequest],
@@ -58,7 +63,6 @@ impl Sweep {
         };
         let found: Vec<_> = self.pool.install(|| fingers.par_iter().map(one).collect());
         not_stopped(stop)?;
-        // Of several failures the first.
         found.into_iter().collect()
     }
 }

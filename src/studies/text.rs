@@ -1,6 +1,6 @@
-//! The result of a study in words.
+//! Text output of a study.
 
-use super::around::Around;
+use super::analysis::PostAnalysis;
 use super::open::Ended;
 use super::report::PAGE;
 use crate::layout;
@@ -10,34 +10,32 @@ use report::answer::{Answer, Front, command, expectation};
 use std::path::Path;
 use study::{Ending, Recorded, StudyRecord};
 
-/// Returns the output of a study that has ended; `all` adds all numbers behind the answer.
-pub fn ended(Ended { dir, record, ending, known, .. }: &Ended, all: bool) -> String {
-    let answer = Answer::of(record);
-    let verbose = if all { verbose(&answer, *ending, *known) } else { String::new() };
-    told(&answer, dir, &verbose)
+/// Returns the output of a study that has ended, with `all` numbers of the answer if requested.
+pub fn ended(ended: &Ended, answer: &Answer, all: bool) -> String {
+    let verbose = if all { verbose(answer, ended.ending, ended.known) } else { String::new() };
+    shown(answer, &ended.dir, &verbose)
 }
 
-/// Returns what follows the answer.
-pub fn around(around: &Around) -> String {
-    let levers =
-        around.levers.iter().map(|levers| format!("levers        {}\n", levers.sentence()));
-    let robots = around.robots.iter().map(|found| format!("robot         {}\n", found.words()));
+/// Returns the text of the analyses after a study.
+pub fn analyses(PostAnalysis { levers, robots, .. }: &PostAnalysis) -> String {
+    let levers = levers.iter().map(|levers| format!("levers        {}\n", levers.sentence()));
+    let robots = robots.iter().map(|found| format!("robot         {}\n", found.words()));
     layout::wrapped(&levers.chain(robots).collect::<String>())
 }
 
-/// Returns the answer, and where to go on.
-fn told(answer: &Answer, dir: &Path, verbose: &str) -> String {
+/// Returns the answer and the next command.
+fn shown(answer: &Answer, dir: &Path, verbose: &str) -> String {
     let mut text = format!("{}\n{}\n", answer.verdict.headline(), expectation(answer));
     text += &layout::lines(lines::brief(answer));
     text += verbose;
-    // To be copied: not wrapped.
+    // Not wrapped, to be copied.
     let (command, why) = command::next(answer, dir);
     let page = dir.join(PAGE);
     let place = format!("study         {} (see {})\n", dir.display(), page.display());
     format!("{}next          {command}\n              # {why}\n{place}", layout::wrapped(&text))
 }
 
-/// Returns all numbers behind the answer.
+/// Returns all numbers of the answer.
 fn verbose(answer: &Answer, ending: Ending, known: u64) -> String {
     let record = answer.record;
     let config = &record.config;
@@ -61,7 +59,7 @@ fn verbose(answer: &Answer, ending: Ending, known: u64) -> String {
         text += &layout::lines(lines::on_bench(bench));
         text += "by simulation alone:\n";
     }
-    // Where none is recommended, what stands first says why.
+    // If none is recommended, the headline gives the reason.
     let found = answer.recommended.as_ref().filter(|_| answer.named().is_some());
     text += &found.map_or(String::new(), |found| match &answer.front {
         Some(front) => front_text(record, front),
@@ -98,13 +96,13 @@ fn front_text(record: &StudyRecord, Front { designs, volume }: &Front) -> String
 mod tests {
     use super::*;
 
-    /// The lines of the committed studies, to the letter.
+    /// Compares the lines of the committed studies exactly.
     #[test]
     fn the_summary_is_that_of_the_reference() {
         for task in ["ket8", "rj45", "usb"] {
             let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/reference").join(task);
             let record = StudyRecord::load(&dir).unwrap();
-            let lines = told(&Answer::of(&record), &dir, "");
+            let lines = shown(&Answer::of(&record), &dir, "");
             let (lines, _) = lines.split_once("study   ").unwrap();
             let file = dir.join("summary.txt");
             if std::env::var_os("RENEW").is_some() {

@@ -11,8 +11,10 @@ use study::{StudyRecord, write_own_file};
 
 pub(crate) const PICTURE: &str = "nominal.svg";
 
-/// Fails, with what the design that comes nearest does at the nominal start, if none inserts there;
-/// if `stop` is set meanwhile.
+/// Checks that a design inserts at the nominal start.
+///
+/// # Errors
+/// If none does, with the outcome of the nearest design; if `stop` is set meanwhile.
 pub(crate) fn check(
     dir: &Path,
     record: &StudyRecord,

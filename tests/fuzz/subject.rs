@@ -1,6 +1,6 @@
 //! What is mutated, and what is asked of the program about it.
 
-use super::common::{Ran, sealed};
+use super::common::Ran;
 use super::mutation::{Mutation, mutated};
 use super::process::{no_number, run};
 use anyhow::{Context, Result, bail, ensure};
@@ -9,7 +9,7 @@ use connector::mesh::{Surface, read};
 use finger_opt::command::parse;
 use finger_opt::commands::study;
 use finger_opt::failure::Failure;
-use finger_opt::studies::guided::{Guided, NotTaken, Order, perform};
+use finger_opt::studies::ask_tell::{AskTellStudy, Order, RejectedResult, perform};
 use input::units::MM;
 use insertion::trial::NEVER;
 use nalgebra::Point3;
@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 /// Names of what a case is about.
 pub const KINDS: &str = "task space robot uncertainty stiffness finger config journal \
-    sealed-journal walk ask-tell command-line trial measurements loop priors cell mesh mesh-size worker";
+    walk ask-tell command-line trial measurements loop priors cell mesh mesh-size worker";
 
 /// Outcome of a case that is as it should be.
 type How = Result<&'static str>;
@@ -119,12 +119,6 @@ pub fn run_case(kind: &str, mutations: &[Mutation], number: u64, base: &Base) ->
         }
         "config" => kept("study.toml", &|text| mutated(text, mutations), base, &out),
         "journal" => kept("journal.jsonl", &|text| mutated(text, mutations), base, &out),
-        "sealed-journal" => {
-            let change = |text: &str| {
-                sealed(&String::from_utf8_lossy(&mutated(text, mutations))).into_bytes()
-            };
-            kept("journal.jsonl", &change, base, &out)
-        }
         "walk" => kept("walk.json", &|text| mutated(text, mutations), base, &out),
         "ask-tell" => talk(mutations, number),
         "command-line" => command_line(mutations, number, dir.path()),
@@ -178,7 +172,7 @@ pub fn run_case(kind: &str, mutations: &[Mutation], number: u64, base: &Base) ->
                  --socket {socket} --out {folder}/task.toml"
             ))
         }
-        "worker" => lied_to(mutations, &out),
+        "worker" => damaged_results(mutations, &out),
         other => bail!("no kind is called {other}"),
     }
 }
@@ -204,14 +198,14 @@ fn lathe(flats: usize, rings: usize) -> String {
     text
 }
 
-/// A study whose worker lies: what is believed of it can be read again.
-fn lied_to(mutations: &[Mutation], out: &Path) -> How {
+/// A study whose results are damaged on the way: a damaged one is refused.
+fn damaged_results(mutations: &[Mutation], out: &Path) -> How {
     let line = "--task usb --engine fake --budget 3".split(' ');
     let mut request: study::Request =
         parse(line).map_err(|failure| anyhow::anyhow!("{failure}"))?;
     request.out = Some(out.to_owned());
     let failed = |failure: Failure| anyhow::anyhow!("{failure}");
-    let mut guided = request.open(None).and_then(Guided::new).map_err(failed)?;
+    let mut guided = request.open(None).and_then(AskTellStudy::new).map_err(failed)?;
     let mut how = "accepted";
     loop {
         let works = match guided.order(&NEVER).map_err(failed)? {
@@ -224,12 +218,11 @@ fn lied_to(mutations: &[Mutation], out: &Path) -> How {
         };
         for (proposal, work) in works {
             let result = perform(&work, "a worker", &NEVER).map_err(failed)?;
-            let lie = mutated(std::str::from_utf8(&result)?, mutations);
-            let lie = sealed(&String::from_utf8_lossy(&lie));
-            match guided.take(proposal, lie.as_bytes()) {
+            let damaged = mutated(std::str::from_utf8(&result)?, mutations);
+            match guided.take(proposal, &damaged) {
                 Ok(_) => {}
-                Err(NotTaken::Failed(failure)) => return Err(failed(failure)),
-                Err(NotTaken::Refused(_)) => {
+                Err(RejectedResult::Failed(failure)) => return Err(failed(failure)),
+                Err(RejectedResult::Refused(_)) => {
                     how = "refused";
                     let taken = guided.take(proposal, &result);
                     ensure!(matches!(taken, Ok(true)), "the true result is refused");

@@ -13,7 +13,6 @@ use insertion::evaluation::Evaluation;
 use insertion::evaluation::grid_mm;
 use insertion::outcome::{FailureClass, Outcome};
 use maud::{Markup, PreEscaped, html};
-use study::StudyRecord;
 
 /// The screen, which stands before all sections.
 pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
@@ -69,7 +68,7 @@ const COLOURS: [(&str, &str); 7] = [
 
 /// The finger as the sheet draws it.
 fn drawn(answer: &Answer) -> Option<Markup> {
-    let geometry = recommended(answer.record)?;
+    let geometry = recommended(answer)?;
     let design = answer.verdict.finger()?;
     let first = answer.record.config.objective.first().name();
     let best = answer.front.as_ref().map_or(String::new(), |_| format!(", best in {first}"));
@@ -80,7 +79,7 @@ fn drawn(answer: &Answer) -> Option<Markup> {
 }
 
 fn files(answer: &Answer, beside: &Beside) -> Option<Markup> {
-    recommended(answer.record)?;
+    recommended(answer)?;
     let names = printer::FILES.into_iter().filter(|(file, _)| beside.files.contains(file));
     Some(html! { p.files { @for (file, name) in names { a.button href=(file) { (name) } } } })
 }
@@ -110,13 +109,13 @@ fn nominal(answer: &Answer, beside: &Beside) -> Markup {
 }
 
 /// The end of the window that is shown first: a jam or a miss says more than a lost plug.
-pub fn preferred(record: &StudyRecord) -> &'static str {
+pub fn preferred(answer: &Answer) -> &'static str {
     let telling = |end: Option<Outcome>| {
         let telling = [FailureClass::PlugMissed, FailureClass::Jammed].map(Outcome::Failed);
         end.is_some_and(|end| telling.contains(&end))
     };
     let [negative, positive] = ENDS.map(|(end, _)| end);
-    let window = Answer::of(record).shown().and_then(|(_, tasks)| Some(&tasks.first()?.window));
+    let window = answer.shown().and_then(|(_, tasks)| Some(&tasks.first()?.window));
     let below = window.is_some_and(|w| telling(w.end_negative) && !telling(w.end_positive));
     if below { negative } else { positive }
 }

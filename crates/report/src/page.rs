@@ -14,12 +14,11 @@ use study::StudyRecord;
 pub(super) const PLOT: (u32, u32) = (356, 300);
 /// The report of a study as a page that opens offline. `model` is the stiffness model of the
 /// study.
-pub fn page(record: &StudyRecord, model: &Model, beside: &Beside) -> Result<String, ReportError> {
-    let answer = Answer::of(record);
-    let sections = sections(&answer, model, beside)?;
+pub fn page(answer: &Answer, model: &Model, beside: &Beside) -> Result<String, ReportError> {
+    let sections = sections(answer, model, beside)?;
     let body = html! {
         main {
-            (first::screen(&answer, beside))
+            (first::screen(answer, beside))
             nav aria-label="contents" {
                 @for (id, title, _) in &sections { a href=(format!("#{id}")) { (title) } }
             }
@@ -28,18 +27,17 @@ pub fn page(record: &StudyRecord, model: &Model, beside: &Beside) -> Result<Stri
             }
         }
     };
-    Ok(document(&title(record), body))
+    Ok(document(&title(answer.record), body))
 }
 
 /// The answer of the study in a folder as a piece of a page, for notebooks.
-pub fn card(record: &StudyRecord, dir: &Path) -> String {
-    let answer = Answer::of(record);
-    let (command, why) = command::next(&answer, dir);
+pub fn card(answer: &Answer, dir: &Path) -> String {
+    let (command, why) = command::next(answer, dir);
     let card = html! {
         div.finger-opt {
             h3 { (answer.verdict.headline()) }
-            p { (expectation(&answer)) " (" (answer.trust.label()) ")" }
-            (definitions(&lines::brief(&answer)))
+            p { (expectation(answer)) " (" (answer.trust.label()) ")" }
+            (definitions(&lines::brief(answer)))
             p { code { (command) } br; (why) }
         }
     };

@@ -25,8 +25,8 @@ pub(super) fn finger_file(record: &StudyRecord) -> Option<FingerFile> {
 }
 
 /// The recommended finger; `None` if there is none or it cannot be printed.
-pub fn recommended(record: &StudyRecord) -> Option<Geometry> {
-    let design = Answer::of(record).verdict.finger()?;
-    let finger = finger_file(record)?.with(design).ok()?;
+pub fn recommended(answer: &Answer) -> Option<Geometry> {
+    let design = answer.verdict.finger()?;
+    let finger = finger_file(answer.record)?.with(design).ok()?;
     Geometry::new(&finger, &infill(design, None)).ok()
 }

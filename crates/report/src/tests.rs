@@ -45,7 +45,7 @@ fn record(evaluations: Vec<Recorded>) -> StudyRecord {
 }
 
 fn html(study: &StudyRecord) -> String {
-    page(study, model(), &Beside::default()).unwrap()
+    page(&crate::answer::Answer::of(study), model(), &Beside::default()).unwrap()
 }
 
 /// A study of the closed-form rig over a coarse grid in a scattered order.
@@ -66,7 +66,7 @@ fn recorded(index: u64, infill: [f64; 2], evaluation: Evaluation) -> Recorded {
     let score = Goals::of(Measure::Range).score(&[&evaluation]);
     let design = Design::infill(infill[0], infill[1]);
     let (tasks, timing) = (vec![evaluation], Timing::default());
-    Recorded { index, proposal: None, design, score, stiffness, tasks, timing, refused: None }
+    Recorded { index, proposal: None, design, score, stiffness, tasks, timing }
 }
 
 #[test]

@@ -1,15 +1,12 @@
-//! Evaluations kept in a folder, so that no study measures what another has measured.
+//! Cache of evaluations that studies share.
 //!
-//! A file holds one evaluation and is named by the SHA-256 of a text of everything that
-//! determines it: task and finger in full with what a design sets, robot, search, engine
-//! with its settings, and the program's sources. So a file is never out of date, and the
-//! folder may be deleted at any time.
+//! Each file holds one evaluation. Its name is the SHA-256 of everything that determines the evaluation:
+//! task and finger with the settings of the design, robot, search, engine with its settings, and the
+//! program's sources. A file therefore never becomes outdated, and the folder may be deleted at any time.
 //!
-//! Files are written beside their place and renamed into it, so readers and writers of
-//! many processes need no lock; of two writers the later wins with an equal file. A file
-//! that is torn or damaged fails its check and is measured and written again.
+//! Files are written under a temporary name and then renamed, so that several processes need no lock. A
+//! torn or damaged file fails its checksum; the design is then evaluated and written again.
 
-use super::plausible;
 use super::provenance::SIMULATION_SOURCES;
 use super::seal::{seal, sha256_hex, unseal};
 use input::files::{self, LARGEST_OWN};
@@ -23,7 +20,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::{fs, io};
 
-/// A folder of evaluations, for one robot and one engine.
+/// Cache of the evaluations with one robot and one engine.
 #[derive(Debug)]
 pub struct Cache {
     dir: PathBuf,
@@ -35,16 +32,13 @@ pub struct Cache {
 
 #[derive(Serialize, Deserialize)]
 struct Entry {
-    /// SHA-256 of what determines the evaluation: another entry under this name shows.
+    /// SHA-256 of everything that determines the evaluation; detects renamed files.
     key: String,
-    /// SHA-256 of `measured` as it is written: an accident shows. Who computes it anew is not
-    /// found out; the journal says which values came from here.
-    measured_sha256: String,
     measured: Evaluation,
 }
 
 impl Cache {
-    /// The cache in `dir`, which need not exist.
+    /// Returns the cache in `dir`, which need not exist.
     pub fn new(dir: &Path, robot: &Robot, engine: &EngineRecord) -> Self {
         Cache {
             dir: dir.to_owned(),
@@ -54,39 +48,30 @@ impl Cache {
         }
     }
 
-    /// The name of the evaluation that `inputs`, with robot and engine, determine. Their
-    /// `Debug` must show all of them; it shows numbers so that they read back as the same bits.
+    /// Returns the key of the evaluation that `inputs`, robot and engine determine. `Debug` of the inputs
+    /// must contain all of them, with numbers that read back to the same bits.
     pub fn key(&self, inputs: &impl Debug) -> String {
         let text = format!("{}inputs {inputs:?}\n", self.context);
         sha256_hex(text.as_bytes())
     }
 
-    /// The evaluation of that name, if a whole one is there.
+    /// Returns the evaluation with this key, if there is an undamaged one.
     pub fn get(&self, key: &str) -> Option<Evaluation> {
         let text = files::read_own(&self.path(key), LARGEST_OWN).ok()?;
         let (content, _) = unseal(text.strip_suffix('\n')?).ok()?;
         let entry: Entry = serde_json::from_str(&content).ok()?;
-        let whole = serde_json::to_string(&entry.measured).ok()?;
-        if entry.key != key || entry.measured_sha256 != sha256_hex(whole.as_bytes()) {
-            return None;
-        }
-        if plausible::implausible(&entry.measured).is_some() {
-            return None;
-        }
+        let found = (entry.key == key).then_some(entry.measured)?;
         self.found.fetch_add(1, Ordering::Relaxed);
-        Some(entry.measured)
+        Some(found)
     }
 
-    /// Keeps an evaluation. What cannot be kept is measured again next time, so a failure is
-    /// only noted ([`problem`](Self::problem)).
+    /// Stores an evaluation. A failure is only noted ([`problem`](Self::problem)).
     pub fn put(&self, key: &str, evaluation: &Evaluation) {
         let write = || {
-            let measured_sha256 = sha256_hex(serde_json::to_string(evaluation)?.as_bytes());
-            let (key, measured) = (key.to_owned(), evaluation.clone());
-            let path = self.path(&key);
-            let text = seal(&Entry { key, measured_sha256, measured }, None)?;
+            let path = self.path(key);
+            let entry = Entry { key: key.to_owned(), measured: evaluation.clone() };
             fs::create_dir_all(path.parent().unwrap_or(&self.dir))?;
-            files::write_own(&path, text.as_bytes())
+            files::write_own(&path, seal(&entry, None)?.as_bytes())
         };
         if let Err(error) = write()
             && let Ok(mut problem) = self.problem.lock()
@@ -95,12 +80,12 @@ impl Cache {
         }
     }
 
-    /// How many evaluations were found.
+    /// Returns the number of evaluations found.
     pub fn found(&self) -> u64 {
         self.found.load(Ordering::Relaxed)
     }
 
-    /// Why evaluations could not be kept, if so: folder and the system's first answer.
+    /// Returns the first error of writing, if there is one.
     pub fn problem(&self) -> Option<String> {
         let problem = self.problem.lock().ok()?;
         problem.as_ref().map(|error| format!("{}: {error}", self.dir.display()))
@@ -113,11 +98,17 @@ impl Cache {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
-    use crate::plausible::tests::sound;
     use input::shipped::ROBOTS;
+    use insertion::evaluation::tolerance::{Search, evaluate};
+    use insertion::finger::Finger;
     use insertion::trial::engine::EngineKind;
+    use insertion::trial::fake::FakeRig;
+
+    pub fn sound() -> Evaluation {
+        evaluate(&FakeRig::default(), &Finger::new(3e3, 2e4), Search::Strides)
+    }
 
     fn cache(dir: &Path) -> Cache {
         let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();

@@ -1,4 +1,4 @@
-//! The resolved configuration of a study, as `study.toml` keeps it.
+//! Resolved configuration of a study: `study.toml`.
 
 use super::differences::differences;
 use super::provenance::Provenance;
@@ -10,127 +10,130 @@ use insertion::space::Space;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
-/// Most evaluations of a study, and of a polish.
+/// Largest number of evaluations of a study, and of a polish.
 pub const LARGEST_BUDGET: u64 = 1_000_000;
-/// Most designs proposed at a time.
+/// Largest number of designs proposed at a time.
 pub const LARGEST_BATCH: u64 = 10_000;
 
-/// Everything that decides what a study measures. The number of threads is not
-/// part of it: it changes no result.
+/// Everything that determines the evaluations of a study; the number of threads does not.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StudyConfig {
     /// Names of the tasks, at least one.
     pub tasks: Vec<String>,
+    /// Name of the robot.
     pub robot: String,
-    /// Where the springs of a finger come from that were not measured.
+    /// Source of the finger stiffnesses that were not measured.
     #[serde(default, skip_serializing_if = "is_default")]
     pub finger_model: FingerModelKind,
+    /// Name of the optimizer.
     pub optimizer: String,
+    /// Objectives, one to three.
     pub objective: Objectives,
+    /// Constraints on a design.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub constraints: Vec<Constraint>,
-    /// How the values of several tasks become one; there are several if it is there.
+    /// Aggregation over several tasks; `None` for a single task.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub aggregate: Option<Aggregate>,
-    /// Name of the distribution of errors, if the goals need one.
+    /// Name of the distribution of errors, if objective or constraints need one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertainty: Option<String>,
-    /// Whether designs race for the success rate; studies from before there were races do not.
+    /// Whether designs race for the success rate.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub race: bool,
     /// Seed of every random stream of the study.
     pub seed: u64,
-    /// Difference of ranges that no bench tells apart, mm: what gains less is as good.
+    /// Indifference: difference of ranges that a bench cannot resolve, mm.
     #[serde(default = "indifference", skip_serializing_if = "is_indifference")]
     pub indifference_mm: f64,
-    /// Evaluations that the optimizer has; the one field that may be raised later, unless
-    /// there is a polish.
+    /// Evaluations of the optimizer; may be raised later, unless there is a polish.
     pub budget: u64,
-    /// Whether the search ends before, once no design is expected to gain.
+    /// Whether the search ends early once no design is expected to gain.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub settles: bool,
-    /// How designs are chosen to be confirmed.
-    #[serde(default, skip_serializing_if = "is_default")]
+    /// Method by which designs are selected for confirmation.
     pub confirmation: Confirmation,
-    /// Most evaluations of the polish that follows.
+    /// Largest number of evaluations of the subsequent polish.
     #[serde(default, skip_serializing_if = "is_default")]
     pub polish: u64,
-    /// Designs the optimizer proposes at a time; of an asynchronous study, that are measured at
-    /// a time.
+    /// Designs proposed at a time; in an asynchronous study, measured at a time.
     pub batch: u64,
-    /// Whether each result is told as it comes, and one more design asked for.
+    /// Whether each result is passed to the optimizer at once, and one more design proposed.
     #[serde(rename = "async", default, skip_serializing_if = "std::ops::Not::not")]
     pub asynchronous: bool,
+    /// Settings of the analyses after the search.
     #[serde(default, skip_serializing_if = "is_default")]
     pub conclusion: Conclusion,
     /// Provenance at the beginning of the study.
     pub provenance: Provenance,
-    /// The search space in full.
+    /// Search space.
     pub space: Space,
 }
 
-/// How designs are chosen to be confirmed.
+/// Method by which designs are selected for confirmation.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Confirmation {
-    /// The first nine are repeated, the first three of these walked: up to version 0.3.0.
+    /// The design that is expected to be the best, until none is expected to gain.
     #[default]
-    NineAndThree,
-    /// Whichever is expected to be the best, until none is expected to gain.
     Expected,
 }
 
-/// How much a prediction computes.
+/// Effort of a bench prediction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BenchEffort {
-    /// Simulations, those that measure the error of the simulator's stand-in with them.
+    /// Simulations, including those that measure the error of the emulator.
     pub simulations: u16,
     /// Samples of the posterior.
     pub samples: u16,
 }
 
-/// How a study ends. It changes no evaluation, so it may be settled anew.
+/// Settings of the analyses after the search. They change no evaluation and may change when a study is
+/// resumed.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Conclusion {
-    /// Whether what is recommended stays unconfirmed.
+    /// Whether the recommended design is not confirmed.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub no_confirm: bool,
-    /// How much is computed for the bench, if there are measurements.
+    /// Effort of the bench prediction, if there are measurements.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bench: Option<BenchEffort>,
-    /// The measurement file, as it was given; unknown in folders up to version 0.4.0.
+    /// Path of the measurement file, as given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub measurements: Option<String>,
-    /// What messages call the task files, in the order of the tasks: their paths, as they were given.
+    /// Paths of the task files, as given, in the order of the tasks.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub task_files: Vec<String>,
 }
 
 impl StudyConfig {
-    /// The study's name: its default folder under `results/`, and its name in Optuna.
+    /// Returns the study's name: its default folder under `results/`, and its name in Optuna.
     pub fn name(&self) -> String {
         study_name(&self.task_name(), &self.method(), self.seed)
     }
 
-    /// Names of all tasks, in their order.
+    /// Returns the names of all tasks.
     pub fn tasks(&self) -> impl Iterator<Item = &str> {
         self.tasks.iter().map(String::as_str)
     }
 
-    /// Whether there is more than one task.
+    /// Returns whether there are several tasks.
     pub fn several_tasks(&self) -> bool {
         self.tasks.len() > 1
     }
 
-    /// The tasks in one word: `usb+rj45`.
+    /// Returns the names of all tasks as one word: `usb+rj45`.
     pub fn task_name(&self) -> String {
         self.tasks().collect::<Vec<_>>().join("+")
     }
 
-    /// Whether it can be run as it is, whoever wrote it; if not, the field that is wrong.
+    /// Checks the configuration.
+    ///
+    /// # Errors
+    /// The invalid field and its accepted values.
     pub fn check(&self) -> Result<(), String> {
         for (key, value, [least, most]) in [
             ("budget", self.budget, [1, LARGEST_BUDGET]),
@@ -149,36 +152,39 @@ impl StudyConfig {
         let kind: OptimizerKind =
             self.optimizer.parse().map_err(|error| format!("optimizer: {error}"))?;
         if self.objective.single().is_none() && !kind.takes_several_objectives() {
-            return Err(format!("optimizer: {kind} knows one objective only"));
+            return Err(format!("optimizer: {kind} takes one objective only"));
         }
         if self.settles && !self.can_settle() {
-            return Err("settles: goes with gp over range or centred-range alone".to_owned());
+            return Err(
+                "settles: needs the optimizer gp and the objective range or centred-range alone"
+                    .to_owned(),
+            );
         }
         if self.objective.single().is_none() && self.polish > 0 {
-            return Err("polish: knows one objective only".to_owned());
+            return Err("polish: takes one objective only".to_owned());
         }
         if self.tasks.is_empty() || self.several_tasks() != self.aggregate.is_some() {
-            return Err("tasks: needs one, or several and an aggregate".to_owned());
+            return Err("tasks: one is needed, or several and an aggregate".to_owned());
         }
         if let Some(Aggregate::Weighted(weights)) = &self.aggregate {
             Aggregate::weighted(weights.clone(), self.tasks.len())
                 .map_err(|error| format!("aggregate: {error}"))?;
         }
         if self.uncertainty.is_some() != self.goals().need_draws() {
-            return Err("uncertainty: goes with success-rate and robust-range".to_owned());
+            return Err("uncertainty: needed for success-rate and robust-range only".to_owned());
         }
         if self.race && !self.can_race() {
             return Err(
-                "race: goes with the one objective success-rate, of several tasks the worst, \
-                        and without a constraint on it; leave it out"
+                "race: needs success-rate as the only objective, the aggregate min, and no constraint \
+                        on it; leave it out"
                     .to_owned(),
             );
         }
-        self.provenance.check()
+        Ok(())
     }
 
-    /// Whether a search for this can tell when it is settled: the process knows one objective, in mm,
-    /// without constraints.
+    /// Returns whether early stopping is available: for a Gaussian process of one objective in mm without
+    /// constraints.
     pub fn can_settle(&self) -> bool {
         let widths =
             matches!(self.objective.single(), Some(Measure::Range | Measure::CentredRange));
@@ -186,21 +192,22 @@ impl StudyConfig {
         widths && process && self.constraints.is_empty() && self.polish == 0
     }
 
-    /// Of a search that settles: evaluations before which it does not, and in a row after which no gain
-    /// has to be expected. Chosen on recorded landscapes (`docs/notes/optimizers.md`).
+    /// Returns the settings of early stopping: evaluations before the first check, and patience
+    /// (consecutive evaluations without an expected gain). Tuned on recorded landscapes
+    /// (`docs/notes/optimizers.md`).
     pub fn settling(&self) -> Option<[usize; 2]> {
         let free = self.space.levels().into_iter().filter(|&levels| levels > 1).count();
         self.settles.then_some([20 + 4 * free, 12 * free.max(1)])
     }
 
-    /// Evaluations to be expected: of a search that settles as many as it needs at the least, which
-    /// most do not exceed by much.
+    /// Returns the expected number of evaluations: with early stopping the smallest possible one, which
+    /// most studies exceed only slightly.
     pub fn expected_evaluations(&self) -> u64 {
         let least = self.settling().map(|[least, quiet]| (least + quiet) as u64);
         least.unwrap_or(u64::MAX).min(self.evaluations())
     }
 
-    /// `24 of 200 evaluations`, or, of a search that settles, `24 evaluations`.
+    /// Returns `24 of 200 evaluations`, or, with early stopping, `24 evaluations`.
     pub fn counted(&self, done: usize) -> String {
         match self.settles {
             true => format!("{done} evaluations"),
@@ -208,6 +215,7 @@ impl StudyConfig {
         }
     }
 
+    /// Returns objectives, constraints and aggregation.
     pub fn goals(&self) -> Goals {
         Goals {
             objectives: self.objective.clone(),
@@ -216,7 +224,7 @@ impl StudyConfig {
         }
     }
 
-    /// The optimizer with its polish, if it has one: `gp`, `gp+polish20`.
+    /// Returns the name of the optimizer with its polish: `gp`, `gp+polish20`.
     pub fn method(&self) -> String {
         match self.polish {
             0 => self.optimizer.clone(),
@@ -224,29 +232,26 @@ impl StudyConfig {
         }
     }
 
-    /// Evaluations in all, if the polish takes all of its own.
+    /// Returns the largest number of evaluations, with those of the polish.
     pub fn evaluations(&self) -> u64 {
         self.budget.saturating_add(self.polish)
     }
 
-    /// The fields in which a study on disk differs from what is asked for now,
-    /// one line each. A budget that was raised does not count, unless a polish follows it, nor one that
-    /// is given to a study that settles; whether there is a race, and the confirmation, stay as they
-    /// were.
-    /// Provenance is compared by [`Provenance::differences`].
+    /// Returns the fields in which a study on disk differs from a new request, one line each. Ignored are a
+    /// raised budget (unless there is a polish), a budget for a study with early stopping, and whether
+    /// there is a race. Provenance is compared by [`Provenance::differences`].
     pub fn differences(&self, asked: &StudyConfig) -> Option<String> {
         let may_rise = asked.polish == 0 && (asked.budget > self.budget || self.settles);
         let budget = if may_rise { asked.budget } else { self.budget };
         let provenance = asked.provenance.clone();
         let conclusion = asked.conclusion.clone();
-        let &StudyConfig { race, settles, confirmation, .. } = asked;
-        let kept = StudyConfig { race, settles, confirmation, ..self.clone() };
-        let raised = StudyConfig { budget, provenance, conclusion, ..kept };
+        let &StudyConfig { race, settles, .. } = asked;
+        let raised = StudyConfig { budget, provenance, conclusion, race, settles, ..self.clone() };
         differences(&raised, asked, ["the study", "now"])
     }
 }
 
-/// Differences that may be indifferent, mm: of the grid of windows at the least.
+/// Accepted indifferences, mm; the smallest is the grid of windows.
 pub const INDIFFERENCES_MM: RangeInclusive<f64> = 0.1..=10.0;
 
 fn indifference() -> f64 {
@@ -261,7 +266,7 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
-/// `<task>-<optimizer>-seed<seed>`.
+/// Returns `<task>-<optimizer>-seed<seed>`.
 pub fn study_name(task: &str, optimizer: &str, seed: u64) -> String {
     format!("{task}-{optimizer}-seed{seed}")
 }

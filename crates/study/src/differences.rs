@@ -1,9 +1,9 @@
-//! In what two values differ, field by field.
+//! Differences of two values, field by field.
 
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The fields in which two values differ, one line each, `None` if there is no such field.
+/// Returns the fields in which two values differ, one line each; `None` if there are none.
 pub(super) fn differences<T: Serialize>(ours: &T, theirs: &T, who: [&str; 2]) -> Option<String> {
     let (ours, theirs) = (flat(ours), flat(theirs));
     let keys: BTreeSet<&String> = ours.keys().chain(theirs.keys()).collect();
@@ -19,7 +19,7 @@ pub(super) fn differences<T: Serialize>(ours: &T, theirs: &T, who: [&str; 2]) ->
     (!lines.is_empty()).then(|| lines.join("\n"))
 }
 
-/// Every leaf of a value as text, by its path (`space.parameter.0.low`).
+/// Returns every leaf of a value as text, by its path (`space.parameter.0.low`).
 fn flat(value: &impl Serialize) -> BTreeMap<String, String> {
     fn walk(value: &serde_json::Value, path: &str, leaves: &mut BTreeMap<String, String>) {
         let join =
@@ -38,7 +38,7 @@ fn flat(value: &impl Serialize) -> BTreeMap<String, String> {
         }
     }
     let mut leaves = BTreeMap::new();
-    // A value that is not JSON has no leaves; configurations always are.
+    // Configurations can always be serialized.
     walk(&serde_json::to_value(value).unwrap_or_default(), "", &mut leaves);
     leaves
 }

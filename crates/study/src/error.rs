@@ -1,24 +1,25 @@
-//! Errors of a study's folder, said so that they can be mended.
+//! Errors of a study.
 
 use input::{Place, Placed};
 use insertion::evaluation::template::Impossible;
+use insertion::space::Design;
 use std::io;
 use std::path::{Path, PathBuf};
 
 /// Error of a study.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
-    /// The file system refused something.
+    /// The file system reported an error.
     #[error("{}: cannot {action}: {source}", path.display())]
     Io {
-        /// Action tried, after "cannot".
+        /// Action that failed, after "cannot".
         action: &'static str,
         /// The file or folder.
         path: PathBuf,
-        /// The system's answer.
+        /// The system's error.
         source: io::Error,
     },
-    /// Another process writes to this study.
+    /// Another process has opened this study.
     #[error(
         "{}: another process ({owner}) is running this study; wait for it, or give another --out",
         dir.display()
@@ -26,30 +27,28 @@ pub enum StudyError {
     Locked {
         /// The study's folder.
         dir: PathBuf,
-        /// Who, as far as it is known.
+        /// Process number, as far as it is known.
         owner: String,
     },
-    /// A file of the folder, or the whole of it, cannot be used as it is.
+    /// The folder or one of its files is invalid.
     #[error("{}: {problem}", path.display())]
     File {
         /// The file or folder.
         path: PathBuf,
-        /// Problem, and what would be right.
+        /// Problem and remedy.
         problem: String,
     },
-    /// Somebody else has had a hand in the journal while the study ran.
+    /// Another program changed the journal during the run.
     #[error(
-        "{}: {problem} while the study ran, so it was stopped; {}",
-        path.display(),
-        rescue(kept)
+        "{}: {problem} while the study ran, so it was stopped; restore the file and resume: evaluations \
+         in the cache are not simulated again",
+        path.display()
     )]
     Interfered {
         /// The journal.
         path: PathBuf,
-        /// Interference found.
+        /// What happened to it.
         problem: String,
-        /// Where everything measured was written to, or why it could not be.
-        kept: Result<PathBuf, String>,
     },
     /// A design of the space cannot be simulated.
     #[error("evaluation {index} of {design} is impossible: {source}; narrow the space")]
@@ -58,7 +57,7 @@ pub enum StudyError {
         index: u64,
         /// The design.
         design: String,
-        /// Its wrong setting.
+        /// Setting that cannot be simulated.
         source: Impossible,
     },
 }
@@ -76,44 +75,39 @@ impl Placed for StudyError {
 }
 
 impl StudyError {
-    /// Whether the input is at fault (exit code 2) rather than the run (exit code 1).
+    /// Returns whether the input is wrong (exit code 2) rather than the run (exit code 1).
     pub fn is_bad_input(&self) -> bool {
         use StudyError::{Interfered, Io, Locked};
         !matches!(self, Io { .. } | Locked { .. } | Interfered { .. })
     }
 
-    /// For `map_err`: the file system's answer to `action` on `path`.
+    /// Returns the error for a design that cannot be simulated.
+    pub fn impossible(index: u64, design: &Design, source: Impossible) -> StudyError {
+        StudyError::Impossible { index, design: design.to_string(), source }
+    }
+
+    /// Returns a function for `map_err` that adds `action` and `path` to an error of the file system.
     pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> StudyError {
         let path = path.to_owned();
         move |source| StudyError::Io { action, path, source }
     }
 
-    /// Error for a problem of a file or folder.
+    /// Returns the error for a problem of a file or folder.
     pub(super) fn file(path: &Path, problem: impl ToString) -> StudyError {
         StudyError::File { path: path.to_owned(), problem: problem.to_string() }
     }
 }
 
-fn rescue(kept: &Result<PathBuf, String>) -> String {
-    match kept {
-        Ok(path) => format!(
-            "all that was measured is in {}: to go on, put that in its place and resume",
-            path.display()
-        ),
-        Err(problem) => format!("what was measured could not be saved: {problem}"),
-    }
-}
-
-/// Fault of one line; the journal adds the file and the line number.
+/// Error of one line; the journal adds the file and the line number.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum LineError {
-    /// No check, or one that does not fit.
+    /// The checksum is missing or wrong.
     #[error("damaged: its contents do not fit its `check`")]
     Check,
-    /// The check fits, the contents do not.
+    /// The checksum is right, the contents are not valid.
     #[error("not a line of this program's journals: {0}")]
     Format(String),
-    /// Lines are missing, doubled or in the wrong order.
+    /// Lines are missing, repeated or in the wrong order.
     #[error("evaluation {0} stands where evaluation {1} belongs")]
     Order(u64, u64),
 }

@@ -1,68 +1,68 @@
-//! A study's folder.
+//! Folder of a study.
 //!
 //! ```text
-//! study.toml       the resolved configuration
-//! inputs/          copies of the input files, so that a study can be resumed
-//!                  when the originals have changed or gone; inputs-2/ and so on
-//!                  those of a further segment
-//! journal.jsonl    what was measured
+//! study.toml       resolved configuration
+//! inputs/          copies of the input files, with which the study is resumed; inputs-2/ and so on
+//!                  for further segments
+//! journal.jsonl    evaluations
 //! replay/          films of the trials at both ends of the recommended window
-//! walk.json        what the walk and the repeats found of the best designs
-//! bench.json       what measurements say of the fingers on the bench
-//! evaluations.csv  the same as a table; convergence.svg and report.html beside it
-//! .lock            held by the process that writes
+//! walk.json        confirmation of the best designs
+//! bench.json       prediction for the bench from measurements
+//! evaluations.csv  evaluations as a table; convergence.svg and report.html beside it
+//! .lock            lock of the writing process
 //! ```
 
 use super::config::{Conclusion, StudyConfig};
+use super::confirmed;
 use super::error::StudyError;
 use super::journal::{self, Contents, Journal};
 use super::on_bench::{BENCH_FILE, OnBench};
 use super::provenance::{Provenance, Segment};
-use super::record::{Recorded, StudyRecord};
+use super::record::{Recorded, StudyRecord, first_current};
 use super::rule::Rule;
 use super::seal::sha256_hex;
 use super::store::{FileStore, Store};
-use super::walked;
-use input::control_character;
 use input::files::{self, LARGEST_INPUT, LARGEST_OWN};
 use insertion::finger::file::FingerFile;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
-/// Name of the configuration's file.
+/// File of the configuration.
 pub const CONFIG_FILE: &str = "study.toml";
-/// Name of the journal's file.
+/// File of the journal.
 pub const JOURNAL_FILE: &str = "journal.jsonl";
 const INPUTS: &str = "inputs";
 /// Role of the finger file among the inputs.
 pub const FINGER: &str = "finger";
-/// Role of the file of a cell among the inputs.
+/// Role of the cell file among the inputs.
 pub const CELL: &str = "cell";
 const LOCK_FILE: &str = ".lock";
-/// Who has the lock, if that is not known.
+/// Owner of a lock whose process number cannot be read.
 const UNKNOWN_OWNER: &str = "of unknown number";
 
-/// Texts of a study's input files by role (`task_1` and so on, `space`, `robot`, `stiffness`).
+/// Texts of the input files of a study by role (`task_1` and so on, `space`, `robot`, `stiffness`).
 pub type Inputs = BTreeMap<String, String>;
 
-/// SHA-256 of each input, in hexadecimal.
+/// Returns the SHA-256 of each input, in hexadecimal.
 pub fn sha256(inputs: &Inputs) -> BTreeMap<String, String> {
     let hash = |text: &String| sha256_hex(text.as_bytes());
     inputs.iter().map(|(role, text)| (role.clone(), hash(text))).collect()
 }
 
-/// A study open for writing; no other process can open it meanwhile.
+/// Study that is open for writing; no other process can open it.
 pub struct Study {
     /// Configuration, as asked for.
     pub config: StudyConfig,
-    /// Measurements so far, by index.
+    /// Evaluations so far, by index.
     pub evaluations: Vec<Recorded>,
-    /// Provenance of its evaluations.
+    /// Segments of equal provenance.
     segments: Vec<Segment>,
-    /// Records in the journal that another program wrote.
+    /// Number of records of other programs in the journal.
     foreign: usize,
     pub(super) journal: Journal,
     dir: PathBuf,
@@ -70,16 +70,21 @@ pub struct Study {
     _lock: File,
 }
 
-/// Treatment of a study that the present program and inputs would measure otherwise.
+/// Action for a study whose provenance differs from that of the program and its inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum IfChanged {
+    /// Return an error.
     Refuse,
+    /// Begin a new segment.
     NewSegment,
 }
 
 impl Study {
-    /// Begins a study in `dir`, or continues the one that is there if its
-    /// configuration is the same or has a smaller budget.
+    /// Begins a study in `dir`, or continues the study there if its configuration is the same or has a
+    /// smaller budget.
+    ///
+    /// # Errors
+    /// If the folder holds another study or cannot be used.
     pub fn create_or_continue(
         dir: &Path,
         config: &StudyConfig,
@@ -102,7 +107,7 @@ impl Study {
             }
             let mut study = Study::open_locked(dir, lock, journal_file(dir)?)?;
             let before = (study.config.budget, study.config.settles);
-            // Of one that settles the budget is but a limit.
+            // With early stopping the budget is only a limit.
             let least = if before.1 { study.evaluations.len() as u64 } else { before.0 };
             study.config.budget = config.budget.max(least);
             study.config.settles = config.settles;
@@ -121,20 +126,26 @@ impl Study {
             ));
         }
         write_inputs(dir, 1, inputs)?;
-        // Last, so that a folder with a configuration is complete.
+        // Written last: a folder with a configuration is complete.
         write_config(dir, config)?;
         Study::open_locked(dir, lock, journal_file(dir)?)
     }
 
     /// Opens the study in `dir` to continue it.
+    ///
+    /// # Errors
+    /// If the folder holds no study or cannot be used.
     pub fn resume(dir: &Path) -> Result<Study, StudyError> {
-        // Before the lock: nothing is to be created in a folder that holds no study.
+        // Before the lock, which would create a file in a folder without a study.
         read_config(dir)?;
         let lock = lock(dir)?;
         Study::open_locked(dir, lock, journal_file(dir)?)
     }
 
-    /// The same with the journal in another store than its file.
+    /// Opens the study in `dir` with its journal in another store than its file.
+    ///
+    /// # Errors
+    /// See [`resume`](Self::resume).
     pub fn resume_with(dir: &Path, store: Box<dyn Store>) -> Result<Study, StudyError> {
         read_config(dir)?;
         Study::open_locked(dir, lock(dir)?, store)
@@ -143,7 +154,7 @@ impl Study {
     fn open_locked(dir: &Path, lock: File, store: Box<dyn Store>) -> Result<Study, StudyError> {
         let config = read_config(dir)?;
         let (journal, contents) = Journal::open(store, &dir.join(JOURNAL_FILE), &config)?;
-        // Makes the names of new files survive a power failure; not every system can.
+        // New file names then survive a power failure; not every system supports this.
         if cfg!(unix) {
             let sync = File::open(dir).and_then(|folder| folder.sync_all());
             sync.map_err(StudyError::io("sync the folder", dir))?;
@@ -154,11 +165,10 @@ impl Study {
         Ok(Study { config, evaluations, segments, foreign, journal, dir, _lock: lock })
     }
 
-    /// Makes sure that what is measured from now on belongs to what was measured before; a new
-    /// segment is in the journal when this returns.
+    /// Begins a new segment in the journal if the provenance of further evaluations differs.
     ///
     /// # Errors
-    /// If it does not belong, and no new segment is wanted or none of its evaluations is left.
+    /// If it differs and `if_changed` is to refuse, or no evaluation is left for a new segment.
     pub fn measure_with(
         &mut self,
         now: &Provenance,
@@ -181,7 +191,7 @@ impl Study {
             return Err(StudyError::file(
                 &self.dir,
                 format!(
-                    "simulates otherwise than before, and all its {evaluations} evaluations are \
+                    "would now be simulated differently, and all its {evaluations} evaluations are \
                      done:\n{differences}\nraise --budget to measure with that, or give another --out"
                 ),
             ));
@@ -194,7 +204,10 @@ impl Study {
         Ok(())
     }
 
-    /// Settles how the study ends, whoever goes on with it.
+    /// Sets the analyses after the search.
+    ///
+    /// # Errors
+    /// If the configuration cannot be written.
     pub fn conclude_by(&mut self, conclusion: Conclusion) -> Result<(), StudyError> {
         if self.config.conclusion != conclusion {
             self.config.conclusion = conclusion;
@@ -203,24 +216,15 @@ impl Study {
         Ok(())
     }
 
-    /// Whether the journal is still what was written; if not, all that was measured is saved
-    /// beside it.
+    /// Checks that the journal was not changed by another program.
+    ///
+    /// # Errors
+    /// If it was.
     pub fn check_journal(&mut self) -> Result<(), StudyError> {
-        self.journal.check().map_err(|error| self.rescue(error))
+        self.journal.check()
     }
 
-    /// Saves what was measured, if the error says that the journal is lost.
-    pub fn rescue(&self, error: StudyError) -> StudyError {
-        match error {
-            StudyError::Interfered { path, problem, .. } => {
-                let kept = self.journal.rescue(&self.evaluations, &self.segments);
-                StudyError::Interfered { path, problem, kept: kept.map_err(|e| e.to_string()) }
-            }
-            other => other,
-        }
-    }
-
-    /// Provenance of its next evaluation.
+    /// Returns the provenance of the next evaluation.
     pub fn provenance(&self) -> &Provenance {
         self.segments.last().map_or(&self.config.provenance, |segment| &segment.provenance)
     }
@@ -229,29 +233,33 @@ impl Study {
         &self.segments
     }
 
-    /// The copies of the input files that its next evaluation is measured with.
+    /// Returns the copies of the input files for the next evaluation.
+    ///
+    /// # Errors
+    /// If one cannot be read or was changed.
     pub fn inputs(&self) -> Result<Inputs, StudyError> {
         read_inputs(&self.dir, &self.segments)
     }
 
-    /// The folder.
+    /// Returns the folder.
     pub fn dir(&self) -> &Path {
         &self.dir
     }
 
-    /// Whether its search has settled with these evaluations.
+    /// Returns whether the search has settled with these evaluations.
     pub fn settled(&self) -> bool {
-        walked::settled(&self.dir, Some(self.provenance()), self.evaluations.len())
+        confirmed::settled(&self.dir, Some(self.provenance()), self.evaluations.len())
     }
 
-    /// Keeps what measurements say of its fingers.
+    /// Writes the bench prediction.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
     pub fn keep_on_bench(&self, found: &OnBench) -> Result<(), StudyError> {
-        let path = self.dir.join(BENCH_FILE);
-        let text = serde_json::to_string(found).map_err(|error| StudyError::file(&path, error))?;
-        write_own_file(&path, &(text + "\n"))
+        write_analysis(&self.dir, BENCH_FILE, found)
     }
 
-    /// A copy that needs no open study.
+    /// Returns a copy of the study with its analyses.
     pub fn record(&self) -> StudyRecord {
         let (segments, evaluations) = (self.segments.clone(), self.evaluations.clone());
         StudyRecord::new(&self.dir, self.config.clone(), segments, evaluations, self.foreign)
@@ -259,7 +267,10 @@ impl Study {
 }
 
 impl StudyRecord {
-    /// Reads the study in `dir`, running or not, and writes nothing.
+    /// Reads the study in `dir`, which may be running, without writing to it.
+    ///
+    /// # Errors
+    /// If the folder holds no study or a file is damaged.
     pub fn load(dir: &Path) -> Result<StudyRecord, StudyError> {
         let config = read_config(dir)?;
         let contents = journal::read(&dir.join(JOURNAL_FILE), &config)?;
@@ -277,11 +288,14 @@ impl StudyRecord {
         let finger = read_inputs(dir, &segments)
             .ok()
             .and_then(|inputs| FingerFile::parse(inputs.get(FINGER)?, "inputs/finger").ok());
-        let on_bench = segments
-            .last()
-            .and_then(|segment| OnBench::read(dir, &segment.provenance, &config.space));
-        let (walked, firm_values) = Default::default();
-        let mut record = StudyRecord {
+        let on_bench = segments.last().and_then(|segment| OnBench::read(dir, &segment.provenance));
+        let goals = config.goals();
+        let rule = Rule { goals: &goals, space: &config.space };
+        let provenance = segments.last().map(|segment| &segment.provenance);
+        let current = evaluations.get(first_current(&segments) as usize..).unwrap_or_default();
+        let (walked, firm_values) = confirmed::read(dir, &rule, provenance, current);
+        let settled = config.settles && confirmed::settled(dir, provenance, evaluations.len());
+        StudyRecord {
             config,
             segments,
             evaluations,
@@ -290,19 +304,14 @@ impl StudyRecord {
             finger,
             firm_values,
             on_bench,
-            settled: false,
-        };
-        let provenance = record.segments.last().map(|segment| &segment.provenance);
-        let goals = record.config.goals();
-        let rule = Rule { goals: &goals, space: &record.config.space };
-        (record.walked, record.firm_values) =
-            walked::read(dir, &rule, provenance, record.current());
-        record.settled =
-            record.config.settles && walked::settled(dir, provenance, record.evaluations.len());
-        record
+            settled,
+        }
     }
 
-    /// The copies of the input files of the last segment.
+    /// Returns the copies of the input files of the last segment.
+    ///
+    /// # Errors
+    /// If one cannot be read or was changed.
     pub fn inputs(&self, dir: &Path) -> Result<Inputs, StudyError> {
         read_inputs(dir, &self.segments)
     }
@@ -319,7 +328,10 @@ fn journal_file(dir: &Path) -> Result<Box<dyn Store>, StudyError> {
     }
 }
 
-/// The configuration of the study in `dir`.
+/// Reads the configuration of the study in `dir`.
+///
+/// # Errors
+/// If there is none or it is invalid.
 pub fn read_config(dir: &Path) -> Result<StudyConfig, StudyError> {
     let path = dir.join(CONFIG_FILE);
     let text = match files::read_own(&path, LARGEST_OWN) {
@@ -333,51 +345,40 @@ pub fn read_config(dir: &Path) -> Result<StudyConfig, StudyError> {
         StudyError::file(&path, format!("{}; restore the file from a copy", problem.trim_end()))
     };
     let config: StudyConfig = toml::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-    let table = toml::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-    if let Some(key) = control_character(&table) {
-        return Err(wrong(format!("{key}: has a control character")));
-    }
     config.check().map_err(wrong)?;
     Ok(config)
 }
 
-/// The copies of the input files of the last segment, checked against its provenance.
+/// Reads the copies of the input files of the last segment and checks them against its provenance.
 fn read_inputs(dir: &Path, segments: &[Segment]) -> Result<Inputs, StudyError> {
     let Some(segment) = segments.last() else { return Ok(Inputs::new()) };
     let (number, expected) = (segments.len(), &segment.provenance.input_sha256);
     let mut inputs = Inputs::new();
-    for role in expected.keys() {
+    for (role, hash) in expected {
         let path = input_path(dir, number, role);
         let text = files::read_own(&path, LARGEST_INPUT).map_err(StudyError::io("read", &path))?;
-        inputs.insert(role.clone(), text);
-    }
-    let found = sha256(&inputs);
-    for (role, hash) in expected {
-        if found.get(role) != Some(hash) {
+        if sha256_hex(text.as_bytes()) != *hash {
             let problem = format!("was changed: its SHA-256 is not the {hash} of the study");
-            return Err(StudyError::file(&input_path(dir, number, role), problem));
+            return Err(StudyError::file(&path, problem));
         }
+        inputs.insert(role.clone(), text);
     }
     Ok(inputs)
 }
 
-/// Keeps copies of the input files of the segment with this number, counted from 1.
+/// Writes copies of the input files of the segment with this number, counted from 1.
 fn write_inputs(dir: &Path, segment: usize, inputs: &Inputs) -> Result<(), StudyError> {
     for (role, text) in inputs {
         let path = input_path(dir, segment, role);
         let folder = path.parent().unwrap_or(dir);
-        match fs::create_dir(folder) {
-            // Not through a link to who knows where.
-            Err(_) if fs::symlink_metadata(folder).is_ok_and(|found| found.is_dir()) => {}
-            made => made.map_err(StudyError::io("create the folder", folder))?,
-        }
-        // As it is: its hash is recorded.
+        fs::create_dir_all(folder).map_err(StudyError::io("create the folder", folder))?;
+        // Unchanged: its hash is recorded.
         files::write_own(&path, text.as_bytes()).map_err(StudyError::io("write", &path))?;
     }
     Ok(())
 }
 
-/// Where the copy of an input of the segment with this number, counted from 1, is kept.
+/// Returns the path of the copy of an input of the segment with this number, counted from 1.
 pub fn input_path(dir: &Path, segment: usize, role: &str) -> PathBuf {
     let extension = if ["stiffness", "measurements"].contains(&role) { "csv" } else { "toml" };
     let folder = if segment == 1 { INPUTS.to_owned() } else { format!("{INPUTS}-{segment}") };
@@ -390,8 +391,11 @@ fn write_config(dir: &Path, config: &StudyConfig) -> Result<(), StudyError> {
     write_own_file(&path, &text)
 }
 
-/// Writes a file that the user has named, and the folders to it: see [`files::write_named`].
-/// A text is written without control characters.
+/// Writes a file named by the user, and its folders: see [`files::write_named`]. A text is written without
+/// control characters.
+///
+/// # Errors
+/// If it cannot be written.
 pub fn write_file(path: &Path, content: &(impl AsRef<[u8]> + ?Sized)) -> Result<(), StudyError> {
     if let Some(parent) = path.parent() {
         fs::create_dir_all(parent).map_err(StudyError::io("create the folder", parent))?;
@@ -399,8 +403,27 @@ pub fn write_file(path: &Path, content: &(impl AsRef<[u8]> + ?Sized)) -> Result<
     files::write_named(path, &plain(content.as_ref())).map_err(StudyError::io("write", path))
 }
 
-/// Writes a file of a study's folder: see [`files::write_own`]. A text is written without
-/// control characters.
+/// Reads an analysis from a file in a study's folder; returns `None` if it is missing or damaged, since it
+/// can be repeated.
+pub fn read_analysis<T: DeserializeOwned>(dir: &Path, file: &str) -> Option<T> {
+    serde_json::from_str(&files::read_own(&dir.join(file), LARGEST_OWN).ok()?).ok()
+}
+
+/// Writes an analysis to a file in a study's folder.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write_analysis(dir: &Path, file: &str, found: &impl Serialize) -> Result<(), StudyError> {
+    let path = dir.join(file);
+    let text = serde_json::to_string(found).map_err(|error| StudyError::file(&path, error))?;
+    write_own_file(&path, &(text + "\n"))
+}
+
+/// Writes a file of a study's folder: see [`files::write_own`]. A text is written without control
+/// characters.
+///
+/// # Errors
+/// If it cannot be written.
 pub fn write_own_file(
     path: &Path,
     content: &(impl AsRef<[u8]> + ?Sized),
@@ -408,7 +431,7 @@ pub fn write_own_file(
     files::write_own(path, &plain(content.as_ref())).map_err(StudyError::io("write", path))
 }
 
-/// A text without control characters; what is none, as a solid in binary form, as it is.
+/// Removes control characters from a text; binary content is unchanged.
 fn plain(content: &[u8]) -> Cow<'_, [u8]> {
     match std::str::from_utf8(content) {
         Ok(text) if !content.contains(&0) => files::visible(text).into_bytes().into(),
@@ -416,15 +439,7 @@ fn plain(content: &[u8]) -> Cow<'_, [u8]> {
     }
 }
 
-/// Whether a file has one name only: a second one would be overwritten with it.
-fn only_name(found: &Metadata) -> bool {
-    #[cfg(unix)]
-    return std::os::unix::fs::MetadataExt::nlink(found) == 1;
-    #[cfg(not(unix))]
-    return found.is_file();
-}
-
-/// The folder's lock. The system drops it when its process ends, however it ends.
+/// Locks the folder. The system releases the lock when the process ends.
 fn lock(dir: &Path) -> Result<File, StudyError> {
     let path = dir.join(LOCK_FILE);
     let mut options = OpenOptions::new();
@@ -434,7 +449,7 @@ fn lock(dir: &Path) -> Result<File, StudyError> {
         Ok(()) => {}
         Err(TryLockError::WouldBlock) => {
             let mut owner = String::new();
-            // Only for the message: some systems let nobody read a locked file.
+            // Only for the message: on some systems a locked file cannot be read.
             let _ = file.read_to_string(&mut owner);
             let owner = if owner.is_empty() { UNKNOWN_OWNER.to_owned() } else { owner };
             return Err(StudyError::Locked { dir: dir.to_owned(), owner });
@@ -442,13 +457,6 @@ fn lock(dir: &Path) -> Result<File, StudyError> {
         Err(TryLockError::Error(error)) => return Err(StudyError::io("lock", &path)(error)),
     }
     let sign = |file: &mut File| {
-        // Who removes the file lets another process lock a new one.
-        let here = fs::symlink_metadata(&path).is_ok_and(|found| {
-            only_name(&found) && files::is_open_file(&found, file).unwrap_or(false)
-        });
-        if !here {
-            return Err(io::Error::other("it was replaced, or has another name, too; remove it"));
-        }
         file.set_len(0)?;
         file.rewind()?;
         write!(file, "number {}", std::process::id())

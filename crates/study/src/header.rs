@@ -1,4 +1,4 @@
-//! The first two lines of a journal: whose it is.
+//! Header of a journal: its first two lines, which identify the study.
 
 use super::config::StudyConfig;
 use super::differences::differences;
@@ -18,10 +18,10 @@ const CREATE_STUDY: u8 = 0;
 const STUDY_USER_ATTRIBUTE: u8 = 2;
 const MINIMISE: u8 = 1;
 const MAXIMISE: u8 = 2;
-/// Name of the attribute that holds all of ours.
+/// Name of our only attribute.
 const OURS: &str = "finger_opt";
 
-/// A study attribute. Optuna takes one a line, so all of ours is one.
+/// Study attribute of Optuna, one per line.
 #[derive(Serialize, Deserialize)]
 struct AttributeLine<T> {
     op_code: u8,
@@ -40,13 +40,13 @@ fn attribute(name: String, value: impl Serialize) -> Result<String, serde_json::
     seal(&line, None)
 }
 
-/// The configuration without what may change while the journal stays the same: how the study ends, and
-/// its budget. With a polish the budget decides where that begins, without one it may rise.
+/// Returns the configuration without the fields that may change for a journal: the analyses after the search,
+/// and without a polish the budget.
 fn identity(config: &StudyConfig) -> Result<Value, serde_json::Error> {
     let mut fields = serde_json::to_value(config)?;
     let mut identity = json!({"schema_version": SCHEMA_VERSION});
     if let (Value::Object(fields), Value::Object(identity)) = (&mut fields, &mut identity) {
-        // In place, so that the others keep their order.
+        // Keeps the order of the others.
         fields.shift_remove("settles");
         fields.remove("conclusion");
         if config.polish == 0 {
@@ -57,7 +57,10 @@ fn identity(config: &StudyConfig) -> Result<Value, serde_json::Error> {
     Ok(identity)
 }
 
-/// The two lines a journal of this configuration begins with.
+/// Returns the header of a journal of this configuration.
+///
+/// # Errors
+/// If it cannot be serialized.
 pub fn encode(config: &StudyConfig) -> Result<String, serde_json::Error> {
     let direction = |measure: &Measure| if measure.sense() > 0.0 { MAXIMISE } else { MINIMISE };
     let create = json!({
@@ -69,12 +72,18 @@ pub fn encode(config: &StudyConfig) -> Result<String, serde_json::Error> {
     Ok(seal(&create, None)? + &attribute(OURS.to_owned(), identity(config)?)?)
 }
 
-/// The line of the segment with this number, counted from 1: it begins a further segment.
+/// Returns the line that begins the segment with this number, counted from 1.
+///
+/// # Errors
+/// If it cannot be serialized.
 pub fn encode_segment(number: usize, segment: &Segment) -> Result<String, serde_json::Error> {
     attribute(format!("{OURS}_segment_{number}"), segment)
 }
 
-/// The segment that a line begins, `None` if the line is of another kind.
+/// Returns the segment that a line begins; `None` for other lines.
+///
+/// # Errors
+/// If the line is damaged.
 pub fn decode_segment(line: &str) -> Result<Option<Segment>, LineError> {
     if !line.starts_with(&format!("{{\"op_code\":{STUDY_USER_ATTRIBUTE},")) {
         return Ok(None);
@@ -88,7 +97,10 @@ pub fn decode_segment(line: &str) -> Result<Option<Segment>, LineError> {
     }
 }
 
-/// Whether two lines begin a journal of this configuration, and if not, why.
+/// Checks the header of a journal of this configuration.
+///
+/// # Errors
+/// The difference.
 pub fn check(first: &str, second: &str, config: &StudyConfig) -> Result<(), String> {
     let damaged = |n: u8| format!("line {n} is damaged, or was not written by this program");
     unseal(first).map_err(|_| damaged(1))?;

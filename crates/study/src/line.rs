@@ -1,15 +1,13 @@
-//! The lines of a journal: Optuna's JournalStorage records, with a check.
+//! Lines of a journal: records of Optuna's JournalStorage with a checksum.
 //!
-//! A journal begins with a "create study" line and a "study attribute" line;
-//! every further line is one finished evaluation, a whole Optuna trial. Five
-//! fields of ours stand beside Optuna's: `evaluation` (the index), `proposal` (of an
-//! asynchronous study), `check`, `wall_s` and `cached` (for each task whether its values came from
-//! the cache).
+//! A journal begins with a "create study" line and a "study attribute" line; each further line is one
+//! evaluation, a complete Optuna trial. Five fields are added to those of Optuna: `evaluation` (the index),
+//! `proposal` (in an asynchronous study), `check`, `wall_s` and `cached` (for each task whether its values
+//! are from the cache).
 //!
-//! `check` is the beginning (16 hexadecimal digits) of the SHA-256 of the
-//! line's bytes before `,"check"`. After it stand `datetime_start`,
-//! `datetime_complete`, `wall_s` and `cached`, the only fields that differ between two
-//! runs of the same study; [`super::strip_times`] (or `sed 's/,"datetime_start".*//'`) removes them.
+//! `check` is the beginning (16 hexadecimal digits) of the SHA-256 of the bytes before `,"check"`. It is
+//! followed by `datetime_start`, `datetime_complete`, `wall_s` and `cached`, the only fields that differ
+//! between two runs of a study; [`super::strip_times`] (or `sed 's/,"datetime_start".*//'`) removes them.
 
 use super::error::LineError;
 use super::record::{Recorded, Timing};
@@ -22,12 +20,12 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::collections::BTreeMap;
 
-/// Optuna's code of a whole trial.
+/// Optuna's code of a complete trial.
 const CREATE_TRIAL: u8 = 4;
 /// Optuna's states of a finished trial.
 const COMPLETE: u8 = 1;
 const FAIL: u8 = 3;
-/// Optuna wants to know who wrote a line.
+/// Writer of a line, required by Optuna.
 pub(super) const WORKER: &str = "finger-opt";
 
 #[derive(Serialize, Deserialize)]
@@ -47,14 +45,14 @@ struct TrialLine {
     intermediate_values: Empty,
 }
 
-/// Data that Optuna has no fields for.
+/// Data without a field in Optuna.
 #[derive(Serialize, Deserialize)]
 struct UserAttributes {
     stiffness: Prediction,
     tasks: Vec<Evaluation>,
 }
 
-/// Optuna's samplers look for constraints here, and take 0 and below as kept.
+/// Constraints as Optuna's samplers read them; values up to 0 are feasible.
 #[derive(Serialize, Deserialize)]
 struct SystemAttributes {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -64,7 +62,10 @@ struct SystemAttributes {
 #[derive(Serialize, Deserialize)]
 struct Empty {}
 
-/// The line of one evaluation, with its newline.
+/// Returns the line of an evaluation, with its newline.
+///
+/// # Errors
+/// If it cannot be serialized.
 pub fn encode(recorded: &Recorded, space: &Space) -> Result<String, serde_json::Error> {
     let score = recorded.score.as_ref();
     let content = TrialLine {
@@ -86,7 +87,10 @@ pub fn encode(recorded: &Recorded, space: &Space) -> Result<String, serde_json::
     seal(&content, Some(&recorded.timing))
 }
 
-/// The evaluation of a line without its newline; `expected` is the index its place gives it.
+/// Returns the evaluation of a line without its newline; `expected` is its index.
+///
+/// # Errors
+/// If the line is damaged or of another evaluation.
 pub fn decode(line: &str, expected: u64) -> Result<Recorded, LineError> {
     let (content, rest) = unseal(line)?;
     let format = |error: serde_json::Error| LineError::Format(error.to_string());
@@ -107,12 +111,11 @@ pub fn decode(line: &str, expected: u64) -> Result<Recorded, LineError> {
         design: Design(trial.params),
         stiffness: trial.user_attrs.stiffness,
         tasks: trial.user_attrs.tasks,
-        refused: None,
         timing,
     })
 }
 
-/// Whether a line is a record of Optuna's journals that another program wrote.
+/// Returns whether a line is a record of an Optuna journal by another program.
 pub fn is_foreign(line: &str) -> bool {
     #[derive(Deserialize)]
     struct Record {
@@ -124,7 +127,7 @@ pub fn is_foreign(line: &str) -> bool {
     !is_sealed(line) && record().is_some_and(|record| record.worker_id != WORKER)
 }
 
-/// A parameter as Optuna describes it: a JSON text within the JSON line.
+/// Returns a parameter as Optuna describes it: JSON text inside the JSON line.
 fn distribution(Variable { key, low, high, step, .. }: &Variable) -> (String, String) {
     let attributes = json!({"low": low, "high": high, "log": false, "step": step});
     (key.to_string(), json!({"name": "FloatDistribution", "attributes": attributes}).to_string())

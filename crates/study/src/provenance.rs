@@ -5,33 +5,31 @@ use insertion::trial::engine::{EngineKind, EngineRecord};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The sources of this program that decide what a study finds.
+/// SHA-256 of the sources that determine the results of a study.
 pub const SOURCES: &str = env!("FINGER_OPT_STUDY_SHA256");
-/// Those of them that decide the evaluation of a design.
+/// SHA-256 of the sources that determine the evaluation of a design.
 pub const SIMULATION_SOURCES: &str = env!("FINGER_OPT_SIMULATION_SHA256");
 
-/// Program that computed the values, and its inputs: values of different provenance do not
-/// belong into one study unless the user says so.
+/// Program and inputs that determine the values of a study. Values of different provenance are not
+/// mixed in one study unless the user accepts that.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
     /// Version of this program.
     pub program: String,
-    /// SHA-256 of the sources that decide what a study finds, in hexadecimal; up to version 0.3.0 of
-    /// all sources.
+    /// SHA-256 of the sources that determine the results of a study, in hexadecimal.
     pub source_sha256: String,
-    /// SHA-256 of those of them that decide the evaluation of a design; `None` up to version 0.3.0.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub simulation_sha256: Option<String>,
+    /// SHA-256 of the sources that determine the evaluation of a design.
+    pub simulation_sha256: String,
     /// SHA-256 of each input file by its role (`task_1` and so on, `space`, `robot`,
-    /// `stiffness`; `cell`, `uncertainty`, the `finger` of computed ones, `measurements` and `priors` where
-    /// there is one), in hexadecimal.
+    /// `stiffness`; `cell`, `uncertainty`, the `finger` of computed ones, `measurements` and `priors` if there
+    /// is one), in hexadecimal.
     pub input_sha256: BTreeMap<String, String>,
     pub engine: EngineRecord,
 }
 
-/// Roles of the inputs that no simulation reads: what was measured on a bench, and the bounds of what
-/// nobody measured.
+/// Roles of the inputs that no simulation reads: bench measurements, and priors of the parameters that
+/// were not measured.
 pub const BENCH_ROLES: [&str; 2] = ["measurements", "priors"];
 
 /// Evaluations of one provenance.
@@ -45,40 +43,29 @@ pub struct Segment {
 }
 
 impl Provenance {
-    /// Of what this program measures now from these inputs.
+    /// Returns the provenance of this program and these inputs.
     pub fn new(engine: EngineKind, input_sha256: BTreeMap<String, String>) -> Self {
         Provenance {
             program: env!("CARGO_PKG_VERSION").to_owned(),
             source_sha256: SOURCES.to_owned(),
-            simulation_sha256: Some(SIMULATION_SOURCES.to_owned()),
+            simulation_sha256: SIMULATION_SOURCES.to_owned(),
             input_sha256,
             engine: engine.record(),
         }
     }
 
-    /// Whether another simulates the same: measurements on a bench change no simulated value.
+    /// Returns whether both simulate the same; bench measurements change no simulated value.
     pub fn simulates_like(&self, other: &Provenance) -> bool {
         let simulated = |provenance: &Provenance| {
             let mut provenance = provenance.clone();
-            if provenance.simulation_sha256.is_some() {
-                provenance.source_sha256.clear();
-            }
+            provenance.source_sha256.clear();
             provenance.input_sha256.retain(|role, _| !BENCH_ROLES.contains(&&**role));
             provenance
         };
         simulated(self) == simulated(other)
     }
 
-    /// Whether the roles, which become names of files, can be ours; if not, which one cannot.
-    pub fn check(&self) -> Result<(), String> {
-        let plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        match self.input_sha256.keys().find(|role| !role.chars().all(plain)) {
-            None => Ok(()),
-            Some(role) => Err(format!("input_sha256: `{role}` is no input file")),
-        }
-    }
-
-    /// In what another differs, one line each; `None` if in nothing.
+    /// Returns the fields that differ, one line each; `None` if there are none.
     pub fn differences(&self, now: &Provenance) -> Option<String> {
         differences(self, now, ["the study", "now"])
     }

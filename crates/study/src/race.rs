@@ -1,4 +1,4 @@
-//! The race of a study for the success rate: which studies have one, and what it is for the next design.
+//! Race of the designs of a study for the success rate.
 
 use super::config::StudyConfig;
 use super::folder::Study;
@@ -9,10 +9,9 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 impl StudyConfig {
-    /// Whether a race is exact. Of several tasks only the worst may count: a design that stays below the
-    /// bar on one of them has then lost, which says nothing of a mean. Beside other objectives, or
-    /// under a limit of its own, a success rate must be known, not its bound. Robust ranges are not
-    /// raced.
+    /// Returns whether a race is exact. With several tasks the aggregate has to be the minimum, so that a design
+    /// below the bar on one of them has lost. With other objectives, or a constraint on it, the success
+    /// rate has to be known exactly.
     pub fn can_race(&self) -> bool {
         let limited = self.constraints.iter().any(|limit| limit.measure == Measure::SuccessRate);
         let worst = matches!(self.aggregate, None | Some(Aggregate::Min));
@@ -21,21 +20,21 @@ impl StudyConfig {
 }
 
 impl Recorded {
-    /// Whether its success rate is an upper bound: it was out of the race with draws left.
+    /// Returns whether its success rate is an upper bound because it lost the race with draws left.
     pub fn raced(&self) -> bool {
         self.tasks.iter().flat_map(|task| &task.success).any(|success| success.raced().is_some())
     }
 
-    /// The value of the first objective, unless it is but an upper bound.
+    /// Returns the value of the first objective, unless it is an upper bound.
     pub fn known_value(&self) -> Option<f64> {
         self.value().filter(|_| !self.raced())
     }
 }
 
 impl Study {
-    /// The race of a design that is proposed after so many evaluations were told, a function of the
-    /// journal alone: against the best of those of the present model. First come the draws that failed
-    /// for that one, and of these and of the others those in which most designs failed.
+    /// Returns the race of a design proposed after `told` evaluations, a function of the journal: against the
+    /// best one of the current model. The first draws are those in which that one failed, and among these
+    /// and the others those in which most designs failed.
     pub(super) fn race(&self, told: usize) -> Option<Race> {
         let first = first_current(self.segments()) as usize;
         let told = self.evaluations.get(first..told).filter(|_| self.config.race)?;

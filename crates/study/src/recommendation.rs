@@ -1,36 +1,31 @@
-//! Which design of a study is recommended, how firm that is, and how much it matters.
+//! Recommended design of a study, equivalent designs, and the influence of the finger.
 
+use super::confirmer::gain;
 use super::record::{Recorded, StudyRecord};
 use super::rule::Rule;
-use super::walk::gain;
 use ask_tell::Grid;
 use ask_tell::gp::{Confirmed, Outlook};
 use insertion::evaluation::objective::Measure;
 
 impl StudyRecord {
-    /// The recommended design of a study with one objective: the first by the rule of
-    /// `study/rule.rs` of those that were walked, else of all. Where windows do not decide, the
-    /// [`best`](Self::best). None of a front is.
+    /// Returns the recommended design of a study with one objective: the first by the rule (`rule.rs`) of the
+    /// walked designs, else of all. If windows do not determine the objective, the [`best`](Self::best).
     pub fn recommendation(&self) -> Option<&Recorded> {
         self.config.objective.single()?;
         let goals = self.config.goals();
         let rule = Rule { goals: &goals, space: &self.config.space };
-        let searched = || match rule.by_windows() {
-            true => rule.candidates(self.current(), 1).first().copied(),
-            false => None,
-        };
+        let searched = || rule.by_windows().then(|| rule.first(self.current())).flatten();
         let walked = self.walked.first().map(|walked| &walked.recorded);
         walked.or_else(searched).or_else(|| self.best())
     }
 
-    /// The recommended design, or of a front its first.
+    /// Returns the recommended design, or the first of a front.
     pub fn recommended(&self) -> Option<&Recorded> {
         self.recommendation().or_else(|| self.best())
     }
 
-    /// The designs as good as the evaluation `index`, with it, by evaluation, and how much of the
-    /// first objective each loses against it: of a range at most the indifference, of what is not in
-    /// mm nothing.
+    /// Returns the designs equivalent to the evaluation `index`, itself included, each with its loss in the
+    /// first objective: at most the indifference for objectives in mm, zero for others.
     pub fn as_good(&self, index: u64) -> Vec<(&Recorded, f64)> {
         let (current, worth) = (self.current(), self.worth());
         let own = current.iter().position(|recorded| recorded.index == index);
@@ -41,14 +36,14 @@ impl StudyRecord {
             0.0
         };
         let loss = |(recorded, worth): (_, Option<f64>)| Some((recorded, own - worth?));
-        // Tenths of a millimetre are no whole numbers.
+        // Tenths of a millimetre are not exact.
         let as_good = |(_, loss): &(&Recorded, f64)| *loss <= tolerance + 1e-9;
         current.iter().zip(worth).filter_map(loss).filter(as_good).collect()
     }
 
-    /// Gain in the first objective of each of the [`current`](Self::current) designs: the firm value
-    /// that it has or, in the median, will have, rounded to the grid of ranges; the searched one where
-    /// none was repeated. `None` of designs that cannot be recommended.
+    /// Returns the gain in the first objective of each of the [`current`](Self::current) designs: its firm
+    /// value or the median of the predicted one, rounded to the grid of ranges; the searched value if no
+    /// design was repeated. `None` for designs that cannot be recommended.
     fn worth(&self) -> Vec<Option<f64>> {
         let (current, goals) = (self.current(), self.config.goals());
         let searched = |found: &Recorded| {
@@ -72,8 +67,8 @@ impl StudyRecord {
         (0..current.len()).map(expected).collect()
     }
 
-    /// The smallest and the largest range of the evaluations, mm, aggregated over the tasks: how much
-    /// the finger matters. `None` if none has a range.
+    /// Returns the smallest and the largest range of the evaluations, mm, aggregated over the tasks; `None` if
+    /// none has a range.
     pub fn spread_mm(&self) -> Option<[f64; 2]> {
         let ranges =
             self.current().iter().filter_map(|recorded| self.measure(recorded, Measure::Range));
@@ -83,26 +78,26 @@ impl StudyRecord {
         })
     }
 
-    /// A measure of a design, aggregated over the tasks.
+    /// Returns a measure of a design, aggregated over the tasks.
     pub fn measure(&self, recorded: &Recorded, measure: Measure) -> Option<f64> {
         let values: Option<Vec<f64>> =
             recorded.tasks.iter().map(|task| measure.value(task)).collect();
         values.map(|values| self.aggregated(measure, &values))
     }
 
-    /// Values of a measure on each task, made one.
+    /// Aggregates the values of a measure over the tasks.
     pub fn aggregated(&self, measure: Measure, values: &[f64]) -> f64 {
         self.config.goals().aggregate.of(measure.sense(), values)
     }
 
-    /// The task, by its place, on which no design inserts at the nominal start, and the design
-    /// that comes nearest to it.
+    /// Returns the index of the first task on which no design inserts at the nominal start, and the design
+    /// that is nearest to it.
     pub fn unusable(&self) -> Option<(usize, &Recorded)> {
         let mut tasks = 0..self.config.tasks.len();
         let task = tasks.find(|&task| !self.current().iter().any(|r| r.inserts_on(task)))?;
         let margin =
             |recorded: &Recorded| recorded.on(task).map_or(-1.0, |found| found.end_shares[0]);
-        // Of equals the first.
+        // The first of equal ones.
         let nearest = self.current().iter().rev().max_by(|a, b| margin(a).total_cmp(&margin(b)));
         nearest.map(|nearest| (task, nearest))
     }

@@ -1,13 +1,13 @@
-//! The rule by which one design is recommended before another.
+//! Order in which designs are recommended, by
 //!
-//! 1. The larger value of the objective: of the firm window where that was measured, else of
-//!    the window that the search found.
-//! 2. Of equals the better centred one: the larger smaller side of that window.
-//! 3. Then the smaller contact force; forces that round to the same newton are equal.
-//! 4. Then the one nearer to, or inside, the hull of the measured designs.
-//! 5. Then the one farther from the edge of the space, the least distance over all parameters
-//!    counting, as a share of each one's span.
-//! 6. Then the earlier one.
+//! 1. the larger value of the objective: of the firm window if it was measured, else of the window found by
+//!    the search;
+//! 2. the better centred window: the one with the larger smaller side;
+//! 3. the smaller contact force, rounded to a newton;
+//! 4. the smaller distance from the hull of the measured designs;
+//! 5. the larger distance from the edge of the space: the smallest over all parameters, as a share of the
+//!    span of each;
+//! 6. the earlier evaluation.
 
 use super::record::Recorded;
 use ask_tell::Observation;
@@ -16,16 +16,16 @@ use insertion::evaluation::{Evaluation, Window};
 use insertion::space::{Design, Space};
 use std::cmp::Ordering;
 
-/// Goals of a study, and the space of its designs.
+/// Rule of recommendation for a study.
 pub(super) struct Rule<'a> {
     pub goals: &'a Goals,
     pub space: &'a Space,
 }
 
-/// Criteria by which a design is compared.
+/// Criteria of a design in the order of the rule.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Standing {
-    /// Values of the objectives; `None` if it breaks a constraint or has none.
+pub(super) struct Rank {
+    /// Values of the objectives; `None` if a constraint is violated or there are none.
     values: Option<Vec<f64>>,
     /// Twice the smaller side of the window, mm.
     centred_mm: f64,
@@ -37,13 +37,13 @@ pub(super) struct Standing {
 }
 
 impl Rule<'_> {
-    /// Whether windows decide, so that they are worth measuring again.
+    /// Returns whether windows determine the objective, so that confirmation is worthwhile.
     pub fn by_windows(&self) -> bool {
         matches!(self.goals.objectives.single(), Some(Measure::Range | Measure::CentredRange))
     }
 
-    /// How a design stands with these windows, one for each task, in place of its own.
-    pub fn standing(&self, recorded: &Recorded, windows: &[Window]) -> Standing {
+    /// Returns the rank of a design with these windows, one for each task, in place of its own.
+    pub fn rank(&self, recorded: &Recorded, windows: &[Window]) -> Rank {
         let in_window = |(task, window): (&Evaluation, &Window)| Evaluation {
             window: window.clone(),
             ..task.clone()
@@ -55,7 +55,7 @@ impl Rule<'_> {
             values.map(|values| self.goals.aggregate.of(measure.sense(), &values))
         };
         let feasible = recorded.feasible().and_then(|_| self.goals.score(&tasks));
-        Standing {
+        Rank {
             values: feasible.map(|score| score.values),
             centred_mm: of(Measure::CentredRange).unwrap_or(0.0),
             force_n: of(Measure::PeakForce).unwrap_or(f64::INFINITY).round(),
@@ -65,13 +65,13 @@ impl Rule<'_> {
         }
     }
 
-    /// How a design stands with the windows that it was recorded with.
-    pub fn as_recorded(&self, recorded: &Recorded) -> Standing {
+    /// Returns the rank of a design with its recorded windows.
+    pub fn as_recorded(&self, recorded: &Recorded) -> Rank {
         let windows: Vec<Window> = recorded.tasks.iter().map(|task| task.window.clone()).collect();
-        self.standing(recorded, &windows)
+        self.rank(recorded, &windows)
     }
 
-    /// What the search found, by the first objective; designs that cannot be recommended have no value.
+    /// Returns the observations of the first objective; designs that cannot be recommended have no value.
     pub fn observed(&self, found: &[Recorded]) -> Vec<Observation> {
         let of = |recorded: &Recorded| {
             let value = self.as_recorded(recorded).value();
@@ -80,8 +80,8 @@ impl Rule<'_> {
         found.iter().map(of).collect()
     }
 
-    /// Less if `a` is recommended before `b`.
-    pub fn order(&self, a: &Standing, b: &Standing) -> Ordering {
+    /// Compares two ranks; less if `a` is recommended before `b`.
+    pub fn order(&self, a: &Rank, b: &Rank) -> Ordering {
         let values = match (&a.values, &b.values) {
             (Some(a), Some(b)) => self.goals.order(b, a),
             (a, b) => b.is_some().cmp(&a.is_some()),
@@ -94,8 +94,8 @@ impl Rule<'_> {
             .then(a.index.cmp(&b.index))
     }
 
-    /// Distance from the nearest bound of a parameter, as a share of its span; 0 to 0.5. A
-    /// parameter of one value has no bounds to be near to.
+    /// Returns the distance from the nearest bound of a parameter, as a share of its span, 0 to 0.5.
+    /// Parameters with one value are ignored.
     fn edge_distance(&self, design: &Design) -> f64 {
         let of = |parameter: &insertion::space::Variable| {
             let (value, span) = (design.get(&parameter.key)?, parameter.high - parameter.low);
@@ -105,8 +105,8 @@ impl Rule<'_> {
     }
 }
 
-impl Standing {
-    /// The value of the first objective; `None` if the design cannot be recommended.
+impl Rank {
+    /// Returns the value of the first objective; `None` if the design cannot be recommended.
     pub fn value(&self) -> Option<f64> {
         self.values.as_ref()?.first().copied()
     }
@@ -115,12 +115,12 @@ impl Standing {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plausible::tests::sound;
+    use crate::cache::tests::sound;
     use input::shipped::SPACES;
     use insertion::evaluation::objective::Constraint;
     use insertion::surrogate::Prediction;
 
-    /// A design with a window, mm, and a force, N.
+    /// Returns a design with a window, mm, and a force, N.
     fn recorded(index: u64, density: f64, window: [i32; 2], force_n: f64) -> Recorded {
         let mut task = sound();
         (task.window.negative_steps, task.window.positive_steps) = (window[0], window[1]);
@@ -133,7 +133,6 @@ mod tests {
             stiffness: Prediction::exact(3e3, 2e4),
             tasks: vec![task],
             timing: Default::default(),
-            refused: None,
         }
     }
 
@@ -142,15 +141,14 @@ mod tests {
         Goals { constraints: vec![force], ..Goals::of(Measure::Range) }
     }
 
-    /// The indices in the order of the rule.
+    /// Returns the indices in the order of the rule.
     fn ranked(designs: &[Recorded]) -> Vec<u64> {
         let space = Space::parse(SPACES[0].text, SPACES[0].file).unwrap();
         let goals = goals();
         let rule = Rule { goals: &goals, space: &space };
-        let mut standings: Vec<Standing> =
-            designs.iter().map(|design| rule.as_recorded(design)).collect();
-        standings.sort_by(|a, b| rule.order(a, b));
-        standings.iter().map(|standing| standing.index).collect()
+        let mut ranks: Vec<Rank> = designs.iter().map(|design| rule.as_recorded(design)).collect();
+        ranks.sort_by(|a, b| rule.order(a, b));
+        ranks.iter().map(|rank| rank.index).collect()
     }
 
     #[test]
@@ -183,6 +181,6 @@ mod tests {
         let mut wide = recorded(0, 20.0, [-20, 20], 50.0);
         wide.score = goals.score(&wide.tasks());
         let firm = Window { negative_steps: -5, ..wide.tasks[0].window.clone() };
-        assert_eq!(rule.standing(&wide, &[firm]).value(), Some(2.5));
+        assert_eq!(rule.rank(&wide, &[firm]).value(), Some(2.5));
     }
 }

@@ -1,135 +1,123 @@
-//! Runs a study on the threads of this process; how it goes on is decided by its
-//! [`Course`].
+//! Execution of a study on the threads of this process.
 
-use super::course::{Arrived, Course, Ending, Next, Wanted};
 use super::error::StudyError;
 use super::folder::Study;
 use super::record::{Recorded, Timing};
+use super::scheduler::{Ending, Next, Proposal, ProposalResult, Scheduler};
 use ask_tell::Optimizer;
-use insertion::evaluation::evaluator::Evaluate;
+use insertion::evaluation::evaluator::{Evaluate, Measured};
 use rayon::ThreadPool;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 
-/// Resources of a run.
+/// Executor of a study on the threads of this process.
 pub struct Runner<'a> {
-    /// Measures designs. It should end early once `stop` is set.
+    /// Evaluator of designs; returns early once `stop` is set.
     pub evaluator: &'a dyn Evaluate,
-    /// Does the measuring; the calling thread, outside of it, proposes and writes.
+    /// Threads that evaluate; the calling thread, outside of the pool, runs optimizer and journal.
     pub pool: &'a ThreadPool,
-    /// Set (by Ctrl-C) when the run is to stop soon; also set by the runner
-    /// itself after an error.
+    /// Cancels the run once it is set; also set by the runner after an error.
     pub stop: &'a AtomicBool,
-    /// Whether no gain is expected after so many evaluations, of a study that settles.
-    pub judge: &'a Judge<'a>,
+    /// Returns whether no gain is expected after a number of evaluations.
+    pub stagnates: &'a GainCheck<'a>,
 }
 
-/// Judges a study after so many of its evaluations.
-pub type Judge<'a> = dyn Fn(&Study, usize) -> Result<bool, StudyError> + Sync + 'a;
+/// Check whether no gain is expected of a study after a number of its evaluations.
+pub type GainCheck<'a> = dyn Fn(&Study, usize) -> Result<bool, StudyError> + Sync + 'a;
 
 impl Runner<'_> {
-    /// Runs the study until its budget is spent; `optimizer` is new, and
-    /// `progress` sees each evaluation after it was written.
+    /// Runs the study to its end with a new optimizer; `progress` is called after each evaluation was
+    /// written.
     ///
     /// # Errors
-    /// If a design is impossible, or the journal cannot be written; what was measured is saved
-    /// where somebody else has had a hand in that.
+    /// If a design cannot be simulated or the journal cannot be written.
     pub fn run(
         &self,
         study: &mut Study,
         optimizer: &mut dyn Optimizer,
         progress: &mut dyn FnMut(&Recorded),
     ) -> Result<Ending, StudyError> {
-        self.run_on(study, optimizer, progress).map_err(|error| study.rescue(error))
-    }
-
-    fn run_on(
-        &self,
-        study: &mut Study,
-        optimizer: &mut dyn Optimizer,
-        progress: &mut dyn FnMut(&Recorded),
-    ) -> Result<Ending, StudyError> {
-        let mut course = Course::new(study);
+        let mut scheduler = Scheduler::new(study);
         let (sender, receiver) = mpsc::channel();
+        let mut running = 0_usize;
         self.pool.in_place_scope(|scope| {
-            let mut running = 0_usize;
-            let mut step = || -> Result<Option<Ending>, StudyError> {
-                if !self.stop.load(Ordering::SeqCst) {
-                    match course.next(study, optimizer)? {
-                        Next::Ended(ending) => return Ok(Some(ending)),
-                        Next::Measure(wanted) => {
-                            running += wanted.len();
-                            for wanted in wanted {
+            let mut run = || -> Result<Ending, StudyError> {
+                loop {
+                    match if self.stopped() {
+                        Next::Wait
+                    } else {
+                        scheduler.next(study, optimizer)?
+                    } {
+                        Next::Ended(ending) => return Ok(ending),
+                        Next::Measure(proposals) => {
+                            running += proposals.len();
+                            for proposal in proposals {
                                 let sender = sender.clone();
-                                // The receiver is there until the scope ends.
                                 scope.spawn(move |_| {
-                                    // Whoever waits for it must learn of a panic.
-                                    let measure = AssertUnwindSafe(|| self.measure(&wanted));
+                                    // The receiving thread has to learn of a panic.
+                                    let measure = AssertUnwindSafe(|| self.measure(proposal));
                                     drop(sender.send(catch_unwind(measure)));
                                 });
                             }
-                            return Ok(None);
                         }
-                        Next::Judge(told) => {
-                            let calm = (self.judge)(study, told)?;
-                            // Interrupted, it says nothing.
-                            if !self.stop.load(Ordering::SeqCst) {
-                                course.judged(calm);
+                        Next::CheckGain(told) => {
+                            let stagnant = (self.stagnates)(study, told)?;
+                            if !self.stopped() {
+                                scheduler.record_stagnation(stagnant);
                             }
-                            return Ok(None);
                         }
-                        Next::Wait => {}
+                        Next::Wait if running == 0 => return Ok(Ending::Interrupted),
+                        Next::Wait => {
+                            running -= 1;
+                            // `sender` is alive, so there is always a message.
+                            let Ok(result) = receiver.recv() else { continue };
+                            let result = result.unwrap_or_else(|panic| {
+                                self.stop.store(true, Ordering::SeqCst);
+                                resume_unwind(panic)
+                            })?;
+                            if let Some(result) = result {
+                                scheduler.accept(study, result, progress)?;
+                            }
+                        }
                     }
                 }
-                if running == 0 {
-                    return Ok(Some(Ending::Interrupted));
-                }
-                running -= 1;
-                // This end has a sender, so there is always one.
-                if let Ok(result) = receiver.recv()
-                    && let Some(arrived) = result.unwrap_or_else(|panic| {
-                        self.stop.store(true, Ordering::SeqCst);
-                        resume_unwind(panic)
-                    })?
-                {
-                    course.take(study, arrived, progress)?;
-                }
-                Ok(None)
             };
-            loop {
-                match step() {
-                    Ok(None) => {}
-                    Ok(Some(ending)) => return Ok(ending),
-                    Err(error) => {
-                        self.stop.store(true, Ordering::SeqCst);
-                        return Err(error);
-                    }
-                }
-            }
+            run().inspect_err(|_| self.stop.store(true, Ordering::SeqCst))
         })
     }
 
-    /// One measurement, `None` if the run was to stop before it was complete.
-    fn measure(&self, wanted: &Wanted) -> Result<Option<Arrived>, StudyError> {
-        let Wanted { proposal, design, race } = wanted;
-        if self.stop.load(Ordering::SeqCst) {
+    fn stopped(&self) -> bool {
+        self.stop.load(Ordering::SeqCst)
+    }
+
+    /// Measures a design; returns `None` if the run was cancelled before the measurement was complete.
+    fn measure(&self, proposal: Proposal) -> Result<Option<ProposalResult>, StudyError> {
+        if self.stopped() {
             return Ok(None);
         }
-        let (measured, timing) = Timing::of(|| match race {
-            Some(race) => self.evaluator.race(design, race),
-            None => self.evaluator.evaluate(design),
+        let measured = proposal.measure(self.evaluator);
+        // After cancellation trials may have been skipped.
+        if self.stopped() {
+            return Ok(None);
+        }
+        let (measured, timing) = measured?;
+        let timing = Timing { cached: measured.cached.clone(), ..timing };
+        Ok(Some(ProposalResult { number: proposal.number, measured, timing }))
+    }
+}
+
+impl Proposal {
+    /// Evaluates the design, in its race if it has one.
+    ///
+    /// # Errors
+    /// If the design cannot be simulated.
+    pub fn measure(&self, evaluator: &dyn Evaluate) -> Result<(Measured, Timing), StudyError> {
+        let (measured, timing) = Timing::of(|| match &self.race {
+            Some(race) => evaluator.race(&self.design, race),
+            None => evaluator.evaluate(&self.design),
         });
-        // Once it is set the evaluator may have skipped trials.
-        if self.stop.load(Ordering::SeqCst) {
-            return Ok(None);
-        }
-        let mut measured = measured.map_err(|source| StudyError::Impossible {
-            index: *proposal,
-            design: design.to_string(),
-            source,
-        })?;
-        let timing = Timing { cached: std::mem::take(&mut measured.cached), ..timing };
-        Ok(Some(Arrived { proposal: *proposal, measured, timing }))
+        let error = |source| StudyError::impossible(self.number, &self.design, source);
+        measured.map(|measured| (measured, timing)).map_err(error)
     }
 }

@@ -1,4 +1,4 @@
-//! Measurement of a study's designs: the evaluator, a cache, and a flag that stops it.
+//! Evaluation of a study's designs by simulation, with a cache and cancellation.
 
 use super::cache::Cache;
 use insertion::evaluation::Evaluation;
@@ -11,16 +11,16 @@ use insertion::space::Design;
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Measures designs by simulation, or finds them in the cache.
+/// Evaluator with a cache.
 pub struct Simulated<'a> {
     pub evaluator: &'a Evaluator,
-    /// How the ends of a window are looked for.
+    /// Method of the search for the ends of a window.
     pub search: Search,
-    /// Plan of the measurements beside the window.
+    /// Plan of the measurements under drawn errors.
     pub plan: &'a Plan,
-    /// Where evaluations are kept, if they are.
+    /// Cache, if there is one.
     pub cache: Option<&'a Cache>,
-    /// Set when the study is to stop: trials then end at once.
+    /// Cancels the evaluation once it is set: trials then end at once.
     pub stop: &'a AtomicBool,
 }
 
@@ -34,8 +34,8 @@ impl Evaluate for Simulated<'_> {
     }
 }
 
-// The plan with its race is part of what names an entry of the cache. So a raced evaluation is found by
-// the same race only, a full one by none, and what the cache holds changes no journal.
+// The key of a cache entry includes the plan with its race. A raced evaluation is therefore found only by the
+// same race, and the cache changes no journal.
 impl Simulated<'_> {
     fn evaluate_by(&self, design: &Design, plan: &Plan) -> Result<Measured, Impossible> {
         // The tasks come one after the other.
@@ -48,7 +48,7 @@ impl Simulated<'_> {
         Ok(Measured { cached: cached.into_inner(), ..measured })
     }
 
-    /// Cached measurements of a design; `None` unless they are complete. Nothing is simulated.
+    /// Returns the cached measurements of a design without simulating; `None` unless all are there.
     pub fn known(&self, design: &Design, race: Option<&Race>) -> Option<Measured> {
         let (cache, plan) = (self.cache?, self.plan.against(race));
         let stiffness = self.evaluator.predict(design).ok()?;
@@ -61,7 +61,7 @@ impl Simulated<'_> {
         Some(Measured { stiffness, tasks, cached })
     }
 
-    /// Keeps in the cache what was measured of a design elsewhere.
+    /// Stores measurements of a worker in the cache.
     pub fn keep(&self, design: &Design, race: Option<&Race>, measured: &Measured) {
         let Some(cache) = self.cache else { return };
         let plan = self.plan.against(race);
@@ -76,7 +76,10 @@ impl Simulated<'_> {
         cache.key(&(specimen, self.search, plan))
     }
 
-    /// The evaluation, and whether it was in the cache.
+    /// Returns the evaluation, and whether it was in the cache.
+    ///
+    /// # Errors
+    /// If the design cannot be simulated.
     pub fn measure(
         &self,
         specimen: &Specimen,
@@ -87,7 +90,7 @@ impl Simulated<'_> {
             return Ok((found, true));
         }
         let evaluation = self.evaluator.measure(specimen, self.search, plan, self.stop)?;
-        // Once it is set trials may have been skipped.
+        // After cancellation trials may have been skipped.
         if let Some((cache, key)) = keep.filter(|_| !self.stop.load(Ordering::SeqCst)) {
             cache.put(&key, &evaluation);
         }

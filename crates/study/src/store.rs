@@ -1,4 +1,4 @@
-//! Where a journal's bytes are kept: a file, or in tests one that fails on purpose.
+//! Storage of a journal: a file, or a replacement for tests that fails.
 
 use input::files::{self, LARGEST_JOURNAL};
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -7,19 +7,31 @@ use std::path::{Path, PathBuf};
 
 /// Append-only storage of a journal.
 pub trait Store: Send {
-    /// All bytes stored.
+    /// Returns all bytes.
+    ///
+    /// # Errors
+    /// If they cannot be read.
     fn read(&mut self) -> io::Result<Vec<u8>>;
-    /// Whether it is still the same, and `len` bytes long; if not, what has happened to it.
+    /// Checks that the storage is unchanged and `len` bytes long.
+    ///
+    /// # Errors
+    /// What happened to it.
     fn check(&mut self, _len: u64) -> Result<(), String> {
         Ok(())
     }
-    /// Adds `bytes` at the end, in one write; when it returns they survive a power failure.
+    /// Appends `bytes` in one write; they then survive a power failure.
+    ///
+    /// # Errors
+    /// If they cannot be written.
     fn append(&mut self, bytes: &[u8]) -> io::Result<()>;
-    /// Cuts back to the first `len` bytes.
+    /// Truncates to the first `len` bytes.
+    ///
+    /// # Errors
+    /// If that fails.
     fn truncate(&mut self, len: u64) -> io::Result<()>;
 }
 
-/// A journal in a file.
+/// Journal in a file.
 #[derive(Debug)]
 pub struct FileStore {
     file: File,
@@ -27,12 +39,14 @@ pub struct FileStore {
 }
 
 impl FileStore {
-    /// Opens the file, creating it if it is missing. It is locked, too: a folder's `.lock` may
-    /// be removed by anyone. The error is [`io::ErrorKind::WouldBlock`] if another has it.
+    /// Opens the file, or creates it, and locks it, since the folder's `.lock` may be removed.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::WouldBlock`] if another process has locked it.
     pub fn open(path: &Path) -> io::Result<Self> {
         let mut options = OpenOptions::new();
         let file = files::open_own(path, options.read(true).append(true).create(true))?;
-        // Elsewhere than here a lock would keep readers out.
+        // On other systems a lock would block readers.
         if cfg!(unix) {
             match file.try_lock() {
                 Err(TryLockError::WouldBlock) => return Err(io::ErrorKind::WouldBlock.into()),
@@ -55,16 +69,18 @@ impl Store for FileStore {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 return Err("was removed or renamed".to_owned());
             }
-            found => found.map_err(|error| format!("cannot be looked at any more: {error}"))?,
+            found => found.map_err(|error| format!("is not accessible any more: {error}"))?,
         };
         match files::is_open_file(&found, &self.file) {
             Ok(true) if found.len() == len => Ok(()),
             Ok(true) => {
                 let found = found.len();
-                Err(format!("was changed by another: it has {found} bytes, {len} were written"))
+                Err(format!(
+                    "was changed by another program: it has {found} bytes, {len} were written"
+                ))
             }
             Ok(false) => Err("was replaced by another file".to_owned()),
-            Err(error) => Err(format!("cannot be looked at any more: {error}")),
+            Err(error) => Err(format!("is not accessible any more: {error}")),
         }
     }
 

@@ -1,5 +1,4 @@
-//! `evaluations.csv`: a study as a table, units in the headers. What was measured stands in
-//! it under the keys that JSON and journal have.
+//! `evaluations.csv`: table of the evaluations with the keys of JSON and journal, units in the header.
 
 use super::error::StudyError;
 use super::folder::write_own_file;
@@ -10,18 +9,24 @@ use serde_json::Value;
 use std::path::Path;
 
 const TABLE: &str = "evaluations.csv";
-/// Lists of as many values as there were draws: no columns.
+/// Lists with a value for each draw, which are not columns.
 const DRAWN: [&str; 2] = ["robust_ranges_mm", "success_failed_draws"];
 
-/// Column and cell, in the order of the columns.
+/// Columns and cells in order.
 type Row = Vec<(String, String)>;
 
-/// Writes `evaluations.csv` into a study's folder, one row per evaluation.
+/// Writes `evaluations.csv` into a study's folder.
+///
+/// # Errors
+/// If it cannot be written.
 pub fn write_evaluations_csv(dir: &Path, record: &StudyRecord) -> Result<(), StudyError> {
     write_own_file(&dir.join(TABLE), &evaluations_csv(dir, record)?)
 }
 
-/// The text of `evaluations.csv`; `dir` is named in errors.
+/// Returns the text of `evaluations.csv`; `dir` is named in errors.
+///
+/// # Errors
+/// If it cannot be written as CSV.
 pub fn evaluations_csv(dir: &Path, record: &StudyRecord) -> Result<String, StudyError> {
     csv(record).map_err(|error| StudyError::file(&dir.join(TABLE), error))
 }
@@ -58,12 +63,12 @@ fn row(record: &StudyRecord, recorded: &Recorded) -> Result<Row, serde_json::Err
         value.map_or(String::new(), |value| value.to_string())
     };
     for (i, key) in config.objective.keys().into_iter().enumerate() {
-        // A raced rate has no value; its upper bound stands with the task.
+        // A raced rate has no value; its upper bound is a column of the task.
         let value = (!recorded.raced()).then(|| score(|score| &score.values, i));
         row.push((key, value.unwrap_or_default()));
     }
     for (i, constraint) in config.constraints.iter().enumerate() {
-        // A share of the limit, so without a unit.
+        // Share of the limit, without a unit.
         row.push((format!("violation {constraint}"), score(|score| &score.violations, i)));
     }
     for (task, measured) in config.tasks().zip(&recorded.tasks) {
@@ -74,7 +79,7 @@ fn row(record: &StudyRecord, recorded: &Recorded) -> Result<Row, serde_json::Err
     Ok(row)
 }
 
-/// The fields of a flat value; those of a list by their place, counted from 1.
+/// Adds the fields of a flat value; elements of a list are numbered from 1.
 fn cells(prefix: &str, value: &impl Serialize, row: &mut Row) -> Result<(), serde_json::Error> {
     let Value::Object(fields) = serde_json::to_value(value)? else { return Ok(()) };
     for (key, value) in fields.into_iter().filter(|(key, _)| !DRAWN.contains(&&**key)) {
@@ -90,7 +95,7 @@ fn cells(prefix: &str, value: &impl Serialize, row: &mut Row) -> Result<(), serd
     Ok(())
 }
 
-/// Empty where there is no value.
+/// Returns a cell, empty without a value.
 fn cell(value: Value) -> String {
     match value {
         Value::Null => String::new(),

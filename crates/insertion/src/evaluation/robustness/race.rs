@@ -8,7 +8,6 @@ use crate::evaluation::SuccessRate;
 use crate::outcome::Outcome;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
 
 /// What a design has to reach, and which draws it meets first.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -42,22 +41,6 @@ impl Race {
     pub fn is_lost_by(&self, success: &SuccessRate) -> bool {
         success.at_most().is_some_and(|rate| rate < self.bar_share)
     }
-
-    /// Whether a design can have ended so: lost with the last draw that it had and not before, or
-    /// with none left. Whoever measured it may be somebody else.
-    pub fn can_end_in(&self, success: &SuccessRate) -> bool {
-        let tried = success.tried();
-        if u64::from(tried) + u64::from(success.spared) != u64::from(self.draws) {
-            return false;
-        }
-        let order = self.order(self.draws);
-        let (met, _) = order.split_at(tried as usize);
-        let failed: BTreeSet<&u32> = success.failed_draws.iter().collect();
-        let all = failed.len() as u64 == u64::from(success.counted() - success.inserted)
-            && failed.is_subset(&met.iter().collect());
-        let lost = success.spared == 0 || self.is_lost_by(success);
-        all && lost && !self.is_lost_by(&before(success, met.last()))
-    }
 }
 
 /// The outcomes of so many draws, in the order of the race up to the first one with which it is lost.
@@ -82,20 +65,4 @@ pub fn run(
     }
     success.failed_draws.sort_unstable();
     success
-}
-
-/// The counts before the last draw: it failed, else it diverged if any did. Had it inserted instead,
-/// nothing would have been lost with it.
-fn before(success: &SuccessRate, last: Option<&u32>) -> SuccessRate {
-    let mut before = success.clone();
-    let failed = last.is_some_and(|last| success.failed_draws.contains(last));
-    let counts = before.failure_counts.iter_mut().find(|count| **count > 0);
-    match counts.filter(|_| failed) {
-        Some(count) => *count -= 1,
-        None if before.diverged > 0 => before.diverged -= 1,
-        None if before.inserted > 0 => before.inserted -= 1,
-        None => return before,
-    }
-    before.spared += 1;
-    before
 }

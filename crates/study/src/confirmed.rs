@@ -1,0 +1,141 @@
+//! Confirmation of the best designs of a study: `walk.json` beside the journal, not part of the budget.
+//!
+//! A study searches for the ends of its windows in strides, which miss a gap between two of them; an
+//! optimizer then favours designs with missed gaps. An end may also depend on whether a corner catches.
+//! Therefore, before a design is recommended,
+//!
+//! 1. its ends are repeated with friction, start and step varied
+//!    ([`firm`](insertion::evaluation::robustness::firm)): next is always the design with the widest expected
+//!    firm window, while it is likely to gain ([`ask_tell::gp::Outlook`]);
+//! 2. the first by the rule on the firm windows is walked step by step; if that gives another window, its
+//!    ends are repeated, too, and step 1 may follow again.
+//!
+//! The recommended design is the first of the walked ones by the rule on the remaining firm windows. Where
+//! the study has the fingers of the paper, each walked design is also measured once with the stiffnesses
+//! computed from its ribs, for comparison only.
+
+use super::error::StudyError;
+use super::folder::{read_analysis, write_analysis};
+use super::provenance::Provenance;
+use super::record::{ByRibs, Recorded, Walked};
+use super::rule::{Rank, Rule};
+use insertion::evaluation::robustness::firm::Firm;
+use insertion::evaluation::{Evaluation, Window};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+const WALK_FILE: &str = "walk.json";
+
+/// Contents of `walk.json`.
+#[derive(Serialize, Deserialize)]
+pub(super) struct ConfirmationFile {
+    /// Provenance of the confirmation; with another one it is not valid.
+    pub provenance: Provenance,
+    /// Whether the confirmation is complete.
+    pub complete: bool,
+    /// Evaluations after which the search settled.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub settled_after: Option<u64>,
+    /// Confirmed designs, in the order in which they were selected.
+    pub designs: Vec<ConfirmedDesign>,
+}
+
+/// Confirmation of a design.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct ConfirmedDesign {
+    pub evaluation: u64,
+    /// Repeats on each task at the ends that the search found.
+    pub firm: Vec<Firm>,
+    /// The walk, if there was one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub walked: Option<Walk>,
+}
+
+/// Walk of a design.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Walk {
+    /// Evaluations on each task.
+    pub tasks: Vec<Evaluation>,
+    /// Repeats on each task at the ends of the walk.
+    pub firm: Vec<Firm>,
+    /// Evaluations of the computed finger.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub computed: Option<ByRibs>,
+}
+
+impl ConfirmationFile {
+    /// Reads the file in `dir`; returns `None` if it is missing, damaged or of another provenance.
+    pub fn read(dir: &Path, provenance: Option<&Provenance>) -> Option<ConfirmationFile> {
+        let file: ConfirmationFile = read_analysis(dir, WALK_FILE)?;
+        provenance?.simulates_like(&file.provenance).then_some(file)
+    }
+
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write(&self, dir: &Path) -> Result<(), StudyError> {
+        write_analysis(dir, WALK_FILE, self)
+    }
+}
+
+impl Rule<'_> {
+    /// Returns the first design by the rule that inserts anywhere.
+    pub fn first<'a>(&self, current: &'a [Recorded]) -> Option<&'a Recorded> {
+        let ranked = current.iter().map(|recorded| (recorded, self.as_recorded(recorded)));
+        let inserting = ranked.filter(|(_, rank)| rank.value().is_some_and(|value| value > 0.0));
+        inserting.min_by(|(_, a), (_, b)| self.order(a, b)).map(|(recorded, _)| recorded)
+    }
+
+    /// Returns the rank of a design with its firm windows.
+    pub fn firmly(&self, recorded: &Recorded, firm: &[Firm]) -> Rank {
+        let windows = recorded.tasks.iter().zip(firm);
+        let windows: Vec<Window> = windows.map(|(task, firm)| firm.of(&task.window)).collect();
+        self.rank(recorded, &windows)
+    }
+}
+
+/// Returns the evaluation with the windows of the walk; its results under drawn errors are unchanged.
+pub(super) fn with_windows(rule: &Rule, before: &Recorded, found: &[Evaluation]) -> Recorded {
+    let mut recorded = before.clone();
+    for (task, walked) in recorded.tasks.iter_mut().zip(found) {
+        let (success, robust) = (task.success.take(), task.robust.take());
+        *task = Evaluation { success, robust, ..walked.clone() };
+    }
+    recorded.score = rule.goals.score(&recorded.tasks());
+    recorded
+}
+
+/// Returns whether the search settled after this number of evaluations.
+pub(super) fn settled(dir: &Path, provenance: Option<&Provenance>, evaluations: usize) -> bool {
+    let file = ConfirmationFile::read(dir, provenance);
+    file.and_then(|file| file.settled_after) == Some(evaluations as u64)
+}
+
+/// Reads the walked designs, best first, and the firm value of the first objective of every design whose
+/// ends were repeated, by evaluation; nothing of an incomplete confirmation.
+pub(super) fn read(
+    dir: &Path,
+    rule: &Rule,
+    provenance: Option<&Provenance>,
+    current: &[Recorded],
+) -> (Vec<Walked>, BTreeMap<u64, f64>) {
+    let file = ConfirmationFile::read(dir, provenance).filter(|file| file.complete);
+    let (mut walked, mut firm_values) = (Vec::new(), BTreeMap::new());
+    for row in file.map_or(Vec::new(), |file| file.designs) {
+        let Some(before) = current.iter().find(|r| r.index == row.evaluation) else { continue };
+        let rank = match row.walked {
+            None => rule.firmly(before, &row.firm),
+            Some(Walk { tasks, firm, computed: by_ribs }) => {
+                let recorded = with_windows(rule, before, &tasks);
+                let rank = rule.firmly(&recorded, &firm);
+                walked.push((rank.clone(), Walked { recorded, firm, by_ribs }));
+                rank
+            }
+        };
+        firm_values.insert(row.evaluation, rank.value().unwrap_or(0.0));
+    }
+    walked.sort_by(|(a, _), (b, _)| rule.order(a, b));
+    (walked.into_iter().map(|(_, walked)| walked).collect(), firm_values)
+}

@@ -1,0 +1,396 @@
+//! Scheduler of a study: selects the designs to measure next and records their results. It does not
+//! depend on how or where designs are measured.
+//!
+//! # Guarantee
+//!
+//! The journal is a function of the configuration; the budget only determines its length (or where
+//! the polish begins; such a budget cannot be raised). Workers, threads and interruptions do not change
+//! it: 20 evaluations followed by 20 more equal 40 at once, because
+//!
+//! - `ask` and `tell` of the optimizer are called with whole batches; where the budget ends within a
+//!   batch, its first designs are evaluated and `tell` is not called;
+//! - a resumed study replays all asks and tells with the values of the journal; a design that is
+//!   proposed during the replay must equal the one in the journal;
+//! - evaluations that finish out of order wait in memory until all earlier ones are written;
+//! - if a result arrives twice, the first counts.
+//!
+//! An asynchronous study has no batches: `batch` designs are proposed at first, and one more after each
+//! result. Its journal holds the results in order of arrival, each with the number of its proposal: it
+//! depends on the speed of the workers, but can be replayed from that order.
+//!
+//! At most [`MAX_FAILED_STARTS`] designs are measured before one inserts at its nominal start: if none
+//! does, start or strategy are wrong, and no other finger would succeed. The rest of that batch is
+//! measured once a design has inserted.
+
+use super::error::StudyError;
+use super::folder::Study;
+use super::record::{Recorded, Timing, first_current};
+use ask_tell::GridPoint;
+use ask_tell::{Observation, Optimizer, StopReason};
+use insertion::evaluation::evaluator::Measured;
+use insertion::evaluation::objective::{Goals, Score};
+use insertion::evaluation::robustness::race::Race;
+use insertion::space::Design;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Reason for which a run of a study ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ending {
+    /// The budget is spent.
+    BudgetSpent,
+    /// Every design of the space has been evaluated.
+    SpaceExhausted,
+    /// The polish has converged.
+    Converged,
+    /// No design is expected to improve on the best one by more than the indifference.
+    Settled,
+    /// None of the first designs inserts on any task.
+    NothingInserts,
+    /// The run was cancelled.
+    Interrupted,
+}
+
+/// Evaluations of the current model without an insertion after which a study ends.
+const MAX_FAILED_STARTS: usize = 12;
+
+/// Largest absolute value of an objective; a larger one, or NaN, counts as failed.
+const LARGEST_VALUE: f64 = 1e15;
+/// Largest violation, as a share of a limit, which may be small.
+const LARGEST_VIOLATION: f64 = 1e30;
+
+/// Design to be measured.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Proposal {
+    /// Number in the order of proposals, from 0.
+    pub number: u64,
+    /// The design.
+    pub design: Design,
+    /// Race for the success rate, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub race: Option<Race>,
+}
+
+/// Next step.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Next {
+    /// Measure these designs, in any order; each is returned once.
+    Measure(Vec<Proposal>),
+    /// Wait for a result.
+    Wait,
+    /// Check whether a gain is expected after this number of evaluations, and call
+    /// [`record_stagnation`](Scheduler::record_stagnation).
+    CheckGain(usize),
+    /// The run has ended.
+    Ended(Ending),
+}
+
+/// Result of a proposal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProposalResult {
+    /// Number of the proposal.
+    pub number: u64,
+    /// Measurements of the design.
+    pub measured: Measured,
+    /// Start, end and duration of the measurement.
+    pub timing: Timing,
+}
+
+/// Scheduler of a study: a state machine that is replayed from the journal.
+pub struct Scheduler {
+    goals: Goals,
+    batch: usize,
+    budget: usize,
+    asynchronous: bool,
+    /// Proposals without `tell`, by number, each with the number of evaluations told before it.
+    open: BTreeMap<u64, (GridPoint, usize)>,
+    /// Number of proposals so far.
+    proposed: u64,
+    /// Number of evaluations passed to `tell`.
+    told: usize,
+    /// Designs being measured, by the number of the proposal.
+    measuring: BTreeMap<u64, Design>,
+    /// Results that wait for earlier ones to be written, by the same number.
+    waiting: BTreeMap<u64, Recorded>,
+    early_stopping: Option<EarlyStopping>,
+    ended: Option<Ending>,
+}
+
+/// Early stopping of a search without a budget.
+#[derive(Debug, Clone, Copy)]
+struct EarlyStopping {
+    /// Evaluations before the first check.
+    min_evaluations: usize,
+    /// Consecutive evaluations without an expected gain after which the search ends.
+    patience: usize,
+    /// Consecutive evaluations without an expected gain so far.
+    stagnant: usize,
+    /// Evaluations at the last check.
+    checked: usize,
+    settled: bool,
+}
+
+impl Scheduler {
+    /// Returns the scheduler of a study, to be used with a new optimizer.
+    pub fn new(study: &Study) -> Self {
+        let number = |n: u64| usize::try_from(n).unwrap_or(usize::MAX);
+        let settled = study.settled();
+        let early_stopping = study.config.settling().map(|[min_evaluations, patience]| {
+            EarlyStopping { min_evaluations, patience, stagnant: 0, checked: 0, settled }
+        });
+        Scheduler {
+            goals: study.config.goals(),
+            batch: number(study.config.batch),
+            budget: number(study.config.evaluations()),
+            asynchronous: study.config.asynchronous,
+            open: BTreeMap::new(),
+            proposed: 0,
+            told: 0,
+            measuring: BTreeMap::new(),
+            waiting: BTreeMap::new(),
+            early_stopping,
+            ended: None,
+        }
+    }
+
+    /// Returns the next step.
+    ///
+    /// # Errors
+    /// If the journal holds other designs than the optimizer proposes.
+    pub fn next(
+        &mut self,
+        study: &Study,
+        optimizer: &mut dyn Optimizer,
+    ) -> Result<Next, StudyError> {
+        while self.ended.is_none() {
+            if !self.asynchronous && self.measuring.is_empty() {
+                self.tell_batch(study, optimizer);
+            }
+            match self.early_stopping {
+                // Running measurements are written, too.
+                Some(EarlyStopping { settled: true, .. }) if self.measuring.is_empty() => {
+                    self.ended = Some(Ending::Settled);
+                    continue;
+                }
+                Some(EarlyStopping { settled: true, .. }) => return Ok(Next::Wait),
+                Some(EarlyStopping { min_evaluations, checked, .. })
+                    if self.told >= min_evaluations.max(checked + 1) =>
+                {
+                    return Ok(Next::CheckGain(self.told));
+                }
+                _ => {}
+            }
+            let proposals = match self.asynchronous {
+                true => self.next_arrivals(study, optimizer)?,
+                false if self.measuring.is_empty() => self.next_batch(study, optimizer)?,
+                false => Vec::new(),
+            };
+            if !proposals.is_empty() {
+                let designs = proposals.iter().map(|p| (p.number, p.design.clone()));
+                self.measuring.extend(designs);
+                return Ok(Next::Measure(proposals));
+            }
+            if !self.measuring.is_empty() {
+                return Ok(Next::Wait);
+            }
+        }
+        Ok(Next::Ended(self.ended.unwrap_or(Ending::BudgetSpent)))
+    }
+
+    /// Records whether no gain was expected at the last [`CheckGain`](Next::CheckGain).
+    pub fn record_stagnation(&mut self, stagnant: bool) {
+        let (told, batch) = (self.told, self.batch);
+        if let Some(stopping) = &mut self.early_stopping {
+            let more = (told - stopping.checked).min(batch);
+            stopping.stagnant = if stagnant { stopping.stagnant + more } else { 0 };
+            stopping.checked = told;
+            stopping.settled = stopping.stagnant >= stopping.patience;
+        }
+    }
+
+    /// Accepts the result of a proposal and writes all evaluations that are next in the journal.
+    /// Returns false, without any effect, if the proposal is unknown or its result came before.
+    ///
+    /// # Errors
+    /// If the journal cannot be written.
+    pub fn accept(
+        &mut self,
+        study: &mut Study,
+        result: ProposalResult,
+        progress: &mut dyn FnMut(&Recorded),
+    ) -> Result<bool, StudyError> {
+        let ProposalResult { number, measured: Measured { stiffness, tasks, .. }, timing } = result;
+        let Some(design) = self.measuring.get(&number).cloned() else { return Ok(false) };
+        if self.waiting.contains_key(&number) {
+            return Ok(false);
+        }
+        let (index, proposal) = match self.asynchronous {
+            true => (study.evaluations.len() as u64, Some(number)),
+            false => (number, None),
+        };
+        let score = self.goals.score(&tasks.iter().collect::<Vec<_>>()).filter(is_finite);
+        let recorded = Recorded { index, proposal, design, score, stiffness, tasks, timing };
+        self.waiting.insert(number, recorded);
+        while let Some((number, recorded)) = self.next_written(study) {
+            study.journal.append(&recorded)?;
+            progress(&recorded);
+            study.evaluations.push(recorded);
+            self.measuring.remove(&number);
+        }
+        Ok(true)
+    }
+
+    /// Removes and returns the result that is next in the journal, if it is known.
+    fn next_written(&mut self, study: &Study) -> Option<(u64, Recorded)> {
+        let next = study.evaluations.len() as u64;
+        let number = self.waiting.iter().find(|(_, found)| found.index == next).map(|(n, _)| *n)?;
+        self.waiting.remove_entry(&number)
+    }
+
+    /// Passes a batch to `tell` once all of it is measured.
+    fn tell_batch(&mut self, study: &Study, optimizer: &mut dyn Optimizer) {
+        let end = self.told + self.open.len();
+        // If a limit ends within a batch, the rest has to be measured first.
+        if end <= study.evaluations.len() && !self.open.is_empty() {
+            let points = std::mem::take(&mut self.open).into_values();
+            let found = study.evaluations.iter().skip(self.told);
+            let told: Vec<Observation> = points
+                .zip(found)
+                .map(|((point, _), found)| self.observation(point, found))
+                .collect();
+            optimizer.tell(&told);
+            self.told = end;
+        }
+    }
+
+    /// Calls `ask` for the next batch; returns the designs of it that the journal does not hold.
+    fn next_batch(
+        &mut self,
+        study: &Study,
+        optimizer: &mut dyn Optimizer,
+    ) -> Result<Vec<Proposal>, StudyError> {
+        // After a limit was raised, the rest of its batch comes first.
+        if self.open.is_empty() && self.told < self.limit(study) {
+            self.propose(optimizer, self.batch);
+            if self.open.is_empty() {
+                self.ended = Some(exhausted(optimizer));
+                return Ok(Vec::new());
+            }
+        }
+        let mut proposals = self.proposals(study);
+        for Proposal { number, design, .. } in &proposals {
+            match study.evaluations.get(*number as usize) {
+                Some(found) if found.design != *design => {
+                    return Err(study.other_design(found, &design.to_string()));
+                }
+                _ => {}
+            }
+        }
+        let known = study.evaluations.len();
+        proposals.retain(|proposal| proposal.number >= known as u64);
+        if proposals.is_empty() && (self.open.is_empty() || self.told + self.open.len() > known) {
+            self.ended = Some(self.spent(study));
+        }
+        Ok(proposals)
+    }
+
+    /// Calls `tell` for each new result and `ask` for one more design after it; returns the designs
+    /// that are not being measured yet.
+    fn next_arrivals(
+        &mut self,
+        study: &Study,
+        optimizer: &mut dyn Optimizer,
+    ) -> Result<Vec<Proposal>, StudyError> {
+        // Independent of the budget, which may be raised later.
+        if self.proposed == 0 {
+            self.propose(optimizer, self.batch);
+        }
+        while let Some(found) = study.evaluations.get(self.told) {
+            let number = found.proposal;
+            let point = number.and_then(|number| self.open.remove(&number)).map(|(point, _)| point);
+            let Some(point) = point.filter(|p| study.config.space.design(p) == found.design) else {
+                return Err(study.other_design(found, "another in its place"));
+            };
+            optimizer.tell(&[self.observation(point, found)]);
+            self.told += 1;
+            self.propose(optimizer, 1);
+        }
+        let mut proposals = self.proposals(study);
+        proposals.retain(|proposal| !self.measuring.contains_key(&proposal.number));
+        if proposals.is_empty() && self.measuring.is_empty() {
+            let spent = self.told >= self.limit(study);
+            self.ended = Some(if spent { self.spent(study) } else { exhausted(optimizer) });
+        }
+        Ok(proposals)
+    }
+
+    fn propose(&mut self, optimizer: &mut dyn Optimizer, count: usize) {
+        for point in optimizer.ask(count) {
+            self.open.insert(self.proposed, (point, self.told));
+            self.proposed += 1;
+        }
+    }
+
+    /// Returns the largest number of evaluations: the budget, or fewer while no design has inserted.
+    fn limit(&self, study: &Study) -> usize {
+        let first = first_current(study.segments()) as usize;
+        match study.evaluations.iter().skip(first).any(Recorded::inserts) {
+            true => self.budget,
+            false => self.budget.min(first + MAX_FAILED_STARTS),
+        }
+    }
+
+    /// Returns the ending of a study at its limit.
+    fn spent(&self, study: &Study) -> Ending {
+        if self.limit(study) < self.budget { Ending::NothingInserts } else { Ending::BudgetSpent }
+    }
+
+    /// Returns the proposals within the limit whose results were not told yet.
+    fn proposals(&self, study: &Study) -> Vec<Proposal> {
+        let limit = self.limit(study) as u64;
+        let within = self.open.iter().filter(|(number, _)| **number < limit);
+        let proposal = |(&number, (point, told)): (&u64, &(GridPoint, usize))| {
+            let design = study.config.space.design(point);
+            Proposal { number, design, race: study.race(*told) }
+        };
+        within.map(proposal).collect()
+    }
+
+    fn observation(&self, point: GridPoint, recorded: &Recorded) -> Observation {
+        let told = || {
+            let score = recorded.score.as_ref()?;
+            Some((self.goals.told(&recorded.tasks())?, score.violations.clone()))
+        };
+        match told() {
+            None => Observation::new(point, None),
+            Some((values, violations)) => Observation { point, values, violations },
+        }
+    }
+}
+
+/// Returns whether all values are finite and small enough for sums and plots.
+fn is_finite(score: &Score) -> bool {
+    score.values.iter().all(|value| value.abs() <= LARGEST_VALUE)
+        && score.violations.iter().all(|share| share.abs() <= LARGEST_VIOLATION)
+}
+
+fn exhausted(optimizer: &dyn Optimizer) -> Ending {
+    match optimizer.stop() {
+        Some(StopReason::Converged) => Ending::Converged,
+        Some(StopReason::GridExhausted) | None => Ending::SpaceExhausted,
+    }
+}
+
+impl Study {
+    /// Returns the error for an evaluation of the journal in place of which another design is proposed.
+    fn other_design(&self, found: &Recorded, proposed: &str) -> StudyError {
+        let problem = format!(
+            "evaluation {} is of {}, but this version of the program proposes {proposed}: the journal \
+             was written by another version; resume it with that version, or start a new study",
+            found.index, found.design
+        );
+        StudyError::file(&self.journal.path, problem)
+    }
+}

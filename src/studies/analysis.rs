@@ -1,0 +1,172 @@
+//! Analyses of the recommended finger after a study: levers, capture maps and a second robot. Each is
+//! stored in the study's folder and shown on its page.
+
+use super::open::Ended;
+use super::report;
+use crate::commands::levers::levers;
+use crate::commands::map::map_of;
+use crate::context::not_stopped;
+use crate::failure::Failure;
+use crate::setup::Setup;
+use crate::setup::files::robot;
+use crate::setup::robots::felt;
+use ::report::answer::command::own_task;
+use ::report::answer::{Answer, UnderRobot};
+use analysis::levers::Levers;
+use analysis::map::{Axes, CaptureMap};
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::robustness::Plan;
+use insertion::evaluation::tolerance::Search;
+use insertion::robot::Robot;
+use insertion::space::Design;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use study::{Provenance, read_analysis, write_analysis};
+
+const LEVERS: &str = "levers.json";
+const MAPS: &str = "maps.json";
+const ROBOTS: &str = "robots.json";
+/// Axes of the maps beside the error along y.
+const MAPPED: [Axes; 2] = [Axes::YX, Axes::YYaw];
+/// Stiffness along y below which a robot counts as compliant: above `servo`, below `ur5e_position`.
+const COMPLIANT_N_PER_MM: f64 = 20.0;
+
+/// Analyses of the recommended finger.
+#[derive(Debug, Clone, Default)]
+pub struct PostAnalysis {
+    /// One-at-a-time sensitivity analysis.
+    pub levers: Option<Levers>,
+    /// Outcomes over two errors of the start.
+    pub maps: Vec<CaptureMap>,
+    /// Windows under the study's robot and under a different one, for a task of the user.
+    pub robots: Vec<UnderRobot>,
+}
+
+/// Provenance and design of an analysis; with others it is not valid.
+struct Subject {
+    provenance: Provenance,
+    design: Design,
+}
+
+/// Contents of a file.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Stored<T> {
+    provenance: Provenance,
+    design: Design,
+    found: T,
+}
+
+impl Subject {
+    /// Returns the recommended finger of a study of one task and objective.
+    fn of(answer: &Answer) -> Option<Self> {
+        let record = answer.record;
+        let one = !record.config.several_tasks() && record.config.objective.single().is_some();
+        let design = answer.verdict.finger().filter(|_| one)?.clone();
+        Some(Subject { provenance: record.segments.last()?.provenance.clone(), design })
+    }
+
+    fn read<T: DeserializeOwned>(&self, dir: &Path, file: &str) -> Option<T> {
+        let Stored { provenance, design, found } = read_analysis(dir, file)?;
+        (provenance == self.provenance && design == self.design).then_some(found)
+    }
+
+    fn write<T: Serialize>(&self, dir: &Path, file: &str, found: &T) -> Result<(), Failure> {
+        let (provenance, design) = (self.provenance.clone(), self.design.clone());
+        Ok(write_analysis(dir, file, &Stored { provenance, design, found })?)
+    }
+}
+
+impl PostAnalysis {
+    /// Reads the analyses in a study's folder.
+    pub(crate) fn read(dir: &Path, answer: &Answer) -> Self {
+        let Some(subject) = Subject::of(answer) else { return PostAnalysis::default() };
+        let levers: Option<Levers> = subject.read(dir, LEVERS);
+        PostAnalysis {
+            // The span of the infill is that of all evaluations so far.
+            levers: levers
+                .map(|found| Levers { infill: answer.spread_mm.unwrap_or(found.infill), ..found }),
+            maps: subject.read(dir, MAPS).unwrap_or_default(),
+            robots: subject.read(dir, ROBOTS).unwrap_or_default(),
+        }
+    }
+}
+
+impl Ended {
+    /// Computes the missing analyses of the recommended finger, stores them and updates the page.
+    ///
+    /// # Errors
+    /// If the finger cannot be simulated or a file cannot be written; if `stop` is set meanwhile.
+    pub fn analyse(&self, answer: &Answer, stop: &AtomicBool) -> Result<PostAnalysis, Failure> {
+        let (dir, record) = (&self.dir, answer.record);
+        let mut found = PostAnalysis::read(dir, answer);
+        let Some(subject) = Subject::of(answer) else { return Ok(found) };
+        let levers_missing = found.levers.is_none() && !self.run.no_levers;
+        let maps_missing = found.maps.is_empty() && !self.run.no_map;
+        let robots_missing = found.robots.is_empty() && own_task(record);
+        if !levers_missing && !maps_missing && !robots_missing {
+            return Ok(found);
+        }
+        let engine = &subject.provenance.engine.name;
+        let mut setup = Setup::from_inputs(&record.inputs(dir)?, engine)?;
+        let design = &subject.design;
+        self.run.pool()?.install(|| {
+            if levers_missing {
+                let span = answer.spread_mm;
+                let levers = levers(&setup, setup.only_task()?, (design, None), span, stop)?;
+                subject.write(dir, LEVERS, &levers)?;
+                found.levers = Some(levers);
+            }
+            if maps_missing {
+                let specimen = specimen(&setup, design)?;
+                let taught = setup.evaluator.taught(&specimen, stop).map_err(Failure::input)?;
+                let map = |axes| map_of(&setup, (&specimen, design), taught, axes, stop);
+                found.maps = MAPPED.into_iter().map(map).collect::<Result<_, _>>()?;
+                subject.write(dir, MAPS, &found.maps)?;
+            }
+            if robots_missing {
+                found.robots = robots(&mut setup, answer, design, stop)?;
+                subject.write(dir, ROBOTS, &found.robots)?;
+            }
+            Ok::<_, Failure>(())
+        })?;
+        report::write(dir, answer, &setup.evaluator.surrogate)?;
+        Ok(found)
+    }
+}
+
+fn specimen(setup: &Setup, design: &Design) -> Result<Specimen, Failure> {
+    let evaluator = &setup.evaluator;
+    let stiffness = evaluator.predict(design).map_err(Failure::input)?;
+    evaluator.specimen(setup.only_task()?, design, stiffness).map_err(Failure::input)
+}
+
+/// Returns the known window of the recommended finger and its window under a different robot, which the
+/// setup then has: the position-controlled arm if the study's robot is compliant, else the compliant
+/// flange.
+fn robots(
+    setup: &mut Setup,
+    answer: &Answer,
+    design: &Design,
+    stop: &AtomicBool,
+) -> Result<Vec<UnderRobot>, Failure> {
+    let specimen = specimen(setup, design)?;
+    let start = [specimen.task.turn, specimen.task.strategy.tilt];
+    let under = |robot: &Robot, measured: Evaluation| {
+        let (stiffness_n_per_mm, _) = felt(robot, start)?;
+        Ok::<_, Failure>(UnderRobot { robot: robot.name.clone(), stiffness_n_per_mm, measured })
+    };
+    let known = answer.shown().and_then(|(_, tasks)| tasks.first().copied().cloned());
+    let Some(known) = known else { return Ok(Vec::new()) };
+    let own = under(&setup.evaluator.robot, known)?;
+    let compliant = own.stiffness_n_per_mm.is_some_and(|[_, y, _]| y < COMPLIANT_N_PER_MM);
+    setup.evaluator.robot = robot(if compliant { "ur5e_position" } else { "servo" })?;
+    let (evaluator, plan) = (&setup.evaluator, &Plan::WINDOW);
+    let found = evaluator.measure_or_teach(&specimen, Search::Walk, plan, stop);
+    let found = found.map_err(Failure::input)?;
+    not_stopped(stop)?;
+    Ok(vec![own, under(&evaluator.robot, found)?])
+}

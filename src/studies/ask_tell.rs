@@ -1,0 +1,215 @@
+//! Study whose designs are measured by the caller: a process pool, a cluster.
+
+use super::open::{Ended, OpenStudy, hint, resume_hint, with_confirmer};
+use super::standing::Standing;
+use crate::context::{Context, not_stopped};
+use crate::failure::Failure;
+use crate::setup::Setup;
+use ask_tell::Optimizer;
+use insertion::evaluation::objective::Measure;
+use insertion::evaluation::tolerance::Search;
+use insertion::trial::NEVER;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, PoisonError};
+use study::{
+    ConfirmationLog, Ending, Next, Proposal, ProposalResult, Scheduler, Simulated, Timing, Work,
+    WorkError,
+};
+
+/// Open study with its scheduler and the work that is being measured.
+pub struct AskTellStudy {
+    open: OpenStudy,
+    optimizer: Box<dyn Optimizer + Send>,
+    scheduler: Scheduler,
+    /// Work being measured, by the number of its proposal.
+    measuring: BTreeMap<u64, Work>,
+    standing: Standing,
+    log: ConfirmationLog,
+}
+
+/// Next step of the caller.
+pub enum Order {
+    /// Measure these: number of the proposal, and the bytes for [`perform`].
+    Measure(Vec<(u64, Vec<u8>)>),
+    /// Wait for a result.
+    Wait,
+    /// Call [`finish`](AskTellStudy::finish).
+    Finish(Ending),
+}
+
+/// Reason for which a result was rejected.
+pub enum RejectedResult {
+    /// The result is invalid; the work may be repeated.
+    Refused(WorkError),
+    /// The study cannot continue.
+    Failed(Failure),
+}
+
+impl AskTellStudy {
+    /// Returns an open study whose designs the caller measures.
+    ///
+    /// # Errors
+    /// If the optimizer cannot be created.
+    pub fn new(open: OpenStudy) -> Result<Self, Failure> {
+        let optimizer = open.optimizer()?;
+        let (scheduler, standing) = (Scheduler::new(&open.study), Standing::new(&open.study));
+        let log = ConfirmationLog::open(&open.study);
+        let measuring = BTreeMap::new();
+        Ok(AskTellStudy { open, optimizer, scheduler, measuring, standing, log })
+    }
+
+    /// Returns the next step. Designs in the cache are not measured again.
+    ///
+    /// # Errors
+    /// If the journal holds other designs than are proposed, or cannot be written.
+    pub fn order(&mut self, stop: &AtomicBool) -> Result<Order, Failure> {
+        loop {
+            match self.scheduler.next(&self.open.study, &mut *self.optimizer)? {
+                Next::Wait => return Ok(Order::Wait),
+                Next::Ended(ending) => return Ok(Order::Finish(ending)),
+                Next::CheckGain(told) => {
+                    let (pool, context) = (self.open.run.pool()?, Context::silent(stop));
+                    let OpenStudy { study, setup, cache, .. } = &self.open;
+                    let setup = (setup, cache.as_ref());
+                    let stagnant = with_confirmer(setup, study, &pool, &context, |confirmer| {
+                        confirmer.stagnates(study, &self.log, told)
+                    })?;
+                    not_stopped(stop)?;
+                    self.scheduler.record_stagnation(stagnant);
+                }
+                Next::Measure(proposals) => {
+                    let mut unknown = Vec::new();
+                    for proposal in proposals {
+                        if !self.recall(&proposal)? {
+                            unknown.push(self.assign(proposal)?);
+                        }
+                    }
+                    if !unknown.is_empty() {
+                        return Ok(Order::Measure(unknown));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Takes the evaluation of a design from the cache; returns false if it is not there.
+    fn recall(&mut self, Proposal { number, design, race }: &Proposal) -> Result<bool, Failure> {
+        let (known, timing) =
+            Timing::of(|| self.open.simulated(&NEVER).known(design, race.as_ref()));
+        let Some(measured) = known else { return Ok(false) };
+        let timing = Timing { cached: measured.cached.clone(), ..timing };
+        self.accept(ProposalResult { number: *number, measured, timing })
+    }
+
+    fn assign(&mut self, proposal: Proposal) -> Result<(u64, Vec<u8>), Failure> {
+        let OpenStudy { study, setup, .. } = &self.open;
+        let (number, goals) = (proposal.number, study.config.goals());
+        let work = Work {
+            proposal,
+            seed: study.config.seed,
+            success_rate: goals.need(Measure::SuccessRate),
+            robust_range: goals.need(Measure::RobustRange),
+            provenance: study.provenance().clone(),
+            inputs: setup.inputs.clone(),
+        };
+        let bytes = work.encode().map_err(|error| Failure::running(error.to_string()))?;
+        self.measuring.insert(number, work);
+        Ok((number, bytes))
+    }
+
+    /// Accepts the result of a proposal; returns false if it came before.
+    ///
+    /// # Errors
+    /// If the result is not one of this work, or the journal cannot be written.
+    pub fn take(&mut self, number: u64, result: &[u8]) -> Result<bool, RejectedResult> {
+        let Some(work) = self.measuring.get(&number) else { return Ok(false) };
+        let Proposal { design, race, .. } = &work.proposal;
+        let impossible = |error| RejectedResult::Failed(Failure::input(error));
+        let stiffness = self.open.setup.evaluator.predict(design).map_err(impossible)?;
+        let result = work.check(result, stiffness).map_err(RejectedResult::Refused)?;
+        self.open.simulated(&NEVER).keep(design, race.as_ref(), &result.measured);
+        let taken = self.accept(result).map_err(RejectedResult::Failed)?;
+        self.measuring.remove(&number);
+        Ok(taken)
+    }
+
+    fn accept(&mut self, result: ProposalResult) -> Result<bool, Failure> {
+        let (standing, study) = (&mut self.standing, &mut self.open.study);
+        let taken = self.scheduler.accept(study, result, &mut |recorded| standing.add(recorded));
+        taken.map_err(|error| hint(error, study))
+    }
+
+    /// Returns the number of evaluations, the expected number in all, and the best so far as text.
+    pub fn progress(&self) -> (usize, u64, String) {
+        let study = &self.open.study;
+        let done = study.evaluations.len();
+        let expected = study.config.expected_evaluations().max(done as u64);
+        (done, expected, self.standing.best())
+    }
+
+    /// Returns how to resume the study.
+    pub fn hint(&self) -> String {
+        resume_hint(&self.open.study)
+    }
+
+    /// Confirms the recommended design on the threads of this process, and writes tables and report.
+    ///
+    /// # Errors
+    /// If a design cannot be simulated or a file cannot be written; if `stop` is set meanwhile.
+    pub fn finish(&mut self, ending: Ending, stop: &AtomicBool) -> Result<Ended, Failure> {
+        let pool = self.open.run.pool()?;
+        self.open.conclude(ending, &self.log, &pool, &Context::silent(stop))
+    }
+
+    /// Returns the number of threads for measurements in this process; 0 for one per processor.
+    pub fn threads(&self) -> usize {
+        self.open.run.threads()
+    }
+}
+
+/// Last setup, by the inputs that determine it: a worker measures many designs of one study.
+static LAST: Mutex<Option<(Value, Arc<Setup>)>> = Mutex::new(None);
+
+fn set_up(work: &Work) -> Result<Arc<Setup>, Failure> {
+    let name = json!([work.inputs, work.provenance.engine.name]);
+    let mut last = LAST.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((known, setup)) = &*last
+        && *known == name
+    {
+        return Ok(Arc::clone(setup));
+    }
+    let setup = Arc::new(Setup::from_inputs(&work.inputs, &work.provenance.engine.name)?);
+    *last = Some((name, Arc::clone(&setup)));
+    Ok(setup)
+}
+
+/// Measures the work of an [`AskTellStudy`] and returns its result. It depends on nothing else and may be
+/// repeated; `worker` is the host and process that runs it.
+///
+/// # Errors
+/// If the bytes are invalid, this program has another provenance than the study, or the design cannot be
+/// simulated; if `stop` is set meanwhile.
+pub fn perform(bytes: &[u8], worker: &str, stop: &AtomicBool) -> Result<Vec<u8>, Failure> {
+    // One thread, since the caller has a worker for each processor; and a new one, since a forked process
+    // lacks the threads of the shared pool.
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let alone =
+        alone.map_err(|error| Failure::running(format!("cannot start a thread: {error}")))?;
+    alone.install(|| {
+        let work = Work::decode(bytes).map_err(Failure::input)?;
+        let setup = set_up(&work)?;
+        work.admit(&setup.provenance(), worker).map_err(Failure::input)?;
+        let plan = setup.plan(work.seed, |measure| match measure {
+            Measure::SuccessRate => work.success_rate,
+            Measure::RobustRange => work.robust_range,
+            _ => false,
+        })?;
+        let (evaluator, search) = (&setup.evaluator, Search::default());
+        let simulated = Simulated { evaluator, search, plan: &plan, cache: None, stop };
+        let (measured, timing) = work.proposal.measure(&simulated)?;
+        not_stopped(stop)?;
+        work.result(measured, &timing).map_err(|error| Failure::running(error.to_string()))
+    })
+}

@@ -88,7 +88,7 @@ fn what_does_not_go_with_a_cell_is_named() {
     let few = "--task usb --engine fake --measurements published --simulations 24 --samples 20";
     let calibrate = format!("calibrate {few} --json --no-cache --priors {file}");
     optimize_line(&format!("{calibrate} --robot servo")).fails(2, &["--priors contains a robot"]);
-    optimize_line(&format!("{calibrate} --cell {file}")).fails(2, &["so does --cell"]);
+    optimize_line(&format!("{calibrate} --cell {file}")).fails(2, &["--priors and --cell both"]);
 }
 
 #[test]

@@ -4,6 +4,7 @@ mod common;
 
 use common::{Studies, optimize_line};
 use input::shipped::ROBOTS;
+use serde_json::json;
 
 /// A row of a cell file.
 fn row(name: &str, sets: &str, way: &str, numbers: &str, shared: bool) -> String {
@@ -28,13 +29,35 @@ fn friction(value: f64) -> String {
 fn printed(line: &str) -> serde_json::Value {
     let mut found = optimize_line(&format!("{line} --json")).json();
     let keys = found.as_object_mut().unwrap();
-    keys.remove("wall_s");
-    keys.remove("cell");
-    keys.remove("set");
+    for key in ["wall_s", "cell", "cell_applied", "cell_not_applied", "set"] {
+        keys.remove(key);
+    }
     found
 }
 
 const TRIAL: &str = "trial --density 20 --direction 10 --task";
+
+/// What was identified on one task stays with it, and that is said, in words and in JSON.
+#[test]
+fn a_cell_of_another_task_says_what_it_leaves_out() {
+    let folder = Studies::new();
+    let around = "low = 0.5\nhigh = 2.0\nvalue = 1.0\nsd = 0.1";
+    let rows = friction(0.4) + &row("modulus", "finger.stiffness", "factor", around, true);
+    let file = folder.file("cell.toml", cell(&rows));
+    for (task, applied, left_out) in [
+        ("usb", json!(["task.friction.plug_socket", "finger.stiffness"]), json!([])),
+        ("ket8", json!(["finger.stiffness"]), json!(["task.friction.plug_socket"])),
+    ] {
+        let line = format!("{TRIAL} {task} --engine fake --cell {file}");
+        let found = optimize_line(&format!("{line} --json")).json();
+        assert_eq!((&found["cell_applied"], &found["cell_not_applied"]), (&applied, &left_out));
+        let said = optimize_line(&line)
+            .stdout
+            .replace("\n              ", " ")
+            .contains("not applied to ket8: task.friction.plug_socket");
+        assert_eq!(said, task == "ket8");
+    }
+}
 
 #[test]
 fn a_nominal_cell_changes_nothing_and_a_row_is_as_if_set() {

@@ -95,6 +95,9 @@ class Subject(Result):
     robot: str
     #: Name of the cell, if one was given.
     cell: str | None = None
+    #: Paths of the cell that apply to the task, and those that were identified on another one.
+    cell_applied: tuple[str, ...] | None = None
+    cell_not_applied: tuple[str, ...] | None = None
     infill_density_percent: float | None = None
     infill_direction_deg: float | None = None
     #: Numbers that were set, by their keys.

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::layout;
 use input::shown;
 use input::units::{MM, N_PER_MM};
+use insertion::evaluation::cell::Priors;
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::finger::model::{CentreFrom, FingerModelKind, RCC_KEY};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
@@ -83,8 +84,8 @@ pub struct Chosen {
     pub specimen: Specimen,
     /// Name of the robot.
     pub robot: String,
-    /// Name of the cell, if one is given.
-    pub cell: Option<String>,
+    /// Cell, if one is given.
+    pub cell: Option<Priors>,
     /// Source of its stiffnesses that were not measured.
     pub finger_model: FingerModelKind,
     /// Infill and settings; empty if only a stiffness is given.
@@ -135,7 +136,7 @@ impl FingerRequest {
         Ok(Chosen {
             specimen,
             robot: evaluator.robot.name.clone(),
-            cell: evaluator.cell.as_ref().map(|cell| cell.name.clone()),
+            cell: evaluator.cell.clone(),
             finger_model: evaluator.fingers.kind(),
             design,
             set,
@@ -191,10 +192,10 @@ fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure
 impl Serialize for Chosen {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Specimen { task, finger, centre, stiffness, .. } = &self.specimen;
-        let subject = json!({
+        let mut subject = json!({
             "task": task.name,
             "robot": self.robot,
-            "cell": self.cell,
+            "cell": self.cell.as_ref().map(|cell| &cell.name),
             "infill_density_percent": self.design.get(DENSITY_KEY),
             "infill_direction_deg": self.design.get(DIRECTION_KEY),
             "set": self.set,
@@ -208,6 +209,11 @@ impl Serialize for Chosen {
             "tilting_nm_per_rad": finger.rotation[0],
             "stiffness": stiffness,
         });
+        if let Some(cell) = &self.cell {
+            subject["cell_applied"] = cell.of(&task.name).map(|row| row.path.as_str()).collect();
+            subject["cell_not_applied"] =
+                cell.not_of(&task.name).map(|row| row.path.as_str()).collect();
+        }
         subject.serialize(serializer)
     }
 }
@@ -229,7 +235,9 @@ impl Chosen {
             true => String::new(),
             false => format!("design        {}\n", self.design.labelled()),
         };
-        format!("{design}{stiffness}{finger}")
+        let remark = self.cell.as_ref().and_then(|cell| cell.remark(&self.specimen.task.name));
+        let remark = remark.map(|remark| format!("warning       {remark}\n"));
+        format!("{design}{stiffness}{finger}{}", remark.unwrap_or_default())
     }
 
     /// Returns the results of the finger model, if it is not the paper's.

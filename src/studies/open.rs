@@ -74,8 +74,8 @@ impl OpenStudy {
         simulated((&self.setup, self.cache.as_ref()), &self.plan, stop)
     }
 
-    /// Returns a line for each task whose given nominal start fails with the finger of medium stiffness; none
-    /// for a study that has begun.
+    /// Returns a line for each task to which a part of the cell does not apply, and, before the first
+    /// evaluation, for each whose given nominal start fails with the finger of medium stiffness.
     ///
     /// # Errors
     /// If that cannot be simulated.
@@ -83,6 +83,9 @@ impl OpenStudy {
         let (mut warnings, record) = (Vec::new(), self.study.record());
         let Evaluator { templates, robot, engine, .. } = &self.setup.evaluator;
         for (place, Template { task, .. }) in templates.iter().enumerate() {
+            warnings.extend(
+                self.setup.evaluator.cell.iter().filter_map(|cell| cell.remark(&task.name)),
+            );
             let given = task.strategy.rule == StartRule::Given;
             if given
                 && record.evaluations.is_empty()

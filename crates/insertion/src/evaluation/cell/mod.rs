@@ -84,6 +84,23 @@ impl Priors {
         let own = self.task.as_ref().is_none_or(|own| own == task);
         self.parameters.iter().filter(move |row| row.shared || own)
     }
+
+    /// Returns its parameters that were identified on another task and do not apply to this one.
+    pub fn not_of<'a>(&'a self, task: &'a str) -> impl Iterator<Item = &'a Parameter> {
+        let own = self.task.as_ref().is_none_or(|own| own == task);
+        self.parameters.iter().filter(move |row| !row.shared && !own)
+    }
+
+    /// Returns the sentence that names the parameters which do not apply to a task; none if all do.
+    pub fn remark(&self, task: &str) -> Option<String> {
+        let names: Vec<_> = self.not_of(task).map(|row| row.path.as_str()).collect();
+        let own = self.task.as_ref().filter(|_| !names.is_empty())?;
+        let names = names.join(", ");
+        Some(format!(
+            "cell `{}` was identified on {own}; not applied to {task}: {names}",
+            self.name
+        ))
+    }
 }
 
 #[cfg(test)]

@@ -75,18 +75,23 @@ fn edges_and_latches_that_mean_nothing_are_refused_by_their_key() {
     let edge = "{ at = \"-x+z\", chamfer_mm = 0.2 }";
     let twice = "{ at = \"-x+z\", radius_mm = 0.1 }, { at = \"+z\", chamfer_mm = 0.1 }";
     for (from, to, key, problem) in [
-        (edge, "{ at = \"-x-x\", chamfer_mm = 0.2 }", "\"wall at +x\" edges", "names no edge"),
+        (edge, "{ at = \"-x-x\", chamfer_mm = 0.2 }", "\"wall at +x\" edges", "unknown edge"),
         (edge, "{ at = \"-x+z\" }", "\"wall at +x\" edges", "either chamfer_mm or radius_mm"),
-        (edge, "{ at = \"-x+z\", radius_mm = 0.0 }", "edges.radius_mm", "above 0"),
+        (edge, "{ at = \"-x+z\", radius_mm = 0.0 }", "edges.radius_mm", "must lie in 0.001"),
         (edge, "{ at = \"-x+z\", chamfer_mm = 3.0 }", "\"wall at +x\" edges", "smaller"),
         (edge, "{ at = \"+z\", radius_mm = 1.3 }", "\"wall at +x\" edges", "smaller"),
-        (edge, twice, "\"wall at +x\" edges", "a second time"),
-        ("\"latch blade\", ", "\"latch bland\", ", "plug.latch.parts", "no part of that name"),
-        ("\"latch blade\", ", "\"latch arm\", ", "plug.latch.parts", "stands for two"),
+        (edge, twice, "\"wall at +x\" edges", "repeats an edge"),
+        ("\"latch blade\", ", "\"latch bland\", ", "plug.latch.parts", "the plug has no part"),
+        ("\"latch blade\", ", "\"latch arm\", ", "plug.latch.parts", "is given twice"),
         ("\"latch blade\", \"latch shoulder\", \"latch arm\"", "", "plug.latch.parts", "not all"),
         ("axis = \"y\"\nroot_mm", "axis = \"z\"\nroot_mm", "plug.latch.axis", "along the flexure"),
-        ("modulus_gpa = 2.35", "modulus_gpa = 0.0", "plug.latch.modulus_gpa", "above 0"),
-        ("thickness_mm = 0.67", "thickness_mm = 3.0", "plug.latch.thickness_mm", "no beam"),
+        ("modulus_gpa = 2.35", "modulus_gpa = 0.0", "plug.latch.modulus_gpa", "must lie in 1e-9"),
+        (
+            "thickness_mm = 0.67",
+            "thickness_mm = 3.0",
+            "plug.latch.thickness_mm",
+            "half the flexure",
+        ),
     ] {
         let error = changed(LATCH, from, to).unwrap_err();
         assert!(error.contains(key) && error.contains(problem), "{to}: {error}");

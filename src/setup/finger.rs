@@ -10,17 +10,15 @@ use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::finger::model::{CentreFrom, FingerModelKind, RCC_KEY};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::Prediction;
+use parameters::numbers;
 use report::answer::lines;
 use serde::{Serialize, Serializer};
 use serde_json::json;
-use std::ops::RangeInclusive;
-
-/// Accepted stiffnesses in place of an infill, N/mm.
-const STIFFNESS_N_PER_MM: RangeInclusive<f64> = 1e-6..=1e6;
 
 fn stiffness(text: &str) -> Result<f64, String> {
-    let given = text.parse().ok().filter(|n_per_mm| STIFFNESS_N_PER_MM.contains(n_per_mm));
-    given.ok_or_else(|| "a stiffness is a number above 0, 1e-6 to 1e6, in N/mm".to_owned())
+    let n_per_mm = text.parse().unwrap_or(f64::NAN);
+    let problem = numbers::problem("stiffness_compliance_n_per_mm", n_per_mm);
+    problem.map_or(Ok(n_per_mm), |problem| Err(problem + " N/mm"))
 }
 
 /// Parses a setting, `KEY=VALUE`.
@@ -52,10 +50,15 @@ impl InfillRequest {
     /// Returns density, percent, and direction, degrees.
     ///
     /// # Errors
-    /// If one of them is not given.
+    /// If one of them is not given, or the density is out of bounds.
     pub fn both(self) -> Result<[f64; 2], Failure> {
-        let both = self.density.zip(self.direction).map(<[f64; 2]>::from);
-        both.ok_or_else(|| Failure::usage("give --density and --direction"))
+        let (Some(density), Some(direction)) = (self.density, self.direction) else {
+            return Err(Failure::usage("give --density and --direction"));
+        };
+        match numbers::problem(DENSITY_KEY, density) {
+            Some(problem) => Err(Failure::usage(format!("--density: {problem} (percent)"))),
+            None => Ok([density, direction]),
+        }
     }
 }
 

@@ -54,12 +54,16 @@ impl PrintRequest {
 
     /// Returns the design, its finger file, and the stiffness that a study predicted.
     fn chosen(&self) -> Result<(Design, FingerFile, Option<Prediction>), Failure> {
-        let (design, file, stiffness) = match (&self.dir, self.infill.both()) {
-            (Some(dir), _) => best(dir)?,
-            (None, Ok([density, direction])) => (Design::infill(density, direction), None, None),
-            (None, Err(_)) => {
+        let InfillRequest { density, direction } = self.infill;
+        let (design, file, stiffness) = match &self.dir {
+            Some(dir) => best(dir)?,
+            None if density.is_none() || direction.is_none() => {
                 let problem = "give DIR, the folder of a study, or --density and --direction";
                 return Err(Failure::usage(problem));
+            }
+            None => {
+                let [density, direction] = self.infill.both()?;
+                (Design::infill(density, direction), None, None)
             }
         };
         let file = match (&self.finger, file) {

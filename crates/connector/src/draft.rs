@@ -10,11 +10,10 @@ use insertion::task::{
     geometry,
 };
 use nalgebra::Vector3;
+use parameters::numbers;
 use std::f64::consts::PI;
 use std::str::FromStr;
 
-/// Smallest and largest dimension, mm.
-const LIMITS_MM: [f64; 2] = [0.5, 200.0];
 /// Least thickness of the walls about the opening, m.
 const WALL: f64 = 5.0 * MM;
 /// Reach of the walls beyond the body that rests on them, m.
@@ -69,11 +68,10 @@ fn lengths<const N: usize>(text: &str, right: &str) -> Result<[f64; N], String> 
     let Ok(numbers) = <[f64; N]>::try_from(numbers.unwrap_or_default()) else {
         return Err(right.to_owned());
     };
-    let [low, high] = LIMITS_MM;
-    if !numbers.iter().all(|mm| (low..=high).contains(mm)) {
-        return Err(format!("each dimension lies between {low} and {high} mm; {right}"));
+    match numbers.iter().find_map(|mm| numbers::problem("connector.size_mm", *mm)) {
+        Some(problem) => Err(format!("a dimension {problem} mm; {right}")),
+        None => Ok(numbers.map(|mm| mm * MM)),
     }
-    Ok(numbers.map(|mm| mm * MM))
 }
 
 /// Dimensions of a plug and its socket.
@@ -92,6 +90,9 @@ pub struct Dimensions {
 /// Error of a draft.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum DraftError {
+    /// Clearance that is not less than the plug's smallest side; both in mm.
+    #[error("--clearance: is {0} mm; it must be less than the smallest side of the plug, {1} mm")]
+    TooLoose(f64, f64),
     /// Plug or body too short for the pads: its option, its length and the least, mm.
     #[error(
         "{0}: is {1} mm long; the pads are {height} mm high and must stay outside of the socket, so \
@@ -107,6 +108,7 @@ pub enum DraftError {
 impl Placed for DraftError {
     fn place(&self) -> Place {
         match self {
+            DraftError::TooLoose(..) => Place::option("--clearance"),
             DraftError::TooShort(option, ..) => Place::option(option),
             DraftError::Plan(_) => Place::default(),
         }
@@ -140,6 +142,10 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
 /// If the plug is too short to be held, or no strategy can be derived.
 pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task, DraftError> {
     let (plug, body) = (size.plug, size.body);
+    let thickness = plug.width.min(plug.height);
+    if size.clearance >= thickness {
+        return Err(DraftError::TooLoose(size.clearance / MM, thickness / MM));
+    }
     let mut task = blank(name, like);
     let [width, height, clearance] = [plug.width, plug.height, size.clearance].map(|v| v / MM);
     let shape = match size.round {
@@ -267,6 +273,24 @@ mod tests {
     use super::*;
 
     /// The ring of flats has the volume that the circle leaves, and keeps the clearance.
+    #[test]
+    fn a_clearance_is_less_than_the_plug_is_thick_and_sizes_are_within_bounds() {
+        let plug: Size = "8x2.4x25".parse().unwrap();
+        let draft = |clearance| {
+            let size = Dimensions { plug, round: false, clearance, body: None };
+            draft("mine", &size, None)
+        };
+        assert!(draft(2.3 * MM).is_ok());
+        for clearance in [2.4 * MM, 10.0 * MM, f64::INFINITY] {
+            let error = draft(clearance).unwrap_err().to_string();
+            assert!(error.contains("less than the smallest side of the plug, 2.4 mm"), "{error}");
+        }
+        for size in ["8x2.4x1e308", "8x0.1x25", "nanx2x25", "-8x2x25"] {
+            let error = size.parse::<Size>().unwrap_err();
+            assert!(error.contains("must lie in 0.5 .. 200 mm"), "{size}: {error}");
+        }
+    }
+
     #[test]
     fn a_hole_is_its_circle_within_the_error_that_it_states() {
         for (diameter_mm, clearance_mm) in [(3.0, 0.1), (8.0, 0.1), (20.0, 0.2), (100.0, 0.02)] {

@@ -115,17 +115,23 @@ impl<'a> Document<'a> {
         self.file
     }
 
+    /// Returns the document without these keys of its root.
+    pub fn without(mut self, keys: &[&str]) -> Self {
+        for key in keys {
+            self.tree.get_mut().remove(*key);
+        }
+        self
+    }
+
     /// Reads a value of the whole document.
     ///
     /// # Errors
-    /// If the document is not of this shape, or has a control character.
+    /// If the document is not of this shape, has a control character or a bad name.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, InputError> {
-        let found = self.of()?;
-        match control_character(&self.of()?) {
-            Some(key) => {
-                Check { file: self.file }.fail(&key, "has a control character, such as \\u001b")
-            }
-            None => Ok(found),
+        let value = self.of()?;
+        match bad_text(&self.of()?) {
+            Some((key, problem)) => Check { file: self.file }.fail(&key, problem),
+            None => Ok(value),
         }
     }
 
@@ -145,19 +151,30 @@ pub fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, InputError
     Document::parse(text, file)?.read()
 }
 
-/// The key of a text with a control character in it: such texts reach terminals and pages.
-pub fn control_character(table: &toml::Table) -> Option<String> {
-    fn within(value: &toml::Value) -> bool {
+/// Returns the key and the problem of a text with a control character, which would reach terminals and
+/// pages, or of a `name` that is empty or has several lines.
+pub fn bad_text(table: &toml::Table) -> Option<(String, &'static str)> {
+    const CONTROL: &str = "has a control character, such as \\u001b";
+    fn problem(key: &str, value: &toml::Value) -> Option<&'static str> {
         match value {
-            toml::Value::String(text) => text.chars().any(|c| c.is_control() && c != '\n'),
-            toml::Value::Array(items) => items.iter().any(within),
-            toml::Value::Table(table) => control_character(table).is_some(),
-            _ => false,
+            toml::Value::String(text) if key == "name" && text.trim().is_empty() => {
+                Some("is empty; give a name")
+            }
+            toml::Value::String(text) if key == "name" && text.contains('\n') => {
+                Some("has a line break; a name is one line")
+            }
+            toml::Value::String(text) => {
+                text.chars().any(|c| c.is_control() && c != '\n').then_some(CONTROL)
+            }
+            toml::Value::Array(items) => items.iter().find_map(|item| problem("", item)),
+            toml::Value::Table(table) => bad_text(table).map(|(_, problem)| problem),
+            _ => None,
         }
     }
-    let plain = |key: &str| !key.chars().any(char::is_control);
-    let found = table.iter().find(|(key, value)| within(value) || !plain(key))?;
-    Some(if plain(found.0) { found.0.clone() } else { "a key".to_owned() })
+    table.iter().find_map(|(key, value)| match key.chars().any(char::is_control) {
+        true => Some(("a key".to_owned(), CONTROL)),
+        false => problem(key, value).map(|problem| (key.clone(), problem)),
+    })
 }
 
 /// Line of CSV, from 1, in which a quoted cell runs over the end of the line: the reader would take the

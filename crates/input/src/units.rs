@@ -1,7 +1,9 @@
-//! The edge between SI (inside) and the units of files, headers and plots.
+//! Units of files, headers and plots; inside, every quantity is in SI units.
 //!
 //! A constant is the SI value of one such unit: `3.0 * MM` reads "3 mm" and is
 //! in metres; `x / MM` is the number of millimetres in `x` metres.
+
+use serde::{Deserialize, Deserializer};
 
 /// One millimetre, in metres.
 pub const MM: f64 = 1e-3;
@@ -16,6 +18,75 @@ pub const GRAM: f64 = 1e-3;
 
 /// One percent, as a share.
 pub const PERCENT: f64 = 0.01;
+
+/// Number, array or list of numbers that a unit multiplies.
+pub trait Quantity<'de>: Deserialize<'de> {
+    /// Multiplies its numbers by a factor.
+    fn times(self, factor: f64) -> Self;
+}
+
+impl Quantity<'_> for f64 {
+    fn times(self, factor: f64) -> Self {
+        self * factor
+    }
+}
+
+impl<'de, T: Quantity<'de>, const N: usize> Quantity<'de> for [T; N]
+where
+    [T; N]: Deserialize<'de>,
+{
+    fn times(self, factor: f64) -> Self {
+        self.map(|item| item.times(factor))
+    }
+}
+
+impl<'de, T: Quantity<'de>> Quantity<'de> for Vec<T> {
+    fn times(self, factor: f64) -> Self {
+        self.into_iter().map(|item| item.times(factor)).collect()
+    }
+}
+
+impl<'de, T: Quantity<'de>> Quantity<'de> for Option<T> {
+    fn times(self, factor: f64) -> Self {
+        self.map(|item| item.times(factor))
+    }
+}
+
+/// Readers of quantities in SI units, for `#[serde(deserialize_with)]`.
+#[expect(clippy::missing_errors_doc, reason = "that of the deserializer")]
+pub mod read {
+    use super::{DEG, Deserializer, GPA, GRAM, MM, N_PER_MM, PERCENT, Quantity};
+
+    /// Reads mm as m.
+    pub fn mm<'de, T: Quantity<'de>, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
+        Ok(T::deserialize(from)?.times(MM))
+    }
+
+    /// Reads degrees as rad.
+    pub fn deg<'de, T: Quantity<'de>, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
+        Ok(T::deserialize(from)?.times(DEG))
+    }
+
+    /// Reads grams as kg.
+    pub fn gram<'de, T: Quantity<'de>, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
+        Ok(T::deserialize(from)?.times(GRAM))
+    }
+
+    /// Reads GPa as Pa.
+    pub fn gpa<'de, T: Quantity<'de>, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
+        Ok(T::deserialize(from)?.times(GPA))
+    }
+
+    /// Reads N/mm as N/m.
+    pub fn n_per_mm<'de, T: Quantity<'de>, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
+        Ok(T::deserialize(from)?.times(N_PER_MM))
+    }
+
+    /// Reads percent as a share.
+    pub fn percent<'de, T: Quantity<'de>, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
+        Ok(T::deserialize(from)?.times(PERCENT))
+    }
+}
 
 /// Writes a length in mm, to a micrometre.
 pub fn mm(length: f64) -> String {

@@ -1,10 +1,10 @@
-//! The robot as the flange feels it: ideal, soft about its servos, or an arm.
+//! Robot as seen at its flange: ideal, elastic with servos, or an arm.
 
-use crate::arm::arm;
 use crate::arm::{Arm, ArmError, RawArm, Reduced};
-use input::units::N_PER_MM;
+use input::units::read::n_per_mm;
 use input::{Check, Document, InputError};
 use nalgebra::Vector3;
+use parameters::numbers;
 use serde::Deserialize;
 
 /// A checked robot, SI units.
@@ -31,28 +31,33 @@ pub enum Suspension<A> {
     Arm(Box<A>),
 }
 
-/// Suspension of a flange, wherever the robot stands.
+/// Suspension of a flange, independent of where the robot stands.
 pub type Drive = Suspension<Arm>;
 
 /// Suspension in place: of an arm its coupled spring, damper and mass at the TCP.
 pub type Flange = Suspension<Reduced>;
 
 /// A servo-compliant flange, SI units, axes of the task frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Servo {
-    /// N/m along x, y and z.
+    /// Stiffness along x, y and z, N/m.
+    #[serde(rename = "stiffness_n_per_mm", deserialize_with = "n_per_mm")]
     pub stiffness: [f64; 3],
-    /// N m/rad about x, y and z.
+    /// Stiffness about x, y and z, N m/rad.
+    #[serde(rename = "rotational_stiffness_nm_per_rad")]
     pub rotational_stiffness: [f64; 3],
-    /// Mass felt at the TCP, kg.
+    /// Effective mass at the TCP, kg.
+    #[serde(rename = "mass_kg")]
     pub mass: f64,
-    /// Moment of inertia felt about each axis, kg m2.
+    /// Effective moment of inertia about each axis, kg m2.
+    #[serde(rename = "inertia_kg_m2")]
     pub inertia: f64,
     /// Damping ratio; 1 is critical.
     pub damping_ratio: f64,
 }
 
-/// A robot in place for a task: what its flange feels like there.
+/// A robot at the start of a task.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mounted {
     /// Response of the flange to its command.
@@ -61,7 +66,7 @@ pub struct Mounted {
 }
 
 impl Robot {
-    /// The robot at the start of a task whose frame is turned by `turn` about the
+    /// Returns the robot at the start of a task whose frame is turned by `turn` about the
     /// base's z, with the TCP tilted by `tilt` about the task's x, rad.
     ///
     /// # Errors
@@ -80,20 +85,19 @@ impl Robot {
 const SETTLED: f64 = 5.0;
 
 impl Mounted {
-    /// How much farther an assembly move along a unit vector is commanded, m: by what
-    /// the arm gives under its assembly force. A soft arm that is sent to where the
-    /// part should be hardly pushes it there.
+    /// Returns the extra length of an assembly move along a unit vector, m: the deflection of the arm
+    /// under its assembly force, without which a soft arm would hardly push the part.
     pub fn lead(&self, along: &Vector3<f64>) -> f64 {
         let lead = |arm: &Reduced| arm.assembly_force * along.dot(&(arm.compliance * along));
         self.arm().map_or(0.0, lead)
     }
 
-    /// Time that the robot takes to follow a command, s.
+    /// Returns the settling time of the robot after a command, s.
     pub fn settling(&self) -> f64 {
         self.arm().map_or(0.0, |arm| SETTLED * arm.time_constant)
     }
 
-    /// Whether this plug-socket force, N, task axes, stops the robot or overloads a joint.
+    /// Returns whether a plug-socket force, N, task axes, stops the robot or overloads a joint.
     pub fn stops(&self, force: &Vector3<f64>) -> bool {
         self.arm().is_some_and(|arm| arm.overloaded(force)) || force.norm() > self.stop_force
     }
@@ -106,95 +110,83 @@ impl Mounted {
     }
 }
 
-/// Drives of a robot file.
+/// Kinds of a robot file.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub(crate) enum Kind {
+enum Kind {
     Rigid,
     Servo,
     Arm,
 }
 
-/// The one key that says which others there are. Not a tagged enum, the errors of which have no line.
+/// Keys of every robot file. The kind decides which others there are; errors of a tagged enum would have
+/// no line.
 #[derive(Deserialize)]
-struct Tagged {
+struct Header {
     kind: Kind,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawRigid {
-    #[serde(rename = "kind")]
-    _kind: Kind,
     name: String,
     description: String,
-    stop_force_n: f64,
+    #[serde(rename = "stop_force_n")]
+    stop_force: f64,
 }
 
+/// Keys of [`Header`].
+const HEADER: [&str; 4] = ["kind", "name", "description", "stop_force_n"];
+
+/// Keys of a rigid robot beside those of [`Header`].
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RawServo {
-    #[serde(rename = "kind")]
-    _kind: Kind,
-    name: String,
-    description: String,
-    stop_force_n: f64,
-    stiffness_n_per_mm: [f64; 3],
-    rotational_stiffness_nm_per_rad: [f64; 3],
-    mass_kg: f64,
-    inertia_kg_m2: f64,
-    damping_ratio: f64,
-}
-
-impl RawServo {
-    fn checked(&self, check: Check<'_>) -> Result<Servo, InputError> {
-        let positive = |key: &str, value: f64| check.positive(key, value);
-        let positives = |key: &str, values| check.each(key, values, Check::positive);
-        let rotational = "rotational_stiffness_nm_per_rad";
-        Ok(Servo {
-            stiffness: positives("stiffness_n_per_mm", self.stiffness_n_per_mm)?
-                .map(|k| k * N_PER_MM),
-            rotational_stiffness: positives(rotational, self.rotational_stiffness_nm_per_rad)?,
-            mass: positive("mass_kg", self.mass_kg)?,
-            inertia: positive("inertia_kg_m2", self.inertia_kg_m2)?,
-            damping_ratio: positive("damping_ratio", self.damping_ratio)?,
-        })
-    }
-}
+struct Rigid {}
 
 impl Robot {
     /// Reads and checks a robot; `file` is named in errors.
     ///
     /// # Errors
-    /// If the text is not such a file, or a value cannot be used.
+    /// If the text is not a robot file, or a value is out of range.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        let (document, check) = (Document::parse(text, file)?, Check { file });
-        let (name, description, stop_force_n, drive) = match document.read::<Tagged>()?.kind {
-            Kind::Rigid => {
-                let raw: RawRigid = document.read()?;
-                (raw.name, raw.description, raw.stop_force_n, Drive::Ideal)
-            }
-            Kind::Servo => {
-                let raw: RawServo = document.read()?;
-                let servo = Drive::Servo(raw.checked(check)?);
-                (raw.name, raw.description, raw.stop_force_n, servo)
-            }
-            Kind::Arm => {
-                let raw: RawArm = document.read()?;
-                let arm = Drive::Arm(Box::new(arm(check, &raw)?));
-                (raw.name, raw.description, raw.stop_force_n, arm)
-            }
+        let document = Document::parse(text, file)?;
+        let Header { kind, name, description, stop_force } = document.read()?;
+        numbers::check_file("robot", &document.read()?, file)?;
+        let own = document.without(&HEADER);
+        let drive = match kind {
+            Kind::Rigid => own.read().map(|Rigid {}| Drive::Ideal)?,
+            Kind::Servo => Drive::Servo(own.read()?),
+            Kind::Arm => Drive::Arm(Box::new(own.read::<RawArm>()?.arm(Check { file })?)),
         };
-        let stop_force = check.positive("stop_force_n", stop_force_n)?;
         Ok(Robot { name, description, drive, stop_force })
     }
 }
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use input::shipped::ROBOTS;
     use input::{Place, Placed};
+
+    #[test]
+    fn implausible_numbers_and_names_are_refused() {
+        let servo = ROBOTS.iter().find(|robot| robot.name == "servo").unwrap();
+        let line = |key: &str| servo.text.lines().find(|line| line.starts_with(key)).unwrap();
+        for (key, value, problem) in [
+            ("mass_kg", "1e9", "must lie in 0.001 .. 1000"),
+            ("mass_kg", "2000", "is 2000; it must lie in 0.001 .. 1000"),
+            ("mass_kg", "nan", "must lie in"),
+            ("stiffness_n_per_mm", "[10000.0, 10000.0, 20000.0]", "must lie in 0.01 .. 5000"),
+            ("stiffness_n_per_mm", "[10.0, 10.0, 1e-9]", "must lie in 0.01 .. 5000"),
+            ("rotational_stiffness_nm_per_rad", "[0, 400, 400]", "must lie in 0.01 .."),
+            ("stop_force_n", "1e-9", "must lie in 0.1 .. 100000"),
+            ("name", "\"\"", "is empty"),
+            ("name", "\"a\\nb\"", "line break"),
+        ] {
+            let text = servo.text.replace(line(key), &format!("{key} = {value}"));
+            let error = Robot::parse(&text, "r.toml").unwrap_err().to_string();
+            assert!(error.starts_with(&format!("r.toml: {key}: ")), "{error}");
+            assert!(error.contains(problem), "{key} = {value}: {error}");
+        }
+        let arm = ROBOTS.iter().find(|robot| robot.name == "ur5e").unwrap();
+        let text = arm.text.replace("link_mass_kg = 3.7", "link_mass_kg = 3700");
+        let error = Robot::parse(&text, "r.toml").unwrap_err().to_string();
+        assert!(error.contains("joint \"shoulder pan\" link_mass_kg: is 3700"), "{error}");
+    }
 
     #[test]
     fn a_value_of_a_wrong_type_is_told_with_its_line() {

@@ -5,6 +5,7 @@ use finray::FingerError;
 use input::shipped::STIFFNESS;
 use input::units::N_PER_MM;
 use input::{Fault, Place, Placed, UNCLOSED, unclosed_quote};
+use parameters::numbers;
 
 /// A direction in which a finger yields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -71,18 +72,12 @@ impl Measurement {
         [self.density_percent, self.direction_deg]
     }
 
-    /// The first column with a value that cannot be used, and what would be right.
-    fn problem(&self) -> Option<(&'static str, &'static str)> {
-        let stiff = |value: f64| value > 0.0 && value.is_finite();
-        let density = (0.0..=100.0).contains(&self.density_percent) && self.density_percent > 0.0;
-        let columns = [
-            (density, "must be a number above 0 and at most 100 (percent)"),
-            ((0.0..=90.0).contains(&self.direction_deg), "must be a number from 0 to 90 (degrees)"),
-            (stiff(self.assembly), "must be a finite number above 0 (N/mm)"),
-            (stiff(self.compliance), "must be a finite number above 0 (N/mm)"),
-        ];
-        let named = HEADER[1..].iter().zip(columns);
-        named.into_iter().find(|(_, (good, _))| !good).map(|(name, (_, right))| (*name, right))
+    /// Returns the first column with a value out of bounds, and its problem.
+    fn problem(&self) -> Option<(&'static str, String)> {
+        let springs = [self.assembly, self.compliance].map(|stiffness| stiffness / N_PER_MM);
+        let values = self.infill().into_iter().chain(springs);
+        let mut columns = HEADER[1..].iter().zip(values);
+        columns.find_map(|(name, value)| Some((*name, numbers::problem(name, value)?)))
     }
 }
 
@@ -241,8 +236,8 @@ fn row(record: &csv::StringRecord) -> Result<Measurement, (&'static str, String)
 
 /// Checks one measurement by itself and against those before it.
 fn check(new: &Measurement, before: &[Measurement]) -> Result<(), (&'static str, String)> {
-    if let Some((column, problem)) = new.problem() {
-        return Err((column, problem.to_owned()));
+    if let Some(problem) = new.problem() {
+        return Err(problem);
     }
     for old in before {
         if old.design == new.design {

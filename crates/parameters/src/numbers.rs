@@ -1,7 +1,12 @@
-//! Table of all numbers that can vary, with plausible bounds. Each path contains its unit.
+//! The table of all numbers of files and of those that may vary, with the unit in each path and
+//! plausible bounds.
 //!
 //! In a pattern `*` matches a name or a list index (a phase, a part, an end of a span), and `a|b`
 //! either word.
+
+use crate::path::filled;
+use input::{Check, InputError, shown};
+use toml::Value;
 
 /// Infill density.
 pub const DENSITY: &str = "infill_density_percent";
@@ -49,6 +54,8 @@ pub enum Kind {
     Springs,
     /// Random error of an insertion, relative to nominal.
     Error,
+    /// In a file, as a part of what varies as a whole or not at all: not a path.
+    Fixed,
 }
 
 /// Row of the table: pattern of the paths, and plausible bounds in their unit.
@@ -79,24 +86,30 @@ const fn distance(pattern: &'static str) -> Number {
 const fn length(pattern: &'static str) -> Number {
     file(pattern, LEAST, 1e3)
 }
-/// Least value of a number that must be positive.
+/// A size of a part, mm: at least a thousandth of what a printer prints.
+const fn size(pattern: &'static str) -> Number {
+    file(pattern, 1e-3, 1e3)
+}
+const fn fixed(pattern: &'static str, low: f64, high: f64) -> Number {
+    number(Kind::Fixed, pattern, low, high)
+}
+/// Least value of what must be above 0.
 const LEAST: f64 = 1e-9;
 
-/// All numbers that can vary. The joint parameters of an arm are excluded: together they describe
-/// one published arm.
+/// All numbers. Those of an arm's joints do not vary: together they are one published arm.
 pub static NUMBERS: &[Number] = &[
-    // A density of 0 is not a valid finger.
-    number(Kind::Infill, DENSITY, 0.1, 100.0),
+    // Less than 1 % is no infill: 0.2 is a share written as percent.
+    number(Kind::Infill, DENSITY, 1.0, 100.0),
     number(Kind::Infill, DIRECTION, 0.0, 90.0),
     file("task.turn_in_base_deg", -360.0, 360.0),
     file("task.plug.mass_g", LEAST, 1e6),
     distance("task.plug.latch.root_mm|end_mm.*"),
-    length("task.plug.latch.width_mm|thickness_mm"),
+    size("task.plug.latch.width_mm|thickness_mm"),
     file("task.plug.latch.modulus_gpa", LEAST, 1e6),
     distance("task.plug|socket.part.*.x_mm|y_mm|z_mm|centre_mm|span_mm.*"),
     distance("task.plug|socket.part.*.outline_mm|points_mm.*.*"),
-    length("task.plug|socket.part.*.diameter_mm"),
-    length("task.plug|socket.part.*.edges.*.chamfer_mm|radius_mm"),
+    size("task.plug|socket.part.*.diameter_mm"),
+    size("task.plug|socket.part.*.edges.*.chamfer_mm|radius_mm"),
     file("task.plug|socket.part.*.friction", 0.0, 5.0),
     distance("task.socket.opening_x_mm|opening_y_mm.*"),
     length("task.grip.tcp_z_mm|shoulder_z_mm|slip_limit_mm"),
@@ -104,8 +117,9 @@ pub static NUMBERS: &[Number] = &[
     file("task.grip.force_n", LEAST, 1e6),
     file("task.friction.plug_socket|finger_plug", 0.0, 5.0),
     file("task.friction.finger_plug_torsion_mm", 0.0, 500.0),
-    distance("task.finger.rcc_mm"),
-    distance("task.finger.rcc_mm.at_0_deg|per_deg"),
+    length("task.finger.rcc_mm"),
+    length("task.finger.rcc_mm.at_0_deg"),
+    distance("task.finger.rcc_mm.per_deg"),
     file("task.finger.coupling.*.coefficient", -1.0, 1.0),
     file("task.strategy.tilt_deg", -45.0, 45.0),
     distance("task.strategy.start_mm.*"),
@@ -115,6 +129,9 @@ pub static NUMBERS: &[Number] = &[
     file("task.strategy.phase.*.latency_s", 0.0, 1e3),
     length("task.success.depth_mm"),
     file("task.success.tilt_deg", LEAST, 360.0),
+    // Connectors that are drafted from dimensions.
+    fixed("connector.size_mm", 0.5, 200.0),
+    fixed("connector.clearance_mm", 1e-3, 20.0),
     number(Kind::Added, CLEARANCE, -1e3, 1e3),
     number(Kind::Added, EDGE_RADIUS, 0.0, 1e3),
     number(Kind::Added, CHAMFER, 0.0, 1e3),
@@ -133,6 +150,8 @@ pub static NUMBERS: &[Number] = &[
     length("finger.holes.spacing_mm|diameter_mm"),
     length("finger.holes.block.length_mm|width_mm|overlap_mm"),
     length("finger.print.line_width_mm|smallest_gap_mm"),
+    // Up to a thousand times the stiffness of a solid finger.
+    fixed("stiffness_assembly_n_per_mm|stiffness_compliance_n_per_mm", 1e-6, 1e6),
     number(Kind::Springs, STIFFNESS, LEAST, 1e6),
     // The remote centre may lie on either side of the TCP.
     number(Kind::Finger, CENTRE, -1e6, 1e6),
@@ -144,13 +163,39 @@ pub static NUMBERS: &[Number] = &[
     ),
     number(Kind::Finger, "finger.depth_n_per_mm|mass_g", LEAST, 1e6),
     number(Kind::Finger, "finger.damping_n_s_per_m|rotational_damping_nm_s_per_rad", LEAST, 1e6),
-    number(Kind::Robot, "robot.stiffness_n_per_mm|stop_force_n", LEAST, 1e6),
-    number(Kind::Robot, "robot.mass_kg|inertia_kg_m2|damping_ratio", LEAST, 1e6),
+    // From a cushion to a machine tool. Ten times what a stiff industrial arm has is N/m.
+    number(Kind::Robot, "robot.stiffness_n_per_mm", 0.01, 5e3),
+    number(Kind::Robot, "robot.stop_force_n", 0.1, 1e5),
+    number(Kind::Robot, "robot.mass_kg", 1e-3, 1e3),
+    number(Kind::Robot, "robot.inertia_kg_m2", 1e-7, 1e3),
+    number(Kind::Robot, "robot.damping_ratio", 1e-3, 100.0),
+    fixed("robot.rotational_stiffness_nm_per_rad.*", 0.01, 1e6),
+    fixed("robot.assembly_force_n", 0.1, 1e5),
+    fixed("robot.home_deg|tool_turn_deg.*", -720.0, 720.0),
+    fixed("robot.tool_mm.*", -1e4, 1e4),
+    fixed("robot.joint.*.offset_mm|link_centre_mm.*", -1e4, 1e4),
+    fixed("robot.joint.*.turn_deg.*", -720.0, 720.0),
+    fixed("robot.joint.*.stiffness_nm_per_rad|limit_nm", 0.01, 1e6),
+    fixed("robot.joint.*.damping_nms_per_rad", 0.0, 1e9),
+    fixed("robot.joint.*.link_mass_kg", 1e-3, 1e3),
+    fixed("robot.joint.*.link_inertia_kg_m2.*", 1e-7, 1e3),
     error("cell.start_y_mm|start_across_mm|grasp_across_mm|grasp_low_mm", 20.0),
     error("cell.start_tilt_deg|socket_yaw_deg", 30.0),
     error("cell.friction_finger_percent|friction_socket_percent", 100.0),
     error("cell.clearance_mm", 2.0),
     error("cell.compliance_error_sd|assembly_error_sd", 10.0),
+    fixed("uncertainty.offset.sd_mm|across_sd_mm", 0.0, 20.0),
+    fixed("uncertainty.yaw.sd_deg", 0.0, 30.0),
+    fixed("uncertainty.friction.half_width_percent", 0.0, 99.9),
+    fixed("uncertainty.stiffness.sd_factor", 0.0, 10.0),
+    fixed("uncertainty.clearance.half_width_mm", 0.0, 2.0),
+    fixed("uncertainty.grasp.across_sd_mm|low_max_mm", 0.0, 20.0),
+    fixed("uncertainty.success_rate.trials", 1.0, 1e5),
+    fixed("uncertainty.success_rate.confidence_percent", 1e-4, 99.9999),
+    // A standard deviation needs two samples.
+    fixed("uncertainty.robust_range.samples", 2.0, 1e5),
+    fixed("uncertainty.robust_range.sd_factor", 0.0, 100.0),
+    fixed("uncertainty.robust_range.tail_percent", 1e-4, 99.9999),
 ];
 
 impl Number {
@@ -168,4 +213,94 @@ impl Number {
 /// Returns the paths of a kind.
 pub fn paths(kind: Kind) -> Vec<String> {
     NUMBERS.iter().filter(|number| number.kind == kind).flat_map(Number::paths).collect()
+}
+
+/// Returns the problem of a number that is out of the bounds of its path, if it is; one that is not in
+/// the table has none.
+pub fn problem(path: &str, value: f64) -> Option<String> {
+    let words: Vec<&str> = path.split('.').collect();
+    let is = |own: &String| filled(own, &words) == path;
+    let row = NUMBERS.iter().find(|number| number.paths().iter().any(is))?;
+    out_of_bounds(value, row.bounds)
+}
+
+/// Checks a number against the bounds of its path.
+///
+/// # Errors
+/// As of [`problem`].
+pub fn check(check: Check<'_>, path: &str, value: f64) -> Result<(), InputError> {
+    problem(path, value).map_or(Ok(()), |problem| check.fail(path, problem))
+}
+
+/// Checks all numbers of a file against the table; `root` is the first word of their paths.
+///
+/// # Errors
+/// The first number that is out of bounds: with the bounds.
+pub fn check_file(root: &str, table: &toml::Table, file: &str) -> Result<(), InputError> {
+    let rows: Vec<Row> = NUMBERS
+        .iter()
+        .filter_map(|number| Some((number, number.pattern.strip_prefix(root)?.strip_prefix('.')?)))
+        .collect();
+    check_table(Check { file }, "", table, &rows)
+}
+
+/// Row of the table with the rest of its pattern, from where a walk through a file has come.
+type Row = (&'static Number, &'static str);
+
+/// Returns the rows whose patterns go on with a word that fits.
+fn next(rows: &[Row], fits: impl Fn(&str) -> bool) -> Vec<Row> {
+    let after = |(number, rest): &Row| {
+        let (word, rest) = rest.split_once('.').unwrap_or((rest, ""));
+        word.split('|').any(&fits).then_some((*number, rest))
+    };
+    rows.iter().filter_map(after).collect()
+}
+
+fn check_table(
+    check: Check<'_>,
+    key: &str,
+    table: &toml::Table,
+    rows: &[Row],
+) -> Result<(), InputError> {
+    let name = table.get("name").and_then(Value::as_str).filter(|_| !key.is_empty());
+    for (word, value) in table {
+        let rows = next(rows, |one| one == word);
+        if !rows.is_empty() {
+            let key = match name {
+                Some(name) => format!("{key} \"{name}\" {word}"),
+                None if key.is_empty() => word.clone(),
+                None => format!("{key}.{word}"),
+            };
+            check_value(check, &key, value, &rows)?;
+        }
+    }
+    Ok(())
+}
+
+fn check_value(check: Check<'_>, key: &str, value: &Value, rows: &[Row]) -> Result<(), InputError> {
+    match value {
+        Value::Table(table) => check_table(check, key, table, rows),
+        Value::Array(items) => {
+            let mut below = next(rows, |one| one == "*");
+            // The numbers of a list that vary together have one path.
+            below.extend(rows.iter().filter(|(_, rest)| rest.is_empty()));
+            items.iter().try_for_each(|item| check_value(check, key, item, &below))
+        }
+        Value::Integer(_) | Value::Float(_) => {
+            let number = value.as_float().or(value.as_integer().map(|whole| whole as f64));
+            match (number, rows.iter().find(|(_, rest)| rest.is_empty())) {
+                (Some(value), Some((row, _))) => out_of_bounds(value, row.bounds)
+                    .map_or(Ok(()), |problem| check.fail(key, problem)),
+                _ => Ok(()),
+            }
+        }
+        _ => Ok(()),
+    }
+}
+
+fn out_of_bounds(value: f64, [low, high]: [f64; 2]) -> Option<String> {
+    // Written so that a NaN is outside.
+    let outside = !(low..=high).contains(&value);
+    let [value, low, high] = [value, low, high].map(shown);
+    outside.then(|| format!("is {value}; it must lie in {low} .. {high}"))
 }

@@ -368,9 +368,9 @@ source = "paper"
             ("step = 1.0", "step = 3.0", "whole number"),
             ("step = 1.0", "step = 1e9", "larger than high - low"),
             ("step = 1.0", "step = 1e-7", "1e-6 or more"),
-            ("low = 10.0", "low = 0.0", "must lie in 0.1 .. 100"),
-            ("low = 10.0", "low = -1000.0", "must lie in 0.1 .. 100"),
-            ("high = 30.0", "high = 900.0", "must lie in 0.1 .. 100"),
+            ("low = 10.0", "low = 0.0", "must lie in 1 .. 100"),
+            ("low = 10.0", "low = -1000.0", "must lie in 1 .. 100"),
+            ("high = 30.0", "high = 900.0", "must lie in 1 .. 100"),
             ("step = 1.0", "stepp = 1.0", "stepp"),
         ] {
             let error = Space::parse(&GOOD.replace(from, to), "s.toml").unwrap_err().to_string();

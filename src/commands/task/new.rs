@@ -13,6 +13,7 @@ use connector::write::{self, Notes};
 use input::shipped::Source;
 use input::units::MM;
 use insertion::trial::engine::EngineKind;
+use parameters::numbers;
 use serde::{Serialize, Serializer};
 use std::fmt;
 use std::path::PathBuf;
@@ -194,8 +195,6 @@ fn copy(name: &str, TaskFile { source, task }: &TaskFile) -> String {
 }
 
 fn clearance(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(mm) if mm > 0.0 && mm <= 20.0 => Ok(mm),
-        _ => Err("a clearance is a number of mm above 0 and at most 20".to_owned()),
-    }
+    let mm = text.parse::<f64>().map_err(|_| "give a number of mm, as in 0.1".to_owned())?;
+    numbers::problem("connector.clearance_mm", mm).map_or(Ok(mm), |problem| Err(problem + " mm"))
 }

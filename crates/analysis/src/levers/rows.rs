@@ -62,7 +62,7 @@ fn present(question: &Question<'_>, specimen: &Specimen, path: &Path) -> Option<
             let mut finger = specimen.finger;
             finger.number(path).map(|(number, unit)| *number / unit)
         }
-        Kind::Infill | Kind::Springs | Kind::Error => None,
+        Kind::Infill | Kind::Springs | Kind::Error | Kind::Fixed => None,
     }
 }
 

@@ -1,12 +1,12 @@
-//! A six-joint arm with position servos, and what it feels like at its TCP.
+//! Six-joint arm with position servos, and its reduced model at the TCP.
 //!
-//! Each joint is a servo `tau = k (q_command - q) - c dq/dt`: the arm trails its command by c/k,
-//! and a blocked one pushes with its spring alone. With the commanded speed fed forward the damper
-//! acts on the error's rate, `c d/dt (q_command - q)`. The links carry their own weight.
+//! Each joint is a servo `tau = k (q_command - q) - c dq/dt`: the arm lags its command by c/k, and a
+//! blocked arm pushes with its springs alone. With velocity feed-forward the damper acts on the rate of
+//! the error, `c d/dt (q_command - q)`. Gravity on the links is compensated.
 //!
-//! With six joints and six directions at the TCP, displacements `x = J q` are only another set of
-//! coordinates: near a pose the arm *is* one body at the TCP with the coupled 6x6 spring, damper
-//! and mass of [`Reduced`]. What that leaves out is how `J` changes with the pose.
+//! With six joints and six directions at the TCP, displacements `x = J q` are another set of
+//! coordinates: near a pose the arm is equivalent to one body at the TCP with the coupled 6x6 spring,
+//! damper and mass of [`Reduced`]. Changes of `J` with the pose are neglected.
 
 mod kinematics;
 mod reduced;
@@ -14,10 +14,9 @@ mod reduced;
 pub use kinematics::{Posture, displacement};
 pub use reduced::Reduced;
 
-use crate::robot::Kind;
 use crate::task::geometry::Axis;
 use contact::scene::{Inertia, Pose};
-use input::units::{DEG, MM};
+use input::units::read::{deg, mm};
 use input::{Check, InputError};
 use nalgebra::{Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use serde::Deserialize;
@@ -76,19 +75,18 @@ pub enum ArmError {
     Singular,
 }
 
+/// Arm in a robot file; SI units.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RawArm {
-    #[serde(rename = "kind")]
-    _kind: Kind,
-    pub name: String,
-    pub description: String,
-    pub stop_force_n: f64,
-    home_deg: [f64; JOINTS],
+    #[serde(rename = "home_deg", deserialize_with = "deg")]
+    home: [f64; JOINTS],
     velocity_feed_forward: bool,
     assembly_force_n: f64,
-    tool_mm: [f64; 3],
-    tool_turn_deg: [f64; 3],
+    #[serde(rename = "tool_mm", deserialize_with = "mm")]
+    tool: [f64; 3],
+    #[serde(rename = "tool_turn_deg", deserialize_with = "deg")]
+    tool_turn: [f64; 3],
     joint: Vec<RawJoint>,
 }
 
@@ -96,61 +94,57 @@ pub(crate) struct RawArm {
 #[serde(deny_unknown_fields)]
 struct RawJoint {
     name: String,
-    offset_mm: [f64; 3],
-    turn_deg: [f64; 3],
+    #[serde(rename = "offset_mm", deserialize_with = "mm")]
+    offset: [f64; 3],
+    #[serde(rename = "turn_deg", deserialize_with = "deg")]
+    turn: [f64; 3],
     axis: Axis,
     stiffness_nm_per_rad: f64,
     damping_nms_per_rad: f64,
     limit_nm: f64,
     link_mass_kg: f64,
-    link_centre_mm: [f64; 3],
+    #[serde(rename = "link_centre_mm", deserialize_with = "mm")]
+    link_centre: [f64; 3],
     link_inertia_kg_m2: [f64; 3],
 }
 
-pub(crate) fn arm(check: Check<'_>, raw: &RawArm) -> Result<Arm, InputError> {
-    let joints = raw.joint.iter().map(|raw| joint(check, raw)).collect::<Result<Vec<_>, _>>()?;
-    let count = joints.len();
-    let Ok(joints) = <[Joint; JOINTS]>::try_from(joints) else {
-        return check.fail("joint", format!("there are {count}; an arm has six [[joint]]"));
-    };
-    Ok(Arm {
-        joints,
-        tool: frame(check, ["tool_mm", "tool_turn_deg"], raw.tool_mm, raw.tool_turn_deg)?,
-        home: Angles::from(check.each("home_deg", raw.home_deg, Check::finite)?) * DEG,
-        feed_forward: raw.velocity_feed_forward,
-        assembly_force: check.positive("assembly_force_n", raw.assembly_force_n)?,
-    })
+impl RawArm {
+    pub fn arm(self, check: Check<'_>) -> Result<Arm, InputError> {
+        let count = self.joint.len();
+        let joints: Vec<Joint> = self.joint.into_iter().map(Joint::from).collect();
+        let Ok(joints) = <[Joint; JOINTS]>::try_from(joints) else {
+            return check.fail("joint", format!("there are {count}; an arm has six [[joint]]"));
+        };
+        Ok(Arm {
+            joints,
+            tool: frame(self.tool, self.tool_turn),
+            home: Angles::from(self.home),
+            feed_forward: self.velocity_feed_forward,
+            assembly_force: self.assembly_force_n,
+        })
+    }
 }
 
-fn joint(check: Check<'_>, raw: &RawJoint) -> Result<Joint, InputError> {
-    let at = |field: &str| format!("joint \"{}\" {field}", raw.name);
-    let moments = check.each(&at("link_inertia_kg_m2"), raw.link_inertia_kg_m2, Check::positive)?;
-    let centre = check.each(&at("link_centre_mm"), raw.link_centre_mm, Check::finite)?;
-    let [offset, turn] = ["offset_mm", "turn_deg"].map(at);
-    Ok(Joint {
-        name: raw.name.clone(),
-        frame: frame(check, [&offset, &turn], raw.offset_mm, raw.turn_deg)?,
-        axis: Vector3::ith_axis(raw.axis as usize),
-        stiffness: check.positive(&at("stiffness_nm_per_rad"), raw.stiffness_nm_per_rad)?,
-        damping: check.not_negative(&at("damping_nms_per_rad"), raw.damping_nms_per_rad)?,
-        limit: check.positive(&at("limit_nm"), raw.limit_nm)?,
-        link: Inertia {
-            mass: check.positive(&at("link_mass_kg"), raw.link_mass_kg)?,
-            centre: Point3::from(centre.map(|v| v * MM)),
-            moments: Vector3::from(moments),
-        },
-    })
+impl From<RawJoint> for Joint {
+    fn from(raw: RawJoint) -> Self {
+        Joint {
+            name: raw.name,
+            frame: frame(raw.offset, raw.turn),
+            axis: Vector3::ith_axis(raw.axis as usize),
+            stiffness: raw.stiffness_nm_per_rad,
+            damping: raw.damping_nms_per_rad,
+            limit: raw.limit_nm,
+            link: Inertia {
+                mass: raw.link_mass_kg,
+                centre: Point3::from(raw.link_centre),
+                moments: Vector3::from(raw.link_inertia_kg_m2),
+            },
+        }
+    }
 }
 
-/// A frame by its origin (mm) and its turns about x, then y, then z (degrees).
-fn frame(
-    check: Check<'_>,
-    [origin_key, turn_key]: [&str; 2],
-    origin_mm: [f64; 3],
-    turn_deg: [f64; 3],
-) -> Result<Pose, InputError> {
-    let [x, y, z] = check.each(origin_key, origin_mm, Check::finite)?.map(|v| v * MM);
-    let [roll, pitch, yaw] = check.each(turn_key, turn_deg, Check::finite)?.map(|v| v * DEG);
+/// Returns the frame with this origin, m, turned about x, then y, then z, rad.
+fn frame([x, y, z]: [f64; 3], [roll, pitch, yaw]: [f64; 3]) -> Pose {
     let turn = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
-    Ok(Pose::from_parts(Translation3::new(x, y, z), turn))
+    Pose::from_parts(Translation3::new(x, y, z), turn)
 }

@@ -67,7 +67,7 @@ impl Finger {
             assembly,
             depth: 100.0 * N_PER_MM,
             rotation: [TILTING, 10.0, 10.0],
-            rcc: Rcc::PAPER.at_zero,
+            rcc: Rcc::PAPER_DISTANCE,
             ahead: 0.0,
             pad: Pad::PAPER,
             mass: 2.0 * GRAM,
@@ -79,7 +79,7 @@ impl Finger {
 
     /// The finger with what a task file says of it, the infill in this direction, degrees.
     pub fn shaped(self, model: &FingerModel, direction_deg: f64) -> Self {
-        let rcc = model.rcc.unwrap_or(Rcc::PAPER).at(direction_deg);
+        let rcc = model.rcc.map_or(Rcc::PAPER_DISTANCE, |rcc| rcc.at(direction_deg));
         Finger { rcc, coupling: model.coupling, ..self }
     }
 }
@@ -186,7 +186,7 @@ mod tests {
 
     #[test]
     fn the_remote_centre_moves_with_the_infill_direction() {
-        let rcc = Rcc { at_zero: 21.0 * MM, per_degree: -0.1 * MM };
+        let rcc = Rcc::ByDirection { at_0_deg: 21.0 * MM, per_deg: -0.1 * MM };
         let model = FingerModel { rcc: Some(rcc), ..FingerModel::default() };
         assert!((Finger::new(2e3, 4e4).shaped(&model, 30.0).rcc - 18.0 * MM).abs() < 1e-15);
     }

@@ -1,11 +1,11 @@
-//! Fingers of a task file: what it may say beyond their two measured springs.
+//! Properties of the fingers that a task file sets besides their two measured springs.
 
-use input::units::MM;
+use input::units::{MM, read::mm};
 use input::{Check, InputError};
 use nalgebra::Matrix6;
 use serde::Deserialize;
 
-/// The part of a finger that the task file decides; the default leaves it as it is.
+/// Properties of a finger that a task file sets; by default none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FingerModel {
     /// Remote centre of compliance, if the file gives it.
@@ -15,36 +15,49 @@ pub struct FingerModel {
 }
 
 /// Distance of the remote centre from the contact plane towards the tip, by infill direction.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rcc {
-    /// At 0 degrees, m.
-    pub at_zero: f64,
-    /// Change with each degree, m.
-    pub per_degree: f64,
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(untagged, deny_unknown_fields)]
+#[serde(expecting = "a number of mm, or { at_0_deg = mm, per_deg = mm }")]
+pub enum Rcc {
+    /// One distance for all directions, m.
+    Fixed(#[serde(deserialize_with = "mm")] f64),
+    /// Linear in the direction.
+    ByDirection {
+        /// Distance at 0 degrees, m.
+        #[serde(deserialize_with = "mm")]
+        at_0_deg: f64,
+        /// Change with each degree, m.
+        #[serde(deserialize_with = "mm")]
+        per_deg: f64,
+    },
 }
 
-/// Coefficients `c` that couple the six springs: `k_ij = c_ij sqrt(k_i k_j)`. For any design, a
-/// positive definite matrix with ones on its diagonal makes a finger that springs back. Order:
-/// translations x, y, z, rotations x, y, z about the remote centre, of the finger at -y.
+/// Coefficients `c` that couple the six springs: `k_ij = c_ij sqrt(k_i k_j)`. If the matrix with ones
+/// on its diagonal is positive definite, so is the stiffness of any design. Order: translations x, y,
+/// z, rotations x, y, z about the remote centre, of the finger at -y.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coupling(Matrix6<f64>);
 
 impl Rcc {
-    /// The paper's, for all directions.
-    pub const PAPER: Rcc = Rcc { at_zero: 21.0 * MM, per_degree: 0.0 };
+    /// Distance of the publication, m.
+    pub const PAPER_DISTANCE: f64 = 21.0 * MM;
 
-    /// The distance for an infill direction in degrees, m.
+    /// Returns the distance for an infill direction in degrees, m.
     pub fn at(&self, direction_deg: f64) -> f64 {
-        // 0 times an unknown direction is not unknown.
-        if self.per_degree == 0.0 {
-            return self.at_zero;
+        match self {
+            Rcc::Fixed(distance) => *distance,
+            Rcc::ByDirection { at_0_deg, per_deg } => at_0_deg + per_deg * direction_deg,
         }
-        self.at_zero + self.per_degree * direction_deg
+    }
+
+    /// Returns whether the distance depends on the infill direction.
+    pub fn varies(&self) -> bool {
+        matches!(self, Rcc::ByDirection { per_deg, .. } if *per_deg != 0.0)
     }
 }
 
 impl Coupling {
-    /// From the coefficients of pairs of axes; `None` unless positive definite.
+    /// Returns the coupling with these coefficients of pairs of axes; `None` unless positive definite.
     pub fn new(pairs: impl IntoIterator<Item = (usize, usize, f64)>) -> Option<Self> {
         let mut matrix = Matrix6::identity();
         for (i, j, coefficient) in pairs {
@@ -54,7 +67,7 @@ impl Coupling {
         matrix.cholesky().map(|_| Coupling(matrix))
     }
 
-    /// The coefficients of a stiffness matrix; `None` unless it is positive definite.
+    /// Returns the coefficients of a stiffness matrix; `None` unless it is positive definite.
     pub fn of(stiffness: &Matrix6<f64>) -> Option<Self> {
         stiffness.cholesky()?;
         let scale = |i: usize, j: usize| (stiffness[(i, i)] * stiffness[(j, j)]).sqrt();
@@ -64,7 +77,7 @@ impl Coupling {
         })))
     }
 
-    /// The stiffness of such springs; the finger at +y (`side` +1) is turned by 180° about z.
+    /// Returns the stiffness matrix of these springs; the finger at +y (`side` +1) is turned by 180° about z.
     pub fn stiffness(&self, springs: [f64; 6], side: f64) -> Matrix6<f64> {
         let flips = [side, side, -1.0, side, side, -1.0];
         Matrix6::from_fn(|i, j| {
@@ -78,17 +91,10 @@ const LARGEST_DIRECTION_DEG: f64 = 90.0;
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawFinger {
-    rcc_mm: Option<RawRcc>,
+    #[serde(rename = "rcc_mm")]
+    rcc: Option<Rcc>,
     #[serde(default)]
     coupling: Vec<RawCoupling>,
-}
-
-#[derive(Deserialize, Clone, Copy)]
-#[serde(untagged, deny_unknown_fields)]
-#[serde(expecting = "a number of mm, or { at_0_deg = mm, per_deg = mm }")]
-enum RawRcc {
-    Fixed(f64),
-    ByDirection { at_0_deg: f64, per_deg: f64 },
 }
 
 #[derive(Deserialize)]
@@ -110,25 +116,13 @@ enum RawAxis {
 }
 
 pub(super) fn finger(check: Check<'_>, raw: &RawFinger) -> Result<FingerModel, InputError> {
-    let rcc = raw.rcc_mm.map(|raw| rcc(check, raw)).transpose()?;
-    Ok(FingerModel { rcc, coupling: coupling(check, &raw.coupling)? })
-}
-
-fn rcc(check: Check<'_>, raw: RawRcc) -> Result<Rcc, InputError> {
-    let key = "finger.rcc_mm";
-    let rcc = match raw {
-        RawRcc::Fixed(mm) => Rcc { at_zero: check.positive(key, mm)? * MM, per_degree: 0.0 },
-        RawRcc::ByDirection { at_0_deg, per_deg } => Rcc {
-            at_zero: check.positive("finger.rcc_mm.at_0_deg", at_0_deg)? * MM,
-            per_degree: check.finite("finger.rcc_mm.per_deg", per_deg)? * MM,
-        },
-    };
-    let last = rcc.at(LARGEST_DIRECTION_DEG);
-    if last <= 0.0 {
-        let last = last / MM;
-        return check.fail(key, format!("is {last} mm at 90 degrees; it must stay above 0"));
+    if let Some(last) = raw.rcc.map(|rcc| rcc.at(LARGEST_DIRECTION_DEG) / MM)
+        && last <= 0.0
+    {
+        let problem = format!("is {last} mm at 90 degrees; it must stay above 0");
+        return check.fail("finger.rcc_mm", problem);
     }
-    Ok(rcc)
+    Ok(FingerModel { rcc: raw.rcc, coupling: coupling(check, &raw.coupling)? })
 }
 
 fn coupling(check: Check<'_>, raw: &[RawCoupling]) -> Result<Option<Coupling>, InputError> {
@@ -142,13 +136,13 @@ fn coupling(check: Check<'_>, raw: &[RawCoupling]) -> Result<Option<Coupling>, I
         if pairs.iter().any(|&(i, j, _)| (i, j) == (low, high)) {
             return check.fail(key, format!("couples {first:?} and {second:?} twice"));
         }
-        pairs.push((low, high, check.finite(key, *coefficient)?));
+        pairs.push((low, high, *coefficient));
     }
     if pairs.is_empty() {
         return Ok(None);
     }
-    let problem = "would let the finger run away: the 6x6 matrix of coefficients, with ones on its \
-                   diagonal, must be positive definite (one coefficient alone: between -1 and 1)";
+    let problem = "the stiffness matrix is not positive definite: the 6x6 matrix of coefficients with \
+                   ones on its diagonal must be (a single coefficient between -1 and 1 is)";
     Coupling::new(pairs).map_or_else(|| check.fail(key, problem), |coupling| Ok(Some(coupling)))
 }
 
@@ -187,7 +181,8 @@ mod tests {
             ("[finger]\nrcc_mm = { at_0_deg = 21.0, per_deg = -1.0 }".to_owned(), "at 90 degrees"),
             ("[finger]\nrcc = 21.0".to_owned(), "rcc"),
             (pair("[\"y\", \"y\"]", 0.1), "with itself"),
-            (pair("[\"y\", \"z\"]", 1.5), "positive definite"),
+            (pair("[\"y\", \"z\"]", 1.5), "must lie in -1 .. 1"),
+            (pair("[\"y\", \"z\"]", 1.0), "positive definite"),
             (pair("[\"y\", \"w\"]", 0.5), "w"),
             (pair("[\"y\", \"z\"]", 0.5) + &pair("[\"z\", \"y\"]", 0.5), "twice"),
         ] {

@@ -1,29 +1,30 @@
-//! A latch that springs: parts of the plug on a flexure.
+//! Latch: parts of the plug on an elastic flexure.
 
 use super::Part;
 use super::geometry::Axis;
-use super::quantity::size;
-use input::units::{GPA, MM};
+use super::raw_part::THINNEST;
+use input::units::read::{gpa, mm};
 use input::{Check, InputError};
 use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
-/// Where a cantilever that is loaded at its end seems to turn, as a share of its length from the
-/// end, and its stiffness there in units of `E I / L` per that share: the pseudo-rigid-body model
-/// (Howell 2001, Compliant Mechanisms, Wiley, Sec. 5.2.1). Its end is 4 % stiffer than `3 E I / L^3`.
+/// Characteristic radius factor of the pseudo-rigid-body model of a cantilever with an end load (Howell
+/// 2001, Compliant Mechanisms, Wiley, Sec. 5.2.1): distance of its hinge from the end, as a share of
+/// its length. Its end is 4 % stiffer than `3 E I / L^3`.
 const GAMMA: f64 = 0.85;
+/// Stiffness coefficient of the same model.
 const K_THETA: f64 = 2.65;
-/// Most that a flexure may lean towards the axis about which it bends, as a share of its length.
+/// Largest component of a flexure along the axis about which it bends, as a share of its length.
 const SLANT: f64 = 0.05;
 
-/// Parts of a plug that turn together about a hinge against a spring.
+/// Parts of a plug that rotate together about a hinge with a spring.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Latch {
-    /// Which of the plug's parts, in their order.
+    /// Indices of its parts among those of the plug, ascending.
     pub parts: Vec<usize>,
-    /// A point on the hinge's axis, plug frame, m.
+    /// Point on the hinge's axis, plug frame, m.
     pub hinge: Point3<f64>,
-    /// Axis about which it turns (0 x, 1 y, 2 z).
+    /// Axis of rotation (0 x, 1 y, 2 z).
     pub axis: usize,
     /// Stiffness of the hinge, N m/rad.
     pub stiffness: f64,
@@ -31,20 +32,25 @@ pub struct Latch {
     pub flexure: [Point3<f64>; 2],
 }
 
-/// The latch as written: its parts, and the flexure that carries them.
+/// Latch in a task file: names of its parts, and the flexure that carries them; SI units.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RawLatch {
     parts: Vec<String>,
     axis: Axis,
-    root_mm: [f64; 3],
-    end_mm: [f64; 3],
-    width_mm: f64,
-    thickness_mm: f64,
-    modulus_gpa: f64,
+    #[serde(rename = "root_mm", deserialize_with = "mm")]
+    root: [f64; 3],
+    #[serde(rename = "end_mm", deserialize_with = "mm")]
+    end: [f64; 3],
+    #[serde(rename = "width_mm", deserialize_with = "mm")]
+    width: f64,
+    #[serde(rename = "thickness_mm", deserialize_with = "mm")]
+    thickness: f64,
+    #[serde(rename = "modulus_gpa", deserialize_with = "gpa")]
+    modulus: f64,
 }
 
-/// Stiffness of the hinge that stands for a cantilever, N m/rad; sizes in m, modulus in Pa.
+/// Returns the stiffness of the hinge that replaces a cantilever, N m/rad; sizes in m, modulus in Pa.
 fn stiffness(length: f64, width: f64, thickness: f64, modulus: f64) -> f64 {
     let second_moment = width * thickness.powi(3) / 12.0;
     GAMMA * K_THETA * modulus * second_moment / length
@@ -56,11 +62,10 @@ pub fn latch(check: Check<'_>, raw: &RawLatch, parts: &[Part]) -> Result<Latch, 
         let named = |part: &Part| part.name == *name;
         match parts.iter().position(named) {
             None => {
-                let problem = format!("names {name:?}; the plug has no part of that name");
-                return check.fail("plug.latch.parts", problem);
+                return check.fail("plug.latch.parts", format!("the plug has no part {name:?}"));
             }
             Some(i) if found.contains(&i) || parts[i + 1..].iter().any(named) => {
-                return check.fail("plug.latch.parts", format!("{name:?} stands for two"));
+                return check.fail("plug.latch.parts", format!("{name:?} is given twice"));
             }
             Some(i) => found.push(i),
         }
@@ -69,31 +74,28 @@ pub fn latch(check: Check<'_>, raw: &RawLatch, parts: &[Part]) -> Result<Latch, 
         return check.fail("plug.latch.parts", "must be some of the plug's parts, not all");
     }
     found.sort_unstable();
-    let point = |key, point| Ok(Vector3::from(check.each(key, point, Check::distance)?) * MM);
-    let root = point("plug.latch.root_mm", raw.root_mm)?;
-    let end = point("plug.latch.end_mm", raw.end_mm)?;
+    let [root, end] = [raw.root, raw.end].map(Vector3::from);
     let along = end - root;
-    let axis = raw.axis as usize;
-    let length = size(check, "plug.latch.end_mm: its distance from root_mm", along.norm() / MM)?;
+    let (axis, length) = (raw.axis as usize, along.norm());
+    if length < THINNEST {
+        return check.fail("plug.latch.end_mm", "must be at least 0.001 mm from root_mm");
+    }
     if along[axis].abs() > SLANT * length {
-        return check.fail("plug.latch.axis", "lies along the flexure; it bends across it");
+        return check.fail("plug.latch.axis", "is along the flexure; it must be across it");
     }
-    let width = size(check, "plug.latch.width_mm", raw.width_mm)?;
-    let thickness = size(check, "plug.latch.thickness_mm", raw.thickness_mm)?;
-    if thickness > 0.5 * length {
-        let key = "plug.latch.thickness_mm";
-        return check.fail(key, "is more than half the flexure's length; that is no beam");
+    if raw.thickness > 0.5 * length {
+        let problem = "must be at most half the flexure's length, as that of a beam";
+        return check.fail("plug.latch.thickness_mm", problem);
     }
-    let modulus = check.positive("plug.latch.modulus_gpa", raw.modulus_gpa)? * GPA;
+    let stiffness = stiffness(length, raw.width, raw.thickness, raw.modulus);
     let hinge = Point3::from(end - along * GAMMA);
-    let stiffness = stiffness(length, width, thickness, modulus);
-    let flexure = [root, end].map(Point3::from);
-    Ok(Latch { parts: found, hinge, axis, stiffness, flexure })
+    Ok(Latch { parts: found, hinge, axis, stiffness, flexure: [root, end].map(Point3::from) })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use input::units::{GPA, MM};
 
     /// A force at the end of a cantilever moves it by `F L^3 / 3 E I`; of the hinge that stands for
     /// it by 4 % less, and turns it as much as makes up for that over a large deflection.

@@ -5,7 +5,6 @@ mod edges;
 pub mod finger;
 pub mod geometry;
 mod latch;
-mod quantity;
 mod raw;
 mod raw_part;
 
@@ -13,6 +12,8 @@ pub use geometry::{Part, Solid};
 pub use latch::Latch;
 
 use crate::task::finger::FingerModel;
+use input::units::read::{deg, mm};
+use serde::{Deserialize, Deserializer};
 
 /// A checked task, in SI units, in the task frame: origin at the centre of the socket's opening on
 /// its top, z out of the socket, y the direction in which the jaws close and the start is shifted.
@@ -35,7 +36,7 @@ pub struct Task {
     pub plug: Plug,
     /// Socket, in the task frame.
     pub socket: Vec<Part>,
-    /// The opening on the socket's top, m: x and y from, to.
+    /// Opening on the socket's top, m: interval in x and in y.
     pub opening: [[f64; 2]; 2],
     /// Grasp of the plug.
     pub grip: Grip,
@@ -56,18 +57,18 @@ pub struct Plug {
     pub parts: Vec<Part>,
     /// Total mass, kg; spread evenly over the volume of the parts.
     pub mass: f64,
-    /// Those of its parts that spring, if any do.
+    /// Latch, if the plug has one.
     pub latch: Option<Latch>,
 }
 
 impl Plug {
-    /// The parts that are one rigid body.
+    /// Returns the parts outside the latch, which are one rigid body.
     pub fn rigid(&self) -> impl Iterator<Item = &Part> {
         let springs = |i: &usize| self.latch.as_ref().is_some_and(|latch| latch.parts.contains(i));
         self.parts.iter().enumerate().filter(move |(i, _)| !springs(i)).map(|(_, part)| part)
     }
 
-    /// The parts of the latch.
+    /// Returns the parts of the latch.
     pub fn sprung(&self) -> impl Iterator<Item = &Part> {
         let parts = self.latch.iter().flat_map(|latch| &latch.parts);
         parts.filter_map(|&i| self.parts.get(i))
@@ -75,32 +76,38 @@ impl Plug {
 }
 
 /// Grasp of the plug, plug frame.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Grip {
     /// Height of the grasp point (TCP) on the plug's axis, m.
+    #[serde(rename = "tcp_z_mm", deserialize_with = "mm")]
     pub tcp_z: f64,
     /// Height of the shoulder that the finger's roof pushes on, m.
+    #[serde(rename = "shoulder_z_mm", deserialize_with = "mm")]
     pub shoulder_z: f64,
-    /// The gripped faces, m: y of the face at -y and at +y.
+    /// Gripped faces, m: y of the face at -y and at +y.
+    #[serde(rename = "faces_y_mm", deserialize_with = "mm")]
     pub faces_y: [f64; 2],
     /// Force with which the jaws close, N.
+    #[serde(rename = "force_n")]
     pub force: f64,
     /// Phases in which the jaws are held.
     pub hold: Hold,
     /// Slip of the part in the grasp that counts as contact lost, m.
+    #[serde(rename = "slip_limit_mm", deserialize_with = "mm")]
     pub slip_limit: f64,
 }
 
 impl Grip {
-    /// Height of the shoulder above the TCP, m.
+    /// Returns the height of the shoulder above the TCP, m.
     pub fn shoulder(&self) -> f64 {
         self.shoulder_z - self.tcp_z
     }
 }
 
-/// When the jaws are held where the grasp left them, as by a non-backdrivable
-/// gear; otherwise they go on pressing with the grasp force and give way.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
+/// Phases in which the jaws keep their position, as with a non-backdrivable gear; otherwise they press
+/// with the grasp force and yield.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Hold {
     /// From the grasp on.
@@ -111,26 +118,37 @@ pub enum Hold {
 }
 
 /// Coefficients of friction of the contact pairs.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Friction {
     /// Friction between finger and plug.
     pub finger_plug: f64,
-    /// Resistance of a pad to a turn of the plug about the pad's normal.
+    /// Resistance of a pad to rotation of the plug about the pad's normal.
+    #[serde(rename = "finger_plug_torsion_mm")]
     pub finger_torsion: PadTorsion,
     /// Plug on socket, unless a socket part has its own.
     pub plug_socket: f64,
 }
 
-/// Friction of a pad against a turn about its normal.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Torsional friction of a pad about its normal.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "a number of mm, or \"patch\"")]
 pub enum PadTorsion {
-    /// So much moment per normal force at each contact point, m, beside the points' own levers.
-    Points(f64),
-    /// Friction of the contact patch, and no more.
+    /// Moment per normal force at each contact point, m, besides that of the points' own lever arms.
+    Points(#[serde(deserialize_with = "mm")] f64),
+    /// Friction of the contact patch only.
+    #[serde(deserialize_with = "patch")]
     Patch,
 }
 
-/// The search strategy: the start, and the moves from there.
+fn patch<'de, D: Deserializer<'de>>(from: D) -> Result<(), D::Error> {
+    match &*String::deserialize(from)? {
+        "patch" => Ok(()),
+        other => Err(serde::de::Error::custom(other)),
+    }
+}
+
+/// Search strategy: start and moves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Strategy {
     /// Tilt of the plug about x during the search, rad.
@@ -139,26 +157,26 @@ pub struct Strategy {
     pub start: [f64; 3],
     /// Rule for the nominal start.
     pub rule: StartRule,
-    /// Moves, each from where the one before was to end.
+    /// Moves, each from the target of the previous one.
     pub phases: Vec<Phase>,
 }
 
 /// Rule for the nominal start.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum StartRule {
-    /// It is where the task file says
+    /// The start of the task file
     #[default]
     Given,
-    /// It is moved to the middle of the nearest window of the finger
+    /// The middle of the finger's nearest tolerance window
     Taught,
 }
 
-/// Part of the trial that a phase belongs to; decides the failure class.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+/// Stage of the trial to which a phase belongs; decides the failure class.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Stage {
-    /// Through the air; touches nothing.
+    /// Motion through the air without contact.
     Approach,
     /// Down to the socket's surface, and search moves along it.
     Search,
@@ -173,9 +191,9 @@ pub enum Ending {
     Tolerance(f64),
     /// When this time has passed since the commanded motion ended, s.
     Duration(f64),
-    /// When the plug touches the socket; the command goes on by the preload.
+    /// When the plug touches the socket; the command then continues by the preload.
     Touch {
-        /// Distance beyond where the move was stopped, m.
+        /// Distance beyond the position of the touch, m.
         preload: f64,
         /// Detection of the touch.
         sensed: Sensed,
@@ -185,14 +203,14 @@ pub enum Ending {
 /// Detection of a touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensed {
-    /// Sum of the normal forces from which on it is one, N.
+    /// Threshold of the sum of the normal forces, N.
     pub force: f64,
-    /// Time for which the move goes on after that, s.
+    /// Time for which the move continues after that, s.
     pub latency: f64,
 }
 
 impl Sensed {
-    /// At first contact, without delay.
+    /// Detection at first contact, without delay.
     pub const FIRST: Sensed = Sensed { force: 0.05, latency: 0.0 };
 }
 
@@ -212,10 +230,13 @@ pub struct Phase {
 }
 
 /// Criterion of an insertion.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Success {
     /// Depth of the tip below the socket's top, m.
+    #[serde(rename = "depth_mm", deserialize_with = "mm")]
     pub depth: f64,
     /// Largest angle between the plug's axis and z, rad.
+    #[serde(rename = "tilt_deg", deserialize_with = "deg")]
     pub tilt: f64,
 }

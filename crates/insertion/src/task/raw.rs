@@ -1,38 +1,42 @@
-//! The task file as written, and the checks that turn it into a [`Task`].
+//! Task file as read, and its conversion to a [`Task`].
 
 use super::finger::{RawFinger, finger};
 use super::latch::{RawLatch, latch};
-use super::quantity::{coefficient, span};
-use super::raw_part::{RawPart, parts};
+use super::raw_part::{RawPart, interval, parts};
 use super::{
-    Ending, Friction, Grip, Hold, PadTorsion, Phase, Plug, Sensed, Stage, StartRule, Strategy,
-    Success, Task,
+    Ending, Friction, Grip, PadTorsion, Phase, Plug, Sensed, Stage, StartRule, Strategy, Success,
+    Task,
 };
-use input::units::{DEG, GRAM, MM};
+use input::units::MM;
+use input::units::read::{deg, gram, mm};
 use input::{Check, Document, InputError, shown, syntax};
+use parameters::numbers;
 use serde::Deserialize;
+use toml::Table;
 
+/// Task file; SI units.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawTask {
     name: String,
     description: String,
-    #[serde(default)]
-    turn_in_base_deg: f64,
+    #[serde(rename = "turn_in_base_deg", default, deserialize_with = "deg")]
+    turn: f64,
     plug: RawPlug,
     socket: RawSocket,
-    grip: RawGrip,
-    friction: RawFriction,
+    grip: Grip,
+    friction: Friction,
     #[serde(default)]
     finger: RawFinger,
     strategy: RawStrategy,
-    success: RawSuccess,
+    success: Success,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawPlug {
-    mass_g: f64,
+    #[serde(rename = "mass_g", deserialize_with = "gram")]
+    mass: f64,
     part: Vec<RawPart>,
     latch: Option<RawLatch>,
 }
@@ -40,50 +44,22 @@ struct RawPlug {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawSocket {
-    opening_x_mm: [f64; 2],
-    opening_y_mm: [f64; 2],
+    #[serde(rename = "opening_x_mm", deserialize_with = "mm")]
+    opening_x: [f64; 2],
+    #[serde(rename = "opening_y_mm", deserialize_with = "mm")]
+    opening_y: [f64; 2],
     part: Vec<RawPart>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RawGrip {
-    tcp_z_mm: f64,
-    shoulder_z_mm: f64,
-    faces_y_mm: [f64; 2],
-    force_n: f64,
-    hold: Hold,
-    slip_limit_mm: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawFriction {
-    finger_plug: f64,
-    finger_plug_torsion_mm: RawTorsion,
-    plug_socket: f64,
-}
-
-#[derive(Deserialize, Clone, Copy)]
-#[serde(untagged, expecting = "a number of mm, or \"patch\"")]
-enum RawTorsion {
-    Points(f64),
-    Word(RawTorsionWord),
-}
-
-#[derive(Deserialize, Clone, Copy)]
-#[serde(rename_all = "kebab-case")]
-enum RawTorsionWord {
-    Patch,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
 struct RawStrategy {
-    tilt_deg: f64,
-    start_mm: [f64; 3],
-    #[serde(default)]
-    start: StartRule,
+    #[serde(rename = "tilt_deg", deserialize_with = "deg")]
+    tilt: f64,
+    #[serde(rename = "start_mm", deserialize_with = "mm")]
+    start: [f64; 3],
+    #[serde(rename = "start", default)]
+    rule: StartRule,
     phase: Vec<RawPhase>,
 }
 
@@ -92,12 +68,16 @@ struct RawStrategy {
 struct RawPhase {
     name: String,
     stage: Stage,
-    move_mm: [f64; 3],
-    speed_mm_per_s: f64,
+    #[serde(rename = "move_mm", deserialize_with = "mm")]
+    displacement: [f64; 3],
+    #[serde(rename = "speed_mm_per_s", deserialize_with = "mm")]
+    speed: f64,
     motion: RawMotion,
-    tolerance_mm: Option<f64>,
+    #[serde(rename = "tolerance_mm", default, deserialize_with = "mm")]
+    tolerance: Option<f64>,
     settle_s: Option<f64>,
-    preload_mm: Option<f64>,
+    #[serde(rename = "preload_mm", default, deserialize_with = "mm")]
+    preload: Option<f64>,
     touch_force_n: Option<f64>,
     latency_s: Option<f64>,
 }
@@ -110,22 +90,15 @@ enum RawMotion {
     Touch,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawSuccess {
-    depth_mm: f64,
-    tilt_deg: f64,
-}
-
-const MOST_PHASES: usize = 100;
-/// Largest radius of the patch that torsional friction stands for, mm: larger is none.
+const MAX_PHASES: usize = 100;
+/// Largest radius of the contact patch that torsional friction stands for, mm.
 const LARGEST_PATCH_MM: f64 = 100.0;
 
 impl Task {
     /// Reads and checks a task; `file` is named in errors.
     ///
     /// # Errors
-    /// If the text is not such a file, or a value cannot be used.
+    /// If the text is not a task file, or a value is out of range.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         Task::read(&Document::parse(text, file)?)
     }
@@ -135,168 +108,122 @@ impl Task {
     /// # Errors
     /// As of [`Task::parse`].
     pub fn read(document: &Document<'_>) -> Result<Self, InputError> {
-        check(document.read()?, document.file())
+        let raw = document.read()?;
+        numbers::check_file("task", &document.read()?, document.file())?;
+        checked(raw, document.file())
     }
 
     /// Checks a task file that was read as TOML already; `file` is named in errors.
     ///
     /// # Errors
     /// As of [`Task::parse`].
-    pub fn from_table(table: toml::Table, file: &str) -> Result<Self, InputError> {
-        check(table.try_into().map_err(|error| syntax(file, "", &error))?, file)
+    pub fn from_table(table: Table, file: &str) -> Result<Self, InputError> {
+        numbers::check_file("task", &table, file)?;
+        checked(table.try_into().map_err(|error| syntax(file, "", &error))?, file)
     }
 }
 
-fn check(raw: RawTask, file: &str) -> Result<Task, InputError> {
-    let check = Check { file };
-    name(check, &raw.name)?;
-    let held = parts(check, "plug.part", &raw.plug.part)?;
-    let plug = Plug {
-        latch: raw.plug.latch.as_ref().map(|raw| latch(check, raw, &held)).transpose()?,
-        parts: held,
-        mass: check.positive("plug.mass_g", raw.plug.mass_g)? * GRAM,
-    };
-    Ok(Task {
-        turn: check.finite("turn_in_base_deg", raw.turn_in_base_deg)? * DEG,
-        plug,
-        socket: parts(check, "socket.part", &raw.socket.part)?,
-        opening: [
-            span(check, "socket.opening_x_mm", raw.socket.opening_x_mm)?,
-            span(check, "socket.opening_y_mm", raw.socket.opening_y_mm)?,
-        ],
-        grip: grip(check, &raw.grip)?,
-        friction: frictions(check, &raw.friction)?,
-        finger: finger(check, &raw.finger)?,
-        strategy: strategy(check, &raw.strategy)?,
-        success: Success {
-            depth: check.positive("success.depth_mm", raw.success.depth_mm)? * MM,
-            tilt: check.positive("success.tilt_deg", raw.success.tilt_deg)? * DEG,
-        },
-        name: raw.name,
-        description: raw.description,
-    })
-}
-
-fn name(check: Check<'_>, name: &str) -> Result<(), InputError> {
+/// Converts a task whose numbers are within the bounds of the table of numbers.
+fn checked(raw: RawTask, file: &str) -> Result<Task, InputError> {
+    let (check, RawSocket { opening_x, opening_y, part }) = (Check { file }, raw.socket);
     let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-    if name.is_empty() || !name.chars().all(plain) {
+    if raw.name.is_empty() || !raw.name.chars().all(plain) {
         return check.fail("name", "must be letters, digits, - and _ only, as in \"usb\"");
     }
-    Ok(())
-}
-
-fn frictions(check: Check<'_>, raw: &RawFriction) -> Result<Friction, InputError> {
-    let finger_plug = coefficient(check, "friction.finger_plug", raw.finger_plug)?;
-    let finger_torsion = match raw.finger_plug_torsion_mm {
-        RawTorsion::Points(mm) => PadTorsion::Points(torsion(check, mm, finger_plug)?),
-        RawTorsion::Word(RawTorsionWord::Patch) => PadTorsion::Patch,
-    };
-    let plug_socket = coefficient(check, "friction.plug_socket", raw.plug_socket)?;
-    Ok(Friction { finger_plug, finger_torsion, plug_socket })
-}
-
-/// Moment of a contact point per normal force, m.
-fn torsion(check: Check<'_>, mm: f64, finger_plug: f64) -> Result<f64, InputError> {
-    let key = "friction.finger_plug_torsion_mm";
-    let torsion = check.not_negative(key, mm)?;
-    // The moment is that of the friction at the edge of the pressed patch.
-    if torsion > LARGEST_PATCH_MM * finger_plug {
-        let problem = format!(
-            "is {}; with a friction of {} it may be {} at most: the pressed patch has \
-                 {LARGEST_PATCH_MM} mm then",
-            shown(torsion),
-            shown(finger_plug),
-            shown(LARGEST_PATCH_MM * finger_plug)
-        );
-        return check.fail(key, problem);
-    }
-    Ok(torsion * MM)
-}
-
-fn grip(check: Check<'_>, raw: &RawGrip) -> Result<Grip, InputError> {
-    let tcp_z = check.positive("grip.tcp_z_mm", raw.tcp_z_mm)? * MM;
-    let shoulder_z = check.positive("grip.shoulder_z_mm", raw.shoulder_z_mm)? * MM;
-    if shoulder_z <= tcp_z {
+    let held = parts(check, "plug.part", raw.plug.part)?;
+    let latch = raw.plug.latch.map(|raw| latch(check, &raw, &held)).transpose()?;
+    interval(check, "grip.faces_y_mm", raw.grip.faces_y)?;
+    if raw.grip.shoulder_z <= raw.grip.tcp_z {
         return check.fail("grip.shoulder_z_mm", "must be above grip.tcp_z_mm");
     }
-    Ok(Grip {
-        tcp_z,
-        shoulder_z,
-        faces_y: span(check, "grip.faces_y_mm", raw.faces_y_mm)?,
-        force: check.positive("grip.force_n", raw.force_n)?,
-        hold: raw.hold,
-        slip_limit: check.positive("grip.slip_limit_mm", raw.slip_limit_mm)? * MM,
+    check_torsion(check, &raw.friction)?;
+    Ok(Task {
+        name: raw.name,
+        description: raw.description,
+        turn: raw.turn,
+        plug: Plug { latch, parts: held, mass: raw.plug.mass },
+        socket: parts(check, "socket.part", part)?,
+        opening: [
+            interval(check, "socket.opening_x_mm", opening_x)?,
+            interval(check, "socket.opening_y_mm", opening_y)?,
+        ],
+        grip: raw.grip,
+        friction: raw.friction,
+        finger: finger(check, &raw.finger)?,
+        strategy: strategy(check, raw.strategy)?,
+        success: raw.success,
     })
 }
 
-fn strategy(check: Check<'_>, raw: &RawStrategy) -> Result<Strategy, InputError> {
-    let tilt = check.finite("strategy.tilt_deg", raw.tilt_deg)?;
-    if tilt.abs() > 45.0 {
-        return check.fail("strategy.tilt_deg", "must lie in -45 .. 45");
+/// Checks that the torsional friction of a pad is not more than that of the largest contact patch.
+fn check_torsion(check: Check<'_>, friction: &Friction) -> Result<(), InputError> {
+    let PadTorsion::Points(torsion) = friction.finger_torsion else { return Ok(()) };
+    // The moment is that of the friction at the edge of the patch.
+    let (torsion, most) = (torsion / MM, LARGEST_PATCH_MM * friction.finger_plug);
+    if torsion <= most {
+        return Ok(());
     }
-    let start = check.each("strategy.start_mm", raw.start_mm, Check::distance)?;
-    if raw.phase.len() > MOST_PHASES {
-        let count = raw.phase.len();
-        return check.fail("strategy.phase", format!("are {count}; there may be {MOST_PHASES}"));
+    let problem = format!(
+        "is {}; with a friction of {} it must be at most {}: the contact patch then has a radius of \
+         {LARGEST_PATCH_MM} mm",
+        shown(torsion),
+        shown(friction.finger_plug),
+        shown(most)
+    );
+    check.fail("friction.finger_plug_torsion_mm", problem)
+}
+
+fn strategy(check: Check<'_>, raw: RawStrategy) -> Result<Strategy, InputError> {
+    let key = "strategy.phase";
+    let RawStrategy { tilt, start, rule, phase: raw } = raw;
+    if raw.len() > MAX_PHASES {
+        return check.fail(key, format!("there are {}; the maximum is {MAX_PHASES}", raw.len()));
     }
-    let phases: Vec<_> = raw.phase.iter().map(|raw| phase(check, raw)).collect::<Result<_, _>>()?;
+    let phases: Vec<_> = raw.into_iter().map(|raw| phase(check, raw)).collect::<Result<_, _>>()?;
     if phases.last().is_none_or(|phase| phase.stage != Stage::Assembly) {
-        return check.fail("strategy.phase", "the last phase must have stage = \"assembly\"");
+        return check.fail(key, "the last phase must have stage = \"assembly\"");
     }
-    let first_search = phases.iter().position(|phase| phase.stage != Stage::Approach);
-    let late = phases.iter().rposition(|phase| phase.stage == Stage::Approach);
-    if late > first_search {
-        return check.fail("strategy.phase", "phases with stage = \"approach\" come first");
+    if !phases.is_sorted_by_key(|phase| phase.stage != Stage::Approach) {
+        return check.fail(key, "phases with stage = \"approach\" come first");
     }
-    let strategy =
-        Strategy { tilt: tilt * DEG, start: start.map(|v| v * MM), rule: raw.start, phases };
+    let strategy = Strategy { tilt, start, rule, phases };
     match strategy.too_long(|_| 0.0, 0.0) {
-        Some(problem) => check.fail("strategy.phase", problem),
+        Some(problem) => check.fail(key, problem),
         None => Ok(strategy),
     }
 }
 
-fn phase(check: Check<'_>, raw: &RawPhase) -> Result<Phase, InputError> {
+fn phase(check: Check<'_>, raw: RawPhase) -> Result<Phase, InputError> {
     let at = |field: &str| format!("strategy.phase \"{}\" {field}", raw.name);
-    if check.each(&at("move_mm"), raw.move_mm, Check::distance)? == [0.0; 3] {
+    if raw.displacement == [0.0; 3] {
         return check.fail(&at("move_mm"), "is zero; a phase must move");
     }
-    let given = [
-        ("tolerance_mm", raw.tolerance_mm, "tolerance"),
-        ("settle_s", raw.settle_s, "duration"),
-        ("preload_mm", raw.preload_mm, "touch"),
+    let fields = [
+        ("tolerance_mm", raw.tolerance, 0, "tolerance"),
+        ("settle_s", raw.settle_s, 1, "duration"),
+        ("preload_mm", raw.preload, 2, "touch"),
+        ("touch_force_n", raw.touch_force_n, 2, "touch"),
+        ("latency_s", raw.latency_s, 2, "touch"),
     ];
     let wanted = raw.motion as usize;
-    for (i, (field, value, motion)) in given.into_iter().enumerate() {
-        if i == wanted && value.is_none() {
-            return check.fail(&at(field), format!("is missing; motion = \"{motion}\" needs it"));
-        }
-        if i != wanted && value.is_some() {
-            return check.fail(&at(field), format!("goes only with motion = \"{motion}\""));
-        }
+    if let Some((field, .., motion)) =
+        fields.iter().find(|(_, value, of, _)| *of != wanted && value.is_some())
+    {
+        return check.fail(&at(field), format!("goes only with motion = \"{motion}\""));
     }
-    let (field, value, _) = given[wanted];
-    let value = check.positive(&at(field), value.unwrap_or(f64::NAN))?;
-    for (field, value) in [("touch_force_n", raw.touch_force_n), ("latency_s", raw.latency_s)] {
-        if value.is_some() && !matches!(raw.motion, RawMotion::Touch) {
-            return check.fail(&at(field), "goes only with motion = \"touch\"");
-        }
-    }
-    let force = raw.touch_force_n.unwrap_or(Sensed::FIRST.force);
-    let latency = raw.latency_s.unwrap_or(Sensed::FIRST.latency);
-    let sensed = Sensed {
-        force: check.positive(&at("touch_force_n"), force)?,
-        latency: check.not_negative(&at("latency_s"), latency)?,
+    let (field, value, _, motion) = fields[wanted];
+    let Some(value) = value else {
+        return check.fail(&at(field), format!("is missing; motion = \"{motion}\" needs it"));
     };
-    Ok(Phase {
-        name: raw.name.clone(),
-        stage: raw.stage,
-        displacement: raw.move_mm.map(|v| v * MM),
-        speed: check.positive(&at("speed_mm_per_s"), raw.speed_mm_per_s)? * MM,
-        ending: match raw.motion {
-            RawMotion::Tolerance => Ending::Tolerance(value * MM),
-            RawMotion::Duration => Ending::Duration(value),
-            RawMotion::Touch => Ending::Touch { preload: value * MM, sensed },
-        },
-    })
+    let ending = match raw.motion {
+        RawMotion::Tolerance => Ending::Tolerance(value),
+        RawMotion::Duration => Ending::Duration(value),
+        RawMotion::Touch => {
+            let force = raw.touch_force_n.unwrap_or(Sensed::FIRST.force);
+            let latency = raw.latency_s.unwrap_or(Sensed::FIRST.latency);
+            Ending::Touch { preload: value, sensed: Sensed { force, latency } }
+        }
+    };
+    let RawPhase { name, stage, displacement, speed, .. } = raw;
+    Ok(Phase { name, stage, displacement, speed, ending })
 }

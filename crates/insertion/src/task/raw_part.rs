@@ -1,42 +1,51 @@
-//! Parts as written, and the checks that turn them into solids.
+//! Parts of a task file, and their conversion to solids.
 
 use super::edges::{self, Cut, Edge};
 use super::geometry::{self, Axis, Part, Solid};
-use super::quantity::{coefficient, size, span};
-use input::units::MM;
+use input::units::{self, MM, read::mm};
 use input::{Check, InputError};
 use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
+/// Part of a plug or socket in a task file; lengths in m.
 #[derive(Deserialize)]
 #[serde(tag = "shape", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum RawPart {
     Box {
         name: String,
-        x_mm: [f64; 2],
-        y_mm: [f64; 2],
-        z_mm: [f64; 2],
+        #[serde(rename = "x_mm", deserialize_with = "mm")]
+        x: [f64; 2],
+        #[serde(rename = "y_mm", deserialize_with = "mm")]
+        y: [f64; 2],
+        #[serde(rename = "z_mm", deserialize_with = "mm")]
+        z: [f64; 2],
         #[serde(default)]
         edges: Vec<RawEdges>,
         friction: Option<f64>,
     },
     Cylinder {
         name: String,
-        centre_mm: [f64; 2],
-        diameter_mm: f64,
-        z_mm: [f64; 2],
+        #[serde(rename = "centre_mm", deserialize_with = "mm")]
+        centre: [f64; 2],
+        #[serde(rename = "diameter_mm", deserialize_with = "mm")]
+        diameter: f64,
+        #[serde(rename = "z_mm", deserialize_with = "mm")]
+        z: [f64; 2],
         friction: Option<f64>,
     },
     Prism {
         name: String,
         axis: Axis,
-        outline_mm: Vec<[f64; 2]>,
-        span_mm: [f64; 2],
+        #[serde(rename = "outline_mm", deserialize_with = "mm")]
+        outline: Vec<[f64; 2]>,
+        #[serde(rename = "span_mm", deserialize_with = "mm")]
+        span: [f64; 2],
         friction: Option<f64>,
     },
     Hull {
         name: String,
-        points_mm: Vec<[f64; 3]>,
+        #[serde(rename = "points_mm", deserialize_with = "mm")]
+        points: Vec<[f64; 3]>,
         friction: Option<f64>,
     },
 }
@@ -45,86 +54,88 @@ pub enum RawPart {
 #[serde(deny_unknown_fields)]
 pub struct RawEdges {
     at: String,
-    chamfer_mm: Option<f64>,
-    radius_mm: Option<f64>,
+    #[serde(rename = "chamfer_mm", default, deserialize_with = "mm")]
+    chamfer: Option<f64>,
+    #[serde(rename = "radius_mm", default, deserialize_with = "mm")]
+    radius: Option<f64>,
 }
 
-/// Most parts of a plug or a socket: what a collision costs grows with their product.
-const MOST_PARTS: usize = 200;
-const MOST_CORNERS: usize = 256;
+/// Largest number of parts of a plug or a socket: the cost of collision detection grows with their product.
+const MAX_PARTS: usize = 200;
+const MAX_CORNERS: usize = 256;
+/// Thinnest part and narrowest opening, m.
+pub const THINNEST: f64 = 1e-3 * MM;
 
-pub fn parts(check: Check<'_>, key: &str, parts: &[RawPart]) -> Result<Vec<Part>, InputError> {
-    if parts.is_empty() {
-        return check.fail(key, "needs at least one part");
+/// Converts and checks the parts under a key.
+pub fn parts(check: Check<'_>, key: &str, parts: Vec<RawPart>) -> Result<Vec<Part>, InputError> {
+    if !(1..=MAX_PARTS).contains(&parts.len()) {
+        let problem = format!("there are {}; there must be 1 to {MAX_PARTS}", parts.len());
+        return check.fail(key, problem);
     }
-    if parts.len() > MOST_PARTS {
-        let count = parts.len();
-        return check.fail(key, format!("are {count}; there may be {MOST_PARTS}"));
-    }
-    parts.iter().map(|raw| part(check, key, raw)).collect()
+    parts.into_iter().map(|raw| part(check, key, raw)).collect()
 }
 
-fn part(check: Check<'_>, key: &str, part: &RawPart) -> Result<Part, InputError> {
-    let (name, friction) = match part {
-        RawPart::Box { name, friction, .. }
-        | RawPart::Cylinder { name, friction, .. }
-        | RawPart::Prism { name, friction, .. }
-        | RawPart::Hull { name, friction, .. } => (name, *friction),
-    };
+fn part(check: Check<'_>, key: &str, part: RawPart) -> Result<Part, InputError> {
+    let (RawPart::Box { name, .. }
+    | RawPart::Cylinder { name, .. }
+    | RawPart::Prism { name, .. }
+    | RawPart::Hull { name, .. }) = &part;
+    let name = name.clone();
     let at = |field: &str| format!("{key} \"{name}\" {field}");
-    let solid = match part {
-        RawPart::Box { x_mm, y_mm, z_mm, edges, .. } => {
-            let x = span(check, &at("x_mm"), *x_mm)?;
-            let y = span(check, &at("y_mm"), *y_mm)?;
-            let z = span(check, &at("z_mm"), *z_mm)?;
+    let (solid, friction) = match part {
+        RawPart::Box { x, y, z, edges, friction, .. } => {
+            for (field, of) in [("x_mm", x), ("y_mm", y), ("z_mm", z)] {
+                interval(check, &at(field), of)?;
+            }
             let corners = [0, 1].map(|end| Vector3::new(x[end], y[end], z[end]));
-            without_edges(check, &at("edges"), corners, edges)?
+            (without_edges(check, &at("edges"), corners, &edges)?, friction)
         }
-        RawPart::Cylinder { centre_mm, diameter_mm, z_mm, .. } => Solid::Cylinder {
-            centre: check.each(&at("centre_mm"), *centre_mm, Check::distance)?.map(|v| v * MM),
-            radius: size(check, &at("diameter_mm"), *diameter_mm)? / 2.0,
-            z: span(check, &at("z_mm"), *z_mm)?,
-        },
-        RawPart::Prism { axis, outline_mm, span_mm, .. } => Solid::Prism {
-            axis: *axis as usize,
-            outline: outline(check, &at("outline_mm"), outline_mm)?,
-            span: span(check, &at("span_mm"), *span_mm)?,
-        },
-        RawPart::Hull { points_mm, .. } => hull(check, &at("points_mm"), points_mm)?,
+        RawPart::Cylinder { centre, diameter, z, friction, .. } => {
+            let z = interval(check, &at("z_mm"), z)?;
+            (Solid::Cylinder { centre, radius: diameter / 2.0, z }, friction)
+        }
+        RawPart::Prism { axis, outline, span, friction, .. } => {
+            check_outline(check, &at("outline_mm"), &outline)?;
+            let span = interval(check, &at("span_mm"), span)?;
+            (Solid::Prism { axis: axis as usize, outline, span }, friction)
+        }
+        RawPart::Hull { points, friction, .. } => {
+            let points: Vec<_> = points.into_iter().map(Point3::from).collect();
+            // Points inside the hull are left out.
+            let Some((points, _)) = geometry::hull(&points) else {
+                let problem = "lie in a plane; a hull needs at least four points that do not";
+                return check.fail(&at("points_mm"), problem);
+            };
+            (Solid::Hull { points }, friction)
+        }
     };
-    let friction = friction.map(|mu| coefficient(check, &at("friction"), mu)).transpose()?;
-    Ok(Part { name: name.clone(), solid, friction })
+    Ok(Part { name, solid, friction })
 }
 
-/// Points that span a volume; those inside the hull are left out.
-fn hull(check: Check<'_>, key: &str, points: &[[f64; 3]]) -> Result<Solid, InputError> {
-    for &value in points.iter().flatten() {
-        check.finite(key, value)?;
+/// Checks that an interval, m, is not empty or too narrow, and returns it.
+pub fn interval(check: Check<'_>, key: &str, of: [f64; 2]) -> Result<[f64; 2], InputError> {
+    if of[1] - of[0] < THINNEST {
+        let [a, b] = of.map(units::mm);
+        let problem = format!("is [{a}, {b}]; the first must be below the second by 0.001 mm");
+        return check.fail(key, problem);
     }
-    let points: Vec<_> = points.iter().map(|p| Point3::from(p.map(|v| v * MM))).collect();
-    match geometry::hull(&points) {
-        Some((points, _)) => Ok(Solid::Hull { points }),
-        None => check.fail(key, "lie in a plane; a hull needs four points or more that do not"),
-    }
+    Ok(of)
 }
 
-/// A strictly convex outline: every turn is to the same side.
-fn outline(check: Check<'_>, key: &str, outline: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, InputError> {
-    if !(3..=MOST_CORNERS).contains(&outline.len()) {
-        return check.fail(key, format!("needs three corners at least, {MOST_CORNERS} at most"));
-    }
+/// Checks that an outline is strictly convex: every turn is to the same side.
+fn check_outline(check: Check<'_>, key: &str, outline: &[[f64; 2]]) -> Result<(), InputError> {
     let n = outline.len();
-    let mut turns = Vec::with_capacity(n);
-    for i in 0..n {
-        let [a, b, c] = [outline[i], outline[(i + 1) % n], outline[(i + 2) % n]];
-        check.each(key, a, Check::distance)?;
-        turns.push((b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]));
+    if !(3..=MAX_CORNERS).contains(&n) {
+        return check.fail(key, format!("has {n} corners; it must have 3 to {MAX_CORNERS}"));
     }
-    let convex = turns.iter().all(|&t| t > 1e-9) || turns.iter().all(|&t| t < -1e-9);
-    if !convex {
-        return check.fail(key, "is not convex; split the part into convex parts");
+    let turn = |i: usize| {
+        let [a, b, c] = [0, 1, 2].map(|next| outline[(i + next) % n].map(|v| v / MM));
+        (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])
+    };
+    if (0..n).all(|i| turn(i) > 1e-9) || (0..n).all(|i| turn(i) < -1e-9) {
+        return Ok(());
     }
-    Ok(outline.iter().map(|p| [p[0] * MM, p[1] * MM]).collect())
+    check.fail(key, "is not convex; split the part into convex parts")
 }
 
 fn without_edges(
@@ -134,23 +145,22 @@ fn without_edges(
     edges: &[RawEdges],
 ) -> Result<Solid, InputError> {
     let mut cuts: Vec<(Edge, Cut)> = Vec::new();
-    for raw in edges {
-        let Some(found) = edges::named(&raw.at) else {
+    for RawEdges { at, chamfer, radius } in edges {
+        let Some(found) = edges::named(at) else {
             let problem = format!(
-                "at = {:?} names no edge; give a face, as in \"-z\", for its four, or two, as in \
-                     \"+x-z\", for the one between them",
-                raw.at
+                "unknown edge {at:?}; give a face, as in \"-z\", for its four edges, or two faces, as in \
+                 \"+x-z\", for the edge between them"
             );
             return check.fail(key, problem);
         };
-        let cut = match (raw.chamfer_mm, raw.radius_mm) {
-            (Some(mm), None) => Cut::Chamfer(size(check, &format!("{key}.chamfer_mm"), mm)?),
-            (None, Some(mm)) => Cut::Radius(size(check, &format!("{key}.radius_mm"), mm)?),
+        let cut = match (chamfer, radius) {
+            (Some(leg), None) => Cut::Chamfer(*leg),
+            (None, Some(radius)) => Cut::Radius(*radius),
             _ => return check.fail(key, "need either chamfer_mm or radius_mm"),
         };
         for edge in found {
             if cuts.iter().any(|(other, _)| edges::same(other, &edge)) {
-                return check.fail(key, format!("at = {:?} names an edge a second time", raw.at));
+                return check.fail(key, format!("at = {at:?} repeats an edge"));
             }
             cuts.push((edge, cut));
         }

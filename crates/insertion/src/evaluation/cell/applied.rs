@@ -46,7 +46,7 @@ pub(in crate::evaluation) fn change(parameter: &Parameter, value: f64, specimen:
                 };
             }
         }
-        Kind::Infill | Kind::File | Kind::Robot | Kind::Error => (),
+        Kind::Infill | Kind::File | Kind::Robot | Kind::Error | Kind::Fixed => (),
     }
 }
 

@@ -13,7 +13,7 @@ mod space;
 
 use crate::finger::computed::AtPad;
 use crate::finger::file::is_shape;
-use crate::finger::model::{FingerSource, Made, RCC_KEY};
+use crate::finger::model::{FingerSource, Made};
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use crate::task::Task;
 use crate::trial::run::RigError;
@@ -21,7 +21,7 @@ use finray::FingerError;
 use input::numbers::{DESIGN, NumberFile};
 use input::{Document, InputError, Place, Placed};
 use parameters::Path;
-use parameters::numbers::{Kind, paths};
+use parameters::numbers::{self, Kind, paths};
 
 /// A task file, the numbers of which a design may set.
 #[derive(Debug, Clone)]
@@ -96,16 +96,12 @@ impl Template {
         }
         let task = self.changed(&of_task)?;
         let direction = design.get(DIRECTION_KEY);
-        if task.finger.rcc.is_some_and(|rcc| rcc.per_degree != 0.0) && direction.is_none() {
+        if task.finger.rcc.is_some_and(|rcc| rcc.varies()) && direction.is_none() {
             let problem = "is missing: the task's finger.rcc_mm depends on it";
             return Ok(DESIGN.fail(DIRECTION_KEY, problem)?);
         }
         for (key, value) in &of_finger {
-            // The remote centre may lie on either side.
-            match *key == RCC_KEY {
-                true => DESIGN.finite(key, *value)?,
-                false => DESIGN.positive(key, *value)?,
-            };
+            numbers::check(DESIGN, key, *value)?;
         }
         let mut made = fingers.make(at_pad, design, &task)?;
         for (key, value) in of_finger {
@@ -198,10 +194,10 @@ mod tests {
     #[test]
     fn impossible_values_and_unknown_keys_are_named() {
         for (key, value, words) in [
-            ("task.strategy.tilt_deg", 60.0, "strategy.tilt_deg: must lie in -45 .. 45"),
+            ("task.strategy.tilt_deg", 60.0, "strategy.tilt_deg: is 60; it must lie in -45 .. 45"),
             ("task.grip.force_n", f64::NAN, "grip.force_n: is NaN"),
             ("task.strategy.phase.side.move_mm.y", 0.0, "\"side\" move_mm: is zero"),
-            ("finger.mass_g", 0.0, "finger.mass_g: is 0; it must be"),
+            ("finger.mass_g", 0.0, "finger.mass_g: is 0; it must lie in"),
             ("finger.rcc_mm", f64::INFINITY, "finger.rcc_mm: is inf"),
             ("finger.rcc", 1.0, "`finger.` goes on with damping_n_s_per_m, depth_n_per_mm"),
             ("task.strategy.tild_deg", 1.0, "`task.strategy.` goes on with phase, start_mm, tilt_"),

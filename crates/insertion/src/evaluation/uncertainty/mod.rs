@@ -1,4 +1,4 @@
-//! Errors from one insertion to the next, over which a success rate and a robust range are taken.
+//! Random errors of one insertion, over which success rate and robust range are measured.
 
 mod draw;
 
@@ -8,18 +8,18 @@ use crate::evaluation::cell::Priors;
 use crate::evaluation::tolerance::Search;
 use crate::finger::file::is_shape;
 use input::shipped::UNCERTAINTIES;
-use input::units::{DEG, MM, PERCENT};
-use input::{Check, InputError, read};
-use parameters::Path;
-use parameters::numbers::{SOCKET_YAW, START_ACROSS};
+use input::units::read::{deg, mm, percent};
+use input::{Check, Document, InputError};
+use parameters::numbers;
 use serde::Deserialize;
+use toml::Table;
 
-/// A checked distribution of errors, and how many draws each measure takes; SI units.
+/// Distribution of errors, and the settings of the measures under them; SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Uncertainty {
-    /// Name, as used on the command line.
+    /// Name on the command line.
     pub name: String,
-    /// One line for lists.
+    /// One-line description for lists.
     pub description: String,
     /// Spread of each error.
     pub errors: Errors,
@@ -31,14 +31,14 @@ pub struct Uncertainty {
     pub cell: Option<Priors>,
 }
 
-/// Spread of each error; 0 switches it off.
+/// Spread of each error; 0 for none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Errors {
     /// Start along y, normal: standard deviation, m.
     pub offset_sd: f64,
     /// Start along x, normal: standard deviation, m.
     pub across_sd: f64,
-    /// Socket about z, normal: standard deviation, rad.
+    /// Rotation of the socket about z, normal: standard deviation, rad.
     pub yaw_sd: f64,
     /// Both coefficients of friction, uniform: half the width, as a share.
     pub friction_half_width: f64,
@@ -46,18 +46,20 @@ pub struct Errors {
     pub stiffness_sd_factor: f64,
     /// Width of the opening, uniform: half the width, m.
     pub clearance_half_width: f64,
-    /// Part in the gripper along x, normal: standard deviation, m.
+    /// Position of the part in the gripper along x, normal: standard deviation, m.
     pub grasp_across_sd: f64,
-    /// Part in the gripper downwards, uniform from 0: largest, m.
+    /// Downward shift of the part in the gripper, uniform from 0: largest, m.
     pub grasp_low_max: f64,
 }
 
 /// Settings of a success-rate measurement.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct SuccessSettings {
     /// Trials of each design.
     pub trials: u32,
-    /// Probability with which the interval holds the true rate, 0 to 1.
+    /// Confidence level of the interval, 0 to 1.
+    #[serde(rename = "confidence_percent", deserialize_with = "percent")]
     pub confidence: f64,
 }
 
@@ -72,15 +74,16 @@ pub struct RobustSettings {
     pub search: Search,
 }
 
-/// One number for a sample of ranges.
+/// Statistic of a sample of ranges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Statistic {
-    /// Mean less so many standard deviations.
+    /// Mean minus this number of standard deviations.
     MeanMinusSd(f64),
-    /// Mean of the lowest share (0 to 1) of the samples, at least one of them.
+    /// Mean of this lowest share (0 to 1) of the samples, at least of one.
     LowerTail(f64),
 }
 
+/// Uncertainty file; SI units.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawUncertainty {
@@ -92,44 +95,59 @@ struct RawUncertainty {
     stiffness: RawStiffness,
     clearance: RawClearance,
     grasp: RawGrasp,
-    success_rate: RawSuccess,
+    success_rate: SuccessSettings,
     robust_range: RawRobust,
-}
-
-/// An error's fields, and where their values come from.
-macro_rules! raw_error {
-    ($($name:ident { $($field:ident),* })*) => {
-        $(#[derive(Deserialize)]
-        #[serde(deny_unknown_fields)]
-        struct $name {
-            $($field: f64,)*
-            source: String,
-        })*
-    };
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawOffset {
-    sd_mm: f64,
-    #[serde(default)]
-    across_sd_mm: f64,
+    #[serde(rename = "sd_mm", deserialize_with = "mm")]
+    sd: f64,
+    #[serde(rename = "across_sd_mm", default, deserialize_with = "mm")]
+    across_sd: f64,
     source: String,
-}
-
-raw_error! {
-    RawYaw { sd_deg }
-    RawFriction { half_width_percent }
-    RawStiffness { sd_factor }
-    RawClearance { half_width_mm }
-    RawGrasp { across_sd_mm, low_max_mm }
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RawSuccess {
-    trials: u32,
-    confidence_percent: f64,
+struct RawYaw {
+    #[serde(rename = "sd_deg", deserialize_with = "deg")]
+    sd: f64,
+    source: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawFriction {
+    #[serde(rename = "half_width_percent", deserialize_with = "percent")]
+    half_width: f64,
+    source: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawStiffness {
+    sd_factor: f64,
+    source: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawClearance {
+    #[serde(rename = "half_width_mm", deserialize_with = "mm")]
+    half_width: f64,
+    source: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawGrasp {
+    #[serde(rename = "across_sd_mm", deserialize_with = "mm")]
+    across_sd: f64,
+    #[serde(rename = "low_max_mm", deserialize_with = "mm")]
+    low_max: f64,
+    source: String,
 }
 
 #[derive(Deserialize)]
@@ -138,7 +156,8 @@ struct RawRobust {
     samples: u32,
     statistic: RawStatistic,
     sd_factor: Option<f64>,
-    tail_percent: Option<f64>,
+    #[serde(rename = "tail_percent", default, deserialize_with = "percent")]
+    tail: Option<f64>,
     search: Search,
 }
 
@@ -149,39 +168,46 @@ enum RawStatistic {
     LowerTail,
 }
 
-const MOST: u32 = 100_000;
-
 impl Uncertainty {
-    /// Reads and checks a distribution; `file` is named in errors. Of a cell it is that of its rows:
-    /// settings are then those of the shipped file, and there are no other errors.
+    /// Reads and checks a distribution; `file` is named in errors. A cell file gives the distribution of
+    /// its rows, with the settings of the shipped file and no other errors.
     ///
     /// # Errors
-    /// If the text is not such a file, or a value cannot be used.
+    /// If the text is not an uncertainty or cell file, or a value is out of range.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        let rows = |table: toml::Table| table.contains_key("parameter");
-        if text.parse().is_ok_and(rows) {
+        let document = Document::parse(text, file)?;
+        let table: Table = document.read()?;
+        if table.contains_key("parameter") {
             return Self::of(Priors::parse(text, file)?, file);
         }
-        let raw: RawUncertainty = read(text, file)?;
-        let check = Check { file };
-        sources(check, &raw)?;
-        let rate = &raw.success_rate;
+        let raw: RawUncertainty = document.read()?;
+        numbers::check_file("uncertainty", &table, file)?;
+        let RawUncertainty { offset, yaw, friction, stiffness, clearance, grasp, .. } = &raw;
+        for (key, source) in [
+            ("offset.source", &offset.source),
+            ("yaw.source", &yaw.source),
+            ("friction.source", &friction.source),
+            ("stiffness.source", &stiffness.source),
+            ("clearance.source", &clearance.source),
+            ("grasp.source", &grasp.source),
+        ] {
+            if source.trim().is_empty() {
+                return Check { file }.fail(key, "is empty; name the source of the value");
+            }
+        }
         Ok(Uncertainty {
-            errors: errors(check, &raw)?,
-            success: SuccessSettings {
-                trials: count(check, "success_rate.trials", rate.trials, 1)?,
-                confidence: share(
-                    check,
-                    "success_rate.confidence_percent",
-                    rate.confidence_percent,
-                )?,
+            errors: Errors {
+                offset_sd: offset.sd,
+                across_sd: offset.across_sd,
+                yaw_sd: yaw.sd,
+                friction_half_width: friction.half_width,
+                stiffness_sd_factor: stiffness.sd_factor,
+                clearance_half_width: clearance.half_width,
+                grasp_across_sd: grasp.across_sd,
+                grasp_low_max: grasp.low_max,
             },
-            robust: RobustSettings {
-                // A standard deviation needs two.
-                samples: count(check, "robust_range.samples", raw.robust_range.samples, 2)?,
-                statistic: statistic(check, &raw.robust_range)?,
-                search: raw.robust_range.search,
-            },
+            success: raw.success_rate,
+            robust: raw.robust_range.settings(Check { file })?,
             name: raw.name,
             description: raw.description,
             cell: None,
@@ -206,83 +232,25 @@ impl Uncertainty {
     }
 }
 
-fn sources(check: Check<'_>, raw: &RawUncertainty) -> Result<(), InputError> {
-    for (key, source) in [
-        ("offset.source", &raw.offset.source),
-        ("yaw.source", &raw.yaw.source),
-        ("friction.source", &raw.friction.source),
-        ("stiffness.source", &raw.stiffness.source),
-        ("clearance.source", &raw.clearance.source),
-        ("grasp.source", &raw.grasp.source),
-    ] {
-        if source.trim().is_empty() {
-            return check.fail(key, "is empty; say where the value comes from");
-        }
+impl RawRobust {
+    fn settings(&self, check: Check<'_>) -> Result<RobustSettings, InputError> {
+        let statistic = match (self.statistic, self.sd_factor, self.tail) {
+            (RawStatistic::MeanMinusSd, Some(factor), None) => Statistic::MeanMinusSd(factor),
+            (RawStatistic::LowerTail, None, Some(share)) => Statistic::LowerTail(share),
+            (statistic, ..) => {
+                let problem = match statistic {
+                    RawStatistic::MeanMinusSd => {
+                        "\"mean-minus-sd\" requires sd_factor and excludes tail_percent"
+                    }
+                    RawStatistic::LowerTail => {
+                        "\"lower-tail\" requires tail_percent and excludes sd_factor"
+                    }
+                };
+                return check.fail("robust_range.statistic", problem);
+            }
+        };
+        Ok(RobustSettings { samples: self.samples, statistic, search: self.search })
     }
-    Ok(())
-}
-
-fn errors(check: Check<'_>, raw: &RawUncertainty) -> Result<Errors, InputError> {
-    let friction = "friction.half_width_percent";
-    let half_width = check.not_negative(friction, raw.friction.half_width_percent)?;
-    if half_width >= 100.0 {
-        return check.fail(friction, "must be below 100: friction cannot be negative");
-    }
-    // In SI units; `unit` is one of the file's, and the largest is that of the error's path.
-    let error = |key, value, path: &str, unit| {
-        let largest = Path::new(path).map_or(0.0, |path| path.bounds()[1]);
-        match check.not_negative(key, value)? <= largest {
-            true => Ok(value * unit),
-            false => check.fail(key, format!("is {value}; it may be {largest} at most")),
-        }
-    };
-    let (offset, gap, grasp) = (&raw.offset, raw.clearance.half_width_mm, &raw.grasp);
-    let (factor, compliance) = (raw.stiffness.sd_factor, "cell.compliance_error_sd");
-    let across = grasp.across_sd_mm;
-    Ok(Errors {
-        offset_sd: error("offset.sd_mm", offset.sd_mm, "cell.start_y_mm", MM)?,
-        across_sd: error("offset.across_sd_mm", offset.across_sd_mm, START_ACROSS, MM)?,
-        yaw_sd: error("yaw.sd_deg", raw.yaw.sd_deg, SOCKET_YAW, DEG)?,
-        friction_half_width: half_width * PERCENT,
-        stiffness_sd_factor: error("stiffness.sd_factor", factor, compliance, 1.0)?,
-        clearance_half_width: error("clearance.half_width_mm", gap, "cell.clearance_mm", MM)?,
-        grasp_across_sd: error("grasp.across_sd_mm", across, "cell.grasp_across_mm", MM)?,
-        grasp_low_max: error("grasp.low_max_mm", grasp.low_max_mm, "cell.grasp_low_mm", MM)?,
-    })
-}
-
-fn count(check: Check<'_>, key: &str, count: u32, least: u32) -> Result<u32, InputError> {
-    if (least..=MOST).contains(&count) {
-        return Ok(count);
-    }
-    check.fail(key, format!("is {count}; it must lie in {least} .. {MOST}"))
-}
-
-fn share(check: Check<'_>, key: &str, percent: f64) -> Result<f64, InputError> {
-    if percent > 0.0 && percent < 100.0 {
-        return Ok(percent * PERCENT);
-    }
-    check.fail(key, format!("is {percent}; it must lie between 0 and 100"))
-}
-
-fn statistic(check: Check<'_>, raw: &RawRobust) -> Result<Statistic, InputError> {
-    let problem = match (raw.statistic, raw.sd_factor, raw.tail_percent) {
-        (RawStatistic::MeanMinusSd, Some(factor), None) => {
-            let factor = check.not_negative("robust_range.sd_factor", factor)?;
-            return Ok(Statistic::MeanMinusSd(factor));
-        }
-        (RawStatistic::LowerTail, None, Some(percent)) => {
-            let share = share(check, "robust_range.tail_percent", percent)?;
-            return Ok(Statistic::LowerTail(share));
-        }
-        (RawStatistic::MeanMinusSd, ..) => {
-            "\"mean-minus-sd\" goes with sd_factor, and without tail_percent"
-        }
-        (RawStatistic::LowerTail, ..) => {
-            "\"lower-tail\" goes with tail_percent, and without sd_factor"
-        }
-    };
-    check.fail("robust_range.statistic", problem)
 }
 
 #[cfg(test)]
@@ -304,17 +272,22 @@ mod tests {
     fn each_bad_field_is_named() {
         let good = UNCERTAINTIES[0].text;
         for (from, to, key, word) in [
-            ("sd_mm = 2.0", "sd_mm = -2.0", "offset.sd_mm", "0 or above"),
+            ("sd_mm = 2.0", "sd_mm = -2.0", "offset.sd_mm", "must lie in 0 .. 20"),
             (
                 "sd_mm = 2.0",
                 "sd_mm = 2.0\nacross_sd_mm = 21.0",
                 "offset.across_sd_mm",
-                "20 at most",
+                "must lie in 0 .. 20",
             ),
-            ("half_width_percent = 20.0", "half_width_percent = 100.0", "friction", "below 100"),
+            ("half_width_percent = 20.0", "half_width_percent = 100.0", "friction", "0 .. 99.9"),
             ("trials = 100", "trials = 0", "success_rate.trials", "1 .."),
             ("samples = 12", "samples = 1", "robust_range.samples", "2 .."),
-            ("confidence_percent = 95.0", "confidence_percent = 100.0", "confidence", "between"),
+            (
+                "confidence_percent = 95.0",
+                "confidence_percent = 100.0",
+                "confidence",
+                "must lie in",
+            ),
             ("\nsd_factor = 1.0\n#", "\ntail_percent = 10.0\n#", "range.statistic", "sd_factor"),
             ("sd_deg = 1.0", "sd_rad = 1.0", "sd_rad", "sd_deg"),
             ("search = \"walk\"", "search = \"run\"", "run", "walk"),

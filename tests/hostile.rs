@@ -262,6 +262,16 @@ fn input_files_that_mean_nothing_are_refused_before_anything_is_simulated() {
                 source = \"\"\n[[parameter]]";
     let space = changed(&studies, "mass.toml", codesign, "[[parameter]]", mass);
     studies.study("s", 3, &["--space", &space]).fails(2, &["mass.toml", "finger.mass_g"]);
+    let infill = include_str!("../spaces/infill.toml");
+    let share = changed(&studies, "share.toml", infill, "low", "low = 0.1");
+    let bounds = ["share.toml", "infill_density_percent", "must lie in 1 .. 100"];
+    studies.study("s", 3, &["--space", &share]).fails(2, &bounds);
+    for density in ["0.2", "1e-9", "nan"] {
+        let finger =
+            format!("export finger --density {density} --direction 10 --format stl --out f.stl");
+        optimize_line(&finger).fails(2, &["--density: is", "must lie in 1 .. 100"]);
+    }
+    optimize_line("task new loose --plug 8x2.4x25 --clearance 3").fails(2, &["--clearance: is 3"]);
     let typical = include_str!("../uncertainties/typical.toml");
     let wide = "half_width_mm = 1000";
     let wide = changed(&studies, "wide.toml", typical, "half_width_mm", wide);

@@ -314,7 +314,7 @@ fn bad_goals_are_answered_with_2_and_what_would_be_right() {
         ),
         (
             &["--task", "usb,rj45", "--aggregate", "weighted", "--weights", "1,-1"],
-            &["--weights", "above 0"],
+            &["--weights", "out of range"],
         ),
     ] {
         let studies = Studies::new();

@@ -81,7 +81,7 @@ fn keywords_are_refused_by_their_option() {
         (
             "evaluate",
             json!({"stiffness_compliance": "NaN", "stiffness_assembly": 20.0}),
-            "a number above 0",
+            "must lie in 0.000001",
         ),
         ("evaluate", json!({"repeat": 1}), "--repeat 1"),
         ("trial", json!({"offset_mm": "NaN"}), "--offset-mm"),

@@ -104,7 +104,7 @@ impl<'a> ConvexBody<'a> {
         self.parts.iter().enumerate().filter(|(i, _)| !self.yielding.contains(i))
     }
 
-    /// The lowest corner, its body at a pose; `None` without parts.
+    /// Returns the lowest corner, its body at a pose; `None` without parts.
     pub fn lowest(&self, at: &Pose) -> Option<Point3<f64>> {
         self.corners().map(|p| at * p).min_by(|a, b| a.z.total_cmp(&b.z))
     }

@@ -70,7 +70,7 @@ fn cover(pieces: &[Vec<Point3<f64>>], face: f64, side: usize) -> f64 {
     width(span(reaching.flatten())).max(0.0)
 }
 
-/// The highest point of the plug in the column of a roof, from the pads' middle up.
+/// Returns the highest point of the plug in the column of a roof, from the pads' middle up.
 fn under_roof(plug: &ConvexBody, shoulder: f64, face: f64, side: usize) -> Option<f64> {
     // A seam inside, so that what the roof only touches from the side does not count.
     let column = match side {
@@ -108,7 +108,7 @@ pub fn grasp(plug: &ConvexBody, least_cover: f64, flat: bool) -> Option<(f64, [f
     })
 }
 
-/// Whether a part has a face at this y, m, not only an edge or a line.
+/// Returns whether a part has a face at this y, m, not only an edge or a line.
 fn is_flat(part: &Part, y: f64) -> bool {
     let corners = part.solid.corners();
     width(extent(corners.iter().filter(|p| (p.y - y).abs() < SEAM), 0)) > 1.0 * MM

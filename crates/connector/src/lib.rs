@@ -1,4 +1,4 @@
-//! Task files of your own connector: drafted from dimensions or meshes, and checked before simulation.
+//! Task files of new connectors: drafts from dimensions or meshes, checks, and tuning of the strategy.
 #![forbid(unsafe_code)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 // A panic is a defect; what input can reach is an error with a message.

@@ -97,13 +97,13 @@ pub enum Family {
 }
 
 impl Family {
-    /// All families.
+    /// Returns all families.
     pub fn all() -> impl Iterator<Item = Self> {
         let shipped = TASKS.iter().filter_map(|file| Task::parse(file.text, file.file).ok());
         [Family::Key, Family::Peg].into_iter().chain(shipped.map(|task| Family::Like(task.into())))
     }
 
-    /// Its name: `like a key`.
+    /// Returns its name: `like a key`.
     pub fn name(&self) -> String {
         match self {
             Family::Key => "like a key".to_owned(),
@@ -112,14 +112,14 @@ impl Family {
         }
     }
 
-    /// The family's strategy for the shapes of a task; `None` if its plug does not go in.
+    /// Returns the family's strategy for the shapes of a task; `None` if its plug does not go in.
     pub fn of(&self, task: &Task) -> Option<Strategy> {
         let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
         let seat = Seating::new(task, &plug, &socket).deepest();
         (seat.depth >= LEAST_DEPTH).then(|| self.strategy(task, &plug, seat.depth))
     }
 
-    /// The strategy for a plug that is stopped at this depth, m.
+    /// Returns the strategy for a plug that is stopped at this depth, m.
     fn strategy(&self, task: &Task, plug: &ConvexBody, seat: f64) -> Strategy {
         let tip = tip(plug);
         let rise = (RISE / width(tip[1])).min(1.0);
@@ -146,8 +146,8 @@ fn tip(plug: &ConvexBody) -> [[f64; 2]; 2] {
     section(plug, plug.extent(2)[0] + LEAST_DEPTH)
 }
 
-/// A place with respect to an interval carried over to another: beyond an end as far beyond it, m,
-/// between them as a share.
+/// Returns a place with respect to an interval carried over to another: beyond an end as far beyond it,
+/// m, between them as a share.
 fn carried(place: f64, [low, high]: [f64; 2], to: [f64; 2]) -> f64 {
     if place <= low || high <= low {
         to[0] + (place - low)
@@ -191,8 +191,8 @@ impl Moves {
         }
     }
 
-    /// The moves of another task, whose tip comes to the same places about this opening: beyond a
-    /// wall as far beyond it, between walls at the same share of the way.
+    /// Returns the moves of another task, whose tip comes to the same places about this opening: beyond
+    /// a wall as far beyond it, between walls at the same share of the way.
     fn like(task: &Task, tip: [[f64; 2]; 2], other: &Task) -> Self {
         let plug = ConvexBody::plug(&other.plug);
         let way = seat::waypoints(other, &plug);
@@ -225,7 +225,7 @@ impl Moves {
         }
     }
 
-    /// How far beyond its seat a task's plug is commanded, m, and how fast, m/s.
+    /// Returns how far beyond its seat a task's plug is commanded, m, and how fast, m/s.
     fn push(task: &Task, plug: &ConvexBody, last: Option<&seat::Waypoint>) -> [f64; 2] {
         let seat = Seating::new(task, plug, &ConvexBody::new(&task.socket)).deepest().depth;
         // Keys that need not reach their floor are pushed less far than to it.

@@ -7,7 +7,7 @@ use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TomlError, Value
 /// Byte order mark, with which editors on Windows begin a file.
 const MARK: char = '\u{feff}';
 
-/// The text of a task file with another strategy; line ends and byte order mark stay.
+/// Returns the text of a task file with another strategy; line ends and byte order mark stay.
 ///
 /// # Errors
 /// If the text is no TOML.
@@ -38,7 +38,7 @@ pub fn strategy(text: &str, task: &Task, after: &Strategy) -> Result<String, Tom
     Ok(ended_as(text, file.to_string()))
 }
 
-/// A text with the byte order mark and the line ends of another, which TOML does not keep.
+/// Returns a text with the byte order mark and the line ends of another, which TOML does not keep.
 fn ended_as(other: &str, text: String) -> String {
     let [crlf, lines] = ["\r\n", "\n"].map(|end| other.matches(end).count());
     let text = text.replace("\r\n", "\n");
@@ -51,7 +51,7 @@ fn phases(strategy: &mut Table) -> Option<&mut ArrayOfTables> {
     strategy.get_mut("phase")?.as_array_of_tables_mut()
 }
 
-/// Whether two strategies consist of the same moves but for their numbers.
+/// Returns whether two strategies consist of the same moves but for their numbers.
 fn alike(old: &ArrayOfTables, new: &ArrayOfTables) -> bool {
     let kinds = |phases: &ArrayOfTables| -> Vec<_> {
         let word = |phase: &Table, key| phase.get(key).and_then(Item::as_str).map(str::to_owned);
@@ -110,7 +110,7 @@ fn comment_above(table: &mut Table, key: &str, comment: &str) {
     }
 }
 
-/// Whether two values are equal as a task reads them.
+/// Returns whether two values are equal as a task reads them.
 fn same(a: &Value, b: &Value) -> bool {
     let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
     let list =

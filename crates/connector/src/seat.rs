@@ -1,5 +1,4 @@
-//! Places of a plug: how deep it reaches upright, whatever the search does, and where the commanded
-//! search would bring it if nothing gave way.
+//! Seat of the upright plug in its socket, and waypoints of the commanded search without compliance.
 
 use super::body::{ConvexBody, clipped, extent};
 use contact::scene::Pose;
@@ -205,7 +204,7 @@ mod tests {
     use super::*;
     use input::shipped::TASKS;
 
-    /// A shipped task with one passage replaced.
+    /// Returns a shipped task with one passage replaced.
     fn changed(name: &str, from: &str, to: &str) -> Task {
         let file = TASKS.iter().find(|file| file.name == name).unwrap();
         Task::parse(&file.text.replace(from, to), file.file).unwrap()

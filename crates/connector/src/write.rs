@@ -115,7 +115,7 @@ fn grip(out: &mut String, task: &Task) {
     );
 }
 
-/// The part of the file that says how the task is searched.
+/// Returns the part of the file that says how the task is searched.
 pub fn strategy_of(task: &Task) -> String {
     let mut out = String::new();
     strategy(&mut out, task);

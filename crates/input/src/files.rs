@@ -1,4 +1,4 @@
-//! Files: read up to a limit, written whole or not at all; and texts made safe for terminals.
+//! Files: reading up to a limit, atomic writing; and escaping of texts for terminals.
 //!
 //! A path from the user may be anything that opens: a link, a pipe, a device. The program's own
 //! files, in a study's folder or in the cache, are plain: no link to one is followed, and nothing
@@ -23,7 +23,7 @@ const TEMPORARY: [&str; 2] = [".optimize-", ".new"];
 /// A temporary file of this age was left by a process that was killed.
 const ABANDONED: Duration = Duration::from_secs(3600);
 
-/// The text of a file that the user has named.
+/// Returns the text of a file that the user has named.
 ///
 /// # Errors
 /// If it cannot be read, is no UTF-8 or is longer than `limit` bytes.
@@ -31,7 +31,7 @@ pub fn read_named(path: &Path, limit: u64) -> io::Result<String> {
     text(read_up_to(File::open(path)?, limit)?)
 }
 
-/// The text of a file that the program keeps for itself.
+/// Returns the text of a file that the program keeps for itself.
 ///
 /// # Errors
 /// The same, and if it is no plain file.
@@ -39,7 +39,7 @@ pub fn read_own(path: &Path, limit: u64) -> io::Result<String> {
     text(bytes_own(path, limit)?)
 }
 
-/// The bytes of a file that the program keeps for itself.
+/// Returns the bytes of a file that the program keeps for itself.
 ///
 /// # Errors
 /// If it cannot be read, is no plain file or is longer than `limit` bytes.
@@ -62,7 +62,7 @@ pub fn open_own(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
     }
 }
 
-/// Neither follows a link nor waits for the other end of a pipe.
+/// Sets flags to neither follow links nor block on pipes.
 #[cfg(unix)]
 fn careful(options: &mut OpenOptions) -> &mut OpenOptions {
     use std::os::unix::fs::OpenOptionsExt;
@@ -74,7 +74,7 @@ fn careful(options: &mut OpenOptions) -> &mut OpenOptions {
     options
 }
 
-/// The bytes of what is open already.
+/// Returns the bytes of what is open already.
 ///
 /// # Errors
 /// If it cannot be read, or is longer than `limit` bytes.
@@ -174,7 +174,7 @@ impl Table {
         }
     }
 
-    /// Its contents.
+    /// Returns its contents.
     pub fn text(&self) -> &str {
         &self.text
     }
@@ -196,8 +196,8 @@ impl Table {
         written.map(|()| new.clone_into(&mut self.text))
     }
 
-    /// A copy, for the case that the process dies while the file is written anew, or that it cannot be
-    /// written back; nobody's file is written over.
+    /// Returns a copy, for the case that the process dies while the file is written anew, or that it
+    /// cannot be written back; nobody's file is written over.
     fn copied(&self) -> io::Result<PathBuf> {
         let mut name = self.path.file_name().unwrap_or_default().to_owned();
         name.push(".before");
@@ -235,7 +235,7 @@ impl Drop for Table {
     }
 }
 
-/// A new file under a name that no other thread, process or machine writes to.
+/// Returns a new file under a name that no other thread, process or machine writes to.
 fn temporary(folder: &Path) -> io::Result<(PathBuf, File)> {
     static WRITES: AtomicU64 = AtomicU64::new(0);
     let [begin, end] = TEMPORARY;
@@ -264,7 +264,7 @@ pub fn remove_abandoned(folder: &Path) {
     }
 }
 
-/// Whether `found`, not followed if it is a link, is the file that is open.
+/// Returns whether `found`, not followed if it is a link, is the file that is open.
 ///
 /// # Errors
 /// If the system does not say.
@@ -279,7 +279,7 @@ pub fn is_open_file(found: &Metadata, open: &File) -> io::Result<bool> {
     Ok(found.is_file() == open.is_file())
 }
 
-/// The text with control characters, which move a terminal's cursor or worse, and those that
+/// Returns the text with control characters, which move a terminal's cursor or worse, and those that
 /// turn the direction of writing as `\u001b`: the escapes of JSON, so that JSON stays what it is.
 pub fn visible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());

@@ -1,5 +1,4 @@
-//! Input files: how they are read up to a limit and checked, what may be wrong with them, and the
-//! units in them. Inside, every quantity is in SI units; millimetres, newtons per millimetre and
+//! Input files: reading up to a limit, checks, errors and units. Inside, every quantity is in SI units; millimetres, newtons per millimetre and
 //! degrees appear only in names that say so ([`units`]).
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
@@ -63,7 +62,8 @@ impl Placed for InputError {
     }
 }
 
-/// The error of a file that is not TOML, or not of the shape asked for; `text` is where it was read.
+/// Returns the error of a file that is not TOML, or not of the shape asked for; `text` is where it was
+/// read.
 pub fn syntax(file: &str, text: &str, error: &toml::de::Error) -> InputError {
     let before = error.span().and_then(|span| text.get(..span.start));
     InputError::Syntax {
@@ -199,7 +199,7 @@ pub fn unclosed_quote(text: &str) -> Option<usize> {
 pub const UNCLOSED: &str = "a quoted cell runs over the end of the line; close its quotation mark \
                             there (a mark within a quoted cell is written twice)";
 
-/// A number as messages show it: never hundreds of digits.
+/// Returns a number as messages show it: never hundreds of digits.
 pub fn shown(value: f64) -> String {
     let plain = value == 0.0 || (1e-6..1e12).contains(&value.abs()) || !value.is_finite();
     if plain { value.to_string() } else { format!("{value:e}") }
@@ -225,7 +225,7 @@ impl Check<'_> {
         })
     }
 
-    /// The value, if it fits; `must` says what would.
+    /// Returns the value if it fits; `must` is the requirement in words.
     pub fn require(
         &self,
         key: &str,
@@ -240,7 +240,7 @@ impl Check<'_> {
         }
     }
 
-    /// The values, if each passes a check of one value, such as [`Check::finite`].
+    /// Returns the values, if each passes a check of one value, such as [`Check::finite`].
     ///
     /// # Errors
     /// That of the first value that does not.
@@ -254,7 +254,7 @@ impl Check<'_> {
         Ok(values)
     }
 
-    /// The value, if it is finite and not beyond 1e9.
+    /// Returns the value, if it is finite and not beyond 1e9.
     ///
     /// # Errors
     /// If it is not.
@@ -264,7 +264,7 @@ impl Check<'_> {
         self.require(key, value, fits, "be a finite number of size 1e9 or less")
     }
 
-    /// The value, if it is above 0: from 1e-9 to 1e9.
+    /// Returns the value, if it is above 0: from 1e-9 to 1e9.
     ///
     /// # Errors
     /// If it is not.
@@ -273,7 +273,7 @@ impl Check<'_> {
         self.require(key, value, fits, "be a finite number above 0, 1e-9 to 1e9")
     }
 
-    /// The value, if it is not below 0 and not beyond 1e9.
+    /// Returns the value, if it is not below 0 and not beyond 1e9.
     ///
     /// # Errors
     /// If it is not.
@@ -282,7 +282,7 @@ impl Check<'_> {
         self.require(key, value, fits, "be a finite number, 0 or above, 1e9 at most")
     }
 
-    /// The value, if it can be a coordinate or a difference of two, mm.
+    /// Returns the value, if it can be a coordinate or a difference of two, mm.
     ///
     /// # Errors
     /// If it is not finite, or longer than 1 m.

@@ -30,7 +30,7 @@ impl NumberFile {
         Ok(NumberFile { root, file: document.file().to_owned(), table: document.read()? })
     }
 
-    /// The keys of all numbers, in alphabetical order.
+    /// Returns the keys of all numbers, in alphabetical order.
     pub fn keys(&self) -> Vec<String> {
         let mut table = self.table.clone();
         let mut keys: Vec<String> =
@@ -39,14 +39,14 @@ impl NumberFile {
         keys
     }
 
-    /// The number under a key, in the unit of the key.
+    /// Returns the number under a key, in the unit of the key.
     pub fn number(&self, key: &str) -> Option<f64> {
         let mut table = self.table.clone();
         let number = of_table(self.root, &mut table).into_iter().find(|(name, _)| name == key)?.1;
         number.as_float().or_else(|| number.as_integer().map(|whole| whole as f64))
     }
 
-    /// The table with these numbers in place of its own.
+    /// Returns the table with these numbers in place of its own.
     ///
     /// # Errors
     /// If a key sets no number, or two; the message names the keys there are, `elsewhere` included.

@@ -1,8 +1,8 @@
-//! Where an input is wrong.
+//! Place of an error in the input.
 
 use std::fmt;
 
-/// Where an input is wrong, as far as its error knows.
+/// Place of an error in the input, as far as known.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Place {
     /// The file as given.
@@ -13,9 +13,9 @@ pub struct Place {
     pub key: Option<String>,
 }
 
-/// Error that knows its place.
+/// Error with a place.
 pub trait Placed {
-    /// Its place.
+    /// Returns its place.
     fn place(&self) -> Place;
 }
 
@@ -30,24 +30,25 @@ pub struct Fault {
 }
 
 impl Place {
-    /// A file.
+    /// Returns a file.
     pub fn file(file: impl Into<String>) -> Self {
         Place { file: Some(file.into()), ..Place::default() }
     }
 
-    /// The option of the command line that a text begins with, as Python has it; none if it does not.
+    /// Returns the option of the command line that a text begins with, as Python has it; none if it does
+    /// not.
     pub fn option(text: &str) -> Self {
         let name = text.strip_prefix("--").unwrap_or_default();
         let end = name.find(|c: char| !c.is_ascii_lowercase() && c != '-').unwrap_or(name.len());
         Place::default().key(&name[..end].replace('-', "_"))
     }
 
-    /// A field or option; none if it is empty.
+    /// Returns a field or option; none if it is empty.
     pub fn key(self, key: &str) -> Self {
         Place { key: (!key.is_empty()).then(|| key.to_owned()), ..self }
     }
 
-    /// A line, counted from 1.
+    /// Returns a line, counted from 1.
     pub fn line(self, line: usize) -> Self {
         Place { line: Some(line), ..self }
     }

@@ -52,13 +52,13 @@ pub const ROBOTS: &[Shipped] = shipped! {
 /// Geometry and material of printed fingers.
 pub const FINGERS: &[Shipped] = shipped! { "finray9": "fingers/finray9.toml" };
 
-/// Distributions of the errors under which a finger is to work.
+/// Distributions of the errors of an insertion.
 pub const UNCERTAINTIES: &[Shipped] = shipped! { "typical": "uncertainties/typical.toml" };
 
-/// Distributions of what nobody measured in a cell, for `calibrate`.
+/// Priors of the unmeasured parameters of a cell, for `calibrate`.
 pub const PRIORS: &[Shipped] = shipped! { "bench": "priors/bench.toml" };
 
-/// What a user can change of a cell beside the infill, for `levers`.
+/// Adjustable parameters of a cell beside the infill, for `levers`.
 pub const LEVERS: Shipped = Shipped {
     name: "levers",
     file: "priors/levers.toml",
@@ -94,11 +94,11 @@ impl Placed for ShippedError {
     }
 }
 
-/// The shipped file of that name or, if `name` looks like a path (it has a
-/// separator or an extension), the file there.
+/// Returns the shipped file of that name or, if `name` looks like a path (it has a separator or an
+/// extension), the file there.
 ///
 /// # Errors
-/// If there is no such file; the message tells the nearest name and all names.
+/// If there is no such file; the message has the nearest name and all names.
 pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, ShippedError> {
     if let Some(found) = shipped.iter().find(|shipped| shipped.name == name) {
         return Ok(Source { file: found.file.to_owned(), text: found.text.to_owned() });
@@ -115,14 +115,14 @@ pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, Sh
     let names: Vec<&'static str> = shipped.iter().map(|shipped| shipped.name).collect();
     let hint = nearest(name, &names).map(|name| format!(" (did you mean `{name}`?)"));
     let text = format!(
-        "no {kind} is called `{name}`{}; there are {}, or give the path of a file",
+        "unknown {kind} `{name}`{}; available: {}, or give the path of a file",
         hint.unwrap_or_default(),
         names.join(", ")
     );
     Err(ShippedError { place: Place::default().key(&kind.replace(' ', "_")), text })
 }
 
-/// The name that differs least from `name`, if less than half of it differs.
+/// Returns the name that differs least from `name`, if less than half of it differs.
 pub fn nearest<'a>(name: &str, names: &[&'a str]) -> Option<&'a str> {
     let distance = |other: &&&str| levenshtein(name, other);
     let best = names.iter().min_by_key(distance)?;

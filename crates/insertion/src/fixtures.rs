@@ -10,7 +10,7 @@ use contact::direct::Direct;
 use input::shipped::{FINGERS, ROBOTS, Shipped, TASKS};
 use input::units::N_PER_MM;
 
-/// The text of a shipped task and its path.
+/// Returns the text of a shipped task and its path.
 pub fn task_file(name: &str) -> &'static Shipped {
     TASKS.iter().find(|file| file.name == name).unwrap()
 }
@@ -29,12 +29,12 @@ pub fn finger_file() -> FingerFile {
     FingerFile::parse(FINGERS[0].text, FINGERS[0].file).unwrap()
 }
 
-/// A finger of these stiffnesses, N/mm.
+/// Returns a finger of these stiffnesses, N/mm.
 pub fn finger(compliance: f64, assembly: f64) -> Finger {
     Finger::new(compliance * N_PER_MM, assembly * N_PER_MM)
 }
 
-/// A task on the robot `servo` in the engine `direct`.
+/// Returns a task on the robot `servo` in the engine `direct`.
 pub fn rig(task: Task) -> EngineRig {
     EngineRig::new(task, &robot("servo"), Box::<Direct>::default()).unwrap()
 }

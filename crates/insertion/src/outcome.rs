@@ -1,4 +1,4 @@
-//! How a trial ends: the vocabulary of trials, published tables and measurements.
+//! Outcome of a trial.
 
 use parameters::plan::grid::Ends;
 use serde::{Deserialize, Serialize};
@@ -26,7 +26,7 @@ impl FailureClass {
         FailureClass::ContactLossInInsertion,
     ];
 
-    /// The paper's number, 1 to 4.
+    /// Returns the paper's number, 1 to 4.
     pub fn number(self) -> u8 {
         self as u8 + 1
     }
@@ -68,7 +68,7 @@ pub enum Outcome {
     Inserted,
     /// Not seated, for a physical reason.
     Failed(FailureClass),
-    /// The simulation left the finite numbers; says nothing about the design.
+    /// Numerical divergence of the simulation; not a property of the design.
     Diverged,
 }
 
@@ -98,7 +98,7 @@ impl Outcome {
         }
     }
 
-    /// The failure class, 1 to 4, if it was a failure.
+    /// Returns the failure class, 1 to 4, if it was a failure.
     pub fn failure(self) -> Option<u8> {
         match self {
             Outcome::Failed(class) => Some(class.number()),

@@ -1,4 +1,4 @@
-//! Measured fingers: the CSV file and its checks.
+//! Measured stiffness of fingers: CSV file and its checks.
 
 use ask_tell::statistics::median;
 use finray::FingerError;
@@ -7,7 +7,7 @@ use input::units::N_PER_MM;
 use input::{Fault, Place, Placed, UNCLOSED, unclosed_quote};
 use parameters::numbers;
 
-/// A direction in which a finger yields.
+/// Direction of a finger's stiffness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Axis {
     /// z, the direction of assembly: loads the ribs along their length.
@@ -81,7 +81,7 @@ impl Measurement {
     }
 }
 
-/// Error of measurements that cannot be used.
+/// Error of measured stiffnesses.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SurrogateError {
     /// Not a CSV table with the columns of [`HEADER`], or a value or a column in another unit that
@@ -89,7 +89,7 @@ pub enum SurrogateError {
     #[error(transparent)]
     Fault(#[from] Fault),
     /// No design at all.
-    #[error("no design is measured: give at least one")]
+    #[error("no measured design; give at least one")]
     None,
     /// So many designs that leaving each out in turn would take minutes.
     #[error(
@@ -126,12 +126,12 @@ pub fn parse(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError>
     unit(rows(text, file)?, file)
 }
 
-/// The designs the publication measured.
+/// Returns the designs the publication measured.
 pub fn designs() -> Vec<Measurement> {
     parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap_or_default()
 }
 
-/// The measured designs of lowest, middle and highest compliance stiffness.
+/// Returns the measured designs of lowest, middle and highest compliance stiffness.
 pub fn three(mut designs: Vec<Measurement>) -> Vec<Measurement> {
     designs.sort_by(|a, b| a.compliance.total_cmp(&b.compliance));
     let Some(last) = designs.len().checked_sub(1) else { return designs };
@@ -204,7 +204,7 @@ pub(crate) fn check_all(measurements: &[Measurement]) -> Result<(), SurrogateErr
     enough(measurements)
 }
 
-/// The error of a column at a place.
+/// Returns the error of a column at a place.
 fn refused(place: Place) -> impl Fn((&'static str, String)) -> SurrogateError {
     move |(column, problem)| place.clone().key(column).fault(problem).into()
 }

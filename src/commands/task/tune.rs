@@ -10,7 +10,7 @@ use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
 use crate::setup::task::TaskFile;
 use crate::setup::tune::{Tried, bench, outcome, ranges, tried};
 use connector::check::problems;
-use connector::tune::{Effort, Kept, MOST_WINDOWS, Stage, Stopped, Tuned, tune};
+use connector::tune::{Effort, MOST_WINDOWS, Robustness, Stage, Stopped, Tuned, tune};
 use connector::{picture, rewrite};
 use input::Place;
 use input::shipped::Source;
@@ -214,7 +214,7 @@ impl Serialize for Done {
             after: Option<State<'a>>,
             by: By<'a>,
             steps: Vec<Tried<'a>>,
-            kept: &'a [Kept],
+            kept: &'a [Robustness],
             nearest: Option<Stopped>,
             out: Option<String>,
         }

@@ -5,7 +5,10 @@ use csv::StringRecord;
 use input::Fault;
 use insertion::outcome::FailureClass;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use jiff::Timestamp;
 use jiff::civil::Date;
+use jiff::tz::TimeZone;
+use std::time::{Duration, SystemTime};
 
 /// A range and the window beside it may differ by this, mm: both are rounded to 0.1.
 const ROUNDING_MM: f64 = 0.151;
@@ -112,7 +115,13 @@ fn check_window(cells: &mut Cells<'_>, experiment: &Experiment) {
         let words = format!("is {range}, but the window is {known:.2} mm wide; give one of them");
         cells.problem("range_mm", &words);
     }
-    let said = cells.text("range_mm") == NOT_MEASURABLE || failures.iter().any(Option::is_some);
+    let not_measurable = cells.text("range_mm") == NOT_MEASURABLE;
+    if not_measurable && whole {
+        let words =
+            format!("is `{NOT_MEASURABLE}`, but both ends are given; leave one or the other out");
+        cells.problem("range_mm", &words);
+    }
+    let said = not_measurable || failures.iter().any(Option::is_some);
     if [negative_mm, positive_mm, range_mm].iter().all(Option::is_none) && !said {
         let words = format!(
             "nothing was measured; give a range, an end of the window or `{NOT_MEASURABLE}`"
@@ -218,7 +227,13 @@ fn force(text: &str) -> Result<f64, String> {
 }
 
 fn date(text: &str) -> Result<String, String> {
+    // One day more: clocks and time zones differ.
+    let tomorrow = Timestamp::try_from(SystemTime::now() + Duration::from_secs(86_400));
+    let last = tomorrow.map_or(Date::MAX, |tomorrow| tomorrow.to_zoned(TimeZone::UTC).date());
     match text.parse::<Date>() {
+        Ok(day) if day > last => {
+            Err(format!("{day} is in the future; give the day of the measurement"))
+        }
         Ok(day) => Ok(day.to_string()),
         Err(_) => Err(format!("`{text}` is no day; write it as in 2026-03-31")),
     }

@@ -73,7 +73,7 @@ pub fn problems(task: &Task) -> Vec<Problem> {
     found
 }
 
-/// A length for a message: mm, two decimals at most.
+/// Returns a length for a message: mm, two decimals at most.
 fn mm(length: f64) -> String {
     format!("{}", (length / MM * 100.0).round() / 100.0 + 0.0)
 }

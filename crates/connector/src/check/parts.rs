@@ -54,7 +54,7 @@ fn overlaps(name: &str, body: &ConvexBody) -> Vec<Problem> {
     .collect()
 }
 
-/// A flexure goes from what stands still of the plug to what moves.
+/// Checks that a flexure leads from a fixed part of the plug to a moving one.
 fn flexure(case: &Case) -> Vec<Problem> {
     let Some(latch) = &case.task.plug.latch else { return Vec::new() };
     let [root, end] = &latch.flexure;
@@ -71,7 +71,7 @@ fn flexure(case: &Case) -> Vec<Problem> {
     .collect()
 }
 
-/// A plug is one piece: every part touches one that touches the first.
+/// Checks that a plug is one piece: every part is connected to the first.
 fn gaps(plug: &ConvexBody) -> Vec<Problem> {
     let count = plug.parts.len();
     let mut joined = vec![0];

@@ -16,7 +16,7 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// Its length, m.
+    /// Returns its length, m.
     pub fn metres(self) -> f64 {
         match self {
             Unit::Mm => MM,

@@ -72,7 +72,7 @@ pub struct Mouth {
     pub depth: f64,
 }
 
-/// The largest hole in the surface's highest layer, its box taken `below` the top, m.
+/// Returns the largest hole in the surface's highest layer, its box taken `below` the top, m.
 pub fn mouth(surface: &Surface, below: f64) -> Option<Mouth> {
     let heights = levels(surface.points.iter().map(|p| p.z));
     let &[low, top] = heights.last_chunk::<2>()?;
@@ -183,7 +183,7 @@ fn straightened(outline: Outline) -> Outline {
     without(outline, 2, straight)
 }
 
-/// A closed line of at least `least` corners, without those straight with their neighbours.
+/// Returns a closed line of at least `least` corners, without those straight with their neighbours.
 pub fn without<T: Copy>(
     mut line: Vec<T>,
     least: usize,
@@ -291,7 +291,7 @@ fn triangles(layer: &[Outline]) -> Option<Vec<Outline>> {
     Some(found)
 }
 
-/// Whether a point lies inside, by the even-odd rule.
+/// Returns whether a point lies inside, by the even-odd rule.
 fn solid_at(layer: &[Outline], p: &Point2<f64>) -> bool {
     let crossed = |(a, b): &(&Riser, &Riser)| {
         let (a, b) = (a.at(0.5), b.at(0.5));
@@ -307,7 +307,7 @@ fn same(a: &Riser, b: &Riser) -> bool {
     (a.at(0.5) - b.at(0.5)).norm() < NEAR
 }
 
-/// Whether an outline only turns left, at its lower end, its middle and its upper end.
+/// Returns whether an outline only turns left, at its lower end, its middle and its upper end.
 fn convex(outline: &[Riser]) -> bool {
     let count = outline.len();
     (0..count).all(|i| {

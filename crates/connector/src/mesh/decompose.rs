@@ -67,7 +67,7 @@ pub fn decompose(
     }
 }
 
-/// The exact cut of fewest parts; of equals the first, across z.
+/// Returns the exact cut of fewest parts; of equals the first, across z.
 fn exact(surface: &Surface) -> Option<Vec<Solid>> {
     let cuts = (0..3).filter_map(|turns| cut_along(surface, turns));
     cuts.filter(|solids| is_whole(surface, solids)).min_by_key(Vec::len)
@@ -100,7 +100,7 @@ fn cut_along(surface: &Surface, turns: usize) -> Option<Vec<Solid>> {
     Some(merge::solids(&pieces.iter().map(back).collect::<Vec<cut::Piece>>()))
 }
 
-/// Whether the solids fill the surface and nothing else. Where a slanted wall is cut, two
+/// Returns whether the solids fill the surface and nothing else. Where a slanted wall is cut, two
 /// neighbours may share a sliver inside; then none may reach out.
 fn is_whole(surface: &Surface, solids: &[Solid]) -> bool {
     let sum: f64 = solids.iter().map(geometry::volume).sum();

@@ -81,7 +81,7 @@ pub struct Imported {
 /// Smallest volume of a plug or socket, mm3.
 const LEAST_MM3: f64 = 1.0;
 
-/// The mesh with faces that can be cut, few enough to be cut in seconds, and what was reduced.
+/// Returns the mesh with faces that can be cut, few enough to be cut in seconds, and what was reduced.
 pub fn few_faces(mesh: Mesh) -> Result<(Mesh, Option<String>), MeshError> {
     let Mesh { file, surface } = mesh;
     let volume_mm3 = surface.volume() / (MM * MM * MM);
@@ -185,8 +185,8 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
     })
 }
 
-/// The plug as the first axis has it across which pads hold flat faces, or else any; shoulder and
-/// faces, m. With a task whose grip is taken, the first axis.
+/// Returns the plug as the first axis has it across which pads hold flat faces, or else any; shoulder
+/// and faces, m. With a task whose grip is taken, the first axis.
 fn grasped(
     plug: &Mesh,
     middle: [f64; 2],
@@ -288,7 +288,7 @@ fn intrude(task: &Task, surfaces: [&Surface; 2]) -> Option<(f64, Point3<f64>, &'
 }
 
 impl Imported {
-    /// The smaller play of x and y, m.
+    /// Returns the smaller play of x and y, m.
     pub fn clearance(&self) -> f64 {
         self.play[0].min(self.play[1])
     }

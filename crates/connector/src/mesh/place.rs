@@ -172,7 +172,11 @@ fn fit(meshes: &[Mesh; 2], along: Along, any_unit: bool) -> Result<Fit, String> 
             Err(format!("the plug, {:.2} mm wide, is not held by jaws", body / MM))
         }
         () if any_unit && !(CLEARANCES[0]..=CLEARANCES[1]).contains(&clearance) => {
-            Err(format!("a clearance of {:.2} mm is none of a connector", clearance / MM))
+            let [low, high] = CLEARANCES.map(|clearance| clearance / MM);
+            let found = clearance / MM;
+            Err(format!(
+                "the clearance is {found:.2} mm; it must be within {low:.2} .. {high:.2} mm"
+            ))
         }
         () => Ok(found),
     }

@@ -29,7 +29,7 @@ struct Collapsing {
     version: Vec<u32>,
 }
 
-/// The surface with as few faces as keep to the [`TOLERANCE`].
+/// Returns the surface with as few faces as keep to the [`TOLERANCE`].
 pub fn reduced(surface: Surface) -> Surface {
     let mut about = vec![Vec::new(); surface.points.len()];
     for (number, face) in surface.faces.iter().enumerate() {
@@ -93,8 +93,8 @@ impl Collapsing {
         self.about[few].iter().any(|&face| self.faces[face].contains(&other))
     }
 
-    /// How far the corner that goes is then from the surface, and those that went before it; `None`
-    /// if a face would turn over or the surface would touch itself.
+    /// Returns how far the corner that goes is then from the surface, and those that went before it;
+    /// `None` if a face would turn over or the surface would touch itself.
     fn cost(&self, from: usize, to: usize, near: &BTreeSet<usize>) -> Option<f64> {
         if near.iter().filter(|&&other| other != to && self.meet(other, to)).count() != 2 {
             return None;
@@ -176,7 +176,7 @@ mod tests {
     use super::*;
     use std::f64::consts::{PI, TAU};
 
-    /// A sphere of `rings` rings of 2 `rings` corners.
+    /// Returns a sphere of `rings` rings of 2 `rings` corners.
     fn sphere(rings: usize, radius: f64) -> Vec<[Point3<f64>; 3]> {
         let around = 2 * rings;
         let at = |ring: usize, k: usize| {

@@ -52,7 +52,7 @@ impl Surface {
         Ok(Surface { points, faces, was_inward, mended })
     }
 
-    /// The surface turned and shifted.
+    /// Returns the surface turned and shifted.
     pub fn moved(mut self, turn: &Matrix3<f64>, by: Vector3<f64>) -> Self {
         for point in &mut self.points {
             *point = Point3::from((turn * point.coords + by).map(snap));
@@ -67,7 +67,7 @@ impl Surface {
         (points.collect(), faces.collect())
     }
 
-    /// Its pieces that meet along no edge of two faces.
+    /// Returns its pieces that meet along no edge of two faces.
     pub fn shells(&self) -> Vec<Surface> {
         let mut about: BTreeMap<[usize; 2], Vec<usize>> = BTreeMap::new();
         for (number, face) in self.faces.iter().enumerate() {

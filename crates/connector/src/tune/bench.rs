@@ -16,7 +16,7 @@ use std::sync::atomic::AtomicBool;
 /// Least window to either side of the start that counts as enough, mm.
 pub const ENOUGH_MM: f64 = 0.5;
 
-/// Where strategies for a task are tried.
+/// Setup in which strategies for a task are tried.
 pub struct Bench<'a> {
     /// The task, whose strategy is replaced.
     pub task: &'a Task,
@@ -28,11 +28,11 @@ pub struct Bench<'a> {
     pub fingers: [Finger; 3],
     /// Three others, between them.
     pub others: [Finger; 3],
-    /// Set when all results are to be thrown away.
+    /// Set to stop; results are then invalid.
     pub stop: &'a AtomicBool,
 }
 
-/// What came of a strategy.
+/// Result of a strategy.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tried {
     /// The strategy, its start where it was taught.
@@ -40,15 +40,15 @@ pub struct Tried {
     /// Windows of the soft, the medium and the stiff finger; of none where the medium one
     /// inserts from no start.
     pub windows: Vec<Window>,
-    /// The least of their ranges, mm, if all insert; otherwise below 0, by how clearly they fail.
+    /// Smallest of their ranges, mm, if all insert; otherwise the smallest margin, below 0.
     pub score: f64,
-    /// Of starts that all fail the one that fails least clearly, by the medium finger.
+    /// Trial of the medium finger with the largest margin, if all starts fail.
     pub nearest: Option<Box<Trial>>,
     /// Windows that were measured for this.
     pub cost: usize,
 }
 
-/// The measured fingers at six places between the softest and the stiffest.
+/// Returns the measured fingers at six places between the softest and the stiffest.
 pub fn fingers() -> Option<[Finger; 6]> {
     let mut designs = designs();
     designs.sort_by(|a, b| a.compliance.total_cmp(&b.compliance));
@@ -61,7 +61,7 @@ pub fn fingers() -> Option<[Finger; 6]> {
 }
 
 impl<'a> Bench<'a> {
-    /// The bench of a task; `None` if no measured fingers are shipped.
+    /// Returns the bench of a task; `None` if no measured fingers are shipped.
     pub fn new(
         task: &'a Task,
         robot: &'a Robot,
@@ -73,7 +73,7 @@ impl<'a> Bench<'a> {
         Some(Bench { task, robot, engine, fingers: [soft, medium, stiff], others, stop })
     }
 
-    /// The window of a finger and how clearly its nominal start fails, 0 if it inserts.
+    /// Returns the window of a finger and how clearly its nominal start fails, 0 if it inserts.
     fn window(
         &self,
         strategy: &Strategy,
@@ -88,7 +88,7 @@ impl<'a> Bench<'a> {
         Ok((found.window, if inserts { 0.0 } else { found.end_shares[0].min(0.0) }))
     }
 
-    /// The windows of fingers under some conditions, from the strategy's own start.
+    /// Returns the windows of fingers under some conditions, from the strategy's own start.
     pub fn windows(
         &self,
         strategy: &Strategy,
@@ -98,13 +98,13 @@ impl<'a> Bench<'a> {
         fingers.par_iter().map(|finger| self.window(strategy, finger, conditions)).collect()
     }
 
-    /// The strategy from its own start.
+    /// Returns the strategy from its own start.
     pub fn given(&self, strategy: &Strategy) -> Result<Tried, RigError> {
         let found = self.windows(strategy, &self.fingers, Conditions::NOMINAL)?;
         Ok(Tried::of(strategy.clone(), found))
     }
 
-    /// The strategy with its start moved to the middle of the medium finger's window.
+    /// Returns the strategy with its start moved to the middle of the medium finger's window.
     pub fn taught(&self, strategy: &Strategy) -> Result<Tried, RigError> {
         let mut strategy = Strategy { rule: StartRule::Given, ..strategy.clone() };
         let task = Task { strategy: strategy.clone(), ..self.task.clone() };
@@ -140,18 +140,18 @@ impl Tried {
         Tried { strategy, cost: windows.len(), windows, score, nearest: None }
     }
 
-    /// Whether all three fingers insert.
+    /// Returns whether all three fingers insert.
     pub fn inserts(&self) -> bool {
         self.score >= 0.0
     }
 
-    /// The medium finger's smaller side, mm.
+    /// Returns the medium finger's smaller side, mm.
     pub fn side_mm(&self) -> f64 {
         let side = |window: &Window| window.positive_mm().min(-window.negative_mm());
         self.windows.get(1).map_or(0.0, side)
     }
 
-    /// Whether all three insert, and the medium one far enough to either side.
+    /// Returns whether all three insert, and the medium one far enough to either side.
     pub fn is_enough(&self) -> bool {
         self.inserts() && self.side_mm() >= ENOUGH_MM
     }

@@ -31,7 +31,7 @@ enum Sets {
     Push(usize),
 }
 
-/// The knobs of a strategy, each with its bounds' source.
+/// Returns the knobs of a strategy, each with its bounds' source.
 pub fn knobs(strategy: &Strategy) -> Result<Vec<Knob>, InputError> {
     let mut rows = Priors::parse(LEVERS.text, LEVERS.file)?.parameters;
     rows.extend(Priors::parse(PRIORS[0].text, PRIORS[0].file)?.parameters);
@@ -60,7 +60,7 @@ pub fn levels(knobs: &[Knob]) -> Vec<u32> {
 }
 
 impl Knob {
-    /// The value at a share of the range, in the unit of the row, rounded to whole steps.
+    /// Returns the value at a share of the range, in the unit of the row, rounded to whole steps.
     fn at(&self, present: f64, share: f64, step: f64) -> f64 {
         let bound = |value: f64| self.row.applied(present, value);
         let [low, high] = [bound(self.row.low).min(present), bound(self.row.high).max(present)];
@@ -72,8 +72,8 @@ impl Knob {
     }
 }
 
-/// The task's strategy with its knobs at these shares of their ranges, rounded as files have them;
-/// and what they are set to, if that is new. The tip's lower edge stays where it was at the start.
+/// Returns the task's strategy with its knobs at these shares of their ranges, rounded as files have
+/// them; and what they are set to, if that is new. The tip's lower edge stays where it was at the start.
 pub fn turned(task: &Task, knobs: &[Knob], unit: &[f64]) -> (Strategy, String) {
     let mut strategy = task.strategy.clone();
     let mut said = Vec::new();

@@ -1,4 +1,4 @@
-//! A strategy by which a connector inserts, looked for before any finger is compared.
+//! Search for a strategy that inserts with a soft, a medium and a stiff finger.
 
 mod bench;
 mod knobs;
@@ -18,7 +18,7 @@ use insertion::trial::Conditions;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Most windows that are measured.
+/// Largest number of windows that are measured.
 pub const MOST_WINDOWS: usize = 150;
 /// Candidates that are proposed at a time: a number of its own, so that threads decide nothing.
 const BATCH: usize = 4;
@@ -35,7 +35,7 @@ const TURNED: Range<usize> = 1..3;
 const FINALISTS: usize = 12;
 const ALIKE: usize = 2;
 
-/// How far to go.
+/// Stage of tuning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Stage {
@@ -56,7 +56,7 @@ pub struct Step {
     pub stage: Stage,
     /// What it changes: `like a key`.
     pub what: String,
-    /// What came of it.
+    /// Result.
     pub tried: Tried,
     /// Least range of another finger with the socket turned either way, mm, if that was checked.
     pub turned_mm: Option<f64>,
@@ -68,10 +68,10 @@ impl Step {
     }
 }
 
-/// What the recommended strategy keeps under a change: least range of three other fingers, mm; 0
-/// where one of them fails.
+/// Robustness of the recommended strategy to a change: smallest range of three other fingers, mm; 0 if
+/// one of them fails.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct Kept {
+pub struct Robustness {
     /// The change: `yaw +1°`.
     pub change: String,
     /// Least range, mm.
@@ -85,13 +85,13 @@ pub struct Tuned {
     pub steps: Vec<Step>,
     /// Index of the recommended step.
     pub best: usize,
-    /// What other fingers keep under changes; empty unless it was asked for.
-    pub kept: Vec<Kept>,
+    /// Ranges of other fingers under changes; empty unless requested.
+    pub kept: Vec<Robustness>,
     /// Windows measured for all this.
     pub windows: usize,
 }
 
-/// How far to look for a strategy.
+/// Effort of tuning.
 pub struct Effort<'a> {
     /// The last stage.
     pub last: Stage,
@@ -99,7 +99,7 @@ pub struct Effort<'a> {
     pub until_enough: bool,
     /// Seed of the search.
     pub seed: u64,
-    /// Is told what was tried, its windows, those measured so far, and the most there may be.
+    /// Progress callback: what was tried, its windows, windows measured so far, and their maximum.
     pub tell: &'a (dyn Fn(&str, usize, usize, usize) + Sync),
 }
 
@@ -138,12 +138,12 @@ pub fn tune(bench: &Bench, effort: &Effort) -> Result<Tuned, Impossible> {
 }
 
 impl Tuned {
-    /// The recommended step.
+    /// Returns the recommended step.
     pub fn best(&self) -> &Step {
         &self.steps[self.best]
     }
 
-    /// Whether the recommended strategy inserts with all three fingers.
+    /// Returns whether the recommended strategy inserts with all three fingers.
     pub fn inserts(&self) -> bool {
         self.best().tried.inserts()
     }
@@ -216,7 +216,7 @@ impl Tuned {
     /// Windows of the check.
     const CHECKS: usize = CHANGES * EACH + TURNED.end * FINALISTS - TURNED.start * FINALISTS;
 
-    /// Recommends what keeps most where the socket is turned, and says what that keeps under all changes.
+    /// Recommends the strategy with the widest range under a turned socket, and measures it under all changes.
     fn check(&mut self, bench: &Bench) -> Result<(), Impossible> {
         let inserts = |place: &usize| self.steps[*place].tried.inserts();
         let mut order: Vec<_> = (0..self.steps.len()).filter(inserts).collect();
@@ -255,14 +255,14 @@ impl Tuned {
         Ok(())
     }
 
-    /// What a strategy keeps with some fingers, with a turned socket and with other friction.
+    /// Measures the smallest range of fingers under turned sockets and other friction.
     fn kept(
         &self,
         bench: &Bench,
         strategy: &Strategy,
         fingers: &[Finger],
         which: Range<usize>,
-    ) -> Result<Vec<Kept>, Impossible> {
+    ) -> Result<Vec<Robustness>, Impossible> {
         let nominal = Conditions::NOMINAL;
         let yaw = |degrees: f64| Conditions { yaw: degrees * DEG, ..nominal };
         let friction = |factor| Conditions { friction_socket: factor, ..nominal };
@@ -278,12 +278,13 @@ impl Tuned {
             let windows = bench.windows(strategy, fingers, *conditions)?;
             let ranges = windows.iter().map(|(window, _)| window.range_mm());
             let least_range_mm = ranges.fold(f64::INFINITY, f64::min);
-            Ok(Kept { change: change.clone(), least_range_mm })
+            Ok(Robustness { change: change.clone(), least_range_mm })
         };
         changes[which].par_iter().map(under).collect()
     }
 
-    /// Where the start that failed least clearly came to its end, of strategies without any that inserts.
+    /// Returns where the start that failed least clearly came to its end, of strategies without any that
+    /// inserts.
     pub fn nearest(&self, task: &Task) -> Option<Stopped> {
         let failed = self.steps.iter().filter_map(|step| step.tried.nearest.as_ref());
         let trial = failed.max_by(|a, b| a.margin.total_cmp(&b.margin))?;
@@ -312,7 +313,7 @@ impl Tuned {
 /// Distance within which a part is at a contact point, m.
 const TOUCHING: f64 = 0.05 * MM;
 
-/// How the start that failed least clearly ended.
+/// End of the trial with the largest margin, if all failed.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Stopped {
     /// How it failed.

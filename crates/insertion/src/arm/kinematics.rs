@@ -93,7 +93,7 @@ impl Posture {
         jacobian
     }
 
-    /// The Jacobian of the TCP, base axes.
+    /// Returns the Jacobian of the TCP, base axes.
     pub fn tcp_jacobian(&self) -> Matrix6<f64> {
         self.jacobian(&Point3::from(self.tcp.translation.vector), JOINTS - 1)
     }

@@ -1,4 +1,4 @@
-//! The arm as its TCP feels it at one pose.
+//! Reduced model of an arm at its TCP at one pose.
 
 use super::{Angles, Arm, ArmError};
 use contact::scene::{Pose, Springs};
@@ -34,7 +34,7 @@ pub struct Reduced {
 }
 
 impl Arm {
-    /// The arm at a task's start: the TCP where it is at the home angles, the task frame turned
+    /// Returns the arm at a task's start: the TCP where it is at the home angles, the task frame turned
     /// about the base's z by `turn`, the TCP tilted about the task's x by `tilt`, rad.
     ///
     /// # Errors
@@ -47,7 +47,7 @@ impl Arm {
         Ok(Reduced { tilt, ..self.reduced(&angles, &task)? })
     }
 
-    /// The arm at some joint angles, its TCP upright; `task` turns task axes into base axes.
+    /// Returns the arm at some joint angles, its TCP upright; `task` turns task axes into base axes.
     ///
     /// # Errors
     /// If a direction is left in which no joint moves the TCP.
@@ -106,14 +106,14 @@ impl Reduced {
         (!self.feed_forward).then_some(brake)
     }
 
-    /// Whether a force at the TCP (task axes, N) asks more of a joint than it has.
+    /// Returns whether a force at the TCP (task axes, N) asks more of a joint than it has.
     pub fn overloaded(&self, force: &Vector3<f64>) -> bool {
         let torques = self.torques * force;
         torques.iter().zip(self.limits).any(|(torque, limit)| torque.abs() > limit)
     }
 }
 
-/// A rotation of linear and of angular velocities.
+/// Returns a rotation of linear and of angular velocities.
 fn both(rotation: &UnitQuaternion<f64>) -> Matrix6<f64> {
     let axes: Matrix3<f64> = rotation.to_rotation_matrix().into_inner();
     let mut both = Matrix6::zeros();

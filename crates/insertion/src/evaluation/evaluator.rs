@@ -1,11 +1,11 @@
-//! Design in, evaluation out: the one way from a design to what is measured of it.
+//! Evaluator: from a design to its evaluation.
 
 use super::cell::{Priors, change};
-use super::leaving;
 use super::robustness::firm::{self, Firm};
 use super::robustness::race::Race;
 use super::robustness::repeat::Repeats;
 use super::robustness::{self, Drawn, Plan};
+use super::shape_correction;
 use super::taught::{Moved, teach};
 use super::template::{Impossible, Template};
 use super::tolerance::Search;
@@ -66,12 +66,12 @@ pub struct Evaluator {
     pub cell: Option<Priors>,
 }
 
-/// A design on one task: what is simulated.
+/// Task and finger of a design, ready for simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Specimen {
     /// The task, with the numbers that the design sets.
     pub task: Task,
-    /// What it was made of.
+    /// Design.
     pub design: Design,
     /// Finger that the design gives.
     pub finger: Finger,
@@ -94,17 +94,17 @@ pub struct Measured {
 
 /// Evaluates designs, several at a time.
 pub trait Evaluate: Sync {
-    /// Measures one design; equal designs measure equal.
+    /// Evaluates a design; equal designs give equal results.
     fn evaluate(&self, design: &Design) -> Result<Measured, Impossible>;
 
-    /// The same in a race. What takes part in none measures in full.
+    /// Evaluates a design in a race; by default in full.
     fn race(&self, design: &Design, _race: &Race) -> Result<Measured, Impossible> {
         self.evaluate(design)
     }
 }
 
 impl Evaluator {
-    /// The stiffness predicted for a design, which must name the infill.
+    /// Returns the stiffness predicted for a design, which must name the infill.
     pub fn predict(&self, design: &Design) -> Result<Prediction, Impossible> {
         let value = |key| design.get(key).unwrap_or(f64::NAN);
         let plain = self.surrogate.predict(value(DENSITY_KEY), value(DIRECTION_KEY))?;
@@ -113,12 +113,12 @@ impl Evaluator {
             FingerSource::Computed(fingers) => {
                 let measured = &self.surrogate.measurements;
                 let design = &self.completed(None, design, &self.rows(None));
-                Ok(leaving::predict(fingers, measured, design, plain)?)
+                Ok(shape_correction::predict(fingers, measured, design, plain)?)
             }
         }
     }
 
-    /// A design of this stiffness on one of the tasks, in the cell if that is known.
+    /// Returns a design of this stiffness on one of the tasks, in the cell if that is known.
     pub fn specimen(
         &self,
         template: &Template,
@@ -168,7 +168,8 @@ impl Evaluator {
         Ok(Some(teach(&*rig, &specimen.finger, stop).map_or(0, |taught| taught.by)))
     }
 
-    /// Where trials of a specimen are run, from its taught start, at `step_factor` times the step.
+    /// Returns where trials of a specimen are run, from its taught start, at `step_factor` times the
+    /// step.
     pub fn rig(
         &self,
         specimen: &Specimen,
@@ -235,8 +236,8 @@ impl Evaluator {
         self.measure(&taught, search, plan, stop)
     }
 
-    /// The firm part of the window that was measured of a specimen, from the start taught then, by
-    /// [`firm::REPEATS`] repeats that this seed names; worthless once `stop` is set.
+    /// Returns the firm part of the window that was measured of a specimen, from the start taught then,
+    /// by [`firm::REPEATS`] repeats that this seed names; worthless once `stop` is set.
     pub fn firm(
         &self,
         specimen: &Specimen,

@@ -2,10 +2,10 @@
 
 pub mod cell;
 pub mod evaluator;
-mod leaving;
 pub mod objective;
 pub mod robustness;
 mod schema;
+mod shape_correction;
 pub mod taught;
 pub mod template;
 pub mod tolerance;
@@ -16,7 +16,7 @@ use crate::surrogate::null_is_nan;
 use ask_tell::statistics::{Moments, normal_quantile};
 use serde::{Deserialize, Serialize};
 
-/// Difference of two ranges that a bench cannot tell, mm: measured windows of the publication differ by 0.1
+/// Difference of two ranges below the resolution of a bench, mm: measured windows of the publication differ by 0.1
 /// to 0.5 mm.
 pub const INDIFFERENCE_MM: f64 = 0.3;
 
@@ -26,7 +26,7 @@ pub type OffsetStep = i32;
 /// Width of the offset grid: the paper shifts the start by 0.1 mm.
 pub const OFFSET_STEP_MM: f64 = 0.1;
 
-/// The offsets that insert around the nominal start, and what ended the search at each end.
+/// Tolerance window: offsets about the nominal start that insert, and the outcome beyond each end.
 ///
 /// Invariant of a window with `nominal == Inserted`: `negative_steps <= 0 <=
 /// positive_steps`, and both were found to insert. By the step-by-step walk every grid
@@ -55,32 +55,32 @@ pub struct Window {
 }
 
 impl Window {
-    /// Width in mm: 0 when the nominal start fails.
+    /// Returns the width in mm; 0 if the nominal start fails.
     pub fn range_mm(&self) -> f64 {
         if self.nominal != Outcome::Inserted {
             return 0.0;
         }
-        // Whoever made it up: a window that is read may be any.
+        // Deserialized windows are not trusted.
         grid_mm(self.positive_steps.saturating_sub(self.negative_steps))
     }
 
-    /// Most negative inserting offset in mm (0 or below).
+    /// Returns the most negative inserting offset in mm (0 or below).
     pub fn negative_mm(&self) -> f64 {
         grid_mm(self.negative_steps)
     }
 
-    /// Most positive inserting offset in mm (0 or above).
+    /// Returns the most positive inserting offset in mm (0 or above).
     pub fn positive_mm(&self) -> f64 {
         grid_mm(self.positive_steps)
     }
 }
 
-/// A number of grid steps in mm, without the rounding noise of `n * 0.1`.
+/// Returns a number of grid steps in mm, without the rounding noise of `n * 0.1`.
 pub fn grid_mm(steps: OffsetStep) -> f64 {
     f64::from(steps) / 10.0
 }
 
-/// Everything measured for one design on one task; counts and times are the window search's.
+/// Evaluation of one design on one task; counts and times are the window search's.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
     /// Tolerance window around the nominal start.
@@ -133,7 +133,7 @@ pub struct SuccessRate {
     /// Trials that diverged; they do not count.
     #[serde(rename = "success_diverged")]
     pub diverged: u32,
-    /// Draws that failed, by number from 0, ascending; empty if that was not kept.
+    /// Indices of the draws that failed, ascending; empty if not recorded.
     #[serde(rename = "success_failed_draws", default, skip_serializing_if = "Vec::is_empty")]
     pub failed_draws: Vec<u32>,
     /// Draws left out because the [`Race`](robustness::race::Race) was lost without them.
@@ -146,13 +146,13 @@ fn is_zero(count: &u32) -> bool {
 }
 
 impl SuccessRate {
-    /// Trials that ended one way or the other.
+    /// Returns the number of trials that inserted or failed.
     pub fn counted(&self) -> u32 {
         let failed = self.failure_counts.iter();
         failed.fold(self.inserted, |sum, &count| sum.saturating_add(count))
     }
 
-    /// One of the draws left ended so.
+    /// Counts the outcome of one of the remaining draws.
     fn count(&mut self, draw: u32, outcome: Outcome) {
         self.spared = self.spared.saturating_sub(1);
         match outcome {
@@ -165,22 +165,22 @@ impl SuccessRate {
         }
     }
 
-    /// Draws that were tried.
+    /// Returns the number of draws that were tried.
     pub fn tried(&self) -> u32 {
         self.counted().saturating_add(self.diverged)
     }
 
-    /// The draws that were tried, if not all were.
+    /// Returns the draws that were tried, if not all were.
     pub fn raced(&self) -> Option<u32> {
         (self.spared > 0).then(|| self.tried())
     }
 
-    /// Share of the counted trials that inserted, 0 to 1; `None` if none counts or some were left out.
+    /// Returns the share of the counted trials that inserted, 0 to 1; `None` if none counts or some were left out.
     pub fn rate(&self) -> Option<f64> {
         self.at_most().filter(|_| self.spared == 0)
     }
 
-    /// The rate if all that was left out inserted; `None` if nothing counts.
+    /// Returns the rate if all that was left out inserted; `None` if nothing counts.
     pub fn at_most(&self) -> Option<f64> {
         let [inserted, counted] =
             [self.inserted, self.counted()].map(|n| f64::from(n) + f64::from(self.spared));
@@ -217,12 +217,12 @@ pub struct RobustRange {
 }
 
 impl RobustRange {
-    /// Mean of the ranges, mm; NaN if there are none.
+    /// Returns the mean of the ranges, mm; NaN if there are none.
     pub fn mean_mm(&self) -> f64 {
         Moments::of(&self.ranges_mm).mean
     }
 
-    /// Standard deviation of the ranges (with n - 1), mm; NaN for fewer than two.
+    /// Returns the standard deviation of the ranges (with n - 1), mm; NaN for fewer than two.
     pub fn sd_mm(&self) -> f64 {
         Moments::of(&self.ranges_mm).sample_deviation()
     }

@@ -96,7 +96,7 @@ pub(super) fn taught_steps<'de, D: Deserializer<'de>>(
     Ok(Option::deserialize(from)?.map(steps))
 }
 
-/// A share that is no number would not be read again.
+/// Writes shares with 0 for NaN, which JSON could not hold.
 pub(super) fn finite<S: Serializer>(shares: &[f64; 2], to: S) -> Result<S::Ok, S::Error> {
     shares.map(|share| if share.is_finite() { share } else { 0.0 }).serialize(to)
 }

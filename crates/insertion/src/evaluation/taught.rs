@@ -1,8 +1,8 @@
-//! A taught start: where a person would put it who moves the robot until the plug goes in.
+//! Taught start: the start that an operator finds by moving the robot until the plug goes in.
 //!
-//! From the task's own start outward, in strides of 0.5 mm (+0.5, -0.5, +1 and so on), the first
-//! that inserts is looked for; then the window around it; the start is its middle. If the
-//! middle does not insert, since the window has a gap, the start stays where it was found.
+//! The first start that inserts is searched outward from the task's own in strides of 0.5 mm (+0.5, -0.5,
+//! +1 and so on), then the window about it; the taught start is the middle of the window. If the
+//! middle does not insert, because the window has a gap, the first start is used.
 
 use super::tolerance::{self, OFFSET_LIMIT_STEPS, Search, offset};
 use super::{OffsetStep, Window};
@@ -26,7 +26,7 @@ pub struct Taught {
     pub window: Window,
 }
 
-/// Of starts that all fail the one that fails least clearly.
+/// Start with the largest margin if all starts fail.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Nearest {
     /// Shift of the start, in grid steps.
@@ -57,7 +57,7 @@ pub fn teach(rig: &dyn Rig, finger: &Finger, stop: &AtomicBool) -> Result<Taught
     Ok(Taught { by, window })
 }
 
-/// The first start that inserts, outward from the task's own.
+/// Returns the first start that inserts, outward from the task's own.
 fn first(grasped: &dyn Grasped) -> Result<OffsetStep, Box<Nearest>> {
     let outward = (1..=FARTHEST / STRIDE).flat_map(|n| [n * STRIDE, -n * STRIDE]);
     let mut nearest = Nearest { by: 0, trial: grasped.trial(0.0) };

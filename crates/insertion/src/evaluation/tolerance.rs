@@ -1,4 +1,4 @@
-//! The tolerance window of one finger: which shifted starts insert.
+//! Tolerance window of a finger: the shifted starts that insert.
 
 use crate::evaluation::{Evaluation, OFFSET_STEP_MM, OffsetStep, Window};
 use crate::finger::Finger;
@@ -16,7 +16,7 @@ pub enum Search {
     /// Step by step outward to the first failure: the paper's way.
     Walk,
     /// In strides of 0.5 mm outward to the first failure, then by bisection: a third of the trials.
-    /// It finds the walk's end unless a gap in the window is narrower than a stride: on 43 of the
+    /// The result is the end of the walk unless a gap in the window is narrower than a stride: on 43 of the
     /// 44 pairs of task and measured finger (`docs/notes/performance.md`).
     #[default]
     Strides,
@@ -104,19 +104,19 @@ fn find_end(
     (End { step, failure: outside.map(|(_, failure, _)| failure), share }, trials)
 }
 
-/// Where a line from a margin of 0 or above to one of 0 or below crosses 0, from 0 to 1.
+/// Returns where a line from a margin of 0 or above to one of 0 or below crosses 0, from 0 to 1.
 fn share(inside: f64, outside: f64) -> f64 {
     let drop = inside - outside;
     if drop > 0.0 { inside / drop } else { 0.0 }
 }
 
-/// The offset of a grid step, m.
+/// Returns the offset of a grid step, m.
 pub fn offset(step: OffsetStep) -> f64 {
     f64::from(step) * OFFSET_STEP_MM * MM
 }
 
 impl Evaluation {
-    /// A window without the trials by which it was found.
+    /// Returns an evaluation with this window and no trials.
     pub(super) fn of(window: Window, end_shares: [f64; 2]) -> Self {
         Evaluation {
             window,

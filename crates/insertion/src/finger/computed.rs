@@ -39,7 +39,7 @@ pub struct AtPad {
 }
 
 impl AtPad {
-    /// The means of a prediction.
+    /// Returns the means of a prediction.
     pub fn of(predicted: &Prediction) -> Self {
         AtPad { compliance: predicted.compliance.mean, assembly: predicted.assembly.mean }
     }
@@ -52,8 +52,8 @@ impl Pad {
     }
 }
 
-/// The finger that is so stiff at the pad, from the stiffness computed in its `plane` and, of x, ry and
-/// rz at the pad's middle, `across` it; the part's `shoulder` lies so far above the TCP, m.
+/// Returns the finger that is so stiff at the pad, from the stiffness computed in its `plane` and, of x,
+/// ry and rz at the pad's middle, `across` it; the part's `shoulder` lies so far above the TCP, m.
 ///
 /// # Errors
 /// If turning about the centre alone gives way by more than that.

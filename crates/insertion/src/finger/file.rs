@@ -1,4 +1,4 @@
-//! A finger file, the numbers of which a design may set: its shape and its material.
+//! Finger file whose numbers (shape and material) a design may set.
 //!
 //! A key is `finger.`, then the path in the finger file (`finger.skin.thickness_mm`); values are
 //! in the unit that the key carries. They are put into the file as read, before its checks.
@@ -9,7 +9,7 @@ use finray::printed::PrintedFinger;
 use input::numbers::NumberFile;
 use input::{Document, InputError};
 
-/// A finger file, the numbers of which a design may set.
+/// Finger file whose numbers a design may set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FingerFile {
     /// Numbers of the file, by their keys.
@@ -18,7 +18,7 @@ pub struct FingerFile {
     pub finger: PrintedFinger,
 }
 
-/// Whether a key sets a number of a finger file: in a table, as no number of its springs is.
+/// Returns whether a key sets a number of a finger file: in a table, as no number of its springs is.
 pub fn is_shape(key: &str) -> bool {
     key.strip_prefix("finger.").is_some_and(|path| path.contains('.'))
 }
@@ -45,7 +45,7 @@ impl FingerFile {
         Ok(FingerFile { numbers: NumberFile::read("finger", &document)?, finger })
     }
 
-    /// The finger with the numbers that a design sets; keys of anything else are left alone.
+    /// Returns the finger with the numbers that a design sets; keys of anything else are left alone.
     ///
     /// # Errors
     /// If a key sets nothing, or a value cannot be used.

@@ -60,7 +60,7 @@ impl Finger {
         })
     }
 
-    /// A finger of this compliance and assembly stiffness, N/m; everything else as in the paper.
+    /// Returns a finger of this compliance and assembly stiffness, N/m; everything else as in the paper.
     pub fn new(compliance: f64, assembly: f64) -> Self {
         Finger {
             compliance,
@@ -77,7 +77,7 @@ impl Finger {
         }
     }
 
-    /// The finger with what a task file says of it, the infill in this direction, degrees.
+    /// Returns the finger with what a task file says of it, the infill in this direction, degrees.
     pub fn shaped(self, model: &FingerModel, direction_deg: f64) -> Self {
         let rcc = model.rcc.map_or(Rcc::PAPER_DISTANCE, |rcc| rcc.at(direction_deg));
         Finger { rcc, coupling: model.coupling, ..self }
@@ -131,7 +131,7 @@ const ROOF_THICKNESS: f64 = 3.0 * MM;
 pub const ROOF_GAP: f64 = 0.05 * MM;
 
 impl Finger {
-    /// The six springs about the RCC: translations x, y, z, rotations x, y, z.
+    /// Returns the six springs about the RCC: translations x, y, z, rotations x, y, z.
     pub fn springs(&self) -> [Spring; 6] {
         let translation = |k: f64| Spring::new(k, self.damping);
         let rotation = |k: f64| Spring::new(k, self.rotational_damping);

@@ -1,4 +1,4 @@
-//! Where the springs of a finger come from that were not measured: the paper, or its ribs.
+//! Models of the springs of a finger that were not measured: of the paper, or computed from the ribs.
 
 use super::Finger;
 use super::computed::{self, AtPad, Given};
@@ -79,8 +79,8 @@ impl FingerSource {
         }
     }
 
-    /// The finger of a design on a task, so stiff at its pad (or, in the paper, at its centre). Its
-    /// other numbers, but for remote centre and tilting stiffness, are set by the caller.
+    /// Returns the finger of a design on a task, so stiff at its pad (or, in the paper, at its centre).
+    /// Its other numbers, but for remote centre and tilting stiffness, are set by the caller.
     ///
     /// # Errors
     /// If the printed finger cannot be, or cannot be so stiff.
@@ -109,7 +109,7 @@ impl FingerSource {
         Ok(Made { finger, centre })
     }
 
-    /// A finger of this kind, for asking whether an engine can simulate such.
+    /// Returns a finger of this kind, for asking whether an engine can simulate such.
     pub fn any(&self, task: &Task) -> Finger {
         let finger = Finger::new(1.0, 1.0).shaped(&task.finger, 0.0);
         match self {
@@ -125,7 +125,7 @@ impl ComputedFingers {
         ComputedFingers { file, cache: StiffnessCache::default() }
     }
 
-    /// The stiffness of a design from its ribs, computed once; NaN of the infill is refused.
+    /// Returns the stiffness of a design from its ribs, computed once; NaN of the infill is refused.
     ///
     /// # Errors
     /// If the printed finger cannot be.

@@ -1,4 +1,4 @@
-//! The stiffness that its ribs give a finger: the physical mean where few fingers were measured.
+//! Stiffness computed from the ribs: mean of the model if few fingers were measured.
 
 use super::{Estimate, Fitted, Measured};
 use crate::stiffness::{Axis, Infill};
@@ -17,12 +17,12 @@ pub struct Computed {
 }
 
 impl Computed {
-    /// The fingers of this file.
+    /// Returns the fingers of this file.
     pub fn new(finger: &PrintedFinger) -> Self {
         Computed { finger: finger.clone(), known: Mutex::default() }
     }
 
-    /// A finger's stiffness at every phase of its ribs.
+    /// Returns a finger's stiffness at every phase of its ribs.
     ///
     /// # Errors
     /// If it cannot be made.

@@ -24,7 +24,7 @@ pub(super) struct Link {
 }
 
 impl Link {
-    /// A link for these stiffnesses, N/m.
+    /// Returns a link for these stiffnesses, N/m.
     pub fn new<'a>(sum: Sum, stiffness: impl IntoIterator<Item = &'a f64>) -> Self {
         let plain = Link { sum, scale: None };
         let smallest =

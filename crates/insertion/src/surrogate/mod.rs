@@ -54,7 +54,7 @@ pub struct Prediction {
 }
 
 impl Prediction {
-    /// A stiffness that is known, N/m.
+    /// Returns a stiffness that is known, N/m.
     pub fn exact(compliance: f64, assembly: f64) -> Self {
         let exact = |mean| Estimate { mean, sd: 0.0 };
         Prediction { compliance: exact(compliance), assembly: exact(assembly), hull_distance: 0.0 }
@@ -65,12 +65,12 @@ impl Prediction {
         [self.compliance, self.assembly].map(|Estimate { mean, sd }| [mean, sd])
     }
 
-    /// Whether the design lies inside the hull of the measured designs.
+    /// Returns whether the design lies inside the hull of the measured designs.
     pub fn inside_hull(&self) -> bool {
         self.hull_distance == 0.0
     }
 
-    /// The estimate of one axis, N/m.
+    /// Returns the estimate of one axis, N/m.
     pub fn axis(&self, axis: Axis) -> Estimate {
         match axis {
             Axis::Assembly => self.assembly,
@@ -178,7 +178,7 @@ impl Standard {
         Standard { mean, sd: if variance > 0.0 { variance.sqrt() } else { 1.0 } }
     }
 
-    /// A value in standard deviations about the mean.
+    /// Returns a value in standard deviations about the mean.
     pub fn apply(self, value: f64) -> f64 {
         (value - self.mean) / self.sd
     }

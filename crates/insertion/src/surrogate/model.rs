@@ -29,7 +29,7 @@ pub enum ModelKind {
 }
 
 impl ModelKind {
-    /// The models that know nothing of ribs, simplest first.
+    /// Models without computed stiffness, simplest first.
     pub const MEASURED: [ModelKind; 4] = [
         ModelKind::Linear,
         ModelKind::RidgeLinear,
@@ -37,7 +37,7 @@ impl ModelKind {
         ModelKind::GaussianProcess,
     ];
 
-    /// A short name for tables.
+    /// Returns a short name for tables.
     pub fn label(self) -> &'static str {
         match self {
             ModelKind::Linear => "linear (reference)",
@@ -77,7 +77,7 @@ pub struct Loo {
     pub rmse_n_per_mm: f64,
     /// Mean absolute error relative to the measured stiffness, percent.
     pub mean_absolute_percent: f64,
-    /// Root mean square of error / predicted standard deviation: above 1 the model is too sure.
+    /// Root mean square of error / predicted standard deviation: above 1 the model is overconfident.
     pub standardised_rms: f64,
     /// Prediction for each design when it is left out, N/m, in input order.
     pub left_out: Vec<f64>,
@@ -101,7 +101,7 @@ impl Data {
         Data { axis, measured: measured(&infills, &values.collect::<Vec<_>>()), units }
     }
 
-    /// A model of all designs.
+    /// Returns a model of all designs.
     fn fit(&self, kind: ModelKind) -> Option<Box<dyn Fitted>> {
         fit_axis(self.axis, kind, &self.measured)
     }
@@ -207,7 +207,7 @@ fn choose(
         .min_by(|a, b| a.mean_absolute_percent.total_cmp(&b.mean_absolute_percent))
         .ok_or(unfittable.clone())?;
     best.chosen = true;
-    // Too sure of itself: widen until the left-out errors fit. Never narrow.
+    // Overconfident: widen until the left-out errors fit. Never narrow.
     let widen = best.standardised_rms.max(1.0);
     let fitted = data.fit(best.model).ok_or(unfittable)?;
     Ok((Chosen { fitted, widen }, loo))
@@ -239,7 +239,7 @@ impl Model {
         })
     }
 
-    /// How many fingers it rests on, in words.
+    /// Returns how many fingers it rests on, in words.
     pub fn counted(&self) -> String {
         match self.measurements.len() {
             1 => "1 measured design".to_owned(),
@@ -247,12 +247,12 @@ impl Model {
         }
     }
 
-    /// The row of the model used on an axis.
+    /// Returns the row of the model used on an axis.
     pub fn chosen(&self, axis: Axis) -> Option<&Loo> {
         self.loo.iter().find(|row| row.axis == axis && row.chosen)
     }
 
-    /// The model's parameters on an axis, in words.
+    /// Returns the model's parameters on an axis, in words.
     pub fn describe(&self, axis: Axis) -> String {
         self.chosen[axis as usize].fitted.describe()
     }

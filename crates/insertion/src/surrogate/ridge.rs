@@ -1,4 +1,4 @@
-//! Ridge polynomials: the baseline that knows no physics.
+//! Ridge polynomials: baseline without physics.
 //!
 //! Terms and target are standardised, then fitted by `linfa-elasticnet` with an L1 share of 0. The
 //! penalty has the smallest leave-one-out error of the designs given.

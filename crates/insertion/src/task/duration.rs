@@ -30,7 +30,7 @@ impl Phase {
 }
 
 impl Strategy {
-    /// The problem if a trial can take longer than `LONGEST_TRIAL_S` on a robot that takes
+    /// Returns the problem if a trial can take longer than `LONGEST_TRIAL_S` on a robot that takes
     /// `settling` seconds to follow a command and makes a phase's move longer by its `lead`, m.
     pub fn too_long(&self, lead: impl Fn(&Phase) -> f64, settling: f64) -> Option<String> {
         let seconds = |phase: &Phase| phase.longest_s(lead(phase), settling);

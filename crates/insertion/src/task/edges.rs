@@ -68,7 +68,7 @@ const ROOM: &str = "take off more than the part has; make them smaller";
 /// Problem of so thin, or so small, a part that corners of the hull would be lost.
 const THIN: &str = "need a part that is not so thin or so small; leave its edges sharp";
 
-/// The solid that the cuts leave of a box.
+/// Returns the solid that the cuts leave of a box.
 ///
 /// # Errors
 /// The problem of the cuts.
@@ -96,14 +96,14 @@ pub fn cut(
 }
 
 impl Solid {
-    /// A box with a chamfer along the edges of that name; `None` where there is none to be made.
+    /// Returns a box with a chamfer along the edges of that name; `None` where there is none to be made.
     pub fn chamfered(min: &Vector3<f64>, max: &Vector3<f64>, at: &str, leg: f64) -> Option<Self> {
         let edges: Vec<_> = named(at)?.into_iter().map(|edge| (edge, Cut::Chamfer(leg))).collect();
         cut(min, max, &edges).ok()
     }
 }
 
-/// Whether the cuts of each face leave one another room on it.
+/// Returns whether the cuts of each face leave one another room on it.
 fn fit(size: &Vector3<f64>, edges: &[(Edge, Cut)]) -> bool {
     let reach = |edge: Edge| {
         let cut = edges.iter().find(|(other, _)| same(other, &edge));
@@ -133,7 +133,7 @@ fn flats(spaces: &mut Vec<HalfSpace>, [a, b]: [Vector3<f64>; 2], edge: &Vector3<
     }
 }
 
-/// The points that three of the planes share and that lie in all the half-spaces.
+/// Returns the points that three of the planes share and that lie in all the half-spaces.
 fn corners(spaces: &[HalfSpace]) -> Vec<Point3<f64>> {
     let mut found: Vec<Point3<f64>> = Vec::new();
     for (i, a) in spaces.iter().enumerate() {
@@ -152,7 +152,7 @@ fn corners(spaces: &[HalfSpace]) -> Vec<Point3<f64>> {
     found
 }
 
-/// The point that three planes share, unless they meet in a line or nowhere.
+/// Returns the point that three planes share, unless they meet in a line or nowhere.
 fn meeting(planes: [&HalfSpace; 3]) -> Option<Point3<f64>> {
     let normals = Matrix3::from_rows(&planes.map(|(normal, _)| normal.transpose()));
     if normals.determinant().abs() < 1e-6 {

@@ -62,7 +62,7 @@ pub enum Solid {
 }
 
 impl Part {
-    /// The part as a geom on a body whose frame is the part's frame.
+    /// Returns the part as a geom on a body whose frame is the part's frame.
     pub fn geom(&self) -> Geom {
         let (shape, origin) = self.solid.shape();
         Geom {
@@ -75,7 +75,7 @@ impl Part {
 }
 
 impl Solid {
-    /// The solid as a centred shape and where its centre lies.
+    /// Returns the solid as a centred shape and where its centre lies.
     pub fn shape(&self) -> (Shape, Vector3<f64>) {
         match self {
             Solid::Box { min, max } => (Shape::Box { half: (max - min) / 2.0 }, (max + min) / 2.0),
@@ -139,7 +139,7 @@ impl Solid {
     }
 }
 
-/// The two axes that are not `axis`, in the order x, y, z.
+/// Returns the two axes that are not `axis`, in the order x, y, z.
 pub(crate) fn other_axes(axis: usize) -> (usize, usize) {
     match axis {
         0 => (1, 2),

@@ -1,4 +1,4 @@
-//! One attempt at an insertion: the phases, step by step, and what is watched on the way.
+//! One attempt at an insertion: phases, step by step, and their monitoring.
 
 use super::cell::{self, Hand, WorkCell};
 use super::classify::{Facts, Placement, classify};
@@ -32,7 +32,7 @@ pub(super) enum Stop {
     Lost,
     ForceLimit,
     Diverged,
-    /// The study is to stop: what comes of it is worthless.
+    /// Stopped by the study; the result is invalid.
     Interrupted,
 }
 
@@ -42,7 +42,7 @@ impl From<Diverged> for Stop {
     }
 }
 
-/// An attempt as it goes on; a clone goes on bit for bit alike.
+/// State of an attempt; a clone continues bit for bit alike.
 #[derive(Clone)]
 pub(super) struct Attempt<'a> {
     robot: Arc<Mounted>,
@@ -97,7 +97,7 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// The same, which nothing stops any more.
+    /// Returns the attempt without its stop flag.
     pub fn unstoppable(self) -> Attempt<'static> {
         let Attempt { robot, task, cell, world, target, stage, begun, conditions, socket, .. } =
             self;
@@ -123,7 +123,8 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// A copy with the start shifted by `offset` metres along y, and as the conditions say along x.
+    /// Returns a copy with the start shifted by `offset` metres along y, and as the conditions say along
+    /// x.
     pub fn shifted(&self, offset: f64) -> Attempt<'a> {
         let mut shifted = self.clone();
         // Shifting the start is shifting the socket the other way: the part has
@@ -138,7 +139,7 @@ impl<'a> Attempt<'a> {
     /// Grasp, lift, tilt, carry to the start, and the approach through the air.
     pub fn prepare(&mut self) -> Result<(), Stop> {
         let task = Arc::clone(&self.task);
-        self.take()?;
+        self.grasp()?;
         let position = Vector3::from(task.strategy.start);
         self.carry(Tcp { position, tilt: task.strategy.tilt })?;
         for phase in task.strategy.phases.iter().filter(|phase| phase.stage == Stage::Approach) {
@@ -148,8 +149,8 @@ impl<'a> Attempt<'a> {
     }
 
     /// Grasps the part.
-    pub fn take(&mut self) -> Result<(), Stop> {
-        self.coarsely(Self::close)?;
+    pub fn grasp(&mut self) -> Result<(), Stop> {
+        self.with_coarse_step(Self::close)?;
         self.grasp = self.grasp_points();
         if self.task.grip.hold == Hold::Always {
             self.hold();
@@ -215,7 +216,7 @@ impl<'a> Attempt<'a> {
         Move::new(self.target, self.target.moved(displacement), phase.speed)
     }
 
-    /// The jaws stay where they are from now on.
+    /// Holds the jaws at their position.
     fn hold(&mut self) {
         let flange = self.world.pose(self.cell.flange);
         for hand in self.cell.hands {
@@ -235,11 +236,11 @@ impl<'a> Attempt<'a> {
 
     /// Waits, s.
     pub fn rest(&mut self, time: f64) -> Result<(), Stop> {
-        self.coarsely(|attempt| (0..attempt.steps(time)).try_for_each(|_| attempt.step()))
+        self.with_coarse_step(|attempt| (0..attempt.steps(time)).try_for_each(|_| attempt.step()))
     }
 
-    /// Takes longer steps meanwhile, while nothing is commanded to move.
-    fn coarsely<T>(&mut self, steps: impl FnOnce(&mut Self) -> T) -> T {
+    /// Runs `steps` with a longer step, while no motion is commanded.
+    fn with_coarse_step<T>(&mut self, steps: impl FnOnce(&mut Self) -> T) -> T {
         let fine = self.world.step_s();
         self.world.set_step(fine * COARSE);
         let result = steps(self);
@@ -247,7 +248,7 @@ impl<'a> Attempt<'a> {
         result
     }
 
-    /// Commands a move and waits until the TCP is there, as near as asked.
+    /// Commands a move and waits until the TCP is within tolerance of the target.
     fn reach(&mut self, motion: Move, within: f64) -> Result<(), Stop> {
         self.make(motion, 0.0)?;
         for _ in 0..self.steps(TOLERANCE_TIMEOUT_S) {
@@ -259,7 +260,7 @@ impl<'a> Attempt<'a> {
         Ok(())
     }
 
-    /// Moves until the plug is felt to touch the socket, then on by the preload at this speed, m/s.
+    /// Moves until the plug touches the socket, then by the preload at this speed, m/s.
     fn touch(
         &mut self,
         Begun { motion, steps: done }: Begun,
@@ -382,7 +383,7 @@ impl<'a> Attempt<'a> {
         if self.watch.dropped() || slipped { Err(Stop::Lost) } else { Ok(()) }
     }
 
-    /// A body in the task frame: as if the start, not the socket, were shifted and turned.
+    /// Returns a body in the task frame: as if the start, not the socket, were shifted and turned.
     fn pose(&self, body: BodyId) -> Pose {
         self.socket * self.world.pose(body)
     }
@@ -402,8 +403,8 @@ impl<'a> Attempt<'a> {
         self.cell.hands.map(|hand| (self.world.pose(hand.finger).inverse() * point).coords)
     }
 
-    /// How far the part has moved along the pads since the grasp, m: along the
-    /// pad of the finger it moved less on, since a finger that is off says nothing.
+    /// Returns the slip of the part along the pads since the grasp, m: the smaller one of both fingers, since
+    /// that of a finger without contact is meaningless.
     fn slip(&self) -> f64 {
         let now = self.grasp_points();
         let along = |i: usize| {

@@ -92,20 +92,20 @@ pub fn build(task: &Task, robot: &Mounted, finger: &Finger) -> WorkCell {
     WorkCell { command, flange, hands, plug, latch, socket, stand, scene }
 }
 
-/// The servo setting of a jaw, 0 at -y, that has been closing for `time` seconds. The target runs
-/// ahead until the servo is at its limit; a jump there would let the jaw run into its stop.
+/// Returns the servo setting of a jaw, 0 at -y, that has been closing for `time` seconds. The target
+/// runs ahead until the servo is at its limit; a jump there would let the jaw run into its stop.
 pub fn closing(side: usize, force: f64, time: f64) -> Spring {
     let inward = if side == 0 { 1.0 } else { -1.0 };
     let target = inward * (time * CLOSING_SPEED).min(CLOSING_STROKE);
     Spring { stiffness: JAW_GAIN, damping: JAW_DAMPING, target, limit: force }
 }
 
-/// The servo setting that holds a jaw where it is.
+/// Returns the servo setting that holds a jaw where it is.
 pub fn holding(position: f64) -> Spring {
     Spring { stiffness: HOLD_GAIN, damping: 1e4, target: position, limit: f64::INFINITY }
 }
 
-/// The commanded body, and the flange that follows it (the same if it does so exactly).
+/// Returns the commanded body, and the flange that follows it (the same if it does so exactly).
 pub fn flange(scene: &mut Scene, model: &Flange, tcp: Pose) -> (BodyId, BodyId) {
     let command = scene.body(body("command", Motion::Driven, tcp, Vec::new()));
     let (motion, springs) = match model {
@@ -171,7 +171,7 @@ fn latch_mass(task: &Task) -> f64 {
     task.plug.mass * (sprung / task.plug.parts.iter().map(volume).sum::<f64>())
 }
 
-/// The latch on its hinge: a body of its own, whose frame is the plug's until it is bent.
+/// Returns the latch on its hinge: a body of its own, whose frame is the plug's until it is bent.
 fn sprung(scene: &mut Scene, task: &Task, latch: &Latch, plug: BodyId) -> BodyId {
     let inertia = geometry::inertia(task.plug.sprung(), latch_mass(task));
     let pose = scene.bodies[plug.0].pose;
@@ -202,7 +202,7 @@ fn stand_body(task: &Task, plug: Pose) -> Body {
     body("stand", Motion::Fixed, pose, vec![geom])
 }
 
-/// A jaw on its slide and a finger on its six springs; `side` is -1 or +1.
+/// Returns a jaw on its slide and a finger on its six springs; `side` is -1 or +1.
 fn hand(
     scene: &mut Scene,
     task: &Task,

@@ -1,4 +1,4 @@
-//! The rules that turn what happened into an outcome, in one place.
+//! Classification of the outcome of a trial.
 //!
 //! 1. The part is seated (its tip in the opening, deep and upright enough) and held
 //!    by both fingers at rest after the assembly push, or where the force limit ended
@@ -60,7 +60,7 @@ pub(super) fn within(value: f64, [from, to]: [f64; 2]) -> bool {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Facts {
     pub seated: bool,
-    /// Neither finger has been off it for long at the end.
+    /// Whether both fingers are in contact over the final window.
     pub gripped: bool,
     /// The stage in which the part left the grasp.
     pub lost_in: Option<Stage>,
@@ -68,7 +68,7 @@ pub struct Facts {
     pub entered: bool,
 }
 
-/// The outcome of a trial that did not diverge.
+/// Returns the outcome of a trial that did not diverge.
 pub fn classify(facts: Facts) -> Outcome {
     match facts {
         Facts { seated: true, gripped: true, .. } => Outcome::Inserted,

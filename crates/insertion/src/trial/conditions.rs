@@ -24,12 +24,12 @@ pub struct Conditions {
     pub clearance: f64,
     /// Displacement of the part in the gripper along x, m.
     pub grasp_across: f64,
-    /// How much too low the part sits in the gripper, m: a gap between shoulder and roof.
+    /// Downward shift of the part in the gripper, m: a gap between shoulder and roof.
     pub grasp_low: f64,
 }
 
 impl Conditions {
-    /// The world as the task file says.
+    /// Conditions of the task file.
     pub const NOMINAL: Conditions = Conditions {
         yaw: 0.0,
         start_across: 0.0,
@@ -41,7 +41,7 @@ impl Conditions {
         grasp_low: 0.0,
     };
 
-    /// The task under these conditions; grasp, yaw and shift of the start are not part of it.
+    /// Returns the task under these conditions; grasp, yaw and shift of the start are not part of it.
     pub fn task(&self, nominal: &Task) -> Task {
         let mut task = nominal.clone();
         task.strategy.tilt += self.start_tilt;

@@ -54,12 +54,13 @@ impl EngineKind {
         }
     }
 
-    /// The engine of that name.
+    /// Returns the engine of that name.
     pub fn from_name(name: &str) -> Option<Self> {
         <EngineKind as clap::ValueEnum>::from_str(name, false).ok()
     }
 
-    /// The engine at `factor` times its step, and its settings; nobody asks the closed formula's.
+    /// Returns the engine at `factor` times its step, and its settings; nobody asks the closed
+    /// formula's.
     fn configured(self, factor: f64) -> (Box<dyn Engine>, toml::Table) {
         // Settings are flat structs of numbers, which TOML can always hold.
         macro_rules! scaled {
@@ -80,17 +81,18 @@ impl EngineKind {
         }
     }
 
-    /// The engine with its production step times `factor`; of one that [simulates](Self::simulates).
+    /// Returns the engine with its production step times `factor`; of one that
+    /// [simulates](Self::simulates).
     pub fn build(self, factor: f64) -> Box<dyn Engine> {
         self.configured(factor).0
     }
 
-    /// Whether it simulates, as opposed to the closed formula.
+    /// Returns whether it simulates, as opposed to the closed formula.
     pub fn simulates(self) -> bool {
         self.name() != "fake"
     }
 
-    /// Where trials of one task, robot and pair of fingers run, at `step_factor` times the step.
+    /// Returns where trials of one task, robot and pair of fingers run, at `step_factor` times the step.
     ///
     /// # Errors
     /// If they do not go together.
@@ -108,7 +110,7 @@ impl EngineKind {
         Ok(Box::new(EngineRig::with(task.clone(), robot, finger, self.build(step_factor))?))
     }
 
-    /// The engine as a study records it.
+    /// Returns the engine as a study records it.
     pub fn record(self) -> EngineRecord {
         let name = self.name().to_owned();
         if !self.simulates() {

@@ -37,12 +37,12 @@ impl Rig for FakeRig {
     }
 }
 
-/// The window's ends in mm: `(most negative, most positive)` inserting offset.
+/// Returns the window's ends in mm: `(most negative, most positive)` inserting offset.
 pub fn window_mm(finger: &Finger) -> (f64, f64) {
     window_in_mm(finger, &Conditions::NOMINAL)
 }
 
-/// The window's ends under these conditions, mm.
+/// Returns the window's ends under these conditions, mm.
 pub fn window_in_mm(finger: &Finger, conditions: &Conditions) -> (f64, f64) {
     let compliance = finger.compliance / N_PER_MM;
     let assembly = finger.assembly / N_PER_MM;

@@ -1,4 +1,4 @@
-//! One simulated insertion attempt, and where attempts are made.
+//! Trial: one simulated insertion attempt.
 
 use crate::finger::Finger;
 use crate::outcome::Outcome;
@@ -84,7 +84,7 @@ pub struct Trial {
     pub retried: bool,
 }
 
-/// The flag of trials that nobody stops.
+/// Stop flag that is never set.
 pub static NEVER: AtomicBool = AtomicBool::new(false);
 
 /// Fingers and conditions of a grasp.
@@ -94,18 +94,18 @@ pub struct Grasp<'a> {
     pub finger: Finger,
     /// Deviations from the task file.
     pub conditions: Conditions,
-    /// Set when grasp and trials are to end at once, with a worthless result.
+    /// Set to end grasp and trials at once with an invalid result.
     pub stop: &'a AtomicBool,
 }
 
 impl Grasp<'static> {
-    /// By such fingers in the world as the task file has it; nobody stops it.
+    /// Returns a grasp by these fingers under the conditions of the task file, without a stop flag.
     pub fn of(finger: &Finger) -> Self {
         Grasp { finger: *finger, conditions: Conditions::NOMINAL, stop: &NEVER }
     }
 }
 
-/// A course that is not the strategy of the task.
+/// Motion that is not the strategy of the task.
 #[derive(Debug, Clone, Copy)]
 pub enum Course<'a> {
     /// Commanded paths, task frame, each from the same grasp.
@@ -127,7 +127,7 @@ pub trait Rig: Send + Sync {
         self.hold(Grasp::of(finger))
     }
 
-    /// The trial of a grasp, its start shifted by `offset` metres along y, filmed if it can be.
+    /// Returns the trial of a grasp, its start shifted by `offset` metres along y, filmed if it can be.
     fn record(&self, _grasp: Grasp<'_>, _offset: f64) -> Option<Recording> {
         None
     }
@@ -138,8 +138,8 @@ pub trait Rig: Send + Sync {
         Vec::new()
     }
 
-    /// The trial of such a grasp whose moves the caller commands, once it is made whatever becomes of
-    /// the grasp's flag, if it is simulated.
+    /// Returns the trial of such a grasp whose moves the caller commands, once it is made whatever
+    /// becomes of the grasp's flag, if it is simulated.
     fn driven(&self, _grasp: Grasp<'_>) -> Option<Driven> {
         None
     }
@@ -155,7 +155,7 @@ pub trait Grasped: Send + Sync {
         self.sampled(offset, Some(every_s))
     }
 
-    /// The trial alone.
+    /// Returns the trial alone.
     fn trial(&self, offset: f64) -> Trial {
         self.sampled(offset, None).0
     }

@@ -42,7 +42,7 @@ impl Move {
         Move { from, to, duration: duration.max(SHORTEST_MOVE_S) }
     }
 
-    /// The command at `time` seconds after the start; stays at the end after it.
+    /// Returns the command at `time` seconds after the start; stays at the end after it.
     pub fn at(&self, time: f64) -> Tcp {
         let t = (time / self.duration).clamp(0.0, 1.0);
         let s = t * t * t * (10.0 - 15.0 * t + 6.0 * t * t);

@@ -1,5 +1,5 @@
-//! A trial as it goes on: samples at even times, and frames of bodies and forces each millisecond
-//! for replays. Both only look: a recorded trial ends as an unrecorded one, bit for bit.
+//! Recording of a trial: samples at regular times, and frames of bodies and forces each millisecond for
+//! replays. A recorded trial ends as an unrecorded one, bit for bit.
 
 use super::classify::Placement;
 use super::{Poses, Trial};
@@ -50,7 +50,7 @@ impl Frame {
         Placement::new(&self.poses.plug).tilt / DEG
     }
 
-    /// How far a finger, by its place, is bent from where its jaw would have it, mm; jaw axes.
+    /// Returns how far a finger, by its place, is bent from where its jaw would have it, mm; jaw axes.
     pub fn deflection_mm(&self, finger: usize) -> [f64; 3] {
         let bent = self.jaws[finger].inverse() * self.poses.fingers[finger];
         (bent.translation.vector / MM).into()
@@ -99,7 +99,7 @@ pub(super) struct Recorder {
 }
 
 impl Recorder {
-    /// Whether this step, `step_s` long, is to be taken in.
+    /// Returns whether this step, `step_s` long, is to be taken in.
     pub fn wants(&mut self, step_s: f64) -> bool {
         let every = ((INTERVAL / step_s).round() as usize).max(1);
         self.steps += 1;
@@ -171,7 +171,7 @@ pub(super) struct Trace {
 }
 
 impl Trace {
-    /// A sample each `every_s` seconds of simulated time, from the end of the first step on.
+    /// Returns a sample each `every_s` seconds of simulated time, from the end of the first step on.
     pub fn new(every_s: f64) -> Self {
         Trace { every_s: every_s.max(LEAST_INTERVAL), last: None, samples: Vec::new() }
     }

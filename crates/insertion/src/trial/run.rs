@@ -1,4 +1,4 @@
-//! A trial in a contact engine: where it is run, and what happens if it diverges.
+//! Trials in a contact engine, repeated at half the step if they diverge.
 
 use super::attempt::driven::Driven;
 use super::attempt::{Attempt, Stop};
@@ -74,7 +74,7 @@ impl EngineRig {
         Prepared { attempt, end, descended: OnceLock::new() }
     }
 
-    /// An attempt right before its grasp.
+    /// Returns an attempt right before its grasp.
     fn attempt<'a>(&self, engine: &dyn Engine, task: &Task, grasp: Grasp<'a>) -> Attempt<'a> {
         let Grasp { finger, conditions, stop } = grasp;
         let task = Arc::new(conditions.task(task));
@@ -97,7 +97,7 @@ const ZEROED_S: f64 = 0.2;
 /// Half of the width of the plate that is probed, m: no plug gets near its rim.
 const PLATE: f64 = 0.1;
 
-/// The task with a plate in the socket's place, its top at z = 0.
+/// Returns the task with a plate in the socket's place, its top at z = 0.
 fn on_plate(task: &Task) -> Task {
     let half = Vector3::new(PLATE, PLATE, 0.0);
     let solid = Solid::Box { min: -half - Vector3::z() * PLATE, max: half };
@@ -124,7 +124,7 @@ impl Rig for EngineRig {
         match course {
             Course::Paths(paths) => {
                 let mut held = self.attempt(engine, &self.task, grasp);
-                let taken = held.take();
+                let taken = held.grasp();
                 let each = paths.iter().map(|path| {
                     let mut attempt = held.clone();
                     let end = taken.and_then(|()| attempt.follow(path, every_s));
@@ -134,7 +134,7 @@ impl Rig for EngineRig {
             }
             Course::Probe(probe) => {
                 let mut attempt = self.attempt(engine, &on_plate(&self.task), grasp);
-                let end = attempt.take().and_then(|()| attempt.probe(&probe, every_s));
+                let end = attempt.grasp().and_then(|()| attempt.probe(&probe, every_s));
                 vec![ended(attempt, end)]
             }
         }

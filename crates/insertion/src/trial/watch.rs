@@ -69,8 +69,9 @@ impl LeadingEdge {
         }
     }
 
-    /// Whether it is inside the opening: its lowest corner is below the top, and no corner on the side
-    /// of the plug that leans down stands over the housing; `plug` is the plug's pose in the task frame.
+    /// Returns whether it is inside the opening: its lowest corner is below the top, and no corner on
+    /// the side of the plug that leans down stands over the housing; `plug` is the plug's pose in the
+    /// task frame.
     pub fn inside(&self, plug: &Pose) -> bool {
         // Towards where the plug leans up, in its own frame.
         let up = plug.inverse_transform_vector(&Vector3::z());

@@ -1,4 +1,4 @@
-//! Values of parameters on their way into task, finger and robot.
+//! Application of parameter values to task, finger and robot.
 
 use super::Priors;
 use crate::evaluation::evaluator::{Evaluator, Specimen};
@@ -16,14 +16,14 @@ use input::{Check, InputError};
 use parameters::numbers::{CLEARANCE, EDGE_RADIUS, FLANGE, Kind};
 use parameters::{Parameter, Path, Transform};
 
-/// Changes what a parameter sets beside the numbers of files and of the robot.
+/// Applies a parameter of the finger or of the task's shapes.
 pub(in crate::evaluation) fn change(parameter: &Parameter, value: f64, specimen: &mut Specimen) {
     let Specimen { finger, task, .. } = specimen;
     match parameter.path.kind() {
         Kind::Finger => {
             if let Some((number, unit)) = finger.number(&parameter.path) {
                 let own = *number / unit;
-                // What leaves a number as it is leaves its last bit.
+                // A neutral value keeps the number bit for bit.
                 if parameter.transform == Transform::Value || value != parameter.neutral(own) {
                     *number = parameter.applied(own, value) * unit;
                 }
@@ -51,8 +51,8 @@ pub(in crate::evaluation) fn change(parameter: &Parameter, value: f64, specimen:
 }
 
 impl Robot {
-    /// The numbers that a path sets, which go in proportion, and the SI value of its unit; none if the
-    /// robot has no such number.
+    /// Returns the numbers that a path sets, which go in proportion, and the SI value of its unit; none
+    /// if the robot has no such number.
     fn numbers(&mut self, path: &Path) -> (Vec<&mut f64>, f64) {
         let unit = if path == FLANGE { N_PER_MM } else { 1.0 };
         let numbers = match (path.as_str(), &mut self.drive) {
@@ -93,8 +93,8 @@ impl Robot {
 }
 
 impl Evaluator {
-    /// The number of that key as the cell has it, else as in the task file, or in the finger file of
-    /// computed fingers; in the unit of the key.
+    /// Returns the number of that key as the cell has it, else as in the task file, or in the finger
+    /// file of computed fingers; in the unit of the key.
     pub fn number(&self, template: &Template, key: &str) -> Option<f64> {
         let (none, rows) = (Design::default(), self.rows(Some(template)));
         let set = self.completed(Some(template), &none, &rows);
@@ -159,7 +159,7 @@ impl Evaluator {
         })
     }
 
-    /// The rows of its cell that apply to a task, or all, with their values.
+    /// Returns the rows of its cell that apply to a task, or all, with their values.
     pub(in crate::evaluation) fn rows<'a>(
         &'a self,
         of: Option<&'a Template>,
@@ -169,7 +169,7 @@ impl Evaluator {
         cell.of(task).map(|row| (row, row.middle())).collect()
     }
 
-    /// A design, and the numbers that these rows set and it does not.
+    /// Returns a design, and the numbers that these rows set and it does not.
     pub(in crate::evaluation) fn completed(
         &self,
         template: Option<&Template>,
@@ -188,8 +188,8 @@ impl Evaluator {
         set
     }
 
-    /// A design under these values of parameters, on top of the cell's, and the robot; its stiffness is
-    /// predicted unless given.
+    /// Returns a design under these values of parameters, on top of the cell's, and the robot; its
+    /// stiffness is predicted unless given.
     ///
     /// # Errors
     /// If a value sets something to what cannot be.
@@ -218,8 +218,8 @@ impl Evaluator {
         Ok((specimen, robot))
     }
 
-    /// A specimen in another cell, whose rows have these values, and its robot; rows of its own cell
-    /// that the other lacks stay.
+    /// Returns a specimen in another cell, whose rows have these values, and its robot; rows of its own
+    /// cell that the other lacks stay.
     pub(in crate::evaluation) fn drawn(
         &self,
         specimen: &Specimen,
@@ -228,7 +228,7 @@ impl Evaluator {
     ) -> Result<(Specimen, Robot), Impossible> {
         let Specimen { task, design, stiffness, .. } = specimen;
         let Some(template) = self.templates.iter().find(|of| of.task.name == task.name) else {
-            return Ok(DESIGN.fail(&task.name, "is no task of this evaluator")?);
+            return Ok(DESIGN.fail(&task.name, "unknown task of this evaluator")?);
         };
         let of_task: Vec<&Parameter> = cell.of(&task.name).collect();
         let drawn = cell.parameters.iter().zip(values.iter().copied());

@@ -1,5 +1,5 @@
-//! Numbers of a cell that a task file cannot know: bounds of them (`priors/bench.toml`), or what was
-//! identified from its logs (`cell.toml`), with the robot it was identified with.
+//! Parameters of a cell beyond the task file: priors (`priors/bench.toml`), or values identified from logs
+//! (`cell.toml`) with the robot of the identification.
 
 mod applied;
 
@@ -10,7 +10,7 @@ use input::{Check, InputError, read};
 use parameters::Parameter;
 use serde::{Deserialize, Serialize};
 
-/// A file of such numbers, as it is read and written.
+/// Priors or identified values of a cell, as read and written.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Priors {
@@ -24,7 +24,7 @@ pub struct Priors {
     /// Robot file of the cell, whole; checked by [`Priors::checked`], read by [`Priors::robot`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robot: Option<toml::Table>,
-    /// The numbers.
+    /// Parameters.
     #[serde(rename = "parameter")]
     pub parameters: Vec<Parameter>,
 }
@@ -48,14 +48,13 @@ impl Priors {
             let name = &parameter.name;
             parameter.check(check)?;
             if all[..i].iter().any(|other| other.name == *name || other.path == parameter.path) {
-                return check
-                    .fail(name, "is given twice; each name and each number may stand once");
+                return check.fail(name, "is given twice; give each name and each path once");
             }
         }
         if let Some(robot) = self.robot(file)? {
             for row in all {
                 if !row.shared && !row.path.starts_with("task.") {
-                    return check.fail(&row.name, "belongs to no one task: give shared = true");
+                    return check.fail(&row.name, "does not belong to a task; give shared = true");
                 }
                 if !robot.fits(row) {
                     return check.fail(&row.name, "goes with a robot of kind = \"servo\"");
@@ -65,7 +64,7 @@ impl Priors {
         Ok(self)
     }
 
-    /// Its robot as its table has it, if it holds one; `file` is named in errors.
+    /// Returns its robot as its table has it, if it holds one; `file` is named in errors.
     ///
     /// # Errors
     /// If the table is no robot file.
@@ -74,12 +73,12 @@ impl Priors {
         self.robot_text().map(robot).transpose()
     }
 
-    /// The text of its robot's file, if it holds one.
+    /// Returns the text of its robot's file, if it holds one.
     pub fn robot_text(&self) -> Option<String> {
         self.robot.as_ref().map(toml::Table::to_string)
     }
 
-    /// Its rows that apply to a task.
+    /// Returns its rows that apply to a task.
     pub fn of<'a>(&'a self, task: &'a str) -> impl Iterator<Item = &'a Parameter> {
         let own = self.task.as_ref().is_none_or(|own| own == task);
         self.parameters.iter().filter(move |row| row.shared || own)

@@ -1,40 +1,40 @@
-//! One value for the values of several tasks.
+//! Aggregation over several tasks.
 
 use input::shown;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// How the values of several tasks become one. They are not scaled first: in a mean
-/// a task with wide windows counts for more than one with narrow ones.
+/// Aggregation of the values of several tasks. They are not scaled first: in a mean, tasks with wide
+/// windows have more influence than tasks with narrow ones.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub enum Aggregate {
-    /// The worst: the smallest, or the largest of what is to be small.
+    /// Worst value: the smallest of a measure that is maximized, the largest of one that is minimized.
     #[default]
     Min,
     /// Arithmetic mean over the tasks.
     Mean,
-    /// The mean with a weight for each task, above 0.
+    /// Weighted mean with one weight above 0 per task.
     Weighted(Vec<f64>),
 }
 
 /// An [`Aggregate`] by its name, without weights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum AggregateKind {
-    /// The worst of them
+    /// The worst value
     Min,
-    /// Their mean, not scaled: a task with wide windows counts for more
+    /// The mean, not scaled: tasks with wide windows have more influence
     Mean,
-    /// Their mean with --weights
+    /// The mean with --weights
     Weighted,
 }
 
 impl Aggregate {
-    /// Weights for so many tasks.
+    /// Returns the weighted mean over a number of tasks.
     ///
     /// # Errors
-    /// If there is not one for each, or one is not above 0.
+    /// If there is not one weight per task, or one is out of range.
     pub fn weighted(weights: Vec<f64>, tasks: usize) -> Result<Self, String> {
         if weights.len() != tasks {
             return Err(format!(
@@ -44,14 +44,13 @@ impl Aggregate {
         }
         match weights.iter().find(|weight| !(1e-6..=1e6).contains(*weight)) {
             Some(bad) => {
-                let bad = shown(*bad);
-                Err(format!("{bad} is no weight; it must be a number above 0, 1e-6 to 1e6"))
+                Err(format!("weight {} is out of range; it must lie in 1e-6 .. 1e6", shown(*bad)))
             }
             None => Ok(Aggregate::Weighted(weights)),
         }
     }
 
-    /// One value for those of the tasks, at least one; `sense` is 1 if larger is better, else -1.
+    /// Returns the aggregate of the values of at least one task; `sense` is 1 to maximize, -1 to minimize.
     pub fn of(&self, sense: f64, values: &[f64]) -> f64 {
         let mean = |weights: &mut dyn Iterator<Item = f64>| {
             let terms = values.iter().zip(weights);
@@ -116,7 +115,9 @@ mod tests {
             assert_eq!(aggregate.to_string().parse(), Ok(aggregate.clone()));
             assert_eq!(aggregate.of(1.0, &[0.1]), 0.1);
         }
-        assert!(Aggregate::weighted(vec![1e308, 1.0], 2).unwrap_err().contains("1e308 is no"));
+        assert!(
+            Aggregate::weighted(vec![1e308, 1.0], 2).unwrap_err().contains("weight 1e308 is out")
+        );
         assert!("weighted".parse::<Aggregate>().is_err());
     }
 }

@@ -1,4 +1,4 @@
-//! Limits a design must keep to, as written: `peak-force<=30`.
+//! Constraints on a design, for example `peak-force<=30`.
 
 use super::Measure;
 use crate::evaluation::Evaluation;
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// Side of its limit on which a measure must be.
+/// Side of the limit that is feasible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Bound {
     /// `<=`, an upper limit.
@@ -15,20 +15,20 @@ pub enum Bound {
     AtLeast,
 }
 
-/// A measure and its limit.
+/// Constraint on a measure.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub struct Constraint {
     /// Constrained measure.
     pub measure: Measure,
-    /// Side on which it must be.
+    /// Feasible side of the limit.
     pub bound: Bound,
     /// The limit, in the measure's unit.
     pub limit: f64,
 }
 
 impl Constraint {
-    /// The measure on the task where it is worst; `None` if it has no value on one of them.
+    /// Returns the measure on the task where it is worst; `None` if it has no value on one of them.
     pub fn worst(&self, tasks: &[&Evaluation]) -> Option<f64> {
         let worse: fn(f64, f64) -> f64 = match self.bound {
             Bound::AtMost => f64::max,
@@ -39,7 +39,7 @@ impl Constraint {
         values?.into_iter().reduce(worse)
     }
 
-    /// The worst value in words: `31.2 N, violates peak-force<=30`.
+    /// Returns the worst value in words: `31.2 N, violates peak-force<=30`.
     pub fn words(&self, tasks: &[&Evaluation]) -> String {
         match self.worst(tasks) {
             None => format!("no value for {self}"),
@@ -50,8 +50,8 @@ impl Constraint {
         }
     }
 
-    /// How far a value is on the wrong side, as a share of the limit (of 1 if that is 0), so
-    /// that constraints in different units add up; 0 or below on the right side.
+    /// Returns the violation by a value as a share of the limit (of 1 if that is 0), so that constraints in
+    /// different units can be added; 0 or below if feasible.
     pub fn violation(&self, value: f64) -> f64 {
         let beyond = match self.bound {
             Bound::AtMost => value - self.limit,

@@ -6,12 +6,12 @@ use ask_tell::gp::DEFAULT_NOISE_FLOOR;
 use std::fmt;
 use std::str::FromStr;
 
-/// A number that an evaluation gives.
+/// Number of an evaluation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measure {
     /// Width of the tolerance window, mm.
     Range,
-    /// Twice the smaller side of the window, mm: for a robot that errs both ways.
+    /// Twice the smaller side of the window, mm: for errors of the robot in both directions.
     CentredRange,
     /// Share of the trials under sampled errors that insert, 0 to 1.
     SuccessRate,
@@ -59,12 +59,12 @@ impl Measure {
         }
     }
 
-    /// 1 if larger is better, -1 if smaller is.
+    /// Returns 1 to maximize, -1 to minimize.
     pub fn sense(self) -> f64 {
         if matches!(self, Measure::PeakForce | Measure::Slip) { -1.0 } else { 1.0 }
     }
 
-    /// Whether it is measured under sampled errors.
+    /// Returns whether it is measured under sampled errors.
     pub fn is_drawn(self) -> bool {
         matches!(self, Measure::SuccessRate | Measure::RobustRange)
     }
@@ -79,8 +79,8 @@ impl Measure {
         }
     }
 
-    /// Its value in its unit, `None` if the measure was not taken or the nominal start diverges. A
-    /// nominal start that fails leaves a range of 0, and neither force nor slip. A window that a
+    /// Returns its value in its unit, `None` if the measure was not taken or the nominal start diverges.
+    /// A nominal start that fails leaves a range of 0, and neither force nor slip. A window that a
     /// divergence ends counts as far as it was seen to insert. A raced success rate is its upper bound.
     pub fn value(self, evaluation: &Evaluation) -> Option<f64> {
         let value = match self {
@@ -106,7 +106,7 @@ impl Measure {
         }
     }
 
-    /// A value with its unit.
+    /// Returns a value with its unit.
     pub fn show(self, value: f64) -> String {
         match self {
             Measure::Range | Measure::CentredRange => format!("{value:.1} mm"),
@@ -136,7 +136,7 @@ impl FromStr for Measure {
     fn from_str(name: &str) -> Result<Self, String> {
         Measure::ALL.into_iter().find(|measure| measure.name() == name).ok_or_else(|| {
             let names = Measure::ALL.map(Measure::name).join(", ");
-            format!("nothing measured is called `{name}`; there are {names}")
+            format!("unknown measure `{name}`; available: {names}")
         })
     }
 }

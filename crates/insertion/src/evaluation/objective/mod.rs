@@ -1,4 +1,4 @@
-//! Goals: what is made large or small, over which tasks, and within which limits.
+//! Objectives and constraints over one or several tasks.
 
 mod aggregate;
 mod constraint;
@@ -35,7 +35,7 @@ macro_rules! kept_as_text {
 
 kept_as_text!(Aggregate, Constraint, Objectives);
 
-/// Most objectives: a front of more is no help in choosing.
+/// Largest number of objectives: a Pareto front of more does not help to choose.
 const MOST: usize = 3;
 
 /// One to three different measures to be optimized, in the order given.
@@ -44,27 +44,27 @@ const MOST: usize = 3;
 pub struct Objectives(Vec<Measure>);
 
 impl Objectives {
-    /// A single objective.
+    /// Returns a single objective.
     pub fn of(measure: Measure) -> Self {
         Objectives(vec![measure])
     }
 
-    /// All objectives, at least one.
+    /// Returns all objectives, at least one.
     pub fn measures(&self) -> &[Measure] {
         &self.0
     }
 
-    /// The first one: what plots show.
+    /// Returns the first one: what plots show.
     pub fn first(&self) -> Measure {
         self.0[0]
     }
 
-    /// The only one, `None` if there are several.
+    /// Returns the only one, `None` if there are several.
     pub fn single(&self) -> Option<Measure> {
         (self.0.len() == 1).then_some(self.0[0])
     }
 
-    /// A key for each in tables and JSON: `objective_mm`; `objective_1_mm`, `objective_2_n`.
+    /// Returns a key for each in tables and JSON: `objective_mm`; `objective_1_mm`, `objective_2_n`.
     pub fn keys(&self) -> Vec<String> {
         match self.single() {
             Some(measure) => vec![format!("objective_{}", measure.key())],
@@ -122,7 +122,7 @@ pub struct Goals {
 pub struct Score {
     /// Value of each objective, in its own unit and sense.
     pub values: Vec<f64>,
-    /// Violation of each constraint on the worst task, as a share of its limit; 0 or below if kept.
+    /// Violation of each constraint on the worst task, as a share of its limit; 0 or below if feasible.
     pub violations: Vec<f64>,
 }
 
@@ -136,12 +136,12 @@ impl Goals {
         }
     }
 
-    /// Whether a measure is an objective or is constrained.
+    /// Returns whether a measure is an objective or is constrained.
     pub fn need(&self, measure: Measure) -> bool {
         self.measures().any(|needed| needed == measure)
     }
 
-    /// Whether trials or windows under sampled errors are needed.
+    /// Returns whether trials or windows under sampled errors are needed.
     pub fn need_draws(&self) -> bool {
         self.measures().any(Measure::is_drawn)
     }
@@ -165,7 +165,7 @@ impl Goals {
         })
     }
 
-    /// The values with their signs turned so that larger is better.
+    /// Returns the values with their signs turned so that larger is better.
     pub fn gains(&self, values: &[f64]) -> Vec<f64> {
         let measures = self.objectives.measures();
         measures.iter().zip(values).map(|(measure, value)| measure.sense() * value).collect()
@@ -180,7 +180,7 @@ impl Goals {
 }
 
 impl Score {
-    /// Whether all constraints are kept.
+    /// Returns whether all constraints are kept.
     pub fn feasible(&self) -> bool {
         self.violations.iter().all(|&violation| violation <= 0.0)
     }

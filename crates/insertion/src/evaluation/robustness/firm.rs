@@ -1,4 +1,4 @@
-//! The firm window: what is left of a window when friction, start and step vary a little.
+//! Firm window: offsets that insert also under small variations of friction, start and step.
 //!
 //! Each end is followed inward from the window's own, 0.1 mm at a time, to the first offset at
 //! which all repeats insert. What lies between the two ends is not tried again.
@@ -32,19 +32,19 @@ impl Firm {
     /// Nothing inserts, and nothing was tried.
     pub const NONE: Firm = Firm { window: None, trials: 0 };
 
-    /// The firm range, mm; 0 without a firm window.
+    /// Returns the firm range, mm; 0 without a firm window.
     pub fn range_mm(&self) -> f64 {
         self.window.map_or(0.0, |window| {
             grid_mm(window.positive_steps.saturating_sub(window.negative_steps))
         })
     }
 
-    /// The firm window, mm.
+    /// Returns the firm window, mm.
     pub fn window_mm(&self) -> Option<[f64; 2]> {
         self.window.map(|window| [window.negative_steps, window.positive_steps].map(grid_mm))
     }
 
-    /// The firm part of a window: what was found there, less wide.
+    /// Returns the firm part of a window: what was found there, less wide.
     pub fn of(&self, window: &Window) -> Window {
         let firm = self.window.unwrap_or(FirmWindow { negative_steps: 0, positive_steps: 0 });
         let FirmWindow { negative_steps, positive_steps } = firm;
@@ -65,7 +65,7 @@ pub fn measure(repeats: &Repeats, window: &Window) -> Firm {
     Firm { window: found, trials: below + above }
 }
 
-/// The outermost of the steps `from` to 0 at which all repeats insert, and the trials run. The
+/// Returns the outermost of the steps `from` to 0 at which all repeats insert, and the trials run. The
 /// repeat that failed last is asked first: it is the likeliest to fail again, and one is enough.
 fn end(repeats: &Repeats, from: OffsetStep, sign: OffsetStep) -> (Option<OffsetStep>, u32) {
     let (count, mut doubtful, mut trials) = (repeats.count(), 0, 0);

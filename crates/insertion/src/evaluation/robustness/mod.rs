@@ -1,4 +1,4 @@
-//! Trials and windows under drawn errors: what a finger keeps of its window.
+//! Success rate and tolerance windows under random errors.
 
 pub mod firm;
 pub mod race;
@@ -29,7 +29,7 @@ pub struct Plan {
     cells: Option<(Priors, Vec<Vec<f64>>)>,
 }
 
-/// Where one draw is tried, and by which finger before its own errors.
+/// Rig and nominal finger of one draw.
 pub type Drawn = (Box<dyn Rig>, Finger);
 /// A draw's rig, grasp and offset, m.
 type Insertion<'a> = (&'a dyn Rig, Grasp<'a>, f64);
@@ -55,7 +55,7 @@ impl Plan {
         }
     }
 
-    /// The cell of which each draw is another, and the values of its rows in each.
+    /// Returns the cell of which each draw is another, and the values of its rows in each.
     pub(super) fn cells(&self) -> Option<(&Priors, &[Vec<f64>])> {
         self.cells.as_ref().map(|(cell, values)| (cell, &values[..]))
     }
@@ -126,7 +126,7 @@ fn robust_range(drawn: &[Insertion], settings: &RobustSettings) -> RobustRange {
     robust
 }
 
-/// The statistic, mm; `None` with fewer than two ranges.
+/// Returns the statistic, mm; `None` with fewer than two ranges.
 fn statistic(robust: &RobustRange, of: Statistic) -> Option<f64> {
     let count = robust.ranges_mm.len();
     if count < 2 {

@@ -1,8 +1,8 @@
-//! A race for the success rate: who cannot reach the best design before it stops early.
+//! Racing on the success rate: designs that can no longer reach the best one stop early.
 //!
-//! All designs meet the same draws, so this is exact and no matter of statistics: a design has lost
-//! once its rate would stay below the bar if every draw that is left inserted. Where it ends follows
-//! from its own outcomes, the bar and the order alone.
+//! All designs are evaluated under the same draws, so the criterion is exact: a design is eliminated once
+//! its rate would stay below the bar even if all remaining draws inserted. The point of elimination
+//! depends only on its own outcomes, the bar and the order of the draws.
 
 use crate::evaluation::SuccessRate;
 use crate::outcome::Outcome;
@@ -23,7 +23,7 @@ pub struct Race {
 }
 
 impl Race {
-    /// All of so many draws in the order in which they are met.
+    /// Returns all of so many draws in the order in which they are met.
     pub fn order(&self, draws: u32) -> Vec<u32> {
         let mut place = vec![usize::MAX; draws as usize];
         for (at, &draw) in self.first.iter().enumerate() {
@@ -37,14 +37,14 @@ impl Race {
         order
     }
 
-    /// Whether what is left cannot make up for what has failed.
+    /// Returns whether what is left cannot make up for what has failed.
     pub fn is_lost_by(&self, success: &SuccessRate) -> bool {
         success.at_most().is_some_and(|rate| rate < self.bar_share)
     }
 }
 
-/// The outcomes of so many draws, in the order of the race up to the first one with which it is lost.
-/// How many are tried at a time changes nothing: what comes after that one is not counted.
+/// Returns the outcomes of so many draws, in the order of the race up to the first one with which it is
+/// lost. How many are tried at a time changes nothing: what comes after that one is not counted.
 pub fn run(
     draws: u32,
     confidence: f64,

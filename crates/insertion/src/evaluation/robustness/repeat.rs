@@ -1,4 +1,4 @@
-//! The same trial again, with small changes that no one controls: does it end alike?
+//! Repeats of a trial with small uncontrolled changes.
 
 use crate::evaluation::tolerance;
 use crate::evaluation::{OffsetStep, Window, grid_mm};
@@ -67,7 +67,7 @@ impl<'a> Repeats<'a> {
         self.runs.get(run).map(trial) == Some(Outcome::Inserted)
     }
 
-    /// Whether every repeat walks to an end within so many grid steps of this one; `sign` is its
+    /// Returns whether every repeat walks to an end within so many grid steps of this one; `sign` is its
     /// direction, -1 or 1. Only the end's neighbourhood is tried.
     pub fn end_within(&self, allowed: OffsetStep, sign: OffsetStep, end: OffsetStep) -> bool {
         let (inner, outer) = ((end - allowed).max(0), end + allowed + 1);
@@ -78,7 +78,7 @@ impl<'a> Repeats<'a> {
         (0..self.count()).all(ends)
     }
 
-    /// Whether no repeat inserts from the nominal start.
+    /// Returns whether no repeat inserts from the nominal start.
     pub fn fail_at_nominal(&self) -> bool {
         self.inserted(0) == 0
     }
@@ -88,7 +88,7 @@ impl<'a> Repeats<'a> {
         outcomes.iter().filter(|&&outcome| outcome == Outcome::Inserted).count()
     }
 
-    /// Where the outcome near one end hangs on such changes; `sign` is its direction, -1 or 1.
+    /// Returns where the outcome near one end hangs on such changes; `sign` is its direction, -1 or 1.
     fn band(&self, window: &Window, sign: OffsetStep) -> Band {
         let end = if sign < 0 { -window.negative_steps } else { window.positive_steps };
         let inserted = |step: OffsetStep| self.inserted(sign * step);

@@ -1,4 +1,4 @@
-//! Co-design: what a design may set beside the infill.
+//! Co-design: parameters of a design beside the infill.
 //!
 //! A key of a space is `infill_density_percent`, `infill_direction_deg`, or a path to one number:
 //!
@@ -6,7 +6,7 @@
 //!   (`task.strategy.phase.side.speed_mm_per_s`, `task.strategy.phase.side.move_mm.y`);
 //! - `finger.`, then a number of the finger that the files make (`finger.rcc_mm`).
 //!
-//! Values are in the unit of the key. They enter the task before its checks: none escapes them.
+//! Values are in the unit of the key and are subject to the checks of the task.
 
 pub mod printable;
 mod space;
@@ -23,7 +23,7 @@ use input::{Document, InputError, Place, Placed};
 use parameters::Path;
 use parameters::numbers::{self, Kind, paths};
 
-/// A task file, the numbers of which a design may set.
+/// Task file whose numbers a design may set.
 #[derive(Debug, Clone)]
 pub struct Template {
     /// Numbers of the file, by their keys.
@@ -35,13 +35,13 @@ pub struct Template {
 /// Error of a design that cannot be simulated.
 #[derive(Debug, thiserror::Error)]
 pub enum Impossible {
-    /// It sets what does not exist, or to what cannot be.
+    /// An unknown path or a value out of range.
     #[error(transparent)]
     Value(#[from] InputError),
-    /// Its finger cannot be printed, or not with this stiffness.
+    /// A finger that cannot be printed, or not with this stiffness.
     #[error(transparent)]
     Finger(#[from] FingerError),
-    /// The robot or the engine cannot do the task that it makes.
+    /// A task that the robot or the engine cannot do.
     #[error(transparent)]
     Rig(#[from] RigError),
 }
@@ -71,7 +71,7 @@ impl Template {
         Ok(Template { numbers: NumberFile::read("task", &document)?, task })
     }
 
-    /// The task, and the finger of this stiffness at its pad, with the values that the design
+    /// Returns the task, and the finger of this stiffness at its pad, with the values that the design
     /// gives; what it does not name stays as in the task file and as `fingers` makes it.
     ///
     /// # Errors
@@ -90,8 +90,7 @@ impl Template {
             .partition(|(key, _)| Path::new(*key).is_ok_and(|path| path.kind() == Kind::Finger));
         let shaped = design.0.keys().find(|key| is_shape(key));
         if let (FingerSource::Paper, Some(key)) = (fingers, shaped) {
-            let problem = "is a number of a printed finger, which the paper's model does not know; \
-                           --finger-model computed does";
+            let problem = "is a number of a printed finger; it requires --finger-model computed";
             return Ok(DESIGN.fail(key, problem)?);
         }
         let task = self.changed(&of_task)?;

@@ -29,9 +29,10 @@ pub fn check(space: &Space, file: &str, finger: &FingerFile) -> Result<(), Input
     })
 }
 
-/// A space read from `file` that sets a computed finger's remote centre or tilting stiffness may ask
-/// for what no springs give: a centre so far away that turning about it alone is softer than measured.
-/// The more so the farther and the softer, so the extreme values are tried, of the infill, too.
+/// Returns a space read from `file` that sets a computed finger's remote centre or tilting stiffness may
+/// ask for what no springs give: a centre so far away that turning about it alone is softer than
+/// measured. The more so the farther and the softer, so the extreme values are tried, of the infill,
+/// too.
 ///
 /// # Errors
 /// The first combination that has no springs.

@@ -12,13 +12,13 @@ use parameters::{Parameter, Path};
 use rand::RngExt;
 
 const PURPOSE: &str = "errors";
-/// How much too low the part sits in the gripper: never too high.
+/// Downward shift of the part in the gripper; never upward.
 const GRASP_LOW: &str = "cell.grasp_low_mm";
-/// A stream of its own: errors that came later leave those before as they were.
+/// A separate stream, so that the other errors keep their values.
 const PURPOSE_ACROSS: &str = "error of the start along x";
 
-/// One draw: what one insertion is like. It does not depend on the design, so
-/// that designs are compared under the same errors (common random numbers).
+/// Random errors of one insertion. They do not depend on the design, so that designs are compared under
+/// the same errors (common random numbers).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Draw {
     /// Shift of the start along y, m.
@@ -36,7 +36,7 @@ pub fn draws(errors: &Errors, seed: u64, count: u32) -> Vec<Draw> {
     (0..count).map(|i| draw(errors, seed, u64::from(i))).collect()
 }
 
-/// All numbers are always drawn: switching one error off leaves the others as they were.
+/// Returns one draw. All numbers are always drawn: without one error the others keep their values.
 fn draw(errors: &Errors, seed: u64, index: u64) -> Draw {
     let mut random = stream(seed, index, PURPOSE);
     let [offset, yaw, compliance, assembly, across]: [f64; 5] =
@@ -97,13 +97,13 @@ impl Draw {
         }
     }
 
-    /// A grasp by fingers that were to have the predicted stiffness, as it turns out.
+    /// Returns a grasp by fingers of the predicted stiffness with the errors of this draw.
     pub fn grasp<'a>(&self, nominal: Grasp<'a>, predicted: &Prediction) -> Grasp<'a> {
         let finger = self.finger(&nominal.finger, predicted);
         Grasp { finger, conditions: self.conditions, ..nominal }
     }
 
-    /// A finger that was to have the predicted stiffness, as it came out.
+    /// Returns a finger of the predicted stiffness with the errors of this draw.
     pub fn finger(&self, nominal: &Finger, predicted: &Prediction) -> Finger {
         let [compliance, assembly] = self.stiffness;
         let spread = |estimate: Estimate| self.stiffness_sd_factor * estimate.sd / estimate.mean;
@@ -145,8 +145,8 @@ impl Errors {
     }
 }
 
-/// A factor of mean 1 and standard deviation `relative` whose logarithm is normal:
-/// `exp(s z - s^2 / 2)`, `s^2 = ln(1 + relative^2)`. Never negative, unlike a normal one.
+/// Returns a factor of mean 1 and standard deviation `relative` whose logarithm is normal: `exp(s z -
+/// s^2 / 2)`, `s^2 = ln(1 + relative^2)`. Never negative, unlike a normal one.
 fn lognormal(relative: f64, z: f64) -> f64 {
     let variance = libm::log1p(relative * relative);
     libm::exp(variance.sqrt() * z - variance / 2.0)

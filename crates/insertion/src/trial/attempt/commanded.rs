@@ -1,4 +1,4 @@
-//! A trial along a path that somebody else commanded: a log's; and the probe of the friction.
+//! Trial along the commanded path of a log; and the friction probe.
 
 use super::{Attempt, Stop};
 use crate::task::{Hold, Stage};
@@ -30,7 +30,7 @@ impl Path {
         self.times[self.times.len() - 1] - self.times[0]
     }
 
-    /// The command so long after the start, s; stays at the end after it.
+    /// Returns the command so long after the start, s; stays at the end after it.
     fn at(&self, time: f64) -> Tcp {
         let time = self.times[0] + time;
         let after = self.times.partition_point(|&t| t <= time);

@@ -1,4 +1,4 @@
-//! The way through the air above the socket, which all offsets share.
+//! Approach above the socket, common to all offsets.
 
 use super::Attempt;
 use crate::task::{Ending, Stage};
@@ -18,9 +18,9 @@ pub(super) struct Begun {
 }
 
 impl<'a> Attempt<'a> {
-    /// A copy, right before the search, that has gone down as far as nothing can touch the socket
-    /// however it is shifted or turned about z: from there on every start goes its own way. None if
-    /// the search does not begin with a touch, fails in the air or comes down too fast.
+    /// Returns a copy, right before the search, that has gone down as far as nothing can touch the
+    /// socket however it is shifted or turned about z: from there on every start goes its own way. None
+    /// if the search does not begin with a touch, fails in the air or comes down too fast.
     pub fn descended(&self) -> Option<Attempt<'a>> {
         let phase =
             self.task.strategy.phases.iter().find(|phase| phase.stage != Stage::Approach)?;

@@ -33,7 +33,7 @@ pub struct State {
     pub turn_deg: [f64; 3],
     /// Net force of the socket on the plug as a wrist sensor filters it, N.
     pub force_n: [f64; 3],
-    /// Tip of the plug from the middle of the opening, mm: what a robot does not know.
+    /// Tip of the plug relative to the middle of the opening, mm; not observable by a robot.
     pub tip_mm: [f64; 3],
     /// Angle between the plug's axis and that of the opening, degrees.
     pub tilt_deg: f64,

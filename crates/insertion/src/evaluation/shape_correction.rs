@@ -1,9 +1,9 @@
-//! The stiffness of a finger whose shape or material is not that of the measured ones.
+//! Stiffness of fingers whose shape or material differs from that of the measured ones.
 //!
-//! The prediction for its infill is multiplied by what its ribs say of the change: computed
-//! stiffness of this finger over that of the finger file, with the same infill. So measured values
-//! keep their place. What the computed stiffness gets wrong differs from finger to finger; the
-//! standard deviation of ln(measured / computed) over the measured fingers is added to the error.
+//! The prediction for the infill is multiplied by the ratio of the computed stiffnesses of this finger
+//! and of the finger file's, with the same infill. Measured fingers keep their predictions. The error
+//! of the computed stiffness varies between fingers: the standard deviation of ln(measured / computed)
+//! over the measured fingers is added to that of the prediction.
 
 use crate::finger::file::is_shape;
 use crate::finger::model::ComputedFingers;
@@ -14,7 +14,7 @@ use ask_tell::statistics::Moments;
 use finray::FingerError;
 use finray::mechanics::FingerStiffness;
 
-/// The prediction for a design whose infill has the prediction `plain`.
+/// Returns the prediction for a design whose infill has the prediction `plain`.
 ///
 /// The squared logarithms of the changes add to the distance from the measured designs, squared.
 ///

@@ -25,7 +25,7 @@ pub trait Request: Args {
     fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure>;
 }
 
-/// Result of a command: serialized it is what `--json` prints and Python returns, its text is for a terminal.
+/// Result of a command, serialized for `--json` and Python, displayed for a terminal.
 pub trait Response: Serialize + fmt::Display {
     /// Returns an SVG or a page that shows the result, if there is one.
     ///
@@ -35,16 +35,16 @@ pub trait Response: Serialize + fmt::Display {
         Ok(None)
     }
 
-    /// Returns the error with which the program ends although there is a result to print.
+    /// Returns the error with which the program ends after printing the result.
     ///
     /// # Errors
-    /// If the result says that something does not work, for example a task that does not insert.
+    /// If the result is a failure, for example a task that does not insert.
     fn verdict(&self) -> Result<(), Failure> {
         Ok(())
     }
 }
 
-/// A text that is the whole result.
+/// Result that is only a text.
 #[derive(Debug, Default, Serialize)]
 #[serde(transparent)]
 pub struct Text(pub String);
@@ -57,16 +57,16 @@ impl fmt::Display for Text {
 
 impl Response for Text {}
 
-/// Result of a command as other programs take it.
+/// Result of a command for other programs.
 #[derive(Debug)]
 pub struct Called {
-    /// What `--json` prints.
+    /// Output of `--json`.
     pub json: String,
     /// SVG or page that shows the result, if there is one.
     pub picture: Option<String>,
 }
 
-/// A command with its place in the program.
+/// A command of the program.
 #[derive(Clone, Copy)]
 pub struct Command {
     /// Words that select it: `["task", "new"]`.
@@ -125,7 +125,7 @@ fn augment<R: Request>(command: clap::Command) -> clap::Command {
 /// Reads a request from words of the command line, the command's name left out.
 ///
 /// # Errors
-/// If they are no such request.
+/// If they are not such a request.
 pub fn parse<R: Request>(
     words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
 ) -> Result<R, Failure> {
@@ -157,7 +157,7 @@ fn call<R: Request>(matches: &ArgMatches, context: &Context<'_>) -> Result<Calle
 }
 
 fn to_json(response: &impl Serialize) -> Result<String, Failure> {
-    // As a value first: of a key that two flattened parts have, the last counts.
+    // As a value first, so that of a key of two flattened parts the last remains.
     let value = serde_json::to_value(response);
     Ok(value.map_err(|error| Failure::running(error.to_string()))?.to_string())
 }

@@ -1,4 +1,4 @@
-//! The surroundings of a running command: what may cancel it, and who sees how far it is.
+//! Context of a running command: cancellation and progress.
 
 use crate::failure::Failure;
 use crate::progress::{Part, Progress};
@@ -9,19 +9,19 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use study::{Recorded, Study};
 
-/// Time that a study has to end by itself once it is cancelled.
+/// Time for a study to end by itself after it is cancelled.
 const GRACE: Duration = Duration::from_millis(400);
-/// Set by Ctrl-C or a polite kill.
+/// Set by Ctrl-C or SIGTERM.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// What may cancel a command, and who sees how far it is.
+/// Cancellation and progress of a command.
 pub struct Context<'a> {
     /// Cancels the command once it is set.
     pub stop: &'a AtomicBool,
     shown: Option<Shown>,
 }
 
-/// Makes the command line of the program.
+/// Constructor of the command line of the program.
 pub type Program = fn() -> clap::Command;
 
 struct Shown {
@@ -37,8 +37,8 @@ impl<'a> Context<'a> {
         Context { stop, shown: None }
     }
 
-    /// Lets Ctrl-C or a polite kill cancel a command that was typed. What has not ended in time is given up:
-    /// the journal of the study in `dir` survives that.
+    /// Lets Ctrl-C or SIGTERM cancel a command of the terminal. After [`GRACE`] the process exits, which the
+    /// journal of the study in `dir` survives.
     ///
     /// # Errors
     /// If signals cannot be watched.
@@ -60,12 +60,12 @@ impl<'a> Context<'a> {
     /// Checks that the command has not been cancelled.
     ///
     /// # Errors
-    /// If it was: what was computed meanwhile is worthless.
+    /// If it was cancelled.
     pub fn check(&self) -> Result<(), Failure> {
         not_stopped(self.stop)
     }
 
-    /// Begins to show progress through so many evaluations' worth of work.
+    /// Begins to show the progress of work that costs this many evaluations.
     pub fn begin(&self, cost: f64) {
         if let Some(shown) = &self.shown {
             *shown.progress() = Some(Progress::of(cost, !shown.quiet && !shown.json));
@@ -86,12 +86,12 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Shows that a part is done, from whichever thread did it.
+    /// Shows that a part is done, from any thread.
     pub fn part(&self, part: &Part) {
         self.see(|progress| progress.part(part));
     }
 
-    /// Shows that a design was evaluated and is written down.
+    /// Shows that a design was evaluated and recorded.
     pub fn evaluated(&self, recorded: &Recorded) {
         self.see(|progress| progress.evaluated(recorded));
     }
@@ -106,11 +106,12 @@ impl<'a> Context<'a> {
     /// Returns the command line of the program.
     ///
     /// # Errors
-    /// If the command was not typed.
+    /// If the command was not started from a terminal.
     pub fn program(&self) -> Result<clap::Command, Failure> {
         let shown = self.shown.as_ref();
-        let shown =
-            shown.ok_or_else(|| Failure::usage("describes the command line: run `optimize`"))?;
+        let shown = shown.ok_or_else(|| {
+            Failure::usage("this command describes the command line; run it as `optimize`")
+        })?;
         Ok((shown.program)())
     }
 
@@ -136,7 +137,7 @@ impl<'a> Context<'a> {
 }
 
 impl Context<'static> {
-    /// Returns the context of a command of this program that was typed.
+    /// Returns the context of a command that was started from a terminal.
     pub fn terminal(json: bool, quiet: bool, program: Program) -> Self {
         let progress = Mutex::new(None);
         Context { stop: &INTERRUPTED, shown: Some(Shown { program, json, quiet, progress }) }
@@ -152,7 +153,7 @@ impl Shown {
 /// Checks that a run has not been cancelled.
 ///
 /// # Errors
-/// If `stop` is set: what was computed meanwhile is worthless.
+/// If `stop` is set.
 pub fn not_stopped(stop: &AtomicBool) -> Result<(), Failure> {
     match stop.load(Ordering::SeqCst) {
         true => Err(Failure::Interrupted(None)),

@@ -1,4 +1,4 @@
-//! Why a request failed, and the exit code that says so.
+//! Errors of requests, and the exit codes of the program.
 
 use calibration::experiments::Problems;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -15,21 +15,20 @@ use std::fmt;
 use std::ops::RangeInclusive;
 use study::StudyError;
 
-/// Why a request failed. The texts name options as the command line has them; Python's keywords are
-/// the same words.
+/// Error of a request. The texts name options of the command line; Python's keywords are the same words.
 #[derive(Debug)]
 pub enum Failure {
     /// Bad usage or a bad input file: exit code 2.
     Input(anyhow::Error),
-    /// A bad task file, or a task that is none: exit code 2.
+    /// A bad task file or an unknown task: exit code 2.
     Task(anyhow::Error),
-    /// Something failed while running: exit code 1.
+    /// An error while running: exit code 1.
     Run(anyhow::Error),
-    /// It was asked to stop, and did; how to go on, if it can: exit code 1.
+    /// Cancelled, with a hint on how to continue, if that is possible: exit code 1.
     Interrupted(Option<String>),
 }
 
-/// Bad usage, described; it may begin with the option.
+/// Bad usage; the text may begin with the option.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 struct Usage(String);
@@ -44,7 +43,7 @@ fn place<E: Placed + Error + 'static>(error: &(dyn Error + 'static)) -> Option<P
     error.downcast_ref::<E>().map(Placed::place)
 }
 
-/// The errors that know their place.
+/// Types of errors that have a place.
 const PLACED: [fn(&(dyn Error + 'static)) -> Option<Place>; 11] = [
     place::<Usage>,
     place::<Fault>,
@@ -60,7 +59,7 @@ const PLACED: [fn(&(dyn Error + 'static)) -> Option<Place>; 11] = [
 ];
 
 impl Failure {
-    /// The process's exit code.
+    /// Returns the exit code of the process.
     pub fn exit_code(&self) -> u8 {
         match self {
             Failure::Run(_) | Failure::Interrupted(_) => 1,
@@ -68,7 +67,7 @@ impl Failure {
         }
     }
 
-    /// Where an input is wrong, as far as it is known.
+    /// Returns the place of the problem in the input, as far as it is known.
     pub fn place(&self) -> Place {
         let error = match self {
             Failure::Input(error) | Failure::Task(error) | Failure::Run(error) => error,
@@ -78,17 +77,17 @@ impl Failure {
         error.chain().find_map(of).unwrap_or_default()
     }
 
-    /// Bad input, for `map_err`.
+    /// Returns an error of bad input, for `map_err`.
     pub fn input(error: impl Into<anyhow::Error>) -> Self {
         Failure::Input(error.into())
     }
 
-    /// Bad input, described.
+    /// Returns an error of bad usage with this text.
     pub fn usage(message: impl Into<String>) -> Self {
         Failure::input(Usage(message.into()))
     }
 
-    /// Bad usage as clap finds it, with the option first.
+    /// Returns an error of bad usage found by clap, the option first.
     pub fn of_clap(error: clap::Error) -> Self {
         if let (ErrorKind::MissingRequiredArgument, Some(ContextValue::Strings(missing))) =
             (error.kind(), error.get(ContextKind::InvalidArg))
@@ -104,41 +103,52 @@ impl Failure {
         let option = context(ContextKind::InvalidArg).and_then(|arg| arg.split(' ').next());
         let text = error.render().to_string();
         let text = text.strip_prefix("error: ").unwrap_or(&text).trim_end();
-        // Without the lines on how to get help.
+        // Drops the lines on how to get help.
         let text = text.split("\n\nUsage:").next().unwrap_or(text);
         let text = text.split("\n\nFor more information").next().unwrap_or(text);
+        let text = described_numbers(text);
         let value = context(ContextKind::InvalidValue);
         Failure::usage(match (option, value, text.split_once("': ")) {
             (Some(option), Some(value), Some((_, why))) => {
                 // Of a range clap says `0 is not in 1..=10000`.
                 let range =
                     why.split_once(" is not in ").and_then(|(_, range)| range.split_once("..="));
-                match range {
-                    Some((least, most)) => {
-                        format!("{option} {value}: must lie between {least} and {most}")
-                    }
-                    None => format!("{option} {value}: {why}"),
-                }
+                let range =
+                    range.map(|(least, most)| format!("must lie between {least} and {most}"));
+                format!("{option} {value}: {}", range.as_deref().unwrap_or(why))
             }
             (Some(option), ..) if option.starts_with("--") => format!("{option}: {text}"),
-            _ => text.to_owned(),
+            _ => text,
         })
     }
 
-    /// Bad input in a file, described.
+    /// Returns an error of bad input in a file with this text.
     pub fn in_file(file: impl fmt::Display, problem: impl fmt::Display) -> Self {
         Failure::input(Place::file(file.to_string()).fault(problem.to_string()))
     }
 
-    /// A bad task file, for `map_err`.
+    /// Returns an error of a bad task file, for `map_err`.
     pub fn task(error: impl Into<anyhow::Error>) -> Self {
         Failure::Task(error.into())
     }
 
-    /// Failed while running, described.
+    /// Returns an error while running with this text.
     pub fn running(message: impl Into<String>) -> Self {
         Failure::Run(anyhow::Error::msg(message.into()))
     }
+}
+
+/// Returns the text of an error of clap with the problems of numbers described by what is accepted.
+pub(crate) fn described_numbers(text: &str) -> String {
+    const PROBLEMS: [(&str, &str); 6] = [
+        ("invalid digit found in string", "must be a whole number"),
+        ("cannot parse integer from empty string", "must be a whole number"),
+        ("number too large to fit in target type", "the number is too large"),
+        ("number too small to fit in target type", "the number is too small"),
+        ("invalid float literal", "must be a number"),
+        ("cannot parse float from empty string", "must be a number"),
+    ];
+    PROBLEMS.iter().fold(text.to_owned(), |text, (raw, plain)| text.replace(raw, plain))
 }
 
 /// Checks that a number lies in its range, if it is given; `option` is what gives it.
@@ -157,12 +167,12 @@ pub fn within<T: PartialOrd + fmt::Display>(
     }
 }
 
-/// A range as clap takes it of numbers narrower than its own.
+/// Converts a range of smaller integers to that which clap takes.
 pub(crate) fn wide<T: Copy + Into<i64>>(range: &RangeInclusive<T>) -> RangeInclusive<i64> {
     (*range.start()).into()..=(*range.end()).into()
 }
 
-/// Bad configuration in the folder of a study.
+/// Returns an error of bad configuration in the folder of a study.
 pub fn bad_config(error: impl fmt::Display) -> Failure {
     Failure::in_file("study.toml", error)
 }
@@ -184,7 +194,7 @@ impl From<ReportError> for Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            // The errors' own texts already hold their causes, so not `{error:#}`.
+            // Not `{error:#}`: the texts already include their causes.
             Failure::Input(error) | Failure::Task(error) | Failure::Run(error) => {
                 f.write_str(&short(&error.to_string()))
             }
@@ -205,7 +215,7 @@ fn options(usage: &str) -> String {
     }
 }
 
-/// Longest line of a message, and most lines, in characters: what it quotes of a file may be anything.
+/// Longest line of a message, characters, and largest number of lines, since it may quote a file.
 const LONGEST: usize = 600;
 const MOST_LINES: usize = 60;
 

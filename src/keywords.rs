@@ -7,10 +7,10 @@ use clap::{Arg, ArgAction, Args};
 use serde_json::{Map, Value};
 use std::ffi::OsString;
 
-/// Runs a command by its name (`task new`) with its options as keywords: names with underscores for hyphens. Numbers
-/// by their keys, which have a dot, are those of `--set`; `null` and `false` leave an option out.
+/// Runs a command by its name (`task new`) with its options as keywords, with underscores for hyphens. Keywords
+/// with a dot are those of `--set`; `null` and `false` leave an option out.
 ///
-/// The command line reads them, so that defaults, bounds and words are declared once.
+/// They are read as a command line, so that defaults and bounds are declared once.
 ///
 /// # Errors
 /// If there is no such command or option, a value cannot be used, or the command fails.
@@ -34,7 +34,7 @@ pub fn call(
 /// # Errors
 /// If there is no such option, or a value cannot be used.
 pub fn request<R: Args>(keywords: &Map<String, Value>) -> Result<R, Failure> {
-    // Options of a study exclude this one.
+    // Options of a study conflict with this one.
     let json = Arg::new("json").long("json").action(ArgAction::SetTrue);
     let mut program = R::augment_args(clap::Command::new("request").arg(json)).no_binary_name(true);
     program.build();
@@ -66,7 +66,7 @@ fn words(program: &clap::Command, keywords: &Map<String, Value>) -> Result<Vec<O
             }
             value => vec![joined(value, arg)],
         };
-        // Where it is the default it may stand without the options that it requires.
+        // The default is allowed without the options that it requires.
         let default = arg.get_default_values().iter().map(|value| value.to_string_lossy());
         if several.iter().map(String::as_str).eq(default) {
             continue;
@@ -82,7 +82,7 @@ fn words(program: &clap::Command, keywords: &Map<String, Value>) -> Result<Vec<O
             (false, _) => words.extend(several.iter().map(|value| format!("--{name}={value}"))),
         }
     }
-    // Behind these nothing is taken for an option.
+    // Ends the options.
     words.push("--".to_owned());
     Ok(words.into_iter().chain(positional).map(OsString::from).collect())
 }
@@ -96,7 +96,7 @@ fn least(arg: &Arg) -> usize {
     arg.get_num_args().map_or(1, |count| count.min_values())
 }
 
-/// Returns a value of several parts as the name of the option's value has them: `WxHxL`, else by commas.
+/// Joins the parts of a value as the option takes them: by `x` (`WxHxL`), else by commas.
 fn joined(value: &Value, arg: &Arg) -> String {
     let Value::Array(parts) = value else { return text(value) };
     let by_x =

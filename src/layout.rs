@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 /// Columns of a terminal.
 const COLUMNS: usize = 80;
-/// Where what a line says begins, after its name.
+/// Column of the text of a line, after its name.
 const INDENT: usize = 14;
 
-/// Lines that fit a terminal: a longer one goes on below where what it says begins. It is broken after
-/// a comma or before a bracket if there is one in its second half, else at a space.
+/// Wraps lines to the terminal, indented below their text: after a comma or before a bracket if there is
+/// one in the second half, else at a space.
 pub fn wrapped(text: &str) -> String {
     text.split_inclusive('\n').map(wrapped_line).collect()
 }
@@ -39,7 +39,7 @@ pub fn wrote<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> String {
     files.into_iter().map(|file| format!("wrote         {}\n", file.display())).collect()
 }
 
-/// A text of lines, each ended, what they say one below the other.
+/// Returns lines as text, aligned in two columns.
 pub fn lines(lines: impl IntoIterator<Item = Line>) -> String {
     lines.into_iter().map(|(name, text)| format!("{name:<13} {text}\n")).collect()
 }

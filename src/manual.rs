@@ -1,11 +1,11 @@
-//! The command line described: reference page, and a list for other languages.
+//! Description of the command line: reference page, and a list for other languages.
 
 use clap::{Arg, ArgAction};
-use serde_json::{Value, json};
+use serde::Serialize;
 use std::any::TypeId;
 use std::path::PathBuf;
 
-/// The reference of all commands as a page: what `--help` says of each.
+/// Returns the help of all commands as a Markdown page.
 pub fn reference(program: clap::Command) -> String {
     fn section(command: &mut clap::Command, path: &str, page: &mut String) {
         let help = command.render_long_help().to_string();
@@ -18,16 +18,39 @@ pub fn reference(program: clap::Command) -> String {
         }
     }
     let mut page =
-        "# Commands and options\n\nWhat `optimize --help` says of each command.\n".into();
+        "# Commands and options\n\nOutput of `optimize --help` for each command.\n".into();
     let mut command = program.term_width(100);
     command.build();
     section(&mut command, "optimize", &mut page);
     page
 }
 
-/// All commands with their options, by Python's words for them; `hidden` are options that only other programs give.
-pub fn commands(mut program: clap::Command) -> Value {
-    fn below(command: &clap::Command, path: &str, found: &mut Vec<Value>) {
+/// A command and its options, with Python's names; `hidden` are options for other programs only.
+#[derive(Serialize)]
+pub struct Described {
+    name: String,
+    about: Option<String>,
+    options: Vec<DescribedOption>,
+    hidden: Vec<DescribedOption>,
+}
+
+#[derive(Serialize)]
+struct DescribedOption {
+    name: String,
+    positional: bool,
+    required: bool,
+    multiple: bool,
+    flag: bool,
+    kind: &'static str,
+    value: Option<String>,
+    words: Vec<String>,
+    default: String,
+    help: Option<String>,
+}
+
+/// Returns all commands with their options.
+pub fn commands(mut program: clap::Command) -> Vec<Described> {
+    fn below(command: &clap::Command, path: &str, found: &mut Vec<Described>) {
         let nested =
             || command.get_subcommands().filter(|c| !c.is_hide_set() && c.get_name() != "help");
         if nested().next().is_none() {
@@ -37,7 +60,7 @@ pub fn commands(mut program: clap::Command) -> Value {
             let [options, hidden] =
                 [shown, hidden].map(|some| some.into_iter().map(option).collect::<Vec<_>>());
             let about = command.get_long_about().or(command.get_about()).map(ToString::to_string);
-            found.push(json!({"name": path, "about": about, "options": options, "hidden": hidden}));
+            found.push(Described { name: path.to_owned(), about, options, hidden });
         }
         for command in nested() {
             below(command, format!("{path} {}", command.get_name()).trim_start(), found);
@@ -46,32 +69,32 @@ pub fn commands(mut program: clap::Command) -> Value {
     let mut found = Vec::new();
     program.build();
     below(&program, "", &mut found);
-    Value::Array(found)
+    found
 }
 
-fn option(argument: &Arg) -> Value {
+fn option(argument: &Arg) -> DescribedOption {
     let words = argument.get_possible_values();
     let words = words.iter().filter(|word| !word.is_hide_set()).map(|word| word.get_name());
     let default = argument.get_default_values().iter().map(|value| value.to_string_lossy());
     let name = argument.get_long().unwrap_or(argument.get_id().as_str()).replace('-', "_");
     let takes = argument.get_action().takes_values();
     let value = argument.get_value_names().and_then(|names| names.first());
-    json!({
-        "name": name,
-        "positional": argument.is_positional(),
-        "required": argument.is_required_set(),
-        "multiple": matches!(argument.get_action(), ArgAction::Append)
-            || argument.get_num_args().is_some_and(|count| count.max_values() > 1),
-        "flag": !takes,
-        "kind": kind(argument),
-        "value": value.filter(|_| takes).map(ToString::to_string),
-        "words": words.filter(|_| takes).collect::<Vec<_>>(),
-        "default": default.filter(|_| takes).collect::<Vec<_>>().join(","),
-        "help": argument.get_help().map(ToString::to_string),
-    })
+    let many = argument.get_num_args().is_some_and(|count| count.max_values() > 1);
+    DescribedOption {
+        name,
+        positional: argument.is_positional(),
+        required: argument.is_required_set(),
+        multiple: matches!(argument.get_action(), ArgAction::Append) || many,
+        flag: !takes,
+        kind: kind(argument),
+        value: value.filter(|_| takes).map(ToString::to_string),
+        words: words.filter(|_| takes).map(str::to_owned).collect(),
+        default: default.filter(|_| takes).collect::<Vec<_>>().join(","),
+        help: argument.get_help().map(ToString::to_string),
+    }
 }
 
-/// Returns what the value of an option is.
+/// Returns the type of an option's value.
 fn kind(argument: &Arg) -> &'static str {
     let parsed = argument.get_value_parser().type_id();
     let integers =

@@ -3,24 +3,24 @@
 use crate::command::Command;
 use crate::commands::{COMMANDS, study};
 use crate::executor;
-use crate::failure::Failure;
+use crate::failure::{Failure, described_numbers};
 use crate::terminal::say;
 use clap::ArgMatches;
 use std::ffi::OsString;
 use std::process::ExitCode;
 use std::sync::LazyLock;
 
-/// A study, which needs no name.
+/// The command of a study, whose name may be left out.
 const STUDY: Command = Command::of::<study::Request>(&["study"]);
 
-/// Commands with commands below them: place in the list, name, what they are, example.
+/// Groups of commands: position in the list, name, description, example.
 const GROUPS: [(usize, &str, &str, &str); 3] = [
     (
         30,
         "measure",
-        "Add measurements from the bench to a file, check such a file, or write a sheet to measure by\n\n\
-         The file is `docs/guide/measuring.md`'s measurements.csv. Only the task, the infill and something that was \
-         measured are needed; a range alone is enough.",
+        "Add measurements to a file, check such a file, or write a measuring sheet\n\n\
+         docs/guide/measuring.md describes the file. Required are the task, the infill and one measured value, \
+         for example the range.",
         "Example: optimize measure check published",
     ),
     (
@@ -38,12 +38,12 @@ const GROUPS: [(usize, &str, &str, &str); 3] = [
 ];
 
 const ABOUT: &str = "Finds the 3D-printed compliant finger that makes a connector insertion most robust\n\n\
-    Without a subcommand it runs a study: it proposes fingers, simulates their insertions from shifted starting \
-    positions, and searches for the finger that tolerates the largest shift. Running the same command again \
+    Without a subcommand it runs a study: an optimizer proposes fingers, their insertions are simulated from shifted \
+    starting positions, and the result is the finger that tolerates the largest shift. Running the same command again \
     continues the study.\n\n\
     Exit codes: 0 done, 1 failed or interrupted while running, 2 bad usage or bad input file.";
 
-/// Version, commit and the first digits of the sources' hash.
+/// Version, commit and first digits of the hash of the sources.
 static LONG_VERSION: LazyLock<String> = LazyLock::new(|| {
     let [version, commit] = [env!("CARGO_PKG_VERSION"), env!("FINGER_OPT_COMMIT")];
     format!("{version} ({commit}, sources {})", &::study::SOURCES[..8])
@@ -97,14 +97,14 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let matches = match program().try_get_matches_from(&words) {
         Ok(matches) => matches,
         Err(usage) if usage.use_stderr() => {
-            say(usage.render().to_string().trim_end());
+            say(described_numbers(&usage.render().to_string()).trim_end());
             return ExitCode::from(2);
         }
         // Help and version come this way, too.
         Err(shown) => shown.exit(),
     };
     let done = chosen(&matches).and_then(|(command, matches)| {
-        // Only options of a study hold where it is measured.
+        // Only a study has this option.
         match matches.try_get_one::<String>("executor").ok().flatten() {
             Some(executor) => executor::run(executor, words.get(1..).unwrap_or_default()),
             None => command.print(matches, program).map(|()| ExitCode::SUCCESS),
@@ -131,9 +131,9 @@ fn chosen(matches: &ArgMatches) -> Result<(Command, &ArgMatches), Failure> {
     Ok((*found, at))
 }
 
-/// Lets a write beyond `ulimit -f` fail like one to a full disk; unasked the system ends the process without a word.
+/// Makes a write beyond `ulimit -f` fail like one to a full disk; by default the system ends the process silently.
 fn survive_size_limit() {
-    // What cannot be registered leaves all as it was.
+    // If this fails, the default remains.
     #[cfg(unix)]
     let _ = signal_hook::flag::register(libc::SIGXFSZ, Default::default());
 }

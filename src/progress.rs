@@ -21,39 +21,39 @@ pub struct Part {
     pub cost: f64,
 }
 
-/// Costs of the parts, in evaluations of the search. Measured on usb and ket8; they decide nothing but the
-/// time that is said to be left.
+/// Costs of the parts, in evaluations of the search, measured on usb and ket8; only for the estimate of the
+/// time left.
 pub mod cost {
-    /// A design that is repeated at its ends.
+    /// A design whose ends are repeated.
     pub const REPEATED: f64 = 4.0;
     /// A design that is walked.
     pub const WALKED: f64 = 12.0;
     /// A simulation for an emulator.
     pub const SIMULATION: f64 = 1.2;
-    /// A calibration with fingers left out.
+    /// A calibration of the leave-one-out check.
     pub const FOLD: f64 = 4.0;
 }
 
-/// Time between two lines where there is no terminal.
+/// Time between two lines without a terminal.
 const EVERY: Duration = Duration::from_secs(3);
-/// Designs that are repeated, and walked, in most studies.
+/// Typical numbers of designs that are repeated and walked.
 const CONFIRMED: [f64; 2] = [5.0, 1.5];
 
-/// Shows how far a study or a calibration is. Work is counted in evaluations of the search.
+/// Progress of a study or a calibration, counted in evaluations of the search.
 pub struct Progress {
     bar: Option<ProgressBar>,
     shown: bool,
     begun: Instant,
     said: Instant,
-    /// Work done since it began, and work left as far as that is known.
+    /// Work done since it began, and estimated work left.
     done: f64,
     left: f64,
-    /// Evaluations in all, unless the search settles, and the best of them, of a study.
+    /// Number of evaluations of a study, unless it stops early, and the best so far.
     search: Option<(Option<u64>, Standing)>,
 }
 
 impl Progress {
-    /// Returns the progress of a study; `shown` says whether anybody sees it.
+    /// Returns the progress of a study; `shown` makes it visible.
     pub fn of_study(study: &Study, shown: bool) -> Self {
         let config = &study.config;
         let (done, budget) = (study.evaluations.len() as u64, config.expected_evaluations());
@@ -91,7 +91,7 @@ impl Progress {
         self.step(1.0, &what, Some(done) == budget);
     }
 
-    /// A part of this cost is done; the last of a phase is always shown.
+    /// Adds a part of this cost; the last of a phase is always shown.
     fn step(&mut self, cost: f64, what: &str, last: bool) {
         self.done += cost;
         self.left = (self.left - cost).max(0.0);
@@ -123,7 +123,7 @@ impl Drop for Progress {
 
 fn bar(left: f64) -> ProgressBar {
     let bar = ProgressBar::new(left.ceil() as u64);
-    if let Ok(style) = ProgressStyle::with_template("{bar:12} {msg}  {elapsed} gone") {
+    if let Ok(style) = ProgressStyle::with_template("{bar:12} {msg}, {elapsed} elapsed") {
         bar.set_style(style);
     }
     bar.enable_steady_tick(Duration::from_millis(500));

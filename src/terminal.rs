@@ -1,10 +1,10 @@
-//! Output: standard output, standard error, and what a terminal must not see.
+//! Standard output and standard error, without control characters.
 
 use crate::failure::Failure;
 use input::files::visible;
 use std::io::{self, Write};
 
-/// Prints to standard output; a reader that has gone away (`| head`) is no error.
+/// Prints to standard output; a closed pipe (`| head`) is not an error.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(shown(text).as_bytes()).and_then(|()| out.flush()) {
@@ -15,13 +15,12 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Text that a terminal may see; a carriage return would overwrite the line.
+/// Returns text with control characters escaped; a carriage return would overwrite the line.
 fn shown(text: &str) -> String {
     visible(text).replace('\r', "\\r")
 }
 
-/// A line on standard error. Where that has gone or is full nobody can be told, and no study
-/// ends for it.
+/// Writes a line on standard error; a failure is ignored, so that it does not end a study.
 pub fn say(text: &str) {
     let _ = writeln!(io::stderr(), "{}", shown(text));
 }

@@ -138,7 +138,7 @@ fn where_nothing_keeps_the_constraints_nothing_is_recommended() {
     for optimizer in ["gp", "cma-es"] {
         let more = ["--constraint", "peak-force<=3", "--optimizer", optimizer];
         let text = studies.study(optimizer, 16, &more);
-        let words = "none keeps all constraints; nearest";
+        let words = "none satisfies all constraints; nearest";
         assert!(text.succeeds().contains(words), "{}", text.stdout);
         let result = studies.study(optimizer, 16, &[&more[..], &["--json"]].concat()).json();
         assert_eq!((&result["best"], &result["feasible"]), (&Value::Null, &0.into()));

@@ -1,4 +1,4 @@
-//! `optimize calibrate`: predicts all fingers from simulation and a few measurements.
+//! `optimize calibrate`: predicts every finger on the bench.
 
 use crate::command;
 use crate::context::Context;
@@ -9,17 +9,17 @@ use crate::setup::measured;
 use calibration::bench::Settings;
 use calibration::calibrate::Calibration;
 use calibration::subject::Subject;
-use calibration::table;
+use calibration::table::{self, CalibrationOutput};
 use serde::{Serialize, Serializer};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use study::write_file;
 
-/// Predict what every finger does on the bench, from simulation and few measurements.
+/// Predict the range of every finger on the bench from simulations and a few measurements.
 ///
-/// Simulates the task under what nobody measured (friction, preload, robot, finger), compares
-/// with the measurements, learns what no parameter explains as a process over the stiffness, and
-/// says how far the result is to be trusted: each measured finger predicted without it.
+/// Simulates the task with drawn values of the parameters that were not measured (friction, preload, robot,
+/// finger), compares with the measurements, models the discrepancy as a Gaussian process over the stiffness, and
+/// reports the accuracy: each measured finger is predicted without its measurement.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 20,
@@ -29,10 +29,10 @@ pub struct Request {
     /// Tasks and measurements.
     #[command(flatten)]
     pub bench: BenchRequest,
-    /// How it is computed.
+    /// Options of the computation.
     #[command(flatten)]
     pub how: HowCalibrated,
-    /// Folder that tables are written to
+    /// Folder for the tables
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
@@ -80,7 +80,7 @@ impl Calibrated {
 
 impl Serialize for Calibrated {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        table::json(&self.found, &self.subjects).serialize(serializer)
+        CalibrationOutput::new(&self.found, &self.subjects).serialize(serializer)
     }
 }
 

@@ -17,10 +17,10 @@ use study::{StudyRecord, write_file};
     after_help = "Example: optimize compare results/usb-gp-seed0 results/usb-sobol-seed0"
 )]
 pub struct Request {
-    /// Folders of the studies; several seeds of an optimizer give its median and quartiles
+    /// Folders of the studies; several seeds of an optimizer give median and quartiles
     #[arg(required = true, value_name = "DIR")]
     pub dirs: Vec<PathBuf>,
-    /// Draw the best so far of each optimizer
+    /// Draw the best value so far of each optimizer
     #[arg(long, value_name = "FILE.svg")]
     pub svg: Option<PathBuf>,
     /// Write table and picture as a page

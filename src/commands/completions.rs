@@ -1,4 +1,4 @@
-//! `optimize completions`: the command line, described for a shell.
+//! `optimize completions`: completion scripts for shells.
 
 use crate::command::{self, Text};
 use crate::context::Context;

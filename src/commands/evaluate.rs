@@ -22,7 +22,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use study::ByRibs;
 
-/// Measure the tolerance window of one finger
+/// Simulate the tolerance window of one finger
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
     display_order = 10,
@@ -35,21 +35,20 @@ pub struct Request {
     /// The finger.
     #[command(flatten)]
     pub finger: FingerRequest,
-    /// Go step by step to the first failure: sees gaps narrower than 0.5 mm, three times the trials
+    /// Search step by step to the first failure: finds gaps narrower than 0.5 mm in three times the trials
     #[arg(long)]
     pub walk: bool,
-    /// Success rate and robust range under these errors, too: typical, or the path of a file
+    /// Also compute success rate and robust range under these errors: typical, or the path of a file
     #[arg(long, value_name = "NAME")]
     pub uncertainty: Option<String>,
-    /// Seed of the drawn errors: those of the study with this seed
+    /// Seed of the drawn errors; the same draws as in a study with this seed
     #[arg(long, value_name = "N", default_value_t = 0, requires = "uncertainty")]
     pub seed: u64,
     /// Repeats at the window's ends.
     #[command(flatten)]
     pub repeat: Option<RepeatRequest>,
-    /// Leave out the window with springs computed from the ribs
-    // Which of the two models agrees better with the bench depends on the task
-    // (docs/notes/finger.md).
+    /// Skip the window with stiffness computed from the ribs
+    // On which of the two the bench agrees depends on the task (docs/notes/finger.md).
     #[arg(long, hide = true)]
     pub no_ribs: bool,
 }
@@ -65,10 +64,10 @@ pub struct Evaluated {
     pub evaluation: Evaluation,
     /// Wall-clock duration of the evaluation, s.
     pub wall_s: f64,
-    /// Bands at the window's ends in which repeats differ; `None` without a window or repeats.
+    /// Bands at the window's ends in which repeats differ, with `--repeat`.
     #[serde(serialize_with = "serialize_bands", skip_serializing_if = "Option::is_none")]
     pub bands: Option<Bands>,
-    /// The same finger with springs computed from its ribs, if requested.
+    /// The same finger with stiffness computed from its ribs.
     #[serde(
         rename = "computed",
         serialize_with = "computed",
@@ -102,7 +101,7 @@ impl command::Request for Request {
 }
 
 impl Request {
-    /// Returns setup and plan of the evaluation.
+    /// Returns the setup and the plan of draws.
     pub(crate) fn prepared(&self) -> Result<(Setup, Plan), Failure> {
         let mut setup = self.setup.setup()?;
         if let Some(name) = &self.uncertainty {
@@ -116,9 +115,8 @@ impl Request {
         if self.walk { Search::Walk } else { Search::Strides }
     }
 
-    /// Evaluates the finger again with springs computed from its ribs; the start is taught if the
-    /// task's own start does not insert. Returns `None` if a finger model was requested, if the
-    /// finger is given by its springs, or if this model is not available.
+    /// Evaluates the finger with stiffness computed from its ribs, with the start taught if the task's own
+    /// does not insert; `None` if a finger model or a stiffness is given, or if the engine does not support it.
     fn by_ribs(
         &self,
         setup: &Setup,

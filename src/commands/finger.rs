@@ -22,14 +22,13 @@ use std::fmt;
 use std::path::PathBuf;
 use study::write_file;
 
-/// Largest force on the pad for the drawing, N; the deflection is linear (small displacements).
+/// Largest drawn force on the pad, N, since displacements are linear.
 const LARGEST_LOAD_N: f64 = 1000.0;
 
 /// Compute the stiffness of a printed finger from its ribs.
 ///
-/// Plane stress on the exact profile: free stiffnesses at the pad's middle at the modulus of the
-/// finger file, before any measured correction. Nothing is fitted. Trials and studies use
-/// it with --finger-model computed.
+/// Plane stress on the exact profile, with the modulus of the finger file and without measured corrections:
+/// stiffness at the middle of the pad. Trials and studies use it with --finger-model computed.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 14,
@@ -44,16 +43,16 @@ pub struct Request {
     /// Finger: finray9, or the path of a finger file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_FINGER)]
     pub finger: String,
-    /// Where the first rib lies, mm [default: the finger file's]
+    /// Position of the first rib, mm [default: that of the finger file]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub phase_mm: Option<f64>,
-    /// A number of the finger file, as finger.skin.thickness_mm=0.8; may be given several times
+    /// A number of the finger file, for example finger.skin.thickness_mm=0.8; may be given several times
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     pub set: Vec<(String, f64)>,
-    /// Draw the finger, at rest and under a force on its pad
+    /// Draw the finger at rest and under a force on its pad
     #[arg(long, value_name = "FILE.svg")]
     pub svg: Option<PathBuf>,
-    /// That force, N: y towards the part, z up; as -5,0 is a grasp, 0,10 a part that pulls up
+    /// This force, N: y towards the part, z up; for example -5,0 for a grasp or 0,10 for a part pulling up
     #[arg(long, value_name = "Y,Z", default_value = "-5,0", value_parser = load,
         allow_hyphen_values = true)]
     pub load_n: [f64; 2],
@@ -65,7 +64,9 @@ fn load(text: &str) -> Result<[f64; 2], String> {
     let [y, z] = force.unwrap_or_default();
     match (1e-3..=LARGEST_LOAD_N).contains(&libm::hypot(y, z)) {
         true => Ok([y, z]),
-        false => Err(format!("is no force y,z of 0.001 to {LARGEST_LOAD_N} N; as -5,0")),
+        false => {
+            Err(format!("must be a force Y,Z of 0.001 to {LARGEST_LOAD_N} N, for example -5,0"))
+        }
     }
 }
 
@@ -84,7 +85,7 @@ impl command::Request for Request {
     fn run(&self, _context: &Context<'_>) -> Result<Ribs, Failure> {
         if let Some((key, _)) = self.set.iter().find(|(key, _)| !is_shape(key)) {
             return Err(Failure::usage(format!(
-                "--set {key}: sets no number of a finger file, as finger.skin.thickness_mm does"
+                "--set {key}: must be a number of the finger file, for example finger.skin.thickness_mm"
             )));
         }
         let set = Design(self.set.iter().cloned().collect());
@@ -200,7 +201,7 @@ impl fmt::Display for Ribs {
         let (area_mm2, mass_g) = (geometry.area() / (MM * MM), geometry.mass() / GRAM);
         let (depth, cross) = (computed.cross.in_depth / N_PER_MM, &computed.cross);
         let model = measured.as_ref().map(|prediction| lines::stiffness(prediction)[0].1.clone());
-        let model = model.unwrap_or_else(|| "no measured model of it".to_owned());
+        let model = model.unwrap_or_else(|| "not covered by the measured model".to_owned());
         let rows = [("pad", &computed.pad), ("pad and roof", &computed.pad_and_roof)]
             .map(|(name, found)| planar_row(name, found));
         write!(
@@ -226,7 +227,7 @@ impl fmt::Display for Ribs {
 
 /// Column headings for [`planar_row`].
 const PLANAR: [&str; 7] = [
-    "the part\ntouches",
+    "contact\nat",
     "compliance\nN/mm",
     "assembly\nN/mm",
     "tilting\nNm/rad",

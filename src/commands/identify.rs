@@ -1,4 +1,4 @@
-//! `optimize identify`: estimates the parameters of a cell from the robot's logs.
+//! `optimize identify`: identifies the parameters of a cell from the robot's logs.
 
 use crate::command;
 use crate::context::{Context, not_stopped};
@@ -23,24 +23,24 @@ use std::fmt;
 use std::path::PathBuf;
 use study::write_file;
 
-/// Tell from the robot's logs what its cell is like: friction, stiffness, preload, pads, edges
+/// Identify the parameters of a cell from the robot's logs: friction, stiffness, preload, pads, edges
 ///
-/// The attempts are simulated along their commanded paths. What force and pose tell by themselves is read
-/// by formulas, the rest is fitted to the curves; what these logs cannot tell is named and left as it was.
+/// The attempts are simulated along their commanded paths. Some parameters follow from force and pose by
+/// formulas, others are fitted to the curves; parameters that the logs do not determine are listed and unchanged.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
     display_order = 21,
     after_help = "Example: optimize identify --task usb --runs runs.csv --out cell.toml --report identify.html"
 )]
 pub struct Request {
-    /// Task, finger model, and the robot to begin with; one task.
+    /// Task, finger model and initial robot; one task.
     #[command(flatten)]
     pub setup: SetupRequest,
     /// Table of the logs: log, infill_density_percent, infill_direction_deg, offset_mm, outcome
     #[arg(long, value_name = "FILE.csv")]
     pub runs: PathBuf,
-    /// Task's frame in the robot's base: origin_mm and axis_angle_rad, as a pendant shows them; force_sign = 1
-    /// or -1, tool_mass_kg; and upright_axis_angle_rad of the TCP, gravity_compensated = false if need be
+    /// Task's frame in the robot's base: origin_mm, axis_angle_rad (as a pendant shows them), force_sign = 1
+    /// or -1, tool_mass_kg; optional: upright_axis_angle_rad of the TCP, gravity_compensated = false
     #[arg(long, value_name = "FILE.toml")]
     pub frame: Option<PathBuf>,
     /// Write the cell, for --cell, --priors and --uncertainty
@@ -49,7 +49,7 @@ pub struct Request {
     /// Write a page with the curves, measured and simulated, and the table of numbers
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
-    /// Bounds of what the logs may not tell: bench, or the path of a file
+    /// Priors of the parameters: bench, or the path of a file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_PRIORS)]
     pub priors: String,
     /// Seed of the fit
@@ -57,7 +57,7 @@ pub struct Request {
     pub seed: u64,
 }
 
-/// Result of the identification.
+/// Identified cell.
 pub struct Done {
     /// Identified parameters of the cell.
     pub done: IdentifyDone,
@@ -110,7 +110,7 @@ impl command::Request for Request {
 
 impl Serialize for Done {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        shown::json(&self.done).serialize(serializer)
+        shown::Output::new(&self.done).serialize(serializer)
     }
 }
 
@@ -127,7 +127,7 @@ impl fmt::Display for Done {
     }
 }
 
-/// Returns the identified parameters as a cell file.
+/// Returns the identified cell as a cell file.
 fn cell(setup: &Setup, found: &Identified, logs: usize) -> Priors {
     let task = setup.task_names().concat();
     Priors {
@@ -139,7 +139,7 @@ fn cell(setup: &Setup, found: &Identified, logs: usize) -> Priors {
     }
 }
 
-/// Returns the robot as a robot file: the identified soft flange, otherwise the original file.
+/// Returns the robot file of a robot: a compliant flange, or the file that it was read from.
 fn robot_table(setup: &Setup, robot: &Robot) -> Option<toml::Table> {
     let (Drive::Servo(servo), true) = (&robot.drive, *robot != setup.evaluator.robot) else {
         return setup.inputs.get("robot")?.parse().ok();

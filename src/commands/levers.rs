@@ -1,4 +1,4 @@
-//! `optimize levers`: one-at-a-time sensitivity of the range to numbers other than the infill.
+//! `optimize levers`: one-at-a-time sensitivity of the range.
 
 use crate::command;
 use crate::context::{Context, not_stopped};
@@ -18,7 +18,7 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use study::write_file;
 
-/// Find out what would help a finger more than its infill: tilt, strokes, grip, friction, robot
+/// Compare the infill with other ways to widen the window: tilt, strokes, grip, friction, robot
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
     display_order = 17,

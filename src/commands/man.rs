@@ -1,4 +1,4 @@
-//! `optimize man`: prints the manual page.
+//! `optimize man`: the manual page.
 
 use crate::command::{self, Text};
 use crate::context::Context;
@@ -9,12 +9,12 @@ use crate::manual;
 #[derive(Debug, clap::Args)]
 #[command(display_order = 92, after_help = "Example: optimize man > optimize.1")]
 pub struct Request {
-    /// What is printed
+    /// Output format
     #[arg(long, value_enum, hide = true, default_value_t)]
     pub format: Format,
 }
 
-/// Forms of the manual.
+/// Formats of the manual.
 #[derive(Debug, Clone, Copy, Default, clap::ValueEnum)]
 pub enum Format {
     /// A page for `man`
@@ -22,7 +22,7 @@ pub enum Format {
     Man,
     /// The reference of all commands, docs/cli.md
     Markdown,
-    /// The commands with their options, for what is generated of them
+    /// The commands with their options, for generated code
     Json,
 }
 
@@ -35,7 +35,11 @@ impl command::Request for Request {
         match self.format {
             Format::Man => {}
             Format::Markdown => return Ok(Text(manual::reference(program))),
-            Format::Json => return Ok(Text(manual::commands(program).to_string() + "\n")),
+            Format::Json => {
+                let commands = serde_json::to_string(&manual::commands(program));
+                let commands = commands.map_err(|error| Failure::Run(error.into()))?;
+                return Ok(Text(commands + "\n"));
+            }
         }
         let mut page = Vec::new();
         clap_mangen::Man::new(program)

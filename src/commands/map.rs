@@ -20,8 +20,8 @@ use study::write_file;
 
 /// Trace the capture map of one finger
 ///
-/// A tolerance window is one line through it: along y, without a second error. At most 300 trials;
-/// what lies between two that end alike is taken over from them.
+/// The tolerance window is its section along y without a second error. At most 300 trials are simulated; places
+/// between two equal outcomes are filled in.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
     display_order = 12,
@@ -34,7 +34,7 @@ pub struct Request {
     /// The finger.
     #[command(flatten)]
     pub finger: FingerRequest,
-    /// The two errors of the start: mm, degrees
+    /// The two errors of the start, mm or degrees
     #[arg(long, value_enum, default_value_t)]
     pub axes: Axes,
     /// Draw the map
@@ -73,7 +73,7 @@ impl command::Request for Request {
 }
 
 impl Request {
-    /// A trial at every place of that map: thousands.
+    /// Simulates a trial at every place of the map.
     pub fn full(&self, map: &CaptureMap, stop: &AtomicBool) -> Result<Vec<Vec<Mark>>, Failure> {
         let setup = self.setup.setup()?;
         let specimen = self.finger.choose(&setup)?.specimen;

@@ -1,4 +1,4 @@
-//! `optimize next`: recommends the next fingers to print.
+//! `optimize next`: the finger to print next.
 
 use crate::command;
 use crate::context::Context;
@@ -13,22 +13,23 @@ use calibration::subject::Subject;
 use input::shipped::Source;
 use insertion::space::Design;
 use insertion::stiffness::designs;
+use report::answer::words::design;
 use serde::{Serialize, Serializer};
 use std::fmt;
 
 /// Fingers that may be printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Among {
-    /// Those of the space
+    /// All fingers of the space
     Space,
-    /// The 11 of the publication
+    /// The 11 fingers of the publication
     Published,
 }
 
-/// Say which finger to print next, and when to stop printing.
+/// Recommend the finger to print next, or to stop printing.
 ///
-/// The finger with the largest expected gain of the best known bench range, by simulation and
-/// by what was measured; the file of measurements may have no line yet, or not be there.
+/// It is the finger with the largest expected improvement of the best range on the bench, by simulation and
+/// measurements; the file of measurements may be empty or missing.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 22,
@@ -38,17 +39,17 @@ pub struct Request {
     /// Task and measurements; one task.
     #[command(flatten)]
     pub bench: BenchRequest,
-    /// Fingers to print at a time
+    /// Number of fingers to print at a time
     #[arg(long, value_name = "K", default_value_t = 1,
           value_parser = clap::value_parser!(u16).range(1..=100))]
     pub count: u16,
     /// Fingers that may be printed
     #[arg(long, value_enum, default_value = "space")]
     pub among: Among,
-    /// Gain of range that is worth the print and the measurement, mm; below it: stop
+    /// Smallest gain of range that is worth a print and its measurement, mm
     #[arg(long, value_name = "MM", default_value_t = 0.1, value_parser = print_cost)]
     pub print_cost_mm: f64,
-    /// How it is computed.
+    /// Options of the computation.
     #[command(flatten)]
     pub how: HowCalibrated,
 }
@@ -56,7 +57,7 @@ pub struct Request {
 fn print_cost(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(mm) if mm.is_finite() && mm >= 0.0 => Ok(mm),
-        _ => Err("a cost is a number, 0 or above, in mm of range".to_owned()),
+        _ => Err("must be a number of at least 0 (mm)".to_owned()),
     }
 }
 
@@ -64,9 +65,9 @@ fn print_cost(text: &str) -> Result<f64, String> {
 pub struct Advised {
     /// The task's fingers.
     pub subject: Subject,
-    /// The recommendation.
+    /// Fingers to print.
     pub advice: Advice,
-    /// File of measurements, and whether it is missing.
+    /// File of measurements.
     measurements: String,
     missing: bool,
     print_cost_mm: f64,
@@ -79,7 +80,7 @@ impl command::Request for Request {
     fn run(&self, context: &Context<'_>) -> Result<Advised, Failure> {
         context.begin(self.how.simulations() as f64 * cost::SIMULATION);
         if self.bench.setup.tasks.len() > 1 {
-            return Err(Failure::usage("give one --task: a finger is printed for one"));
+            return Err(Failure::usage("give a single --task"));
         }
         let published = match self.among {
             Among::Space => Vec::new(),
@@ -177,7 +178,7 @@ impl fmt::Display for Advised {
             ),
         }];
         for (i, print) in advice.next.iter().enumerate() {
-            lines.push(format!("{}. {}", i + 1, subject.designs[print.finger].labelled()));
+            lines.push(format!("{}. {}", i + 1, design(&subject.designs[print.finger])));
             lines.push(format!(
                 "   expected {:.1} mm (80 %: {:.1} to {:.1}), gain {:.2} mm: {}",
                 print.expected_mm,

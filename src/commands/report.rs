@@ -1,4 +1,4 @@
-//! `optimize report`: rewrites the tables and plots of a study.
+//! `optimize report`: writes the tables and plots of a study again.
 
 use crate::command;
 use crate::context::Context;

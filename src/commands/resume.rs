@@ -16,10 +16,10 @@ use study::Study;
 pub struct Request {
     /// Folder of the study
     pub dir: PathBuf,
-    /// How it is run.
+    /// Options of the run.
     #[command(flatten)]
     pub run: RunRequest,
-    /// Print all numbers behind the answer, too
+    /// Also print all numbers behind the answer
     #[arg(long, conflicts_with = "json")]
     pub verbose: bool,
 }

@@ -1,4 +1,4 @@
-//! `optimize sensitivity`: which unknown matters for the window.
+//! `optimize sensitivity`: Sobol indices of the inputs.
 
 use crate::command;
 use crate::context::{Context, not_stopped};
@@ -10,8 +10,8 @@ use insertion::evaluation::objective::Measure;
 use insertion::evaluation::template::Impossible;
 use parameters::plan::saltelli::Sample;
 use rayon::prelude::*;
-use report::sensitivity::{self as shown, Found};
-use serde::{Serialize, Serializer};
+use report::sensitivity::{self as shown, Factor, Found};
+use serde::Serialize;
 use std::fmt;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ use study::write_file;
 
 const SAMPLES: RangeInclusive<u32> = 4..=10_000;
 
-/// Find out which input matters: of the design, the task and the cell
+/// Rank the inputs (design, task, cell) by their share of the variance
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 16,
@@ -30,14 +30,14 @@ pub struct Request {
     /// Task, robot, space, finger model; one task.
     #[command(flatten)]
     pub setup: SetupRequest,
-    /// Range that is looked at
+    /// Measure to analyse
     #[arg(long, value_name = "NAME", default_value = "range",
           value_parser = Words::<Measure>::new([Measure::Range, Measure::CentredRange].map(Measure::name)))]
     pub objective: Measure,
-    /// Errors of the cell that are varied, too: typical, none, or the path of a file
+    /// Errors of the cell to vary as well: typical, none, or the path of a file
     #[arg(long, value_name = "NAME", default_value = "typical")]
     pub uncertainty: String,
-    /// Rows of the sample: evaluations are this times (inputs + 2)
+    /// Rows of the sample; the number of evaluations is this times (inputs + 2)
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(wide(&SAMPLES)))]
     pub samples: u32,
     /// Seed of the sample
@@ -49,6 +49,8 @@ pub struct Request {
 }
 
 /// Shares of the objective's variance.
+#[derive(Serialize)]
+#[serde(transparent)]
 pub struct Ranked(Found);
 
 impl command::Request for Request {
@@ -76,7 +78,7 @@ impl Request {
         }
         if setup.uncertainty.as_ref().is_some_and(|uncertainty| uncertainty.cell.is_some()) {
             return Err(Failure::usage(
-                "--uncertainty: varies errors here, no cell; give the cell by --cell",
+                "--uncertainty takes errors here, not a cell; give the cell with --cell",
             ));
         }
         let template = setup.only_task()?;
@@ -98,24 +100,19 @@ impl Request {
         let counted: Vec<f64> = values.iter().map(|value| value.unwrap_or_default()).collect();
         let indices = sample.indices(&counted).ok_or_else(|| {
             let everywhere = self.objective.show(counted[0]);
-            let problem = format!("is {everywhere} for every input: nothing matters");
+            let problem = format!(
+                "is {everywhere} for all inputs, so no share of its variance can be computed"
+            );
             Failure::running(format!("{} {problem}", self.objective))
         })?;
         Ok(Found {
             task: template.task.name.clone(),
             objective: self.objective,
-            indices,
             evaluations: values.len(),
             diverged: values.iter().filter(|value| value.is_none()).count(),
-            without_window: values.iter().filter(|value| **value == Some(0.0)).count(),
-            factors,
+            nominal_start_fails: values.iter().filter(|value| **value == Some(0.0)).count(),
+            factors: Factor::sorted(&factors, &indices),
         })
-    }
-}
-
-impl Serialize for Ranked {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        shown::json(&self.0).serialize(serializer)
     }
 }
 

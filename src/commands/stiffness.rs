@@ -15,7 +15,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use study::write_file;
 
-/// Show the stiffness model and how well it fits
+/// Show the stiffness model and its leave-one-out errors
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 13,
@@ -24,7 +24,7 @@ use study::write_file;
     after_help = "Example: optimize stiffness --stiffness-data mine.csv --svg model.svg"
 )]
 pub struct Request {
-    /// Your own stiffness measurements in place of the shipped ones
+    /// Your own stiffness measurements instead of the shipped ones
     #[arg(long, value_name = "FILE.csv")]
     pub stiffness_data: Option<String>,
     /// Finger that was measured: finray9, or the path of a finger file
@@ -33,12 +33,12 @@ pub struct Request {
     /// Also write a plot of the data, the model and its uncertainty
     #[arg(long, value_name = "FILE.svg")]
     pub svg: Option<PathBuf>,
-    /// Infill of which the prediction alone is given.
+    /// Infill to predict.
     #[command(flatten)]
     pub infill: InfillRequest,
 }
 
-/// Stiffness model, and its prediction for an infill if one was given.
+/// Model of the stiffness, and its prediction for an infill, if one is given.
 pub struct Fitted {
     model: Arc<Model>,
     predicted: Option<Prediction>,
@@ -70,7 +70,7 @@ impl Serialize for Fitted {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match &self.predicted {
             Some(predicted) => predicted.serialize(serializer),
-            None => shown::json(&self.model).serialize(serializer),
+            None => shown::Output::new(&self.model).serialize(serializer),
         }
     }
 }

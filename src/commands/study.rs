@@ -1,4 +1,4 @@
-//! `optimize --task T`: begins or continues a study.
+//! `optimize --task T`: starts or continues a study.
 
 use crate::command;
 use crate::context::Context;
@@ -24,19 +24,19 @@ use study::{
     read_config, study_name,
 };
 
-/// Seeds there are: TOML, in which studies keep theirs, has no larger whole numbers.
+/// Range of seeds, limited by the integers of TOML.
 const SEEDS: RangeInclusive<u64> = 0..=i64::MAX as u64;
 const BUDGETS: RangeInclusive<u64> = 1..=LARGEST_BUDGET;
 const POLISHES: RangeInclusive<u64> = 0..=LARGEST_BUDGET;
 const BATCHES: RangeInclusive<u64> = 1..=LARGEST_BATCH;
 const DEFAULT_BATCH: u64 = 4;
-/// Evaluations of a study that cannot tell when it is settled.
+/// Default budget of a study that cannot stop early.
 const DEFAULT_BUDGET: u64 = 200;
-/// Most evaluations of one that can.
+/// Default budget of a study that can stop early.
 const LIMIT: u64 = 500;
 const DEFAULT_UNCERTAINTY: &str = "typical";
 
-/// Find the finger that tolerates the largest shift: propose, simulate, search
+/// Find the finger that tolerates the largest shift of the start
 ///
 /// Running the same command again continues the study. The name may be left out.
 #[derive(Debug, Clone, clap::Args)]
@@ -45,58 +45,57 @@ pub struct Request {
     /// Tasks, robot, space, finger model.
     #[command(flatten)]
     pub setup: SetupRequest,
-    /// Evaluations in all; run the same command with a larger one to go on [default: until no design
-    /// is expected to gain 0.3 mm, at most 500; 200 for other optimizers and objectives]
+    /// Total number of evaluations; to continue, run the same command with a larger one [default: until no
+    /// design is expected to gain 0.3 mm, at most 500; 200 for other optimizers and objectives]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(BUDGETS))]
     pub budget: Option<u64>,
-    /// Then up to N evaluations more, by Nelder-Mead from the best design; the budget of
-    /// such a study cannot be raised
+    /// Up to N further evaluations by Nelder-Mead from the best design; the budget of such a study cannot be
+    /// raised
     #[arg(long, value_name = "N", num_args = 0..=1, default_value_t = 0, default_missing_value = "20",
           allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(POLISHES))]
     pub polish: u64,
-    /// Difference of ranges that a bench cannot tell, mm: designs that lose less are as good
+    /// Smallest relevant difference of ranges, mm: designs that lose less count as ties
     #[arg(long, value_name = "MM", default_value_t = INDIFFERENCE_MM, allow_negative_numbers = true)]
     pub indifference_mm: f64,
     /// Optimizer
     #[arg(long, value_name = "NAME", default_value = "gp",
           value_parser = Words::<OptimizerKind>::new(OptimizerKind::all().map(OptimizerKind::name)))]
     pub optimizer: OptimizerKind,
-    /// Measure that is optimized; two or three, by commas, give a front
+    /// Measure to optimize; two or three, separated by commas, give a Pareto front
     #[arg(long, value_name = "NAME", default_value = "range",
           value_parser = Words::<Objectives>::new(Measure::ALL.map(Measure::name)))]
     pub objective: Objectives,
-    /// What a design must keep to, as in 'peak-force<=30' or 'success-rate>=0.9'; may be given
-    /// several times
+    /// Constraint, for example 'peak-force<=30' or 'success-rate>=0.9'; may be given several times
     #[arg(long = "constraint", value_name = "LIMIT")]
     pub constraints: Vec<Constraint>,
     /// Errors for success-rate and robust-range: typical, or the path of a file [default: typical]
     #[arg(long, value_name = "NAME")]
     pub uncertainty: Option<String>,
-    /// What was measured on the bench, published or the path of a file: the study then ends with
-    /// the finger that is best there, predicted from all simulations and these measurements
+    /// Measurements from the bench: published, or the path of a file. The study then recommends the finger
+    /// that is predicted to be the best on the bench, from simulations and measurements
     #[arg(long, value_name = "FILE")]
     pub measurements: Option<String>,
-    /// What nobody measured, and its bounds, for --measurements: bench, or the path of a file
+    /// Priors of the parameters that were not measured, for --measurements: bench, or the path of a file
     /// [default: bench]
     #[arg(long, value_name = "NAME")]
     pub priors: Option<String>,
-    /// What is made of the values of several tasks [default: min]
+    /// Aggregation over several tasks [default: min]
     #[arg(long, value_enum)]
     pub aggregate: Option<AggregateKind>,
-    /// Weight of each task, by commas, for --aggregate weighted
+    /// Weights of the tasks, separated by commas, for --aggregate weighted
     #[arg(long, value_name = "W,W..", value_delimiter = ',', allow_negative_numbers = true)]
     pub weights: Vec<f64>,
     /// Seed; the same seed gives the same study
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0,
           value_parser = clap::value_parser!(u64).range(SEEDS))]
     pub seed: u64,
-    /// Designs proposed and evaluated at a time; part of the study, unlike --threads [default: that
-    /// of the study if it goes on, else 4, with --executor the number of its workers]
+    /// Number of designs per batch; part of the study, unlike --threads [default: that of the study if it
+    /// continues, else 4, with --executor the number of its workers]
     #[arg(long, value_name = "N", allow_negative_numbers = true,
           value_parser = clap::value_parser!(u64).range(BATCHES))]
     pub batch: Option<u64>,
-    /// Tell each result as it comes and ask for one more design, so that no worker waits for the
-    /// slowest of a batch; the journal then depends on who was fast
+    /// Propose a new design after each result, so that no worker waits for the slowest of a batch; the
+    /// journal then depends on the order of the results
     #[arg(long = "async")]
     pub asynchronous: bool,
     /// Folder of the study.
@@ -106,10 +105,10 @@ pub struct Request {
         help = "Folder of the study [default: results/<task>-<optimizer>-seed<seed>]"
     )]
     pub out: Option<PathBuf>,
-    /// How it is run.
+    /// Options of the run.
     #[command(flatten)]
     pub run: RunRequest,
-    /// Print all numbers behind the answer, too
+    /// Also print all numbers behind the answer
     #[arg(long, conflicts_with = "json")]
     pub verbose: bool,
 }
@@ -124,7 +123,7 @@ impl command::Request for Request {
 }
 
 impl Request {
-    /// Begins the study or goes on with it; where no batch is given a new study's is `workers`.
+    /// Starts or continues the study; without a batch that of a new study is `workers`.
     pub fn open(&self, workers: Option<u64>) -> Result<OpenStudy, Failure> {
         let (setup, mut config, dir) = self.look()?;
         if self.batch.is_none() {
@@ -139,13 +138,11 @@ impl Request {
         Ok(OpenStudy { new_measurements: more.unwrap_or(0), ..open })
     }
 
-    /// Setup, configuration and folder of the study, checked; nothing is written.
+    /// Returns setup, configuration and folder of the study, checked, without writing anything.
     pub(crate) fn look(&self) -> Result<(Setup, StudyConfig, PathBuf), Failure> {
         within("--indifference-mm", self.indifference_mm, &INDIFFERENCES_MM)?;
         if self.priors.is_some() && self.measurements.is_none() {
-            return Err(Failure::usage(
-                "--priors goes with --measurements: without, nothing is drawn",
-            ));
+            return Err(Failure::usage("--priors needs --measurements"));
         }
         let priors = self.priors.as_deref().unwrap_or(DEFAULT_PRIORS);
         let priors = find("file of priors", PRIORS, priors)?;
@@ -157,8 +154,8 @@ impl Request {
             (false, None) => {}
             (false, Some(_)) => {
                 return Err(Failure::usage(
-                    "--uncertainty is for success-rate and robust-range; make one of them an \
-                     --objective or a --constraint",
+                    "--uncertainty needs success-rate or robust-range as an --objective or in a \
+                     --constraint",
                 ));
             }
             (true, name) => {
@@ -180,16 +177,16 @@ impl Request {
         Ok((setup, config, dir))
     }
 
-    /// How the values of several tasks become one; `None` for one task.
+    /// Returns the aggregation over several tasks; `None` for one task.
     fn aggregate(&self, tasks: usize) -> Result<Option<Aggregate>, Failure> {
         let given = self.aggregate.unwrap_or(AggregateKind::Min);
         if tasks == 1 && (self.aggregate.is_some() || !self.weights.is_empty()) {
             return Err(Failure::usage(
-                "--aggregate and --weights are for several tasks, as in --task usb,rj45",
+                "--aggregate and --weights need several tasks, for example --task usb,rj45",
             ));
         }
         if given != AggregateKind::Weighted && !self.weights.is_empty() {
-            return Err(Failure::usage("--weights goes with --aggregate weighted"));
+            return Err(Failure::usage("--weights needs --aggregate weighted"));
         }
         let aggregate = match given {
             AggregateKind::Min => Aggregate::Min,
@@ -231,12 +228,12 @@ impl Request {
     }
 }
 
-/// Whether the optimizer can do what is asked for.
+/// Checks that the optimizer supports the options.
 fn check(kind: OptimizerKind, config: &StudyConfig) -> Result<(), Failure> {
     if config.asynchronous && (kind == OptimizerKind::CmaEs || config.polish > 0) {
         return Err(Failure::usage(
-            "--async: cma-es and --polish learn from whole batches; leave it out, or give another \
-             --optimizer and no --polish",
+            "--async: cma-es and --polish need whole batches; leave it out, or choose another \
+             --optimizer without --polish",
         ));
     }
     if config.objective.single().is_some() {
@@ -246,21 +243,21 @@ fn check(kind: OptimizerKind, config: &StudyConfig) -> Result<(), Failure> {
         let able = OptimizerKind::all().filter(|kind| kind.takes_several_objectives());
         let able: Vec<&str> = able.map(OptimizerKind::name).collect();
         return Err(Failure::usage(format!(
-            "{kind} knows one objective only; for {} give --optimizer {}",
+            "{kind} supports a single objective only; for {} choose --optimizer {}",
             config.objective,
             able.join(", ")
         )));
     }
     if config.polish > 0 {
-        return Err(Failure::usage("--polish knows one objective only; leave it out"));
+        return Err(Failure::usage("--polish supports a single objective only; leave it out"));
     }
     Ok(())
 }
 
-/// `results/<task>-<optimizer>-seed<seed>`; a task of one's own may be named with anything.
+/// Returns `results/<task>-<optimizer>-seed<seed>`, with other characters of task names replaced.
 fn default_folder(config: &StudyConfig) -> PathBuf {
     let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-    // The plus sign stands between tasks.
+    // The plus sign separates tasks.
     let task = |name: &str| name.chars().map(safe).collect::<String>();
     let task = config.tasks().map(task).collect::<Vec<_>>().join("+");
     Path::new("results").join(study_name(&task, &config.method(), config.seed))

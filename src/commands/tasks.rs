@@ -1,4 +1,4 @@
-//! `optimize tasks`: what is shipped.
+//! `optimize tasks`: lists shipped files.
 
 use crate::command;
 use crate::context::Context;

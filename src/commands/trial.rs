@@ -24,20 +24,22 @@ use std::fmt;
 use std::path::PathBuf;
 use study::write_file;
 
-/// Largest offset accepted, mm: far outside any socket.
+/// Largest accepted offset, mm.
 const LARGEST_OFFSET_MM: f64 = 1000.0;
 
 fn offset(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(mm) if mm.abs() <= LARGEST_OFFSET_MM => Ok(mm),
-        _ => Err(format!("an offset is a number of mm between ±{LARGEST_OFFSET_MM}")),
+        _ => Err(format!(
+            "must be a number between -{LARGEST_OFFSET_MM} and {LARGEST_OFFSET_MM} (mm)"
+        )),
     }
 }
 
 fn sampling(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds.is_finite() && seconds >= 0.0 => Ok(seconds),
-        _ => Err("a sampling time is a number of s, 0 or above".to_owned()),
+        _ => Err("must be a number of at least 0 (s)".to_owned()),
     }
 }
 
@@ -61,16 +63,16 @@ pub struct Request {
     /// Repeats at that offset.
     #[command(flatten)]
     pub repeat: Option<RepeatRequest>,
-    /// Simulated time between two samples of the course, s, in the JSON
+    /// Simulated time between two samples of the time series in the JSON, s
     #[arg(long, value_name = "S", hide = true, value_parser = sampling)]
     pub every_s: Option<f64>,
-    /// What is recorded.
+    /// Recordings.
     #[command(flatten)]
     pub film: FilmRequest,
     /// Write force and pose at 500 Hz, as a robot logs them, from the search on
     #[arg(long, value_name = "FILE.csv")]
     pub log: Option<PathBuf>,
-    /// In place of an insertion, slide the part on a flat plate: 8 mm along y and back at 5 N, for `identify`
+    /// Slide the part on a flat plate instead of inserting it: 8 mm along y and back at 5 N, for `identify`
     #[arg(long, requires = "log", conflicts_with_all = ["repeat", "svg", "record", "plot"])]
     pub probe: bool,
     /// Draw plug, fingertips and socket at the end of each phase
@@ -86,23 +88,23 @@ pub struct Done {
     pub chosen: Chosen,
     /// Shift of the start along y, mm.
     pub offset_mm: f64,
-    /// The trial.
+    /// Its outcome.
     #[serde(flatten, serialize_with = "whole")]
     pub trial: Trial,
-    /// Shift of the taught start from that of the task, grid steps, if the start is taught.
+    /// Shift of a taught start against that of the task, grid steps.
     #[serde(
         rename = "taught_start_mm",
         serialize_with = "taught_mm",
         skip_serializing_if = "Option::is_none"
     )]
     pub taught: Option<OffsetStep>,
-    /// Number of repeats with each outcome, if requested.
+    /// Number of repeats with each outcome, with `--repeat`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub repeats: Option<BTreeMap<String, usize>>,
-    /// Time series from the start of the search on, if requested.
+    /// Time series from the start of the search, with `--every-s`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<Series>,
-    /// Replay page, if requested.
+    /// Page that plays it, with `--record`.
     #[serde(rename = "film", skip_serializing_if = "Option::is_none")]
     pub page: Option<String>,
     /// Files that were written.
@@ -164,12 +166,12 @@ impl command::Request for Request {
     }
 }
 
-/// Time series of a trial from the start of the search on, one value per sample.
+/// Time series of a trial from the start of the search, a value for each sample.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Series {
     /// Simulated time since the trial began, s.
     pub time_s: Vec<f64>,
-    /// Index of the phase among the trial's phases.
+    /// Index of the phase.
     pub phase: Vec<u32>,
     /// Position of the TCP, mm.
     pub tcp_mm: Vec<[f64; 3]>,
@@ -197,7 +199,7 @@ impl Series {
     }
 }
 
-/// Result of a trial, as in the output of `--json`.
+/// Outcome of a trial, by the keys of `--json`.
 #[derive(Serialize)]
 pub struct Ended<'a> {
     outcome: &'a str,

@@ -98,11 +98,11 @@ const MOST_FINGERS: usize = 200;
 /// Returns the measurements of a file in the order that determines the draws; their tasks are shipped ones,
 /// those in `more`, or have a comment line.
 pub fn lines(source: &Source, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
-    let mut found = experiments::parse(&source.text, &source.file).map_err(Failure::input)?;
     let shipped = TASKS.iter().map(|task| task.name);
     let own = experiments::own_tasks(&source.text).into_keys().filter(|own| !more.contains(own));
     let known: Vec<&str> = shipped.chain(more.iter().copied()).chain(own).collect();
-    experiments::check_tasks(&found, &known, &source.file).map_err(Failure::input)?;
+    let found = experiments::parse_known(&source.text, &source.file, &known);
+    let mut found = found.map_err(Failure::input)?;
     found.sort_by(Experiment::order);
     for of_task in found.chunk_by(|a, b| a.task == b.task) {
         let fingers = of_task.chunk_by(|a, b| a.design == b.design).count();

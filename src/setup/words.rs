@@ -2,6 +2,7 @@
 
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Arg, Command, Error};
+use input::shipped::nearest;
 use std::ffi::OsStr;
 use std::fmt::Display;
 use std::marker::PhantomData;
@@ -31,7 +32,15 @@ impl<T: FromStr<Err: Display> + Clone + Send + Sync + 'static> TypedValueParser 
     type Value = T;
 
     fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<T, Error> {
-        let parse = |text: String| text.parse::<T>().map_err(|problem| problem.to_string());
+        let words = self.words.clone();
+        let near = move |text: &str| {
+            let mut unknown = text.split(',').filter(|word| !words.contains(word));
+            let near = unknown.find_map(|word| nearest(word, &words));
+            near.map_or(String::new(), |near| format!("; did you mean `{near}`?"))
+        };
+        let parse = move |text: String| {
+            text.parse::<T>().map_err(|problem| format!("{problem}{}", near(&text)))
+        };
         StringValueParser::new().try_map(parse).parse_ref(command, arg, value)
     }
 

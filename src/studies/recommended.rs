@@ -1,7 +1,7 @@
 //! Recommendation and answer of a study as JSON.
 
 use insertion::evaluation::objective::{Measure, Objectives};
-use report::answer::{Answer, AsGood, Trust, command, expectation};
+use report::answer::{Answer, Ties, Trust, command, expectation};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use study::{ByRibs, OnBench, StudyRecord};
@@ -18,7 +18,7 @@ pub fn recommendation(answer: &Answer) -> Value {
         }),
     };
     let one = answer.recommended.as_ref().filter(|_| answer.front.is_none());
-    let as_good = one.and_then(|found| found.as_good.as_ref());
+    let as_good = one.and_then(|found| found.ties.as_ref());
     keys["equivalent_designs"] = json!(as_good.map(|as_good| as_good.designs.len()));
     // One decimal, without the rounding error of the subtraction.
     let spread = answer.spread_mm.map(|[low, high]| ((high - low) * 1e6).round() / 1e6);
@@ -136,7 +136,7 @@ pub fn advice(answer: &Answer, dir: &Path) -> Value {
             "advice": start.advice(),
         })
     });
-    let as_good = one.and_then(|found| found.as_good.as_ref());
+    let as_good = one.and_then(|found| found.ties.as_ref());
     let (command, why) = command::next(answer, dir);
     json!({
         "verdict": answer.verdict.key(),
@@ -177,7 +177,7 @@ fn trust(trust: &Trust) -> Value {
 }
 
 /// Returns the designs that are equivalent to the recommended one.
-fn equivalent(answer: &Answer, as_good: &AsGood) -> Value {
+fn equivalent(answer: &Answer, as_good: &Ties) -> Value {
     let in_mm = answer.record.config.objective.first().unit() == "mm";
     let spread = as_good.spread.iter();
     let spread: Map<_, _> = spread.map(|s| (s.key.to_owned(), s.values.to_vec().into())).collect();

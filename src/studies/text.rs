@@ -56,7 +56,7 @@ fn verbose(answer: &Answer, ending: Ending, known: u64) -> String {
         );
     }
     if let Some(bench) = &record.on_bench {
-        text += &layout::lines(lines::on_bench(bench));
+        text += &layout::lines([lines::accuracy(bench)]);
         text += "by simulation alone:\n";
     }
     // If none is recommended, the headline gives the reason.

@@ -1,4 +1,4 @@
-//! A calibration as JSON, as CSV, as text, and as a study keeps it.
+//! A calibration as JSON, as CSV, and as a study keeps it.
 
 use super::calibrate::{Calibration, Coordinate, LeftOut, Prediction, TaskResult};
 use super::predict::Predicted;
@@ -6,38 +6,47 @@ use super::subject::Subject;
 use crate::experiments::Experiment;
 use ask_tell::statistics::{Moments, normal_cdf, pearson, quantile, sorted};
 use insertion::evaluation::Evaluation;
+use insertion::outcome::FailureClass;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
-use serde_json::{Map, Value, json};
+use serde::Serialize;
 use study::{BenchEffort, BenchFinger, OnBench, Provenance};
 
-/// Standard deviation and mean of a coordinate, whose prior has 1 and 0, at which it moved.
+/// Standard deviation and mean of a coordinate (prior: 1 and 0) from which on it counts as moved.
 const MOVED: (f64, f64) = (0.75, 0.5);
-/// Correlation at which two parameters cannot be told apart.
-const TOGETHER: f64 = 0.5;
+/// Correlation from which on two parameters cannot be told apart.
+const CONFOUNDED: f64 = 0.5;
 
-#[derive(Debug, Clone)]
+/// Effect of the measurements on a parameter: the 10th, 50th and 90th percentile before and after, in its own unit.
+#[derive(Debug, Clone, Serialize)]
 pub struct Moved {
     pub name: String,
     pub task: Option<String>,
-    /// The 10th, 50th and 90th percentile before, in its own unit.
-    pub prior: [f64; 3],
-    /// The same after.
-    pub posterior: [f64; 3],
-    /// Whether the measurements moved or narrowed it.
+    pub prior_low: f64,
+    pub prior_median: f64,
+    pub prior_high: f64,
+    pub posterior_low: f64,
+    pub posterior_median: f64,
+    pub posterior_high: f64,
+    /// Whether the measurements shifted or narrowed its distribution.
     pub moved: bool,
 }
 
+/// Returns the effect of the measurements on each parameter.
 pub fn moved(calibration: &Calibration) -> Vec<Moved> {
     let one = |(i, Coordinate { parameter, task }): (usize, &Coordinate)| {
         let values = sorted(coordinate(calibration, i));
         let moments = Moments::of(coordinate(calibration, i));
-        let at = |share: f64| quantile(&values, share).unwrap_or(0.0);
-        let shares = [0.1, 0.5, 0.9];
+        let before = |share: f64| parameter.at(share);
+        let after = |share: f64| parameter.at(normal_cdf(quantile(&values, share).unwrap_or(0.0)));
         Moved {
             name: parameter.name.clone(),
             task: task.clone(),
-            prior: shares.map(|share| parameter.at(share)),
-            posterior: shares.map(|share| parameter.at(normal_cdf(at(share)))),
+            prior_low: before(0.1),
+            prior_median: before(0.5),
+            prior_high: before(0.9),
+            posterior_low: after(0.1),
+            posterior_median: after(0.5),
+            posterior_high: after(0.9),
             moved: moments.deviation() < MOVED.0 || moments.mean.abs() > MOVED.1,
         }
     };
@@ -48,27 +57,28 @@ fn coordinate(calibration: &Calibration, i: usize) -> Vec<f64> {
     calibration.posterior.iter().map(|state| state[i]).collect()
 }
 
-/// Pairs of parameters that the measurements cannot tell apart, with their correlation.
-pub fn together(calibration: &Calibration) -> Vec<(String, String, f64)> {
-    let names = &calibration.layout.coordinates;
-    let mut found = Vec::new();
-    for i in 0..names.len() {
-        for j in 0..i {
-            let (a, b) = (coordinate(calibration, j), coordinate(calibration, i));
-            let correlation = pearson(&a, &b).unwrap_or(0.0);
-            if correlation.abs() > TOGETHER {
-                found.push((
-                    names[j].parameter.name.clone(),
-                    names[i].parameter.name.clone(),
-                    correlation,
-                ));
-            }
-        }
-    }
-    found
+/// Two parameters that the measurements cannot tell apart.
+#[derive(Debug, Clone, Serialize)]
+pub struct Confounded {
+    /// Names of the parameters.
+    pub parameters: [String; 2],
+    /// Correlation of their posterior samples.
+    pub correlation: f64,
 }
 
-/// Caveats on a task's predictions, a line each.
+/// Returns the pairs of parameters that the measurements cannot tell apart.
+pub fn confounded(calibration: &Calibration) -> Vec<Confounded> {
+    let names = &calibration.layout.coordinates;
+    let pairs = (0..names.len()).flat_map(|i| (0..i).map(move |j| [j, i]));
+    let of = |pair: [usize; 2]| {
+        let [a, b] = pair.map(|i| coordinate(calibration, i));
+        let parameters = pair.map(|i| names[i].parameter.name.clone());
+        Confounded { parameters, correlation: pearson(&a, &b).unwrap_or(0.0) }
+    };
+    pairs.map(of).filter(|pair| pair.correlation.abs() > CONFOUNDED).collect()
+}
+
+/// Returns caveats on a task's predictions, a line each.
 pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
     let accuracy = result.trust(subject.emulator.error_mm);
     let mut lines = Vec::new();
@@ -80,7 +90,7 @@ pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
     // By chance fewer than half of five or more fall inside in 1 case of 20.
     if accuracy.fingers >= 5 && 2 * accuracy.inside < accuracy.fingers {
         lines.push(format!(
-            "the fit is worse than its own error bars: {} of {} left-out fingers lie inside their intervals",
+            "the intervals are too narrow: only {} of {} left-out fingers lie inside theirs",
             accuracy.inside, accuracy.fingers
         ));
     }
@@ -100,100 +110,147 @@ pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
     lines
 }
 
-pub fn design_json(design: &Design) -> Map<String, Value> {
-    design.0.iter().map(|(key, value)| (key.clone(), json!(value))).collect()
+/// Predicted range of a finger, by the keys of `--json`.
+#[derive(Serialize)]
+struct PredictedFinger<'a> {
+    #[serde(flatten)]
+    design: &'a Design,
+    range_mm: f64,
+    low_mm: f64,
+    high_mm: f64,
+    probability_best: f64,
+    simulated_mm: f64,
+    failure_negative: Option<FailureClass>,
+    failure_positive: Option<FailureClass>,
 }
 
-/// Numbers of a prediction: key, value, and decimals in a table.
-fn numbers(prediction: &Prediction) -> [(&'static str, f64, usize); 5] {
-    let Predicted { mean_mm, low_mm, high_mm, simulated_mm } = prediction.range;
-    [
-        ("range_mm", mean_mm, 3),
-        ("low_mm", low_mm, 3),
-        ("high_mm", high_mm, 3),
-        ("probability_best", prediction.best, 4),
-        ("simulated_mm", simulated_mm, 3),
-    ]
-}
-
-pub fn json(calibration: &Calibration, subjects: &[Subject]) -> Value {
-    let tasks =
-        subjects.iter().zip(&calibration.tasks).map(|(subject, result)| task_json(subject, result));
-    let parameters = moved(calibration).into_iter().map(|Moved { name, task, prior, posterior, moved }| {
-        json!({
-            "name": name,
-            "task": task,
-            "prior_low": prior[0], "prior_median": prior[1], "prior_high": prior[2],
-            "posterior_low": posterior[0], "posterior_median": posterior[1], "posterior_high": posterior[2],
-            "moved": moved,
-        })
-    });
-    let together = together(calibration)
-        .into_iter()
-        .map(|(a, b, correlation)| json!({"parameters": [a, b], "correlation": correlation}));
-    json!({
-        "tasks": tasks.collect::<Vec<_>>(),
-        "parameters": parameters.collect::<Vec<_>>(),
-        "not_told_apart": together.collect::<Vec<_>>(),
+fn predictions<'a>(
+    subject: &'a Subject,
+    result: &'a TaskResult,
+) -> impl Iterator<Item = PredictedFinger<'a>> {
+    result.predictions.iter().map(|Prediction { finger, range, best }| {
+        let Predicted { mean_mm: range_mm, low_mm, high_mm, simulated_mm } = *range;
+        let [failure_negative, failure_positive] = subject.failures(*finger);
+        let (design, probability_best) = (&subject.designs[*finger], *best);
+        PredictedFinger {
+            design,
+            range_mm,
+            low_mm,
+            high_mm,
+            probability_best,
+            simulated_mm,
+            failure_negative,
+            failure_positive,
+        }
     })
 }
 
-fn task_json(subject: &Subject, result: &TaskResult) -> Value {
-    let accuracy = result.trust(subject.emulator.error_mm);
-    let coverage_percent =
-        (accuracy.fingers > 0).then(|| 100.0 * accuracy.inside as f64 / accuracy.fingers as f64);
-    let predictions = result.predictions.iter().map(|prediction| {
-        let mut fields = design_json(&subject.designs[prediction.finger]);
-        fields.extend(numbers(prediction).map(|(key, value, _)| (key.to_owned(), json!(value))));
-        let [below, above] = subject.failures(prediction.finger);
-        fields.insert("failure_negative".into(), json!(below));
-        fields.insert("failure_positive".into(), json!(above));
-        Value::Object(fields)
-    });
-    let left_out = result.left_out.iter().map(|one| {
-        let mut fields = design_json(&subject.designs[one.finger]);
-        fields.insert("measured_mm".into(), json!(one.measured_mm));
-        fields.insert("range_mm".into(), json!(one.predicted.mean_mm));
-        fields.insert("low_mm".into(), json!(one.predicted.low_mm));
-        fields.insert("high_mm".into(), json!(one.predicted.high_mm));
-        Value::Object(fields)
-    });
-    json!({
-        "task": subject.task,
-        "designs": accuracy.fingers,
-        "loo_mean_deviation_percent": accuracy.mean_deviation_percent,
-        "loo_spearman": accuracy.spearman,
-        "loo_coverage_80_percent": coverage_percent,
-        "simulations": subject.emulator.simulations,
-        "fresh_simulations": subject.emulator.fresh,
-        "emulator_error_mm": subject.emulator.error_mm,
-        "warnings": warnings(subject, result),
-        "leave_one_out": left_out.collect::<Vec<_>>(),
-        "predictions": predictions.collect::<Vec<_>>(),
-    })
+/// A measured finger and its range as predicted without it, by the keys of `--json`.
+#[derive(Serialize)]
+struct LeftOutFinger<'a> {
+    #[serde(flatten)]
+    design: &'a Design,
+    measured_mm: f64,
+    range_mm: f64,
+    low_mm: f64,
+    high_mm: f64,
 }
 
-/// `predictions.csv` of one task: a line per finger of the space.
+/// Result of one task, by the keys of `--json`.
+#[derive(Serialize)]
+struct CalibratedTask<'a> {
+    task: &'a str,
+    designs: usize,
+    loo_mean_deviation_percent: Option<f64>,
+    loo_spearman: Option<f64>,
+    loo_coverage_80_percent: Option<f64>,
+    simulations: usize,
+    fresh_simulations: usize,
+    emulator_error_mm: f64,
+    warnings: Vec<String>,
+    leave_one_out: Vec<LeftOutFinger<'a>>,
+    predictions: Vec<PredictedFinger<'a>>,
+}
+
+impl<'a> CalibratedTask<'a> {
+    fn new(subject: &'a Subject, result: &'a TaskResult) -> Self {
+        let emulator = &subject.emulator;
+        let accuracy = result.trust(emulator.error_mm);
+        let inside = || 100.0 * accuracy.inside as f64 / accuracy.fingers as f64;
+        let left_out = |one: &LeftOut| LeftOutFinger {
+            design: &subject.designs[one.finger],
+            measured_mm: one.measured_mm,
+            range_mm: one.predicted.mean_mm,
+            low_mm: one.predicted.low_mm,
+            high_mm: one.predicted.high_mm,
+        };
+        CalibratedTask {
+            task: &subject.task,
+            designs: accuracy.fingers,
+            loo_mean_deviation_percent: accuracy.mean_deviation_percent,
+            loo_spearman: accuracy.spearman,
+            loo_coverage_80_percent: (accuracy.fingers > 0).then(inside),
+            simulations: emulator.simulations,
+            fresh_simulations: emulator.fresh,
+            emulator_error_mm: emulator.error_mm,
+            warnings: warnings(subject, result),
+            leave_one_out: result.left_out.iter().map(left_out).collect(),
+            predictions: predictions(subject, result).collect(),
+        }
+    }
+}
+
+/// A calibration, as `--json` prints it.
+#[derive(Serialize)]
+pub struct CalibrationOutput<'a> {
+    tasks: Vec<CalibratedTask<'a>>,
+    parameters: Vec<Moved>,
+    not_told_apart: Vec<Confounded>,
+}
+
+impl<'a> CalibrationOutput<'a> {
+    /// Returns the output of a calibration of these subjects.
+    pub fn new(calibration: &'a Calibration, subjects: &'a [Subject]) -> Self {
+        let tasks = subjects.iter().zip(&calibration.tasks);
+        CalibrationOutput {
+            tasks: tasks.map(|(subject, result)| CalibratedTask::new(subject, result)).collect(),
+            parameters: moved(calibration),
+            not_told_apart: confounded(calibration),
+        }
+    }
+}
+
+/// Returns `predictions.csv` of one task: a line per finger of the space.
 pub fn predictions_csv(subject: &Subject, result: &TaskResult) -> String {
-    let keys: Vec<&String> =
-        subject.designs.first().map(|design| design.0.keys().collect()).unwrap_or_default();
-    let head: Vec<&str> = keys.iter().map(|key| key.as_str()).collect();
+    let keys: Vec<&str> = subject
+        .designs
+        .iter()
+        .take(1)
+        .flat_map(|design| design.0.keys().map(String::as_str))
+        .collect();
     let mut text = format!(
         "task,{},range_mm,low_mm,high_mm,probability_best,simulated_mm,failure_negative,failure_positive\n",
-        head.join(",")
+        keys.join(",")
     );
-    for prediction in &result.predictions {
-        let design = &subject.designs[prediction.finger];
-        let values: Vec<String> = keys.iter().map(|key| design.0[*key].to_string()).collect();
-        let numbers = numbers(prediction).map(|(_, value, digits)| format!("{value:.digits$}"));
-        let ends = subject.failures(prediction.finger);
-        let ends = ends.map(|end| end.map_or(String::new(), |class| class.number().to_string()));
-        let cells = [values.join(","), numbers.join(","), ends.join(",")].join(",");
-        text += &format!("{},{cells}\n", subject.task);
+    for one in predictions(subject, result) {
+        let values: Vec<String> = keys.iter().map(|key| one.design.0[*key].to_string()).collect();
+        let [below, above] = [one.failure_negative, one.failure_positive]
+            .map(|end| end.map_or(String::new(), |class| class.number().to_string()));
+        text += &format!(
+            "{},{},{:.3},{:.3},{:.3},{:.4},{:.3},{below},{above}\n",
+            subject.task,
+            values.join(","),
+            one.range_mm,
+            one.low_mm,
+            one.high_mm,
+            one.probability_best,
+            one.simulated_mm
+        );
     }
     text
 }
 
+/// Returns `leave_one_out.csv`: each measured finger and its range as predicted without it.
 pub fn left_out_csv(calibration: &Calibration, subjects: &[Subject]) -> String {
     let head =
         format!("task,{DENSITY_KEY},{DIRECTION_KEY},measured_mm,range_mm,low_mm,high_mm,inside\n");
@@ -218,18 +275,21 @@ pub fn left_out_csv(calibration: &Calibration, subjects: &[Subject]) -> String {
     head + &lines.collect::<String>()
 }
 
-/// `parameters.csv`: the 10th, 50th and 90th percentile of each parameter before and after.
+/// Returns `parameters.csv`: the percentiles of each parameter before and after.
 pub fn parameters_csv(calibration: &Calibration) -> String {
     let head = "parameter,task,prior_low,prior_median,prior_high,posterior_low,posterior_median,posterior_high,moved,source\n";
-    let line = |(moved, coordinate): (Moved, &Coordinate)| {
-        let numbers = moved.prior.iter().chain(&moved.posterior).map(|value| format!("{value:.3}"));
-        let numbers: Vec<String> = numbers.collect();
+    let line = |(one, coordinate): (Moved, &Coordinate)| {
         format!(
-            "{},{},{},{},\"{}\"\n",
-            moved.name,
-            moved.task.unwrap_or_default(),
-            numbers.join(","),
-            moved.moved,
+            "{},{},{:.3},{:.3},{:.3},{:.3},{:.3},{:.3},{},\"{}\"\n",
+            one.name,
+            one.task.unwrap_or_default(),
+            one.prior_low,
+            one.prior_median,
+            one.prior_high,
+            one.posterior_low,
+            one.posterior_median,
+            one.posterior_high,
+            one.moved,
             coordinate.parameter.source.replace('"', "'")
         )
     };
@@ -237,16 +297,17 @@ pub fn parameters_csv(calibration: &Calibration) -> String {
     head.to_owned() + &lines.collect::<String>()
 }
 
+/// Number of best fingers that a study keeps.
 const KEPT: usize = 5;
 
-/// The fingers of the space by their predicted ranges, best first.
+/// Returns the fingers of the space by their predicted ranges, best first.
 pub fn by_range(result: &TaskResult) -> Vec<&Prediction> {
     let mut order: Vec<&Prediction> = result.predictions.iter().collect();
     order.sort_by(|a, b| b.range.mean_mm.total_cmp(&a.range.mean_mm));
     order
 }
 
-/// Prediction of a calibration for a study's one task; `simulated` is the best finger's evaluation.
+/// Returns the prediction of a calibration for a study's one task; `simulated` is the best finger's evaluation.
 pub fn on_bench(
     subject: &Subject,
     result: &TaskResult,

@@ -1,26 +1,26 @@
-//! The window of the finger that is named, as bars over the start's offset: what simulation finds,
-//! how much of it is firm, what its ribs give, and what a robot measured.
+//! The window of the recommended finger as bars over the start's offset: simulated, firm, computed from
+//! its ribs, and measured on a robot.
 
-use crate::answer::words::{end, ends_mm, infill, interval, mm, span};
+use crate::answer::words::{design, end, ends_mm, interval, mm, span};
 use crate::answer::{Answer, Measured, OnTask, Recommended, Trust, UnderRobot, Verdict, lines};
 use insertion::evaluation::Window;
 use insertion::outcome::Outcome;
 use maud::{Markup, html};
 use study::{ByRibs, OnBench};
 
-/// Share of the width that is left at either side for the words at the ends of a bar.
+/// Share of the width on either side that is reserved for the labels of a bar's ends.
 const ROOM: f64 = 0.2;
 
-/// A bar: what it is, its parts, the outer one first, each with its class, and what ends it.
-struct Row {
+/// A bar: label, parts from outer to inner (each with its CSS class), and outcomes beyond its ends.
+struct Bar {
     name: String,
     parts: Vec<(&'static str, [f64; 2])>,
     ends: [Option<Outcome>; 2],
 }
 
-impl Row {
+impl Bar {
     fn new(name: String, class: &'static str, span: [f64; 2]) -> Self {
-        Row { name, parts: vec![(class, span)], ends: [None; 2] }
+        Bar { name, parts: vec![(class, span)], ends: [None; 2] }
     }
 
     fn simulated(window: &Window, firm: Option<[f64; 2]>) -> Self {
@@ -31,16 +31,16 @@ impl Row {
             None => format!("simulated: {} mm, not confirmed", span(whole)),
         };
         let parts = [("light", whole)].into_iter().chain(inner).collect();
-        Row { name, parts, ends: [window.end_negative, window.end_positive] }
+        Bar { name, parts, ends: [window.end_negative, window.end_positive] }
     }
 }
 
-/// The bars, task by task, those under several robots below on the same scale; nothing if no finger is
-/// named.
+/// Returns the bars, task by task, those on other robots below on the same scale; `None` if no finger is
+/// recommended.
 pub(super) fn section(answer: &Answer, robots: &[UnderRobot]) -> Option<Markup> {
     answer.verdict.finger()?;
-    let drawn = |on: &str, mut rows: Vec<Row>| {
-        rows.extend(robots.iter().map(under));
+    let drawn = |on: &str, mut rows: Vec<Bar>| {
+        rows.extend(robots.iter().map(on_robot));
         bars(on, &rows)
     };
     if let Some(bench) = &answer.record.on_bench {
@@ -54,21 +54,21 @@ pub(super) fn section(answer: &Answer, robots: &[UnderRobot]) -> Option<Markup> 
     })
 }
 
-/// The same finger under a robot.
-fn under(robot: &UnderRobot) -> Row {
+/// Returns the bar of the same finger on a robot.
+fn on_robot(robot: &UnderRobot) -> Bar {
     let window = &robot.measured.window;
     let inserts = window.nominal == Outcome::Inserted;
     let parts = inserts.then(|| ("light", ends_mm(window))).into_iter().collect();
-    let name = format!("under {}", robot.words());
-    Row { name, parts, ends: [window.end_negative, window.end_positive] }
+    let name = format!("on {}", robot.words());
+    Bar { name, parts, ends: [window.end_negative, window.end_positive] }
 }
 
-fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> Vec<Row> {
-    // The finger that is named among several as good ones was not confirmed by itself.
+fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> Vec<Bar> {
+    // The safe choice was not confirmed itself.
     let other = answer.named().filter(|named| named.index != found.design.index);
     let mut rows = vec![match other.and_then(|named| named.on(at)) {
-        Some(other) => Row::simulated(&other.window, None),
-        None => Row::simulated(&task.measured.window, task.firm.and_then(|firm| firm.window_mm())),
+        Some(other) => Bar::simulated(&other.window, None),
+        None => Bar::simulated(&task.measured.window, task.firm.and_then(|firm| firm.window_mm())),
     }];
     if let Some(by_ribs) = found.by_ribs.filter(|_| other.is_none()) {
         let text = lines::by_ribs(by_ribs).into_iter().nth(at);
@@ -78,7 +78,7 @@ fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> V
             ByRibs::Refused(_) => None,
         };
         let parts = window.map(|window| ("ribs", window)).into_iter().collect();
-        rows.push(Row { name: text, parts, ends: [None; 2] });
+        rows.push(Bar { name: text, parts, ends: [None; 2] });
     }
     if let Trust::Published { nearest, .. } = &answer.trust {
         rows.extend(nearest.get(at).iter().flat_map(|(_, fingers)| fingers).map(measured));
@@ -86,30 +86,30 @@ fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> V
     rows
 }
 
-/// A finger that a robot measured; only its range is known, so the bar lies about the start.
-fn measured(Measured { design, range_mm }: &Measured) -> Row {
-    Row::new(
-        format!("measured on a robot, {}: {}", infill(design), mm(*range_mm)),
+/// Returns the bar of a measured finger; only its range is known, so it is centred on the start.
+fn measured(Measured { design: finger, range_mm }: &Measured) -> Bar {
+    Bar::new(
+        format!("measured on a robot, {}: {}", design(finger), mm(*range_mm)),
         "measured",
         [-range_mm / 2.0, range_mm / 2.0],
     )
 }
 
-fn on_bench(answer: &Answer, bench: &OnBench) -> Vec<Row> {
+fn on_bench(answer: &Answer, bench: &OnBench) -> Vec<Bar> {
     let Some(best) = bench.best.first() else { return Vec::new() };
     let [low, high] = [best.low_mm, best.high_mm];
     let name = format!("on the bench: {} ({})", mm(best.range_mm), interval([low, high]));
-    let mut expected = Row::new(name, "likely", [-high / 2.0, high / 2.0]);
+    let mut expected = Bar::new(name, "likely", [-high / 2.0, high / 2.0]);
     expected.parts.push(("measured", [-low / 2.0, low / 2.0]));
     let mut rows = vec![expected];
     if let Verdict::MeasuredBefore { design, range_mm: Some(range_mm), .. } = answer.verdict {
         rows.push(measured(&Measured { design: design.clone(), range_mm }));
     }
-    rows.push(Row::simulated(&bench.simulated.window, None));
+    rows.push(Bar::simulated(&bench.simulated.window, None));
     rows
 }
 
-fn bars(on: &str, rows: &[Row]) -> Markup {
+fn bars(on: &str, rows: &[Bar]) -> Markup {
     let all = || rows.iter().flat_map(|row| row.parts.iter().flat_map(|(_, span)| *span));
     let (low, high) = (all().fold(-0.5, f64::min), all().fold(0.5, f64::max));
     let width = (high - low) / (1.0 - 2.0 * ROOM);
@@ -118,8 +118,8 @@ fn bars(on: &str, rows: &[Row]) -> Markup {
     let ticks = (low.ceil() as i32..=high.floor() as i32).filter(|mm| mm % step == 0);
     html! {
         div.bars {
-            p.muted { "Start along y" (on) ", in mm from the taught one" }
-            @for Row { name, parts, ends } in rows {
+            p.muted { "Offset of the start along y" (on) ", mm" }
+            @for Bar { name, parts, ends } in rows {
                 p.name { (name) }
                 div.track {
                     @for (class, [from, to]) in parts {
@@ -143,7 +143,7 @@ fn percent(value: f64) -> String {
     format!("{value:.1}%")
 }
 
-/// What ends a bar, in a word.
+/// Returns the outcome beyond an end of a bar, in a word.
 fn short(end: Option<Outcome>) -> &'static str {
     match end {
         Some(Outcome::Failed(class)) => class.short(),

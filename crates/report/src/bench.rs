@@ -1,7 +1,7 @@
 //! Predicted bench performance of the fingers.
 
 use super::elements::table;
-use crate::answer::words::{infill, interval, mm};
+use crate::answer::words::{design, interval, mm};
 use insertion::outcome::FailureClass;
 use maud::{Markup, html};
 use study::{BenchFinger, OnBench, StudyRecord};
@@ -14,7 +14,7 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     let found = record.on_bench.as_ref()?;
     Some(html! {
         (table(
-            &["finger", "range on the bench", "80 % interval", "is the best", "fails below | above"],
+            &["finger", "range on the bench", "80 % interval", "probability of the best", "fails below | above"],
             &found.best.iter().map(row).collect::<Vec<_>>(),
         ))
         p { (how(found)) " " a href=(TABLE) { "All predicted fingers" } "." }
@@ -25,7 +25,7 @@ fn row(finger: &BenchFinger) -> Vec<String> {
     let class = |class: Option<FailureClass>| class.map_or("–", FailureClass::label);
     let [below, above] = finger.failures.map(class);
     vec![
-        infill(&finger.design),
+        design(&finger.design),
         mm(finger.range_mm),
         interval([finger.low_mm, finger.high_mm]),
         format!("{:.1} %", 100.0 * finger.probability_best),
@@ -36,9 +36,9 @@ fn row(finger: &BenchFinger) -> Vec<String> {
 fn how(found: &OnBench) -> String {
     let simulations = found.effort.simulations;
     format!(
-        "From {simulations} simulations under drawn friction, preload, robot and print, and the \
-         measurements; the Gaussian process that stands in for the simulator misses fresh ones by \
-         {:.2} mm. The search did not know the measurements: it looked for the widest simulated window.",
+        "From {simulations} simulations with drawn friction, preload, robot and print, and the \
+         measurements; the error of the emulator (a Gaussian process) on further simulations is \
+         {:.2} mm. The search did not use the measurements: it maximized the simulated window.",
         found.trust.emulator_error_mm
     )
 }

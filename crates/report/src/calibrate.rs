@@ -1,11 +1,11 @@
 //! Text output of `optimize calibrate`: bench predictions and posteriors of the parameters.
 
 use super::text_table;
+use crate::answer::words::design;
 use calibration::calibrate::{Calibration, TaskResult};
 use calibration::predict::INTERVAL;
 use calibration::subject::Subject;
-use calibration::table::{Moved, by_range, moved, together, warnings};
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY};
+use calibration::table::{Moved, by_range, confounded, moved, warnings};
 
 /// Number of fingers in the table.
 const LISTED: usize = 5;
@@ -32,10 +32,9 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
         );
     }
     let best = by_range(result).into_iter().take(LISTED).map(|prediction| {
-        let value = |key: &str| subject.designs[prediction.finger].get(key).unwrap_or(f64::NAN);
         let range = &prediction.range;
         [
-            format!("density {} %, direction {}°", value(DENSITY_KEY), value(DIRECTION_KEY)),
+            design(&subject.designs[prediction.finger]),
             format!("{:.1}", range.mean_mm),
             format!("{:.1} to {:.1}", range.low_mm, range.high_mm),
             format!("{:.1} %", 100.0 * prediction.best),
@@ -52,14 +51,16 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
 
 /// Returns prior and posterior intervals of the parameters, within 80 columns.
 pub fn parameters_text(calibration: &Calibration) -> String {
-    let row = |Moved { name, task, prior, posterior, moved }: Moved| {
-        let span = |[low, _, high]: [f64; 3]| format!("{low:.2} to {high:.2}");
-        let name = task.map_or(name.clone(), |task| format!("{name} ({task})"));
-        let moved = if moved { "yes" } else { "no" };
-        [name, span(prior), span(posterior), moved.to_owned()]
+    let row = |one: Moved| {
+        let span = |low: f64, high: f64| format!("{low:.2} to {high:.2}");
+        let task = one.task.map_or(String::new(), |task| format!(" ({task})"));
+        let moved = if one.moved { "yes" } else { "no" }.to_owned();
+        let after = span(one.posterior_low, one.posterior_high);
+        [one.name + &task, span(one.prior_low, one.prior_high), after, moved]
     };
     let head = ["parameter (10 % to 90 %)", "before", "after", "moved"];
-    let alike = together(calibration).into_iter().map(|(a, b, correlation)| {
+    let alike = confounded(calibration).into_iter().map(|pair| {
+        let ([a, b], correlation) = (pair.parameters, pair.correlation);
         format!("not told apart: {a} and {b} (correlation {correlation:+.2})\n")
     });
     text_table(1, head, moved(calibration).into_iter().map(row)) + &alike.collect::<String>()

@@ -1,9 +1,9 @@
-//! The explorer of all designs: a surface of the model, a table, and what is known of the one or two
-//! that are chosen. Our own script draws it; without it the table has the best designs.
+//! The explorer of all designs: a surface of the model, a table, and the selected one or two designs. A
+//! script draws it; without scripts the table has the best designs.
 
 use super::drawn::{LISTED, drawn};
 use super::elements::table;
-use super::surface;
+use super::surface::{self, Surface};
 use crate::answer::words::{self, end, ends_mm, mm, span, success};
 use crate::answer::{Answer, command};
 use input::units::N_PER_MM;
@@ -12,25 +12,25 @@ use insertion::evaluation::objective::Measure;
 use insertion::outcome::Outcome;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, label};
 use maud::{Markup, PreEscaped, html};
-use serde_json::{Value, json};
+use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 use study::{Recorded, StudyRecord};
 
-/// Designs in the table without the script.
+/// Number of designs in the table without the script.
 const SHOWN: usize = 10;
 
 pub(super) fn section(answer: &Answer, dir: &Path) -> Option<Markup> {
     let record = answer.record;
     record.best()?;
     let model = surface::Model::of(record);
-    let data = to_json(answer, model.as_ref(), dir);
+    let data = Data::new(answer, model.as_ref(), dir);
     Some(html! {
         p.muted {
-            "Values as the search found them"
-            @if !answer.walked.is_empty() { ", before the best were repeated: the widest here need not stay so" }
-            ". Click a mark or a line to see a design; the arrow keys go to the next. A mark with bars fails \
-            at the nominal start; the one in a ring is recommended."
+            "Values of the search"
+            @if !answer.walked.is_empty() { ", before the best were confirmed" }
+            ". Click a mark or a row to see a design; the arrow keys select the next. A mark with bars fails \
+            at the nominal start; the recommended one has a ring."
         }
         div #explore tabindex="0" {
             figure #map {
@@ -55,7 +55,7 @@ pub(super) fn section(answer: &Answer, dir: &Path) -> Option<Markup> {
     })
 }
 
-/// The best designs that keep all constraints, the named one first; of several objectives the front.
+/// Returns the best feasible designs, the recommended one first; for several objectives the front.
 fn best(answer: &Answer) -> Markup {
     let record = answer.record;
     let goals = record.config.goals();
@@ -81,7 +81,7 @@ fn best(answer: &Answer) -> Markup {
             robot.map_or(String::new(), |measured| mm(measured.range_mm)),
         ])
     };
-    let head = ["evaluation", "design", "searched value", "window", "ends", "on a robot"];
+    let head = ["evaluation", "design", "value in the search", "window", "ends", "measured"];
     table(&head, &best.iter().take(SHOWN).filter_map(row).collect::<Vec<_>>())
 }
 
@@ -89,83 +89,128 @@ fn ends(window: &Window) -> [String; 2] {
     [window.end_negative, window.end_positive].map(end)
 }
 
-/// JSON for a script element, which ends at the first `</`.
-pub(super) fn embedded(value: &Value) -> String {
-    value.to_string().replace('<', "\\u003c")
+/// Returns JSON for a script element, which ends at the first `</`.
+pub(super) fn embedded(data: &impl Serialize) -> String {
+    // Strings, numbers and lists of them always serialize.
+    serde_json::to_string(data).unwrap_or_default().replace('<', "\\u003c")
 }
 
-fn to_json(answer: &Answer, model: Option<&surface::Model>, dir: &Path) -> Value {
-    let record = answer.record;
-    let (parameters, measure) = (&record.config.space.parameters, record.config.objective.first());
-    let parameter = |p: &insertion::space::Variable| {
-        let (name, unit) = label(&p.key);
-        let option = match p.key.as_str() {
-            DENSITY_KEY => "--density ".to_owned(),
-            DIRECTION_KEY => "--direction ".to_owned(),
-            key => format!("--set {key}="),
+/// Data of the explorer.
+#[derive(Serialize)]
+struct Data<'a> {
+    parameters: Vec<Axis<'a>>,
+    measure: Objective,
+    robot: BTreeMap<u64, f64>,
+    raced: BTreeMap<u64, String>,
+    confirmed: BTreeMap<u64, f64>,
+    evaluations: Vec<Row>,
+    outcomes: Vec<String>,
+    on: String,
+    best: Option<u64>,
+    command: String,
+    model: Option<Surface>,
+}
+
+#[derive(Serialize)]
+struct Axis<'a> {
+    label: String,
+    unit: &'a str,
+    low: f64,
+    high: f64,
+    option: String,
+}
+
+#[derive(Serialize)]
+struct Objective {
+    label: String,
+    name: &'static str,
+    unit: &'static str,
+    sense: f64,
+}
+
+/// Evaluation, as a list to keep it short: number, parameters, value, whether it is feasible (1 or 0), both
+/// ends (mm), the outcomes there (as indices of `outcomes`), largest force (N) and compliance (N/mm).
+#[derive(Serialize)]
+struct Row(u64, Vec<f64>, Option<f64>, u8, Option<[f64; 2]>, Option<Vec<usize>>, Option<f64>, f64);
+
+impl<'a> Data<'a> {
+    fn new(answer: &'a Answer, model: Option<&surface::Model>, dir: &Path) -> Self {
+        let (record, config) = (answer.record, &answer.record.config);
+        let measure = config.objective.first();
+        let parameter = |p: &'a insertion::space::Variable| {
+            let (label, unit) = label(&p.key);
+            let option = match p.key.as_str() {
+                DENSITY_KEY => "--density ".to_owned(),
+                DIRECTION_KEY => "--direction ".to_owned(),
+                key => format!("--set {key}="),
+            };
+            Axis { label, unit, low: p.low, high: p.high, option }
         };
-        json!({"label": name, "unit": unit, "low": p.low, "high": p.high, "option": option})
-    };
-    let shown = drawn(record, record.current(), LISTED);
-    let robot = |found: &&Recorded| {
-        let measured = answer.measured.iter().find(|measured| measured.design == found.design)?;
-        Some((found.index, measured.range_mm))
-    };
-    let finger = answer.verdict.finger();
-    let best = record.current().iter().find(|found| Some(&found.design) == finger);
-    let raced = |found: &&Recorded| Some((found.index, bound(found)?));
-    let mut outcomes = Vec::new();
-    let evaluations: Vec<Value> =
-        shown.iter().map(|found| evaluation(record, found, &mut outcomes)).collect();
-    json!({
-        "parameters": parameters.iter().map(parameter).collect::<Vec<_>>(),
-        "measure": {"label": measure.label(), "name": measure.name(), "unit": measure.unit(), "sense": measure.sense()},
-        "robot": shown.iter().filter_map(robot).collect::<BTreeMap<_, _>>(),
-        "raced": shown.iter().filter_map(raced).collect::<BTreeMap<_, _>>(),
-        "confirmed": answer.walked.iter().map(|(found, firm_mm)| (found.index, firm_mm)).collect::<BTreeMap<_, _>>(),
-        "evaluations": evaluations,
-        "outcomes": outcomes,
-        "on": if record.config.several_tasks() { format!(" on {}", record.config.tasks().next().unwrap_or_default()) } else { String::new() },
-        "best": best.map(|best| best.index),
-        "command": command::trial(record, dir),
-        "model": model.and_then(|model| surface::to_json(record, model)),
-    })
+        let shown = drawn(record, record.current(), LISTED);
+        let robot = |found: &&Recorded| {
+            let mut measured = answer.measured.iter();
+            let measured = measured.find(|measured| measured.design == found.design)?;
+            Some((found.index, measured.range_mm))
+        };
+        let finger = answer.verdict.finger();
+        let best = record.current().iter().find(|found| Some(&found.design) == finger);
+        let raced = |found: &&Recorded| Some((found.index, bound(found)?));
+        let mut outcomes = Vec::new();
+        let row = |found: &&Recorded| Row::new(record, found, &mut outcomes);
+        let evaluations = shown.iter().map(row).collect();
+        let on = config.tasks().next().filter(|_| config.several_tasks());
+        Data {
+            parameters: config.space.parameters.iter().map(parameter).collect(),
+            measure: Objective {
+                label: measure.label(),
+                name: measure.name(),
+                unit: measure.unit(),
+                sense: measure.sense(),
+            },
+            robot: shown.iter().filter_map(robot).collect(),
+            raced: shown.iter().filter_map(raced).collect(),
+            confirmed: answer.walked.iter().map(|(found, mm)| (found.index, *mm)).collect(),
+            evaluations,
+            outcomes,
+            on: on.map_or(String::new(), |task| format!(" on {task}")),
+            best: best.map(|best| best.index),
+            command: command::trial(record, dir),
+            model: model.and_then(|model| surface::of(record, model)),
+        }
+    }
 }
 
-/// At most so many of the draws insert; `None` of a design that was not raced.
+/// Returns the upper bound of the success rate in words; `None` if the design was not raced.
 fn bound(found: &Recorded) -> Option<String> {
     let tasks = found.tasks.iter().filter(|_| found.raced());
     let rates = tasks.filter_map(|task| task.success.as_ref()).map(|rate| success(rate)[0].clone());
     rates.reduce(|all, one| format!("{all}; {one}"))
 }
 
-/// Number, parameters, value, whether it keeps all constraints, both ends, mm, what ends it there (by
-/// place among the `outcomes`), largest force, N, and stiffness across, N/mm; short, for there may be
-/// thousands.
-fn evaluation(record: &StudyRecord, found: &Recorded, outcomes: &mut Vec<String>) -> Value {
-    let parameters = record.config.space.parameters.iter();
-    let x: Vec<f64> = parameters.filter_map(|p| found.design.get(&p.key)).collect();
-    let window = found.on(0).map(|found| &found.window);
-    let inserts = window.filter(|window| window.nominal == Outcome::Inserted);
-    let mut place = |word: String| match outcomes.iter().position(|other| *other == word) {
-        Some(place) => place,
-        None => {
-            outcomes.push(word);
-            outcomes.len() - 1
-        }
-    };
-    let tenth = |value: f64| (10.0 * value).round() / 10.0;
-    json!([
-        found.index,
-        x,
-        found.known_value().map(|value| (1e3 * value).round() / 1e3),
-        u8::from(found.feasible().is_some()),
-        inserts.map(|window| ends_mm(window).map(tenth)),
-        window.map(|window| match inserts {
-            Some(_) => ends(window).map(&mut place).to_vec(),
-            None => vec![place(words::outcome(window.nominal))],
-        }),
-        found.on(0).and_then(|found| Measure::PeakForce.value(found)).map(tenth),
-        (100.0 * found.stiffness.compliance.mean / N_PER_MM).round() / 100.0,
-    ])
+impl Row {
+    fn new(record: &StudyRecord, found: &Recorded, outcomes: &mut Vec<String>) -> Self {
+        let parameters = record.config.space.parameters.iter();
+        let window = found.on(0).map(|found| &found.window);
+        let inserts = window.filter(|window| window.nominal == Outcome::Inserted);
+        let mut index = |word: String| {
+            outcomes.iter().position(|other| *other == word).unwrap_or_else(|| {
+                outcomes.push(word);
+                outcomes.len() - 1
+            })
+        };
+        let tenth = |value: f64| (10.0 * value).round() / 10.0;
+        Row(
+            found.index,
+            parameters.filter_map(|p| found.design.get(&p.key)).collect(),
+            found.known_value().map(|value| (1e3 * value).round() / 1e3),
+            u8::from(found.feasible().is_some()),
+            inserts.map(|window| ends_mm(window).map(tenth)),
+            window.map(|window| match inserts {
+                Some(_) => ends(window).map(&mut index).to_vec(),
+                None => vec![index(words::outcome(window.nominal))],
+            }),
+            found.on(0).and_then(|found| Measure::PeakForce.value(found)).map(tenth),
+            (100.0 * found.stiffness.compliance.mean / N_PER_MM).round() / 100.0,
+        )
+    }
 }

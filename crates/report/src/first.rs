@@ -1,12 +1,12 @@
-//! The first screen of a page: what to do, how far to trust it, how the finger ends, its window,
-//! the finger itself, its files, and the next command.
+//! The first screen of a page: recommendation, evidence, films, window, drawing and files of the finger,
+//! and the next command.
 
 use super::beside::{Beside, Film};
 use super::elements::{figure, inert};
 use super::printer::{self, recommended};
 use super::replay::{ENDS, pair_file};
 use super::{bar, explore};
-use crate::answer::words::{design, finger, infill, outcome, remedy};
+use crate::answer::words::{design, evaluated, outcome, remedy};
 use crate::answer::{Answer, Verdict, command, expectation, lines};
 use finray::export::sheet;
 use insertion::evaluation::Evaluation;
@@ -14,7 +14,7 @@ use insertion::evaluation::grid_mm;
 use insertion::outcome::{FailureClass, Outcome};
 use maud::{Markup, PreEscaped, html};
 
-/// The screen, which stands before all sections.
+/// Returns the screen, which precedes all sections.
 pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
     let (command, why) = command::next(answer, &beside.dir);
     let stuck = matches!(answer.verdict, Verdict::NothingInserts { .. });
@@ -26,7 +26,6 @@ pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
                 (expectation(answer)) ". "
                 @if answer.verdict.finger().is_some() { span.trust { (answer.trust.label()) } }
             }
-            @if matches!(answer.verdict, Verdict::NoneFeasible) { p.warn { (none(answer)) } }
             @for (_, text) in lines::caveats(answer) { p.warn { (text) } }
         }
         div.first {
@@ -38,20 +37,7 @@ pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
                 (files(answer, beside).unwrap_or_default())
             }
         }
-        div.next { h2 { "Next: " (why) } pre { code { (command) } } }
-    }
-}
-
-/// Why no design is named.
-fn none(answer: &Answer) -> String {
-    match &answer.nearest {
-        None => format!("None of {} evaluations gave a value.", answer.designs),
-        Some((nearest, constraints)) => format!(
-            "Evaluation {} ({}) violates them least: {}.",
-            nearest.index,
-            design(&nearest.design),
-            constraints.join("; ")
-        ),
+        div.next { h2 { "Next step: " (why) } pre { code { (command) } } }
     }
 }
 
@@ -66,13 +52,13 @@ const COLOURS: [(&str, &str); 7] = [
     ("#444", "var(--muted)"),
 ];
 
-/// The finger as the sheet draws it.
+/// Returns the drawing of the finger.
 fn drawn(answer: &Answer) -> Option<Markup> {
     let geometry = recommended(answer)?;
-    let design = answer.verdict.finger()?;
+    let finger = answer.verdict.finger()?;
     let first = answer.record.config.objective.first().name();
     let best = answer.front.as_ref().map_or(String::new(), |_| format!(", best in {first}"));
-    let caption = format!("{}{best}, {} ribs", infill(design), geometry.ribs);
+    let caption = format!("{}{best}, {} ribs", design(finger), geometry.ribs);
     let svg = sheet::part(&geometry);
     let svg = COLOURS.iter().fold(svg, |svg, (from, to)| svg.replace(from, to));
     Some(html! { div.finger { (figure(&svg, "the finger to print", &caption)) } })
@@ -84,19 +70,19 @@ fn files(answer: &Answer, beside: &Beside) -> Option<Markup> {
     Some(html! { p.files { @for (file, name) in names { a.button href=(file) { (name) } } } })
 }
 
-/// Where nothing inserts: how the design that comes nearest ends, and what to change.
+/// Returns how the design that is nearest to inserting fails, and what to check.
 fn nominal(answer: &Answer, beside: &Beside) -> Markup {
     let Verdict::NothingInserts { nearest, fails, .. } = &answer.verdict else { return html! {} };
     html! {
         div.whole {
             @if let Some(fails) = fails {
                 p {
-                    "Evaluation " (nearest.index) ", " (finger(&nearest.design)) ", comes nearest: \
-                    its nominal start ends with " b { (outcome(*fails)) } ". " (remedy(*fails)) "."
+                    "Nearest to inserting: " (evaluated(nearest)) ". \
+                    Its nominal start ends with " b { (outcome(*fails)) } ". " (remedy(*fails)) "."
                 }
             }
             @if let Some(svg) = &beside.nominal {
-                // Its first words, up to a mark, say what was tried; they are escaped in the file.
+                // The first text of the drawing describes the trial; it is escaped in the file.
                 @let text = svg.split_once("<text").and_then(|(_, rest)| rest.split_once('>'));
                 @let text = text.and_then(|(_, rest)| rest.split('<').next()).unwrap_or_default();
                 figure.wide {
@@ -120,7 +106,7 @@ pub fn preferred(answer: &Answer) -> &'static str {
     if below { negative } else { positive }
 }
 
-/// Both frames of an end, ready to be played, and buttons for all ends.
+/// Returns a player of both trials of an end, and buttons for all ends.
 fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Markup {
     let films = &beside.films;
     let (shown, linked): (Vec<&Film>, Vec<&Film>) =
@@ -128,7 +114,7 @@ fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Markup {
     html! {
         @if !films.is_empty() {
             div.films {
-                // What a film holds came from a file: it runs its script, and reaches nothing else.
+                // The film comes from a file: sandboxed, it runs its script and has no other access.
                 @if let Some(film) = shown.first() {
                     iframe #film title="two trials: the last that inserts, the first that fails" sandbox="allow-scripts" {}
                     p #caption.muted { (caption(film, tasks)) }
@@ -147,7 +133,7 @@ fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Markup {
                     }
                 }
                 script type="application/json" id="viewer" {
-                    (PreEscaped(explore::embedded(&super::replay::viewer().into())))
+                    (PreEscaped(explore::embedded(&super::replay::viewer())))
                 }
                 script { (PreEscaped(include_str!("films.js"))) }
             }
@@ -162,7 +148,7 @@ fn label(answer: &Answer, film: &Film) -> String {
     format!("{} end{on}", film.end)
 }
 
-/// `Left: the last start that inserts (+5.7 mm). Right: the first that fails (+5.8 mm, jammed).`
+/// Returns `Left: the last start that inserts (+5.7 mm). Right: the next (+5.8 mm): jammed (class 3).`
 fn caption(film: &Film, tasks: &[&Evaluation]) -> String {
     let Some(window) = tasks.get(film.task).map(|task| &task.window) else { return String::new() };
     let (last, end, outward) = match film.end == ENDS[0].0 {

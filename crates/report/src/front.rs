@@ -26,8 +26,7 @@ pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<Option<String>, Rep
 /// Returns the plot, hypervolume and designs; `None` for a single objective.
 pub(super) fn section(answer: &Answer, size: (u32, u32)) -> Result<Option<Markup>, ReportError> {
     let Some(front) = &answer.front else { return Ok(None) };
-    let caption = "All evaluated designs by their first two objectives. Rings: the designs \
-                   among which nothing but preference decides.";
+    let caption = "All evaluated designs by their first two objectives. Rings: the Pareto front.";
     let svg = svg(answer.record, size)?;
     Ok(Some(html! {
         @if let Some(svg) = svg { (figure(&svg, "the front and all evaluations", caption)) }
@@ -65,8 +64,7 @@ fn designs(answer: &Answer, Front { designs: front, volume: found }: &Front) -> 
     if front.is_empty() {
         return html! {
             p.warn {
-                "No design has values for all objectives and keeps all constraints: there is no \
-                 front."
+                "No design has values for all objectives and satisfies all constraints: there is no front."
             }
         };
     }
@@ -84,11 +82,10 @@ fn designs(answer: &Answer, Front { designs: front, volume: found }: &Front) -> 
     html! {
         p {
             (front.len()) " of " (answer.designs) " evaluated designs are on the front: \
-            no other design that was evaluated is at least as good in every objective and better \
-            in one. They dominate a hypervolume of " (format!("{:.3}", found.hypervolume)) " "
-            (volume_unit(objectives)) ", taken from the reference "
-            (objectives.show(&found.reference)) " (0 for what is to be large, the largest value \
-            of the study for what is to be small)."
+            no other evaluated design dominates them. Their hypervolume is "
+            (format!("{:.3}", found.hypervolume)) " " (volume_unit(objectives))
+            " from the reference point " (objectives.show(&found.reference))
+            " (0 for objectives to be maximized, the largest value of the study for others)."
         }
         (table(&head, &front.iter().map(row).collect::<Vec<_>>()))
     }

@@ -1,4 +1,4 @@
-//! Output of the lever analysis: tornado diagram, table, JSON.
+//! Levers: table and tornado diagram.
 
 use super::chart::{Area, Drawn, around, rows, sheet, words as text_style};
 use super::marks::{bar, dashed, label};
@@ -7,28 +7,18 @@ use super::{ReportError, text_table};
 use analysis::levers::{Lever, Levers, apart, counts, plain};
 use plotters::prelude::Color;
 use plotters::style::text_anchor::{HPos, VPos};
-use serde_json::{Value, json};
 
-/// Returns the levers as JSON, with the summary sentence.
-pub fn json(levers: &Levers) -> Value {
-    let mut fields = json!({"sentence": levers.sentence()});
-    if let (Some(fields), Value::Object(all)) = (fields.as_object_mut(), json!(levers)) {
-        fields.extend(all);
-    }
-    fields
-}
-
-/// Bar of the diagram: from the baseline range to the ranges at both ends.
+/// Bar of the diagram, from the present range to those at both ends of a lever.
 struct Bar<'a> {
     name: &'a str,
     span_mm: f64,
-    /// Range, mm, and the value that produces it.
+    /// Range, mm, and the value that gives it.
     ends: [(f64, String); 2],
     /// The lever; `None` for the infill.
     lever: Option<&'a Lever>,
 }
 
-/// Returns the bars of the levers and the infill, largest span first.
+/// Returns the bars of the levers and of the infill, largest span first.
 fn bars(levers: &Levers) -> Vec<Bar<'_>> {
     let bar = |lever: &'_ Lever| {
         let end = |end: usize| {
@@ -52,11 +42,11 @@ fn bars(levers: &Levers) -> Vec<Bar<'_>> {
     bars
 }
 
-/// Returns the summary sentence, and a table of 80 columns with the sources below.
+/// Returns the sentence and a table within 80 columns, with the sources below.
 pub fn text(levers: &Levers) -> String {
     let base = levers.base;
     let mut text = format!(
-        "{}\n\nas it is      {:.1} mm, start taught at {:+.1} mm\n\n",
+        "{}\n\nnow           {:.1} mm, start taught at {:+.1} mm\n\n",
         levers.sentence(),
         base.range_mm,
         base.taught_start_mm,
@@ -75,13 +65,12 @@ pub fn text(levers: &Levers) -> String {
     text += &text_table(3, head, rows);
     let left_out = match &levers.left_out[..] {
         [] => String::new(),
-        names => format!("; none left for {}", names.join(", ")),
+        names => format!("; not evaluated: {}", names.join(", ")),
     };
     text + &format!("\n{} windows{left_out}\nsources\n{sources}", levers.windows)
 }
 
-/// Dimensions in pixels: width of the diagram, height of a row, height above and below the rows,
-/// and room for the names.
+/// Width of the diagram, height of a row, of head and foot, and width of the names, pixels.
 const WIDTH: u32 = 640;
 const ROW: u32 = 42;
 const HEAD_AND_FOOT: u32 = 110;
@@ -89,8 +78,8 @@ const LEFT: u32 = 220;
 /// Font size in plot units: 12 pixels when the diagram is shown at full width.
 const TEXT: u32 = 15;
 
-/// Draws the ranges at both ends of each lever as bars from the baseline, largest span first. The
-/// infill has its own colour; negligible effects are grey.
+/// Draws the ranges at both ends of each lever as bars from the range of the finger as it is, largest
+/// span first; the infill in another colour, negligible levers in grey.
 ///
 /// # Errors
 /// If the drawing library refuses.
@@ -103,7 +92,7 @@ pub fn svg(levers: &Levers) -> Result<String, ReportError> {
 fn draw(area: &Area<'_>, levers: &Levers, bars: &[Bar<'_>]) -> Drawn {
     let base = levers.base.range_mm;
     let ends = bars.iter().flat_map(|bar| [bar.ends[0].0, bar.ends[1].0]);
-    // Leaves room beside the bars for the labels at their ends.
+    // Leaves room for the labels beside the bars.
     let range = around(ends.chain([base]), 0.22);
     let (left, title) = (range.start, format!("{}: range with one number changed", levers.task));
     let now = format!("range (mm), now {base:.1}");

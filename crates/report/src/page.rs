@@ -56,8 +56,8 @@ fn sections(answer: &Answer, model: &Model, beside: &Beside) -> Result<Vec<Secti
     let record = answer.record;
     let section = |id, title: &str, body: Option<Markup>| Some((id, title.to_owned(), body?));
     let set_title = match record.on_bench {
-        None => "Fingers as good",
-        Some(_) => "As good by simulation alone",
+        None => "Ties",
+        Some(_) => "Ties by simulation alone",
     };
     // These drawings scroll on a phone instead of being scaled down, so that text stays legible.
     let drawn = |(caption, svg): &(String, String)| {
@@ -68,10 +68,10 @@ fn sections(answer: &Answer, model: &Model, beside: &Beside) -> Result<Vec<Secti
     let sections = [
         section("bench", "Predicted for the bench", bench::section(record)),
         section("set", set_title, set::section(answer)),
-        section("front", "Between the objectives", front::section(answer, PLOT)?),
-        section("shape", "Beyond the infill alone", shape::section(record)),
-        section("levers", "What moves the window", beside.levers.as_ref().map(drawn)),
-        section("maps", "Where it captures", maps),
+        section("front", "Pareto front", front::section(answer, PLOT)?),
+        section("shape", "Beyond the infill", shape::section(record)),
+        section("levers", "Sensitivity of the window", beside.levers.as_ref().map(drawn)),
+        section("maps", "Capture maps", maps),
         section("explore-views", "All designs", explore::section(answer, &beside.dir)),
         section("convergence", "Convergence", Some(convergence::section(record, PLOT)?)),
         section("failures", "How the trials ended", Some(provenance::outcomes(record))),

@@ -1,4 +1,4 @@
-//! The recommended finger for the printer: the files that the study wrote beside the page.
+//! Files for printing the recommended finger, beside the page.
 
 use crate::answer::Answer;
 use finray::geometry::Geometry;
@@ -6,17 +6,17 @@ use input::shipped::FINGERS;
 use insertion::finger::file::{FingerFile, infill};
 use study::StudyRecord;
 
-/// The surface of the recommended finger, in the folder of its study.
+/// Surface of the recommended finger, in the folder of its study.
 pub const SURFACE: &str = "finger.stl";
-/// The same with its unit.
+/// The same with its unit of length.
 pub const THREE_MF: &str = "finger.3mf";
-/// How to print it and how to check the print.
+/// Sheet for printing it and checking the print.
 pub const SHEET: &str = "finger-sheet.html";
-/// The files with their names for readers.
+/// The files and their labels.
 pub const FILES: [(&str, &str); 3] =
     [(SURFACE, SURFACE), (THREE_MF, "3MF"), (SHEET, "print sheet")];
 
-/// The finger file of a study; the shipped one of a study that has none.
+/// Returns the finger file of a study, else the shipped one.
 pub(super) fn finger_file(record: &StudyRecord) -> Option<FingerFile> {
     record.finger.clone().or_else(|| {
         let shipped = FINGERS.first()?;

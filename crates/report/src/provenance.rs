@@ -1,4 +1,4 @@
-//! Outcomes of the trials of a study, and its settings and provenance.
+//! Outcomes of all trials of a study, and its provenance.
 
 use super::elements::{definitions, table};
 use crate::answer::{Answer, command, lines, words};
@@ -10,33 +10,24 @@ use insertion::surrogate::Model;
 use maud::{Markup, html};
 use study::{Provenance, Recorded, StudyRecord};
 
-/// Key of the remote centre, for spaces that include it as a parameter.
+/// Key of the remote centre in a search space.
 const REMOTE_CENTRE_KEY: &str = "finger.rcc_mm";
-/// Names of the lines on the recommended finger that appear elsewhere on the page.
-const SAID: [&str; 9] = [
-    "best design",
-    "firm range",
-    "window",
-    "ends",
-    "from its ribs",
-    "as good",
-    "spread",
-    "  softest",
-    "  stiffest",
-];
+/// Lines of the recommended finger that other sections have.
+const ELSEWHERE: [&str; 7] =
+    ["best design", "firm range", "window", "from its ribs", "ties", "  softest", "  stiffest"];
 
-/// Returns collapsible sections: how to read the numbers, settings, and how to reproduce the study.
+/// Returns how to read the results, their settings, and the command that reproduces them; folded.
 pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
     let found = answer.recommended.iter().flat_map(|found| lines::recommended(answer, found));
     let found = found.filter(|_| answer.verdict.finger().is_some());
-    let more: Vec<_> = found.filter(|(name, _)| !SAID.contains(&name.as_str())).collect();
+    let more: Vec<_> = found.filter(|(name, _)| !ELSEWHERE.contains(&name.as_str())).collect();
     html! {
         details {
             summary { "How to read the numbers" }
             ul { @for text in reading(answer, model) { li { (text) } } }
         }
         @if !more.is_empty() {
-            details { summary { "More of the finger that simulation recommends" } (definitions(&more)) }
+            details { summary { "More about the finger recommended by simulation" } (definitions(&more)) }
         }
         details { summary { "Settings and hashes" } (provenance(answer.record)) }
         p {
@@ -47,28 +38,28 @@ pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
     }
 }
 
-/// Returns notes on the limitations of the numbers.
+/// Returns the limitations of the numbers.
 fn reading(answer: &Answer, model: &Model) -> Vec<String> {
     let goals = answer.record.config.goals();
     let robust = goals.need(Measure::RobustRange);
     let mut texts = vec![
-        "The ends of a window are known to the 0.1 mm grid: the next step does not insert, and the \
+        "The ends of a window lie on a 0.1 mm grid and the next step does not insert, so the true \
          range is up to 0.2 mm wider."
             .to_owned(),
-        "The search looks every 0.5 mm outward and bisects before the first failure, so it can step over \
-         a gap: for a design that was not walked use optimize evaluate --walk before you print."
+        "The window search goes outward in steps of 0.5 mm and bisects before the first failure, so it can step over \
+         a gap: before you print a design that was not walked, run optimize evaluate --walk."
             .to_owned(),
         stiffness(model, robust),
     ];
-    let draws = "Success rate and robust range are those of the assumed errors, not of your cell; all \
-                 designs meet the same draws.";
+    let draws = "Success rate and robust range hold for the assumed errors, not for your cell; all \
+                 designs are evaluated with the same draws.";
     texts.extend(goals.need_draws().then(|| draws.to_owned()));
     let parameters = &answer.record.config.space.parameters;
     texts.push(match parameters.iter().any(|parameter| parameter.key == REMOTE_CENTRE_KEY) {
-        true => "The finger's remote centre is a number of the design here; whether a finger with this \
+        true => "The finger's remote centre is a parameter of the design here; whether a finger with this \
                  infill and this centre can be made was not checked."
             .to_owned(),
-        false => "The finger's remote centre is where the task file puts it, at one distance or along a \
+        false => "The finger's remote centre is given by the task file, at one distance or along a \
                   straight line over the infill direction. On a printed finger it moves with the infill; how \
                   far was not measured."
             .to_owned(),
@@ -79,17 +70,17 @@ fn reading(answer: &Answer, model: &Model) -> Vec<String> {
 fn stiffness(model: &Model, robust: bool) -> String {
     let error = |axis| {
         let percent = model.chosen(axis)?.mean_absolute_percent;
-        percent.is_finite().then(|| format!("by {percent:.1} % in {}", axis.label()))
+        percent.is_finite().then(|| format!("{percent:.1} % in {}", axis.label()))
     };
     let errors: Vec<String> = Axis::ALL.into_iter().filter_map(error).collect();
     let missed = match errors.is_empty() {
-        true => "how far it misses others is not known".to_owned(),
-        false => format!("left out in turn they are missed {} on average", errors.join(" and ")),
+        true => "the error for other fingers is not known".to_owned(),
+        false => format!("the mean leave-one-out error is {}", errors.join(" and ")),
     };
     let ribs = if model.ratios { " and from the ribs of the finger" } else { "" };
     let carried = match robust {
-        true => "the robust range alone carries its error",
-        false => "its error is not carried into the range",
+        true => "only the robust range includes its error",
+        false => "the range does not include its error",
     };
     format!("Stiffness is predicted from {}{ribs}; {missed}; {carried}.", model.counted())
 }
@@ -119,11 +110,11 @@ pub(super) fn outcomes(record: &StudyRecord) -> Markup {
     let at_nominal = searches().filter(|found| found.window.nominal != Outcome::Inserted);
     html! {
         p {
-            (trials) " trials in " (searches().count()) " window searches. " (at_nominal.count())
-            " of them do not insert at the nominal start. A window search ends at the failures \
-            next to the window, so failures count window ends, not how likely a failure is."
+            (trials) " trials in " (searches().count()) " window searches, of which " (at_nominal.count())
+            " do not insert at the nominal start. A window search stops at the failures \
+            next to the window, so these counts are not probabilities of failure."
         }
-        (table(&["how the trial ended", "trials", "share"], &rows))
+        (table(&["outcome", "trials", "share"], &rows))
     }
 }
 
@@ -142,7 +133,7 @@ fn provenance(record: &StudyRecord) -> Markup {
     add("designs proposed at a time", config.batch.to_string());
     config.constraints.iter().for_each(|constraint| add("constraint", constraint.to_string()));
     if let Some(aggregate) = &config.aggregate {
-        add("objective over the tasks", format!("{aggregate}, of values that are not scaled"));
+        add("objective over the tasks", format!("{aggregate} of unscaled values"));
     }
     config.uncertainty.iter().for_each(|errors| add("drawn errors", errors.clone()));
     for p in &config.space.parameters {

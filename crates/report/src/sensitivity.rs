@@ -1,4 +1,4 @@
-//! Which input matters: table, JSON and chart.
+//! Sensitivity of a measure to its inputs: table, JSON and chart.
 
 use super::chart::{Area, Drawn, rows, sheet, tick, words};
 use super::marks::{bar, label, line};
@@ -6,125 +6,136 @@ use super::theme::{BLUE, INK};
 use super::{ReportError, text_table};
 use insertion::evaluation::objective::Measure;
 use parameters::Parameter;
-use parameters::plan::saltelli::{Indices, Interval};
+use parameters::plan::saltelli::Indices;
 use plotters::prelude::Color;
 use plotters::style::text_anchor::{HPos, VPos};
-use serde_json::{Value, json};
+use serde::{Serialize, Serializer};
 
-/// Result of an analysis.
-#[derive(Debug, Clone)]
+/// Result of an analysis, as `--json` prints it.
+#[derive(Debug, Clone, Serialize)]
 pub struct Found {
     /// Name of the task.
     pub task: String,
     /// Measure analysed.
+    #[serde(serialize_with = "name")]
     pub objective: Measure,
-    /// The inputs, as varied.
-    pub factors: Vec<Parameter>,
-    /// Shares of the objective's variance, in their order.
-    pub indices: Vec<Indices>,
-    /// Windows that were simulated.
+    /// Number of simulated windows.
     pub evaluations: usize,
-    /// Those of them whose nominal start diverged: they count as 0.
+    /// Number of them whose nominal start diverged, which count as 0.
     pub diverged: usize,
-    /// Those whose nominal start fails: 0, too.
-    pub without_window: usize,
+    /// Number of them whose nominal start fails, which count as 0.
+    pub nominal_start_fails: usize,
+    /// The inputs by total index, largest first.
+    pub factors: Vec<Factor>,
 }
 
-impl Found {
-    /// The inputs by how much they matter, most first.
-    fn bars(&self) -> Vec<(&Parameter, Indices)> {
-        let mut bars: Vec<_> = self.factors.iter().zip(self.indices.iter().copied()).collect();
-        bars.sort_by(|a, b| b.1.total.value.total_cmp(&a.1.total.value));
-        bars
+fn name<S: Serializer>(measure: &Measure, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(measure.name())
+}
+
+/// An input and its Sobol indices, with their 95 % intervals.
+#[derive(Debug, Clone, Serialize)]
+pub struct Factor {
+    name: String,
+    low: f64,
+    high: f64,
+    first: f64,
+    first_low: f64,
+    first_high: f64,
+    total: f64,
+    total_low: f64,
+    total_high: f64,
+}
+
+impl Factor {
+    /// Returns the factors of these inputs, largest total index first.
+    pub fn sorted(inputs: &[Parameter], indices: &[Indices]) -> Vec<Self> {
+        let factor = |(input, Indices { first, total }): (&Parameter, &Indices)| Factor {
+            name: input.path.to_string(),
+            low: input.low,
+            high: input.high,
+            first: first.value,
+            first_low: first.low,
+            first_high: first.high,
+            total: total.value,
+            total_low: total.low,
+            total_high: total.high,
+        };
+        let mut factors: Vec<_> = inputs.iter().zip(indices).map(factor).collect();
+        factors.sort_by(|a, b| b.total.total_cmp(&a.total));
+        factors
     }
 }
 
-/// The inputs by how much they matter, for other programs.
-pub fn json(found: &Found) -> Value {
-    let one =
-        |(Parameter { path, low, high, .. }, Indices { first, total }): (&Parameter, Indices)| {
-            let mut fields = json!({"name": path, "low": low, "high": high});
-            let mut set = |name: String, value: f64| fields[name] = json!(value);
-            for (name, share) in [("first", first), ("total", total)] {
-                set(name.to_owned(), share.value);
-                set(format!("{name}_low"), share.low);
-                set(format!("{name}_high"), share.high);
-            }
-            fields
-        };
-    json!({
-        "task": found.task,
-        "objective": found.objective.name(),
-        "evaluations": found.evaluations,
-        "diverged": found.diverged,
-        "nominal_start_fails": found.without_window,
-        "factors": found.bars().into_iter().map(one).collect::<Vec<_>>(),
-    })
-}
-
-/// The same as a table of 80 columns.
+/// Returns the result as a table within 80 columns.
 pub fn text(found: &Found) -> String {
     let head = ["input", "total", "95 %", "alone", "95 %"];
-    let interval = |of: Interval| format!("{:.2} to {:.2}", of.low, of.high);
-    let rows = found.bars().into_iter().map(|(factor, Indices { first, total })| {
-        let [value, alone] = [total, first].map(|share| format!("{:.2}", share.value));
-        [short(&factor.path).to_owned(), value, interval(total), alone, interval(first)]
+    let interval = |low: f64, high: f64| format!("{low:.2} to {high:.2}");
+    let rows = found.factors.iter().map(|factor| {
+        let [total, first] = [factor.total, factor.first].map(|share| format!("{share:.2}"));
+        let of_total = interval(factor.total_low, factor.total_high);
+        let of_first = interval(factor.first_low, factor.first_high);
+        [short(&factor.name).to_owned(), total, of_total, first, of_first]
     });
     let table = text_table(1, head, rows);
-    let counts =
-        [(found.without_window, "fail at the nominal start"), (found.diverged, "diverge there")];
+    let counts = [
+        (found.nominal_start_fails, "fail at the nominal start"),
+        (found.diverged, "diverge there"),
+    ];
     let zeros = counts.iter().filter(|(count, _)| *count > 0);
-    let zeros: Vec<String> =
-        zeros.map(|(count, what)| format!("{count} {what} and count as 0")).collect();
-    let zeros = zeros.iter().map(|zero| format!("; {zero}")).collect::<String>();
+    let zeros = zeros.map(|(count, what)| format!("; {count} {what} and count as 0"));
     format!(
-        "{} of {}: which input matters, most first\n{table}\
-         total: share of the variance that is left if all others are fixed; alone: share\n\
-         that goes if this one is fixed\n{} windows simulated{zeros}\n",
-        found.objective, found.task, found.evaluations
+        "{} of {}: inputs by influence\n{table}\
+         total: share of the variance that remains if all others are fixed (total index)\n\
+         alone: share that vanishes if this one is fixed (first-order index)\n\
+         {} windows simulated{}\n",
+        found.objective,
+        found.task,
+        found.evaluations,
+        zeros.collect::<String>()
     )
 }
 
-/// A key without the path that all keys of a task have in common.
+/// Returns a path without the part that all paths of a task have in common.
 fn short(key: &str) -> &str {
     let key = key.strip_prefix("task.").unwrap_or(key);
     key.strip_prefix("strategy.").map_or(key, |rest| rest.strip_prefix("phase.").unwrap_or(rest))
 }
 
-/// Width of the chart, height of a row and of what is above and below them, room for the names;
-/// pixels.
+/// Width of the chart, height of a row, of head and foot, and width of the names, pixels.
 const WIDTH: u32 = 900;
 const ROW: u32 = 34;
 const HEAD_AND_FOOT: u32 = 110;
 const LEFT: u32 = 300;
 
-/// A bar for each input with its interval, most first.
+/// Draws a bar with its interval for each input, largest first.
 pub fn svg(found: &Found) -> Result<String, ReportError> {
     let height = HEAD_AND_FOOT + ROW * found.factors.len() as u32;
     sheet("the sensitivity", (WIDTH, height), |area| draw(area, found))
 }
 
 fn draw(area: &Area<'_>, found: &Found) -> Drawn {
-    let bars = found.bars();
-    let largest = bars.iter().map(|(_, of)| of.total.high.max(of.total.value)).fold(1e-9, f64::max);
+    let factors = &found.factors;
+    let largest = factors.iter().map(|of| of.total_high.max(of.total)).fold(1e-9, f64::max);
     let title = format!("{} of {}: shares of the variance", found.objective, found.task);
-    let note = "share of the variance; bar: with all it acts with (total), line: 95 %; dark: alone";
-    let mut chart = rows(area, &title, (note, 0.0..1.1 * largest), bars.len(), LEFT)?;
-    for (row, (factor, Indices { first, total })) in bars.iter().enumerate() {
+    let note =
+        "share of the variance; light bar: total index, line: its 95 % interval; dark: first-order";
+    let mut chart = rows(area, &title, (note, 0.0..1.1 * largest), factors.len(), LEFT)?;
+    for (row, factor) in factors.iter().enumerate() {
         let y = -0.5 - row as f64;
-        let shares = [(total.value, 0.3, BLUE, 0.6), (first.value, 0.15, INK, 0.7)];
+        let shares = [(factor.total, 0.3, BLUE, 0.6), (factor.first, 0.15, INK, 0.7)];
         for (share, half, colour, opacity) in shares {
             let style = colour.rgb().mix(opacity).filled();
             bar(&mut chart, [0.0, share.max(0.0)], [y - half, y + half], style)?;
         }
-        let [low, high] = [total.low, total.high].map(|share| (share.max(0.0), y));
+        let [low, high] = [factor.total_low, factor.total_high].map(|share| (share.max(0.0), y));
         line(&mut chart, vec![low, high], INK.rgb().stroke_width(2), "")?;
-        let name =
-            format!("{} ({} to {})", short(&factor.path), tick(factor.low), tick(factor.high));
+        let name = short(&factor.name);
+        let name = format!("{name} ({} to {})", tick(factor.low), tick(factor.high));
         let style = words(13, INK, HPos::Right, VPos::Center);
         label(&mut chart, (0.0, y), (-8, 0), &name, &style)?;
         let style = words(14, INK, HPos::Left, VPos::Center);
-        label(&mut chart, high, (8, 0), &format!("{:.2}", total.value), &style)?;
+        label(&mut chart, high, (8, 0), &format!("{:.2}", factor.total), &style)?;
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use super::elements::table;
 use crate::answer::words::{ACROSS, design, mm, stiffness};
-use crate::answer::{Answer, AsGood, lines};
+use crate::answer::{Answer, Ties, lines};
 use insertion::evaluation::objective::Measure;
 use maud::{Markup, html};
 use study::Recorded;
@@ -13,7 +13,7 @@ const LISTED: usize = 8;
 /// Returns the section; `None` without a recommended design, as with several objectives.
 pub(super) fn section(answer: &Answer) -> Option<Markup> {
     answer.verdict.finger()?;
-    let found = answer.recommended.as_ref()?.as_good.as_ref()?;
+    let found = answer.recommended.as_ref()?.ties.as_ref()?;
     let named = answer.named()?.index;
     let mut designs = found.designs.clone();
     // The recommended one first, then by increasing loss.
@@ -33,18 +33,18 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
             robot.map_or(String::new(), |robot| mm(robot.range_mm)),
         ]
     };
-    let head = ["finger", "", "expected less", "largest force", ACROSS, "on a robot"];
+    let head = ["finger", "", "expected loss", "largest force", ACROSS, "measured"];
     let rows: Vec<_> = designs.iter().take(LISTED).map(row).collect();
     Some(html! {
-        p { (lines::within(answer, found).1) "." }
+        p { (lines::tied(answer, found).1) "." }
         @if let Some((name, text)) = lines::safe(found) { p { b { (name) } " " (text) "." } }
-        @if let Some(text) = lines::moves(answer) { p { b { "infill" } " " (text) "." } }
+        @if let Some(text) = lines::spread(answer) { p { b { "infill" } " " (text) "." } }
         @if rows.len() > 1 { (table(&head, &rows)) }
-        @if designs.len() > LISTED { p.muted { (designs.len() - LISTED) " more are in the explorer." } }
+        @if designs.len() > LISTED { p.muted { (designs.len() - LISTED) " more in the explorer." } }
     })
 }
 
-fn reasons(found: &AsGood, recorded: &Recorded, named: u64) -> String {
+fn reasons(found: &Ties, recorded: &Recorded, named: u64) -> String {
     let own = |one: &&Recorded| one.index == recorded.index;
     let named = (recorded.index == named).then_some("recommended");
     let safe = found.safe.as_ref().filter(|safe| own(&safe.design)).map(|_| "safe choice");

@@ -1,7 +1,7 @@
-//! Gain from the parameters of the finger itself beyond the infill alone.
+//! Gain from the parameters of the finger beyond the infill.
 
 use super::printer::finger_file;
-use crate::answer::words::infill;
+use crate::answer::words::evaluated;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
 use insertion::finger::file::is_shape;
@@ -9,12 +9,12 @@ use insertion::space::{Variable, label};
 use maud::{Markup, html};
 use study::{Recorded, StudyRecord};
 
-/// The section; `None` if the space has no such parameter.
+/// Returns the section; `None` if the space has no such parameter.
 pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     let parameters = &record.config.space.parameters;
     let shape: Vec<&Variable> = parameters.iter().filter(|p| is_shape(&p.key)).collect();
     let index = record.recommended().filter(|_| !shape.is_empty())?.index;
-    // As the search found it, which alone has looked at the others, too.
+    // As evaluated in the search, like the designs it is compared with.
     let best = record.current().iter().find(|recorded| recorded.index == index)?;
     let file = finger_file(record)?;
     let plain: Vec<(&str, f64)> = shape
@@ -31,22 +31,22 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
         .filter(|(_, from, to)| from != to)
         .map(|(key, from, to)| {
             let (name, unit) = label(key);
-            format!("{name} {to}{unit} in place of {from}{unit}")
+            format!("{name} {to}{unit} instead of {from}{unit}")
         })
         .collect();
     Some(html! {
         @match alone {
-            Some(alone) => p { "Against the infill alone, " (infill(&alone.design)) ": " (gain(alone, best)) }
-            None => p { "No evaluation of this study has the finger as its file has it." }
+            Some(alone) => p { "Compared with the best design that changes only the infill, " (evaluated(alone)) ": " (gain(alone, best)) }
+            None => p { "No evaluation of this study has the finger of the finger file." }
         }
         @if changed.is_empty() {
-            p { "The best design has the finger as its file has it." }
+            p { "The best design has the finger of the finger file." }
         } @else {
             p.warn {
-                "It leaves the measured fingers: " (changed.join(", ")) ". Its stiffness was \
-                computed from its ribs and scaled by measured over computed at its infill; the \
-                standard deviation holds how far that ratio differs from finger to finger. Print \
-                and measure this finger before you trust the result."
+                "It differs from the measured fingers: " (changed.join(", ")) ". Its stiffness was \
+                computed from its ribs and scaled by the ratio of measured to computed stiffness at its infill; the \
+                standard deviation includes the scatter of that ratio. Print \
+                and measure this finger before you rely on the result."
             }
         }
     })
@@ -56,7 +56,7 @@ fn gain(alone: &Recorded, best: &Recorded) -> String {
     let of = |(before, now): (&Evaluation, &Evaluation)| {
         let [force, other] = [now, before].map(|task| Measure::PeakForce.show(task.peak_force_n));
         let more = now.window.range_mm() - before.window.range_mm();
-        format!("{more:+.1} mm of range, at {force} in place of {other}")
+        format!("{more:+.1} mm of range, with {force} instead of {other}")
     };
     let gains = alone.tasks.iter().zip(&best.tasks).map(of);
     format!("the finger's parameters give {}.", gains.collect::<Vec<_>>().join("; "))

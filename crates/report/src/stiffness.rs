@@ -1,4 +1,4 @@
-//! Output of `optimize stiffness`: fit of the stiffness model, as table, JSON and plot.
+//! Fit of the stiffness model as table, JSON and plot.
 
 use super::chart::{Area, Drawn, around, axes, legend, message, sheet, words};
 use super::marks::{PointMark, dashed, line, points};
@@ -10,15 +10,15 @@ use insertion::stiffness::{Axis, Measurement};
 use insertion::surrogate::{Estimate, Model};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
-use serde_json::{Value, json};
+use serde::Serialize;
 use std::fmt::Write;
 
-/// Returns the leave-one-out errors of every model on both axes, and the models chosen.
+/// Returns the leave-one-out errors of every model on both axes, and the models that are used.
 pub fn table(model: &Model) -> String {
     let mut text = format!(
         "Stiffness of one finger, fitted to {}{}.\n\
-         Errors e are leave-one-out: each design is predicted by a model that never saw it.\n\
-         Root mean square, mean size, and root mean square in predicted deviations (sd):\n\n",
+         Leave-one-out errors e: each design is predicted by a model fitted without it.\n\
+         Root mean square, mean magnitude, and root mean square in predicted deviations (sd):\n\n",
         model.counted(),
         if model.ratios { " and computed from its ribs" } else { "" },
     );
@@ -39,63 +39,85 @@ pub fn table(model: &Model) -> String {
         let _ = writeln!(text, "{}: {}", axis.label(), model.describe(axis));
         let widening = model.widening(axis);
         let note = if widening > 1.0 {
-            format!("standard deviations are widened by {widening:.2} to fit the errors above")
+            format!("standard deviations are widened by {widening:.2} to match the errors above")
         } else if model.measurements.len() == 1 {
-            "one finger leaves no error; scatter as of the shipped designs is assumed".to_owned()
+            "one finger gives no error; the scatter of the shipped designs is assumed".to_owned()
         } else {
-            "standard deviations fit the errors above, or are larger".to_owned()
+            "standard deviations match the errors above, or are larger".to_owned()
         };
         let _ = writeln!(text, "  {note}");
     }
     if model.measurements.len() > 1 {
         text.push_str(
-            "The choice rests on these same errors, so they flatter the chosen model a little.\n",
+            "The models were chosen by these errors, which are therefore slightly optimistic.\n",
         );
     }
     text
 }
 
-/// Formats a number; a dash if it is not finite.
+/// Returns a number, or a dash if it is not finite.
 fn decimals(value: f64, places: usize) -> String {
     if value.is_finite() { format!("{value:.places$}") } else { "-".to_owned() }
 }
 
-fn key(axis: Axis) -> &'static str {
-    match axis {
-        Axis::Assembly => "assembly",
-        Axis::Compliance => "compliance",
+/// A stiffness model, as `--json` prints it.
+#[derive(Serialize)]
+pub struct Output {
+    designs: usize,
+    models: Vec<LeaveOneOut>,
+    used: Used,
+}
+
+/// Leave-one-out errors of a model on an axis.
+#[derive(Serialize)]
+struct LeaveOneOut {
+    axis: &'static str,
+    model: &'static str,
+    loo_rmse_n_per_mm: f64,
+    loo_mean_absolute_percent: f64,
+    loo_standardised_rms: f64,
+    used: bool,
+}
+
+#[derive(Serialize)]
+struct Used {
+    assembly: AxisModel,
+    compliance: AxisModel,
+}
+
+#[derive(Serialize)]
+struct AxisModel {
+    model: Option<&'static str>,
+    parameters: String,
+    sd_widening: f64,
+}
+
+impl Output {
+    /// Returns the output of a model.
+    pub fn new(model: &Model) -> Self {
+        let errors = model.loo.iter().map(|row| LeaveOneOut {
+            axis: if row.axis == Axis::Assembly { "assembly" } else { "compliance" },
+            model: row.model.label(),
+            loo_rmse_n_per_mm: row.rmse_n_per_mm,
+            loo_mean_absolute_percent: row.mean_absolute_percent,
+            loo_standardised_rms: row.standardised_rms,
+            used: row.chosen,
+        });
+        let used = |axis| AxisModel {
+            model: model.chosen(axis).map(|row| row.model.label()),
+            parameters: model.describe(axis),
+            sd_widening: model.widening(axis),
+        };
+        Output {
+            designs: model.measurements.len(),
+            models: errors.collect(),
+            used: Used { assembly: used(Axis::Assembly), compliance: used(Axis::Compliance) },
+        }
     }
 }
 
-/// Returns the content of [`table`] as JSON: `designs`, `models` (a list, one of each axis and
-/// model), `used` (per axis).
-pub fn json(model: &Model) -> Value {
-    let models = model.loo.iter().map(|row| {
-        json!({
-            "axis": key(row.axis),
-            "model": row.model.label(),
-            "loo_rmse_n_per_mm": row.rmse_n_per_mm,
-            "loo_mean_absolute_percent": row.mean_absolute_percent,
-            "loo_standardised_rms": row.standardised_rms,
-            "used": row.chosen,
-        })
-    });
-    let used = |axis| {
-        json!({
-            "model": model.chosen(axis).map(|row| row.model.label()),
-            "parameters": model.describe(axis),
-            "sd_widening": model.widening(axis),
-        })
-    };
-    json!({
-        "designs": model.measurements.len(),
-        "models": models.collect::<Vec<_>>(),
-        "used": { "assembly": used(Axis::Assembly), "compliance": used(Axis::Compliance) },
-    })
-}
-
-/// Plots both axes of stiffness against direction and against density, in four panels: curves with
-/// a band of one standard deviation, and the measured designs.
+/// Draws four panels: both axes of stiffness against direction and against density, curves with a band of
+/// one standard deviation, and the measured designs.
 pub fn svg(model: &Model) -> Result<String, ReportError> {
     sheet("the stiffness model", (1160, 880), |area| {
         let (head, body) = area.split_vertically(58);
@@ -114,7 +136,7 @@ pub fn svg(model: &Model) -> Result<String, ReportError> {
     })
 }
 
-/// Stiffness axis of each panel, and whether its x axis is the direction (otherwise the density).
+/// Axis of stiffness of each panel, and whether its x axis is the direction rather than the density.
 const PANELS: [(Axis, bool); 4] = [
     (Axis::Compliance, true),
     (Axis::Compliance, false),
@@ -122,13 +144,13 @@ const PANELS: [(Axis, bool); 4] = [
     (Axis::Assembly, false),
 ];
 
-/// Steps along a curve if the model does not compute the mechanics of each finger.
+/// Number of steps along a curve, unless the model computes fingers.
 const SAMPLES: u32 = 80;
 
 const SERIES: [Colour; 3] = [BLUE, ORANGE, GREEN];
 
 fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> Drawn {
-    // Maps (density, direction) to (value along x, value of the curve), and back.
+    // Value along x and value of the curve, or the inverse.
     let swapped = |(density, direction): (f64, f64)| match by_direction {
         true => (direction, density),
         false => (density, direction),
@@ -148,9 +170,8 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> Drawn
     let span = limits.end - limits.start;
     let x = (limits.start - 0.15 * span).max(0.0)..limits.end + 0.2 * span;
     let curves = levels(measured.iter().map(|m| of(m).1));
-    // If each point needs the mechanics of a finger (a third of a second), only the ends and the
-    // curve values of the other panel of the axis are used, so that both panels share the
-    // computations.
+    // Computing a finger takes a third of a second, so then only the ends and the curves of the other panel
+    // are evaluated.
     let places: Vec<f64> = if model.ratios {
         let levels = levels(measured.iter().map(|m| of(m).0));
         [x.start].into_iter().chain(levels).chain([x.end]).collect()

@@ -1,22 +1,22 @@
-//! A model of the first objective over the space, for the report alone: a Gaussian process
-//! through the evaluations, as the optimizer `gp` has one.
+//! Model of the first objective over the space for the report: a Gaussian process through the
+//! evaluations, like that of the optimizer `gp`.
 
 use ask_tell::gp::{FitEffort, Gp, fit};
 use ask_tell::statistics::Moments;
 use insertion::space::Variable;
-use serde_json::{Value, json};
+use serde::Serialize;
 use study::StudyRecord;
 
-/// Most evaluations that the model goes through; of more, evenly taken ones.
+/// Largest number of evaluations of the model, taken evenly from more.
 const MOST: usize = 300;
-/// Smallest standard deviation of a value, in its unit: what a step of 0.1 rounds off.
+/// Smallest standard deviation of a value, in its unit: rounding to 0.1.
 const NOISE: f64 = 0.03;
-/// Most cells along an axis of the surface.
+/// Largest number of cells along an axis of the surface.
 const CELLS: u32 = 41;
-/// Steps along an axis to see how far the mean goes.
+/// Number of steps along an axis for its influence.
 const LEVELS: u32 = 20;
 
-/// The process of a study, fitted once a page.
+/// Gaussian process of a study, fitted once per page.
 pub(super) struct Model {
     gp: Gp,
     mean: f64,
@@ -24,7 +24,7 @@ pub(super) struct Model {
 }
 
 impl Model {
-    /// `None` with too few evaluations, or if their values are all alike.
+    /// Returns the model; `None` with too few evaluations or equal values.
     pub(super) fn of(record: &StudyRecord) -> Option<Self> {
         let parameters = &record.config.space.parameters;
         let known: Vec<(Vec<f64>, f64)> = record
@@ -48,7 +48,7 @@ impl Model {
         Some(Model { gp: Gp::new(&x, &values, floor, &theta)?, mean, sd })
     }
 
-    /// Mean and standard deviation at a point of the unit cube, in the unit of the value.
+    /// Returns mean and standard deviation at a point of the unit cube, in the unit of the value.
     fn at(&self, x: &[f64]) -> (f64, f64) {
         let (mean, variance) = self.gp.predict(x);
         (self.mean + self.sd * mean, self.sd * variance.max(0.0).sqrt())
@@ -60,9 +60,19 @@ fn unit(parameter: &Variable, value: f64) -> f64 {
     if span > 0.0 { (value - parameter.low) / span } else { 0.5 }
 }
 
-/// The surface over the two parameters that matter most, the others as recommended; nothing for
-/// one parameter or too few evaluations.
-pub(super) fn to_json(record: &StudyRecord, model: &Model) -> Option<Value> {
+/// Mean and standard deviation of the model over two parameters (by index), row by row.
+#[derive(Serialize)]
+pub(super) struct Surface {
+    axes: Vec<usize>,
+    x: Vec<f64>,
+    y: Vec<f64>,
+    mean: Vec<f64>,
+    sd: Vec<f64>,
+}
+
+/// Returns the surface over the two most influential parameters, the others as recommended; `None` for a
+/// single parameter.
+pub(super) fn of(record: &StudyRecord, model: &Model) -> Option<Surface> {
     let parameters = &record.config.space.parameters;
     if parameters.len() < 2 {
         return None;
@@ -93,10 +103,10 @@ pub(super) fn to_json(record: &StudyRecord, model: &Model) -> Option<Value> {
             sd.push(round(found.1));
         }
     }
-    Some(json!({"axes": axes, "x": xs, "y": ys, "mean": mean, "sd": sd}))
+    Some(Surface { axes, x: xs, y: ys, mean, sd })
 }
 
-/// How far the model's mean goes along an axis through a point.
+/// Returns the spread of the model's mean along an axis through a point.
 fn reach(model: &Model, base: &[f64], axis: usize) -> f64 {
     let along = (0..=LEVELS).map(|level| {
         let mut point = base.to_vec();

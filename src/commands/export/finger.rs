@@ -15,9 +15,9 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use study::write_file;
 
-/// A finger for the printer: the best of a study, or of an infill
+/// Export a finger for the printer: the best of a study, or one with a given infill
 ///
-/// Both fingers of a gripper are this part. STL, 3MF, DXF and SVG have every rib of it; the
+/// Both fingers of a gripper are this part. STL, 3MF, DXF and SVG contain every rib; the
 /// settings for slicers are for its outline, which is written beside them and which the slicer
 /// fills with its own ribs.
 #[derive(Debug, Clone, clap::Args)]
@@ -26,10 +26,10 @@ use study::write_file;
     after_help = "Example: optimize export finger results/rj45-gp-seed0 --format stl --out finger.stl"
 )]
 pub struct Request {
-    /// Which finger.
+    /// The finger.
     #[command(flatten)]
     pub finger: PrintRequest,
-    /// What to write
+    /// File format
     #[arg(long, value_enum)]
     pub format: Format,
     /// File to write
@@ -37,7 +37,7 @@ pub struct Request {
     pub out: PathBuf,
 }
 
-/// Output format.
+/// File format of a finger.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Format {
     /// Closed surface, binary, mm
@@ -49,7 +49,7 @@ pub enum Format {
     Svg,
     /// Profile as closed polylines, mm
     Dxf,
-    /// One page to print by: drawing, dimensions, material; FILE ends in .svg or .html
+    /// One page with drawing, dimensions and material; FILE ends in .svg or .html
     Sheet,
     /// Profile of settings to import in Cura (.curaprofile), with the outline beside it
     Cura,
@@ -109,8 +109,8 @@ impl fmt::Display for Written {
         writeln!(
             f,
             "wrote settings for {title}: {out}\n\
-             to be sliced with them: {outline}\n\
-             to be loaded as a modifier with 100 % infill: {base}"
+             slice with them: {outline}\n\
+             load as a modifier with 100 % infill: {base}"
         )
     }
 }
@@ -128,7 +128,7 @@ fn page(request: &PrintRequest, geometry: &Geometry, out: &Path) -> Result<Strin
         Some("svg") => sheet::svg,
         Some("html" | "htm") => sheet::html,
         _ => {
-            let problem = format!("--out {}: a sheet's file ends in .svg or .html", out.display());
+            let problem = format!("--out {}: must end in .svg or .html", out.display());
             return Err(Failure::usage(problem));
         }
     };
@@ -147,10 +147,10 @@ fn settings(out: &Path, geometry: &Geometry, text: &str) -> Result<Vec<PathBuf>,
         (&outline, closed(Prism::outline(geometry), geometry)?.stl(&format!("{title}, outline"))),
         (&base, closed(Prism::base(geometry), geometry)?.stl(&format!("{title}, solid base"))),
     ];
-    // The user did not name these files, so existing ones must not be overwritten.
+    // These names were not given by the user.
     for (file, content) in &parts {
         if std::fs::read(file).is_ok_and(|found| found != *content) {
-            let problem = "is there already, with other contents; remove it, or give another --out";
+            let problem = "exists with other contents; remove it, or give another --out";
             return Err(Failure::usage(format!("{}: {problem}", file.display())));
         }
     }

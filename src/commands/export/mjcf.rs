@@ -13,10 +13,10 @@ use std::fmt;
 use std::path::PathBuf;
 use study::write_file;
 
-/// The scene of a trial as MJCF, the model format of MuJoCo and its viewer
+/// Export the scene of a trial as MJCF, the model format of MuJoCo and its viewer
 ///
 /// The part stands at its pick-up place and the jaws are open. In the viewer the
-/// sliders move the robot's command and close the jaws. Needs no MuJoCo.
+/// sliders move the robot's command and close the jaws. MuJoCo is not needed for the export.
 #[derive(Debug, clap::Args)]
 #[command(
     display_order = 1,

@@ -16,7 +16,7 @@ use std::fmt;
 use std::io::{self, BufRead};
 use std::path::Path;
 
-/// Add a line to a measurement file, which need not exist; without flags it asks for each value
+/// Add a line to a measurement file, which is created if needed; without options it prompts for each value
 #[derive(Debug, clap::Args)]
 #[command(
     display_order = 1,
@@ -50,7 +50,7 @@ pub struct Request {
         conflicts_with = "not_measurable"
     )]
     pub range_mm: Option<String>,
-    /// The finger was tried, but no range could be measured
+    /// The finger was tested, but no range could be measured
     #[arg(long)]
     pub not_measurable: bool,
     /// Failure class below the window, 1 to 4
@@ -59,7 +59,7 @@ pub struct Request {
     /// Failure class above the window, 1 to 4
     #[arg(long, value_name = "CLASS")]
     pub failure_positive: Option<String>,
-    /// Measurements that the values are the mean of
+    /// Number of measurements whose mean is given
     #[arg(long, value_name = "N")]
     pub repeats: Option<String>,
     /// Largest contact force, N
@@ -68,13 +68,13 @@ pub struct Request {
     /// Day, YYYY-MM-DD
     #[arg(long, value_name = "DAY")]
     pub date: Option<String>,
-    /// Anything
+    /// Any text
     #[arg(long, value_name = "TEXT")]
     pub note: Option<String>,
-    /// A further design parameter, as in spaces/codesign.toml; may be given several times
+    /// Another design parameter, for example of spaces/codesign.toml; may be given several times
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,
-    /// Check the line, and write nothing: before a robot measures it
+    /// Check the line without writing it
     #[arg(long, hide = true)]
     pub dry_run: bool,
 }
@@ -84,11 +84,11 @@ fn setting(text: &str) -> Result<(String, String), String> {
         Some((key, value)) if key.starts_with("task.") || key.starts_with("finger.") => {
             Ok((key.to_owned(), value.to_owned()))
         }
-        _ => Err("a setting is KEY=NUMBER, as in task.strategy.tilt_deg=8".to_owned()),
+        _ => Err("must be KEY=NUMBER, for example task.strategy.tilt_deg=8".to_owned()),
     }
 }
 
-/// File to which a line was added, and its number of lines.
+/// File with the added line, and its number of lines.
 #[derive(Serialize)]
 pub struct Added {
     file: String,
@@ -118,12 +118,12 @@ impl fmt::Display for Added {
 
 fn not_shipped(file: &str) -> Result<(), Failure> {
     if MEASUREMENTS.iter().any(|shipped| shipped.name == file) {
-        return Err(Failure::usage(format!("`{file}` is shipped; give a file of your own")));
+        return Err(Failure::usage(format!("`{file}` is shipped; give the path of your own file")));
     }
     Ok(())
 }
 
-/// Adds a line with these columns and returns all lines; with `dry_run` the file is not written.
+/// Adds a line with these cells, or with `dry_run` only checks it, and returns all lines.
 fn added(
     file: &str,
     mut cells: Vec<(&str, String)>,
@@ -133,15 +133,15 @@ fn added(
     if let Some((_, name)) = cells.iter_mut().find(|(column, _)| *column == "task") {
         let TaskFile { source, task } = read_task(name)?;
         let shipped = TASKS.iter().any(|shipped| shipped.text == source.text);
-        // Relative to the folder of the measurements if it lies inside, otherwise absolute.
+        // Relative to the folder of the measurements, if it is inside, else absolute.
         let folder = Path::new(file).parent().unwrap_or(Path::new(""));
         let path = Path::new(name).strip_prefix(folder).map(Path::to_owned);
         let path = path.or_else(|_| std::path::absolute(&*name)).map_err(Failure::input)?;
         own = (!shipped).then(|| (task.name.clone(), path.display().to_string()));
         *name = task.name;
     }
-    // Read as late as possible: other processes may have added lines.
-    let unusable = |error| Failure::in_file(file, format!("cannot add to it: {error}"));
+    // Read last, since others may have added lines meanwhile.
+    let unusable = |error| Failure::in_file(file, format!("cannot add a line: {error}"));
     let full = |error| Failure::running(format!("{file}: cannot write: {error}"));
     let mut table = Table::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
     parse(table.text(), file).map_err(Failure::input)?;
@@ -180,12 +180,11 @@ impl Request {
     }
 }
 
-/// Prompts for each column and reads the answers. An empty answer leaves the column empty; end of
-/// input ends the prompts.
+/// Prompts for each column on standard input until it ends; an empty answer leaves the cell empty.
 fn asked(answers: &mut impl BufRead) -> Result<Vec<(&'static str, String)>, Failure> {
-    let failed = |error: io::Error| Failure::running(format!("cannot ask: {error}"));
+    let failed = |error: io::Error| Failure::running(format!("cannot read the answer: {error}"));
     let mut cells = Vec::new();
-    say(&format!("an empty answer is: not known; `{NOT_MEASURABLE}` may stand as range_mm"));
+    say(&format!("leave unknown values empty; range_mm may be `{NOT_MEASURABLE}`"));
     for column in COLUMNS {
         say(column);
         let mut answer = String::new();
@@ -198,7 +197,7 @@ fn asked(answers: &mut impl BufRead) -> Result<Vec<(&'static str, String)>, Fail
         }
     }
     if cells.is_empty() {
-        return Err(Failure::usage("nothing was given; see `optimize measure add --help`"));
+        return Err(Failure::usage("no value was given; see `optimize measure add --help`"));
     }
     Ok(cells)
 }

@@ -1,4 +1,4 @@
-//! `optimize measure check`: what is wrong with a measurement file.
+//! `optimize measure check`: checks a measurement file.
 
 use crate::command;
 use crate::context::Context;
@@ -12,15 +12,14 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Check a measurement file: units that look wrong, windows without the start, lines given
-/// twice, unknown tasks
+/// Check a measurement file: implausible units, windows without the start, duplicate lines, unknown tasks
 #[derive(Debug, clap::Args)]
 #[command(display_order = 2, after_help = "Example: optimize measure check bench.csv")]
 pub struct Request {
-    /// The file; `published` is the one shipped
+    /// The file, or `published` for the shipped one
     #[arg(value_name = "FILE")]
     pub file: String,
-    /// A task of your own that its lines name without a comment line; may be given several times
+    /// File of your own task that is not named in a comment line; may be given several times
     #[arg(long, value_name = "FILE.toml")]
     pub task: Vec<String>,
     /// List the lines
@@ -44,9 +43,9 @@ struct OfTask {
     task: String,
     lines: usize,
     ranges: usize,
-    /// Ranges known from below.
+    /// Number of lower bounds of a range.
     bounds: usize,
-    /// Insertion windows measured, over all lines.
+    /// Number of measured windows.
     repeats: u32,
 }
 
@@ -122,10 +121,10 @@ impl fmt::Display for Checked {
             let rest = lines - ranges - bounds;
             writeln!(
                 f,
-                "{task:<8} {ranges:>3} ranges, {bounds:>3} ranges known from below, {rest:>3} not measurable"
+                "{task:<8} {ranges:>3} ranges, {bounds:>3} lower bounds, {rest:>3} not measurable"
             )?;
         }
-        writeln!(f, "{}: {}, nothing looks wrong", self.file, counted(self.lines))
+        writeln!(f, "{}: {}, no problems found", self.file, counted(self.lines))
     }
 }
 

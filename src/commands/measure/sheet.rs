@@ -1,4 +1,4 @@
-//! `optimize measure sheet`: the sheet to measure windows by hand.
+//! `optimize measure sheet`: sheet for measuring windows by hand.
 
 use crate::command::{self, Request as _};
 use crate::commands::trial;
@@ -16,9 +16,9 @@ use std::fmt;
 use std::path::PathBuf;
 use study::write_file;
 
-/// How far outward pictures are looked for, mm.
+/// Largest offset for which outcomes are simulated, mm.
 const FARTHEST_MM: u8 = 12;
-/// Shipped examples of what no start of the task shows, as [`ended`] takes them.
+/// Shipped examples of each outcome, for those that the task does not show.
 const EXAMPLES: [At<'_>; 5] = [
     ("ket8", (10.0, 0.0), 0.0, None),
     ("ket8", (10.0, 0.0), 0.0, Some(0.02)),
@@ -30,7 +30,7 @@ const EXAMPLES: [At<'_>; 5] = [
 /// Task, finger, shift of the start, mm, and force that holds the plug, N, unless it is the task's.
 type At<'a> = (&'a str, (f64, f64), f64, Option<f64>);
 
-/// Write a sheet to print and fill in, to measure windows by hand
+/// Write a printable sheet for measuring windows by hand
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 3,
@@ -51,7 +51,7 @@ pub struct Request {
 fn infill(text: &str) -> Result<(f64, f64), String> {
     match text.split_once(',').map(|(a, b)| (a.trim().parse(), b.trim().parse())) {
         Some((Ok(density), Ok(direction))) => Ok((density, direction)),
-        _ => Err("a finger is PERCENT,DEG, as in 10,0".to_owned()),
+        _ => Err("must be PERCENT,DEG, for example 10,0".to_owned()),
     }
 }
 
@@ -64,7 +64,7 @@ pub struct Written {
 impl command::Request for Request {
     type Response = Written;
 
-    /// Simulates how insertions of the fingers end, and writes the sheet.
+    /// Simulates insertions of the fingers and writes the sheet.
     fn run(&self, context: &Context<'_>) -> Result<Written, Failure> {
         let task = read_task(&self.task)?.task;
         let shifts = (1..=FARTHEST_MM).flat_map(|mm| [f64::from(mm), -f64::from(mm)]);

@@ -1,4 +1,4 @@
-//! `optimize task check`: what is wrong with a task file, and whether its nominal start inserts.
+//! `optimize task check`: checks a task file and its nominal start.
 
 use crate::command;
 use crate::context::Context;
@@ -16,9 +16,9 @@ use std::fmt;
 use std::path::PathBuf;
 use study::write_file;
 
-/// Look for what cannot work in a task file, draw it and try its nominal start
+/// Check a task file, draw it and simulate its nominal start
 ///
-/// Exit code 0 if nothing is wrong and the plug goes in, 2 otherwise.
+/// Exit code 0 if there is no problem and the plug inserts, 2 otherwise.
 #[derive(Debug, clap::Args)]
 #[command(
     display_order = 3,
@@ -39,7 +39,7 @@ pub struct Request {
     pub engine: EngineKind,
 }
 
-/// Problems of a task, and what would mend a nominal start that fails.
+/// Problems of a task, and a strategy that repairs a nominal start that fails.
 #[derive(Serialize)]
 pub struct Checked {
     #[serde(flatten)]

@@ -1,4 +1,4 @@
-//! `optimize task import`: a task from meshes of plug and socket.
+//! `optimize task import`: creates a task from meshes of plug and socket.
 
 use crate::command;
 use crate::context::{Context, not_stopped};
@@ -29,13 +29,13 @@ const RESOLUTION: u32 = 64;
 /// Largest mesh file, bytes.
 const LARGEST_FILE: u64 = 200 << 20;
 
-/// Write a task from meshes of a plug and its socket (STL or OBJ)
+/// Create a task from meshes of a plug and its socket (STL or OBJ)
 ///
-/// Extruded outlines and all else that can be cut into convex pieces is taken over exactly, the rest
-/// is approximated by convex hulls (VHACD), and how far these reach into the clearance is measured.
-/// The plug's tip and the middle of the socket's largest opening are laid over one another. Unit,
-/// direction and the jaws' axis are found from the shapes and said, unless they are given. Grip and moves are derived from the shapes, or
-/// taken from another task with --like.
+/// Shapes that can be cut into convex pieces, such as extruded outlines, are imported exactly; others are
+/// approximated by convex hulls (VHACD), and their intrusion into the clearance is measured.
+/// The plug's tip is aligned with the middle of the socket's largest opening. Unit, direction and axis of the
+/// jaws are derived from the shapes and printed, unless they are given. Grip and strategy are derived from the
+/// shapes, or taken from another task with --like.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 4,
@@ -45,41 +45,40 @@ pub struct Request {
     /// Mesh of the plug, or of both
     #[arg(long, value_name = "P.stl")]
     pub plug: PathBuf,
-    /// Mesh of the socket [default: what --plug-body leaves of the plug's file]
+    /// Mesh of the socket [default: the rest of the plug's file without --plug-body]
     #[arg(long, value_name = "S.stl")]
     pub socket: Option<PathBuf>,
     /// Body of the file that is the plug: `o` or `g` of an OBJ, `solid` of a text STL, or the number of
-    /// a shell, from 1 [default: all, or what --socket-body leaves]
+    /// a shell, from 1 [default: all, or the rest without --socket-body]
     #[arg(long, value_name = "NAME")]
     pub plug_body: Option<String>,
     /// Body of its file that is the socket
     #[arg(long, value_name = "NAME")]
     pub socket_body: Option<String>,
-    /// Unit of both files [default: the one in which jaws hold the plug and the clearance is a connector's]
+    /// Unit of both files [default: the one with a plausible plug and clearance]
     #[arg(long, value_enum)]
     pub unit: Option<Unit>,
-    /// Direction, in the files, in which the plug goes in [default: the one with a hole that takes the
-    /// plug's end]
+    /// Direction of insertion in the files [default: the one with a hole for the plug's end]
     #[arg(long, value_name = "AXIS", value_enum, allow_hyphen_values = true)]
     pub insert_along: Option<Along>,
     /// Axis of the files along which the jaws close [default: y, or the one across which the plug has two
-    /// faces that pads hold]
+    /// parallel faces for the pads]
     #[arg(long, value_name = "AXIS", value_enum)]
     pub jaws: Option<Jaws>,
-    /// A task of which all but the shapes is taken: grip, friction, strategy, success
+    /// Task for all but the shapes: grip, friction, strategy, success
     #[arg(long, value_name = "T")]
     pub like: Option<String>,
-    /// Voxels along the longest side, where a mesh is approximated
+    /// Voxels along the longest side of an approximated mesh
     #[arg(long, value_name = "N", default_value_t = RESOLUTION,
           value_parser = clap::value_parser!(u32).range(i64::from(COARSEST)..=i64::from(FINEST)))]
     pub resolution: u32,
     /// File to write
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
-    /// Contact engine that tries the nominal start
+    /// Contact engine for the nominal start
     #[arg(long, value_enum, default_value_t)]
     pub engine: EngineKind,
-    /// What to call plug and socket in messages and in the task's file, if not by their paths
+    /// Names of plug and socket in messages and in the task file [default: their paths]
     #[arg(long, hide = true, num_args = 2, allow_hyphen_values = true)]
     pub names: Vec<String>,
 }

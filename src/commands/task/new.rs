@@ -1,4 +1,4 @@
-//! `optimize task new`: writes a new task file.
+//! `optimize task new`: creates a task file.
 
 use crate::command;
 use crate::context::Context;
@@ -23,11 +23,11 @@ use study::write_file;
 /// Default dimensions: a USB-C plug.
 const EXAMPLE: [&str; 3] = ["8.25x2.4x6.65", "0.1", "12x6.5x20"];
 
-/// Write a commented task file from a few dimensions, or like another task
+/// Create a commented task file from a few dimensions, or from another task
 ///
 /// With --plug or --round, start, tilt, strokes and success depth are derived from the geometry. With --like
-/// alone the file is a copy of that task; with both, friction and grasp force are that task's.
-/// With neither it is a USB-C plug.
+/// alone the file is a copy of that task; with both, friction and grasp force are taken from it.
+/// With neither the task is a USB-C plug.
 #[derive(Debug, clap::Args)]
 #[command(
     display_order = 1,
@@ -37,25 +37,25 @@ pub struct Request {
     /// Name of the task: letters, digits, - and _
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// What goes in: width (y, between the jaws) x height (x) x length, mm
+    /// Plug: width (y, between the jaws) x height (x) x length, mm
     #[arg(long, value_name = "WxHxL", requires = "clearance", group = "tip")]
     pub plug: Option<Size>,
-    /// What goes in, if it is a cylinder: diameter x length, mm
+    /// Cylindrical plug: diameter x length, mm
     #[arg(long, value_name = "DxL", requires = "clearance", group = "tip", value_parser = Size::round)]
     pub round: Option<Size>,
-    /// Opening less plug in x and y, mm: both sides together
+    /// Clearance, mm: opening minus plug in x and y, both sides together
     #[arg(long, value_name = "C", requires = "tip", value_parser = clearance)]
     pub clearance: Option<f64>,
-    /// What the fingers hold, above the plug: width x height x length, mm [default: the plug itself]
+    /// Body that the fingers hold, above the plug: width x height x length, mm [default: the plug itself]
     #[arg(long, value_name = "WxHxL", requires = "tip")]
     pub body: Option<Size>,
-    /// Another task: ket8, ket12, rj45, usb, or the path of a task file
+    /// Task to start from: ket8, ket12, rj45, usb, or the path of a task file
     #[arg(long, value_name = "T")]
     pub like: Option<String>,
     /// File to write [default: NAME.toml]
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
-    /// Contact engine that tries the nominal start
+    /// Contact engine for the nominal start
     #[arg(long, value_enum, default_value_t)]
     pub engine: EngineKind,
 }
@@ -78,7 +78,7 @@ impl command::Request for Request {
         };
         let out = self.out.clone().unwrap_or_else(|| format!("{}.toml", self.name).into());
         let file = out.display().to_string();
-        // Parsing checks the name, so that the written file can be read back.
+        // Checks the name and that the file can be read.
         let written = TaskFile::parse(Source { file: file.clone(), text })?;
         if out.exists() {
             return Err(Failure::usage(format!("{file} exists; name another file with --out")));
@@ -171,13 +171,13 @@ fn text(size: &Size) -> String {
     mm(&[size.width, size.height, size.length])
 }
 
-/// Formats lengths as in the command-line options.
+/// Returns lengths in the form of the options.
 fn mm(lengths: &[f64]) -> String {
     let mm = |length: &f64| ((length / MM * 1e4).round() / 1e4).to_string();
     lengths.iter().map(mm).collect::<Vec<_>>().join("x")
 }
 
-/// Returns a copy of the other task's file, renamed.
+/// Returns the other task's file with this name.
 fn copy(name: &str, TaskFile { source, task }: &TaskFile) -> String {
     let line =
         |key: &str, value: &str| format!("{key} = {}", toml::Value::String(value.to_owned()));
@@ -195,6 +195,8 @@ fn copy(name: &str, TaskFile { source, task }: &TaskFile) -> String {
 }
 
 fn clearance(text: &str) -> Result<f64, String> {
-    let mm = text.parse::<f64>().map_err(|_| "give a number of mm, as in 0.1".to_owned())?;
-    numbers::problem("connector.clearance_mm", mm).map_or(Ok(mm), |problem| Err(problem + " mm"))
+    match text.parse::<f64>() {
+        Ok(mm) if mm > 0.0 && mm <= 20.0 => Ok(mm),
+        _ => Err("must be a number above 0 and at most 20 (mm)".to_owned()),
+    }
 }

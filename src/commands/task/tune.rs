@@ -1,4 +1,4 @@
-//! `optimize task tune`: finds a strategy with which a connector inserts.
+//! `optimize task tune`: finds a strategy that inserts a connector.
 
 use crate::command;
 use crate::context::{Context, not_stopped};
@@ -27,15 +27,15 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use study::write_file;
 
-/// Find a start and a strategy by which a connector inserts, before fingers are compared
+/// Find a start and a strategy that insert a connector, before fingers are compared
 ///
-/// A start taught with a medium finger; then the strategies of the shipped tasks, carried over to
-/// this opening; then a search over tilt, strokes, preload and push speed for the widest least range
-/// of a soft, a medium and a stiff finger from one start. Exit code 1 if nothing inserts.
+/// First the start is taught with a medium finger; then the strategies of the shipped tasks are tried, scaled to
+/// this opening; then tilt, strokes, preload and push speed are optimized for the smallest range of a soft, a
+/// medium and a stiff finger. Exit code 1 if nothing inserts.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(display_order = 5, after_help = "Example: optimize task tune mine.toml --svg mine.svg")]
 pub struct Request {
-    /// Task file, which is written anew; or the name of a shipped task, with --out
+    /// Task file, which is rewritten; or the name of a shipped task, with --out
     #[arg(value_name = "FILE")]
     pub file: String,
     /// Robot: see `optimize robots`, or the path of a robot file
@@ -47,7 +47,7 @@ pub struct Request {
     /// Seed of the search
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
-    /// Write this new file in place of FILE
+    /// Write this new file instead of FILE
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     /// Write no task file

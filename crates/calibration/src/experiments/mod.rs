@@ -154,10 +154,34 @@ impl Experiment {
     }
 }
 
+/// Columns of a measurement file.
+const COLUMNS_OF_LINES: Columns<'_> =
+    Columns { all: &COLUMNS, needed: 3, why: "a line needs the finger and the task" };
+
 /// Reads and checks a measurement file; `file` is named in errors. An empty file has no lines.
 pub fn parse(text: &str, file: &str) -> Result<Vec<Experiment>, Problems> {
-    let why = "a line says which finger was tried on which task";
-    rows(text, file, &Columns { all: &COLUMNS, needed: 3, why }, line::experiment)
+    rows(text, file, &COLUMNS_OF_LINES, line::experiment)
+}
+
+/// Reads and checks a measurement file as [`parse`] does, and checks that each task is one of `known`.
+///
+/// # Errors
+/// With all problems of all lines.
+pub fn parse_known(text: &str, file: &str, known: &[&str]) -> Result<Vec<Experiment>, Problems> {
+    let one = |cells: &mut Cells<'_>, before: &[Experiment]| {
+        let found = line::experiment(cells, before);
+        if !found.task.is_empty() && !known.contains(&&*found.task) {
+            let text = format!(
+                "unknown task `{}`{}; available: {}, or your own with --task FILE.toml",
+                found.task,
+                hint(&found.task, known),
+                known.join(", ")
+            );
+            cells.problems.push(problem(cells.line, "task", &text));
+        }
+        found
+    };
+    rows(text, file, &COLUMNS_OF_LINES, one)
 }
 
 /// Columns of a table of fingers.
@@ -246,21 +270,6 @@ fn check_header(header: &StringRecord, columns: &Columns<'_>, at: u64) -> Result
 
 fn hint(name: &str, known: &[&str]) -> String {
     nearest(name, known).map_or(String::new(), |near| format!(" (did you mean `{near}`?)"))
-}
-
-/// Checks that each line's task is one of `known`.
-pub fn check_tasks(experiments: &[Experiment], known: &[&str], file: &str) -> Result<(), Problems> {
-    let unknown = experiments.iter().filter(|line| !known.contains(&&*line.task));
-    let words = |Experiment { line, task, .. }: &Experiment| {
-        let words = format!(
-            "no task is called `{task}`{}; there are {}, or name your own by --task FILE.toml",
-            hint(task, known),
-            known.join(", ")
-        );
-        problem(*line, "task", &words)
-    };
-    let problems: Vec<Fault> = unknown.map(words).collect();
-    if problems.is_empty() { Ok(()) } else { Err(Problems::of(file, problems)) }
 }
 
 /// The file's text with one line more, after a comment line if that is not empty; `cells` are the

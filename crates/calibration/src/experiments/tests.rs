@@ -13,7 +13,10 @@ fn the_published_bench_is_in_the_documented_form() {
     let found = parse(file.text, file.file).unwrap();
     assert_eq!(found.len(), 44);
     assert_eq!(found.iter().filter_map(Experiment::range_mm).count(), 40);
-    check_tasks(&found, &["ket8", "ket12", "rj45", "usb"], file.file).unwrap();
+    assert_eq!(
+        parse_known(file.text, file.file, &["ket8", "ket12", "rj45", "usb"]),
+        Ok(found.clone())
+    );
     assert_eq!(found[2].range_mm(), Some(8.6));
 }
 
@@ -99,12 +102,12 @@ fn the_same_finger_on_two_days_is_two_measurements() {
 
 #[test]
 fn unknown_tasks_and_columns_are_told_with_the_nearest() {
-    let found = of("ket08,20,0,,,7,,,,").unwrap();
-    let error = check_tasks(&found, &["ket8", "usb"], "m.csv").unwrap_err().to_string();
-    assert!(
-        error.contains("m.csv: line 2: task: ") && error.contains("did you mean `ket8`"),
-        "{error}"
-    );
+    // Together with other problems of the same line.
+    let text = format!("{HEADER}\nket08,0.2,0,,,7,,,,\n");
+    let error = parse_known(&text, "m.csv", &["ket8", "usb"]).unwrap_err().to_string();
+    for part in ["line 2: task: unknown task `ket08`", "did you mean `ket8`", "a share"] {
+        assert!(error.contains(part), "{error}");
+    }
     for (header, words) in [
         ("task,infill_density_percent,range_mm", "infill_direction_deg: is missing"),
         ("task,infill_density_percent,infill_direction_deg,rangemm", "did you mean `range_mm`"),

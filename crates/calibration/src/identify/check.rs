@@ -27,9 +27,10 @@ const STILL: (f64, f64) = (1e-6, 1e-3);
 const TOUCH_S: f64 = 0.02;
 
 /// Something about a log that a person should know.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Remark {
     /// The log's file as given.
+    #[serde(rename = "log")]
     pub file: String,
     /// First and last line that it is about; all, if there are none.
     pub lines: Option<[usize; 2]>,

@@ -1,4 +1,4 @@
-//! Designs as good as the recommended one, and the safe choice among them.
+//! Designs that tie with the recommended one, and the safe choice among them.
 
 use super::trust::Measured;
 use input::units::N_PER_MM;
@@ -6,21 +6,21 @@ use insertion::evaluation::objective::Measure;
 use insertion::space::label;
 use study::{Recorded, StudyRecord};
 
-/// Designs within the study's indifference threshold of the recommended one.
+/// Designs whose first objective differs from the recommended one's by less than the indifference of the study.
 #[derive(Debug, Clone)]
-pub struct AsGood<'a> {
-    /// The designs in order of evaluation, including the recommended one, each with its loss
-    /// against the recommended one in the first objective.
+pub struct Ties<'a> {
+    /// The designs in the order of their evaluation, the recommended one among them, each with its loss
+    /// in the first objective.
     pub designs: Vec<(&'a Recorded, f64)>,
     /// Smallest and largest value of each free parameter of the space.
     pub spread: Vec<Spread<'a>>,
-    /// Share of the space that is nearest to one of them, 0 to 1. Their number is less informative,
-    /// since a search samples good regions more densely.
+    /// Share of the space that is nearer to one of them than to any other design, 0 to 1. Their number
+    /// alone is misleading, since a search samples good regions more densely.
     pub share: f64,
-    /// Alternatives for other reasons: reason, design, its extreme value and the unit of that
-    /// value. Empty if there is only one design.
+    /// Designs that are extreme in another quantity: name, design, value and unit; empty if the
+    /// recommended design has no ties.
     pub alternatives: Vec<(&'static str, &'a Recorded, f64, &'static str)>,
-    /// Default choice; `None` if there is only one design.
+    /// Design to take if no other criterion decides; `None` if the recommended design has no ties.
     pub safe: Option<Safe<'a>>,
 }
 
@@ -38,16 +38,16 @@ pub struct Spread<'a> {
 pub struct Safe<'a> {
     /// The design.
     pub design: &'a Recorded,
-    /// Its range measured on a robot, mm; if `None`, it was chosen for its least force.
+    /// Its range on a robot, mm, if it was measured; else it is the design with the least force.
     pub measured_mm: Option<f64>,
     /// Largest contact force, N, if any trial inserted.
     pub force_n: Option<f64>,
-    /// Loss against the recommended one, in the unit of the first objective.
+    /// Its loss against the recommended design, in the unit of the first objective.
     pub loss: f64,
 }
 
 impl Spread<'_> {
-    /// `10 to 11 %`.
+    /// Returns the values in words: `10 to 11 %`.
     pub fn words(&self) -> String {
         let (name, unit) = label(self.key);
         let [low, high] = self.values;
@@ -60,12 +60,11 @@ impl Spread<'_> {
     }
 }
 
-impl<'a> AsGood<'a> {
+impl<'a> Ties<'a> {
     pub(super) fn of(record: &'a StudyRecord, index: u64, measured: &[Measured]) -> Self {
         let designs = record.as_good(index);
         let force = |r: &Recorded| record.measure(r, Measure::PeakForce);
         let stiffness = |r: &Recorded| r.stiffness.compliance.mean / N_PER_MM;
-        // With a single design there is no choice.
         let among = if designs.len() < 2 { &[] } else { &designs[..] };
         let forces = || among.iter().filter_map(|&(design, _)| Some((design, force(design)?)));
         let stiffnesses = || among.iter().map(|&(design, _)| (design, stiffness(design)));
@@ -99,14 +98,14 @@ impl<'a> AsGood<'a> {
             loss: (10.0 * loss.max(0.0)).round() / 10.0,
         });
         let (spread, share) = (spread(record, &designs), share(record, &designs));
-        AsGood { spread, share, alternatives: known.collect(), safe, designs }
+        Ties { spread, share, alternatives: known.collect(), safe, designs }
     }
 }
 
-/// Number of points at which the nearest design is determined.
-const ASKED: u32 = 500;
+/// Number of points over which the share of the space is estimated.
+const POINTS: u32 = 500;
 
-/// Share of evenly spread points whose nearest design is in the set; parameters are scaled by span.
+/// Returns the share of evenly spread points whose nearest design (parameters over their spans) is in the set.
 fn share(record: &StudyRecord, set: &[(&Recorded, f64)]) -> f64 {
     let space = &record.config.space;
     let unit = |design: &Recorded| -> Vec<f64> {
@@ -133,7 +132,7 @@ fn share(record: &StudyRecord, set: &[(&Recorded, f64)]) -> f64 {
         let nearest = designs.iter().min_by(|a, b| from(&a.0).total_cmp(&from(&b.0)));
         nearest.is_some_and(|(_, member)| *member)
     };
-    f64::from((0..ASKED).filter(within).count() as u32) / f64::from(ASKED)
+    f64::from((0..POINTS).filter(within).count() as u32) / f64::from(POINTS)
 }
 
 fn spread<'a>(record: &'a StudyRecord, designs: &[(&Recorded, f64)]) -> Vec<Spread<'a>> {
@@ -158,22 +157,22 @@ mod tests {
     }
 
     #[test]
-    fn what_is_said_follows_from_what_differs_too_little() {
+    fn the_verdict_follows_from_the_indifference() {
         let mut record = fixture();
         record.config.indifference_mm = 0.1;
         let answer = Answer::of(&record);
-        let found = answer.recommended.as_ref().and_then(|found| found.as_good.as_ref()).unwrap();
+        let found = answer.recommended.as_ref().and_then(|found| found.ties.as_ref()).unwrap();
         assert!(found.share < 0.5 && matches!(answer.verdict, Verdict::Print(_)), "{found:?}");
         let named = answer.named().unwrap().index;
         assert!(found.designs.iter().any(|(member, loss)| member.index == named && *loss == 0.0));
-        // Nothing differs by so much.
+        // All designs tie.
         record.config.indifference_mm = 10.0;
         let answer = Answer::of(&record);
-        let found = answer.recommended.as_ref().and_then(|found| found.as_good.as_ref()).unwrap();
+        let found = answer.recommended.as_ref().and_then(|found| found.ties.as_ref()).unwrap();
         assert!(found.share > 0.5);
         assert_eq!(found.designs.len(), answer.feasible);
         assert!(matches!(answer.verdict, Verdict::Any { .. }));
-        // One that a robot measured, else the gentlest, is the safe one.
+        // The safe choice was measured on a robot, or has the least force.
         let safe = found.safe.as_ref().unwrap();
         let gentlest = found.designs.iter().filter_map(|(member, _)| {
             Some(member.tasks.first()?.peak_force_n).filter(|force| force.is_finite())

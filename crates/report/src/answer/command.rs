@@ -48,9 +48,10 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
     let several = answer.record.config.several_tasks();
     match (&answer.verdict, &answer.trust) {
         (Verdict::NothingInserts { place, .. }, _) => mend(answer.record, dir, *place),
-        (Verdict::NoneFeasible, _) => {
-            (format!("optimize report {}", dir.display()), "shows how far each design is off")
-        }
+        (Verdict::NoneFeasible, _) => (
+            format!("optimize report {}", dir.display()),
+            "see by how much each design violates the constraints",
+        ),
         (_, Trust::Calibrated { .. }) | (_, Trust::Published { .. }) if !several => {
             let given = answer.record.config.conclusion.measurements.clone();
             let shipped = match answer.record.on_bench {
@@ -61,13 +62,15 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
             let file = file.unwrap_or_else(|| named.input("measurements", MEASUREMENTS));
             let asked = format!("--task {tasks} --measurements {file} --count {PRINTS}");
             let why = match (&answer.verdict, &answer.record.on_bench) {
-                (Verdict::MeasuredBefore { .. }, _) => "whether another finger is worth a print",
-                (_, Some(_)) => "what to print to gain or learn most; above is the widest expected",
-                (_, None) => "what to print first by measurements too; above by simulation alone",
+                (Verdict::MeasuredBefore { .. }, _) => {
+                    "check whether printing another finger is worth it"
+                }
+                (_, Some(_)) => "choose the prints with the largest expected gain",
+                (_, None) => "choose the first prints from measurements as well",
             };
             (format!("optimize next {asked}"), why)
         }
-        _ => ("optimize measure add bench.csv".to_owned(), "asks for what your robot measured"),
+        _ => ("optimize measure add bench.csv".to_owned(), "enter what your robot measured"),
     }
 }
 
@@ -76,14 +79,14 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
 pub fn mend(record: &StudyRecord, dir: &Path, place: usize) -> (String, &'static str) {
     let (named, role) = (Named { record, dir }, format!("task_{}", place + 1));
     if let Some(shipped) = name(named.provenance(), &role, TASKS) {
-        return (format!("optimize task check {shipped}"), "says what stops it");
+        return (format!("optimize task check {shipped}"), "find out why nothing inserts");
     }
     let given = record.config.conclusion.task_files.get(place);
     // A task passed as text from Python has no file.
     let file = given.filter(|file| file.ends_with(".toml")).cloned().unwrap_or_else(|| {
         format!("{} --out {}.toml", named.input(&role, TASKS), record.config.tasks[place])
     });
-    (format!("optimize task tune {file}"), "looks for a start and a strategy by which it inserts")
+    (format!("optimize task tune {file}"), "find a start and a strategy that insert")
 }
 
 /// Returns whether the first task of a study is a user's own, not a shipped one.
@@ -136,7 +139,7 @@ pub fn trial(record: &StudyRecord, dir: &Path) -> String {
 /// Default options of a trial, which are omitted.
 const USUAL: [&str; 2] = ["--space infill", "--robot servo"];
 
-/// Options from the space to the engine.
+/// Returns the options from the space to the engine.
 fn setup(named: &Named) -> Vec<String> {
     let provenance = named.provenance();
     // A cell includes its robot.

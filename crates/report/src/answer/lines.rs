@@ -1,7 +1,7 @@
-//! An answer line by line, each a name and what it says: terminal and page show the same.
+//! An answer line by line, each a name and a text, for terminal and page alike.
 
 use super::words::{self, ends_mm, evaluated, interval, mm, span};
-use super::{Answer, AsGood, Front, OnTask, Recommended, Spread};
+use super::{Answer, Front, OnTask, Recommended, Spread, Ties};
 use ask_tell::statistics::mean;
 use calibration::order::Order;
 use insertion::evaluation::objective::Measure;
@@ -12,72 +12,82 @@ use insertion::surrogate::Prediction;
 use std::iter;
 use study::{ByRibs, OnBench, Recorded, StudyRecord};
 
-/// A name, empty where the line above goes on, and what is said.
+/// Name, empty if it continues the line above, and text.
 pub type Line = (String, String);
 
 fn line(name: &str, text: impl Into<String>) -> Line {
     (name.to_owned(), text.into())
 }
 
-/// The answer in few lines, after the sentence that stands first and what may be expected.
+/// Returns the answer in few lines, to follow headline and expectation.
 pub fn brief(answer: &Answer) -> Vec<Line> {
     let record = answer.record;
-    let one = answer.recommended.as_ref().filter(|_| answer.verdict.finger().is_some());
-    let simulated = one.filter(|_| answer.front.is_none() && record.on_bench.is_none());
-    let mut lines: Vec<Line> = record.on_bench.iter().flat_map(measured).collect();
+    let mut lines: Vec<Line> = record.on_bench.iter().flat_map(on_bench).collect();
     lines.extend(caveats(answer));
-    if let Some(found) = simulated {
-        for task in &found.tasks {
-            let window = &task.measured.window;
-            let [below, above] = [window.end_negative, window.end_positive].map(words::end);
-            lines.push(line("ends", format!("{below} below, {above} above{}", found.on(task))));
-            lines.extend(drawn(task.measured));
-        }
-        let limits = found.constraints.iter();
-        lines.extend(limits.map(|(measure, said)| line("constraint", format!("{measure} {said}"))));
-        lines.extend(found.as_good.as_ref().map(|as_good| within(answer, as_good)));
-        lines.extend(found.as_good.as_ref().and_then(safe));
-        lines.extend(moves(answer).map(|text| line("infill", text)));
+    if let Some(found) = simulated_finger(answer) {
+        lines.extend(simulated(answer, found));
+        lines.extend(spread(answer).map(|text| line("infill", text)));
     }
     lines.extend(answer.front.iter().flat_map(|front| members(record, front)));
-    lines.push(line("searched", searched(answer)));
+    lines.push(line("search", searched(answer)));
     let first = record.first_current();
     if first > 0 {
         let number = record.segments.len();
         let text = format!(
-            "{number}, from evaluation {first}: the settings changed, and only these count"
+            "{number}, since evaluation {first}: earlier ones had other settings and do not count"
         );
         lines.push(line("segment", text));
     }
     lines
 }
 
-/// The first designs of a front.
+/// Returns the design that is recommended by simulation alone.
+fn simulated_finger<'a, 'b>(answer: &'b Answer<'a>) -> Option<&'b Recommended<'a>> {
+    let alone = answer.front.is_none() && answer.record.on_bench.is_none();
+    let named = answer.verdict.finger().is_some();
+    answer.recommended.as_ref().filter(|_| alone && named)
+}
+
+/// Returns the ends of the windows of a recommended design, its constraints and its ties.
+fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
+    let of_task = |task: &OnTask| {
+        let window = &task.measured.window;
+        let [below, above] = [window.end_negative, window.end_positive].map(words::end);
+        let ends = line("ends", format!("{below} below, {above} above{}", found.on(task)));
+        iter::once(ends).chain(drawn(task.measured)).collect::<Vec<_>>()
+    };
+    let limits = found.constraints.iter();
+    let limits = limits.map(|(measure, text)| line("constraint", format!("{measure} {text}")));
+    let tied = found.ties.iter().map(|ties| tied(answer, ties));
+    let safe = found.ties.iter().filter_map(safe);
+    found.tasks.iter().flat_map(of_task).chain(limits).chain(tied).chain(safe).collect()
+}
+
+/// Returns the first designs of a front.
 fn members(record: &StudyRecord, front: &Front) -> Vec<Line> {
     let objectives = &record.config.objective;
     let member = |found: &&Recorded| {
         let values = objectives.show(found.feasible().unwrap_or_default());
-        line("front", format!("{values}: {}", words::finger(&found.design)))
+        line("front", format!("{values}: {}", words::design(&found.design)))
     };
     let left = front.designs.len().saturating_sub(MEMBERS);
     let more = (left > 0).then(|| line("", format!("and {left} more, in the report")));
     front.designs.iter().take(MEMBERS).map(member).chain(more).collect()
 }
 
-/// Designs of a front that are told.
+/// Number of designs of a front that are printed.
 const MEMBERS: usize = 4;
 
-/// What is to be mended or known before the finger is printed.
+/// Returns what to correct or to know before the finger is printed.
 pub fn caveats(answer: &Answer) -> Vec<Line> {
-    let one = answer.recommended.as_ref().filter(|_| answer.verdict.finger().is_some());
-    let simulated = one.filter(|_| answer.front.is_none() && answer.record.on_bench.is_none());
-    let advice = simulated.and_then(|found| found.start?.advice()).map(|text| line("start", text));
+    let found = simulated_finger(answer);
+    let advice = found.and_then(|found| found.start?.advice()).map(|text| line("start", text));
     let bench = answer.record.on_bench.iter().flat_map(|bench| &bench.warnings);
     let warnings = bench.map(|words| line("warning", words));
-    advice.into_iter().chain(simulated.and_then(extrapolated)).chain(warnings).collect()
+    advice.into_iter().chain(found.and_then(extrapolated)).chain(warnings).collect()
 }
 
-/// How the finger was searched for.
+/// Returns tasks, optimizer and number of evaluations.
 pub fn searched(answer: &Answer) -> String {
     let record = answer.record;
     let (task, method) = (record.config.task_name(), record.config.method());
@@ -87,28 +97,28 @@ pub fn searched(answer: &Answer) -> String {
     }
 }
 
-/// Size and spread of the set of designs that are as good.
-pub fn within(answer: &Answer, as_good: &AsGood) -> Line {
-    let (count, of) = (as_good.designs.len(), answer.designs);
+/// Returns how many designs tie with the recommended one, and their parameters.
+pub fn tied(answer: &Answer, ties: &Ties) -> Line {
+    let (count, of) = (ties.designs.len(), answer.designs);
     let within = match answer.record.config.objective.first().unit() {
         "mm" => format!(" within {} mm", answer.record.config.indifference_mm),
         _ => String::new(),
     };
     if count < 2 {
-        return line("as good", format!("no other of {of} designs{within}"));
+        return line("ties", format!("none of {of} designs{within}"));
     }
-    let spread: Vec<String> = as_good.spread.iter().take(NAMED).map(Spread::words).collect();
-    line("as good", format!("{count} of {of} designs{within}: {}", spread.join(", ")))
+    let spread: Vec<String> = ties.spread.iter().take(SPREADS).map(Spread::words).collect();
+    line("ties", format!("{count} of {of} designs{within}: {}", spread.join(", ")))
 }
 
-/// Parameters whose spread is told.
-const NAMED: usize = 4;
+/// Number of parameters whose spread is printed.
+const SPREADS: usize = 4;
 
-/// The safe choice, if it is another than the recommended one.
-pub fn safe(as_good: &AsGood) -> Option<Line> {
-    let safe = as_good.safe.as_ref()?;
+/// Returns the safe choice and the reason for it; `None` if nothing distinguishes a design.
+pub fn safe(ties: &Ties) -> Option<Line> {
+    let safe = ties.safe.as_ref()?;
     let why = match (safe.measured_mm, safe.force_n) {
-        (Some(measured_mm), _) => format!("a robot measured {}", mm(measured_mm)),
+        (Some(measured_mm), _) => format!("measured {} on a robot", mm(measured_mm)),
         (None, Some(force_n)) => format!("least force, {force_n:.0} N"),
         (None, None) => return None,
     };
@@ -116,82 +126,77 @@ pub fn safe(as_good: &AsGood) -> Option<Line> {
     Some(line("safe choice", format!("{}: {why}{loss}", words::design(&safe.design.design))))
 }
 
-/// How much the parameters of the space move the range.
-pub fn moves(answer: &Answer) -> Option<String> {
+/// Returns how far the range varies over the designs.
+pub fn spread(answer: &Answer) -> Option<String> {
     let spread = interval(answer.spread_mm?);
-    Some(format!("moves the searched range from {spread} over {} designs", answer.designs))
+    Some(format!("changes the range from {spread} over {} designs", answer.designs))
 }
 
 fn extrapolated(found: &Recommended) -> Option<Line> {
     let distance = found.design.stiffness.hull_distance;
-    let text = format!("stiffness extrapolated by {distance:.2} of the measured span: measure it");
+    let text = format!(
+        "stiffness extrapolated by {distance:.2} of the measured span: measure this finger"
+    );
     (!found.design.stiffness.inside_hull()).then(|| line("warning", text))
 }
 
-/// The recommended finger, what it tolerates and how firm that is, what is as good, and whether
-/// it matters.
+/// Returns the numbers behind the recommendation by simulation that [`brief`] leaves out.
 pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
     let config = &answer.record.config;
     let mut lines = vec![line("best design", evaluated(found.design))];
     lines.extend(found.firm_range_mm.map(|range_mm| {
-        let repeats = format!("{REPEATS} of {REPEATS} repeats, friction, start, step varied");
-        line("firm range", format!("{}: inserts in {repeats}", mm(range_mm)))
+        let text = format!("{}: inserts in {REPEATS} of {REPEATS} repeats", mm(range_mm));
+        line("firm range", format!("{text} with varied friction, start and time step"))
     }));
     if let Some((measure, value)) = found.objective {
         let of =
             config.aggregate.as_ref().map_or(String::new(), |a| format!(" ({a} of the tasks)"));
         lines.push(line(measure.name(), format!("{}{of}", measure.show(value))));
     }
-    let limits = found.constraints.iter();
-    lines.extend(limits.map(|(measure, words)| line("constraint", format!("{measure} {words}"))));
     for task in &found.tasks {
         if config.several_tasks() {
             lines.push(line("task", task.name));
         }
-        lines.extend(window(task.measured));
+        lines.extend(window(task.measured).into_iter().take(1));
         lines.extend(task.firm.map(|firm| match firm.window_mm() {
             None => line("firm window", "none: a repeat fails even at the nominal start"),
             Some(window) => line("firm window", format!("{} mm", span(window))),
         }));
         lines.extend(Measure::PeakForce.value(task.measured).map(|peak_n| {
             let peak = Measure::PeakForce.show(peak_n);
-            let between = "between plug and socket, over the inserted trials";
-            line("peak force", format!("{peak} {between}"))
+            line("peak force", format!("{peak} between plug and socket in the trials that insert"))
         }));
-        lines.extend(drawn(task.measured));
     }
-    lines.extend(found.by_ribs.iter().flat_map(|by_ribs| {
-        let lines = self::by_ribs(by_ribs);
-        let named = lines.len() > 1;
-        let name = |((name, text), task): (Line, &OnTask)| match named {
-            true => (name, format!("{text} on {}", task.name)),
-            false => (name, text),
-        };
-        lines.into_iter().zip(&found.tasks).map(name).collect::<Vec<_>>()
+    let by_ribs = found.by_ribs.map(by_ribs).unwrap_or_default();
+    let several = by_ribs.len() > 1;
+    lines.extend(by_ribs.into_iter().zip(&found.tasks).map(|((name, text), task)| {
+        (name, if several { format!("{text} on {}", task.name) } else { text })
     }));
     lines.extend(stiffness(&found.design.stiffness));
     if let Some((measure, _)) = found.objective.filter(|_| !answer.walked.is_empty()) {
-        let fell = found.searched.map_or(String::new(), |before| {
-            format!("; the search had given this one {}", measure.show(before))
+        let before = found.searched.map_or(String::new(), |before| {
+            format!("; the search found {} for this one", measure.show(before))
         });
         let count = answer.walked.len();
         let plural = if count == 1 { "" } else { "s" };
-        lines.push(line("walked", format!("step by step: {count} design{plural}{fell}")));
+        lines.push(line("walked", format!("step by step: {count} design{plural}{before}")));
     }
-    lines.extend(found.as_good.iter().flat_map(|as_good| equivalent(answer, as_good)));
-    lines.extend(answer.spread_mm.map(|spread| {
-        let (designs, spread) = (answer.designs, interval(spread));
-        line("spread", format!("ranges of the {designs} designs: {spread}"))
+    if answer.record.on_bench.is_some() {
+        lines.extend(simulated(answer, found));
+    }
+    let alternatives = found.ties.iter().flat_map(|ties| &ties.alternatives);
+    lines.extend(alternatives.map(|(reason, found, value, unit)| {
+        line(&format!("  {reason}"), format!("{}: {value:.1} {unit}", evaluated(found)))
     }));
     lines.extend(raced(answer));
     lines.extend(answer.orders.iter().map(robot));
     if answer.orders.is_empty() && answer.record.on_bench.is_none() {
-        lines.push(line("robot", "no bench experiment is known: print and measure the best few"));
+        lines.push(line("robot", "no measurements are known: print and measure the best few"));
     }
     lines
 }
 
-/// How many designs were out of the race early, and what is known of them.
+/// Returns how many designs were stopped early by the race.
 fn raced(answer: &Answer) -> Option<Line> {
     let raced = || answer.record.current().iter().filter(|recorded| recorded.raced());
     let rates = raced().flat_map(|recorded| &recorded.tasks).flat_map(|task| &task.success);
@@ -199,34 +204,24 @@ fn raced(answer: &Answer) -> Option<Line> {
     mean(tried).map(|mean| {
         let [designs, of] = [raced().count(), answer.designs];
         let early =
-            format!("{designs} of {of} designs ended early, after {mean:.0} draws in the mean");
+            format!("{designs} of {of} designs ended early, after {mean:.0} draws on average");
         line("raced", format!("{early}: they could not reach the best"))
     })
 }
 
-/// How many designs are as good, and which of them to take for other reasons.
-fn equivalent(answer: &Answer, as_good: &AsGood) -> Vec<Line> {
-    let named = as_good.alternatives.iter().map(|(reason, found, value, unit)| {
-        let Recorded { design, index, .. } = found;
-        let text = format!("{}: {value:.1} {unit} (evaluation {index})", design.labelled());
-        (format!("  {reason}"), text)
-    });
-    iter::once(within(answer, as_good)).chain(named).collect()
-}
-
-/// How the robot orders the designs, as far as that is known.
+/// Returns how the order of the fingers on the robot agrees with the simulated one.
 fn robot((task, order): &(&str, Order)) -> Line {
     // A random order of n fingers has a rank correlation of mean 0 and variance 1 / (n - 1), taken as
     // normal: it does as well in less than 5 % of cases.
     let beyond_chance = order.spearman * (order.fingers as f64 - 1.0).sqrt() > 1.645;
     let chance = match beyond_chance {
         true => "",
-        false => "; no better than chance: measure the best few",
+        false => "; not significant: measure the best few",
     };
     line(
         "robot",
         format!(
-            "on {task} {} ranked {} printed fingers {:+.2} like the bench (1: alike){chance}",
+            "on {task} {} ranked {} printed fingers with Spearman {:+.2} to the bench{chance}",
             order.source.words(),
             order.fingers,
             order.spearman
@@ -234,59 +229,31 @@ fn robot((task, order): &(&str, Order)) -> Line {
     )
 }
 
-/// The finger that is the best on the bench, and how far that is to be trusted.
-pub fn on_bench(found: &OnBench) -> Vec<Line> {
-    let Some(best) = found.best.first() else { return Vec::new() };
-    let mut lines = vec![
-        line("best on bench", best.design.labelled()),
-        line(
-            "bench range",
-            format!(
-                "{:.1} mm (80 %: {:.1} to {:.1}); the best of all {} fingers with probability {:.1} %",
-                best.range_mm,
-                best.low_mm,
-                best.high_mm,
-                found.fingers,
-                100.0 * best.probability_best
-            ),
-        ),
-    ];
-    lines.extend(simulated(found));
-    lines.push(line("measured", trust(found)));
-    lines.extend(found.warnings.iter().map(|words| line("warning", words)));
-    lines
-}
-
-/// The same in few lines.
-fn measured(found: &OnBench) -> Vec<Line> {
+/// Returns the probability that the finger is the best on the bench, and its simulated window.
+fn on_bench(found: &OnBench) -> Vec<Line> {
     let chance = found.best.first().map(|best| {
         let [percent, of] = [100.0 * best.probability_best, found.fingers as f64];
-        line("chance", format!("{percent:.0} % to be the best of all {of} fingers"))
+        line("probability", format!("{percent:.0} % to be the best of all {of} fingers"))
     });
-    chance.into_iter().chain(simulated(found)).collect()
-}
-
-/// The finger that is the best on the bench, as simulated.
-fn simulated(found: &OnBench) -> Vec<Line> {
-    let range = Measure::Range.value(&found.simulated).map(mm);
-    let range = range.unwrap_or("no range".to_owned());
+    let range = Measure::Range.value(&found.simulated).map_or("no range".to_owned(), mm);
     let mut simulated = window(&found.simulated);
     simulated[0] = line("simulated", format!("{range}; {}", simulated[0].1));
-    simulated
+    chance.into_iter().chain(simulated).collect()
 }
 
-fn trust(found: &OnBench) -> String {
+/// Returns how well the measured fingers are predicted.
+pub fn accuracy(found: &OnBench) -> Line {
     let (trust, count) = (&found.trust, found.measured);
-    let Some(deviation) = trust.mean_deviation_percent else { return format!("{count} fingers") };
+    let Some(deviation) = trust.mean_deviation_percent else {
+        return line("measured", format!("{count} fingers"));
+    };
     let rank = trust.spearman.map_or("-".to_owned(), |rank| format!("{rank:+.2}"));
-    format!(
-        "{count} fingers; each predicted without it: {deviation:.1} % off, Spearman {rank}, {} of {} \
-         in the interval",
-        trust.inside, trust.fingers
-    )
+    let inside = format!("{} of {} in the 80 % interval", trust.inside, trust.fingers);
+    let error = format!("leave-one-out error {deviation:.1} %, Spearman {rank}");
+    line("measured", format!("{count} fingers; {error}, {inside}"))
 }
 
-/// The window of an evaluation and what ended it.
+/// Returns the window of an evaluation and what ended it.
 pub fn window(evaluation: &Evaluation) -> Vec<Line> {
     let window = &evaluation.window;
     let end = |outcome: Option<Outcome>| outcome.map_or("limit of the search", Outcome::label);
@@ -301,7 +268,7 @@ pub fn window(evaluation: &Evaluation) -> Vec<Line> {
     ]
 }
 
-/// Predicted stiffness, its uncertainty, and whether it is an extrapolation.
+/// Returns the predicted stiffness, its uncertainty, and whether it is an extrapolation.
 pub fn stiffness(prediction: &Prediction) -> [Line; 2] {
     let [compliance, assembly] = [prediction.compliance, prediction.assembly].map(words::stiffness);
     let hull = match prediction.inside_hull() {
@@ -312,7 +279,7 @@ pub fn stiffness(prediction: &Prediction) -> [Line; 2] {
     [line("stiffness", stiffness), line("", hull)]
 }
 
-/// Success rate and robust range, as far as they were measured.
+/// Returns success rate and robust range, as far as they were evaluated.
 pub fn drawn(evaluation: &Evaluation) -> Vec<Line> {
     let success = evaluation.success.as_ref().map(|success| {
         let [rate, failures] = words::success(success);
@@ -323,7 +290,7 @@ pub fn drawn(evaluation: &Evaluation) -> Vec<Line> {
     success.into_iter().flatten().chain(robust).collect()
 }
 
-/// Tolerance of the finger with springs computed from its ribs, task by task.
+/// Returns the window with stiffness computed from the ribs, task by task.
 pub fn by_ribs(found: &ByRibs) -> Vec<Line> {
     let tasks = match found {
         ByRibs::Refused(why) => return vec![line("from its ribs", why)],
@@ -332,7 +299,7 @@ pub fn by_ribs(found: &ByRibs) -> Vec<Line> {
     tasks.iter().map(|evaluation| line("from its ribs", tolerated(evaluation))).collect()
 }
 
-/// Range and window in one line, and from where they count.
+/// Returns range, window and taught start in one line.
 fn tolerated(Evaluation { window, taught, .. }: &Evaluation) -> String {
     if window.nominal != Outcome::Inserted {
         return format!("none: its nominal start ends with {}", window.nominal.label());
@@ -343,7 +310,7 @@ fn tolerated(Evaluation { window, taught, .. }: &Evaluation) -> String {
     format!("{range} ({ends}{start}); --finger-model computed")
 }
 
-/// Where a taught start came to lie; `None` if it was not taught.
+/// Returns the position of a taught start; `None` if it was not taught.
 pub fn taught(steps: Option<OffsetStep>) -> Option<Line> {
     let mm = grid_mm(steps?);
     Some(line("start", format!("taught: {mm:+.1} mm from that of the task file")))

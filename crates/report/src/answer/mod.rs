@@ -1,5 +1,5 @@
-//! Answer of a study, computed once from its record. Terminal, page, JSON and Python only format
-//! it. Lengths in mm, forces in N.
+//! Answer of a study, computed once from its record and shown by terminal, page, JSON and Python.
+//! Lengths in mm, forces in N.
 
 mod alike;
 pub mod command;
@@ -18,7 +18,7 @@ use insertion::evaluation::robustness::firm::Firm;
 use insertion::space::Design;
 use study::{Recorded, StudyRecord, Volume, Walked, nearest, volume};
 
-pub use alike::{AsGood, Safe, Spread};
+pub use alike::{Safe, Spread, Ties};
 pub use recommended::{OnTask, Recommended};
 pub use robots::UnderRobot;
 pub use start::Start;
@@ -32,44 +32,43 @@ pub struct Answer<'a> {
     pub record: &'a StudyRecord,
     /// Recommended action.
     pub verdict: Verdict<'a>,
-    /// Trustworthiness of the result.
+    /// Evidence that it rests on.
     pub trust: Trust,
-    /// Number of designs evaluated with the current model.
+    /// Number of evaluations with the present settings.
     pub designs: usize,
     /// Number of them that satisfy all constraints and have a value.
     pub feasible: usize,
-    /// Recommended design, or the first of a front; `None` if no design has a value and satisfies
-    /// all constraints.
+    /// The recommended design, or the first of a front; `None` if none has a value and satisfies all
+    /// constraints.
     pub recommended: Option<Recommended<'a>>,
     /// Design with the least constraint violation, and a description of each constraint with its
     /// value; `None` if no design has values.
     pub nearest: Option<(&'a Recorded, Vec<String>)>,
-    /// Designs confirmed step by step with repeats at the window ends, best first, each with its
-    /// firm range, mm, aggregated over the tasks.
+    /// Confirmed designs (walked step by step and repeated at their ends), best first, each with
+    /// its firm range, mm, aggregated over the tasks.
     pub walked: Vec<(&'a Recorded, f64)>,
-    /// Pareto front to choose from; `None` for a single objective.
+    /// Pareto front; `None` for a single objective.
     pub front: Option<Front<'a>>,
     /// Smallest and largest range of the designs, mm; `None` if no design has a range.
     pub spread_mm: Option<[f64; 2]>,
     /// Fingers measured on a robot: those given to the study, else the published ones; empty for
-    /// several tasks unless measurements were given.
+    /// several tasks.
     pub measured: Vec<Measured>,
-    /// Agreement of simulated and measured rankings of fingers, for the tasks for which it is
-    /// known.
+    /// Agreement of the simulated with the measured order of fingers, for the tasks with measurements.
     pub orders: Vec<(&'a str, Order)>,
 }
 
-/// Pareto front: non-dominated designs.
+/// Pareto front: no design dominates another.
 #[derive(Debug, Clone)]
 pub struct Front<'a> {
     /// The designs, best in the first objective first.
     pub designs: Vec<&'a Recorded>,
-    /// Hypervolume that they dominate.
+    /// Their hypervolume.
     pub volume: Volume,
 }
 
 impl<'a> Answer<'a> {
-    /// Computes the answer of a study in its current state.
+    /// Returns the answer of a study.
     pub fn of(record: &'a StudyRecord) -> Self {
         let (config, current) = (&record.config, record.current());
         let front = || Front { designs: record.front(), volume: volume(&config.goals(), current) };
@@ -102,19 +101,17 @@ impl<'a> Answer<'a> {
         answer
     }
 
-    /// Returns the evaluation of the finger that the verdict recommends, or would recommend without
-    /// measurements; `None` if there is none to print.
+    /// Returns the evaluation of the finger to print by simulation; `None` if there is none.
     pub fn named(&self) -> Option<&'a Recorded> {
         let found = self.recommended.as_ref()?;
-        match (&self.verdict, &found.as_good) {
+        match (&self.verdict, &found.ties) {
             (Verdict::NothingInserts { .. } | Verdict::NoneFeasible, _) => None,
-            (Verdict::Any { .. }, Some(AsGood { safe: Some(safe), .. })) => Some(safe.design),
+            (Verdict::Any { .. }, Some(Ties { safe: Some(safe), .. })) => Some(safe.design),
             _ => Some(found.design),
         }
     }
 
-    /// Returns the finger that the verdict recommends and its simulated evaluation on each task;
-    /// `None` if it recommends none.
+    /// Returns the finger to print and its simulated evaluation on each task; `None` if there is none.
     pub fn shown(&self) -> Option<(&'a Design, Vec<&'a Evaluation>)> {
         let finger = self.verdict.finger()?;
         match &self.record.on_bench {

@@ -1,6 +1,6 @@
-//! The recommended design: what it tolerates, how firm that is, and what is as good.
+//! The recommended design, its windows and its ties.
 
-use super::alike::AsGood;
+use super::alike::Ties;
 use super::start::Start;
 use super::trust::Measured;
 use super::words;
@@ -9,36 +9,36 @@ use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::Firm;
 use study::{ByRibs, Recorded, StudyRecord};
 
-/// The recommended design of a study. Of several tasks ranges and forces are aggregated, and a
-/// window is what all have in common.
+/// The recommended design of a study. Of several tasks ranges and forces are aggregated, and the
+/// window is the intersection.
 #[derive(Debug, Clone)]
 pub struct Recommended<'a> {
-    /// The design, with its stiffness, as it was walked if it was.
+    /// The design with its confirmed evaluation, if it was confirmed.
     pub design: &'a Recorded,
     /// The single objective and its value; `None` of a front.
     pub objective: Option<(Measure, f64)>,
-    /// Each constraint: what it limits, and the design's value in words.
+    /// Constrained measures and the design's values in words.
     pub constraints: Vec<(Measure, String)>,
     /// Range, mm; `None` if the nominal start diverged.
     pub range_mm: Option<f64>,
     /// Both ends of the window, mm.
     pub window_mm: [f64; 2],
-    /// Range within which all repeats insert, mm; `None` if the ends were not repeated.
+    /// Width of the window in which all repeats insert, mm; `None` if the ends were not repeated.
     pub firm_range_mm: Option<f64>,
-    /// Both ends of that, mm; `None` also if there is no such window on a task.
+    /// Both ends of that window, mm; `None` also if a task has no such window.
     pub firm_window_mm: Option<[f64; 2]>,
     /// Largest force between plug and socket over the inserted trials, N.
     pub peak_force_n: Option<f64>,
-    /// Measurements on each task.
+    /// Evaluation on each task.
     pub tasks: Vec<OnTask<'a>>,
-    /// Measurements with springs computed from its ribs, if there are any.
+    /// Evaluations with stiffness computed from its ribs, if there are any.
     pub by_ribs: Option<&'a ByRibs>,
-    /// The objective as the search had found it, where the walk found another value.
+    /// Objective in the search, if the confirmation found another value.
     pub searched: Option<f64>,
-    /// Where the start lies in the window, the firm one if there is one; `None` of several tasks.
+    /// Start in the (firm) window; `None` for several tasks.
     pub start: Option<Start>,
-    /// Designs that are as good; `None` of a front.
-    pub as_good: Option<AsGood<'a>>,
+    /// Designs that tie with it; `None` for a front.
+    pub ties: Option<Ties<'a>>,
 }
 
 /// The recommended design on one task.
@@ -46,7 +46,7 @@ pub struct Recommended<'a> {
 pub struct OnTask<'a> {
     /// Name of the task.
     pub name: &'a str,
-    /// Window, its ends, errors drawn.
+    /// Its evaluation.
     pub measured: &'a Evaluation,
     /// Firm part of the window, if its ends were repeated.
     pub firm: Option<&'a Firm>,
@@ -85,11 +85,11 @@ impl<'a> Recommended<'a> {
             by_ribs: walked.and_then(|walked| walked.by_ribs.as_ref()),
             searched: searched(record, design),
             start: start.filter(|_| record.config.tasks.len() == 1),
-            as_good: found.map(|found| AsGood::of(record, found.index, measured)),
+            ties: found.map(|found| Ties::of(record, found.index, measured)),
         })
     }
 
-    /// ` on usb` behind what is said of one of several tasks; empty of the only one.
+    /// Returns ` on usb` for one of several tasks, else nothing.
     pub fn on(&self, task: &OnTask) -> String {
         if self.tasks.len() > 1 { format!(" on {}", task.name) } else { String::new() }
     }

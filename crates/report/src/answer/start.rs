@@ -1,8 +1,8 @@
-//! Where the start lies in its window.
+//! Position of the start in its window.
 
 use super::words::mm;
 
-/// Share of the range that the smaller side should have.
+/// Least share of the range on either side of a good start.
 const LEAST_SHARE: f64 = 0.25;
 
 /// The taught start in the window of a finger.
@@ -10,35 +10,35 @@ const LEAST_SHARE: f64 = 0.25;
 pub struct Start {
     /// Both ends of the window, mm from the start.
     pub window_mm: [f64; 2],
-    /// How far the start has to move along y to lie in the middle, mm.
+    /// Distance along y from the start to the middle of the window, mm.
     pub to_middle_mm: f64,
 }
 
 impl Start {
-    /// `None` if there is no such window.
+    /// Returns the start in this window; `None` if it does not contain the start.
     pub fn of(window_mm: [f64; 2]) -> Option<Self> {
         let [low, high] = window_mm;
         (low <= 0.0 && high >= 0.0 && high > low)
             .then(|| Start { window_mm, to_middle_mm: micrometres((low + high) / 2.0) })
     }
 
-    /// Whether one side is so small that the start should be taught elsewhere.
+    /// Returns whether one side is so small that the start should be taught again.
     pub fn one_sided(&self) -> bool {
         let [low, high] = self.window_mm;
         high.min(-low) < LEAST_SHARE * (high - low)
     }
 
-    /// How to mend that; `None` if it is fine.
+    /// Returns where to teach the start instead; `None` if it is well centred.
     pub fn advice(&self) -> Option<String> {
         let [low, high] = self.window_mm;
         let side = if self.to_middle_mm < 0.0 { "-y" } else { "+y" };
         let (by, half) = (mm(self.to_middle_mm.abs()), mm((high - low) / 2.0));
         self.one_sided()
-            .then(|| format!("teach the start {by} further to {side}: {half} to either side"))
+            .then(|| format!("teach the start {by} further to {side}: then {half} on either side"))
     }
 }
 
-/// A length in mm without what a sum of tenths has beyond micrometres.
+/// Rounds a length in mm to micrometres, which removes the error of adding tenths.
 fn micrometres(mm: f64) -> f64 {
     (mm * 1e3).round() / 1e3
 }
@@ -50,7 +50,7 @@ mod tests {
     #[test]
     fn a_start_at_the_edge_of_its_window_is_moved_to_the_middle() {
         let edge = Start::of([-3.2, 0.0]).unwrap();
-        let advice = "teach the start 1.6 mm further to -y: 1.6 mm to either side";
+        let advice = "teach the start 1.6 mm further to -y: then 1.6 mm on either side";
         assert_eq!(edge.advice().as_deref(), Some(advice));
         // Exactly a quarter is enough.
         assert_eq!(Start::of([-3.0, 1.0]).unwrap().advice(), None);

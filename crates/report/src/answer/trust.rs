@@ -1,5 +1,4 @@
-//! How far an answer is to be trusted: what is known of its finger, and of fingers like it, from a
-//! robot.
+//! Evidence for an answer: robot measurements of its finger or of similar ones.
 
 use calibration::order::errors_percent;
 use calibration::published::{Origin, of_task};
@@ -17,33 +16,33 @@ pub struct Measured {
     pub range_mm: f64,
 }
 
-/// How far an answer is to be trusted.
+/// Evidence for an answer.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Trust {
-    /// Calibrated on fingers measured here.
+    /// Calibrated on the user's measurements.
     Calibrated {
-        /// Fingers measured.
+        /// Number of measured fingers.
         fingers: usize,
-        /// By how many percent each is missed when it is left out, on average, if that is known.
+        /// Mean leave-one-out error, percent, if it is known.
         error_percent: Option<f64>,
     },
-    /// Simulated, on tasks whose measured ranges are published.
+    /// Simulated on tasks with published measurements.
     Published {
-        /// Task by task the measured finger itself, or those of the most similar stiffness, the
-        /// nearest first.
+        /// For each task the measured finger itself, or those of the most similar stiffness, nearest
+        /// first.
         nearest: Vec<(String, Vec<Measured>)>,
-        /// Whether it is the finger itself on all tasks.
+        /// Whether the finger itself was measured on all tasks.
         itself: bool,
     },
     /// Simulated only.
     Simulated {
-        /// Least and largest mean error of simulation on the published tasks, percent.
+        /// Smallest and largest mean error of the simulation on the published tasks, percent.
         error_percent: [f64; 2],
     },
 }
 
-/// Fingers that are named.
-const NAMED: usize = 2;
+/// Number of similar fingers.
+const SIMILAR: usize = 2;
 
 impl Trust {
     pub(super) fn of(record: &StudyRecord, finger: Option<&Recorded>) -> Self {
@@ -67,16 +66,16 @@ impl Trust {
         }
     }
 
-    /// The label: one of three.
+    /// Returns the label of the evidence.
     pub fn label(&self) -> &'static str {
         match self {
             Trust::Calibrated { .. } => "calibrated on measured fingers",
-            Trust::Published { .. } => "simulated, fingers like it measured",
+            Trust::Published { .. } => "simulated; similar fingers measured",
             Trust::Simulated { .. } => "simulated only",
         }
     }
 
-    /// Its name in JSON.
+    /// Returns its name in JSON.
     pub fn key(&self) -> &'static str {
         match self {
             Trust::Calibrated { .. } => "calibrated",
@@ -85,16 +84,16 @@ impl Trust {
         }
     }
 
-    /// Why, in a clause.
+    /// Returns the evidence in a clause.
     pub fn reason(&self) -> String {
         match self {
             Trust::Calibrated { fingers, error_percent } => {
                 let missed = error_percent
-                    .map_or(String::new(), |error| format!(", left out in turn {error:.1} % off"));
+                    .map_or(String::new(), |error| format!(", leave-one-out error {error:.1} %"));
                 format!("{fingers} fingers measured{missed}")
             }
             Trust::Published { nearest, itself } => {
-                let who = if *itself { "this finger" } else { "fingers like it" };
+                let who = if *itself { "this finger" } else { "similar fingers" };
                 let several = nearest.len() > 1;
                 let of = |(task, fingers): &(String, Vec<Measured>)| {
                     let on = if several { format!(" on {task}") } else { String::new() };
@@ -104,13 +103,13 @@ impl Trust {
                 format!("{who} had {} on a robot", all.join(", "))
             }
             Trust::Simulated { error_percent: [least, most] } => {
-                format!("simulation was {least:.0} to {most:.0} % off on the shipped tasks")
+                format!("the simulation error was {least:.0} to {most:.0} % on the shipped tasks")
             }
         }
     }
 }
 
-/// `4.7 and 4.9 mm`.
+/// Returns the ranges in words: `4.7 and 4.9 mm`.
 fn ranges(fingers: &[Measured]) -> String {
     let mut mm: Vec<String> =
         fingers.iter().map(|finger| format!("{:.1}", finger.range_mm)).collect();
@@ -118,7 +117,7 @@ fn ranges(fingers: &[Measured]) -> String {
     format!("{} mm", mm.join(" and "))
 }
 
-/// The fingers of a task that were measured, each with its stiffness; none of a task of one's own.
+/// Returns the published measured fingers of a task with their stiffness; empty for a user's own task.
 pub(super) fn published(task: &str) -> Vec<(Measured, Measurement)> {
     let bench = of_task(task, Origin::Bench);
     let one = |measurement: Measurement| {
@@ -129,8 +128,8 @@ pub(super) fn published(task: &str) -> Vec<(Measured, Measurement)> {
     designs().into_iter().filter_map(one).collect()
 }
 
-/// The finger itself, if it was measured, else those of the most similar stiffness, the nearest first:
-/// it is all that simulation knows of them.
+/// Returns the finger itself, if it was measured, else those of the most similar stiffness, nearest first
+/// (the simulation distinguishes fingers by stiffness only).
 fn nearest(mut all: Vec<(Measured, Measurement)>, finger: &Recorded) -> Vec<Measured> {
     if let Some((itself, _)) = all.iter().find(|(found, _)| found.design == finger.design) {
         return vec![itself.clone()];
@@ -144,7 +143,7 @@ fn nearest(mut all: Vec<(Measured, Measurement)>, finger: &Recorded) -> Vec<Meas
         libm::hypot(compliance, assembly)
     };
     all.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-    all.into_iter().take(NAMED).map(|(measured, _)| measured).collect()
+    all.into_iter().take(SIMILAR).map(|(measured, _)| measured).collect()
 }
 
 #[cfg(test)]

@@ -1,57 +1,57 @@
-//! What to do with an answer: the sentence that stands first, and what may be expected.
+//! Recommended action: headline and expected performance.
 
 use super::trust::Measured;
-use super::words::{evaluated, finger, interval, mm, outcome, span};
-use super::{Answer, AsGood, Recommended};
+use super::words::{design as finger, evaluated, interval, mm, outcome, span};
+use super::{Answer, Recommended, Ties};
 use ask_tell::statistics::mean;
 use insertion::evaluation::objective::Measure;
 use insertion::outcome::Outcome;
 use insertion::space::Design;
 use study::Recorded;
 
-/// Share of the space from which on it is said that the finger hardly matters.
+/// Share of the space with ties from which on any of them is recommended.
 const MANY: f64 = 0.5;
 
-/// What to do.
+/// Recommended action.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Verdict<'a> {
     /// Print this finger.
     Print(&'a Design),
-    /// Print any of a set.
+    /// Print any design of a set.
     Any {
-        /// Which to take without other needs.
+        /// The safe choice.
         safe: &'a Design,
         /// Size of the set.
         of: usize,
     },
-    /// This finger has been printed and measured before.
+    /// Use a finger that has already been printed and measured.
     MeasuredBefore {
         /// The finger.
         design: &'a Design,
-        /// Its measured range, mm; `None` if it is known from below only, or not at all.
+        /// Its measured range, mm; `None` if only a lower bound or nothing is known.
         range_mm: Option<f64>,
-        /// What it tolerates at the least, mm, if its range is not known.
+        /// Lower bound of its range, mm, if the range is not known.
         at_least_mm: Option<f64>,
     },
-    /// Choose from a front.
+    /// Choose from a Pareto front.
     Choose {
         /// The best in the first objective.
         first: &'a Design,
         /// Size of the front.
         of: usize,
     },
-    /// Nothing inserts on a task.
+    /// No finger inserts on a task.
     NothingInserts {
         /// Place of the task among the tasks.
         place: usize,
         /// The task.
         task: &'a str,
-        /// The design that comes nearest to inserting.
+        /// The design that is nearest to inserting.
         nearest: &'a Recorded,
-        /// How it fails at the nominal start.
+        /// Its outcome at the nominal start.
         fails: Option<Outcome>,
     },
-    /// No design keeps all constraints, or none has a value.
+    /// No design satisfies all constraints, or none has a value.
     NoneFeasible,
 }
 
@@ -81,15 +81,15 @@ impl<'a> Verdict<'a> {
         if let Some(front) = &answer.front {
             return Verdict::Choose { first, of: front.designs.len() };
         }
-        let Some(as_good) = &found.as_good else { return Verdict::Print(first) };
-        let of = as_good.designs.len();
-        match &as_good.safe {
-            Some(safe) if as_good.share >= MANY => Verdict::Any { safe: &safe.design.design, of },
+        let Some(ties) = &found.ties else { return Verdict::Print(first) };
+        let of = ties.designs.len();
+        match &ties.safe {
+            Some(safe) if ties.share >= MANY => Verdict::Any { safe: &safe.design.design, of },
             _ => Verdict::Print(first),
         }
     }
 
-    /// Its name in JSON.
+    /// Returns its name in JSON.
     pub fn key(&self) -> &'static str {
         match self {
             Verdict::Print(_) => "print",
@@ -101,7 +101,7 @@ impl<'a> Verdict<'a> {
         }
     }
 
-    /// The finger that it names, if it names one to print.
+    /// Returns the finger to print, if there is one.
     pub fn finger(&self) -> Option<&'a Design> {
         match *self {
             Verdict::Print(design)
@@ -112,12 +112,12 @@ impl<'a> Verdict<'a> {
         }
     }
 
-    /// The sentence that stands first.
+    /// Returns the first sentence of the answer.
     pub fn headline(&self) -> String {
         match self {
             Verdict::Print(design) => format!("Print the finger with {}", finger(design)),
             Verdict::Any { safe, of } => {
-                format!("Any of {of} fingers will do; without other needs print {}", finger(safe))
+                format!("Any of {of} fingers will do; by default print {}", finger(safe))
             }
             Verdict::MeasuredBefore { design, range_mm, at_least_mm } => {
                 let measured = match (range_mm, at_least_mm) {
@@ -125,7 +125,10 @@ impl<'a> Verdict<'a> {
                     (None, Some(least_mm)) => format!("you measured {} or more", mm(*least_mm)),
                     (None, None) => "you measured no range".to_owned(),
                 };
-                format!("Use the finger with {}, printed already: {measured}", finger(design))
+                format!(
+                    "Use the finger with {}, which you have printed: {measured}",
+                    finger(design)
+                )
             }
             Verdict::Choose { first, of: 1 } => {
                 format!("Print the finger with {}: best in all objectives", finger(first))
@@ -139,8 +142,7 @@ impl<'a> Verdict<'a> {
     }
 }
 
-/// What may be expected of the finger, and how far that is to be trusted, in a sentence without its
-/// full stop.
+/// Returns the expected performance of the finger and the evidence for it, a sentence without its full stop.
 pub fn expectation(answer: &Answer) -> String {
     if let Some(best) = answer.record.on_bench.as_ref().and_then(|found| found.best.first()) {
         let [range, low, high] = [best.range_mm, best.low_mm, best.high_mm];
@@ -150,35 +152,42 @@ pub fn expectation(answer: &Answer) -> String {
     if let Verdict::NothingInserts { nearest, fails, .. } = &answer.verdict {
         let fails =
             fails.map_or("fails".to_owned(), |fails| format!("ends with {}", outcome(fails)));
-        return format!("the nearest, {}, {fails} at the nominal start", finger(&nearest.design));
+        return format!(
+            "the nearest to inserting, {}, {fails} at the nominal start",
+            finger(&nearest.design)
+        );
     }
     match &answer.recommended {
         None => none(answer),
         Some(found) => {
             let any = matches!(answer.verdict, Verdict::Any { .. });
-            let each = found.as_good.as_ref().filter(|_| any).and_then(|set| each(found, set));
+            let each = found.ties.as_ref().filter(|_| any).and_then(|set| each(found, set));
             format!("{}; {}", each.unwrap_or_else(|| simulated(found)), answer.trust.reason())
         }
     }
 }
 
-/// Why no design can be recommended.
+/// Returns why no design can be recommended.
 fn none(answer: &Answer) -> String {
     let Some((design, constraints)) = &answer.nearest else {
         return "no evaluation gave a value".to_owned();
     };
-    format!("none keeps all constraints; nearest {}: {}", evaluated(design), constraints.join("; "))
+    format!(
+        "none satisfies all constraints; nearest {}: {}",
+        evaluated(design),
+        constraints.join("; ")
+    )
 }
 
-/// `simulated 4.9 to 5.2 mm each`; `None` if the objective is no length.
-fn each(found: &Recommended, set: &AsGood) -> Option<String> {
+/// Returns `simulated 4.9 to 5.2 mm each`; `None` if the objective is not a length.
+fn each(found: &Recommended, set: &Ties) -> Option<String> {
     let (measure, searched) = found.objective.filter(|(measure, _)| measure.unit() == "mm")?;
     let most = found.firm_range_mm.filter(|_| measure == Measure::Range).unwrap_or(searched);
     let loss = set.designs.iter().map(|(_, loss)| *loss).fold(0.0, f64::max);
     Some(format!("simulated {} each", interval([most - loss, most])))
 }
 
-/// `simulated 10.1 mm (-4.4 to +5.7)`; of an objective that is no length its value too.
+/// Returns `simulated 10.1 mm (-4.4 to +5.7)`, with the value of an objective that is not a length.
 fn simulated(found: &Recommended) -> String {
     let objective = found.objective.filter(|(measure, _)| measure.unit() != "mm");
     let objective = objective.map_or(String::new(), |(measure, value)| {

@@ -1,4 +1,4 @@
-//! Words and numbers of answers, for terminal and page alike; every number with its unit.
+//! Words and numbers of answers, for terminal and page alike, every number with its unit.
 
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::{Measure, Objectives};
@@ -8,66 +8,66 @@ use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, label};
 use insertion::surrogate::Estimate;
 use study::{Recorded, StudyRecord};
 
-/// That a search settled, and what that means.
+/// Returns after how many evaluations a search settled, and why.
 pub fn settled(record: &StudyRecord) -> String {
     let (evaluations, gain_mm) = (record.evaluations.len(), record.config.indifference_mm);
     format!("after {evaluations} evaluations: no finger is expected to gain {gain_mm} mm")
 }
 
-/// A range or another length of the 0.1 mm grid: `3.5 mm`.
+/// Returns a range or another length of the 0.1 mm grid: `3.5 mm`.
 pub fn mm(length_mm: f64) -> String {
     Measure::Range.show(length_mm)
 }
 
-/// An interval of lengths: `3.1 to 3.5 mm`.
+/// Returns an interval of lengths: `3.1 to 3.5 mm`.
 pub fn interval([low_mm, high_mm]: [f64; 2]) -> String {
     format!("{low_mm:.1} to {high_mm:.1} mm")
 }
 
-/// Both ends of a window, whose unit the reader must be told: `-4.5 to +5.8`.
+/// Returns both ends of a window without their unit: `-4.5 to +5.8`.
 pub fn span([low_mm, high_mm]: [f64; 2]) -> String {
     format!("{low_mm:.1} to {high_mm:+.1}")
 }
 
-/// Both ends of a window, mm.
+/// Returns both ends of a window, mm.
 pub fn ends_mm(window: &Window) -> [f64; 2] {
     [window.negative_mm(), window.positive_mm()]
 }
 
-/// Heading of the stiffness across the pad that trials were simulated with.
-pub const ACROSS: &str = "stiffness across, measured model";
+/// Heading of the compliance that trials were simulated with.
+pub const ACROSS: &str = "compliance, measured model";
 
-/// A stiffness with its standard deviation, N/mm.
+/// Returns a stiffness with its standard deviation, N/mm.
 pub fn stiffness(estimate: Estimate) -> String {
     let (mean, sd) = (estimate.mean / N_PER_MM, estimate.sd / N_PER_MM);
     let digits = if mean >= 10.0 { 1 } else { 2 };
     format!("{mean:.digits$} ± {sd:.digits$} N/mm")
 }
 
-/// A measured number with so many decimals and its unit, or that there is none.
+/// Returns a number with so many decimals and its unit; `none` if it is not finite.
 pub fn number(value: f64, decimals: usize, unit: &str) -> String {
     if !value.is_finite() {
         return "none".to_owned();
     }
     let value = format!("{value:.decimals$}");
-    // After a collision that a body was thrown far by.
+    // A body that a collision threw far away.
     if value.len() > 15 { "none".to_owned() } else { format!("{value} {unit}") }
 }
 
-/// An outcome in words, a failure with its class: `jammed (class 3)`.
+/// Returns an outcome in words, a failure with its class: `jammed (class 3)`.
 pub fn outcome(outcome: Outcome) -> String {
     let class = outcome.failure().map_or(String::new(), |number| format!(" (class {number})"));
     format!("{}{class}", outcome.label())
 }
 
-/// What to change where the nominal start already ends so, in a sentence without its full stop.
+/// Returns what to check if the nominal start ends with this outcome, a sentence without its full stop.
 pub fn remedy(nominal: Outcome) -> &'static str {
     match nominal {
         Outcome::Failed(FailureClass::ContactLossBeforeSearch) => {
             "Check the grip's force and friction, and that the start is clear of the socket"
         }
         Outcome::Failed(FailureClass::PlugMissed) => {
-            "Check the task's start and the strokes of its search: the plug never meets the opening"
+            "Check the task's start and the strokes of its search: the plug does not reach the opening"
         }
         Outcome::Failed(FailureClass::Jammed) => {
             "Check the clearance of plug and socket, the strokes, and the finger's remote centre"
@@ -79,12 +79,12 @@ pub fn remedy(nominal: Outcome) -> &'static str {
     }
 }
 
-/// End of a window at one side.
+/// Returns the outcome that ends a window on one side, in words.
 pub fn end(end: Option<Outcome>) -> String {
     end.map_or("no failure".to_owned(), outcome)
 }
 
-/// Share of insertions of a design under drawn errors, and its failures.
+/// Returns the success rate of a design under drawn errors, and its failures.
 pub fn success(success: &SuccessRate) -> [String; 2] {
     let rate = success.at_most().map_or("none".to_owned(), |rate| format!("{rate:.3}"));
     let [low, high] = success.interval();
@@ -104,7 +104,7 @@ pub fn success(success: &SuccessRate) -> [String; 2] {
     ]
 }
 
-/// The range under drawn errors, and what it is taken from.
+/// Returns the robust range and the windows it was computed from.
 pub fn robust(robust: &RobustRange) -> String {
     format!(
         "{}: {} windows of mean {}, deviation {}, {} diverged",
@@ -116,44 +116,25 @@ pub fn robust(robust: &RobustRange) -> String {
     )
 }
 
-/// A recorded design in words, and where it stands: `infill density 10 % (evaluation 41)`.
+/// Returns a recorded design in words with its number: `10 % infill at 26° (evaluation 41)`.
 pub fn evaluated(recorded: &Recorded) -> String {
-    format!("{} (evaluation {})", recorded.design.labelled(), recorded.index)
+    format!("{} (evaluation {})", design(&recorded.design), recorded.index)
 }
 
-/// A design in words: infill first, then whatever else the space names.
+/// Returns a design in words: `10 % infill at 26°`, then the other parameters of its space.
 pub fn design(design: &Design) -> String {
-    let of_infill = [DENSITY_KEY, DIRECTION_KEY];
-    let others = design.0.iter().filter(|(key, _)| !of_infill.contains(&key.as_str()));
-    let mut parts = vec![infill(design)];
-    parts.retain(|infill| !infill.is_empty());
-    parts.extend(others.map(|(key, value)| {
+    let infill = design.get(DENSITY_KEY).zip(design.get(DIRECTION_KEY));
+    let infill = infill.map(|(density, direction)| format!("{density} % infill at {direction}°"));
+    let named = |key: &str| infill.is_some() && [DENSITY_KEY, DIRECTION_KEY].contains(&key);
+    let others = design.0.iter().filter(|(key, _)| !named(key));
+    let others = others.map(|(key, value)| {
         let (name, unit) = label(key);
         format!("{name} {value}{unit}")
-    }));
-    parts.join(", ")
+    });
+    infill.iter().cloned().chain(others).collect::<Vec<_>>().join(", ")
 }
 
-/// A finger in words, as one would ask for it: `10 % infill at 26°`.
-pub fn finger(design: &Design) -> String {
-    let values = [DENSITY_KEY, DIRECTION_KEY].map(|key| design.get(key));
-    match values {
-        [Some(density), Some(direction)] => {
-            let all = self::design(design);
-            all.replacen(&infill(design), &format!("{density} % infill at {direction}°"), 1)
-        }
-        _ => self::design(design),
-    }
-}
-
-/// The infill of a design in words; empty if it has none.
-pub fn infill(design: &Design) -> String {
-    let density = design.get(DENSITY_KEY).map(|density| format!("{density} %"));
-    let direction = design.get(DIRECTION_KEY).map(|direction| format!("{direction}°"));
-    density.into_iter().chain(direction).collect::<Vec<_>>().join(", ")
-}
-
-/// The objectives' values: a single one without its name.
+/// Returns the values of objectives, that of a single one without its name.
 pub fn values(objectives: &Objectives, values: &[f64]) -> String {
     match (objectives.single(), values) {
         (Some(measure), [value]) => measure.show(*value),
@@ -161,7 +142,7 @@ pub fn values(objectives: &Objectives, values: &[f64]) -> String {
     }
 }
 
-/// Unit of a hypervolume: `mm N`.
+/// Returns the unit of a hypervolume: `mm N`.
 pub fn volume_unit(objectives: &Objectives) -> String {
     let units = objectives.measures().iter().map(|measure| measure.unit());
     units.filter(|unit| !unit.is_empty()).collect::<Vec<_>>().join(" ")

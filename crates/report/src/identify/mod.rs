@@ -1,4 +1,4 @@
-//! What the logs of attempts said of their cell, as JSON, text and a page.
+//! Identification of a cell from logs of attempts, as JSON, text and a page.
 
 mod page;
 #[cfg(test)]
@@ -8,86 +8,149 @@ pub use page::html;
 
 use crate::answer::words::number;
 use crate::text_table;
-use calibration::identify::formulas::Flange;
+use calibration::identify::check::Remark;
+use calibration::identify::formulas::{self, Flange};
 use calibration::identify::misfit::{Misfit, misfits};
 use calibration::identify::question::{Compared, IdentifyDone};
 use calibration::identify::unknown::{From, Unknown};
 use input::units::{MM, N_PER_MM};
 use insertion::surrogate::Estimate;
-use serde_json::{Value, json};
+use parameters::{Path, Transform};
+
+use serde::Serialize;
+use std::collections::BTreeMap;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// All of it, with units in the keys.
-pub fn json(done: &IdentifyDone) -> Value {
-    let found = &done.found;
-    let remark = |remark: &calibration::identify::check::Remark| {
-        json!({
-            "log": remark.file, "lines": remark.lines, "text": remark.text, "serious": remark.serious
-        })
-    };
-    let flange = |(axis, flange): (&str, &Option<Flange>)| {
-        let flange = flange.as_ref()?;
-        let values = json!({
-            "stiffness_n_per_mm": flange.stiffness.mean / N_PER_MM,
-            "stiffness_sd_n_per_mm": flange.stiffness.sd / N_PER_MM,
-            "damping_n_s_per_m": flange.damping,
-            "mass_kg": flange.mass,
-            "delay_s": flange.delay_s,
-            "explained": flange.explained,
-        });
-        Some((axis.to_owned(), values))
-    };
-    let probe = |(file, friction): &(String, calibration::identify::formulas::Friction)| {
-        json!({
-            "log": file,
-            "friction": friction.coefficient.map(|one| one.mean),
-            "friction_sd": friction.coefficient.map(|one| one.sd),
-            "slides": friction.slides.iter().map(|slide| json!({
-                "tangential_over_normal": slide.ratio, "rising": slide.rising
-            })).collect::<Vec<_>>(),
-        })
-    };
-    let flange = AXES.into_iter().zip(&found.flange).filter_map(flange);
-    json!({
-        "task": done.task,
-        "remarks": done.remarks.iter().map(remark).collect::<Vec<_>>(),
-        "robot": flange.collect::<serde_json::Map<_, _>>(),
-        "preload_mm": found.preload.map(|preload| preload.mean / MM),
-        "preload_sd_mm": found.preload.map(|preload| preload.sd / MM),
-        "probes": found.probes.iter().map(probe).collect::<Vec<_>>(),
-        "unknowns": found.unknowns.iter().map(unknown).collect::<Vec<_>>(),
-        "misfit": found.smoothed.misfit,
-        "compared_share": found.smoothed.compared,
-        "phases": misfits(&found.compared),
-        "attempts": found.compared.iter().map(|one| json!({
-            "log": one.logged.file,
-            "offset_mm": one.logged.offset / MM,
-            "outcome_before": one.before.1.word(),
-            "outcome_after": one.after.1.word(),
-        })).collect::<Vec<_>>(),
-    })
+/// Result of an identification, as `--json` prints it.
+#[derive(Serialize)]
+pub struct Output<'a> {
+    task: &'a str,
+    remarks: &'a [Remark],
+    robot: BTreeMap<&'static str, Axis>,
+    preload_mm: Option<f64>,
+    preload_sd_mm: Option<f64>,
+    probes: Vec<Probe<'a>>,
+    unknowns: Vec<Identification<'a>>,
+    misfit: &'a [f64],
+    compared_share: f64,
+    phases: Vec<Misfit>,
+    attempts: Vec<Attempt<'a>>,
 }
 
-fn unknown(one: &Unknown) -> Value {
-    let Unknown { prior, posterior, left, from, advice } = one;
-    json!({
-        "name": posterior.name,
-        "sets": posterior.path,
-        "as": posterior.transform,
-        "prior_low": prior.low,
-        "prior_high": prior.high,
-        "value": posterior.middle(),
-        "sd": posterior.sd,
-        "from": from,
-        "source": posterior.source,
-        "expected_share_of_prior_sd": left.map(|[expected, _]| expected),
-        "share_of_prior_sd": left.map(|[_, left]| left),
-        "advice": advice,
-    })
+#[derive(Serialize)]
+struct Axis {
+    stiffness_n_per_mm: f64,
+    stiffness_sd_n_per_mm: f64,
+    damping_n_s_per_m: f64,
+    mass_kg: f64,
+    delay_s: f64,
+    explained: f64,
 }
 
-/// Lines for a terminal.
+#[derive(Serialize)]
+struct Probe<'a> {
+    log: &'a str,
+    friction: Option<f64>,
+    friction_sd: Option<f64>,
+    slides: Vec<Slide>,
+}
+
+#[derive(Serialize)]
+struct Slide {
+    tangential_over_normal: f64,
+    rising: bool,
+}
+
+#[derive(Serialize)]
+struct Identification<'a> {
+    name: &'a str,
+    sets: &'a Path,
+    r#as: &'a Transform,
+    prior_low: f64,
+    prior_high: f64,
+    value: f64,
+    sd: Option<f64>,
+    from: From,
+    source: &'a str,
+    expected_share_of_prior_sd: Option<f64>,
+    share_of_prior_sd: Option<f64>,
+    advice: Option<&'a str>,
+}
+
+#[derive(Serialize)]
+struct Attempt<'a> {
+    log: &'a str,
+    offset_mm: f64,
+    outcome_before: &'a str,
+    outcome_after: &'a str,
+}
+
+impl<'a> Output<'a> {
+    /// Returns the output of an identification.
+    pub fn new(done: &'a IdentifyDone) -> Self {
+        let found = &done.found;
+        let axis = |flange: &Flange| Axis {
+            stiffness_n_per_mm: flange.stiffness.mean / N_PER_MM,
+            stiffness_sd_n_per_mm: flange.stiffness.sd / N_PER_MM,
+            damping_n_s_per_m: flange.damping,
+            mass_kg: flange.mass,
+            delay_s: flange.delay_s,
+            explained: flange.explained,
+        };
+        let axes = AXES.into_iter().zip(&found.flange);
+        let slide = |slide: &formulas::Slide| Slide {
+            tangential_over_normal: slide.ratio,
+            rising: slide.rising,
+        };
+        let probe = |(file, friction): &'a (String, formulas::Friction)| Probe {
+            log: file,
+            friction: friction.coefficient.map(|one| one.mean),
+            friction_sd: friction.coefficient.map(|one| one.sd),
+            slides: friction.slides.iter().map(slide).collect(),
+        };
+        let attempt = |one: &'a Compared| Attempt {
+            log: &one.logged.file,
+            offset_mm: one.logged.offset / MM,
+            outcome_before: one.before.1.word(),
+            outcome_after: one.after.1.word(),
+        };
+        Output {
+            task: &done.task,
+            remarks: &done.remarks,
+            robot: axes.filter_map(|(name, found)| Some((name, axis(found.as_ref()?)))).collect(),
+            preload_mm: found.preload.map(|preload| preload.mean / MM),
+            preload_sd_mm: found.preload.map(|preload| preload.sd / MM),
+            probes: found.probes.iter().map(probe).collect(),
+            unknowns: found.unknowns.iter().map(Identification::from).collect(),
+            misfit: &found.smoothed.misfit,
+            compared_share: found.smoothed.compared,
+            phases: misfits(&found.compared),
+            attempts: found.compared.iter().map(attempt).collect(),
+        }
+    }
+}
+
+impl<'a> std::convert::From<&'a Unknown> for Identification<'a> {
+    fn from(Unknown { prior, posterior, left, from, advice }: &'a Unknown) -> Self {
+        Identification {
+            name: &posterior.name,
+            sets: &posterior.path,
+            r#as: &posterior.transform,
+            prior_low: prior.low,
+            prior_high: prior.high,
+            value: posterior.middle(),
+            sd: posterior.sd,
+            from: *from,
+            source: &posterior.source,
+            expected_share_of_prior_sd: left.map(|[expected, _]| expected),
+            share_of_prior_sd: left.map(|[_, left]| left),
+            advice: *advice,
+        }
+    }
+}
+
+/// Returns the result as text for a terminal.
 pub fn text(done: &IdentifyDone) -> String {
     let found = &done.found;
     let mut text = String::new();
@@ -100,13 +163,13 @@ pub fn text(done: &IdentifyDone) -> String {
             Some(Flange { stiffness: Estimate { mean, sd }, .. }) => {
                 format!("{:.2} ± {}", mean / N_PER_MM, number(sd / N_PER_MM, 2, "N/mm"))
             }
-            None => "not told by these logs".to_owned(),
+            None => "not identifiable from these logs".to_owned(),
         };
         text += &format!("robot, {axis}      {words}\n");
     }
     let numbers = found.unknowns.iter().map(|Unknown { prior, posterior, from, .. }| {
-        let told = posterior.value.is_some();
-        let after = if told { page::amount(posterior) } else { "as before".to_owned() };
+        let identified = posterior.value.is_some();
+        let after = if identified { page::amount(posterior) } else { "as before".to_owned() };
         [posterior.name.clone(), page::amount(prior), after, origin(*from).to_owned()]
     });
     text += "\n";
@@ -119,7 +182,7 @@ pub fn text(done: &IdentifyDone) -> String {
     let misfit = &found.smoothed.misfit;
     if let (Some(first), Some(last)) = (misfit.first(), misfit.last()) {
         text += &format!(
-            "\nmisfit        {first:.2} to {last:.2} deviations over the rounds; {:.0} % of the data compared\n",
+            "\nmisfit        {first:.2} to {last:.2} standard deviations over the iterations; {:.0} % of the data compared\n",
             100.0 * found.smoothed.compared
         );
     }
@@ -129,29 +192,29 @@ pub fn text(done: &IdentifyDone) -> String {
     text
 }
 
-/// Where a value comes from, in words.
+/// Returns the origin of a value in words.
 fn origin(from: From) -> &'static str {
     match from {
         From::Formula => "formula",
         From::Fit => "fit",
-        From::Prior => "not told",
+        From::Prior => "not identifiable",
         From::Files => "not fitted",
     }
 }
 
-/// A sentence on each phase and force that stays off with what was identified.
+/// Returns a sentence on each phase and force component that the identified cell does not explain.
 fn unmodelled(compared: &[Compared]) -> Vec<String> {
     let off = misfits(compared).into_iter().filter(|one| one.after > 3.0);
     let words = |one: Misfit| {
         let Misfit { phase, axis, after, .. } = one;
         format!(
-            "the model cannot make these curves: phase {phase}, {axis}: off by {after:.1} deviations"
+            "the model does not explain these curves: phase {phase}, {axis}: misfit {after:.1} standard deviations"
         )
     };
     off.map(words).collect()
 }
 
-/// Three digits.
+/// Rounds to three digits.
 fn short(value: f64) -> String {
     let digits = (2.0 - libm::log10(value.abs().max(1e-3)).floor()).clamp(0.0, 4.0);
     format!("{value:.0$}", digits as usize)

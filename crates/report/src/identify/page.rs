@@ -1,7 +1,7 @@
-//! `identify.html`: what the logs of attempts said of their cell, beside the curves it comes from.
+//! `identify.html`: the identified cell and the curves that it was identified from.
 
 use super::{AXES, origin, short, unmodelled};
-use crate::answer::words::{finger, number, outcome, stiffness};
+use crate::answer::words::{design, number, outcome, stiffness};
 use crate::chart::{Area, Drawn, around, axes, message, sheet, words};
 use crate::elements::{definitions, document, stacked, table};
 use crate::marks::{dashed, line};
@@ -20,11 +20,11 @@ use parameters::{Parameter, Scale, Transform};
 use plotters::prelude::{Color, Text};
 use plotters::style::text_anchor::{HPos, VPos};
 
-/// Most points of a curve, and points of the air before the touch that are drawn: 0.1 s.
+/// Largest number of points of a curve, and of points before the first contact (0.1 s).
 const POINTS: usize = 400;
 const AIR: usize = 50;
 
-/// The page: numbers of the cell, robot and probes, and every attempt, measured and simulated.
+/// Returns the page: numbers of the cell, robot and probes, and every attempt, measured and simulated.
 pub fn html(done: &IdentifyDone) -> String {
     let IdentifyDone { task, remarks, found, .. } = done;
     let (serious, others): (Vec<_>, Vec<_>) = remarks.iter().partition(|remark| remark.serious);
@@ -42,8 +42,8 @@ pub fn html(done: &IdentifyDone) -> String {
                 h2 { "Numbers of the cell" }
                 (stacked(&["number", "before", "identified", "deviation left", "from"], &rows))
                 p.muted {
-                    "× is a factor on the number of its file. Deviation left: share of the prior's standard deviation; "
-                    "the dashed mark is what was expected of these logs before the fit."
+                    "× is a factor on the number in the file. Deviation left: share of the prior's standard deviation; "
+                    "the dashed mark is the share that was expected of these logs."
                 }
             }
             section { h2 { "Robot and probes" } (robot(found)) }
@@ -57,9 +57,9 @@ pub fn html(done: &IdentifyDone) -> String {
                     }
                 }
                 p.muted {
-                    "Force on the tool in the task's frame, from 0.1 s before the touch, with which the search begins. "
-                    "Misfit: root mean square of measured less simulated, in standard deviations, with the files' numbers → "
-                    "with the identified ones, up to the first contact that only one of the two makes or loses."
+                    "Force on the tool in the task's frame, from 0.1 s before the first contact, which begins the search. "
+                    "Misfit: root mean square of measured minus simulated force, in standard deviations, with the files' numbers → "
+                    "with the identified ones, until the contacts of the two differ."
                 }
                 h3 { "All attempts" }
                 (misfit(&found.compared))
@@ -67,7 +67,7 @@ pub fn html(done: &IdentifyDone) -> String {
             }
         }
     };
-    document(&format!("{task}: what its logs say of the cell"), body)
+    document(&format!("{task}: cell identified from logs"), body)
 }
 
 fn headline(IdentifyDone { task, found, .. }: &IdentifyDone) -> String {
@@ -75,18 +75,20 @@ fn headline(IdentifyDone { task, found, .. }: &IdentifyDone) -> String {
         |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let attempts = counted(found.compared.len(), "attempt");
     let probes = counted(found.probes.len(), "probe");
-    let told = found.unknowns.iter().filter(|one| one.from != From::Prior).count();
+    let identified = found.unknowns.iter().filter(|one| one.from != From::Prior).count();
     let misfit = match found.smoothed.misfit[..] {
         [first, .., last] if last.is_finite() => {
-            format!("; misfit {first:.2} deviations before the fit, {last:.2} after it")
+            format!("; misfit {first:.2} standard deviations before the fit, {last:.2} after")
         }
         _ => String::new(),
     };
     let all = found.unknowns.len();
-    format!("{attempts} and {probes} on {task} tell {told} of {all} numbers of the cell{misfit}")
+    format!(
+        "{attempts} and {probes} on {task} identify {identified} of {all} numbers of the cell{misfit}"
+    )
 }
 
-/// Names of the numbers by where their values come from, and how much was compared.
+/// Returns the names of the numbers by the origin of their values, and the share of the data that was compared.
 fn by_origin(found: &Identified) -> Vec<(String, String)> {
     let named = |from: From| {
         let of = found.unknowns.iter().filter(|one| one.from == from);
@@ -98,12 +100,12 @@ fn by_origin(found: &Identified) -> Vec<(String, String)> {
     all.into_iter().flatten().chain([("compared".to_owned(), share)]).collect()
 }
 
-/// A row of the numbers.
+/// Returns a row of the table of numbers.
 fn unknown(one: &Unknown) -> Vec<Markup> {
     let Unknown { prior, posterior, left, from, advice } = one;
-    let told = *from != From::Prior;
+    let identified = *from != From::Prior;
     let (share, expected) = match (left, from) {
-        // The fit began at what the formula says: it knows no share of the prior's.
+        // The fit started from the formula's value, so its own share is not of the prior.
         (_, From::Formula) => (deviation(posterior) / deviation(prior), None),
         (Some([expected, left]), _) => (*left, Some(*expected)),
         (None, _) => (1.0, None),
@@ -112,7 +114,7 @@ fn unknown(one: &Unknown) -> Vec<Markup> {
     vec![
         html! { (posterior.name) },
         html! { (amount(prior)) },
-        html! { @if told { (amount(posterior)) } @else { "as before" } },
+        html! { @if identified { (amount(posterior)) } @else { "as before" } },
         html! {
             (format!("{:.0} %", 100.0 * share))
             div.track {
@@ -121,13 +123,13 @@ fn unknown(one: &Unknown) -> Vec<Markup> {
             }
         },
         html! {
-            (origin(*from)) @if told { ": " (posterior.source) }
+            (origin(*from)) @if identified { ": " (posterior.source) }
             @if let Some(advice) = advice { ": " (advice) }
         },
     ]
 }
 
-/// Value and deviation of a row, or its bounds, with the unit.
+/// Returns value and standard deviation of a parameter, or its bounds, with the unit.
 pub(super) fn amount(row: &Parameter) -> String {
     let (sign, unit) = match row.transform {
         Transform::Factor => ("× ", ""),
@@ -139,7 +141,7 @@ pub(super) fn amount(row: &Parameter) -> String {
     }
 }
 
-/// Standard deviation of a row on its own scale.
+/// Returns the standard deviation of a parameter on its own scale.
 fn deviation(row: &Parameter) -> f64 {
     let log = row.scale == Scale::Log;
     match row.value.zip(row.sd) {
@@ -150,7 +152,7 @@ fn deviation(row: &Parameter) -> f64 {
     }
 }
 
-/// Axes of the robot, preload, and slides of the probes.
+/// Returns the tables of the robot's axes, preload and probes.
 fn robot(found: &Identified) -> Markup {
     let axis = |(name, flange): (&str, &Option<Flange>)| {
         let cells = match flange {
@@ -161,7 +163,7 @@ fn robot(found: &Identified) -> Markup {
                 number(1e3 * flange.delay_s, 0, "ms"),
                 number(100.0 * flange.explained, 0, "%"),
             ],
-            None => vec!["not told by these logs".to_owned()],
+            None => vec!["not identifiable from these logs".to_owned()],
         };
         [format!("along {name}")].into_iter().chain(cells).map(|cell| html! { (cell) }).collect()
     };
@@ -187,8 +189,12 @@ fn probe((file, friction): &(String, Friction)) -> Vec<Markup> {
         });
         words.collect::<Vec<_>>().join(", ")
     };
-    let cells =
-        [file.clone(), coefficient.unwrap_or("not told".to_owned()), slides(true), slides(false)];
+    let cells = [
+        file.clone(),
+        coefficient.unwrap_or("not identifiable".to_owned()),
+        slides(true),
+        slides(false),
+    ];
     cells.map(|cell| html! { (cell) }).into()
 }
 
@@ -201,7 +207,7 @@ fn attempt(one: &Compared) -> Markup {
     };
     html! {
         article {
-            h3 { (finger(&logged.design)) ", start " (format!("{:+.1} mm", logged.offset / MM)) ": " (ended) }
+            h3 { (design(&logged.design)) ", start " (format!("{:+.1} mm", logged.offset / MM)) ": " (ended) }
             p.muted {
                 (logged.file) ". Simulated: " (outcome(one.before.1)) " with the files' numbers, "
                 (outcome(one.after.1)) " with the identified ones."
@@ -221,7 +227,7 @@ fn attempt(one: &Compared) -> Markup {
     }
 }
 
-/// Misfit of the force by phase and axis.
+/// Returns the misfit of the force by phase and axis.
 fn misfit(compared: &[Compared]) -> Markup {
     let all = misfits(compared);
     let rows: Vec<Vec<String>> = all
@@ -237,7 +243,7 @@ fn misfit(compared: &[Compared]) -> Markup {
     table(&["misfit", "fx", "fy", "fz"], &rows)
 }
 
-/// One component of the force over time.
+/// Draws one component of the force over time.
 fn draw(area: &Area<'_>, one: &Compared, axis: usize) -> Drawn {
     let Compared { logged, before, after } = one;
     let from = logged.touch.saturating_sub(AIR);

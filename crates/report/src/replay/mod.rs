@@ -40,8 +40,8 @@ pub fn pair_file(task: usize, end: &str) -> String {
 /// A page that plays films side by side. It opens offline: its script is our own, for nothing
 /// that draws in WebGL is as small (three.js has 700 kB, this 18).
 pub fn page(title: &str, films: &[Film]) -> String {
-    let data: Vec<_> = films.iter().map(film::to_json).collect();
-    around(title, &embedded(&data.into()))
+    let data: Vec<_> = films.iter().map(film::Data::new).collect();
+    around(title, &embedded(&data))
 }
 
 const DATA: &str = "<script type=\"application/json\" id=\"films\">";

@@ -282,7 +282,7 @@ fn other_spaces_have_a_page() {
 fn the_limits_are_those_of_what_was_done() {
     let html = self::html(&study());
     for statement in [
-        "the range is up to 0.2 mm wider",
+        "range is up to 0.2 mm wider",
         "it can step over a gap",
         "optimize evaluate --walk",
         "along a straight line over the infill direction",

@@ -30,7 +30,7 @@ fn attempt() -> Compared {
     Compared { before: simulated(0.2), after: simulated(0.95), logged }
 }
 
-/// Twelve attempts and a probe, by which the first number is fitted, and the others are not told.
+/// Twelve attempts and a probe, by which the first number is fitted, and the others are not identifiable.
 fn done() -> IdentifyDone {
     let cell = Priors::parse(PRIORS[0].text, PRIORS[0].file).unwrap();
     let unknown = |(i, prior): (usize, &parameters::Parameter)| Unknown {
@@ -66,10 +66,10 @@ fn the_page_has_every_number_and_curve_and_runs_no_name() {
     let done = done();
     let page = html(&done);
     let has = |text: &str| assert!(page.contains(text), "{text}");
-    has("12 attempts and 1 probe on usb tell 1 of ");
+    has("12 attempts and 1 probe on usb identify 1 of ");
     has("misfit 2.00 deviations before the fit, 0.50 after it");
     has("&lt;b&gt;1.csv: lines 3 to 9: the sensor is saturated");
-    has("not told: a probe");
+    has("not identifiable: a probe");
     has("0.200 (the part turned)");
     has("10 % infill at 0°, start +2.2 mm: inserted");
     done.found.unknowns.iter().for_each(|one| has(&one.posterior.name));

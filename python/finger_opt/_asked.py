@@ -59,7 +59,7 @@ class Asked:
         simulations: int | None = None,
         samples: int | None = None,
     ) -> S:
-        """Find the finger that tolerates the largest shift: propose, simulate, search, as ``optimize study`` does.
+        """Find the finger that tolerates the largest shift of the start, as ``optimize study`` does.
 
         Running the same command again continues the study. The name may be left out.
 
@@ -74,28 +74,29 @@ class Asked:
                 computed for a space with numbers of the printed finger].
             finger: Finger file of finger_model computed: finray9, or the path of one.
             start: What becomes of the nominal start, in place of what the task file says.
-            budget: Evaluations in all; run the same command with a larger one to go on [default: until no
-                design is expected to gain 0.3 mm, at most 500; 200 for other optimizers and objectives].
-            polish: Then up to N evaluations more, by Nelder-Mead from the best design; the budget of such a
-                study cannot be raised.
-            indifference_mm: Difference of ranges that a bench cannot tell, mm: designs that lose less are as
-                good.
+            budget: Total number of evaluations; to continue, run the same command with a larger one [default:
+                until no design is expected to gain 0.3 mm, at most 500; 200 for other optimizers and
+                objectives].
+            polish: Up to N further evaluations by Nelder-Mead from the best design; the budget of such a study
+                cannot be raised.
+            indifference_mm: Smallest relevant difference of ranges, mm: designs that lose less count as ties.
             optimizer: Optimizer.
-            objective: Measure that is optimized; two or three, by commas, give a front.
-            constraint: What a design must keep to, as in 'peak-force<=30' or 'success-rate>=0.9'.
+            objective: Measure to optimize; two or three, separated by commas, give a Pareto front.
+            constraint: Constraint, for example 'peak-force<=30' or 'success-rate>=0.9'.
             uncertainty: Errors for success-rate and robust-range: typical, or the path of a file [default:
                 typical].
-            measurements: What was measured on the bench, published or the path of a file: the study then ends
-                with the finger that is best there, predicted from all simulations and these measurements.
-            priors: What nobody measured, and its bounds, for measurements: bench, or the path of a file
-                [default: bench].
-            aggregate: What is made of the values of several tasks [default: min].
-            weights: Weight of each task, by commas, for aggregate weighted.
+            measurements: Measurements from the bench: published, or the path of a file. The study then
+                recommends the finger that is predicted to be the best on the bench, from simulations and
+                measurements.
+            priors: Priors of the parameters that were not measured, for measurements: bench, or the path of a
+                file [default: bench].
+            aggregate: Aggregation over several tasks [default: min].
+            weights: Weights of the tasks, separated by commas, for aggregate weighted.
             seed: Seed; the same seed gives the same study.
-            batch: Designs proposed and evaluated at a time; part of the study, unlike threads [default: that of
-                the study if it goes on, else 4, with executor the number of its workers].
-            async_: Tell each result as it comes and ask for one more design, so that no worker waits for the
-                slowest of a batch; the journal then depends on who was fast.
+            batch: Number of designs per batch; part of the study, unlike threads [default: that of the study if
+                it continues, else 4, with executor the number of its workers].
+            async_: Propose a new design after each result, so that no worker waits for the slowest of a batch;
+                the journal then depends on the order of the results.
             out: Folder of the study [default: results/<task>-<optimizer>-seed<seed>].
             threads: Threads [default: one per processor]; changes no result.
             cache: Folder of evaluations that studies share; safe to delete [default: results/.cache].

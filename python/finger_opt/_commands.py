@@ -95,7 +95,7 @@ def evaluate(
     repeat: int | None = None,
     repeat_seed: int | None = None,
 ) -> Evaluation:
-    """Measure the tolerance window of one finger, as ``optimize evaluate`` does.
+    """Simulate the tolerance window of one finger, as ``optimize evaluate`` does.
 
     >>> import finger_opt as fo
     >>> fo.evaluate("usb", density=20, direction=10).range_mm
@@ -117,9 +117,11 @@ def evaluate(
         stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
         stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
         set: A number of the task or the finger, as in spaces/codesign.toml.
-        walk: Go step by step to the first failure: sees gaps narrower than 0.5 mm, three times the trials.
-        uncertainty: Success rate and robust range under these errors, too: typical, or the path of a file.
-        seed: Seed of the drawn errors: those of the study with this seed.
+        walk: Search step by step to the first failure: finds gaps narrower than 0.5 mm in three times the
+            trials.
+        uncertainty: Also compute success rate and robust range under these errors: typical, or the path of
+            a file.
+        seed: Seed of the drawn errors; the same draws as in a study with this seed.
         repeat: Then N times more with friction within 10 %, start within 0.02 mm, and half the step by
             turns.
         repeat_seed: Seed of the repeats.
@@ -196,10 +198,10 @@ def trial(
         record: Record the trial: a page that plays it, or a table of every millisecond.
         plot: Draw force against depth.
         log: Write force and pose at 500 Hz, as a robot logs them, from the search on.
-        probe: In place of an insertion, slide the part on a flat plate: 8 mm along y and back at 5 N, for
+        probe: Slide the part on a flat plate instead of inserting it: 8 mm along y and back at 5 N, for
             `identify`.
         svg: Draw plug, fingertips and socket at the end of each phase.
-        every_s: Simulated time between two samples of the course, s, in the JSON.
+        every_s: Simulated time between two samples of the time series in the JSON, s.
         film: Give the page that plays it in the result.
 
     Raises:
@@ -242,8 +244,8 @@ def capture_map(
 ) -> CaptureMap:
     """Trace the capture map of one finger, as ``optimize map`` does.
 
-    A tolerance window is one line through it: along y, without a second error. At most 300 trials; what
-    lies between two that end alike is taken over from them.
+    The tolerance window is its section along y without a second error. At most 300 trials are simulated;
+    places between two equal outcomes are filled in.
 
     Args:
         task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
@@ -261,7 +263,7 @@ def capture_map(
         stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
         stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
         set: A number of the task or the finger, as in spaces/codesign.toml.
-        axes: The two errors of the start: mm, degrees.
+        axes: The two errors of the start, mm or degrees.
         svg: Draw the map.
 
     Raises:
@@ -290,9 +292,8 @@ def finger(
 ) -> Finger:
     """Compute the stiffness of a printed finger from its ribs, as ``optimize finger`` does.
 
-    Plane stress on the exact profile: free stiffnesses at the pad's middle at the modulus of the finger
-    file, before any measured correction. Nothing is fitted. Trials and studies use it with finger_model
-    computed.
+    Plane stress on the exact profile, with the modulus of the finger file and without measured corrections:
+    stiffness at the middle of the pad. Trials and studies use it with finger_model computed.
 
     >>> import finger_opt as fo
     >>> 4 < fo.finger(20, 20).mass_g < 6
@@ -302,10 +303,11 @@ def finger(
         density: Infill density, percent.
         direction: Infill direction, degrees.
         finger: finray9, or the path of a finger file.
-        phase_mm: Where the first rib lies, mm [default: the finger file's].
-        set: A number of the finger file, as finger.skin.thickness_mm=0.8.
-        svg: Draw the finger, at rest and under a force on its pad.
-        load_n: That force, N: y towards the part, z up; as -5,0 is a grasp, 0,10 a part that pulls up.
+        phase_mm: Position of the first rib, mm [default: that of the finger file].
+        set: A number of the finger file, for example finger.skin.thickness_mm=0.8.
+        svg: Draw the finger at rest and under a force on its pad.
+        load_n: This force, N: y towards the part, z up; for example -5,0 for a grasp or 0,10 for a part
+            pulling up.
 
     Raises:
         InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
@@ -328,8 +330,8 @@ def compare(
     """Compare optimizers over studies of the same task and objective, as ``optimize compare`` does.
 
     Args:
-        studies: Folders of the studies; several seeds of an optimizer give its median and quartiles.
-        svg: Draw the best so far of each optimizer.
+        studies: Folders of the studies; several seeds of an optimizer give median and quartiles.
+        svg: Draw the best value so far of each optimizer.
         html: Write table and picture as a page.
 
     Raises:
@@ -358,7 +360,7 @@ def sensitivity(
     seed: int = 0,
     svg: StrPath | None = None,
 ) -> Sensitivity:
-    """Find out which input matters: of the design, the task and the cell, as ``optimize sensitivity`` does.
+    """Rank the inputs (design, task, cell) by their share of the variance, as ``optimize sensitivity`` does.
 
     Args:
         task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
@@ -371,9 +373,9 @@ def sensitivity(
             computed for a space with numbers of the printed finger].
         finger: Finger file of finger_model computed: finray9, or the path of one.
         start: What becomes of the nominal start, in place of what the task file says.
-        objective: Range that is looked at.
-        uncertainty: Errors of the cell that are varied, too: typical, none, or the path of a file.
-        samples: Rows of the sample: evaluations are this times (inputs + 2).
+        objective: Measure to analyse.
+        uncertainty: Errors of the cell to vary as well: typical, none, or the path of a file.
+        samples: Rows of the sample; the number of evaluations is this times (inputs + 2).
         seed: Seed of the sample.
         svg: Write a chart of the shares.
 
@@ -408,7 +410,7 @@ def levers(
     set: Numbers | None = None,
     svg: StrPath | None = None,
 ) -> Levers:
-    """Find out what would help a finger more than its infill: tilt, strokes, grip, friction, robot, as ``optimize levers`` does.
+    """Compare the infill with other ways to widen the window: tilt, strokes, grip, friction, robot, as ``optimize levers`` does.
 
     Args:
         task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
@@ -462,11 +464,11 @@ def calibrate(
     no_cache: bool = False,
     out: StrPath | None = None,
 ) -> Calibration:
-    """Predict what every finger does on the bench, from simulation and few measurements, as ``optimize calibrate`` does.
+    """Predict the range of every finger on the bench from simulations and a few measurements, as ``optimize calibrate`` does.
 
-    Simulates the task under what nobody measured (friction, preload, robot, finger), compares with the
-    measurements, learns what no parameter explains as a process over the stiffness, and says how far the
-    result is to be trusted: each measured finger predicted without it.
+    Simulates the task with drawn values of the parameters that were not measured (friction, preload, robot,
+    finger), compares with the measurements, models the discrepancy as a Gaussian process over the
+    stiffness, and reports the accuracy: each measured finger is predicted without its measurement.
 
     Args:
         measurements: What was measured on the bench: published, or the path of a file.
@@ -488,7 +490,7 @@ def calibrate(
         seed: Seed; the same seed gives the same answer.
         cache: Folder of simulations shared with studies; safe to delete [default: results/.cache].
         no_cache: Simulate anew, and keep nothing.
-        out: Folder that tables are written to.
+        out: Folder for the tables.
 
     Raises:
         InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
@@ -522,10 +524,11 @@ def identify(
     priors: StrPath = "bench",
     seed: int = 0,
 ) -> Cell:
-    """Tell from the robot's logs what its cell is like: friction, stiffness, preload, pads, edges, as ``optimize identify`` does.
+    """Identify the parameters of a cell from the robot's logs: friction, stiffness, preload, pads, edges, as ``optimize identify`` does.
 
-    The attempts are simulated along their commanded paths. What force and pose tell by themselves is read
-    by formulas, the rest is fitted to the curves; what these logs cannot tell is named and left as it was.
+    The attempts are simulated along their commanded paths. Some parameters follow from force and pose by
+    formulas, others are fitted to the curves; parameters that the logs do not determine are listed and
+    unchanged.
 
     Args:
         task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
@@ -540,11 +543,11 @@ def identify(
             computed for a space with numbers of the printed finger].
         finger: Finger file of finger_model computed: finray9, or the path of one.
         start: What becomes of the nominal start, in place of what the task file says.
-        frame: Task's frame in the robot's base: origin_mm and axis_angle_rad, as a pendant shows them;
-            force_sign = 1 or -1, tool_mass_kg; and upright_axis_angle_rad of the TCP, gravity_compensated =
-            false if need be.
+        frame: Task's frame in the robot's base: origin_mm, axis_angle_rad (as a pendant shows them),
+            force_sign = 1 or -1, tool_mass_kg; optional: upright_axis_angle_rad of the TCP,
+            gravity_compensated = false.
         report: Write a page with the curves, measured and simulated, and the table of numbers.
-        priors: Bounds of what the logs may not tell: bench, or the path of a file.
+        priors: Priors of the parameters: bench, or the path of a file.
         seed: Seed of the fit.
 
     Raises:
@@ -582,10 +585,10 @@ def next_print(
     cache: StrPath | None = None,
     no_cache: bool = False,
 ) -> Advice:
-    """Say which finger to print next, and when to stop printing, as ``optimize next`` does.
+    """Recommend the finger to print next, or to stop printing, as ``optimize next`` does.
 
-    The finger with the largest expected gain of the best known bench range, by simulation and by what was
-    measured; the file of measurements may have no line yet, or not be there.
+    It is the finger with the largest expected improvement of the best range on the bench, by simulation and
+    measurements; the file of measurements may be empty or missing.
 
     Args:
         measurements: What was measured on the bench: published, or the path of a file.
@@ -600,9 +603,9 @@ def next_print(
             computed for a space with numbers of the printed finger].
         finger: Finger file of finger_model computed: finray9, or the path of one.
         start: What becomes of the nominal start, in place of what the task file says.
-        count: Fingers to print at a time.
+        count: Number of fingers to print at a time.
         among: Fingers that may be printed.
-        print_cost_mm: Gain of range that is worth the print and the measurement, mm; below it: stop.
+        print_cost_mm: Smallest gain of range that is worth a print and its measurement, mm.
         priors: What nobody measured, and its bounds: bench, or the path of a file.
         simulations: Simulations per task that the emulator of a bench prediction is made of; one in eight
             measures its error [default: 200, or as the study has it].
@@ -630,7 +633,7 @@ def measuring_sheet(
     fingers: Sequence[tuple[float, float]],
     out: StrPath,
 ) -> None:
-    """Write a sheet to print and fill in, to measure windows by hand, as ``optimize measure sheet`` does.
+    """Write a printable sheet for measuring windows by hand, as ``optimize measure sheet`` does.
 
     Args:
         task: ket8, ket12, rj45, usb, or the path of a task file.
@@ -663,10 +666,10 @@ def export_mjcf(
     stiffness_assembly: float | None = None,
     set: Numbers | None = None,
 ) -> Path:
-    """The scene of a trial as MJCF, the model format of MuJoCo and its viewer, as ``optimize export mjcf`` does.
+    """Export the scene of a trial as MJCF, the model format of MuJoCo and its viewer, as ``optimize export mjcf`` does.
 
     The part stands at its pick-up place and the jaws are open. In the viewer the sliders move the robot's
-    command and close the jaws. Needs no MuJoCo.
+    command and close the jaws. MuJoCo is not needed for the export.
 
     Args:
         task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
@@ -709,14 +712,14 @@ def export_finger(
     finger: StrPath | None = None,
     phase_mm: float | None = None,
 ) -> tuple[Path, ...]:
-    """A finger for the printer: the best of a study, or of an infill, as ``optimize export finger`` does.
+    """Export a finger for the printer: the best of a study, or one with a given infill, as ``optimize export finger`` does.
 
-    Both fingers of a gripper are this part. STL, 3MF, DXF and SVG have every rib of it; the settings for
+    Both fingers of a gripper are this part. STL, 3MF, DXF and SVG contain every rib; the settings for
     slicers are for its outline, which is written beside them and which the slicer fills with its own ribs.
 
     Args:
         study: Folder of a study: its best design.
-        format: What to write.
+        format: File format.
         out: File to write.
         density: Infill density, percent.
         direction: Infill direction, degrees.
@@ -738,7 +741,7 @@ def export_finger(
 
 @checked
 def robots() -> Robots:
-    """List robots by the cells that they stand for, and write one's own, as ``optimize robots`` does.
+    """List the shipped robots with the cells that they represent, and an example of a robot file, as ``optimize robots`` does.
 
     Raises:
         InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
@@ -776,21 +779,22 @@ def new_task(
     out: StrPath | None = None,
     engine: Engine = "direct",
 ) -> NewTask:
-    """Write a commented task file from a few dimensions, or like another task, as ``optimize task new`` does.
+    """Create a commented task file from a few dimensions, or from another task, as ``optimize task new`` does.
 
     With plug or round, start, tilt, strokes and success depth are derived from the geometry. With like
-    alone the file is a copy of that task; with both, friction and grasp force are that task's. With neither
-    it is a USB-C plug.
+    alone the file is a copy of that task; with both, friction and grasp force are taken from it. With
+    neither the task is a USB-C plug.
 
     Args:
         name: Name of the task: letters, digits, - and _.
-        plug: What goes in: width (y, between the jaws) x height (x) x length, mm.
-        round: What goes in, if it is a cylinder: diameter x length, mm.
-        clearance: Opening less plug in x and y, mm: both sides together.
-        body: What the fingers hold, above the plug: width x height x length, mm [default: the plug itself].
-        like: Another task: ket8, ket12, rj45, usb, or the path of a task file.
+        plug: width (y, between the jaws) x height (x) x length, mm.
+        round: Cylindrical plug: diameter x length, mm.
+        clearance: Clearance, mm: opening minus plug in x and y, both sides together.
+        body: Body that the fingers hold, above the plug: width x height x length, mm [default: the plug
+            itself].
+        like: Task to start from: ket8, ket12, rj45, usb, or the path of a task file.
         out: File to write [default: NAME.toml].
-        engine: Contact engine that tries the nominal start.
+        engine: Contact engine for the nominal start.
 
     Raises:
         InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
@@ -815,9 +819,9 @@ def check_task(
     robot: RobotName | StrPath = "servo",
     engine: Engine = "direct",
 ) -> TaskCheck:
-    """Look for what cannot work in a task file, draw it and try its nominal start, as ``optimize task check`` does.
+    """Check a task file, draw it and simulate its nominal start, as ``optimize task check`` does.
 
-    Exit code 0 if nothing is wrong and the plug goes in, 2 otherwise.
+    Exit code 0 if there is no problem and the plug inserts, 2 otherwise.
 
     >>> import finger_opt as fo
     >>> fo.check_task("usb").inserts
@@ -848,18 +852,18 @@ def tune_task(
     dry_run: bool = False,
     svg: StrPath | None = None,
 ) -> Tuned:
-    """Find a start and a strategy by which a connector inserts, before fingers are compared, as ``optimize task tune`` does.
+    """Find a start and a strategy that insert a connector, before fingers are compared, as ``optimize task tune`` does.
 
-    A start taught with a medium finger; then the strategies of the shipped tasks, carried over to this
-    opening; then a search over tilt, strokes, preload and push speed for the widest least range of a soft,
-    a medium and a stiff finger from one start. Exit code 1 if nothing inserts.
+    First the start is taught with a medium finger; then the strategies of the shipped tasks are tried,
+    scaled to this opening; then tilt, strokes, preload and push speed are optimized for the smallest range
+    of a soft, a medium and a stiff finger. Exit code 1 if nothing inserts.
 
     Args:
-        task: Task file, which is written anew; or the name of a shipped task, with out.
+        task: Task file, which is rewritten; or the name of a shipped task, with out.
         robot: see `optimize robots`, or the path of a robot file.
         engine: Contact engine.
         seed: Seed of the search.
-        out: Write this new file in place of FILE.
+        out: Write this new file instead of FILE.
         dry_run: Write no task file.
         svg: Draw the search before and after.
 

@@ -67,7 +67,7 @@ fn the_page_has_every_number_and_curve_and_runs_no_name() {
     let page = html(&done);
     let has = |text: &str| assert!(page.contains(text), "{text}");
     has("12 attempts and 1 probe on usb identify 1 of ");
-    has("misfit 2.00 deviations before the fit, 0.50 after it");
+    has("misfit 2.00 standard deviations before the fit, 0.50 after");
     has("&lt;b&gt;1.csv: lines 3 to 9: the sensor is saturated");
     has("not identifiable: a probe");
     has("0.200 (the part turned)");

@@ -71,10 +71,10 @@ fn every_robot_stands_for_a_cell_and_ones_own_is_a_file_that_works() {
     let of = |name: &str| list.iter().find(|robot| robot["name"] == name).expect("it is there");
     // As the robot files say: 3.3, 4.2 and 3.8 N/mm, trailing by 0.2 s; 0.03 s.
     for (name, said) in [
-        ("ur5e", "gives 3.3, 4.2, 3.8 N/mm along x, y, z at the TCP; lag 0.20 s;"),
+        ("ur5e", "stiffness 3.3, 4.2, 3.8 N/mm along x, y, z at the TCP; lag 0.20 s;"),
         ("ur5e_position", "lag 0.03 s;"),
-        ("servo", "gives 10.0, 10.0, 20.0 N/mm"),
-        ("rigid", "gives nothing; lag 0.00 s; stops at 250 N"),
+        ("servo", "stiffness 10.0, 10.0, 20.0 N/mm"),
+        ("rigid", "rigid; lag 0.00 s; stops at 250 N"),
     ] {
         assert!(text.contains(said) && text.contains(&format!("\n{name} ")), "{text}");
         assert!(of(name)["stop_force_n"].as_f64() > Some(0.0) && of(name)["cell"].is_string());
@@ -95,7 +95,7 @@ fn the_page_of_ones_own_task_shows_the_finger_under_two_robots() {
         assert_eq!((&found[0]["robot"], &found[1]["robot"]), (&robot.into(), &other.into()));
         assert!(found[1]["range_mm"].is_f64() && found[1]["negative_mm"].is_f64(), "{found}");
         let page = studies.read(&format!("{robot}/report.html"));
-        assert!(page.contains(&format!("under {other} (")), "{robot}");
+        assert!(page.contains(&format!("on {other} (")), "{robot}");
         assert_eq!(studies.study(robot, 8, &more).json()["robots"], found, "kept");
     }
     let shipped = studies.study("shipped", 8, &["--no-levers", "--no-map", "--json"]).json();
@@ -378,7 +378,7 @@ fn a_finger_is_computed_from_its_ribs() {
     assert!(studies.read("finger.svg").contains("</svg>"));
     optimize_line(&format!("{drawn} --load-n 0,20")).succeeds();
     assert!(studies.read("finger.svg").contains("20.0 N in z"));
-    optimize_line(&format!("{infill} --load-n 5")).fails(2, &["--load-n", "as -5,0"]);
+    optimize_line(&format!("{infill} --load-n 5")).fails(2, &["--load-n", "for example -5,0"]);
     assert!(optimize_line(infill).succeeds().contains("pad and roof"));
     optimize_line("finger --density 120 --direction 0").fails(2, &["finray9.toml", "density"]);
     optimize_line(&format!("{infill} --finger finray")).fails(2, &["did you mean `finray9`"]);

@@ -242,7 +242,7 @@ fn an_export_overwrites_no_neighbour_and_a_task_path_may_have_a_comma() {
         let finger = ["export", "finger", "--density", density, "--direction", "0"];
         optimize(&[&finger[..], &["--format", "cura", "--out", &out]].concat())
     };
-    export("20").fails(2, &["part-outline.stl", "is there already"]);
+    export("20").fails(2, &["part-outline.stl", "exists with other contents"]);
     assert_eq!(folder.read("part-outline.stl"), "precious");
     fs::remove_file(&neighbour).expect("it is removed");
     export("20").succeeds();

@@ -144,7 +144,7 @@ fn measurements_and_logs_are_read() {
     let copy = copied();
     let bench = copy.word("bench.csv");
     let checked = optimize_line(&format!("measure check {bench}"));
-    assert!(checked.succeeds().contains("1 line, nothing looks wrong"), "{}", checked.stdout);
+    assert!(checked.succeeds().contains("1 line, no problems found"), "{}", checked.stdout);
     let few = "--task ket8 --engine fake --no-cache --simulations 16 --samples 20 --json";
     let of = |name: &str| optimize_line(&format!("{name} {few} --measurements {bench}")).json();
     assert_eq!(of("calibrate")["tasks"][0]["leave_one_out"][0]["measured_mm"], 4.0);

@@ -75,7 +75,7 @@ def test_ends_that_are_not_met_are_bounds(out, command):
     assert (found.negative_mm, found.positive_mm, found.range_mm, found.settled) == (None, None, None, False)
     assert found.inserted_mm == (-3.0, 3.0)
     code, said, errors = command("measure", "check", str(out))
-    assert code == 0 and "1 ranges known from below" in said, errors
+    assert code == 0 and "1 lower bounds" in said, errors
 
 
 def test_attempts_max_ends_it(out):

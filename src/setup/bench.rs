@@ -33,7 +33,7 @@ pub struct BenchRequest {
     /// Tasks, robot, space, finger model.
     #[command(flatten)]
     pub setup: SetupRequest,
-    /// What was measured on the bench: published, or the path of a file
+    /// Bench measurements: published, or the path of a file
     #[arg(long, value_name = "FILE")]
     pub measurements: String,
 }
@@ -43,9 +43,9 @@ pub struct BenchRequest {
 #[command(mut_arg("cache", |cache| cache.help(
     "Folder of simulations shared with studies; safe to delete [default: results/.cache]"
 )))]
-#[command(mut_arg("no_cache", |off| off.help("Simulate anew, and keep nothing")))]
+#[command(mut_arg("no_cache", |off| off.help("Simulate again and store nothing")))]
 pub struct HowCalibrated {
-    /// What nobody measured, and its bounds: bench, or the path of a file
+    /// Priors of the parameters that were not measured: bench, or the path of a file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_PRIORS)]
     pub priors: String,
     /// Effort.

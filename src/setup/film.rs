@@ -18,7 +18,7 @@ pub struct FilmRequest {
     /// Draw force against depth
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
-    /// Give the page that plays it in the result
+    /// Include the page that plays it in the result
     #[arg(long = "film", hide = true)]
     pub page: bool,
 }

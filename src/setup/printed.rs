@@ -26,7 +26,7 @@ pub struct PrintRequest {
     /// Finger: finray9, or the path of a finger file [default: the study's, or finray9]
     #[arg(long, value_name = "NAME")]
     pub finger: Option<String>,
-    /// Where the first rib lies, mm [default: the finger file's]
+    /// Position of the first rib, mm [default: as in the finger file]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub phase_mm: Option<f64>,
 }

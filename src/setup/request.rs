@@ -90,7 +90,7 @@ pub struct SetupRequest {
     /// Finger model.
     #[command(flatten)]
     pub finger_model: FingerModelRequest,
-    /// What becomes of the nominal start, in place of what the task file says
+    /// How the nominal start is chosen [default: as in the task file]
     #[arg(long, value_enum)]
     pub start: Option<StartRule>,
 }
@@ -98,11 +98,11 @@ pub struct SetupRequest {
 /// Source of the stiffnesses of a finger that were not measured.
 #[derive(Debug, Clone, clap::Args)]
 pub struct FingerModelRequest {
-    /// Where a finger's remote centre and unmeasured springs come from [default: paper; computed
-    /// for a space with numbers of the printed finger]
+    /// Source of a finger's remote centre and unmeasured stiffnesses [default: paper; computed for a
+    /// space with parameters of the printed finger]
     #[arg(long = "finger-model", value_enum)]
     pub kind: Option<FingerModelKind>,
-    /// Finger file of --finger-model computed: finray9, or the path of one
+    /// Finger file for --finger-model computed: finray9, or the path of a file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_FINGER)]
     pub finger: String,
 }

@@ -27,7 +27,7 @@ pub struct CacheRequest {
     /// Folder of evaluations that studies share; safe to delete [default: results/.cache]
     #[arg(id = "cache", long = "cache", value_name = "DIR")]
     pub dir: Option<PathBuf>,
-    /// Measure every design anew, and keep nothing
+    /// Measure every design again and store nothing
     #[arg(id = "no_cache", long = "no-cache", conflicts_with = "cache")]
     pub off: bool,
 }
@@ -44,11 +44,11 @@ impl CacheRequest {
 /// Effort of a bench prediction: by default 200 simulations and 300 samples, or that of the study.
 #[derive(Debug, Clone, Copy, Default, clap::Args)]
 pub struct EffortRequest {
-    /// Simulations per task that the emulator of a bench prediction is made of; one in eight
-    /// measures its error [default: 200, or as the study has it]
+    /// Simulations per task for the emulator of a bench prediction; one in eight measures its error
+    /// [default: 200, or as in the study]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(wide(&SIMULATIONS)))]
     pub simulations: Option<u16>,
-    /// Samples of a bench prediction's posterior [default: 300, or as the study has it]
+    /// Samples of the posterior of a bench prediction [default: 300, or as in the study]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(wide(&SAMPLES)))]
     pub samples: Option<u16>,
 }
@@ -83,21 +83,21 @@ pub struct RunRequest {
     /// Cache of evaluations.
     #[command(flatten)]
     pub cache: CacheRequest,
-    /// Leave out what confirms the recommendation: the best designs walked, and repeated at their ends
+    /// Skip the confirmation of the best designs: walked step by step, and repeated at their ends
     #[arg(long)]
     pub no_confirm: bool,
-    /// Leave out what would help the finger more than its infill
+    /// Skip the one-at-a-time sensitivity analysis of the recommended finger (levers)
     #[arg(long)]
     pub no_levers: bool,
-    /// Leave out the maps of how insertions end over two errors of the start
+    /// Skip the maps of outcomes over two errors of the start
     #[arg(long)]
     pub no_map: bool,
-    /// Go on with a study that was measured by another program version, engine setting or input
-    /// file, in a new segment; the best design is then taken from that
+    /// Continue a study of another program version, engine setting or input file in a new segment; the
+    /// best design is then taken from that segment
     #[arg(long)]
     pub accept_changed: bool,
-    /// Where designs are measured, by the installed Python package: dask://HOST:PORT, slurm,
-    /// slurm:JOBS, processes or processes:N [default: on the threads of this process]
+    /// Executor that measures designs, by the installed Python package: dask://HOST:PORT, slurm,
+    /// slurm:JOBS, processes or processes:N [default: the threads of this process]
     #[arg(long, value_name = "WHERE")]
     pub executor: Option<String>,
     /// Effort of the bench prediction.

@@ -195,8 +195,6 @@ fn copy(name: &str, TaskFile { source, task }: &TaskFile) -> String {
 }
 
 fn clearance(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(mm) if mm > 0.0 && mm <= 20.0 => Ok(mm),
-        _ => Err("must be a number above 0 and at most 20 (mm)".to_owned()),
-    }
+    let mm = text.parse::<f64>().map_err(|_| "give a number of mm, as in 0.1".to_owned())?;
+    numbers::problem("connector.clearance_mm", mm).map_or(Ok(mm), |problem| Err(problem + " mm"))
 }

@@ -297,7 +297,8 @@ source = "paper"
 
     #[test]
     fn a_log_scale_has_equal_factors_and_holds_its_ends() {
-        let text = GOOD.replace("low = 10.0", "low = 0.5").replace("high = 30.0", "high = 4.0");
+        let text = GOOD.replace("infill_density_percent", "task.grip.force_n");
+        let text = text.replace("low = 10.0", "low = 0.5").replace("high = 30.0", "high = 4.0");
         let text = text.replace("step = 1.0", "step = 1.189207115\nscale = 'log'");
         let space = Space::parse(&text, "s.toml").unwrap();
         let parameter = &space.parameters[0];

@@ -70,10 +70,10 @@ class Asked:
             cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
             stiffness_data: Your own stiffness measurements in place of the shipped ones.
             engine: Contact engine.
-            finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
-                computed for a space with numbers of the printed finger].
-            finger: Finger file of finger_model computed: finray9, or the path of one.
-            start: What becomes of the nominal start, in place of what the task file says.
+            finger_model: Source of a finger's remote centre and unmeasured stiffnesses [default: paper;
+                computed for a space with parameters of the printed finger].
+            finger: Finger file for finger_model computed: finray9, or the path of a file.
+            start: How the nominal start is chosen [default: as in the task file].
             budget: Total number of evaluations; to continue, run the same command with a larger one [default:
                 until no design is expected to gain 0.3 mm, at most 500; 200 for other optimizers and
                 objectives].
@@ -100,16 +100,16 @@ class Asked:
             out: Folder of the study [default: results/<task>-<optimizer>-seed<seed>].
             threads: Threads [default: one per processor]; changes no result.
             cache: Folder of evaluations that studies share; safe to delete [default: results/.cache].
-            no_cache: Measure every design anew, and keep nothing.
-            no_confirm: Leave out what confirms the recommendation: the best designs walked, and repeated at
-                their ends.
-            no_levers: Leave out what would help the finger more than its infill.
-            no_map: Leave out the maps of how insertions end over two errors of the start.
-            accept_changed: Go on with a study that was measured by another program version, engine setting or
-                input file, in a new segment; the best design is then taken from that.
-            simulations: Simulations per task that the emulator of a bench prediction is made of; one in eight
-                measures its error [default: 200, or as the study has it].
-            samples: Samples of a bench prediction's posterior [default: 300, or as the study has it].
+            no_cache: Measure every design again and store nothing.
+            no_confirm: Skip the confirmation of the best designs: walked step by step, and repeated at their
+                ends.
+            no_levers: Skip the one-at-a-time sensitivity analysis of the recommended finger (levers).
+            no_map: Skip the maps of outcomes over two errors of the start.
+            accept_changed: Continue a study of another program version, engine setting or input file in a new
+                segment; the best design is then taken from that segment.
+            simulations: Simulations per task for the emulator of a bench prediction; one in eight measures its
+                error [default: 200, or as in the study].
+            samples: Samples of the posterior of a bench prediction [default: 300, or as in the study].
 
         Raises:
             InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.

@@ -50,16 +50,16 @@ def load_study(
         folder: Folder of the study.
         threads: Threads [default: one per processor]; changes no result.
         cache: Folder of evaluations that studies share; safe to delete [default: results/.cache].
-        no_cache: Measure every design anew, and keep nothing.
-        no_confirm: Leave out what confirms the recommendation: the best designs walked, and repeated at
-            their ends.
-        no_levers: Leave out what would help the finger more than its infill.
-        no_map: Leave out the maps of how insertions end over two errors of the start.
-        accept_changed: Go on with a study that was measured by another program version, engine setting or
-            input file, in a new segment; the best design is then taken from that.
-        simulations: Simulations per task that the emulator of a bench prediction is made of; one in eight
-            measures its error [default: 200, or as the study has it].
-        samples: Samples of a bench prediction's posterior [default: 300, or as the study has it].
+        no_cache: Measure every design again and store nothing.
+        no_confirm: Skip the confirmation of the best designs: walked step by step, and repeated at their
+            ends.
+        no_levers: Skip the one-at-a-time sensitivity analysis of the recommended finger (levers).
+        no_map: Skip the maps of outcomes over two errors of the start.
+        accept_changed: Continue a study of another program version, engine setting or input file in a new
+            segment; the best design is then taken from that segment.
+        simulations: Simulations per task for the emulator of a bench prediction; one in eight measures its
+            error [default: 200, or as in the study].
+        samples: Samples of the posterior of a bench prediction [default: 300, or as in the study].
 
     Raises:
         InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
@@ -110,10 +110,10 @@ def evaluate(
         cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
         stiffness_data: Your own stiffness measurements in place of the shipped ones.
         engine: Contact engine.
-        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
-            computed for a space with numbers of the printed finger].
-        finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
+        finger_model: Source of a finger's remote centre and unmeasured stiffnesses [default: paper;
+            computed for a space with parameters of the printed finger].
+        finger: Finger file for finger_model computed: finray9, or the path of a file.
+        start: How the nominal start is chosen [default: as in the task file].
         stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
         stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
         set: A number of the task or the finger, as in spaces/codesign.toml.
@@ -185,10 +185,10 @@ def trial(
         cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
         stiffness_data: Your own stiffness measurements in place of the shipped ones.
         engine: Contact engine.
-        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
-            computed for a space with numbers of the printed finger].
-        finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
+        finger_model: Source of a finger's remote centre and unmeasured stiffnesses [default: paper;
+            computed for a space with parameters of the printed finger].
+        finger: Finger file for finger_model computed: finray9, or the path of a file.
+        start: How the nominal start is chosen [default: as in the task file].
         stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
         stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
         set: A number of the task or the finger, as in spaces/codesign.toml.
@@ -202,7 +202,7 @@ def trial(
             `identify`.
         svg: Draw plug, fingertips and socket at the end of each phase.
         every_s: Simulated time between two samples of the time series in the JSON, s.
-        film: Give the page that plays it in the result.
+        film: Include the page that plays it in the result.
 
     Raises:
         InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
@@ -256,10 +256,10 @@ def capture_map(
         cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
         stiffness_data: Your own stiffness measurements in place of the shipped ones.
         engine: Contact engine.
-        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
-            computed for a space with numbers of the printed finger].
-        finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
+        finger_model: Source of a finger's remote centre and unmeasured stiffnesses [default: paper;
+            computed for a space with parameters of the printed finger].
+        finger: Finger file for finger_model computed: finray9, or the path of a file.
+        start: How the nominal start is chosen [default: as in the task file].
         stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
         stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
         set: A number of the task or the finger, as in spaces/codesign.toml.
@@ -369,10 +369,10 @@ def sensitivity(
         cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
         stiffness_data: Your own stiffness measurements in place of the shipped ones.
         engine: Contact engine.
-        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
-            computed for a space with numbers of the printed finger].
-        finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
+        finger_model: Source of a finger's remote centre and unmeasured stiffnesses [default: paper;
+            computed for a space with parameters of the printed finger].
+        finger: Finger file for finger_model computed: finray9, or the path of a file.
+        start: How the nominal start is chosen [default: as in the task file].
         objective: Measure to analyse.
         uncertainty: Errors of the cell to vary as well: typical, none, or the path of a file.
         samples: Rows of the sample; the number of evaluations is this times (inputs + 2).
@@ -421,10 +421,10 @@ def levers(
         cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
         stiffness_data: Your own stiffness measurements in place of the shipped ones.
         engine: Contact engine.
-        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
-            computed for a space with numbers of the printed finger].
-        finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
+        finger_model: Source of a finger's remote centre and unmeasured stiffnesses [default: paper;
+            computed for a space with parameters of the printed finger].
+        finger: Finger file for finger_model computed: finray9, or the path of a file.
+        start: How the nominal start is chosen [default: as in the task file].
         stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
         stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
         set: A number of the task or the finger, as in spaces/codesign.toml.
@@ -471,7 +471,7 @@ def calibrate(
     stiffness, and reports the accuracy: each measured finger is predicted without its measurement.
 
     Args:
-        measurements: What was measured on the bench: published, or the path of a file.
+        measurements: Bench measurements: published, or the path of a file.
         task: ket8, ket12, rj45, usb, or the path of a task file; several by commas [default: that of the
             measurements, if they are of one].
         space: Search space: infill, codesign, finger, or the path of a space file.
@@ -479,17 +479,17 @@ def calibrate(
         cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
         stiffness_data: Your own stiffness measurements in place of the shipped ones.
         engine: Contact engine.
-        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
-            computed for a space with numbers of the printed finger].
-        finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
-        priors: What nobody measured, and its bounds: bench, or the path of a file.
-        simulations: Simulations per task that the emulator of a bench prediction is made of; one in eight
-            measures its error [default: 200, or as the study has it].
-        samples: Samples of a bench prediction's posterior [default: 300, or as the study has it].
+        finger_model: Source of a finger's remote centre and unmeasured stiffnesses [default: paper;
+            computed for a space with parameters of the printed finger].
+        finger: Finger file for finger_model computed: finray9, or the path of a file.
+        start: How the nominal start is chosen [default: as in the task file].
+        priors: Priors of the parameters that were not measured: bench, or the path of a file.
+        simulations: Simulations per task for the emulator of a bench prediction; one in eight measures its
+            error [default: 200, or as in the study].
+        samples: Samples of the posterior of a bench prediction [default: 300, or as in the study].
         seed: Seed; the same seed gives the same answer.
         cache: Folder of simulations shared with studies; safe to delete [default: results/.cache].
-        no_cache: Simulate anew, and keep nothing.
+        no_cache: Simulate again and store nothing.
         out: Folder for the tables.
 
     Raises:
@@ -539,10 +539,10 @@ def identify(
         cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
         stiffness_data: Your own stiffness measurements in place of the shipped ones.
         engine: Contact engine.
-        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
-            computed for a space with numbers of the printed finger].
-        finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
+        finger_model: Source of a finger's remote centre and unmeasured stiffnesses [default: paper;
+            computed for a space with parameters of the printed finger].
+        finger: Finger file for finger_model computed: finray9, or the path of a file.
+        start: How the nominal start is chosen [default: as in the task file].
         frame: Task's frame in the robot's base: origin_mm, axis_angle_rad (as a pendant shows them),
             force_sign = 1 or -1, tool_mass_kg; optional: upright_axis_angle_rad of the TCP,
             gravity_compensated = false.
@@ -591,7 +591,7 @@ def next_print(
     measurements; the file of measurements may be empty or missing.
 
     Args:
-        measurements: What was measured on the bench: published, or the path of a file.
+        measurements: Bench measurements: published, or the path of a file.
         task: ket8, ket12, rj45, usb, or the path of a task file; several by commas [default: that of the
             measurements, if they are of one].
         space: Search space: infill, codesign, finger, or the path of a space file.
@@ -599,20 +599,20 @@ def next_print(
         cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
         stiffness_data: Your own stiffness measurements in place of the shipped ones.
         engine: Contact engine.
-        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
-            computed for a space with numbers of the printed finger].
-        finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
+        finger_model: Source of a finger's remote centre and unmeasured stiffnesses [default: paper;
+            computed for a space with parameters of the printed finger].
+        finger: Finger file for finger_model computed: finray9, or the path of a file.
+        start: How the nominal start is chosen [default: as in the task file].
         count: Number of fingers to print at a time.
         among: Fingers that may be printed.
         print_cost_mm: Smallest gain of range that is worth a print and its measurement, mm.
-        priors: What nobody measured, and its bounds: bench, or the path of a file.
-        simulations: Simulations per task that the emulator of a bench prediction is made of; one in eight
-            measures its error [default: 200, or as the study has it].
-        samples: Samples of a bench prediction's posterior [default: 300, or as the study has it].
+        priors: Priors of the parameters that were not measured: bench, or the path of a file.
+        simulations: Simulations per task for the emulator of a bench prediction; one in eight measures its
+            error [default: 200, or as in the study].
+        samples: Samples of the posterior of a bench prediction [default: 300, or as in the study].
         seed: Seed; the same seed gives the same answer.
         cache: Folder of simulations shared with studies; safe to delete [default: results/.cache].
-        no_cache: Simulate anew, and keep nothing.
+        no_cache: Simulate again and store nothing.
 
     Raises:
         InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
@@ -680,10 +680,10 @@ def export_mjcf(
         robot: see `optimize robots`, or the path of a robot file [default: servo].
         cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
         stiffness_data: Your own stiffness measurements in place of the shipped ones.
-        finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
-            computed for a space with numbers of the printed finger].
-        finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
+        finger_model: Source of a finger's remote centre and unmeasured stiffnesses [default: paper;
+            computed for a space with parameters of the printed finger].
+        finger: Finger file for finger_model computed: finray9, or the path of a file.
+        start: How the nominal start is chosen [default: as in the task file].
         stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
         stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
         set: A number of the task or the finger, as in spaces/codesign.toml.
@@ -724,7 +724,7 @@ def export_finger(
         density: Infill density, percent.
         direction: Infill direction, degrees.
         finger: finray9, or the path of a finger file [default: the study's, or finray9].
-        phase_mm: Where the first rib lies, mm [default: the finger file's].
+        phase_mm: Position of the first rib, mm [default: as in the finger file].
 
     Raises:
         InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.

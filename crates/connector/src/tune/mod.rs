@@ -54,7 +54,7 @@ pub enum Stage {
 pub struct Step {
     /// The stage that tried it.
     pub stage: Stage,
-    /// What it changes: `like a key`.
+    /// Name of the change: `like a key`.
     pub what: String,
     /// Result.
     pub tried: Tried,

@@ -9,7 +9,7 @@ use crate::outcome::Outcome;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// What a design has to reach, and which draws it meets first.
+/// Target of a design and the order of its draws.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Race {

@@ -80,7 +80,7 @@ fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
     assert_eq!(before["answer"]["verdict"], "measured_before", "{before}");
     let headline = before["answer"]["headline"].as_str().expect("words");
     assert!(headline.ends_with("you measured 9.9 mm"), "{headline}");
-    assert!(headline.contains(", printed already: "), "{headline}");
+    assert!(headline.contains(", which you have printed: "), "{headline}");
     let words = "printing another finger is worth it";
     assert!(before["answer"]["next"]["why"].as_str().is_some_and(|why| why.contains(words)));
     known["ranges"] = serde_json::json!([]);
@@ -99,7 +99,7 @@ fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
     assert!(places[0].is_some() && places[0] < places[1], "{places:?}");
     assert!(!folder.read("b/report.html").contains("for the bench</h2>"));
     let plain = folder.study("b", 12, &["--task", "ket8", "--verbose"]);
-    let order = "our validation ranked 11 printed fingers -0.62";
+    let order = "our validation ranked 11 printed fingers with Spearman";
     assert!(plain.succeeds().contains(order), "{}", plain.stdout);
 }
 
@@ -184,7 +184,7 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
     assert!(next.succeeds().starts_with(words), "{}", next.stdout);
     line(&format!("next {few} bench.csv")).fails(2, &["bench.csv: has no line", "give --task"]);
     line(&format!("calibrate --task ket8 {few} bench.csv")).fails(2, &["bench.csv: cannot read"]);
-    line(&format!("next --task ket8 {few} bensh")).fails(2, &["no measurement file"]);
+    line(&format!("next --task ket8 {few} bensh")).fails(2, &["unknown measurement file `bensh`"]);
     assert!(!folder.dir("bench.csv").exists());
     // The task is that of the lines, and its file that of the comment line.
     let own = include_str!("../tasks/ket8.toml").replace("\"ket8\"", "\"mine\"");

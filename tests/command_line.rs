@@ -288,7 +288,7 @@ fn a_co_design_study_names_its_parameters_everywhere() {
         }
     }
     // On the terminal by what they are, with their units.
-    for label in ["infill density", "rcc", "tilt", "side move y", "touch preload", "force"] {
+    for label in ["% infill at", "rcc", "tilt", "side move y", "touch preload", "force"] {
         assert!(text.succeeds().contains(label), "{label} is not in {}", text.stdout);
     }
     // The remote centre matters to the closed form, so equal infill is not enough.

@@ -257,8 +257,8 @@ fn several_tasks_are_evaluated_and_aggregated() {
         }
     }
     let page = report(&studies, "mean");
-    assert!(page.contains("Start along y on usb,") && page.contains("Start along y on far,"));
-    assert!(page.contains("mean, of values that are not scaled"));
+    assert!(page.contains("start along y on usb,") && page.contains("start along y on far,"));
+    assert!(page.contains("mean of unscaled values"));
     assert_eq!(column(&studies, "mean", "usb.range_mm").len(), 6);
     assert_ne!(column(&studies, "mean", "far.range_mm"), column(&studies, "mean", "usb.range_mm"));
     let more = ["--task", &tasks, "--optimizer", "sobol", "--json"];

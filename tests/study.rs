@@ -286,7 +286,7 @@ fn a_study_measured_with_other_settings_is_refused_unless_that_is_accepted() {
     studies.study("changed", BUDGET, &own).succeeds();
     studies.resume("changed").succeeds();
     let text = studies.study("changed", BUDGET, &own[..2]);
-    assert!(text.succeeds().contains("segment       2, from evaluation 12"), "{}", text.stdout);
+    assert!(text.succeeds().contains("segment       2, since evaluation 12"), "{}", text.stdout);
 }
 
 #[test]

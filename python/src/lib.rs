@@ -26,7 +26,7 @@ fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
 /// The commands of `optimize` with their options, as JSON.
 #[pyfunction]
 fn commands() -> String {
-    manual::commands(program::program()).to_string()
+    serde_json::json!(manual::commands(program::program())).to_string()
 }
 
 /// The extension module.

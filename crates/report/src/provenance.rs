@@ -13,12 +13,24 @@ use study::{Provenance, Recorded, StudyRecord};
 /// Key of the remote centre in a search space.
 const REMOTE_CENTRE_KEY: &str = "finger.rcc_mm";
 /// Lines of the recommended finger that other sections have.
-const ELSEWHERE: [&str; 7] =
-    ["best design", "firm range", "window", "from its ribs", "ties", "  softest", "  stiffest"];
+const ELSEWHERE: [&str; 9] = [
+    "best design",
+    "firm range",
+    "window",
+    "ends",
+    "from its ribs",
+    "ties",
+    "safe choice",
+    "  softest",
+    "  stiffest",
+];
 
 /// Returns how to read the results, their settings, and the command that reproduces them; folded.
 pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
-    let found = answer.recommended.iter().flat_map(|found| lines::recommended(answer, found));
+    // The first screen has no lines of a goal's value; with measurements they are in the second list.
+    let alone = answer.recommended.iter().filter(|_| answer.record.on_bench.is_none());
+    let all = answer.recommended.iter().flat_map(|found| lines::recommended(answer, found));
+    let found = alone.flat_map(|found| lines::simulated(answer, found)).chain(all);
     let found = found.filter(|_| answer.verdict.finger().is_some());
     let more: Vec<_> = found.filter(|(name, _)| !ELSEWHERE.contains(&name.as_str())).collect();
     html! {

@@ -49,7 +49,7 @@ fn simulated_finger<'a, 'b>(answer: &'b Answer<'a>) -> Option<&'b Recommended<'a
 }
 
 /// Returns the ends of the windows of a recommended design, its constraints and its ties.
-fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
+pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
     let of_task = |task: &OnTask| {
         let window = &task.measured.window;
         let [below, above] = [window.end_negative, window.end_positive].map(words::end);

@@ -85,3 +85,50 @@ fn a_bad_log_is_named_and_nothing_is_written() {
     optimize_line(&identify).fails(2, &["30-1.csv: line 100: target_z_mm", "is no finite number"]);
     assert!(!folder.dir("cell.toml").exists() && !folder.dir("page.html").exists());
 }
+
+/// The text of a log with the columns of these names multiplied.
+fn scaled(log: &str, names: &[&str], by: f64) -> String {
+    let (header, rows) = log.split_once('\n').unwrap();
+    let columns: Vec<&str> = header.split(',').collect();
+    let row = |line: &str| {
+        let cells = columns.iter().zip(line.split(',')).map(|(name, cell)| {
+            let value: f64 = cell.parse().unwrap();
+            (if names.contains(name) { by * value } else { value }).to_string()
+        });
+        cells.collect::<Vec<_>>().join(",")
+    };
+    let rows: Vec<String> = rows.lines().map(row).collect();
+    format!("{header}\n{}\n", rows.join("\n"))
+}
+
+#[test]
+fn a_fault_of_the_columns_is_a_remark_and_logs_that_tell_nothing_are_an_error() {
+    let folder = Studies::new();
+    logged(&folder);
+    let log = folder.read("30-1.csv");
+    let header = "log,infill_density_percent,infill_direction_deg,offset_mm,outcome";
+    let runs = folder.file("one.csv", format!("{header}\na.csv,30,0,0,inserted\n"));
+    let (head, _) = FEW.rsplit_once("[[parameter]]").unwrap();
+    let (priors, cell) = (folder.file("one.toml", head), folder.word("cell.toml"));
+    let identify = format!("identify --task usb --runs {runs} --priors {priors} --robot servo");
+    let forces = ["fx_n", "fy_n", "fz_n"];
+    let targets = ["target_x_mm", "target_y_mm", "target_z_mm"];
+    for (names, by, cause) in [
+        (&forces, 10.0, "the forces look too large"),
+        (&targets, 1e-3, "the commanded positions look like metres"),
+    ] {
+        folder.file("a.csv", scaled(&log, names, by));
+        let found = optimize_line(&format!("{identify} --json")).json();
+        let of = |remark: &Value| remark["serious"] == true && remark.to_string().contains(cause);
+        assert!(found["remarks"].as_array().unwrap().iter().any(of), "{cause}: {found}");
+        let text = optimize_line(&identify);
+        let text = text.succeeds().split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(text.contains(cause), "{cause}: {text}");
+    }
+    for (by, cause) in [(-1.0, "`force_sign`"), (1.0 / 9.80665, "another unit than newtons")] {
+        folder.file("a.csv", scaled(&log, &forces, by));
+        let nothing = "these logs tell nothing of the cell";
+        optimize_line(&format!("{identify} --out {cell}")).fails(1, &[nothing, cause]);
+        assert!(!folder.dir("cell.toml").exists());
+    }
+}

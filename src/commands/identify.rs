@@ -8,7 +8,7 @@ use crate::setup::Setup;
 use crate::setup::bench::DEFAULT_PRIORS;
 use crate::setup::files::find;
 use crate::setup::request::SetupRequest;
-use calibration::identify::check::{Remark, remarks};
+use calibration::identify::check::Remark;
 use calibration::identify::frame::Frame;
 use calibration::identify::question::{Identified, IdentifyDone, Question};
 use calibration::identify::runs;
@@ -22,6 +22,9 @@ use serde::{Serialize, Serializer};
 use std::fmt;
 use std::path::PathBuf;
 use study::write_file;
+
+/// Most remarks in the text of an error.
+const SHOWN: usize = 5;
 
 /// Identify the parameters of a cell from the robot's logs: friction, stiffness, preload, pads, edges
 ///
@@ -82,8 +85,6 @@ impl command::Request for Request {
         });
         let frame = frame.transpose()?;
         let runs = runs::read(&self.runs, frame.as_ref()).map_err(Failure::input)?;
-        let remarks: Vec<Remark> =
-            runs.iter().flat_map(|run| remarks(run, &template.task)).collect();
         let question = Question {
             evaluator: &setup.evaluator,
             template,
@@ -93,8 +94,13 @@ impl command::Request for Request {
             seed: self.seed,
             stop,
         };
+        let remarks = question.remarks(&self.runs.to_string_lossy()).map_err(Failure::input)?;
         let found = question.answer().map_err(Failure::input)?;
         not_stopped(stop)?;
+        // Curves that were compared are shown all the same, but make no cell.
+        if !found.is_informative() && (self.out.is_some() || found.compared.is_empty()) {
+            return Err(nothing_learnt(&remarks));
+        }
         let cell = cell(&setup, &found, runs.len()).checked("the cell").map_err(Failure::input)?;
         let done = IdentifyDone { task: template.task.name.clone(), remarks, found, cell };
         if let Some(path) = &self.out {
@@ -125,6 +131,13 @@ impl fmt::Display for Done {
         let text = layout::wrapped(&shown::text(&self.done));
         write!(f, "{text}{}", layout::wrote(&self.written))
     }
+}
+
+/// Returns the error for logs that determine nothing of their cell, with their serious remarks.
+fn nothing_learnt(remarks: &[Remark]) -> Failure {
+    let serious = remarks.iter().filter(|remark| remark.serious).take(SHOWN);
+    let lines: String = serious.map(|remark| format!("\n{remark}")).collect();
+    Failure::running(format!("these logs tell nothing of the cell; no cell is written{lines}"))
 }
 
 /// Returns the identified cell as a cell file.

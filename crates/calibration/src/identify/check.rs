@@ -1,5 +1,6 @@
 //! Faults of a log, as sentences for its author, before anything is fitted to it.
 
+use super::axes::{cause, motion};
 use super::log::{Ended, Log, Moment, Run};
 use super::read::median_gap;
 use super::touch::{Air, after, air, any_touch, mean, touch};
@@ -16,15 +17,20 @@ const STEP: f64 = 5.0;
 /// So many moments alike at the largest force, N, beyond the bias are a saturated sensor.
 const SATURATED: (usize, f64) = (10, 10.0);
 /// Bias, N, and its slope, N/s, that are worth a word.
-const DRIFT: (f64, f64) = (3.0, 2.0);
+const DRIFT: (f64, f64) = (5.0, 7.0);
 /// Farthest first position from the task's start, m.
 const ASTRAY: f64 = 30.0 * MM;
 /// Largest difference of the tilt from the task's, rad.
 const TILTED: f64 = 2.0 * DEG;
 /// A pose within the first, m, while the target moves by the second, stands still.
 const STILL: (f64, f64) = (1e-6, 1e-3);
-/// Time after a touch over which its force is averaged, s.
-const TOUCH_S: f64 = 0.02;
+/// Time after a touch over which its force is averaged, s: a soft robot swings at first.
+const TOUCH_S: [f64; 2] = [0.02, 0.5];
+/// Least force of a contact, N.
+const LEAST_N: f64 = 1.0;
+/// Ratio of the measured to the simulated forces beyond which they are in another unit: fingers and their friction
+/// differ by less.
+const SCALED: f64 = 3.0;
 
 /// Something about a log that a person should know.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -53,14 +59,19 @@ impl std::fmt::Display for Remark {
 }
 
 /// Faults of one log.
-struct Remarks<'a> {
-    log: &'a Log,
+pub(super) struct Remarks<'a> {
+    pub(super) log: &'a Log,
     found: Vec<Remark>,
 }
 
 impl Remarks<'_> {
     /// Says something of the moments between two indices.
-    fn say(&mut self, serious: bool, between: Option<[usize; 2]>, text: impl Into<String>) {
+    pub(super) fn say(
+        &mut self,
+        serious: bool,
+        between: Option<[usize; 2]>,
+        text: impl Into<String>,
+    ) {
         let last = self.log.moments.len() - 1;
         let lines = between.map(|ends| ends.map(|at| self.log.moments[at.min(last)].line));
         self.found.push(Remark { file: self.log.file.clone(), lines, text: text.into(), serious });
@@ -74,10 +85,23 @@ pub fn remarks(run: &Run, task: &Task) -> Vec<Remark> {
     pose(&mut remarks, run, task);
     let touched = contact(&mut remarks);
     sensor(&mut remarks, touched);
+    motion(&mut remarks, run, task, touched);
     if let Some(touched) = touched {
         phases(&mut remarks, run, task, touched);
     }
     remarks.found
+}
+
+/// Returns a remark on forces in another unit: `ratio` is that of the measured ones to those with which the
+/// fingers push along the measured path; `file` has the runs.
+pub(super) fn force_scale(file: &str, ratio: f64) -> Option<Remark> {
+    let factor = ratio.max(1.0 / ratio);
+    let [size, times] = if ratio < 1.0 { ["small", "less"] } else { ["large", "more"] };
+    let text = format!(
+        "the forces look too {size}, {factor:.1} times {times} than the finger makes along the measured path: check \
+         their unit (1 kgf is 9.8 N, 1 lbf is 4.4 N), or the scale of the sensor"
+    );
+    (factor > SCALED).then(|| Remark { file: file.to_owned(), lines: None, text, serious: true })
 }
 
 /// Sampling rate and steps of the clock.
@@ -113,11 +137,11 @@ fn pose(remarks: &mut Remarks<'_>, run: &Run, task: &Task) {
     let probe = run.ended == Ended::Probe;
     if far > ASTRAY {
         let text = format!(
-            "it begins at ({}) mm, {:.0} mm from the start of the task and offset, ({}) mm: check \
-             frame and units",
+            "it begins at ({}) mm, {:.0} mm from the start of the task and offset, ({}) mm: {}",
             shown(first.position / MM, 1),
             far / MM,
-            shown(start / MM, 1)
+            shown(start / MM, 1),
+            cause(first.position, start)
         );
         remarks.say(!probe, Some([0, 0]), text);
     }
@@ -165,15 +189,18 @@ fn standstill(moments: &[Moment]) -> Option<[usize; 2]> {
 /// Whether and how it touches: index of the touch, if its direction is right.
 fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
     let log = remarks.log;
-    let Some(any) = any_touch(log) else {
+    let push = |from: usize| {
+        let to = after(log, from, TOUCH_S[1]);
+        let contact = &log.moments[after(log, from, TOUCH_S[0]).min(to - 1)..to];
+        let force = mean(contact) - Air::of(air(log, Some(from))).bias;
+        (force.norm() > LEAST_N).then_some(([from, to], force))
+    };
+    let Some(([from, to], force)) = any_touch(log).and_then(push) else {
         let text = "nothing is touched: the force never leaves the noise of the air for good; the \
-                    log has only the approach, or no force";
+                    log has only the approach, no force, or one in another unit than newtons";
         remarks.say(true, None, text);
         return None;
     };
-    let [from, to] = [any, after(log, any, 3.0 * TOUCH_S)];
-    let force = mean(&log.moments[after(log, any, TOUCH_S).min(to - 1)..to])
-        - Air::of(air(log, Some(any))).bias;
     let [x, y, z]: [f64; 3] = force.abs().into();
     let words = format!("the force on the tool becomes ({}) N", shown(force, 1));
     if z >= x.max(y) && force.z < 0.0 {
@@ -186,7 +213,7 @@ fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
         let along = if x > y { "x" } else { "y" };
         let text = format!(
             "at the touch {words}: the frame looks turned, since the force is along {along} and not \
-             along z; check `axis_angle_rad`"
+             along z; check `axis_angle_rad`, or whether f{along}_n and fz_n are swapped"
         );
         remarks.say(true, Some([from, to]), text);
     } else {

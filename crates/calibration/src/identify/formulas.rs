@@ -57,6 +57,17 @@ pub fn flange(all: &[Curves], axis: usize) -> Option<Flange> {
     })
 }
 
+/// Returns the share of the variance of the force that springs of the robot explain, summed over the axes of the
+/// tool; an axis along which the robot gives way against the force counts below 0.
+pub(super) fn explained(all: &[Curves]) -> f64 {
+    let all: Vec<Curves> = all.iter().map(Curves::in_tool).collect();
+    let along = |axis: usize| {
+        let sums: Vec<Sums> = all.iter().filter_map(|one| Sums::of(one, axis, 0)).collect();
+        solve(sums.iter()).map_or(0.0, |fit| fit.explained.copysign(fit.terms[0]))
+    };
+    (0..3).map(along).sum()
+}
+
 /// A column less its line: the bias of the sensor, and its drift.
 fn level(column: DVector<f64>) -> DVector<f64> {
     let count = column.len() as f64;

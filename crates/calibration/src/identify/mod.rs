@@ -4,8 +4,9 @@
 //! 2. `frame`: the task's frame in the robot's base, and what its force means.
 //! 3. `runs`: which finger, offset and outcome belong to which log.
 //! 4. `touch`: where the tool touches, and the force before.
-//! 5. `check`: what is wrong with a log, before anything is fitted to it.
+//! 5. `check`: what is wrong with a log, before anything is fitted to it; `axes`: whether its columns agree.
 
+mod axes;
 pub mod check;
 pub mod curves;
 #[cfg(any(test, feature = "fixtures"))]

@@ -1,6 +1,7 @@
 //! From the logs of attempts to the numbers of their cell.
 
-use super::check::Remark;
+use super::axes::{slides, springs};
+use super::check::{self, Remark};
 use super::curves::Curves;
 use super::flange;
 use super::formulas::{self, Flange, Friction};
@@ -9,13 +10,13 @@ use super::replay::{Logged, Replay};
 use super::smoother::{Datum, Predicted, Settings, Smoothed, smooth};
 use super::touch::bias;
 use super::unknown::{From, Unknown, advice, fit, not_fitted, told, untold, values, with};
-use ask_tell::statistics::{Moments, mean};
+use ask_tell::statistics::{Moments, mean, median};
 use input::units::MM;
 use insertion::evaluation::cell::Priors;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::template::{Impossible, Template};
 use insertion::outcome::Outcome;
-use insertion::robot::Robot;
+use insertion::robot::{Drive, Robot};
 use insertion::surrogate::Estimate;
 use parameters::numbers::{FLANGE, FRICTION, Kind};
 use parameters::{Parameter, Scale, Transform};
@@ -63,6 +64,14 @@ pub struct Identified {
     pub compared: Vec<Compared>,
 }
 
+impl Identified {
+    /// Returns whether the logs tell anything of the cell.
+    pub fn is_informative(&self) -> bool {
+        let told = |one: &Unknown| matches!(one.from, From::Formula | From::Fit);
+        self.unknowns.iter().any(told) || self.flange.iter().any(Option::is_some)
+    }
+}
+
 /// The logs of one cell, what was noticed in them, and what they say.
 pub struct IdentifyDone {
     /// Name of the task.
@@ -76,12 +85,65 @@ pub struct IdentifyDone {
 }
 
 impl Question<'_> {
+    /// Returns what is wrong with the logs, one by one and together; `file` has the runs.
+    ///
+    /// # Errors
+    /// If a log's finger cannot be simulated.
+    pub fn remarks(&self, file: &str) -> Result<Vec<Remark>, Impossible> {
+        let mut found: Vec<Remark> =
+            self.runs.iter().flat_map(|run| check::remarks(run, &self.template.task)).collect();
+        found.extend(self.probes().iter().filter_map(slides));
+        let attempts = self.attempts();
+        let wrong =
+            |one: &Logged| found.iter().any(|remark| remark.serious && remark.file == one.file);
+        // Motion and force of a log that is wrong by itself tell nothing together.
+        if !attempts.iter().any(wrong) {
+            let curves: Vec<Curves> = attempts.iter().map(|one| one.curves.clone()).collect();
+            found.extend(springs(file, &curves));
+            let ratio = self.force_scale(&attempts)?;
+            found.extend(ratio.and_then(|ratio| check::force_scale(file, ratio)));
+        }
+        Ok(found)
+    }
+
+    fn attempts(&self) -> Vec<Logged> {
+        chosen(self.runs.iter().filter_map(Logged::new).collect())
+    }
+
+    /// Returns the measured forces over those with which the fingers push along the measured path, median over
+    /// the attempts: nothing of the robot is in it, whose stiffness would make up for a unit.
+    fn force_scale(&self, attempts: &[Logged]) -> Result<Option<f64>, Impossible> {
+        let own = &self.evaluator.robot;
+        let rigid = Robot { drive: Drive::Ideal, stop_force: f64::MAX, ..own.clone() };
+        let along: Vec<Logged> = attempts.iter().filter_map(Logged::along_measured).collect();
+        let replayed = self.replay(&rigid).curves(&along, &[])?;
+        let ratio = |(logged, (curves, _)): (&Logged, &(Curves, Outcome))| {
+            let [measured, made] = [&logged.curves.force, &curves.force].map(|forces| {
+                let both = logged.curves.force.len().min(curves.force.len());
+                let touched = forces.get(logged.touch..both).unwrap_or_default();
+                touched.iter().map(|force| force.norm_squared()).sum::<f64>()
+            });
+            (measured / made).sqrt()
+        };
+        Ok(median(along.iter().zip(&replayed).map(ratio).filter(|ratio| ratio.is_normal())))
+    }
+
+    fn replay<'a>(&'a self, robot: &'a Robot) -> Replay<'a> {
+        Replay {
+            evaluator: self.evaluator,
+            robot,
+            template: self.template,
+            tool_mass: self.tool_mass,
+            stop: self.stop,
+        }
+    }
+
     /// Reads what formulas tell, and fits the rest.
     ///
     /// # Errors
     /// If a prior sets what cannot be.
     pub fn answer(&self) -> Result<Identified, Impossible> {
-        let attempts = chosen(self.runs.iter().filter_map(Logged::new).collect());
+        let attempts = self.attempts();
         let curves: Vec<Curves> = attempts.iter().map(|one| one.curves.clone()).collect();
         let flange = [0, 1, 2].map(|axis| formulas::flange(&curves, axis));
         let probes = self.probes();
@@ -98,13 +160,7 @@ impl Question<'_> {
                 (known, false) => fitted.push((prior, known)),
             }
         }
-        let replay = Replay {
-            evaluator: self.evaluator,
-            robot: &robot,
-            template: self.template,
-            tool_mass: self.tool_mass,
-            stop: self.stop,
-        };
+        let replay = self.replay(&robot);
         let rows: Vec<&Parameter> =
             fitted.iter().map(|(prior, known)| known.as_ref().unwrap_or(prior)).collect();
         let smoothed = self.smoothed(&replay, &attempts, &rows)?;
@@ -216,6 +272,9 @@ impl Question<'_> {
                 probes.iter().filter_map(|(_, found)| found.coefficient).collect();
             let sd = mean(said.iter().map(|one| one.sd))?;
             let means = Moments::of(said.iter().map(|one| one.mean));
+            if means.mean <= 0.0 {
+                return None;
+            }
             return Some(with(
                 prior,
                 means.mean,

@@ -77,6 +77,12 @@ impl Logged {
         })
     }
 
+    /// The same attempt with the measured path of the TCP as the commanded one.
+    pub fn along_measured(&self) -> Option<Self> {
+        let curves = Curves { target: None, ..self.curves.clone() };
+        Some(Logged { path: curves.path()?, curves, ..self.clone() })
+    }
+
     /// The points of each datum.
     fn bins(&self) -> impl Iterator<Item = Range<usize>> + '_ {
         let bins = (self.curves.tcp.len() - self.touch.min(self.curves.tcp.len())) / POINTS;

@@ -1,0 +1,290 @@
+//! Faulty logs of hidden cells: each fault draws a remark with its likely cause, and clean logs draw none.
+
+use ask_tell::normal::StandardNormal;
+use ask_tell::stream::stream;
+use calibration::identify::log::{Ended, Log, Run, of_samples};
+use calibration::identify::question::Question;
+use calibration::identify::read;
+use finray::printed::PrintedFinger;
+use input::shipped::{FINGERS, PRIORS, ROBOTS, STIFFNESS, TASKS};
+use input::units::MM;
+use insertion::evaluation::cell::Priors;
+use insertion::evaluation::evaluator::Evaluator;
+use insertion::evaluation::template::Template;
+use insertion::finger::model::FingerSource;
+use insertion::outcome::Outcome;
+use insertion::robot::Robot;
+use insertion::space::Design;
+use insertion::trial::engine::EngineKind;
+use insertion::trial::{Course, Grasp, NEVER, Probe};
+use insertion::{stiffness, surrogate};
+use nalgebra::Vector3;
+use rand::RngExt;
+use rayon::prelude::*;
+
+/// Numbers of a cell and starts of its attempts, from the table of the reference.
+const CELLS: &str = include_str!("../../../results/reference/identify/truth.csv");
+/// What is drawn, as in the reference, and its column there.
+const HIDDEN: [(&str, &str); 5] = [
+    ("friction plug-socket", "friction_plug_socket"),
+    ("stiffness of the flange", "flange_stiffness_factor"),
+    ("preload", "preload_mm"),
+    ("torsion of the pad", "pad_torsion_mm"),
+    ("radius of the edges", "edge_radius_mm"),
+];
+
+/// Time between two moments, s.
+const EVERY_S: f64 = 2e-3;
+/// Mass of what hangs on the sensor, kg.
+const TOOL_KG: f64 = 1.0;
+
+/// A log as a table: a row for each moment.
+type Table = Vec<Vec<f64>>;
+
+/// A recorded attempt or probe.
+struct Recorded {
+    design: Design,
+    offset_mm: f64,
+    ended: Ended,
+    text: String,
+}
+
+fn evaluator() -> Evaluator {
+    let of = |list: &[input::shipped::Shipped], name: &str| {
+        let file = list.iter().find(|file| file.name == name).unwrap();
+        (file.text, file.file)
+    };
+    let measured = stiffness::parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap();
+    let printed = PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
+    let template = |name: &str| {
+        let (text, file) = of(TASKS, name);
+        Template::parse(text, file).unwrap()
+    };
+    let (text, file) = of(ROBOTS, "servo");
+    Evaluator {
+        surrogate: surrogate::fit(&measured, &printed).unwrap().into(),
+        fingers: FingerSource::Paper,
+        templates: vec![template("usb"), template("ket8")],
+        robot: Robot::parse(text, file).unwrap(),
+        engine: EngineKind::Direct,
+        cell: None,
+    }
+}
+
+fn bench() -> Priors {
+    Priors::parse(PRIORS[0].text, PRIORS[0].file).unwrap()
+}
+
+fn template(evaluator: &Evaluator, cell: u64) -> &Template {
+    &evaluator.templates[(cell + 1) as usize % 2]
+}
+
+/// The logs of a cell: a probe and three attempts of each of two fingers, as a sensor with noise, bias and
+/// drift shows them that carries 1 kg.
+fn recorded(evaluator: &Evaluator, cell: u64) -> Vec<Recorded> {
+    let (template, priors) = (template(evaluator, cell), bench());
+    let mut lines = CELLS.lines();
+    let columns: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    let mut all: Vec<Recorded> = Vec::new();
+    for design in [[10.0, 0.0], [30.0, 0.0]] {
+        let at = |row: &[&str], name: &str| -> f64 {
+            row[columns.iter().position(|column| *column == name).unwrap()].parse().unwrap()
+        };
+        let is = |row: &&Vec<&str>| {
+            at(row, "cell") == cell as f64
+                && at(row, "infill_density_percent") == design[0]
+                && at(row, "infill_direction_deg") == design[1]
+        };
+        let row = rows.iter().find(is).unwrap();
+        let values: Vec<_> = HIDDEN
+            .iter()
+            .map(|(name, column)| {
+                let parameter = priors.parameters.iter().find(|one| one.name == *name).unwrap();
+                let own = template.numbers.number(&parameter.path).unwrap_or(1.0);
+                (parameter, at(row, column) / own)
+            })
+            .collect();
+        let infill = Design::infill(design[0], design[1]);
+        let (specimen, robot) = evaluator.under(template, (&infill, None), &values).unwrap();
+        let rig = evaluator.engine.rig(&specimen.task, &robot, &specimen.finger, 1.0).unwrap();
+        let grasp = Grasp::of(&specimen.finger);
+        let mm = |column: &str| at(row, &format!("direct_{column}_mm"));
+        let starts = [mm("start"), mm("negative") + 0.2, mm("positive") + 0.2];
+        for start in [None].into_iter().chain(starts.map(Some)) {
+            let (ended, samples) = match start {
+                None => {
+                    let probe = rig.follow(grasp, Course::Probe(Probe::USUAL), EVERY_S).remove(0);
+                    (Ended::Probe, probe.1)
+                }
+                Some(mm) => {
+                    let (trial, samples) = rig.hold(grasp).logged(mm * MM, EVERY_S);
+                    let ended = match trial.outcome {
+                        Outcome::Failed(class) => Ended::Failed(class),
+                        _ => Ended::Inserted,
+                    };
+                    (ended, samples)
+                }
+            };
+            let mut log = of_samples("a.csv", &samples).unwrap();
+            sense(&mut log, cell, all.len() as u64);
+            let (design, offset_mm) = (infill.clone(), start.unwrap_or(0.0));
+            all.push(Recorded { design, offset_mm, ended, text: log.csv() });
+        }
+    }
+    all
+}
+
+/// Adds what the sensor carries, its noise, bias and drift.
+fn sense(log: &mut Log, cell: u64, number: u64) {
+    let mut random = stream(cell, number, "sensor");
+    let mut normal =
+        |sd: f64| Vector3::from_fn(|_, _| sd * random.sample::<f64, _>(StandardNormal));
+    let (bias, drift) = (normal(1.0), normal(1.0));
+    let last = log.moments.len() - 1;
+    let rates = |of: Vec<Vector3<f64>>| -> Vec<Vector3<f64>> {
+        let rate = |i: usize| {
+            let (a, b) = (i.saturating_sub(1), (i + 1).min(last));
+            (of[b] - of[a]) / ((b - a) as f64 * EVERY_S)
+        };
+        (0..=last).map(rate).collect()
+    };
+    let accelerations = rates(rates(log.moments.iter().map(|moment| moment.position).collect()));
+    for (i, moment) in log.moments.iter_mut().enumerate() {
+        let share = i as f64 / last as f64;
+        moment.force += bias + share * drift + normal(0.5) - TOOL_KG * accelerations[i];
+    }
+}
+
+/// Changes a log's table; the columns are t, x, y, z, tilt, fx, fy, fz, target x, y and z.
+type Change = fn(&mut Table);
+
+fn scaled(table: &mut Table, columns: &[usize], by: f64) {
+    table.iter_mut().for_each(|row| columns.iter().for_each(|&column| row[column] *= by));
+}
+
+fn swapped(table: &mut Table, pairs: &[[usize; 2]]) {
+    table.iter_mut().for_each(|row| pairs.iter().for_each(|&[a, b]| row.swap(a, b)));
+}
+
+/// A fault, and words of a remark or an error with its likely cause, of which one is enough.
+const FAULTS: [(&str, Change, &[&str]); 26] = [
+    (
+        "targets in metres",
+        |t| scaled(t, &[8, 9, 10], 1e-3),
+        &["the commanded positions look like metres"],
+    ),
+    ("positions in metres", |t| scaled(t, &[1, 2, 3], 1e-3), &["look like metres"]),
+    ("all positions in metres", |t| scaled(t, &[1, 2, 3, 8, 9, 10], 1e-3), &["look like metres"]),
+    (
+        "kgf",
+        |t| scaled(t, &[5, 6, 7], 1.0 / 9.80665),
+        &["the forces look too small", "in another unit than newtons"],
+    ),
+    (
+        "force / 10",
+        |t| scaled(t, &[5, 6, 7], 0.1),
+        &["the forces look too small", "in another unit than newtons"],
+    ),
+    ("force * 10", |t| scaled(t, &[5, 6, 7], 10.0), &["the forces look too large"]),
+    ("mN", |t| scaled(t, &[5, 6, 7], 1e3), &["millinewtons", "too large"]),
+    ("force upside down", |t| scaled(t, &[5, 6, 7], -1.0), &["force_sign"]),
+    ("fx <-> fy", |t| swapped(t, &[[5, 6]]), &["fx_n and fy_n look swapped"]),
+    ("fx <-> fz", |t| swapped(t, &[[5, 7]]), &["fx_n and fz_n are swapped"]),
+    ("fy <-> fz", |t| swapped(t, &[[6, 7]]), &["fy_n and fz_n are swapped"]),
+    ("fx mirrored", |t| scaled(t, &[5], -1.0), &["x_mm or fx_n looks mirrored"]),
+    ("fy mirrored", |t| scaled(t, &[6], -1.0), &["y_mm or fy_n looks mirrored"]),
+    (
+        "fx and fy mirrored",
+        |t| scaled(t, &[5, 6], -1.0),
+        &["positions look mirrored against the force"],
+    ),
+    ("x <-> y", |t| swapped(t, &[[1, 2], [8, 9]]), &["x and y look swapped"]),
+    ("x <-> z", |t| swapped(t, &[[1, 3], [8, 10]]), &["x and z look swapped"]),
+    ("y <-> z", |t| swapped(t, &[[2, 3], [9, 10]]), &["y and z look swapped"]),
+    ("measured x <-> y", |t| swapped(t, &[[1, 2]]), &["x and y look swapped"]),
+    (
+        "measured and commanded swapped",
+        |t| swapped(t, &[[1, 8], [2, 9], [3, 10]]),
+        &["measured and commanded positions look swapped"],
+    ),
+    ("x mirrored", |t| scaled(t, &[1, 8], -1.0), &["x looks mirrored"]),
+    ("y mirrored", |t| scaled(t, &[2, 9], -1.0), &["y looks mirrored"]),
+    ("z mirrored", |t| scaled(t, &[3, 10], -1.0), &["z looks mirrored"]),
+    ("measured x mirrored", |t| scaled(t, &[1], -1.0), &["x looks mirrored"]),
+    ("measured y mirrored", |t| scaled(t, &[2], -1.0), &["y looks mirrored"]),
+    ("pose against force", |t| scaled(t, &[1, 2, 8, 9], -1.0), &["x and y look mirrored"]),
+    (
+        "two attempts",
+        |t| {
+            let first = t.clone();
+            let last = first[first.len() - 1][0] + 0.002;
+            t.extend(first.into_iter().map(|mut row| {
+                row[0] += last;
+                row
+            }));
+        },
+        &["two attempts"],
+    ),
+];
+
+/// Remarks on the logs after a change, or the error.
+fn said(
+    evaluator: &Evaluator,
+    cell: u64,
+    logs: &[Recorded],
+    change: Change,
+) -> Result<Vec<String>, String> {
+    let run = |(i, one): (usize, &Recorded)| {
+        let (header, rows) = one.text.split_once('\n').unwrap();
+        let row = |line: &str| line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        let mut table: Table = rows.lines().map(row).collect();
+        change(&mut table);
+        let line = |row: &Vec<f64>| row.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+        let text = [header.to_owned()]
+            .into_iter()
+            .chain(table.iter().map(line))
+            .collect::<Vec<_>>()
+            .join("\n");
+        let log =
+            read::parse(&text, &format!("{i}.csv"), None).map_err(|fault| fault.to_string())?;
+        let design = one.design.clone();
+        Ok(Run { log, design, offset: one.offset_mm * MM, ended: one.ended, line: 2 })
+    };
+    let runs = logs.iter().enumerate().map(run).collect::<Result<Vec<_>, String>>()?;
+    let question = Question {
+        evaluator,
+        template: template(evaluator, cell),
+        priors: &bench(),
+        runs: &runs,
+        tool_mass: TOOL_KG,
+        seed: 0,
+        stop: &NEVER,
+    };
+    Ok(question.remarks("runs.csv").unwrap().iter().map(|remark| remark.to_string()).collect())
+}
+
+#[test]
+fn clean_logs_draw_no_remark() {
+    let evaluator = evaluator();
+    (1..=20).into_par_iter().for_each(|cell| {
+        let found = said(&evaluator, cell, &recorded(&evaluator, cell), |_| ());
+        assert_eq!(found, Ok(Vec::new()), "cell {cell}");
+    });
+}
+
+#[test]
+fn each_fault_draws_its_likely_cause_in_nine_of_ten_cells() {
+    let evaluator = evaluator();
+    let cells: Vec<_> =
+        (1..=10).into_par_iter().map(|cell| (cell, recorded(&evaluator, cell))).collect();
+    FAULTS.into_par_iter().for_each(|(fault, change, causes)| {
+        let missed = cells.iter().filter_map(|(cell, logs)| {
+            let found = said(&evaluator, *cell, logs, change).unwrap_or_else(|error| vec![error]);
+            let told = |text: &String| causes.iter().any(|cause| text.contains(cause));
+            (!found.iter().any(told)).then_some((cell, found))
+        });
+        let missed: Vec<_> = missed.collect();
+        assert!(missed.len() <= 1, "{fault}: {missed:#?}");
+    });
+}

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""Measures other optimizers on the problems of `optimize bench optimizers`.
+"""Measures other optimizers on the problems of `lab/src/bin/optimizers.rs`.
 
     python3 -m venv venv
     venv/bin/pip install cma==4.5.0 optuna==5.0.0 botorch==0.18.1 torch==2.15.0 scipy==1.17.1
     venv/bin/python scripts/peers.py run pycma --csv pycma.csv
     venv/bin/python scripts/peers.py run tpe gpsampler botorch --csv peers.csv \\
         --landscape results/reference/landscapes/{usb,ket8,ket12,rj45}.csv
-    target/release/optimize bench optimizers --csv ours.csv
-    venv/bin/python scripts/peers.py ratios ours.csv pycma.csv peers.csv
+    scripts/reference.sh optimizers
+    venv/bin/python scripts/peers.py ratios results/reference/optimizers/ours.csv pycma.csv peers.csv
 
 `run` prints a line per problem and appends every run to the CSV (with the columns of
-`optimize bench optimizers --csv`); `ratios` prints Markdown. pycma needs neither
+`ours.csv`); `ratios` prints Markdown. pycma needs neither
 optuna nor torch, tpe needs no torch.
 """
 import argparse

@@ -16,6 +16,8 @@ parts="stiffness finger shapes bench levers check windows validation validation-
 cargo build --release
 optimize=${OPTIMIZE:-target/release/optimize}
 lab=${LAB:-target/release/lab}
+# The plain programs of lab/src/bin.
+programs=$(dirname "$lab")
 reference=results/reference
 # The landscapes for comparing optimizers.
 recorded="usb ket8 ket12 rj45 finger6 codesign6"
@@ -228,15 +230,13 @@ instructions() {
 optimizers() {
     local folder="$reference/optimizers" landscapes=() task
     for task in $recorded; do
-        landscapes+=(--landscape "$reference/landscapes/$task.csv")
+        landscapes+=("$reference/landscapes/$task.csv")
     done
-    "$lab" optimizers --functions branin,hartmann6 --optimizers gp \
-        --csv "$work/functions.csv"
-    "$lab" optimizers --functions rastrigin --optimizers cma-es --seeds 400 \
-        --csv "$work/rastrigin.csv"
-    "$lab" optimizers "${landscapes[@]}" --csv "$work/landscapes.csv"
-    { cat "$work/functions.csv"; sed 1d "$work/rastrigin.csv"; sed 1d "$work/landscapes.csv"; } \
-        > "$folder/ours.csv"
+    {
+        "$programs/optimizers" --optimizers gp branin hartmann6
+        "$programs/optimizers" --seeds 400 rastrigin | sed 1d
+        "$programs/optimizers" "${landscapes[@]}" | sed 1d
+    } > "$folder/ours.csv"
     record optimizers "$folder/ours.csv"
 }
 
@@ -278,7 +278,7 @@ firm() {
     local folder="$reference/landscapes/firm" task
     mkdir -p "$folder"
     for task in usb ket8 ket12 rj45; do
-        "$lab" landscape --task "$task" --out "$folder/$task.csv"
+        "$programs/landscape" --task "$task" > "$folder/$task.csv"
     done
     record windows "$folder"/*.csv
 }
@@ -305,26 +305,18 @@ maps() {
     for finger in "usb 10 26" "ket8 10 0" "ket12 10 0" "rj45 18 20"; do
         read -r task density direction <<< "$finger"
         for other in x yaw; do
-            "$lab" map --task "$task" --density "$density" --direction "$direction" --axes "y,$other" \
-                --svg "$folder/$task-$other.svg" --out "$folder/$task-$other.csv"
+            "$programs/capture_map" --task "$task" --density "$density" --direction "$direction" \
+                --axes "y,$other" --svg "$folder/$task-$other.svg" > "$folder/$task-$other.csv"
         done
-    done > "$folder/maps.txt"
+    done 2> "$folder/maps.txt"
     record maps "$folder"/*
 }
 
 # Identification of hidden cells in MuJoCo from their logs. Takes over an hour; needs `lab` with the feature mujoco.
 identify() {
-    local folder="$reference/identify" half
+    local folder="$reference/identify"
     cargo build --release -p lab --features mujoco
-    mkdir -p "$folder"
-    "$lab" identify truth --cells 1..20 --out "$folder/truth.csv" > "$work/truth.md"
-    "$lab" identify logs --cells 1..20 --truth "$folder/truth.csv" --logs "$work/logs"
-    for half in 1..10 11..20; do
-        echo "Cells $half"
-        echo
-        "$lab" identify try --cells "$half" --truth "$folder/truth.csv" --logs "$work/logs"
-        echo
-    done > "$folder/table.md"
+    "$programs/hidden_cells" --cells 1 20 --out "$folder" --logs "$work/logs"
     record windows "$folder"/*
 }
 

@@ -23,10 +23,10 @@ sources() {
         windows) paths="$simulation data tasks robots" ;;
         maps) paths="$simulation data tasks robots crates/analysis/src/map" ;;
         studies) paths="$simulation crates/ask-tell crates/study data tasks robots spaces uncertainties" ;;
-        checks) paths="$simulation lab/src/analytic robots" ;;
+        checks) paths="$simulation tests/analytic/src robots" ;;
         bench) paths="$simulation crates/ask-tell crates/study crates/calibration data tasks robots spaces priors" ;;
         levers) paths="$simulation crates/calibration crates/connector crates/analysis/src/levers data tasks robots spaces priors" ;;
-        optimizers) paths="crates/ask-tell lab/src/problems results/reference/landscapes" ;;
+        optimizers) paths="crates/ask-tell lab/src/bin/optimizers.rs results/reference/landscapes" ;;
         *) echo "scripts/stale.sh: unknown scope $1" >&2; exit 2 ;;
     esac
     echo "$paths"

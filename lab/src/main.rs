@@ -1,8 +1,60 @@
-//! `lab`: verification of the models.
+//! `lab`: verification of the models by analytic checks, other engines and published tables.
 #![forbid(unsafe_code)]
+// Printing panics once the reader has closed the pipe: `finger_opt::terminal` prints.
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+#![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+mod check;
+mod compare;
+mod cross_check;
+mod validate;
+
+use clap::{Parser, Subcommand};
+use finger_opt::failure::Failure;
+use finger_opt::terminal::{print, say};
 use std::process::ExitCode;
 
+/// Prints a value as JSON, one line.
+fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
+    print(&format!("{value}\n"))
+}
+
+/// Checks the models behind `optimize`: against closed formulas, other engines and published tables.
+///
+/// Exit codes: 0 done, 1 failed while running or a check failed, 2 bad usage or bad input file.
+#[derive(Debug, Parser)]
+#[command(
+    name = "lab",
+    version,
+    arg_required_else_help = true,
+    after_help = "Example: cargo run --release -p lab -- check"
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    #[command(after_help = "Example: lab check")]
+    Check(check::Arguments),
+    #[command(after_help = "Example: lab cross-check --against mujoco --reduced")]
+    CrossCheck(cross_check::Arguments),
+    #[command(after_help = "Example: lab validate --task ket8 --strides")]
+    Validate(validate::Arguments),
+}
+
 fn main() -> ExitCode {
-    lab::cli::main(std::env::args_os())
+    let done = match &Cli::parse().command {
+        Command::Check(arguments) => check::run(arguments),
+        Command::CrossCheck(arguments) => cross_check::run(arguments),
+        Command::Validate(arguments) => validate::run(arguments),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            say(&format!("error: {failure}"));
+            ExitCode::from(failure.exit_code())
+        }
+    }
 }

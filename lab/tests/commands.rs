@@ -4,31 +4,31 @@ mod common;
 
 use common::lab;
 use std::fs;
+use std::process::Command;
 
 #[test]
 fn the_optimizers_are_counted_on_functions_and_recorded_landscapes() {
     let folder = tempfile::tempdir().unwrap();
-    let (landscape, runs) = (folder.path().join("hill.csv"), folder.path().join("runs.csv"));
+    let landscape = folder.path().join("hill.csv");
     let rows: String = (0..8)
         .flat_map(|a| (0..9).map(move |b| (a, b)))
         .map(|(a, b)| format!("{a},{b},{}.0,x\n", 20 - (a - 6i32).abs() - (b - 2i32).abs()))
         .collect();
     fs::write(&landscape, format!("a,b,range_mm,more\n{rows}")).unwrap();
-    let (landscape, runs) = (landscape.to_str().unwrap(), runs.to_str().unwrap());
-    let bench = ["optimizers", "--seeds", "3", "--landscape", landscape, "--csv", runs];
-    let table = lab(&[&bench[..], &["--optimizers", "gp,grid"]].concat());
-    let rows: Vec<&str> = table.succeeds().lines().skip(2).collect();
-    assert!(rows[0].starts_with("| hill landscape | gp | 3/3 |"), "{rows:?}");
-    assert!(rows[1].starts_with("| hill landscape | grid | 3/3 |") && rows.len() == 2);
-    let runs = fs::read_to_string(runs).unwrap();
-    assert_eq!(runs.lines().count(), 1 + 2 * 3);
-    // Without a landscape all functions are meant, with one none, and both can be named.
-    let named = lab(&[&bench[..], &["--functions", "sphere", "--optimizers", "cma-es"]].concat());
-    assert!(named.succeeds().contains("| sphere 5-D to 1e-8 | cma-es | 3/3 |"));
-    lab(&["optimizers", "--functions", "cube"]).fails(2, &["hartmann6"]);
-    lab(&["optimizers", "--landscape", "no.csv"]).fails(2, &["no.csv", "landscape"]);
-    fs::write(landscape, "a,range_mm\n1,1\n1,1\n").unwrap();
-    lab(&bench).fails(2, &["hill.csv", "2 rows for a grid of 1"]);
+    let run = |problem: &str, optimizers: &str| {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_optimizers"));
+        common::run(program.args(["--seeds", "3", "--optimizers", optimizers, problem]))
+    };
+    let found = run(landscape.to_str().unwrap(), "gp,grid");
+    let rows: Vec<&str> = found.succeeds().lines().collect();
+    assert!(rows.len() == 1 + 2 * 3 && rows.iter().all(|row| !row.ends_with(',')), "{rows:?}");
+    assert!(rows[1].starts_with("hill landscape,gp,0,"), "{rows:?}");
+    assert!(run("sphere", "cma-es").succeeds().contains("\nsphere 5-D to 1e-8,cma-es,2,"));
+    run("no.csv", "gp").fails(1, &["no.csv"]);
+    fs::write(&landscape, "a,range_mm\n1,1\n1,1\n2,\n").unwrap();
+    run(landscape.to_str().unwrap(), "gp").succeeds();
+    fs::write(&landscape, "a,b,range_mm\n1,1,1\n2,2,1\n").unwrap();
+    run(landscape.to_str().unwrap(), "gp").fails(1, &["2 designs for a grid of 4"]);
 }
 
 #[test]
@@ -42,7 +42,7 @@ fn an_engine_agrees_with_itself_in_the_cross_check() {
 
 #[test]
 fn every_help_shows_an_example() {
-    for command in ["check", "cross-check", "validate", "optimizers", "windows"] {
+    for command in ["check", "cross-check", "validate"] {
         let help = lab(&[command, "--help"]);
         let example = format!("Example: lab {command}");
         assert!(help.succeeds().contains(&example), "{command}: {}", help.stdout);

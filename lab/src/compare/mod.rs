@@ -3,7 +3,6 @@
 pub mod engines;
 pub mod pairs;
 pub mod published;
-pub mod windows;
 
 #[cfg(test)]
 mod tests;
@@ -22,22 +21,22 @@ use serde_json::{Value, json};
 use std::sync::Arc;
 
 #[derive(Clone)]
-pub struct Way {
+pub struct Setting {
     pub name: String,
     pub rig: Arc<dyn Rig>,
     pub search: Search,
 }
 
-impl Way {
+impl Setting {
     pub fn evaluate(&self, finger: &Finger) -> Evaluation {
         tolerance::evaluate(&*self.rig, finger, self.search)
     }
 }
 
-/// Task and the ways in which its windows are measured, the reference first.
-pub struct TaskWays {
+/// Task and the settings in which its windows are measured, the reference first.
+pub struct TaskSettings {
     pub task: Task,
-    pub ways: Vec<Way>,
+    pub settings: Vec<Setting>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -79,14 +78,14 @@ fn subject_json(task: &str, design: &Measurement, measured: Value) -> Value {
 
 /// Results by task and design, measured in parallel: the number of threads changes nothing.
 pub fn each<T: Send>(
-    tasks: &[TaskWays],
+    tasks: &[TaskSettings],
     designs: &[Measurement],
-    measure: impl Fn(&Subject, &[Way]) -> T + Sync,
+    measure: impl Fn(&Subject, &[Setting]) -> T + Sync,
 ) -> Vec<T> {
     let pairs: Vec<_> =
         tasks.iter().flat_map(|task| designs.iter().map(move |d| (task, d))).collect();
-    let one = |(on, design): (&TaskWays, &Measurement)| {
-        measure(&Subject::new(&on.task.name, &on.task.finger, *design), &on.ways)
+    let one = |(on, design): (&TaskSettings, &Measurement)| {
+        measure(&Subject::new(&on.task.name, &on.task.finger, *design), &on.settings)
     };
     pairs.into_par_iter().map(one).collect()
 }

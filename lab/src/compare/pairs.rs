@@ -1,6 +1,6 @@
-//! Windows of the same fingers in two ways, and the differences of their ends.
+//! Windows of the same fingers in two settings, and the differences of their ends.
 
-use super::{Subject, TaskWays, Way, each, subject_json, window_json, window_words};
+use super::{Setting, Subject, TaskSettings, each, subject_json, window_json, window_words};
 use ask_tell::statistics::mean;
 use insertion::evaluation::{Evaluation, OffsetStep, Window, grid_mm};
 use insertion::stiffness::Measurement;
@@ -10,22 +10,22 @@ use serde_json::{Value, json};
 #[derive(Debug, Clone, PartialEq)]
 pub struct WindowPair {
     pub subject: Subject,
-    pub ways: [String; 2],
+    pub settings: [String; 2],
     pub windows: [Window; 2],
     pub trials: [u32; 2],
 }
 
 impl WindowPair {
-    pub fn new(subject: &Subject, ways: [&Way; 2], found: [&Evaluation; 2]) -> Self {
+    pub fn new(subject: &Subject, settings: [&Setting; 2], found: [&Evaluation; 2]) -> Self {
         WindowPair {
             subject: subject.clone(),
-            ways: ways.map(|way| way.name.clone()),
+            settings: settings.map(|setting| setting.name.clone()),
             windows: found.map(|evaluation| evaluation.window.clone()),
             trials: found.map(|evaluation| evaluation.trials),
         }
     }
 
-    /// Outward shift of the negative and the positive end from the first way to the second, mm.
+    /// Outward shift of the negative and the positive end from the first setting to the second, mm.
     pub fn moved_mm(&self) -> [f64; 2] {
         self.moved().map(grid_mm)
     }
@@ -42,12 +42,12 @@ impl WindowPair {
     }
 }
 
-/// Pairs of the first way with each other one, of every design on every task.
-pub fn measure(tasks: &[TaskWays], designs: &[Measurement]) -> Vec<WindowPair> {
-    let pairs = each(tasks, designs, |subject, ways| {
-        let Some((first, others)) = ways.split_first() else { return Vec::new() };
+/// Pairs of the first setting with each other one, of every design on every task.
+pub fn measure(tasks: &[TaskSettings], designs: &[Measurement]) -> Vec<WindowPair> {
+    let pairs = each(tasks, designs, |subject, settings| {
+        let Some((first, others)) = settings.split_first() else { return Vec::new() };
         let reference = first.evaluate(&subject.finger);
-        let pair = |other: &Way| {
+        let pair = |other: &Setting| {
             let found = other.evaluate(&subject.finger);
             WindowPair::new(subject, [first, other], [&reference, &found])
         };
@@ -63,7 +63,7 @@ pub fn mean_end_difference_mm(pairs: &[WindowPair]) -> Option<f64> {
 
 /// Table at most 80 columns wide with a summary, and verdicts if so many grid steps are `allowed`.
 pub fn text(pairs: &[WindowPair], allowed: Option<OffsetStep>) -> String {
-    let first = pairs.first().map_or("", |pair| &pair.ways[0]);
+    let first = pairs.first().map_or("", |pair| &pair.settings[0]);
     let rows = pairs.iter().map(|pair| {
         let [below, above] = pair.moved_mm();
         let [a, b] = pair.windows.each_ref().map(window_words);
@@ -73,10 +73,10 @@ pub fn text(pairs: &[WindowPair], allowed: Option<OffsetStep>) -> String {
             Some(false) => "FAIL",
         };
         let subject = &pair.subject;
-        let [task, way] = [&subject.task, &pair.ways[1]].map(ToString::to_string);
+        let [task, setting] = [&subject.task, &pair.settings[1]].map(ToString::to_string);
         let moved = format!("{below:+.1} {above:+.1}");
         let number = subject.design.design.to_string();
-        [task, number, subject.infill(), way, a, b, moved, verdict.to_owned()]
+        [task, number, subject.infill(), setting, a, b, moved, verdict.to_owned()]
     });
     let first = format!("{first}\nmm");
     let head = ["task", "no.", "infill", "compared", &first, "its window\nmm", "ends move\nmm", ""];
@@ -88,7 +88,8 @@ fn summary(pairs: &[WindowPair]) -> String {
         .iter()
         .map(|pair| (pair.windows[0].range_mm() - pair.windows[1].range_mm()).abs())
         .collect();
-    let [first, second] = [0, 1].map(|way| pairs.iter().map(|pair| pair.trials[way]).sum::<u32>());
+    let [first, second] =
+        [0, 1].map(|setting| pairs.iter().map(|pair| pair.trials[setting]).sum::<u32>());
     let (same, all) = (pairs.iter().filter(|pair| pair.agrees(0)).count(), pairs.len());
     let average = mean(&differences).unwrap_or(0.0);
     let most = differences.into_iter().fold(0.0, f64::max);
@@ -98,18 +99,18 @@ fn summary(pairs: &[WindowPair]) -> String {
     )
 }
 
-/// JSON list; `way` is the key of the second way's name, `windows` those of the two windows.
+/// JSON list; `setting` is the key of the second setting's name, `windows` those of the two windows.
 pub fn json(
     pairs: &[WindowPair],
     allowed: Option<OffsetStep>,
-    way: &str,
+    setting: &str,
     windows: [&str; 2],
 ) -> Vec<Value> {
     let row = |pair: &WindowPair| {
         let [below, above] = pair.moved_mm();
         let [first, second] = pair.windows.each_ref().map(window_json);
         let measured = json!({
-            way: pair.ways[1],
+            setting: pair.settings[1],
             windows[0]: first,
             windows[1]: second,
             "trials": pair.trials,

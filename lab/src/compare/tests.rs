@@ -21,7 +21,7 @@ fn jammed(negative: OffsetStep, positive: OffsetStep) -> Window {
 fn pair(second: Window) -> WindowPair {
     WindowPair {
         subject: Subject::new("usb", &FingerModel::default(), three(designs())[0]),
-        ways: ["production", "half the step"].map(str::to_owned),
+        settings: ["production", "half the step"].map(str::to_owned),
         windows: [jammed(-33, 14), second],
         trials: [18, 19],
     }
@@ -51,15 +51,18 @@ fn the_three_designs_span_the_measured_stiffness() {
 #[test]
 fn every_way_but_the_first_makes_a_pair_and_the_table_fits_a_terminal() {
     let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
-    let way =
-        |name: &str, search| Way { name: name.into(), rig: Arc::new(FakeRig::default()), search };
-    let ways = vec![
-        way("walk", Search::Walk),
-        way("strides", Search::Strides),
-        way("again", Search::Walk),
+    let setting = |name: &str, search| Setting {
+        name: name.into(),
+        rig: Arc::new(FakeRig::default()),
+        search,
+    };
+    let settings = vec![
+        setting("walk", Search::Walk),
+        setting("strides", Search::Strides),
+        setting("again", Search::Walk),
     ];
-    let found = pairs::measure(&[TaskWays { task, ways }], &three(designs()));
-    let names: Vec<&str> = found.iter().map(|pair| pair.ways[1].as_str()).collect();
+    let found = pairs::measure(&[TaskSettings { task, settings }], &three(designs()));
+    let names: Vec<&str> = found.iter().map(|pair| pair.settings[1].as_str()).collect();
     assert_eq!(names, ["strides", "again"].repeat(3));
     assert!(found.iter().all(|pair| pair.agrees(0) && pair.trials[0] > 10));
     let table = pairs::text(&[found, vec![pair(jammed(-33, 19))]].concat(), Some(1));

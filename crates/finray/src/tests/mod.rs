@@ -1,4 +1,4 @@
-//! Mechanics against solids; the lab's `analytic::finger` has the exact solutions.
+//! Mechanics against solids; `tests/analytic` has the exact solutions.
 
 mod geometry;
 mod holes;

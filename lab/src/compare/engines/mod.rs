@@ -8,7 +8,7 @@
 mod tests;
 
 use super::pairs::{self, WindowPair};
-use super::{Subject, TaskWays, Way, each, subject_json};
+use super::{Setting, Subject, TaskSettings, each, subject_json};
 use ask_tell::statistics::{mean, median, quantile, sorted};
 use insertion::evaluation::{OffsetStep, Window, grid_mm, tolerance};
 use insertion::outcome::Outcome;
@@ -85,9 +85,9 @@ impl CrossCheck {
     }
 }
 
-/// Results of the first two ways of every task; if `reduced`, of few trials and without windows.
-pub fn run(tasks: &[TaskWays], designs: &[Measurement], reduced: bool) -> CrossCheck {
-    let results = each(tasks, designs, |subject, ways| match ways {
+/// Results of the first two settings of every task; if `reduced`, of few trials and without windows.
+pub fn run(tasks: &[TaskSettings], designs: &[Measurement], reduced: bool) -> CrossCheck {
+    let results = each(tasks, designs, |subject, settings| match settings {
         [first, second, ..] => in_both(subject, [first, second], reduced),
         _ => CrossCheck::default(),
     });
@@ -99,10 +99,10 @@ pub fn run(tasks: &[TaskWays], designs: &[Measurement], reduced: bool) -> CrossC
     all
 }
 
-fn in_both(subject: &Subject, ways: [&Way; 2], reduced: bool) -> CrossCheck {
-    let reference = ways[0].evaluate(&subject.finger);
+fn in_both(subject: &Subject, settings: [&Setting; 2], reduced: bool) -> CrossCheck {
+    let reference = settings[0].evaluate(&subject.finger);
     let window = &reference.window;
-    let grasped = ways.map(|way| way.rig.grasp(&subject.finger));
+    let grasped = settings.map(|setting| setting.rig.grasp(&subject.finger));
     let trial = |offset: OffsetStep| {
         let trials = grasped.each_ref().map(|grasped| grasped.trial(tolerance::offset(offset)));
         TrialPair {
@@ -114,7 +114,8 @@ fn in_both(subject: &Subject, ways: [&Way; 2], reduced: bool) -> CrossCheck {
         }
     };
     let trials = offsets(window, reduced).into_iter().map(trial).collect();
-    let pair = || WindowPair::new(subject, ways, [&reference, &ways[1].evaluate(&subject.finger)]);
+    let pair =
+        || WindowPair::new(subject, settings, [&reference, &settings[1].evaluate(&subject.finger)]);
     CrossCheck { trials, windows: (!reduced).then(pair).into_iter().collect() }
 }
 
@@ -212,16 +213,16 @@ impl Timing {
     }
 }
 
-/// Times of every design on every task in the first two ways, one after the other on this thread.
-pub fn time(tasks: &[TaskWays], designs: &[Measurement]) -> Vec<Timing> {
-    let timing = |on: &TaskWays, design: &Measurement| {
+/// Times of every design on every task in the first two settings, one after the other on this thread.
+pub fn time(tasks: &[TaskSettings], designs: &[Measurement]) -> Vec<Timing> {
+    let timing = |on: &TaskSettings, design: &Measurement| {
         let subject = Subject::new(&on.task.name, &on.task.finger, *design);
         let mut walls = [Vec::new(), Vec::new()];
         let mut ends = [(Outcome::Diverged, 0.0); 2];
         for _ in 0..RUNS {
-            for (i, way) in on.ways.iter().take(2).enumerate() {
+            for (i, setting) in on.settings.iter().take(2).enumerate() {
                 let clock = Instant::now();
-                let trial = way.rig.grasp(&subject.finger).trial(0.0);
+                let trial = setting.rig.grasp(&subject.finger).trial(0.0);
                 walls[i].push(clock.elapsed().as_secs_f64());
                 ends[i] = (trial.outcome, trial.simulated_s);
             }

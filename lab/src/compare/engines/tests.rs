@@ -29,13 +29,13 @@ fn offsets_lie_about_both_ends_and_in_the_middle() {
 
 #[test]
 fn an_engine_agrees_with_itself() {
-    let way = |name: &str| Way {
+    let setting = |name: &str| Setting {
         name: name.into(),
         rig: Arc::new(FakeRig::default()),
         search: Search::Strides,
     };
     let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
-    let tasks = [TaskWays { task, ways: vec![way("fake"), way("again")] }];
+    let tasks = [TaskSettings { task, settings: vec![setting("fake"), setting("again")] }];
     let designs = [designs()[0], designs()[10]];
     let check = run(&tasks, &designs, false);
     assert_eq!((check.agreement(), check.end_difference_mm()), (1.0, Some(0.0)));
@@ -66,7 +66,7 @@ fn a_disagreement_is_counted_and_listed() {
     let trials = vec![trial(5, missed), trial(7, Outcome::Inserted)];
     let windows = WindowPair {
         subject: subject.clone(),
-        ways: ["direct", "mujoco"].map(str::to_owned),
+        settings: ["direct", "mujoco"].map(str::to_owned),
         trials: [20, 20],
         windows: [window(-4, 5), window(-10, 7)],
     };

@@ -1,4 +1,4 @@
-//! Our tolerance windows beside the published ones: tables and statistics, pure functions of windows.
+//! Our tolerance windows beside the published ones.
 
 mod table;
 #[cfg(test)]
@@ -8,7 +8,7 @@ pub use table::{accuracy, csv, json};
 
 use super::failures;
 use ask_tell::statistics::{mean, spearman};
-use calibration::published::{self, Origin, Published};
+use calibration::published::{self, Origin};
 use insertion::evaluation::Window;
 use insertion::evaluation::taught::{Moved, teach};
 use insertion::evaluation::template::Impossible;
@@ -25,20 +25,12 @@ use insertion::trial::engine::EngineKind;
 use rayon::prelude::*;
 use serde::Serialize;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum RangeSource {
-    Ours,
-    Simulation,
-    Bench,
-}
+/// Sources of a tolerable range: our simulation, the published simulation, the published experiments.
+pub const SOURCES: [&str; 3] = ["ours", "simulation", "bench"];
+/// Compared sources, each with its reference, as indices of [`SOURCES`].
+pub const COMPARISONS: [[usize; 2]; 3] = [[0, 1], [0, 2], [1, 2]];
 
-pub const COMPARISONS: [(RangeSource, RangeSource); 3] = [
-    (RangeSource::Ours, RangeSource::Simulation),
-    (RangeSource::Ours, RangeSource::Bench),
-    (RangeSource::Simulation, RangeSource::Bench),
-];
-
+/// Tolerable range and the failure classes at its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Reading {
     pub range_mm: Option<f64>,
@@ -46,30 +38,26 @@ pub struct Reading {
     pub failure_positive: Option<FailureClass>,
 }
 
-#[derive(Debug, Clone, PartialEq)]
-pub struct DesignRow {
-    pub design: Measurement,
-    pub window: Window,
-    simulation: Option<Reading>,
-    bench: Option<Reading>,
-}
-
-impl DesignRow {
-    pub fn reading(&self, source: RangeSource) -> Option<Reading> {
-        match source {
-            RangeSource::Ours => Some(Reading::from(&self.window)),
-            RangeSource::Simulation => self.simulation,
-            RangeSource::Bench => self.bench,
-        }
-    }
-}
-
 impl From<&Window> for Reading {
-    /// A start that diverges gives no range, one that fails gives 0; neither has window ends.
+    /// A start that diverges has no range, one that fails a range of 0; neither has window ends.
     fn from(window: &Window) -> Self {
         let range_mm = (window.nominal != Outcome::Diverged).then(|| window.range_mm());
         let [failure_negative, failure_positive] = failures(window);
         Reading { range_mm, failure_negative, failure_positive }
+    }
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct DesignRow {
+    pub design: Measurement,
+    pub window: Window,
+    /// Reading of each of [`SOURCES`].
+    pub readings: [Option<Reading>; 3],
+}
+
+impl DesignRow {
+    pub fn range_mm(&self, source: usize) -> Option<f64> {
+        self.readings[source]?.range_mm
     }
 }
 
@@ -82,32 +70,32 @@ pub struct TaskTable {
 impl TaskTable {
     pub fn new(task: &str, windows: impl IntoIterator<Item = (Measurement, Window)>) -> Self {
         let published = [Origin::Simulation, Origin::Bench].map(|of| published::of_task(task, of));
-        let reading = |row: &Published| Reading {
-            range_mm: row.tolerable_range_mm,
-            failure_negative: row.failure_negative_offset,
-            failure_positive: row.failure_positive_offset,
-        };
         let row = |(design, window): (Measurement, Window)| {
-            let [simulation, bench] = published
-                .each_ref()
-                .map(|rows| rows.iter().find(|row| row.design == design.design).map(reading));
-            DesignRow { design, window, simulation, bench }
+            let [simulation, bench] = published.each_ref().map(|rows| {
+                let row = rows.iter().find(|row| row.design == design.design)?;
+                Some(Reading {
+                    range_mm: row.tolerable_range_mm,
+                    failure_negative: row.failure_negative_offset,
+                    failure_positive: row.failure_positive_offset,
+                })
+            });
+            let readings = [Some(Reading::from(&window)), simulation, bench];
+            DesignRow { design, window, readings }
         };
         TaskTable { task: task.to_owned(), rows: windows.into_iter().map(row).collect() }
     }
 
     pub fn agreements(&self) -> [Agreement; 3] {
-        COMPARISONS.map(|(source, reference)| Agreement::of(&self.rows, source, reference))
+        COMPARISONS.map(|compared| Agreement::new(&self.rows, compared))
     }
 }
 
 /// Agreement of one source with another (the reference) over the designs of a task.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Agreement {
-    #[serde(rename = "compared")]
-    pub source: RangeSource,
-    pub reference: RangeSource,
-    /// Designs for which both give a range; the next four values rest on them.
+    pub compared: &'static str,
+    pub reference: &'static str,
+    /// Designs for which both give a range, over which the next four values are taken.
     pub designs: usize,
     /// Mean of `|range - reference|`, mm; `None` without designs.
     pub mean_absolute_error_mm: Option<f64>,
@@ -126,49 +114,48 @@ pub struct Agreement {
 }
 
 impl Agreement {
-    /// Compares two columns of a task's rows.
+    /// Compares a source with a reference, as indices of [`SOURCES`].
     ///
-    /// An end at which the source names no class counts as not matched.
-    pub fn of(rows: &[DesignRow], source: RangeSource, reference: RangeSource) -> Self {
-        let readings: Vec<_> = rows
-            .iter()
-            .filter_map(|row| Some((row.reading(source)?, row.reading(reference)?)))
-            .collect();
+    /// An end for which the source names no class counts as not matched.
+    pub fn new(rows: &[DesignRow], [compared, reference]: [usize; 2]) -> Self {
+        let both = |row: &DesignRow| row.readings[compared].zip(row.readings[reference]);
+        let readings: Vec<_> = rows.iter().filter_map(both).collect();
         let pairs: Vec<(f64, f64)> =
-            readings.iter().filter_map(|(a, b)| Some((a.range_mm?, b.range_mm?))).collect();
-        let ends = || {
-            let both = readings.iter().flat_map(|(a, b)| {
-                [(a.failure_negative, b.failure_negative), (a.failure_positive, b.failure_positive)]
-            });
-            both.filter(|(_, reference)| reference.is_some())
+            readings.iter().filter_map(|(a, b)| a.range_mm.zip(b.range_mm)).collect();
+        let average = |measure: &dyn Fn(f64, f64) -> f64| {
+            mean(pairs.iter().map(|&(range, reference)| measure(range, reference)))
         };
-        let over =
-            |measure: &dyn Fn(f64, f64) -> f64| mean(pairs.iter().map(|&(a, b)| measure(a, b)));
-        let matched_ends = ends().filter(|(a, b)| a == b).count();
+        let ends: Vec<_> = readings
+            .iter()
+            .flat_map(|(a, b)| {
+                let negative = (a.failure_negative, b.failure_negative);
+                [negative, (a.failure_positive, b.failure_positive)]
+            })
+            .filter(|(_, reference)| reference.is_some())
+            .collect();
+        let matched_ends = ends.iter().filter(|(a, b)| a == b).count();
+        let match_percent = 100.0 * matched_ends as f64 / ends.len() as f64;
         Agreement {
-            source,
-            reference,
+            compared: SOURCES[compared],
+            reference: SOURCES[reference],
             designs: pairs.len(),
-            mean_absolute_error_mm: over(&|a, b| (a - b).abs()),
-            mean_error_mm: over(&|a, b| a - b),
-            mean_deviation_percent: over(&deviation_percent),
+            mean_absolute_error_mm: average(&|a, b| (a - b).abs()),
+            mean_error_mm: average(&|a, b| a - b),
+            mean_deviation_percent: average(&deviation_percent),
             spearman: spearman(&pairs),
             matched_ends,
-            ends: ends().count(),
-            match_percent: match ends().count() {
-                0 => None,
-                ends => Some(100.0 * matched_ends as f64 / ends as f64),
-            },
+            ends: ends.len(),
+            match_percent: (!ends.is_empty()).then_some(match_percent),
         }
     }
 }
 
-/// The paper's deviation: `|range - reference| / reference`, percent.
+/// Returns the paper's deviation, `|range - reference| / reference`, in percent.
 pub fn deviation_percent(range: f64, reference: f64) -> f64 {
     100.0 * (range - reference).abs() / reference
 }
 
-/// Windows of all designs, as stiff as measured, on all tasks, each about its task's start.
+/// Measures the windows of all designs, as stiff as measured, on all tasks, each about its task's start.
 pub fn windows(
     fingers: &FingerSource,
     robot: &Robot,
@@ -177,7 +164,7 @@ pub fn windows(
     tasks: &[Task],
     designs: &[Measurement],
 ) -> Result<Vec<TaskTable>, Impossible> {
-    let window = |(task, design): (&Task, &Measurement)| {
+    let window = |task: &Task, design: &Measurement| {
         let Measurement { compliance, assembly, density_percent, direction_deg, .. } = *design;
         let infill = Design::infill(density_percent, direction_deg);
         let finger = fingers.make(AtPad { compliance, assembly }, &infill, task)?.finger;
@@ -187,13 +174,11 @@ pub fn windows(
             StartRule::Taught => teach(&*rig, &finger, &NEVER).ok(),
         };
         let moved = Moved { rig: &*rig, by: taught.map_or(0, |taught| taught.by) };
-        Ok(tolerance::evaluate(&moved, &finger, search).window)
+        Ok((*design, tolerance::evaluate(&moved, &finger, search).window))
     };
-    let pairs = tasks.iter().flat_map(|task| designs.iter().map(move |design| (task, design)));
-    let pairs = pairs.collect::<Vec<_>>().into_par_iter();
-    let windows = pairs.map(window).collect::<Result<Vec<Window>, Impossible>>()?;
-    let table = |(task, found): (&Task, &[Window])| {
-        TaskTable::new(&task.name, designs.iter().copied().zip(found.iter().cloned()))
+    let table = |task: &Task| {
+        let windows = designs.par_iter().map(|design| window(task, design));
+        Ok(TaskTable::new(&task.name, windows.collect::<Result<Vec<_>, Impossible>>()?))
     };
-    Ok(tasks.iter().zip(windows.chunks(designs.len().max(1))).map(table).collect())
+    tasks.par_iter().map(table).collect()
 }

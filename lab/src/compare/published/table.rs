@@ -1,9 +1,9 @@
 //! `validation.csv`, `accuracy.md` and the JSON of the command.
 
-use super::{Agreement, COMPARISONS, DesignRow, RangeSource, TaskTable, deviation_percent};
+use super::{Agreement, COMPARISONS, DesignRow, TaskTable, deviation_percent};
 use crate::compare::{subject_json, window_json};
 use input::units::N_PER_MM;
-use insertion::outcome::{FailureClass, Outcome};
+use insertion::outcome::Outcome;
 use serde_json::{Value, json};
 
 /// Columns of `validation.csv`; a deviation is `|range - reference| / reference`.
@@ -16,7 +16,7 @@ pub const CSV_HEADER: &str = "task,design,infill_density_percent,infill_directio
     error_to_bench_mm,deviation_to_bench_percent,\
     simulation_error_to_bench_mm,simulation_deviation_to_bench_percent";
 
-/// `validation.csv`, a line for each task and design; errors are range minus reference.
+/// Returns `validation.csv`, a line for each task and design; an error is range minus reference.
 pub fn csv(tables: &[TaskTable]) -> String {
     let rows = tables.iter().flat_map(|table| table.rows.iter().map(|row| (&table.task, row)));
     let lines = rows.map(|(task, row)| format!("{task},{}\n", cells(row).join(",")));
@@ -33,7 +33,6 @@ fn cells(row: &DesignRow) -> Vec<String> {
     let inserted = window.nominal == Outcome::Inserted;
     // Without a window there are no ends.
     let end = |end| word(end).repeat(usize::from(inserted));
-    let range = |source| row.reading(source).and_then(|reading| reading.range_mm);
     let mut cells = vec![
         design.design.to_string(),
         design.density_percent.to_string(),
@@ -43,33 +42,30 @@ fn cells(row: &DesignRow) -> Vec<String> {
         if inserted { "inserted".to_owned() } else { word(Some(window.nominal)) },
         window.negative_mm().to_string(),
         window.positive_mm().to_string(),
-        number(range(RangeSource::Ours)),
+        number(row.range_mm(0)),
         end(window.end_negative),
         end(window.end_positive),
     ];
-    let class =
-        |class: Option<FailureClass>| class.map_or(String::new(), |c| c.number().to_string());
-    for source in [RangeSource::Simulation, RangeSource::Bench] {
-        let found = row.reading(source);
-        cells.push(number(range(source)));
-        cells.push(class(found.and_then(|reading| reading.failure_negative)));
-        cells.push(class(found.and_then(|reading| reading.failure_positive)));
+    for reading in &row.readings[1..] {
+        cells.push(number(reading.and_then(|reading| reading.range_mm)));
+        cells.push(word(reading.and_then(|r| r.failure_negative).map(Outcome::Failed)));
+        cells.push(word(reading.and_then(|r| r.failure_positive).map(Outcome::Failed)));
     }
-    for (source, reference) in COMPARISONS {
-        let pair = range(source).zip(range(reference));
+    for [source, reference] in COMPARISONS {
+        let pair = row.range_mm(source).zip(row.range_mm(reference));
         cells.push(number(pair.map(|(a, b)| a - b)));
         cells.push(number(pair.map(|(a, b)| deviation_percent(a, b))));
     }
     cells
 }
 
-/// Cell of a number with one digit, empty without a value; never a negative zero.
+/// Formats a cell with one decimal, empty without a value; never as a negative zero.
 fn number(value: Option<f64>) -> String {
     value.map_or(String::new(), |v| format!("{:.1}", (v * 10.0).round() / 10.0 + 0.0))
 }
 
-/// A Markdown table with a line for each task; each comparison is mean absolute error of the range,
-/// Spearman's rank correlation, and share of the window ends with the same failure class.
+/// Returns a Markdown table with a line for each task; a comparison is the mean absolute error of the range,
+/// Spearman's rank correlation, and the share of the window ends with the same failure class.
 pub fn accuracy(tables: &[TaskTable]) -> String {
     let head = "| task | starts | ours - simulation | ours - bench | simulation - bench |\n\
                 | --- | --- | --- | --- | --- |\n";
@@ -83,7 +79,7 @@ pub fn accuracy(tables: &[TaskTable]) -> String {
     head.to_owned() + &tables.iter().map(line).collect::<String>()
 }
 
-/// `0.99 mm, +0.96, 100.0 %`, with `-` for what is not defined.
+/// Formats a comparison as `0.99 mm, +0.96, 100.0 %`, with `-` for an undefined value.
 fn words(found: Agreement) -> String {
     let value =
         |value: Option<f64>, words: &dyn Fn(f64) -> String| value.map_or("-".to_owned(), words);
@@ -95,14 +91,15 @@ fn words(found: Agreement) -> String {
     .join(", ")
 }
 
-/// JSON list of tasks with `designs` and `agreement`.
+/// Returns a JSON list of tasks with `designs` and `agreement`.
 pub fn json(tables: &[TaskTable]) -> Value {
     let design = |task: &str, row: &DesignRow| {
+        let [ours, simulation, bench] = row.readings;
         let measured = json!({
             "window": window_json(&row.window),
-            "ours": row.reading(RangeSource::Ours),
-            "simulation": row.simulation,
-            "bench": row.bench,
+            "ours": ours,
+            "simulation": simulation,
+            "bench": bench,
         });
         subject_json(task, &row.design, measured)
     };

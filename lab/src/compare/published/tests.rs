@@ -21,7 +21,7 @@ fn table(task: &str) -> TaskTable {
 #[test]
 fn published_match_scores_are_the_papers() {
     for (task, score) in [("ket12", 100.0), ("ket8", 100.0), ("rj45", 54.5), ("usb", 27.3)] {
-        let found = Agreement::of(&table(task).rows, RangeSource::Simulation, RangeSource::Bench);
+        let found = Agreement::new(&table(task).rows, [1, 2]);
         assert_eq!(found.ends, 22, "{task}");
         assert!((found.match_percent.unwrap() - score).abs() < 0.05, "{task}: {found:?}");
     }
@@ -29,7 +29,7 @@ fn published_match_scores_are_the_papers() {
 
 #[test]
 fn missing_bench_ranges_are_skipped() {
-    let found = Agreement::of(&table("ket12").rows, RangeSource::Simulation, RangeSource::Bench);
+    let found = Agreement::new(&table("ket12").rows, [1, 2]);
     assert_eq!(found.designs, 7);
     // |4.5-7.8| + |4.4-7.5| + |4.7-7.8| + |4.6-7.7| + |4.6-7.2| + |4.6-6.5| + |4.6-6.6|
     // = 3.3 + 3.1 + 3.1 + 3.1 + 2.6 + 1.9 + 2.0 = 19.1, all below the experiment.

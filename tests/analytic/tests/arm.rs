@@ -1,5 +1,6 @@
 //! Arm model against closed forms, finite differences and its own joints.
 
+use analytic_checks::arm::{chain, flange, ur5e};
 use contact::Engine;
 use contact::direct::Direct;
 use contact::scene::{BodyId, Pose};
@@ -7,7 +8,6 @@ use input::shipped::ROBOTS;
 use input::units::{DEG, MM};
 use insertion::arm::{Angles, Arm, displacement};
 use insertion::robot::{Drive, Robot};
-use lab::analytic::arm::{chain, flange, ur5e};
 use nalgebra::{Matrix6, Translation3, UnitQuaternion, Vector3};
 
 fn arm() -> Arm {
@@ -145,7 +145,7 @@ fn ten_millimetres_change_the_compliance_by_less_than_two_percent() {
 
 #[test]
 fn an_arm_file_is_checked() {
-    let text = include_str!("../../robots/ur5e.toml");
+    let text = include_str!("../../../robots/ur5e.toml");
     for (from, to, part) in [
         ("assembly_force_n = 100.0", "assembly_force_n = 0.0", "assembly_force_n"),
         ("limit_nm = 28.0", "limit_nm = -28.0", "joint \"wrist 1\" limit_nm"),

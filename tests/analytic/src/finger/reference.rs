@@ -1,8 +1,8 @@
 //! F4: plane-stress solutions of the measured designs by another program: quadratic triangles of
 //! 0.4 mm, E = 2 GPa, Poisson 0.4, geometry of the authors' CAD, at the phases given.
 
-use super::super::{CheckRow, Tolerance};
 use super::finray9;
+use crate::{CheckRow, Tolerance};
 use finray::geometry::Geometry;
 use finray::infill::Design;
 use finray::mechanics::{SIZE, planar};

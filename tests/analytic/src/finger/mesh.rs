@@ -1,7 +1,7 @@
 //! F3: independence of the mesh.
 
-use super::super::{CheckRow, Tolerance};
 use super::{finray9, infill};
+use crate::{CheckRow, Tolerance};
 use finray::elasticity::{PlaneStress, Slab};
 use finray::geometry::Geometry;
 use finray::mechanics::{CROSS_SIZE, SIZE};

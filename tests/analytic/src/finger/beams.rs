@@ -4,7 +4,7 @@
 //! F2, the patch test (Irons and Razzaque 1972): under any even strain displacements inside and
 //! the work done are exact, whatever the mesh.
 
-use super::super::{CheckRow, Tolerance};
+use crate::{CheckRow, Tolerance};
 use finray::condense::{Condensed, Element, Role, condense};
 use finray::elasticity::{PlaneStress, Slab};
 use finray::mesh::Mesh;

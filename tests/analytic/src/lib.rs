@@ -18,8 +18,11 @@
 //! | T15 | moment of a contact patch of friction against a turn |
 //! | F1 .. F4 | the computed stiffness of a printed finger |
 //!
-//! T9, in `compare::engines`, compares two engines on trials. The file of each check gives the
+//! T9, `lab cross-check`, compares two engines on trials. The file of each check gives the
 //! formula of the expected value, with its source.
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+#![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 use contact::Engine;
 

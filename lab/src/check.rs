@@ -1,9 +1,8 @@
 //! `lab check`: an engine against closed formulas, its windows at finer steps and other searches.
 
-use super::validate::{Fingers, search_name, tasks};
-use super::{Failure, print, print_json};
-use crate::analytic;
-use crate::compare::{TaskWays, Way, pairs};
+use crate::compare::{Setting, TaskSettings, pairs};
+use crate::validate::{Fingers, search_name, tasks};
+use crate::{Failure, print, print_json};
 use clap::Args;
 use contact::Engine;
 use finger_opt::setup::files;
@@ -54,49 +53,50 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.convergence || arguments.searches {
         return arguments.windows();
     }
-    let rows = analytic::run(&|factor| engine.build(factor));
+    let rows = analytic_checks::run(&|factor| engine.build(factor));
     let failed = rows.iter().filter(|row| !row.passed).count();
-    print(&analytic::table(&rows))?;
+    print(&analytic_checks::table(&rows))?;
     verdict("checks", failed, rows.len())
 }
 
 impl Arguments {
     fn windows(&self) -> Result<(), Failure> {
         let robot = files::robot(&self.robot)?;
-        let ways = if self.convergence { finer } else { searches };
+        let settings = if self.convergence { finer } else { searches };
         let engine = || self.engine.build(1.0);
-        let tasks = tasks(&self.task)?.into_iter().map(|task| ways(task, &robot, engine()));
+        let tasks = tasks(&self.task)?.into_iter().map(|task| settings(task, &robot, engine()));
         let tasks = tasks.collect::<Result<Vec<_>, _>>()?;
-        let (allowed, way, keys) = match self.convergence {
+        let (allowed, setting, keys) = match self.convergence {
             true => (ALLOWED_STEPS, "finer", ["production", "refined"]),
             false => (0, "search", ["walk", "strides"]),
         };
         let found = pairs::measure(&tasks, &self.fingers.designs());
         let failed = found.iter().filter(|pair| !pair.agrees(allowed)).count();
         match self.json {
-            true => print_json(&pairs::json(&found, Some(allowed), way, keys).into())?,
+            true => print_json(&pairs::json(&found, Some(allowed), setting, keys).into())?,
             false => print(&pairs::text(&found, Some(allowed)))?,
         }
         verdict("windows", failed, found.len())
     }
 }
 
-/// Ways of the engine as it is, and finer in each way that it can be.
-fn finer(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskWays, Failure> {
+/// Ways of the engine as it is, and finer in each setting that it can be.
+fn finer(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskSettings, Failure> {
     let finer = engine.finer();
-    let ways = std::iter::once(("production", engine)).chain(finer).map(|(name, engine)| {
+    let settings = std::iter::once(("production", engine)).chain(finer).map(|(name, engine)| {
         let rig = EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?;
-        Ok(Way { name: name.to_owned(), rig: Arc::new(rig), search: Search::Strides })
+        Ok(Setting { name: name.to_owned(), rig: Arc::new(rig), search: Search::Strides })
     });
-    let ways = ways.collect::<Result<_, Failure>>()?;
-    Ok(TaskWays { task, ways })
+    let settings = settings.collect::<Result<_, Failure>>()?;
+    Ok(TaskSettings { task, settings })
 }
 
-fn searches(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskWays, Failure> {
+fn searches(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskSettings, Failure> {
     let rig = Arc::new(EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?);
-    let way = |search| Way { name: search_name(search).to_owned(), rig: rig.clone(), search };
-    let ways = [Search::Walk, Search::Strides].map(way).to_vec();
-    Ok(TaskWays { task, ways })
+    let setting =
+        |search| Setting { name: search_name(search).to_owned(), rig: rig.clone(), search };
+    let settings = [Search::Walk, Search::Strides].map(setting).to_vec();
+    Ok(TaskSettings { task, settings })
 }
 
 fn verdict(what: &str, failed: usize, all: usize) -> Result<(), Failure> {

@@ -1,9 +1,9 @@
 //! The analytic checks on the engines with their production settings; a failure prints the table.
 
+use analytic_checks::CheckRow;
 use contact::Engine;
 use contact::direct::Direct;
 use contact::rapier::Rapier;
-use lab::analytic::{self, CheckRow};
 
 fn rapier(factor: f64) -> Box<dyn Engine> {
     let mut engine = Rapier::default();
@@ -19,7 +19,7 @@ fn direct(factor: f64) -> Box<dyn Engine> {
 
 /// Number of rows by check; all pass but those of `missed`.
 fn passed(rows: &[CheckRow], missed: &str) -> impl Fn(&str) -> usize + use<> {
-    let table = analytic::table(rows);
+    let table = analytic_checks::table(rows);
     assert!(rows.iter().all(|row| row.passed || row.check == missed), "\n{table}");
     let checks: Vec<_> = rows.iter().map(|row| row.check).collect();
     move |check| checks.iter().filter(|name| **name == check).count()
@@ -27,7 +27,7 @@ fn passed(rows: &[CheckRow], missed: &str) -> impl Fn(&str) -> usize + use<> {
 
 #[test]
 fn direct_passes_all_checks() {
-    let rows_of = passed(&analytic::run(&direct), "none");
+    let rows_of = passed(&analytic_checks::run(&direct), "none");
     for n in (1..=15).filter(|&n| n != 9) {
         assert!(rows_of(&format!("T{n}")) > 0, "T{n}");
     }
@@ -38,7 +38,7 @@ fn direct_passes_all_checks() {
 /// and MuJoCo are held to T12 (docs/notes/simulation.md, "Engines").
 #[test]
 fn rapier_passes_the_checks_of_what_it_has() {
-    let rows_of = passed(&analytic::contact(&rapier), "T12");
+    let rows_of = passed(&analytic_checks::contact(&rapier), "T12");
     assert_eq!(rows_of("T11"), 0, "it has no coupled springs");
     assert_eq!(rows_of("T12"), 2, "it has no torsional friction");
     for n in (1..=14).filter(|n| ![9, 11].contains(n)) {
@@ -56,7 +56,7 @@ fn mujoco_passes_all_checks_but_one() {
         engine.settings.step_s *= factor;
         Box::new(engine)
     };
-    let mut rows = analytic::run(&mujoco);
+    let mut rows = analytic_checks::run(&mujoco);
     rows.retain(|row| {
         row.quantity != "friction, mu 1, heading 37 deg" || row.error().abs() >= 0.02
     });

@@ -1,7 +1,7 @@
 //! `lab validate`: our tolerance windows beside the published ones.
 
-use super::{Failure, print, print_json};
 use crate::compare::published as beside;
+use crate::{Failure, print, print_json};
 use calibration::published::{self, Origin};
 use clap::{Args, ValueEnum};
 use finger_opt::setup::files;

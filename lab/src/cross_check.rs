@@ -1,9 +1,8 @@
 //! `lab cross-check`: agreement of two engines on the outcomes of trials.
 
-use super::validate::{Fingers, tasks};
-use super::{Failure, print, print_json};
-use crate::compare::engines;
-use crate::compare::{TaskWays, Way};
+use crate::compare::{Setting, TaskSettings, engines};
+use crate::validate::{Fingers, tasks};
+use crate::{Failure, print, print_json};
 use clap::Args;
 use finger_opt::setup::files;
 use finger_opt::setup::request::DEFAULT_ROBOT;
@@ -43,17 +42,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let kinds = [arguments.engine, arguments.against];
     let names = kinds.map(EngineKind::name);
     let robot = files::robot(DEFAULT_ROBOT)?;
-    let ways = |task: Task| {
-        let way = |engine: EngineKind| {
+    let settings = |task: Task| {
+        let setting = |engine: EngineKind| {
             let rig = engine.rig(&task, &robot, &FingerSource::Paper.any(&task), 1.0);
             let rig = rig.map_err(Failure::input)?.into();
-            Ok(Way { name: engine.name().to_owned(), rig, search: Search::Strides })
+            Ok(Setting { name: engine.name().to_owned(), rig, search: Search::Strides })
         };
-        let ways = kinds.into_iter().map(way).collect::<Result<_, Failure>>()?;
-        Ok(TaskWays { task, ways })
+        let settings = kinds.into_iter().map(setting).collect::<Result<_, Failure>>()?;
+        Ok(TaskSettings { task, settings })
     };
-    let tasks =
-        tasks(&arguments.task)?.into_iter().map(ways).collect::<Result<Vec<_>, Failure>>()?;
+    let tasks = tasks(&arguments.task)?.into_iter().map(settings);
+    let tasks = tasks.collect::<Result<Vec<_>, Failure>>()?;
     // The softest and the stiffest.
     let mut designs = Fingers::Three.designs();
     designs.remove(1);

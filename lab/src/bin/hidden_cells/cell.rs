@@ -1,0 +1,172 @@
+//! Cells whose unknowns are drawn, and the windows of the measured fingers in them.
+
+use ask_tell::stream::stream;
+use finger_opt::failure::Failure;
+use input::shipped::PRIORS;
+use insertion::evaluation::cell::Priors;
+use insertion::evaluation::evaluator::{Evaluator, Specimen};
+use insertion::evaluation::taught::{Moved, Taught, teach};
+use insertion::evaluation::template::Template;
+use insertion::evaluation::tolerance::{self, Search};
+use insertion::evaluation::{OffsetStep, grid_mm};
+use insertion::outcome::Outcome;
+use insertion::robot::Robot;
+use insertion::space::Design;
+use insertion::stiffness::Measurement;
+use insertion::trial::NEVER;
+use insertion::trial::engine::EngineKind;
+use parameters::Parameter;
+use rand::RngExt;
+use std::time::Instant;
+
+/// Seed of the streams that cells are drawn from.
+const SEED: u64 = 0;
+/// Finger that has to insert from some start, or the cell is drawn again: percent, degrees.
+const MIDDLE: [f64; 2] = [20.0, 20.0];
+const MAX_DRAWS: u32 = 100;
+/// Hidden values: their names in the shipped priors and their columns.
+pub const HIDDEN: [(&str, &str); 5] = [
+    ("friction plug-socket", "friction_plug_socket"),
+    ("stiffness of the flange", "flange_stiffness_factor"),
+    ("preload", "preload_mm"),
+    ("torsion of the pad", "pad_torsion_mm"),
+    ("radius of the edges", "edge_radius_mm"),
+];
+
+/// Cell with hidden values.
+pub struct HiddenCell<'a> {
+    /// Number from 1; odd ones do the first task.
+    pub number: u64,
+    /// Draws until the middle finger inserted.
+    draws: u32,
+    pub evaluator: &'a Evaluator,
+    /// Its task as the file has it.
+    pub template: &'a Template,
+    /// Priors of [`HIDDEN`] and the values drawn: factors, and the radius in mm.
+    hidden: Vec<(Parameter, f64)>,
+}
+
+impl<'a> HiddenCell<'a> {
+    pub fn draw(evaluator: &'a Evaluator, number: u64) -> Result<Self, Failure> {
+        let template = &evaluator.templates[(number + 1) as usize % evaluator.templates.len()];
+        let priors = Priors::parse(PRIORS[0].text, PRIORS[0].file).map_err(Failure::input)?;
+        let mut random = stream(SEED, number, "hidden cell");
+        for draws in 1..=MAX_DRAWS {
+            let named = HIDDEN.iter().filter_map(|(name, _)| {
+                priors.parameters.iter().find(|parameter| parameter.name == *name)
+            });
+            let hidden = named.map(|prior| (prior.clone(), prior.at(random.random()))).collect();
+            let cell = HiddenCell { number, draws, evaluator, template, hidden };
+            let (specimen, robot) = cell.setup(&Design::infill(MIDDLE[0], MIDDLE[1]))?;
+            if window(&specimen, &robot, EngineKind::Direct, None)?.is_some() {
+                return Ok(cell);
+            }
+        }
+        Err(Failure::running(format!("cell {number}: nothing inserts in {MAX_DRAWS} draws")))
+    }
+
+    /// Returns a finger in the cell, and the cell's robot.
+    pub fn setup(&self, design: &Design) -> Result<(Specimen, Robot), Failure> {
+        let values: Vec<_> = self.hidden.iter().map(|(prior, value)| (prior, *value)).collect();
+        self.evaluator.under(self.template, (design, None), &values).map_err(Failure::input)
+    }
+
+    /// Returns the hidden values as the tables have them.
+    pub fn shown(&self) -> impl Iterator<Item = f64> {
+        let nominal = |prior: &Parameter| self.template.numbers.number(&prior.path).unwrap_or(1.0);
+        self.hidden.iter().map(move |(prior, value)| nominal(prior) * value)
+    }
+}
+
+/// Windows of a measured finger in a cell.
+pub struct FingerWindows {
+    pub finger: Measurement,
+    /// In MuJoCo; in our engine; in our engine with the cell as the files have it.
+    windows: [Option<Taught>; 3],
+    /// Whether the start that our engine was taught fails in MuJoCo.
+    taught_again: bool,
+    elapsed_s: f64,
+}
+
+impl FingerWindows {
+    pub fn measure(
+        cell: &HiddenCell<'_>,
+        finger: &Measurement,
+        engine: EngineKind,
+    ) -> Result<Self, Failure> {
+        let design = Design::infill(finger.density_percent, finger.direction_deg);
+        let (specimen, robot) = cell.setup(&design)?;
+        let direct = window(&specimen, &robot, EngineKind::Direct, None)?;
+        let clock = Instant::now();
+        let near = direct.as_ref().map_or(0, |taught| taught.by);
+        let truth = window(&specimen, &robot, engine, Some(near))?;
+        let elapsed_s = clock.elapsed().as_secs_f64();
+        let nominal = cell.evaluator.under(cell.template, (&design, None), &[]);
+        let (specimen, robot) = nominal.map_err(Failure::input)?;
+        let nominal = window(&specimen, &robot, EngineKind::Direct, None)?;
+        let taught_again = truth.as_ref().is_none_or(|truth| truth.by != near);
+        let windows = [truth, direct, nominal];
+        Ok(FingerWindows { finger: *finger, windows, taught_again, elapsed_s })
+    }
+
+    /// Returns the tolerable range in one of the three ways, mm; 0 if nothing inserts.
+    pub fn range_mm(&self, way: usize) -> f64 {
+        self.windows[way].as_ref().map_or(0.0, |taught| taught.window.range_mm())
+    }
+
+    /// Returns the taught start and both ends in MuJoCo, mm from the task's own start.
+    pub fn starts_mm(&self) -> [f64; 3] {
+        self.windows[0].as_ref().map_or([0.0; 3], starts_mm)
+    }
+
+    pub fn line(&self, cell: &HiddenCell<'_>) -> String {
+        let Measurement { design, density_percent, direction_deg, .. } = self.finger;
+        let shown = cell.shown().map(|value| format!("{value:.4},")).collect::<String>();
+        let ways =
+            self.windows.each_ref().map(|taught| taught.as_ref().map_or(",,,0,,".into(), cells));
+        format!(
+            "{},{design},{},{},{shown}{density_percent},{direction_deg},{},{},{:.1}\n",
+            cell.number,
+            cell.template.task.name,
+            cell.draws,
+            ways.join(","),
+            u8::from(self.taught_again),
+            self.elapsed_s
+        )
+    }
+}
+
+fn starts_mm(taught: &Taught) -> [f64; 3] {
+    let Taught { by, window } = taught;
+    [*by, by + window.negative_steps, by + window.positive_steps].map(grid_mm)
+}
+
+fn cells(taught: &Taught) -> String {
+    let [start, negative, positive] = starts_mm(taught);
+    let window = &taught.window;
+    let [below, above] = [window.end_negative, window.end_positive].map(|end| match end {
+        Some(Outcome::Failed(class)) => class.number().to_string(),
+        Some(other) => other.word().to_owned(),
+        None => String::new(),
+    });
+    format!("{start},{negative},{positive},{},{below},{above}", window.range_mm())
+}
+
+/// Returns the window about a start that inserts: `near`, or else a taught one; `None` if none inserts.
+pub fn window(
+    specimen: &Specimen,
+    robot: &Robot,
+    engine: EngineKind,
+    near: Option<OffsetStep>,
+) -> Result<Option<Taught>, Failure> {
+    let Specimen { task, finger, .. } = specimen;
+    let rig = engine.rig(task, robot, finger, 1.0).map_err(Failure::input)?;
+    if let Some(by) = near {
+        let moved = Moved { rig: &*rig, by };
+        let window = tolerance::evaluate(&moved, finger, Search::Strides).window;
+        if window.nominal == Outcome::Inserted {
+            return Ok(Some(Taught { by, window }));
+        }
+    }
+    Ok(teach(&*rig, finger, &NEVER).ok())
+}

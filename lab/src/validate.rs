@@ -110,7 +110,7 @@ pub fn search_name(search: Search) -> &'static str {
     }
 }
 
-/// Task of a name, or `all`; only tasks with published windows.
+/// Reads the task of a name, or `all`; refuses tasks without published windows.
 pub fn tasks(name: &str) -> Result<Vec<Task>, Failure> {
     let names = match name {
         "all" => TASKS.iter().map(|shipped| shipped.name).collect(),

@@ -1,4 +1,4 @@
-//! Contact engines behind one trait; they know scenes, not studies.
+//! Contact engines behind one trait. They depend on scenes alone, not on studies.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -18,7 +18,7 @@ pub mod shapes;
 
 /// Contact engine: builds worlds from scenes.
 pub trait Engine: Send + Sync {
-    /// Name and version, as recorded in a study.
+    /// Returns the name and version, as recorded in a study.
     fn version(&self) -> String;
 
     /// Checks that it can simulate a scene exactly as it stands.
@@ -29,18 +29,18 @@ pub trait Engine: Send + Sync {
         Ok(())
     }
 
-    /// Whether face contacts have the friction of [`scene::Friction::torsion`].
+    /// Returns whether face contacts have the friction of [`scene::Friction::torsion`].
     fn turns_with_friction(&self) -> bool {
         true
     }
 
-    /// World at time zero of a scene that it [supports](Engine::supports).
+    /// Creates the world at time zero of a scene that it [supports](Engine::supports).
     fn world(&self, scene: &Scene) -> Box<dyn World>;
 
-    /// The same engine with half the step, for trials that diverged.
+    /// Returns the same engine with half the step, for trials that diverged.
     fn halved(&self) -> Box<dyn Engine>;
 
-    /// Finer engines for convergence studies, each with its name.
+    /// Returns finer engines for convergence studies, each with its name.
     fn finer(&self) -> Vec<(&'static str, Box<dyn Engine>)> {
         vec![("half the step", self.halved())]
     }
@@ -71,7 +71,7 @@ pub enum Unsupported {
     },
 }
 
-/// Parts of a scene that only `direct` can simulate, each with the feature that others lack:
+/// Returns the parts of a scene that only `direct` can simulate, each with the feature that others lack:
 /// springs that couple axes, friction of a patch, mass that depends on the direction.
 fn lacking(scene: &Scene) -> impl DoubleEndedIterator<Item = (&str, &'static str)> {
     let coupled = |joint: &&Joint| matches!(joint.springs, Springs::Coupled { .. });
@@ -87,7 +87,7 @@ fn lacking(scene: &Scene) -> impl DoubleEndedIterator<Item = (&str, &'static str
     parts.into_iter().flatten()
 }
 
-/// A state that is no longer finite: the trial has no result.
+/// Divergence: the state is no longer finite, and the trial has no result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the simulation diverged: a body's state is no longer finite")]
 pub struct Diverged;
@@ -111,7 +111,7 @@ pub struct ContactPoint {
 }
 
 impl ContactPoint {
-    /// The point in the frame that contains the old one at `from`.
+    /// Returns the point in the frame that contains the old one at `from`.
     pub fn seen(&self, from: &Pose) -> Self {
         ContactPoint { point: from * self.point, force: from * self.force }
     }
@@ -125,13 +125,13 @@ pub trait World: Send + Sync {
     /// If the state is no longer finite.
     fn step(&mut self) -> Result<(), Diverged>;
 
-    /// Length of one step, s.
+    /// Returns the length of one step, s.
     fn step_s(&self) -> f64;
 
     /// Sets the length of the steps to come, s; an engine that cannot keeps its own.
     fn set_step(&mut self, _step_s: f64) {}
 
-    /// Frame of a body in the world.
+    /// Returns the frame of a body in the world.
     fn pose(&self, body: BodyId) -> Pose;
 
     /// Commands the pose of a driven body at the end of the next step.
@@ -147,15 +147,15 @@ pub trait World: Send + Sync {
     /// every step from now on, in place of those before.
     fn push(&mut self, body: BodyId, force: Vector3<f64>, moment: Vector3<f64>);
 
-    /// Contact between two bodies over the last step.
+    /// Returns the contact between two bodies over the last step.
     fn contact(&self, first: BodyId, second: BodyId) -> ContactForce;
 
-    /// Points at which two bodies press on one another, for pictures; not every engine has them.
+    /// Returns the points at which two bodies press on one another, for pictures; not every engine has them.
     fn contact_points(&self, _first: BodyId, _second: BodyId) -> Vec<ContactPoint> {
         Vec::new()
     }
 
-    /// Independent copy that continues with the same bits.
+    /// Returns an independent copy that continues with the same bits.
     fn snapshot(&self) -> Box<dyn World>;
 }
 

@@ -95,14 +95,14 @@ pub enum Torsion {
 }
 
 impl Friction {
-    /// Friction that resists no turn.
+    /// Returns a friction that resists no turn.
     pub fn hard(coefficient: f64) -> Self {
         Friction { coefficient, torsion: Torsion::Radius(0.0) }
     }
 }
 
 impl ContactPair {
-    /// 1 for the bodies of the pair, -1 for them in the other order.
+    /// Returns 1 for the bodies of the pair, -1 for them in the other order.
     pub fn sign(&self, first: BodyId, second: BodyId) -> Option<f64> {
         match (self.first, self.second) {
             ends if ends == (first, second) => Some(1.0),
@@ -111,7 +111,7 @@ impl ContactPair {
         }
     }
 
-    /// Whether a body is in the pair.
+    /// Returns whether a body is in the pair.
     pub fn has(&self, body: BodyId) -> bool {
         self.first == body || self.second == body
     }
@@ -172,7 +172,7 @@ pub struct Spring {
 }
 
 impl Spring {
-    /// Spring at rest in the zero position.
+    /// Creates a spring at rest in the zero position.
     pub fn new(stiffness: f64, damping: f64) -> Self {
         Spring { stiffness, damping, target: 0.0, limit: f64::INFINITY }
     }
@@ -241,12 +241,12 @@ impl Scene {
         self.contacts.push(ContactPair { first, second, friction });
     }
 
-    /// First pair of bodies whose friction is that of a contact patch.
+    /// Returns the first pair of bodies whose friction is that of a contact patch.
     pub fn patched(&self) -> Option<&ContactPair> {
         self.contacts.iter().find(|pair| pair.friction.torsion == Torsion::Patch)
     }
 
-    /// Pairs of geoms that may touch, in the order of the contacts.
+    /// Returns the pairs of geoms that may touch, in the order of the contacts.
     pub fn geom_pairs(&self) -> Vec<GeomPair> {
         let mut from = vec![0];
         from.extend(self.bodies.iter().scan(0, |next, body| {
@@ -271,7 +271,7 @@ impl Scene {
 }
 
 impl Shape {
-    /// Corners, m; of a cylinder those of a 16-sided prism inside it (for pictures and extents).
+    /// Returns the corners, m; of a cylinder those of a 16-sided prism inside it (for pictures and extents).
     pub fn corners(&self) -> Vec<Point3<f64>> {
         match self {
             Shape::Box { half } => {

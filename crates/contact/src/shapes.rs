@@ -11,7 +11,7 @@ use rapier3d_f64::parry;
 /// Unit of length for hulls, m: in metres parry's tolerances for them are too wide.
 const MM: f64 = 1e-3;
 
-/// Closed surface of a convex shape in its frame (of a cylinder that of the prism inside it):
+/// Returns the closed surface of a convex shape in its frame (of a cylinder that of the prism inside it):
 /// corners, m, and triangles, counter-clockwise from outside. Empty for a hull without volume,
 /// which no checked file has.
 pub fn surface(shape: &Shape) -> (Vec<Point3<f64>>, Vec<[u32; 3]>) {
@@ -20,7 +20,7 @@ pub fn surface(shape: &Shape) -> (Vec<Point3<f64>>, Vec<[u32; 3]>) {
     (points.into_iter().map(|p| Point3::from(Vector3::from(p) * MM)).collect(), triangles)
 }
 
-/// Shape of parry, and the turn from its frame to ours.
+/// Returns the shape of parry, and the turn from its frame to ours.
 pub fn shared(shape: &Shape, scale: f64) -> (SharedShape, Pose) {
     match shape {
         Shape::Box { half } => {
@@ -43,7 +43,7 @@ pub fn shared(shape: &Shape, scale: f64) -> (SharedShape, Pose) {
     }
 }
 
-/// Centre and half extents, m, of the box in the shape's frame that encloses it.
+/// Returns the centre and half extents, m, of the box in the shape's frame that encloses it.
 pub(super) fn bounds(shape: &Shape) -> (Vector3<f64>, Vector3<f64>) {
     // A cylinder's prism has corners on both axes.
     let corners = shape.corners();
@@ -53,7 +53,7 @@ pub(super) fn bounds(shape: &Shape) -> (Vector3<f64>, Vector3<f64>) {
     ((low + high) / 2.0, (high - low) / 2.0)
 }
 
-/// Pose of parry from one in metres.
+/// Returns the pose of parry from one in metres.
 pub fn pose(pose: &Pose, scale: f64) -> pm::Pose {
     pm::Pose::from_parts((pose.translation.vector * scale).into(), pose.rotation.into())
 }

@@ -128,7 +128,7 @@ impl Drawing {
     }
 }
 
-/// Path data of a line through points.
+/// Returns the path data of a line through points.
 fn path(points: impl IntoIterator<Item = Point2<f64>>) -> String {
     let mut data = String::new();
     for (i, point) in points.into_iter().enumerate() {
@@ -144,7 +144,7 @@ fn number(value: f64) -> f64 {
     (value * 1e3).round() / 1e3 + 0.0
 }
 
-/// Text as XML holds it.
+/// Escapes a text for XML.
 fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

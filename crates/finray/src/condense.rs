@@ -21,21 +21,21 @@ const LEAF: usize = 8;
 pub trait Element {
     /// Degrees of freedom of a node.
     const FREEDOMS: usize;
-    /// Lower half of a triangle's stiffness matrix, square, row by row, by its six nodes' freedoms.
+    /// Returns the lower half of a triangle's stiffness matrix, square, row by row, by its six nodes' freedoms.
     fn stiffness(&self, corners: [Point2<f64>; 3]) -> Vec<f64>;
-    /// Rows, one for each degree of freedom, of a node at a distance along y and z from the pad's
+    /// Returns the rows, one for each degree of freedom, of a node at a distance along y and z from the pad's
     /// middle, m: its displacement by the three motions of a rigid pad.
     fn follow(&self, outline: &Outline, place: [f64; 2]) -> Vec<[f64; 3]>;
 }
 
-/// Part of a node in the condensation.
+/// Treatment of a node in the condensation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
-    /// To be eliminated: it carries no load.
+    /// Eliminated: it carries no load.
     Free,
     /// Clamped.
     Fixed,
-    /// To be condensed onto.
+    /// Condensed onto.
     Kept,
 }
 
@@ -55,7 +55,7 @@ pub struct Condensed {
 /// [`Condensed::expand`] gives the motion of the free nodes, too.
 ///
 /// # Errors
-/// If a part of the mesh is held by nothing.
+/// If a part of the mesh is not connected to a clamped or kept node.
 pub fn condense<E: Element>(
     mesh: &Mesh,
     element: &E,
@@ -85,7 +85,7 @@ pub fn condense<E: Element>(
 }
 
 impl Condensed {
-    /// Displacement of every node (`FREEDOMS` numbers each, m or rad) from those of the kept
+    /// Returns the displacement of every node (`FREEDOMS` numbers each, m or rad) from those of the kept
     /// nodes, in the order of the matrix. Free nodes stay at 0 unless they were remembered.
     pub fn expand(&self, kept: &DVector<f64>) -> Vec<f64> {
         let mut all = vec![0.0; self.count * self.freedoms];
@@ -113,7 +113,7 @@ struct Condensation<'a, E> {
 }
 
 impl<E: Element> Condensation<'_, E> {
-    /// Triangles at these places of the order, condensed onto the nodes that others touch.
+    /// Returns the triangles at these places of the order, condensed onto the nodes that others touch.
     fn part(&mut self, range: Range<usize>) -> Result<Frontal, MeshError> {
         let cut = if range.len() > LEAF { self.cuts.next() } else { None };
         let parts: Vec<(Vec<u32>, Vec<f64>)> = match cut.map(|cut| range.start + cut) {
@@ -144,7 +144,7 @@ impl<E: Element> Condensation<'_, E> {
         Ok(rest)
     }
 
-    /// Zero matrix of these nodes, first those that no triangle outside the range touches.
+    /// Returns the zero matrix of these nodes, first those that no triangle outside the range touches.
     fn frontal(&mut self, mut nodes: Vec<u32>, range: &Range<usize>) -> Frontal {
         nodes.sort_unstable();
         nodes.dedup();
@@ -162,7 +162,7 @@ impl<E: Element> Condensation<'_, E> {
     }
 }
 
-/// First and last place in the order of the triangles of each node.
+/// Returns the first and last place in the order of the triangles of each node.
 fn spans(mesh: &Mesh, order: &[u32]) -> Vec<[u32; 2]> {
     let mut spans = vec![[u32::MAX, 0]; mesh.nodes.len()];
     for (place, &t) in order.iter().enumerate() {

@@ -17,7 +17,7 @@ pub struct Slab {
 }
 
 impl Slab {
-    /// Slab of a printed finger.
+    /// Returns the slab of a printed finger.
     pub fn of(finger: &PrintedFinger) -> Self {
         let (material, thickness) = (&finger.material, finger.outline.depth);
         Slab { modulus: material.modulus, poisson: material.poisson, thickness }
@@ -44,12 +44,12 @@ const POINTS: [[f64; 3]; 3] = {
     [[A, B, B], [B, A, B], [B, B, A]]
 };
 
-/// Area of a triangle, m2.
+/// Returns the area of a triangle, m2.
 pub fn area([a, b, c]: [Point2<f64>; 3]) -> f64 {
     (b - a).perp(&(c - a)) / 2.0
 }
 
-/// Shape functions at a point given by its area coordinates.
+/// Returns the shape functions at a point given by its area coordinates.
 pub fn shape([a, b, c]: [Point2<f64>; 3], [l, m, n]: [f64; 3]) -> Shape {
     let double = 2.0 * area([a, b, c]);
     // Gradient of an area coordinate: the opposite side, turned.

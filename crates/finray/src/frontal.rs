@@ -19,18 +19,18 @@ pub struct Frontal {
 }
 
 impl Frontal {
-    /// Zero matrix of these nodes.
+    /// Creates a zero matrix of these nodes.
     pub fn new(nodes: Vec<u32>, eliminated: usize, freedoms: usize) -> Self {
         let size = nodes.len() * freedoms;
         Frontal { nodes, eliminated, freedoms, values: vec![0.0; size * size] }
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn size(&self) -> usize {
         self.nodes.len() * self.freedoms
     }
 
-    /// Entry of the lower triangle.
+    /// Returns the entry of the lower triangle.
     pub fn at(&self, row: usize, column: usize) -> f64 {
         self.values[row * self.size() + column]
     }
@@ -54,7 +54,7 @@ impl Frontal {
         }
     }
 
-    /// Cholesky factorisation of the first nodes' rows; the rest is condensed onto the others.
+    /// Computes the Cholesky factorisation of the first nodes' rows; the rest is condensed onto the others.
     ///
     /// # Errors
     /// If nothing holds one of the first nodes.
@@ -133,7 +133,7 @@ impl Frontal {
         }
     }
 
-    /// Condensed matrix of the nodes that were not eliminated.
+    /// Returns the condensed matrix of the nodes that were not eliminated.
     pub fn rest(&self) -> Frontal {
         let mut rest = Frontal::new(self.nodes[self.eliminated..].to_vec(), 0, self.freedoms);
         let (size, small) = (self.size(), rest.size());

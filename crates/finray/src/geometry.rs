@@ -30,7 +30,7 @@ pub struct Geometry {
 const NEAREST_CORNERS: f64 = 0.002 * MM;
 
 impl Geometry {
-    /// Profile of a finger with an infill.
+    /// Creates the checked profile of a finger with an infill.
     ///
     /// # Errors
     /// If its parts do not fit one another; the message names file and key.
@@ -53,19 +53,19 @@ impl Geometry {
         Ok(Geometry { finger: finger.clone(), design: *design, lines, outer, voids, ribs })
     }
 
-    /// Outline, openings and holes through the base, mm: the solid lies left of every ring.
+    /// Returns the outline, openings and holes through the base, mm: the solid lies left of every ring.
     pub fn rings_mm(&self) -> Vec<Vec<[f64; 2]>> {
         let mm = |ring: &Ring| ring.iter().map(|p| [p.x / MM, p.y / MM]).collect();
         std::iter::once(&self.outer).chain(&self.voids).chain(&self.holes()).map(mm).collect()
     }
 
-    /// Holes through the held base, clockwise, m; they are no openings of the mechanics.
+    /// Returns the holes through the held base, clockwise, m; they are no openings of the mechanics.
     pub fn holes(&self) -> Vec<Ring> {
         let holes = self.finger.holes.as_ref().filter(|holes| holes.block.is_none());
         holes.map_or_else(Vec::new, |holes| holes.rings(&self.finger.outline))
     }
 
-    /// Area of the solid profile, m2.
+    /// Returns the area of the solid profile, m2.
     pub fn area(&self) -> f64 {
         std::iter::once(&self.outer)
             .chain(&self.voids)
@@ -74,18 +74,18 @@ impl Geometry {
             .sum()
     }
 
-    /// The holes and the block that has them, if they do not run through the held base.
+    /// Returns the holes and the block that has them, if they do not run through the held base.
     pub fn block(&self) -> Option<(&Holes, Block)> {
         self.finger.holes.as_ref().and_then(|holes| Some((holes, holes.block?)))
     }
 
-    /// Mass of the printed finger without a block for its holes, kg.
+    /// Returns the mass of the printed finger without a block for its holes, kg.
     pub fn mass(&self) -> f64 {
         self.area() * self.finger.outline.depth * self.finger.material.mass_density
     }
 }
 
-/// Openings that the ribs leave of the inside, clockwise, by the number of the rib before them.
+/// Returns the openings that the ribs leave of the inside, clockwise, by the number of the rib before them.
 fn gaps(inside: &Ring, finger: &PrintedFinger, lines: &RibLines) -> Vec<(i64, Vec<Ring>)> {
     let half = finger.ribs.thickness / 2.0;
     let gap = |n: i64| {

@@ -22,7 +22,7 @@ pub(super) fn halve(mesh: &Mesh, leaf: usize) -> (Vec<u32>, Vec<usize>) {
     (order, halving.cuts)
 }
 
-/// Rank of each triangle along a direction: none is given twice.
+/// Returns the rank of each triangle along a direction, each rank once.
 fn ranks(centres: &[Point2<f64>], [x, y]: [f64; 2]) -> Vec<u32> {
     let places: Vec<f64> = centres.iter().map(|centre| x * centre.x + y * centre.y).collect();
     let mut sorted: Vec<u32> = (0..centres.len() as u32).collect();
@@ -91,7 +91,7 @@ impl Halving {
         (direction, order.len() / 2)
     }
 
-    /// The cut across which the fewest corners are shared.
+    /// Returns the cut across which the fewest corners are shared.
     fn best(&mut self, order: &mut [u32]) -> Cut {
         let mut best = (usize::MAX, (0, order.len() / 2));
         for direction in 0..DIRECTIONS.len() {
@@ -107,7 +107,7 @@ impl Halving {
         best.1
     }
 
-    /// Number of corners that both parts of an order touch.
+    /// Returns the number of corners that both parts of an order touch.
     fn shared(&mut self, order: &[u32], first: usize) -> usize {
         let of = |t: &u32| self.corners[*t as usize];
         let (first, second) = order.split_at(first);

@@ -24,7 +24,7 @@ pub enum Direction {
 impl Direction {
     const ALL: [Self; 3] = [Direction::Length, Direction::Width, Direction::Depth];
 
-    /// Both directions across it, which with it are right-handed.
+    /// Returns both directions across it, right-handed with it.
     pub fn across(self) -> [Self; 2] {
         [1, 2].map(|next| Self::ALL[(self as usize + next) % 3])
     }
@@ -77,7 +77,7 @@ const MOST: u32 = 20;
 const EPSILON: f64 = 1e-9;
 
 impl Holes {
-    /// What carries the holes: its low and its high end along each direction, m; X from the tip, Y
+    /// Returns the extent of what carries the holes: its low and its high end along each direction, m; X from the tip, Y
     /// from the front, Z from the first layer.
     pub fn carrier(&self, outline: &Outline) -> [[f64; 2]; 3] {
         let Outline { length, width, depth, clamped, .. } = *outline;
@@ -88,7 +88,7 @@ impl Holes {
         [x, [middle - half, middle + half], [0.0, depth]]
     }
 
-    /// Middles of the holes, m; along the holes that of what carries them.
+    /// Returns the middles of the holes, m; along the holes that of what carries them.
     pub fn middles(&self, outline: &Outline) -> Vec<[f64; 3]> {
         let centre = self.carrier(outline).map(|[low, high]| (low + high) / 2.0);
         let first = self.offset[0] - self.spacing * f64::from(self.count - 1) / 2.0;
@@ -101,7 +101,7 @@ impl Holes {
         (0..self.count).map(middle).collect()
     }
 
-    /// Low and high ends of each hole along each direction, m; along the holes those of what
+    /// Returns the low and high ends of each hole along each direction, m; along the holes those of what
     /// carries them.
     pub fn boxes(&self, outline: &Outline) -> Vec<[[f64; 2]; 3]> {
         let radius = self.diameter / 2.0;
@@ -113,7 +113,7 @@ impl Holes {
         self.middles(outline).into_iter().map(boxed).collect()
     }
 
-    /// The holes, clockwise in the plane of [`Direction::across`], m.
+    /// Returns the holes, clockwise in the plane of [`Direction::across`], m.
     pub fn rings(&self, outline: &Outline) -> Vec<Ring> {
         let radius = self.diameter / 2.0;
         let [u, v] = self.axis.across().map(|direction| direction as usize);
@@ -129,7 +129,7 @@ impl Holes {
         self.middles(outline).into_iter().map(ring).collect()
     }
 
-    /// Place of the coordinate across holes and row.
+    /// Returns the place of the coordinate across holes and row.
     fn beside(&self) -> usize {
         3 - self.axis as usize - self.row as usize
     }
@@ -214,7 +214,7 @@ struct RawBlock {
 }
 
 impl RawHoles {
-    /// The holes, each number checked by itself; `length` checks one.
+    /// Checks each number by itself; `length` checks a length.
     pub fn checked(
         self,
         check: Check<'_>,

@@ -32,7 +32,7 @@ pub struct RibLines {
 }
 
 impl RibLines {
-    /// Centre lines by the rule of the finger file.
+    /// Creates the centre lines by the rule of the finger file.
     pub fn new(finger: &PrintedFinger, design: &Design) -> Self {
         let (sin, cos) = libm::sincos(design.direction_deg * DEG);
         let across = Vector2::new(cos, -sin);
@@ -42,12 +42,12 @@ impl RibLines {
         RibLines { across, phase, first, pitch }
     }
 
-    /// Distance of a centre line from the origin, m.
+    /// Returns the distance of a centre line from the origin, m.
     pub(super) fn offset(&self, n: i64) -> f64 {
         self.first + n as f64 * self.pitch
     }
 
-    /// First and last of the lines that bound gaps with anything of a ring in them.
+    /// Returns the first and last of the lines that bound gaps with anything of a ring in them.
     pub(super) fn range(&self, ring: &[Point2<f64>]) -> std::ops::RangeInclusive<i64> {
         let places = ring.iter().map(|p| (self.across.dot(&p.coords) - self.first) / self.pitch);
         let span = |(low, high): (f64, f64), n: f64| (low.min(n), high.max(n));

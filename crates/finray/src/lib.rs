@@ -1,4 +1,4 @@
-//! The printed finger: its profile, its stiffness from its ribs, its picture.
+//! Printed finger: profile, stiffness computed from its ribs, picture, files for printers.
 //!
 //! ```text
 //! outline, holes -> printed -> infill -> geometry (polygon) -> mesh -> meshed -> condense (halving, frontal)
@@ -29,13 +29,13 @@ pub mod stiffness;
 #[cfg(test)]
 mod tests;
 
-/// Reason why a printed finger cannot be.
+/// Error of a printed finger.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FingerError {
     /// A number of the finger file or the design out of range, or parts that do not fit.
     #[error(transparent)]
     Value(#[from] input::InputError),
-    /// A finger of this file that cannot be meshed, or whose stiffness is that of no finger.
+    /// A finger of this file that cannot be meshed, or whose stiffness is not plausible.
     #[error("{file}: {problem}")]
     Unfit {
         /// Finger file.
@@ -46,7 +46,7 @@ pub enum FingerError {
     /// A task whose file couples springs that are computed.
     #[error(
         "the task `{task}`: finger.coupling goes with --finger-model paper; the springs of a \
-         computed finger are coupled as its ribs say"
+         computed finger are coupled by its ribs"
     )]
     Coupled {
         /// Name of the task.

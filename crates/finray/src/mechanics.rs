@@ -9,7 +9,7 @@ use super::elasticity::{PlaneStress, Slab};
 use super::geometry::Geometry;
 use super::infill::{Design, RibLines};
 use super::mesh::MeshError;
-use super::meshed::{Body, held};
+use super::meshed::{RigidFace, rigid_stiffness};
 use super::plate::MindlinPlate;
 use super::stiffness::{CrossStiffness, PlanarStiffness};
 use crate::printed::PrintedFinger;
@@ -39,7 +39,7 @@ pub struct FingerStiffness {
     pub cross: CrossStiffness,
 }
 
-/// Stiffness of a finger.
+/// Computes the stiffness of a finger.
 ///
 /// # Errors
 /// If the profile cannot be meshed or hangs in the air, or its stiffness is not that of a
@@ -49,7 +49,7 @@ pub fn compute(geometry: &Geometry) -> Result<FingerStiffness, FingerError> {
     Ok(FingerStiffness { pad, pad_and_roof, cross: cross(geometry, CROSS_SIZE)? })
 }
 
-/// Stiffness in the plane, of the part touching the pad alone, then of it touching pad and
+/// Returns the stiffness in the plane, of the part touching the pad alone, then of it touching pad and
 /// roof; `size` is the length of a triangle's side, m.
 ///
 /// # Errors
@@ -57,7 +57,8 @@ pub fn compute(geometry: &Geometry) -> Result<FingerStiffness, FingerError> {
 pub fn planar(geometry: &Geometry, size: f64) -> Result<[PlanarStiffness; 2], FingerError> {
     let fails = |problem| FingerError::mesh(geometry, problem);
     let element = PlaneStress(Slab::of(&geometry.finger));
-    let held = held(geometry, &element, size, [Body::Pad, Body::PadAndRoof]).map_err(fails)?;
+    let held = rigid_stiffness(geometry, &element, size, [RigidFace::Pad, RigidFace::PadAndRoof])
+        .map_err(fails)?;
     let stiffness = |matrix| PlanarStiffness::new(matrix).ok_or_else(|| fails(MeshError::Limp));
     let pad = stiffness(held[0])?;
     let compliance = pad.in_compliance() / N_PER_MM;
@@ -72,18 +73,18 @@ pub fn planar(geometry: &Geometry, size: f64) -> Result<[PlanarStiffness; 2], Fi
     Ok([pad, stiffness(held[1])?])
 }
 
-/// Stiffness across the plane; `size` is the length of a triangle's side, m.
+/// Returns the stiffness across the plane; `size` is the length of a triangle's side, m.
 ///
 /// # Errors
 /// If the profile cannot be meshed or hangs in the air.
 pub fn cross(geometry: &Geometry, size: f64) -> Result<CrossStiffness, FingerError> {
     let fails = |problem| FingerError::mesh(geometry, problem);
     let element = MindlinPlate(Slab::of(&geometry.finger));
-    let [held] = held(geometry, &element, size, [Body::Pad]).map_err(fails)?;
+    let [held] = rigid_stiffness(geometry, &element, size, [RigidFace::Pad]).map_err(fails)?;
     CrossStiffness::new(held).ok_or_else(|| fails(MeshError::Limp))
 }
 
-/// Stiffness in the plane ([`planar`]) at every choice that a slicer has for the first rib: at
+/// Returns the stiffness in the plane ([`planar`]) at every choice that a slicer has for the first rib: at
 /// 8 phases, evenly over one pitch.
 ///
 /// # Errors
@@ -94,25 +95,24 @@ pub fn over_phases(
     direction_deg: f64,
 ) -> Result<Vec<[PlanarStiffness; 2]>, FingerError> {
     let design = Design { density_percent, direction_deg, phase_mm: None };
-    // A density of 0 has no pitch: the first geometry says so.
+    // A density of 0 has no pitch: the first geometry returns the error.
     let pitch = RibLines::new(finger, &design).pitch;
     let at = |share: f64| {
         let phase = finger.ribs.phase + share * pitch;
         let phase_mm = (share > 0.0).then_some(phase / MM);
         planar(&Geometry::new(finger, &Design { phase_mm, ..design })?, SIZE)
     };
-    // Collected by index, so that of several errors the same one is told.
+    // Collected by index, so that of several errors the same one is returned.
     let found: Vec<_> = (0..PHASES).into_par_iter().map(|i| at(i as f64 / PHASES as f64)).collect();
     found.into_iter().collect()
 }
 
-/// Stiffness of fingers that was computed before. Equal fingers are equal to the bit, so
-/// whether a stiffness was remembered changes no result.
+/// Cache of computed stiffness. Equal fingers give equal bits, so the cache changes no result.
 #[derive(Debug, Default)]
-pub struct Known(Mutex<BTreeMap<String, FingerStiffness>>);
+pub struct StiffnessCache(Mutex<BTreeMap<String, FingerStiffness>>);
 
-impl Known {
-    /// Stiffness of a finger with an infill.
+impl StiffnessCache {
+    /// Returns the stiffness of a finger with an infill.
     ///
     /// # Errors
     /// As of [`Geometry::new`] and [`compute`].
@@ -121,15 +121,15 @@ impl Known {
         finger: &PrintedFinger,
         design: &Design,
     ) -> Result<FingerStiffness, FingerError> {
-        // Shows every number so that it reads back as the same bits.
+        // The debug format of a number reads back as the same bits.
         let key = format!("{finger:?} {design:?}");
-        let found = self.0.lock().ok().and_then(|known| known.get(&key).copied());
+        let found = self.0.lock().ok().and_then(|cache| cache.get(&key).copied());
         if let Some(stiffness) = found {
             return Ok(stiffness);
         }
         let stiffness = compute(&Geometry::new(finger, design)?)?;
-        if let Ok(mut known) = self.0.lock() {
-            known.insert(key, stiffness);
+        if let Ok(mut cache) = self.0.lock() {
+            cache.insert(key, stiffness);
         }
         Ok(stiffness)
     }

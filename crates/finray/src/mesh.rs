@@ -37,7 +37,7 @@ pub enum MeshError {
     #[error("a part of the finger is not connected to its base")]
     Loose,
     /// A stiffness matrix that is not positive definite.
-    #[error("it is not stiff")]
+    #[error("its stiffness matrix is not positive definite")]
     Limp,
 }
 
@@ -106,7 +106,7 @@ impl Mesh {
         })))
     }
 
-    /// Mesh of triangles, given as number, number of the side to the next, and position of corners.
+    /// Returns the mesh of triangles, given as number, number of the side to the next, and position of corners.
     fn quadratic(faces: impl Iterator<Item = [(usize, usize, Point2<f64>); 3]>) -> Mesh {
         let mut mesh = Mesh { nodes: Vec::new(), triangles: Vec::new() };
         let mut known: Vec<Option<u32>> = Vec::new();
@@ -131,13 +131,13 @@ impl Mesh {
         mesh
     }
 
-    /// Corners of a triangle, m, counter-clockwise.
+    /// Returns the corners of a triangle, m, counter-clockwise.
     pub fn corners(&self, triangle: usize) -> [Point2<f64>; 3] {
         let [a, b, c, ..] = self.triangles[triangle];
         [a, b, c].map(|node| self.nodes[node as usize])
     }
 
-    /// Nodes around the solid and around each opening, in their order along it.
+    /// Returns the nodes around the solid and around each opening, in their order along it.
     pub fn boundary(&self) -> Vec<Vec<usize>> {
         let sides = || {
             let of = |&[a, b, c, ab, bc, ca]: &[u32; 6]| [(a, ab, b), (b, bc, c), (c, ca, a)];

@@ -1,4 +1,4 @@
-//! A finger as finite elements: its mesh, its clamped nodes, and its pad as a rigid body.
+//! A finger as finite elements: its mesh, its clamped nodes, and its pad as a rigid face.
 
 use super::condense::{Condensed, Element, Role, condense};
 use super::geometry::Geometry;
@@ -24,7 +24,7 @@ pub struct MeshedFinger {
 
 /// Face that moves as one rigid body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Body {
+pub enum RigidFace {
     /// The pad alone.
     Pad,
     /// The pad and the part of the roof that rests on a part.
@@ -32,7 +32,7 @@ pub enum Body {
 }
 
 impl MeshedFinger {
-    /// Mesh with triangles of sides of about `size`, m.
+    /// Creates a mesh with triangles of sides of about `size`, m.
     ///
     /// # Errors
     /// If the profile cannot be meshed.
@@ -46,7 +46,7 @@ impl MeshedFinger {
         let mut meshed = MeshedFinger { mesh, outline, roles: Vec::new() };
         let role = |p: &Point2<f64>| match () {
             () if p.x > clamp - ON => Role::Fixed,
-            () if meshed.holds(Body::PadAndRoof, p) => Role::Kept,
+            () if meshed.holds(RigidFace::PadAndRoof, p) => Role::Kept,
             () => Role::Free,
         };
         meshed.roles = meshed.mesh.nodes.iter().map(role).collect();
@@ -59,30 +59,30 @@ impl MeshedFinger {
         [self.outline.out_of_pad(), self.outline.along_pad()].map(|axis| axis.dot(&from_middle))
     }
 
-    fn holds(&self, body: Body, point: &Point2<f64>) -> bool {
+    fn holds(&self, face: RigidFace, point: &Point2<f64>) -> bool {
         let [y, z] = self.local(point);
         let half = self.outline.pad / 2.0;
         let on_pad = y.abs() < ON && z.abs() < half + ON;
         let on_roof = (z - half).abs() < ON && y > -ON && y < self.outline.roof + ON;
-        on_pad || (body == Body::PadAndRoof && on_roof)
+        on_pad || (face == RigidFace::PadAndRoof && on_roof)
     }
 
-    /// Holds a body rigid and leaves the other kept nodes free.
+    /// Makes a face rigid and leaves the other kept nodes free.
     ///
     /// # Errors
-    /// If a part of the finger is held by nothing.
+    /// If a part of the finger is not connected to its base.
     pub fn hold<E: Element>(
         &self,
         condensed: &Condensed,
         element: &E,
-        body: Body,
-    ) -> Result<Held, MeshError> {
+        face: RigidFace,
+    ) -> Result<RigidMotion, MeshError> {
         let places: Vec<_> =
             condensed.nodes.iter().map(|&node| self.mesh.nodes[node as usize]).collect();
         let freedoms = E::FREEDOMS;
         let (held, free): (Vec<usize>, Vec<usize>) =
-            (0..places.len()).partition(|&i| self.holds(body, &places[i]));
-        // Columns: the body's three motions, then the free nodes' degrees of freedom.
+            (0..places.len()).partition(|&i| self.holds(face, &places[i]));
+        // Columns: the face's three motions, then the free nodes' degrees of freedom.
         let rows = places.len() * freedoms;
         let mut follow = DMatrix::zeros(rows, 3 + free.len() * freedoms);
         for i in held {
@@ -100,7 +100,7 @@ impl MeshedFinger {
         let free = stiffness.nrows() - 3;
         let own: Matrix3<f64> = stiffness.fixed_view::<3, 3>(0, 0).into_owned();
         if free == 0 {
-            return Ok(Held { stiffness: own, follow });
+            return Ok(RigidMotion { stiffness: own, follow });
         }
         let mixed = stiffness.view((3, 0), (free, 3)).into_owned();
         let among = stiffness.view((3, 3), (free, free)).into_owned();
@@ -108,39 +108,39 @@ impl MeshedFinger {
         let condensed = own + mixed.transpose() * &answer;
         let follow =
             follow.columns(0, 3).into_owned() + follow.columns(3, free).into_owned() * answer;
-        Ok(Held { stiffness: condensed.fixed_view::<3, 3>(0, 0).into_owned(), follow })
+        Ok(RigidMotion { stiffness: condensed.fixed_view::<3, 3>(0, 0).into_owned(), follow })
     }
 }
 
-/// Stiffness matrices (forces and moments by motions) of bodies that are each held rigid, on a
+/// Returns the stiffness matrices (forces and moments by motions) of faces that are each rigid, on a
 /// mesh with triangles of sides of about `size`, m.
 ///
 /// # Errors
-/// If the profile cannot be meshed, or a part of it is held by nothing.
-pub fn held<E: Element, const N: usize>(
+/// If the profile cannot be meshed, or a part of it is not connected to its base.
+pub fn rigid_stiffness<E: Element, const N: usize>(
     geometry: &Geometry,
     element: &E,
     size: f64,
-    bodies: [Body; N],
+    faces: [RigidFace; N],
 ) -> Result<[Matrix3<f64>; N], MeshError> {
     let meshed = MeshedFinger::new(geometry, size)?;
     let condensed = condense(&meshed.mesh, element, &meshed.roles, false)?;
     let mut found = [Matrix3::zeros(); N];
-    for (matrix, body) in found.iter_mut().zip(bodies) {
-        *matrix = meshed.hold(&condensed, element, body)?.stiffness;
+    for (matrix, face) in found.iter_mut().zip(faces) {
+        *matrix = meshed.hold(&condensed, element, face)?.stiffness;
     }
     Ok(found)
 }
 
-/// Mesh whose pad is a rigid body.
-pub struct Held {
-    /// Forces and moments on the body by its motions.
+/// Stiffness and motion of a rigid face.
+pub struct RigidMotion {
+    /// Forces and moments on the face by its motions.
     pub stiffness: Matrix3<f64>,
-    /// Displacements of the kept nodes by the body's motions.
+    /// Displacements of the kept nodes by the face's motions.
     pub follow: DMatrix<f64>,
 }
 
-/// Ring with its edges divided finely near some of its corners.
+/// Divides the edges of a ring finely near some of its corners.
 fn graded(ring: &Ring, corners: &[Point2<f64>], size: f64) -> Ring {
     let near = |p: Point2<f64>| corners.iter().any(|corner| (p - corner).norm() < ON);
     let steps = |length: f64| -> Vec<f64> {

@@ -33,43 +33,43 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// Tip of the finger, m.
+    /// Returns the tip of the finger, m.
     pub fn tip_point(&self) -> Point2<f64> {
         Point2::new(0.0, -self.tip)
     }
 
-    /// Unit vector along the pad, from the tip to the notch's corner: the assembly direction z.
+    /// Returns the unit vector along the pad, from the tip to the notch's corner: the assembly direction z.
     pub fn along_pad(&self) -> Vector2<f64> {
         Vector2::new(libm::cos(self.pad_angle), libm::sin(self.pad_angle))
     }
 
-    /// Unit vector out of the pad's face towards the part: the compliance direction y.
+    /// Returns the unit vector out of the pad's face towards the part: the compliance direction y.
     pub fn out_of_pad(&self) -> Vector2<f64> {
         let z = self.along_pad();
         Vector2::new(-z.y, z.x)
     }
 
-    /// Corner between pad and roof, m.
+    /// Returns the corner between pad and roof, m.
     pub fn corner(&self) -> Point2<f64> {
         self.tip_point() + self.along_pad() * self.pad
     }
 
-    /// Middle of the pad, where stiffness is stated, m.
+    /// Returns the middle of the pad, where stiffness is stated, m.
     pub fn pad_middle(&self) -> Point2<f64> {
         self.tip_point() + self.along_pad() * (self.pad / 2.0)
     }
 
-    /// Length of the roof, from the corner to the front side, m.
+    /// Returns the length of the roof, from the corner to the front side, m.
     pub fn roof_length(&self) -> f64 {
         -self.corner().y / self.out_of_pad().y
     }
 
-    /// X at which the arc of the back ends and the straight back begins, m.
+    /// Returns X at which the arc of the back ends and the straight back begins, m.
     pub fn arc_end(&self) -> f64 {
         self.arc_centre().unwrap_or_default().x
     }
 
-    /// Centre of the arc, m, if the radius reaches from the tip to the back.
+    /// Returns the centre of the arc, m, if the radius reaches from the tip to the back.
     pub(super) fn arc_centre(&self) -> Option<Point2<f64>> {
         let rise = self.width - self.tip;
         let square = rise * (2.0 * self.back_radius - rise);
@@ -78,7 +78,7 @@ impl Outline {
     }
 }
 
-/// Outline moved inwards by `inset` and cut off at X = `end`, m, counter-clockwise from the tip.
+/// Returns the outline moved inwards by `inset` and cut off at X = `end`, m, counter-clockwise from the tip.
 /// Lines and arc are moved each for itself and meet in mitred corners.
 pub(super) fn ring(outline: &Outline, inset: f64, end: f64) -> Ring {
     let (z, y) = (outline.along_pad(), outline.out_of_pad());

@@ -6,7 +6,7 @@ use super::elasticity::{PlaneStress, Slab};
 use super::geometry::Geometry;
 use super::mechanics::SIZE;
 use super::mesh::MeshError;
-use super::meshed::{Body, MeshedFinger};
+use super::meshed::{MeshedFinger, RigidFace};
 use super::stiffness::PlanarStiffness;
 use crate::outline::Outline;
 use drawing::{Drawing, Font, Style, View};
@@ -70,7 +70,7 @@ impl Bent {
         let meshed = MeshedFinger::new(geometry, SIZE)?;
         let element = PlaneStress(Slab::of(&geometry.finger));
         let condensed = condense(&meshed.mesh, &element, &meshed.roles, true)?;
-        let held = meshed.hold(&condensed, &element, Body::Pad)?;
+        let held = meshed.hold(&condensed, &element, RigidFace::Pad)?;
         let stiffness = PlanarStiffness::new(held.stiffness).ok_or(MeshError::Limp)?;
         let motion = stiffness.compliance * Vector3::new(y, z, 0.0);
         let displacements = condensed.expand(&(&held.follow * motion));
@@ -84,7 +84,7 @@ impl Bent {
         self.meshed.mesh.nodes[node] + by * self.exaggeration
     }
 
-    /// Displacement of a point of the pad, m.
+    /// Returns the displacement of a point of the pad, m.
     fn rigid(&self, outline: &Outline, point: &Point2<f64>) -> Vector2<f64> {
         let [y, z] = self.meshed.local(point);
         let turn = self.motion.z;
@@ -93,7 +93,7 @@ impl Bent {
     }
 }
 
-/// Largest of 1, 2, 5, 10, ... that is not above a number; 0 unless it is finite and above 0.
+/// Returns the largest of 1, 2, 5, 10, ... that is not above a number; 0 unless it is finite and above 0.
 fn round(value: f64) -> f64 {
     if !(value.is_finite() && value > 0.0) {
         return 0.0;

@@ -65,7 +65,7 @@ impl MindlinPlate {
         }
     }
 
-    /// Moments and shear forces by unit of length.
+    /// Returns the moments and shear forces by unit of length.
     fn stress(&self, [xx, yy, xy, x, y]: &Strains) -> Strains {
         let Slab { modulus, poisson: nu, thickness } = self.0;
         let bending = modulus * thickness.powi(3) / 12.0 / (1.0 - nu * nu);

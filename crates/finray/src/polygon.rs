@@ -5,22 +5,22 @@ use nalgebra::{Point2, Vector2};
 /// Closed ring of corners without repetition of the first; its inside is on the left.
 pub type Ring = Vec<Point2<f64>>;
 
-/// Edges of a ring, each as its two ends.
+/// Returns the edges of a ring, each as its two ends.
 pub fn edges(ring: &[Point2<f64>]) -> impl Iterator<Item = (Point2<f64>, Point2<f64>)> {
     ring.iter().copied().zip(ring.iter().copied().cycle().skip(1))
 }
 
-/// Area of a ring, negative if it is clockwise.
+/// Returns the area of a ring, negative if it is clockwise.
 pub fn area(ring: &[Point2<f64>]) -> f64 {
     edges(ring).map(|(a, b)| a.coords.perp(&b.coords)).sum::<f64>() / 2.0
 }
 
-/// Length around a ring.
+/// Returns the length around a ring.
 pub fn perimeter(ring: &[Point2<f64>]) -> f64 {
     edges(ring).map(|(a, b)| (b - a).norm()).sum()
 }
 
-/// Whether two edges of a ring that do not follow one another meet.
+/// Returns whether two edges of a ring that do not follow one another meet.
 pub fn crosses_itself(ring: &[Point2<f64>]) -> bool {
     let edges: Vec<_> = edges(ring).collect();
     let neighbours = |i: usize, j: usize| j == i + 1 || (i == 0 && j == edges.len() - 1);
@@ -46,12 +46,12 @@ pub struct HalfPlane {
 }
 
 impl HalfPlane {
-    /// Distance of a point from the edge, positive inside.
+    /// Returns the distance of a point from the edge, positive inside.
     pub fn depth(&self, point: Point2<f64>) -> f64 {
         self.normal.dot(&point.coords) - self.offset
     }
 
-    /// Parts of a counter-clockwise ring in the half plane: a bent one may be cut into several.
+    /// Returns the parts of a counter-clockwise ring in the half plane: a bent one may be cut into several.
     pub fn cut(&self, ring: &[Point2<f64>]) -> Vec<Ring> {
         let inside = |p: &Point2<f64>| self.depth(*p) >= 0.0;
         let Some(start) = ring.iter().position(|p| !inside(p)) else { return vec![ring.to_vec()] };
@@ -112,7 +112,7 @@ impl HalfPlane {
     }
 }
 
-/// The ring without corners closer than `distance` to the one before.
+/// Returns the ring without corners closer than `distance` to the one before.
 pub fn without_repeats(ring: &[Point2<f64>], distance: f64) -> Ring {
     let mut kept = ring.to_vec();
     kept.dedup_by(|p, before| (*p - *before).norm() <= distance);

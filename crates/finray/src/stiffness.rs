@@ -12,14 +12,14 @@ pub struct PlanarStiffness {
 }
 
 impl PlanarStiffness {
-    /// From N, N, N m per m, m, rad; `None` unless the matrix is positive definite.
+    /// Takes a matrix in N, N, N m per m, m, rad; `None` unless the matrix is positive definite.
     pub fn new(stiffness: Matrix3<f64>) -> Option<Self> {
         let stiffness = (stiffness + stiffness.transpose()) / 2.0;
         let compliance = stiffness.cholesky()?.inverse();
         Some(PlanarStiffness { stiffness, compliance })
     }
 
-    /// Finger with these free stiffnesses in y and z, N/m, and the same against tilting. The
+    /// Returns the finger with these free stiffnesses in y and z, N/m, and the same against tilting. The
     /// correlations of the compliances stay, so it is positive definite, too: the centre's
     /// distances change by the roots of new over old compliance.
     pub fn corrected(&self, compliance: f64, assembly: f64) -> Option<Self> {
@@ -28,38 +28,38 @@ impl PlanarStiffness {
         PlanarStiffness::new((roots * self.compliance * roots).try_inverse()?)
     }
 
-    /// Stiffness matrix: N/m, N/rad, N m/rad; order y, z, rx.
+    /// Returns the stiffness matrix: N/m, N/rad, N m/rad; order y, z, rx.
     pub fn matrix(&self) -> &Matrix3<f64> {
         &self.stiffness
     }
 
-    /// Stiffness in y with z and rx free, N/m.
+    /// Returns the stiffness in y with z and rx free, N/m.
     pub fn in_compliance(&self) -> f64 {
         1.0 / self.compliance[(0, 0)]
     }
 
-    /// Stiffness in z with y and rx free, N/m.
+    /// Returns the stiffness in z with y and rx free, N/m.
     pub fn in_assembly(&self) -> f64 {
         1.0 / self.compliance[(1, 1)]
     }
 
-    /// Stiffness against turning about the remote centre, y and z free, N m/rad.
+    /// Returns the stiffness against turning about the remote centre, y and z free, N m/rad.
     pub fn tilting(&self) -> f64 {
         1.0 / self.compliance[(2, 2)]
     }
 
-    /// Distance of the remote centre, which a moment does not move, below the pad's middle
+    /// Returns the distance of the remote centre, which a moment does not move, below the pad's middle
     /// (towards the tip and beyond), m.
     pub fn centre_below_pad(&self) -> f64 {
         -self.compliance[(0, 2)] / self.compliance[(2, 2)]
     }
 
-    /// Distance of the remote centre in front of the pad's face, towards the part, m.
+    /// Returns the distance of the remote centre in front of the pad's face, towards the part, m.
     pub fn centre_in_front(&self) -> f64 {
         -self.compliance[(1, 2)] / self.compliance[(2, 2)]
     }
 
-    /// Correlation of the compliances in y and z, -1 .. 1; above 0 a pad pushed up nears the part.
+    /// Returns the correlation of the compliances in y and z, -1 .. 1; above 0 a pad pushed up nears the part.
     pub fn coupling_yz(&self) -> f64 {
         let c = &self.compliance;
         c[(0, 1)] / (c[(0, 0)] * c[(1, 1)]).sqrt()
@@ -80,7 +80,7 @@ pub struct CrossStiffness {
 }
 
 impl CrossStiffness {
-    /// From N, N m, N m per m, rad, rad; `None` unless the matrix is positive definite.
+    /// Takes a matrix in N, N m, N m per m, rad, rad; `None` unless the matrix is positive definite.
     pub fn new(stiffness: Matrix3<f64>) -> Option<Self> {
         let PlanarStiffness { stiffness: matrix, compliance } = PlanarStiffness::new(stiffness)?;
         let [in_depth, about_y, about_z] = [0, 1, 2].map(|i| 1.0 / compliance[(i, i)]);

@@ -25,7 +25,7 @@ impl WindowPair {
         }
     }
 
-    /// Outward shift of the negative and the positive end from the first setting to the second, mm.
+    /// Returns the outward shift of the negative and the positive end from the first setting to the second, mm.
     pub fn moved_mm(&self) -> [f64; 2] {
         self.moved().map(grid_mm)
     }
@@ -35,14 +35,14 @@ impl WindowPair {
         [first.negative_steps - second.negative_steps, second.positive_steps - first.positive_steps]
     }
 
-    /// Whether the nominal outcomes are equal and no end moves by more than `allowed` grid steps.
+    /// Returns whether the nominal outcomes are equal and no end moves by more than `allowed` grid steps.
     pub fn agrees(&self, allowed: OffsetStep) -> bool {
         self.windows[0].nominal == self.windows[1].nominal
             && self.moved().iter().all(|moved| moved.abs() <= allowed)
     }
 }
 
-/// Pairs of the first setting with each other one, of every design on every task.
+/// Returns the pairs of the first setting with each other one, of every design on every task.
 pub fn measure(tasks: &[TaskSettings], designs: &[Measurement]) -> Vec<WindowPair> {
     let pairs = each(tasks, designs, |subject, settings| {
         let Some((first, others)) = settings.split_first() else { return Vec::new() };
@@ -56,12 +56,12 @@ pub fn measure(tasks: &[TaskSettings], designs: &[Measurement]) -> Vec<WindowPai
     pairs.concat()
 }
 
-/// Mean distance of the ends of the two windows, mm; `None` without pairs.
+/// Returns the mean distance of the ends of the two windows, mm; `None` without pairs.
 pub fn mean_end_difference_mm(pairs: &[WindowPair]) -> Option<f64> {
     mean(pairs.iter().flat_map(WindowPair::moved_mm).map(f64::abs))
 }
 
-/// Table at most 80 columns wide with a summary, and verdicts if so many grid steps are `allowed`.
+/// Returns a table at most 80 columns wide with a summary, and verdicts if so many grid steps are `allowed`.
 pub fn text(pairs: &[WindowPair], allowed: Option<OffsetStep>) -> String {
     let first = pairs.first().map_or("", |pair| &pair.settings[0]);
     let rows = pairs.iter().map(|pair| {
@@ -99,7 +99,7 @@ fn summary(pairs: &[WindowPair]) -> String {
     )
 }
 
-/// JSON list; `setting` is the key of the second setting's name, `windows` those of the two windows.
+/// Returns a JSON list; `setting` is the key of the second setting's name, `windows` those of the two windows.
 pub fn json(
     pairs: &[WindowPair],
     allowed: Option<OffsetStep>,

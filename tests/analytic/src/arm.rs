@@ -28,7 +28,7 @@ const FORCE: f64 = 5.0;
 /// Time in which the servos come to rest, s: twelve times their damping over their gain.
 const REST: f64 = 2.4;
 
-/// Deflections of the TCP along a force, T11 rows; none on an engine without coupled springs.
+/// Returns the deflections of the TCP along a force, T11 rows; none on an engine without coupled springs.
 pub fn t11(engine: &dyn Engine) -> Vec<CheckRow> {
     // The shipped files are arms within their reach: tests see to it.
     let arms = [("UR5e", SOFT), ("UR5e held", "ur5e_position")];
@@ -58,7 +58,7 @@ fn of_robot(engine: &dyn Engine, words: &str, file: &str) -> Vec<CheckRow> {
     rows
 }
 
-/// Shipped arm with the published servos, and its mount for an upright task that is not turned.
+/// Returns the shipped arm with the published servos, and its mount for an upright task that is not turned.
 pub fn ur5e() -> Option<(Arm, Mounted)> {
     shipped(SOFT)
 }
@@ -73,7 +73,7 @@ fn shipped(name: &str) -> Option<(Arm, Mounted)> {
     }
 }
 
-/// Compliance `J K^-1 J^T` at home: m/N, rad/N, rad/(N m), base axes.
+/// Returns the compliance `J K^-1 J^T` at home: m/N, rad/N, rad/(N m), base axes.
 fn compliance(arm: &Arm) -> Matrix6<f64> {
     let jacobian = arm.at(&arm.home).tcp_jacobian();
     let soft = nalgebra::SVector::from_fn(|i, _| 1.0 / arm.joints[i].stiffness);
@@ -93,7 +93,7 @@ pub struct Loaded {
 }
 
 impl Loaded {
-    /// Deflection of the TCP under a force along an axis after each step, m.
+    /// Returns the deflection of the TCP under a force along an axis after each step, m.
     ///
     /// # Errors
     /// If the simulation diverges.
@@ -118,14 +118,14 @@ impl Loaded {
     }
 }
 
-/// Flange as in a trial.
+/// Returns the scene of a flange as in a trial.
 pub fn flange(robot: &Mounted) -> Loaded {
     let mut scene = Scene::default();
     let (_, end) = cell::flange(&mut scene, &robot.flange, Pose::identity());
     Loaded { scene, end, tool: Pose::identity(), centre: Point3::origin() }
 }
 
-/// Chain of six links, each on a sprung hinge.
+/// Returns the scene of a chain of six links, each on a sprung hinge.
 pub fn chain(arm: &Arm) -> Loaded {
     let mut scene = Scene::default();
     let posture = arm.at(&arm.home);

@@ -15,7 +15,7 @@ pub fn cuboid(name: &str, size: Vector3<f64>, pose: Pose) -> Geom {
     Geom { name: name.into(), shape: Shape::Box { half: size / 2.0 }, pose, friction: None }
 }
 
-/// Mass properties of a homogeneous box, m and kg.
+/// Returns the mass properties of a homogeneous box, m and kg.
 pub fn box_inertia(mass: f64, size: Vector3<f64>, centre: Point3<f64>) -> Inertia {
     let square = size.component_mul(&size);
     let moments = Vector3::repeat(square.sum()) - square;
@@ -30,13 +30,13 @@ pub fn driven(name: &str, pose: Pose, geoms: Vec<Geom>) -> Body {
     Body { name: name.into(), motion: Motion::Driven, pose, geoms }
 }
 
-/// Fixed ground whose surface is the plane z = 0 of `pose`, of a size in m.
+/// Returns the fixed ground whose surface is the plane z = 0 of `pose`, of a size in m.
 pub fn ground(size: [f64; 3], pose: Pose) -> Body {
     let below = Pose::translation(0.0, 0.0, -size[2] / 2.0);
     fixed("ground", pose, vec![cuboid("ground", size.into(), below)])
 }
 
-/// Joint of a parent and a child, with the frame of the joint in each.
+/// Returns the joint of a parent and a child, with the frame of the joint in each.
 pub fn joint(
     scene: &mut Scene,
     name: &str,
@@ -70,7 +70,7 @@ pub fn advance(world: &mut dyn World, time: f64) -> Measured<()> {
     Ok(())
 }
 
-/// Threshold between the bracket's ends by bisection; `low` tells whether a value lies below it.
+/// Returns the threshold between the bracket's ends by bisection; `low` tells whether a value lies below it.
 pub fn bisected(
     [mut from, mut to]: [f64; 2],
     bisections: usize,

@@ -71,7 +71,7 @@ fn force_ratio(engine: &dyn Engine, socket: Body) -> Result<f64, Diverged> {
     Ok(along / across)
 }
 
-/// A block whose face goes through the line y, z = 0, looking to +y and up by `angle`.
+/// Returns a block whose face goes through the line y, z = 0, looking to +y and up by `angle`.
 fn chamfer(y: f64, angle: f64) -> Body {
     let size = Vector3::new(20.0 * MM, 10.0 * MM, 10.0 * MM);
     // The block's face at +y, turned about x so that its normal rises by the angle.
@@ -81,7 +81,7 @@ fn chamfer(y: f64, angle: f64) -> Body {
     build::fixed("chamfer", pose, vec![build::cuboid("chamfer", size, Pose::identity())])
 }
 
-/// A block whose edge is cut at 45 degrees, the chamfer's middle being the line y, z = 0.
+/// Returns a block whose edge is cut at 45 degrees, the chamfer's middle being the line y, z = 0.
 fn cut_edge(y: f64) -> Option<Body> {
     let leg = 2.0 * MM;
     let max = Vector3::new(10.0 * MM, y + leg / 2.0, leg / 2.0);

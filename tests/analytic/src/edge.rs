@@ -58,7 +58,7 @@ impl Push {
         Push { world: engine.world(&scene), block, pusher, start, time: 0.0 }
     }
 
-    /// Copy that continues independently, from a snapshot.
+    /// Returns a copy that continues independently, from a snapshot.
     pub fn copy(&self) -> Self {
         Push { world: self.world.snapshot(), ..*self }
     }
@@ -71,7 +71,7 @@ impl Push {
     }
 }
 
-/// Place of the centre of mass when the block tips, m beyond the edge.
+/// Returns the place of the centre of mass when the block tips, m beyond the edge.
 fn tipping_place(engine: &dyn Engine) -> Result<f64, Diverged> {
     let mut push = Push::new(engine);
     for _ in 0..build::steps(push.world.as_ref(), (TO - FROM) / SPEED) {
@@ -93,7 +93,7 @@ const CASES_FRICTION: f64 = 0.3;
 const BEFORE: f64 = 0.3;
 const AFTER: f64 = 0.3;
 
-/// Place of tipping, outcomes that change with the step, bits that change with a snapshot, T8 rows.
+/// Returns the place of tipping, outcomes that change with the step, bits that change with a snapshot, T8 rows.
 pub fn t8(make: Make<'_>) -> Vec<CheckRow> {
     let row = |text: &str, measured, unit, allowed| {
         CheckRow::new("T8", text, 0.0, measured, unit, Tolerance::Absolute(allowed))
@@ -112,7 +112,7 @@ fn changed_outcomes(make: Make<'_>) -> Result<f64, Diverged> {
     Ok(whole.iter().zip(&half).filter(|(a, b)| a != b).count() as f64)
 }
 
-/// Whether a block rests on an incline at two headings, a peg jams, a peg
+/// Returns whether a block rests on an incline at two headings, a peg jams, a peg
 /// wedges, below and above their thresholds; whether a block tips at the edge.
 fn outcomes(engine: &dyn Engine) -> Result<Vec<bool>, Diverged> {
     let mut all = Vec::new();

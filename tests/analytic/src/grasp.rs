@@ -35,7 +35,7 @@ const TURNED: f64 = DRAWN / PATCH;
 /// Duration, s: nine times what an uneven face takes to come to rest in its turn.
 const DRAWING: f64 = 4.0;
 
-/// Moments of a pad's friction, T12 rows; fewer on an engine without torsional friction.
+/// Returns the moments of a pad's friction, T12 rows; fewer on an engine without torsional friction.
 pub fn t12(engine: &dyn Engine) -> Vec<CheckRow> {
     let drawn = |beside: f64| {
         let quantity = format!("moment of a face loaded {} mm beside", beside / MM);
@@ -49,7 +49,7 @@ pub fn t12(engine: &dyn Engine) -> Vec<CheckRow> {
     rows
 }
 
-/// Moment, and force if it moves, of a face that turns while it is drawn at a speed, m/s.
+/// Returns the moment, and force if it moves, of a face that turns while it is drawn at a speed, m/s.
 fn turning(engine: &dyn Engine, speed: f64) -> Vec<CheckRow> {
     let held = Case { speed, spin: TURNED, ..TURNING }.hold(engine);
     let angle = held.as_ref().map_or(0.0, |held| held.angle);
@@ -68,7 +68,7 @@ fn moment(check: &'static str, quantity: String, expected: f64, held: Measured<H
     CheckRow::new(check, quantity, expected / MM, measured, "N mm", Tolerance::Relative(0.02))
 }
 
-/// Force along x, N, and moment, N m, of a moving and turning face on four equal corners.
+/// Returns the force along x, N, and moment, N m, of a moving and turning face on four equal corners.
 fn friction(speed: f64, spin: f64, angle: f64) -> (f64, f64) {
     let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
     corners.into_iter().fold((0.0, 0.0), |(force, moment), (x, y)| {
@@ -80,7 +80,7 @@ fn friction(speed: f64, spin: f64, angle: f64) -> (f64, f64) {
     })
 }
 
-/// Moments of a contact patch, T15 rows; none on an engine without such friction.
+/// Returns the moments of a contact patch, T15 rows; none on an engine without such friction.
 pub fn t15(engine: &dyn Engine) -> Vec<CheckRow> {
     let patch = Case { torsion: Torsion::Patch, ..TURNING };
     if engine.supports(&patch.scene().0).is_err() {
@@ -101,7 +101,7 @@ pub fn t15(engine: &dyn Engine) -> Vec<CheckRow> {
     [turned, drawn].concat()
 }
 
-/// Mean distance of a rectangle's area from its middle by the midpoint rule, m.
+/// Returns the mean distance of a rectangle's area from its middle by the midpoint rule, m.
 fn mean_lever(sides: [f64; 2]) -> f64 {
     const CELLS: usize = 400;
     let at = |i: usize, side: f64| side * ((i as f64 + 0.5) / CELLS as f64 - 0.5);
@@ -163,7 +163,7 @@ impl Case {
         Ok(Held { force: guide * lag.x, moment, angle: angle(&at) })
     }
 
-    /// A block on a floor through the origin, on springs in the plane to a driven hand.
+    /// Returns a block on a floor through the origin, on springs in the plane to a driven hand.
     fn scene(&self) -> (Scene, BodyId, BodyId) {
         let mut scene = Scene::default();
         let floor = scene.body(build::ground([0.2, 0.2, 0.02], Pose::identity()));

@@ -51,7 +51,7 @@ pub fn t2(engine: &dyn Engine) -> Vec<CheckRow> {
     rows
 }
 
-/// The friction that explains the acceleration of a sliding block.
+/// Returns the friction that explains the acceleration of a sliding block.
 fn sliding_friction(engine: &dyn Engine, friction: f64, heading: f64) -> Measured {
     let slope = libm::atan(SLIDING * friction);
     let [first, second] = ways(engine, friction, slope, heading)?;
@@ -59,7 +59,7 @@ fn sliding_friction(engine: &dyn Engine, friction: f64, heading: f64) -> Measure
     Ok((GRAVITY * libm::sin(slope) - acceleration) / (GRAVITY * libm::cos(slope)))
 }
 
-/// Speed of a block on a slope whose tangent is a share of the friction, m/s.
+/// Returns the speed of a block on a slope whose tangent is a share of the friction, m/s.
 pub(super) fn creep(engine: &dyn Engine, friction: f64, heading: f64, share: f64) -> Measured {
     let [first, second] = ways(engine, friction, libm::atan(share * friction), heading)?;
     Ok((first + second) / (2.0 * WATCHING))
@@ -124,7 +124,7 @@ fn push_rows(engine: &dyn Engine, case: &str, share: f64) -> Vec<CheckRow> {
     parts.into_iter().enumerate().map(row).collect()
 }
 
-/// Mean force of the wall on the block, N: normal, against the push along it, and across.
+/// Returns the mean force of the wall on the block, N: normal, against the push along it, and across.
 fn net_force(engine: &dyn Engine, angle: f64) -> Measured<Vector3<f64>> {
     let size = Vector3::from(SIZE);
     let [x, y, z] = WALL.map(|turn| turn * DEG);

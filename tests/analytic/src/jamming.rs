@@ -40,18 +40,18 @@ const BRACKET: [f64; 2] = [0.5, 3.5];
 /// ... by so many bisections, which leave 0.15 %.
 const BISECTIONS: usize = 11;
 
-/// Peg with so little play that the formula holds.
+/// Returns the peg with so little play that the formula holds.
 fn tight() -> Peg {
     Peg { hole: REFERENCE.width + CLEARANCE, ..REFERENCE }
 }
 
-/// M/(r F_z) at which the peg jams, by the formula above.
+/// Returns M/(r F_z) at which the peg jams, by the formula above.
 fn threshold(peg: &Peg, side: f64) -> f64 {
     let lambda = peg.inside / (peg.width * peg.friction);
     lambda - peg.friction * (1.0 + lambda) * side
 }
 
-/// M/(r F_z) at which the peg jams at its true tilt t. Across and along the hole, from the tip: the
+/// Returns M/(r F_z) at which the peg jams at its true tilt t. Across and along the hole, from the tip: the
 /// tip's corner lies at c = r (cos t, sin t), its wall presses with N2 (-1, mu);
 /// the rim's point lies at p = -r (cos t, sin t) + l (-sin t, cos t), where the
 /// flank is pressed with N1 ((cos t, sin t) + mu (-sin t, cos t)). The balance of
@@ -84,7 +84,7 @@ pub fn t4(engine: &dyn Engine) -> Vec<CheckRow> {
     [small, large].concat()
 }
 
-/// Whether the peg stays where it is under a moment of `ratio` r F_z.
+/// Returns whether the peg stays where it is under a moment of `ratio` r F_z.
 fn jams(engine: &dyn Engine, peg: &Peg, side: f64, ratio: f64) -> Result<bool, Diverged> {
     let (scene, body) = peg.scene(peg.tilted());
     let mut world = engine.world(&scene);
@@ -96,7 +96,7 @@ fn jams(engine: &dyn Engine, peg: &Peg, side: f64, ratio: f64) -> Result<bool, D
     Ok(from - world.pose(body).translation.z < SLIDING)
 }
 
-/// Whether a peg jams under a share of the moment of the threshold, without a side force.
+/// Returns whether a peg jams under a share of the moment of the threshold, without a side force.
 pub(super) fn jams_at(engine: &dyn Engine, share: f64) -> Result<bool, Diverged> {
     let peg = tight();
     jams(engine, &peg, 0.0, share * threshold(&peg, 0.0))
@@ -131,7 +131,7 @@ pub fn t5(engine: &dyn Engine) -> Vec<CheckRow> {
     FRICTIONS.map(row).to_vec()
 }
 
-/// Whether a peg that is `depth` times its width inside stays wedged.
+/// Returns whether a peg that is `depth` times its width inside stays wedged.
 pub(super) fn wedges(engine: &dyn Engine, friction: f64, depth: f64) -> Result<bool, Diverged> {
     let (width, hole) = (REFERENCE.width, REFERENCE.width + SLACK);
     let peg = Peg { hole, inside: depth * width, friction, mass: MASS, ..REFERENCE };

@@ -72,7 +72,7 @@ pub struct CheckRow {
 }
 
 impl CheckRow {
-    /// Row of a measured value; an error, as of a simulation that diverged, fails.
+    /// Makes the row of a measured value; an error, as of a simulation that diverged, fails.
     fn new<E>(
         check: &'static str,
         quantity: impl Into<String>,
@@ -91,7 +91,7 @@ impl CheckRow {
         CheckRow { check, quantity, expected, measured, unit, tolerance, passed }
     }
 
-    /// Error in the terms of the tolerance.
+    /// Returns the error in the terms of the tolerance.
     pub fn error(&self) -> f64 {
         let error = self.measured - self.expected;
         match self.tolerance {
@@ -101,14 +101,14 @@ impl CheckRow {
     }
 }
 
-/// Results of every check, in order.
+/// Returns the results of every check, in order.
 pub fn run(make: Make<'_>) -> Vec<CheckRow> {
     let mut rows = contact(make);
     rows.extend(finger::run());
     rows
 }
 
-/// Results of the checks of a contact engine, T1 to T15.
+/// Returns the results of the checks of a contact engine, T1 to T15.
 pub fn contact(make: Make<'_>) -> Vec<CheckRow> {
     let engine = make(1.0);
     let all = |checks: &[fn(&dyn Engine) -> Vec<CheckRow>]| -> Vec<CheckRow> {

@@ -37,7 +37,7 @@ pub(super) const REFERENCE: Peg =
     Peg { width: 12.0 * MM, hole: 12.1 * MM, inside: 8.0 * MM, friction: 0.3, mass: 20.0 * GRAM };
 
 impl Peg {
-    /// Tilt in two-point contact, rad: the formula above, solved for t.
+    /// Returns the tilt in two-point contact, rad: the formula above, solved for t.
     pub fn tilt(&self) -> f64 {
         let diagonal = libm::hypot(self.width, self.inside);
         libm::atan2(self.inside, self.width) - libm::acos(self.hole / diagonal)
@@ -62,7 +62,7 @@ impl Peg {
         }
     }
 
-    /// Wall at -y or +y, twice as deep as the peg is inside.
+    /// Returns the wall at -y or +y, twice as deep as the peg is inside.
     pub fn wall(&self, side: f64) -> Body {
         let size = Vector3::new(2.0 * DEPTH, WALL, 2.0 * self.inside);
         let pose = Pose::translation(0.0, side * (self.hole + WALL) / 2.0, -self.inside);
@@ -98,7 +98,7 @@ impl Peg {
     }
 }
 
-/// Moment about x, N m, which turns the peg into two-point contact, without a force.
+/// Returns the moment about x, N m, which turns the peg into two-point contact, without a force.
 pub(super) fn turning(moment: f64) -> [Vector3<f64>; 2] {
     [Vector3::zeros(), Vector3::new(moment, 0.0, 0.0)]
 }
@@ -142,7 +142,7 @@ const WEDGING: [f64; 2] = [70.0, 200.0];
 /// Largest penetration under the first force, m: less than the clearance of a connector.
 const YIELD: f64 = 0.1 * MM;
 
-/// Penetration of a light plug into its walls, T10 rows: little, and in proportion to the force.
+/// Returns the penetration of a light plug into its walls, T10 rows: little, and in proportion to the force.
 pub fn t10(engine: &dyn Engine) -> Vec<CheckRow> {
     let peg = Peg { mass: LIGHT, ..REFERENCE };
     let sunk = WEDGING.map(|force| sinking(engine, &peg, force));

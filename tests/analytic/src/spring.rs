@@ -24,13 +24,13 @@ const OFFSET: f64 = 10.0 * MM;
 const PART_MASS: f64 = 5.0 * GRAM;
 const PART_SIZE: f64 = 12.0 * MM;
 
-/// Time to come to rest, s: twenty time constants of the slowest axis, a rotation (20 ms).
+/// Returns the time to come to rest, s: twenty time constants of the slowest axis, a rotation (20 ms).
 fn rest_time(finger: &Finger) -> f64 {
     let slowest = finger.springs().map(|s| s.damping / s.stiffness).into_iter().fold(0.0, f64::max);
     20.0 * slowest
 }
 
-/// Finger of the middle of the measured range.
+/// Returns the finger of the middle of the measured range.
 fn finger() -> Finger {
     Finger::new(2.0 * N_PER_MM, 40.0 * N_PER_MM)
 }
@@ -84,7 +84,7 @@ fn remote_centre(finger: &Finger) -> Pose {
     Pose::translation(0.0, 0.0, -finger.rcc)
 }
 
-/// Motion of the frame in the remote centre.
+/// Returns the motion of the frame in the remote centre.
 fn centre_moved(pose: &Pose, finger: &Finger) -> Pose {
     let centre = remote_centre(finger);
     centre.inverse() * pose * centre
@@ -117,7 +117,7 @@ pub fn t7(engine: &dyn Engine) -> Vec<CheckRow> {
     rows.concat()
 }
 
-/// Motion of the remote centre when a held part is pushed at a height above it, m.
+/// Returns the motion of the remote centre when a held part is pushed at a height above it, m.
 fn held_part(engine: &dyn Engine, finger: &Finger, along: usize, above: f64) -> Measured<Pose> {
     let (mut scene, holder) = mounted(finger);
     let size = Vector3::repeat(PART_SIZE);

@@ -25,7 +25,7 @@ pub(super) struct Blocks {
 }
 
 impl Blocks {
-    /// Zero matrix with the blocks of the pairs, and those that the elimination fills in.
+    /// Creates a zero matrix with the blocks of the pairs, and those that the elimination fills in.
     pub fn new(size: usize, eliminated: usize, pairs: &[(usize, usize)]) -> Self {
         let mut present = vec![false; size * size];
         for (a, b) in (0..size).map(|i| (i, i)).chain(pairs.iter().copied()) {

@@ -37,7 +37,7 @@ pub(super) struct MovingBody {
 }
 
 impl MovingBody {
-    /// Body at rest; `place` is its place in the system if it is dynamic.
+    /// Creates a body at rest; `place` is its place in the system if it is dynamic.
     pub fn new(body: &Body, place: usize) -> Self {
         let (kind, inertia) = match body.motion {
             Motion::Fixed => (Kind::Fixed, Inertia::default()),
@@ -59,7 +59,7 @@ impl MovingBody {
         made
     }
 
-    /// Place in the system of a dynamic body.
+    /// Returns the place in the system of a dynamic body.
     pub fn place(&self) -> Option<usize> {
         if let Kind::Dynamic(place) = self.kind { Some(place) } else { None }
     }
@@ -73,7 +73,7 @@ impl MovingBody {
         self.refresh();
     }
 
-    /// Mass matrix about the centre of mass, world axes. That of a mechanism turns with its end;
+    /// Returns the mass matrix about the centre of mass, world axes. That of a mechanism turns with its end;
     /// its change with the mechanism's pose is left out.
     pub fn mass(&self) -> Matrix6<f64> {
         if let Motion::Mechanism(mass) = &self.motion {
@@ -88,7 +88,7 @@ impl MovingBody {
         mass
     }
 
-    /// Momentum at the end of a step in which only gravity acts.
+    /// Returns the momentum at the end of a step in which only gravity acts.
     pub fn momentum(&self, gravity: &Vector3<f64>, step: f64) -> Vector6 {
         let mut all = self.momentum;
         if let Motion::Free(_) = self.motion {
@@ -126,7 +126,7 @@ impl MovingBody {
         self.refresh();
     }
 
-    /// Whether pose and velocity are finite numbers.
+    /// Returns whether pose and velocity are finite numbers.
     pub fn is_finite(&self) -> bool {
         let pose = self.pose.translation.vector.iter().chain(self.pose.rotation.coords.iter());
         pose.chain(self.velocity.iter()).all(|x| x.is_finite())

@@ -53,13 +53,13 @@ pub(super) struct Cone {
 }
 
 impl Cone {
-    /// Compliance along the edge of the cone, 1/kg.
+    /// Returns the compliance along the edge of the cone, 1/kg.
     #[inline]
     fn edge(&self) -> f64 {
         self.normal * (1.0 + self.mu * self.mu * (self.tangent / self.normal))
     }
 
-    /// Part of the cone on which the impulse lies.
+    /// Returns the part of the cone on which the impulse lies.
     #[inline]
     pub fn state(&self, pull: &Pull) -> State {
         if pull.speed * self.normal <= self.mu * pull.normal * self.tangent {
@@ -71,13 +71,13 @@ impl Cone {
         }
     }
 
-    /// Normal impulse of a sliding contact, N s.
+    /// Returns the normal impulse of a sliding contact, N s.
     #[inline]
     fn sliding(&self, pull: &Pull) -> f64 {
         (pull.normal + self.mu * pull.speed) / self.edge()
     }
 
-    /// Impulse on the second body, N s; the fourth is its moment over the patch radius.
+    /// Returns the impulse on the second body, N s; the fourth is its moment over the patch radius.
     #[inline]
     pub fn impulse(&self, pull: &Pull, normal: &Vector4<f64>) -> Vector4<f64> {
         match self.state(pull) {

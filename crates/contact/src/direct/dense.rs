@@ -43,7 +43,7 @@ fn product(matrix: &[Six], vector: &[Six], result: &mut [Six], sixes: usize) {
     }
 }
 
-/// Cholesky factorisation `U^T U` of a matrix with so many sixes to a row, in place of the upper
+/// Computes the Cholesky factorisation `U^T U` of a matrix with so many sixes to a row, in place of the upper
 /// half, the diagonal holding the reciprocals of `U`'s; None if the matrix is not positive
 /// definite (or not finite). What is left in the lower half means nothing.
 pub(super) fn factor(matrix: &mut [Six], sixes: usize) -> Option<()> {

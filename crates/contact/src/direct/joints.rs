@@ -26,7 +26,7 @@ enum Answer {
 }
 
 impl Answer {
-    /// Impulse of a rate.
+    /// Returns the impulse of a rate.
     fn to(&self, rate: &Vector6) -> Vector6 {
         match self {
             Answer::Each(stiff) => stiff.component_mul(rate),
@@ -34,7 +34,7 @@ impl Answer {
         }
     }
 
-    /// Impulse by the velocities of which a Jacobian makes rates.
+    /// Returns the impulse by the velocities of which a Jacobian makes rates.
     fn through(&self, jacobian: &Matrix6<f64>) -> Matrix6<f64> {
         match self {
             Answer::Each(stiff) => {
@@ -105,7 +105,7 @@ impl SprungJoint {
         self.by_parent = -jacobian(&axes, &angular, &(place - parent.centre.coords));
     }
 
-    /// Impulse by the rates, and at no rate.
+    /// Returns the impulse by the rates, and at no rate.
     fn answer(&self, step: f64) -> (Answer, Vector6) {
         let axes = match &self.joint.springs {
             Springs::Axes(axes) => axes.iter().flatten(),
@@ -179,7 +179,7 @@ impl SprungJoint {
     }
 }
 
-/// Rows of `axes (v + w x arm)` and of `angular w`.
+/// Returns the rows of `axes (v + w x arm)` and of `angular w`.
 fn jacobian(axes: &Matrix3<f64>, angular: &Matrix3<f64>, arm: &Vector3<f64>) -> Matrix6<f64> {
     let mut made = Matrix6::zeros();
     made.fixed_view_mut::<3, 3>(0, 0).copy_from(axes);
@@ -188,7 +188,7 @@ fn jacobian(axes: &Matrix3<f64>, angular: &Matrix3<f64>, arm: &Vector3<f64>) -> 
     made
 }
 
-/// Rate of the rotation vector by the angular velocity in the same (parent's) axes:
+/// Returns the rate of the rotation vector by the angular velocity in the same (parent's) axes:
 /// `1 - [t]/2 + (1/|t|^2 - cot(|t|/2)/(2 |t|)) [t]^2` (Bullo and Murray 1995, "Proportional
 /// derivative control on the Euclidean group").
 fn inverse_left_jacobian(turn: &Vector3<f64>) -> Matrix3<f64> {

@@ -24,7 +24,7 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// Patch of the points of a contact, in the normal's frame, by their loads; if none, evenly.
+    /// Creates a patch of the points of a contact, in the normal's frame, by their loads; if none, evenly.
     pub fn new(points: &[(Point3<f64>, f64)], normal: &Vector3<f64>) -> Self {
         let total: f64 = points.iter().map(|(_, load)| load).sum();
         let part = |load: f64| if total > 0.0 { load / total } else { 1.0 / points.len() as f64 };
@@ -39,14 +39,14 @@ impl Patch {
         Patch { centre, share }
     }
 
-    /// Vector from a point to where its friction acts, m, outside of the patch's `frame`.
+    /// Returns the vector from a point to where its friction acts, m, outside of the patch's `frame`.
     pub fn aside(&self, frame: &Pose, point: &Point3<f64>, normal: &Vector3<f64>) -> Vector3<f64> {
         let inward = (frame * self.centre - point) * (1.0 - self.share);
         inward - normal * inward.dot(normal)
     }
 }
 
-/// Half the sides of the pressed rectangle about the centre of pressure, m. The points are corners
+/// Returns half the sides of the pressed rectangle about the centre of pressure, m. The points are corners
 /// of a rectangle, so that the way from one to the nearest is along an edge.
 fn pressed(points: &[(Point3<f64>, f64)], centre: &Point3<f64>, normal: &Vector3<f64>) -> [f64; 2] {
     let ways = points[1..].iter().map(|(point, _)| point - points[0].0);
@@ -58,7 +58,7 @@ fn pressed(points: &[(Point3<f64>, f64)], centre: &Point3<f64>, normal: &Vector3
     })
 }
 
-/// Mean of `sqrt(x^2 + y^2)` over a rectangle with these half sides about its middle, m.
+/// Returns the mean of `sqrt(x^2 + y^2)` over a rectangle with these half sides about its middle, m.
 fn mean_lever(half: f64, other: f64) -> f64 {
     let (short, long) = if half < other { (half, other) } else { (other, half) };
     if short <= 0.0 {

@@ -27,7 +27,7 @@ const SEARCHES: usize = 30;
 /// Most rounds of the fixed point.
 const ROUNDS: usize = 6;
 
-/// Velocity of a point at `arm` from the centre of mass, m, by the angular velocity `w`: `w x arm`
+/// Returns the velocity of a point at `arm` from the centre of mass, m, by the angular velocity `w`: `w x arm`
 /// along the world's axes, and `rho w_n` about the `patch` vector, the normal times the radius.
 pub(super) fn lever(arm: &Vector3<f64>, patch: &Vector3<f64>) -> Matrix4x3<f64> {
     let mut lever = Matrix4x3::zeros();
@@ -36,7 +36,7 @@ pub(super) fn lever(arm: &Vector3<f64>, patch: &Vector3<f64>) -> Matrix4x3<f64> 
     lever
 }
 
-/// The lever where friction acts `aside` of the point, m: it feels the turn about the normal there.
+/// Returns the lever where friction acts `aside` of the point, m: it feels the turn about the normal there.
 pub(super) fn moved_aside(
     lever: &Matrix4x3<f64>,
     aside: &Vector3<f64>,
@@ -48,7 +48,7 @@ pub(super) fn moved_aside(
     moved
 }
 
-/// Velocity of a contact point of a body, m/s.
+/// Returns the velocity of a contact point of a body, m/s.
 pub(super) fn relative(lever: &Matrix4x3<f64>, v: &Six) -> Vector4<f64> {
     Vector4::new(v[0], v[1], v[2], 0.0) + lever * Vector3::new(v[3], v[4], v[5])
 }
@@ -81,7 +81,7 @@ pub(super) struct Contact {
 }
 
 impl Contact {
-    /// Relative velocity by the free bodies' velocities.
+    /// Returns the relative velocity by the free bodies' velocities.
     fn relative(&self, velocities: &[Six]) -> Vector4<f64> {
         let mut sum = Vector4::zeros();
         for (side, sign) in [(0, -1.0), (1, 1.0)] {
@@ -92,18 +92,18 @@ impl Contact {
         sum
     }
 
-    /// Velocity so far along the line of search, split for the law.
+    /// Returns the velocity so far along the line of search, split for the law.
     fn pull(&self, along: f64) -> Pull {
         Pull::new(&(self.velocity + self.change * along), &self.normal, self.bias + self.slide)
     }
 
-    /// Law and impulse at the present velocity.
+    /// Evaluates law and impulse at the present velocity.
     fn apply(&mut self) {
         self.pull = Pull::new(&self.velocity, &self.normal, self.bias + self.slide);
         self.impulse = self.cone.impulse(&self.pull, &self.normal);
     }
 
-    /// Sliding speed times the coefficient of friction, m/s.
+    /// Returns the sliding speed times the coefficient of friction, m/s.
     fn sliding(&self) -> f64 {
         let along = self.velocity.dot(&self.normal);
         self.cone.mu * (self.velocity - self.normal * along).norm()
@@ -125,7 +125,7 @@ pub(super) struct Solver {
 }
 
 impl Solver {
-    /// Workspace for a number of bodies.
+    /// Creates a workspace for a number of bodies.
     pub fn new(bodies: usize) -> Self {
         let zeros = vec![[0.0; 6]; bodies];
         let square = vec![[0.0; 6]; 6 * bodies * bodies];
@@ -242,7 +242,7 @@ impl Solver {
         Some(())
     }
 
-    /// Share of the direction to go: 1, or less if the potential rises again before.
+    /// Returns the share of the direction to go: 1, or less if the potential rises again before.
     fn search(&mut self, contacts: &[Contact]) -> f64 {
         let dot = |a: &[Six], b: &[Six]| {
             a.iter().zip(b).map(|(a, b)| Vector6::from(*a).dot(&Vector6::from(*b))).sum::<f64>()
@@ -313,7 +313,7 @@ fn add_stiffness(hessian: &mut [Six], bodies: usize, contact: &Contact, k: &Matr
     }
 }
 
-/// Scalar product, in the order in which nalgebra adds up products of any length.
+/// Returns the scalar product, in the order in which nalgebra adds up products of any length.
 #[inline(always)]
 fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
     (a[0] * b[0] + a[2] * b[2]) + (a[1] * b[1] + a[3] * b[3])

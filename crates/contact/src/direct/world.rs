@@ -207,7 +207,7 @@ impl DirectWorld {
     }
 }
 
-/// Place of each dynamic body in the system, the number of those eliminated before contacts, and
+/// Returns the place of each dynamic body in the system, the number of those eliminated before contacts, and
 /// their number. Those that touch nothing come first, by number of joints: little fill-in.
 fn places(scene: &Scene) -> (Vec<usize>, usize, usize) {
     let dynamic = |i: &usize| !matches!(scene.bodies[*i].motion, Motion::Fixed | Motion::Driven);

@@ -19,7 +19,7 @@ const COLOURS: [[f64; 3]; 6] = [
 /// Opacity of fixed bodies.
 const SEE_THROUGH: f64 = 0.5;
 
-/// Bodies, those on joints inside their parents.
+/// Returns the bodies, those on joints inside their parents.
 pub(super) fn world(scene: &Scene) -> Element {
     let names = geom_names(scene);
     let is_root = |body: &usize| !scene.joints.iter().any(|joint| joint.child.0 == *body);
@@ -43,7 +43,7 @@ pub(super) fn world(scene: &Scene) -> Element {
     Element::new("worldbody").holding([light]).holding(list)
 }
 
-/// Children of a body after its joints: inertia, geoms and the bodies it carries.
+/// Returns the children of a body after its joints: inertia, geoms and the bodies it carries.
 fn inside(scene: &Scene, body: usize, names: &[Vec<String>]) -> Vec<Element> {
     let mut list: Vec<Element> = inertial(&scene.bodies[body].motion).into_iter().collect();
     let geoms = scene.bodies[body].geoms.iter().zip(&names[body]);
@@ -56,7 +56,7 @@ fn inside(scene: &Scene, body: usize, names: &[Vec<String>]) -> Vec<Element> {
     list
 }
 
-/// Frame of the child in the parent's where all coordinates are zero.
+/// Returns the frame of the child in the parent's where all coordinates are zero.
 pub(super) fn zero(joint: &Joint) -> Pose {
     joint.in_parent * joint.in_child.inverse()
 }
@@ -143,7 +143,7 @@ pub(super) fn assets(scene: &Scene) -> Element {
     Element::new("asset").holding(geoms.filter_map(mesh))
 }
 
-/// Whether a joint's bodies stand where its coordinates are zero.
+/// Returns whether a joint's bodies stand where its coordinates are zero.
 pub(super) fn at_zero(scene: &Scene, joint: &Joint) -> bool {
     let pose = |body: BodyId| scene.bodies[body.0].pose;
     let off = (pose(joint.parent) * zero(joint)).inv_mul(&pose(joint.child));

@@ -26,7 +26,7 @@ const WIDTH: f64 = 1e-3;
 /// Least and largest impedance in MuJoCo.
 const IMPEDANCES: [f64; 2] = [1e-4, 0.9999];
 
-/// Pairs of geoms that may touch.
+/// Returns the pairs of geoms that may touch.
 pub(super) fn pairs(scene: &Scene, settings: &MjcfSettings) -> Element {
     let names = geom_names(scene).concat();
     let pair = |pair: GeomPair| {
@@ -62,7 +62,7 @@ fn rough(pair: Element, Friction { coefficient, torsion }: Friction) -> Element 
     }
 }
 
-/// Inverse mass that MuJoCo gives a body, 1/kg: the mean over the three axes of the inverse mass at
+/// Returns the inverse mass that MuJoCo gives a body, 1/kg: the mean over the three axes of the inverse mass at
 /// its centre of mass, 0 for an axis that is locked to a parent on a joint of its own.
 pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
     let Body { motion, .. } = &scene.bodies[body.0];
@@ -84,7 +84,7 @@ pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
     }
 }
 
-/// Inverse mass of a body on a joint of a free one (a latch on its plug): the mean over the axes of
+/// Returns the inverse mass of a body on a joint of a free one (a latch on its plug): the mean over the axes of
 /// `J M^-1 J^T`, `M` the mass matrix in the velocity of the parent and the rates of the free axes.
 fn on_free_body(
     scene: &Scene,
@@ -119,7 +119,7 @@ fn on_free_body(
     answer.map_or(0.0, |answer| (rates.rows(0, 3) * answer).trace() / 3.0)
 }
 
-/// Mass matrix of a body for the linear velocity at a point of it and its angular velocity.
+/// Returns the mass matrix of a body for the linear velocity at a point of it and its angular velocity.
 fn spatial(pose: &Pose, inertia: &Inertia, at: &Point3<f64>) -> DMatrix<f64> {
     let arm = (pose * inertia.centre - at).cross_matrix();
     let turn = pose.rotation.to_rotation_matrix().into_inner();

@@ -99,7 +99,7 @@ pub fn supports(scene: &Scene) -> Result<(), NotMjcf> {
     Ok(())
 }
 
-/// Text of a model of the scene; `name` is shown by viewers.
+/// Returns the text of a model of the scene; `name` is shown by viewers.
 ///
 /// # Errors
 /// As of [`supports`].
@@ -116,7 +116,7 @@ pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<Strin
         .with("impratio", settings.stick_damping / (settings.friction_rate * settings.contact_mass))
         .with("solver", "Newton")
         .with("tolerance", settings.tolerance)
-        // A diverged state is to be seen, not to be reset.
+        // A diverged state must stay visible, not be reset.
         .holding([Element::new("flag").with("autoreset", "disable")]);
     let geom = Element::new("geom").with("contype", 0).with("conaffinity", 0);
     let model = Element::new("mujoco").with("model", name).holding([
@@ -135,7 +135,7 @@ pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<Strin
     Ok(units.to_owned() + &model.text(0))
 }
 
-/// Actuators of the driven bodies and of the servos.
+/// Returns the actuators of the driven bodies and of the servos.
 fn actuators(scene: &Scene) -> Element {
     let driven = scene.bodies.iter().filter(|body| body.motion == Motion::Driven);
     let stiffness = HEAVY * VIEWER_FREQUENCY * VIEWER_FREQUENCY;
@@ -160,7 +160,7 @@ fn actuator(joint: &str, spring: &Spring, reach: f64) -> Element {
     element.numbers("forcerange", [-spring.limit, spring.limit])
 }
 
-/// Spring of an axis that is a servo: one with a limit.
+/// Returns the spring of an axis that is a servo: one with a limit.
 pub(crate) fn servo(joint: &Joint, axis: usize) -> Option<&Spring> {
     let Springs::Axes(axes) = &joint.springs else { return None };
     axes[axis].as_ref().filter(|spring| spring.limit.is_finite())
@@ -168,17 +168,17 @@ pub(crate) fn servo(joint: &Joint, axis: usize) -> Option<&Spring> {
 
 const AXES: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
 
-/// Name of an axis of a joint, and of its servo.
+/// Returns the name of an axis of a joint, and of its servo.
 pub(crate) fn axis_name(joint: &Joint, axis: usize) -> String {
     format!("{} {}", joint.name, AXES[axis])
 }
 
-/// Name of a joint of a driven body, and of its actuator.
+/// Returns the name of a joint of a driven body, and of its actuator.
 pub(crate) fn driven_axis_name(body: &Body, axis: usize) -> String {
     format!("drive {} {}", body.name, AXES[axis])
 }
 
-/// Names of all geoms by body, each unique in the scene.
+/// Returns the names of all geoms by body, each unique in the scene.
 pub fn geom_names(scene: &Scene) -> Vec<Vec<String>> {
     let of_body = |body: &Body| {
         let mut names: Vec<String> = Vec::new();

@@ -11,7 +11,7 @@ pub(super) struct Element {
 }
 
 impl Element {
-    /// Element without attributes and children.
+    /// Creates an element without attributes and children.
     pub fn new(name: &'static str) -> Self {
         Element { name, attributes: String::new(), children: Vec::new() }
     }
@@ -36,7 +36,7 @@ impl Element {
         self
     }
 
-    /// Text, indented by `depth` levels.
+    /// Returns the text, indented by `depth` levels.
     pub fn text(&self, depth: usize) -> String {
         let (Element { name, attributes, children }, indent) = (self, "  ".repeat(depth));
         if children.is_empty() {

@@ -22,7 +22,7 @@ pub struct Mujoco {
 }
 
 impl Mujoco {
-    /// Model of the scene.
+    /// Returns the model of the scene.
     fn model(&self, scene: &Scene) -> Result<MjModel, Unsupported> {
         let text = mjcf::write(scene, "scene", &self.settings).map_err(|error| {
             let (part, lacking) = (error.part, error.lacking);
@@ -34,7 +34,7 @@ impl Mujoco {
         })
     }
 
-    /// Inverse mass that MuJoCo gives a body at its contacts, 1/kg.
+    /// Returns the inverse mass that MuJoCo gives a body at its contacts, 1/kg.
     ///
     /// # Errors
     /// If it cannot simulate the scene.

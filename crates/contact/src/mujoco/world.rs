@@ -65,9 +65,9 @@ enum AxisPlace {
 
 impl MujocoWorld {
     pub fn new(scene: &Scene, mut model: MjModel) -> Self {
-        // The sliders' ranges are for people.
+        // The ranges of the sliders are for the viewer.
         model.actuator_ctrllimited_mut().fill(false);
-        // So are the driven bodies' actuators: here they go where they are told.
+        // So are the actuators of the driven bodies, which follow commands here.
         for body in scene.bodies.iter().filter(|body| body.motion == Motion::Driven) {
             for axis in 0..6 {
                 let name = driven_axis_name(body, axis);
@@ -266,7 +266,7 @@ fn axis_place(model: &MjModel, joint: &Joint, axis: usize) -> AxisPlace {
     }
 }
 
-/// Translations, and the angles of turns about x, then y, then z.
+/// Returns the translations, and the angles of turns about x, then y, then z.
 fn coordinates(pose: &Pose) -> [f64; 6] {
     let at = pose.translation.vector;
     let turn: Rotation3<f64> = pose.rotation.to_rotation_matrix();

@@ -84,7 +84,7 @@ impl World for RapierWorld {
 
     fn push(&mut self, body: BodyId, force: Vector3<f64>, moment: Vector3<f64>) {
         let body = &mut self.world.bodies[self.bodies[body.0]];
-        // rapier adds up what it is given until told to forget it.
+        // rapier adds up forces until they are reset.
         body.reset_forces(true);
         body.reset_torques(true);
         body.add_force(force.into(), true);
@@ -151,7 +151,7 @@ fn add_pair(
     }
 }
 
-/// Settings of rapier.
+/// Returns the settings of rapier.
 fn parameters(settings: &Rapier) -> rp::IntegrationParameters {
     let softness = rp::SpringCoefficients {
         natural_frequency: settings.contact_hz,
@@ -176,7 +176,7 @@ fn parameters(settings: &Rapier) -> rp::IntegrationParameters {
     }
 }
 
-/// Collision group of each body, filtered to the bodies it may touch.
+/// Returns the collision group of each body, filtered to the bodies it may touch.
 fn groups(scene: &Scene) -> Vec<rp::InteractionGroups> {
     let bit = |i: usize| rp::Group::from_bits_truncate(1 << i);
     let group = |i| {
@@ -230,7 +230,7 @@ const JOINT_AXES: [rp::JointAxis; 6] = [
     rp::JointAxis::AngZ,
 ];
 
-/// Joint with its springs.
+/// Returns the joint with its springs.
 fn generic_joint(joint: &Joint) -> rp::GenericJoint {
     let mut made = rp::GenericJoint::new(rp::JointAxesMask::empty());
     made.set_local_frame1(shapes::pose(&joint.in_parent, 1.0));

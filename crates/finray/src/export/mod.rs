@@ -14,13 +14,13 @@ use crate::polygon::Ring;
 use input::units::{MM, mm};
 use nalgebra::Point2;
 
-/// Title of a file: `finray9, infill 20 %, 10°`.
+/// Returns the title of a file: `finray9, infill 20 %, 10°`.
 pub fn title(geometry: &Geometry) -> String {
     let (name, design) = (&geometry.finger.name, &geometry.design);
     format!("{name}, infill {} %, {}°", design.density_percent, design.direction_deg)
 }
 
-/// Outline (counter-clockwise), then openings and holes (clockwise), in the frame of the files, mm.
+/// Returns the outline (counter-clockwise), then openings and holes (clockwise), in the frame of the files, mm.
 fn rings(geometry: &Geometry) -> Vec<Ring> {
     let width = geometry.finger.outline.width / MM;
     let moved = |ring: Vec<[f64; 2]>| ring.into_iter().map(|[x, y]| Point2::new(x, y + width));

@@ -41,7 +41,7 @@ const RELATIONS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 "#;
 
 impl Prism {
-    /// Checked surface of the finger with its ribs.
+    /// Returns the checked surface of the finger with its ribs.
     ///
     /// # Errors
     /// If the surface is not closed, or encloses another volume than area times depth.
@@ -52,7 +52,7 @@ impl Prism {
         Prism::new(&outer, &voids, geometry.finger.outline.depth / MM)?.with_block(geometry)
     }
 
-    /// Surface of the finger without openings, for slicers that fill it with their own infill.
+    /// Returns the surface of the finger without openings, for slicers that fill it with their own infill.
     ///
     /// # Errors
     /// As of [`Prism::finger`].
@@ -62,7 +62,7 @@ impl Prism {
         Prism::new(&rings[0], &holes, geometry.finger.outline.depth / MM)?.with_block(geometry)
     }
 
-    /// Surface of the solid base, where a slicer's infill has to be full.
+    /// Returns the surface of the solid base, where a slicer's infill has to be full.
     ///
     /// # Errors
     /// As of [`Prism::finger`].
@@ -74,7 +74,7 @@ impl Prism {
         Prism::new(&block.map(Point2::from).to_vec(), &[], outline.depth / MM)?.with_block(geometry)
     }
 
-    /// With the block that has the finger's holes, if there is one: a closed surface of its own that
+    /// Adds the block that has the finger's holes, if there is one: a closed surface of its own that
     /// overlaps the finger's. What lies in either is solid (3MF Core Specification 1.3, 4.1: the
     /// positive fill rule), and slicers read STL files so, too.
     fn with_block(mut self, geometry: &Geometry) -> Result<Self, PrismError> {
@@ -103,7 +103,7 @@ impl Prism {
         self.closed()
     }
 
-    /// Ring less holes (clockwise) from 0 to `depth`, mm.
+    /// Extrudes a ring less holes (clockwise) from 0 to `depth`, mm.
     fn new(outer: &Ring, holes: &[Ring], depth: f64) -> Result<Self, PrismError> {
         let mesh = Mesh::coarsest(outer, holes).map_err(|error| {
             PrismError(format!("the profile cannot be divided into triangles: {error}"))
@@ -144,7 +144,7 @@ impl Prism {
         }
     }
 
-    /// Number of edges that are not met exactly twice, once each way; corners are told apart by
+    /// Returns the number of edges that are not met exactly twice, once each way; corners are told apart by
     /// their places alone, as in a file without numbers of corners.
     fn open_edges(&self) -> usize {
         let place = |corner: u32| self.corners[corner as usize].map(f32::to_bits);
@@ -156,7 +156,7 @@ impl Prism {
         met.keys().filter(|edge| !twice(edge)).count()
     }
 
-    /// Volume that the surface encloses, mm3.
+    /// Returns the volume that the surface encloses, mm3.
     fn volume(&self) -> f64 {
         let sixth = |triangle: &[u32; 3]| {
             let [a, b, c] = self.places(triangle);
@@ -165,12 +165,12 @@ impl Prism {
         self.triangles.iter().map(sixth).sum()
     }
 
-    /// Positions of the corners of a triangle, mm.
+    /// Returns the positions of the corners of a triangle, mm.
     fn places(&self, triangle: &[u32; 3]) -> [Vector3<f64>; 3] {
         triangle.map(|corner| self.corners[corner as usize].map(f64::from).into())
     }
 
-    /// Binary STL file, mm; `title` goes into its header.
+    /// Returns a binary STL file, mm; `title` goes into its header.
     pub fn stl(&self, title: &str) -> Vec<u8> {
         let mut out = format!("finger-opt: {title}; mm").into_bytes();
         out.resize(HEADER, b' ');
@@ -187,7 +187,7 @@ impl Prism {
         out
     }
 
-    /// 3MF file, mm: a zip by the 3MF Core Specification 1.3.
+    /// Returns a 3MF file, mm: a zip by the 3MF Core Specification 1.3.
     ///
     /// # Errors
     /// If the zip cannot be written.
@@ -233,7 +233,7 @@ impl Prism {
     }
 }
 
-/// The directed edges of a triangle.
+/// Returns the directed edges of a triangle.
 fn sides(&[a, b, c]: &[u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]]
 }

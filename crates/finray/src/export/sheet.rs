@@ -28,7 +28,7 @@ pub struct AtPad<'a> {
     pub measured: Option<[[f64; 2]; 2]>,
 }
 
-/// Print sheet as a page of HTML that prints on one sheet of paper.
+/// Returns the print sheet as a page of HTML that prints on one sheet of paper.
 pub fn html(geometry: &Geometry, stiffness: &AtPad) -> String {
     let page = html! {
         (DOCTYPE)
@@ -44,7 +44,7 @@ pub fn html(geometry: &Geometry, stiffness: &AtPad) -> String {
     page.into_string()
 }
 
-/// Print sheet as an SVG of an A4 page.
+/// Returns the print sheet as an SVG of an A4 page.
 pub fn svg(geometry: &Geometry, stiffness: &AtPad) -> String {
     let [beyond, wing] = block(geometry);
     let size = geometry.finger.outline;
@@ -70,7 +70,7 @@ pub fn svg(geometry: &Geometry, stiffness: &AtPad) -> String {
     drawing.svg(PAPER, "mm")
 }
 
-/// The finger as the sheet draws it, with its lengths (in a group of class `lengths`) and infill
+/// Returns the finger as the sheet draws it, with its lengths (in a group of class `lengths`) and infill
 /// directions, as an SVG of its own.
 pub fn part(geometry: &Geometry) -> String {
     let ([beyond, wing], outline) = (block(geometry), &geometry.finger.outline);
@@ -88,7 +88,7 @@ fn finger_with_lengths(drawing: &mut Drawing, geometry: &Geometry, view: View) {
     direction(drawing, geometry, view);
 }
 
-/// Length of the block beyond a finger and its width beside it, on either side, mm.
+/// Returns the length of the block beyond a finger and its width beside it, on either side, mm.
 fn block(geometry: &Geometry) -> [f64; 2] {
     let wing = |width: f64| ((width - geometry.finger.outline.width) / 2.0).max(0.0);
     geometry.block().map_or([0.0; 2], |(_, block)| [block.length / MM, wing(block.width) / MM])
@@ -122,7 +122,7 @@ fn shape(drawing: &mut Drawing, geometry: &Geometry, view: View) {
     drawing.text(words - Vector2::y() * 2.0, HELD, font);
 }
 
-/// An angle in degrees, to a hundredth.
+/// Returns an angle in degrees, to a hundredth.
 fn degrees(angle: f64) -> f64 {
     (angle / DEG * 100.0).round() / 100.0
 }

@@ -16,7 +16,7 @@ const LAYER: f64 = 0.2;
 /// Version of the settings of Cura 5.0; later versions read them.
 const CURA_SETTING_VERSION: &str = "20";
 
-/// Profile to import in Cura, where `infill_line_distance` decides over the density. As in the
+/// Returns the profile to import in Cura, where `infill_line_distance` decides over the density. As in the
 /// design, an angle of 0 is along Y, and a positive one turns the lines' upper end to +X.
 pub fn cura(geometry: &Geometry) -> String {
     let (count, width) = walls(&geometry.finger);
@@ -58,7 +58,7 @@ gradual_infill_steps = 0
     )
 }
 
-/// Configuration for PrusaSlicer, 2.4 or later: `prusa-slicer --load FILE`. The fill pattern is
+/// Returns the configuration for PrusaSlicer, 2.4 or later: `prusa-slicer --load FILE`. The fill pattern is
 /// `alignedrectilinear`: `rectilinear` turns by 90 degrees from layer to layer.
 pub fn prusaslicer(geometry: &Geometry) -> String {
     let (count, width) = walls(&geometry.finger);
@@ -93,7 +93,7 @@ infill_anchor_max = 0
     )
 }
 
-/// Number and width, m, of the walls that make the skin: the fewest at most two lines wide.
+/// Returns the number and width, m, of the walls that make the skin: the fewest at most two lines wide.
 fn walls(finger: &PrintedFinger) -> (u32, f64) {
     let count = (finger.skin / (2.0 * finger.line_width) - 1e-9).ceil().max(1.0);
     (count as u32, finger.skin / count)

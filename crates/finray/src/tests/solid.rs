@@ -8,7 +8,7 @@ use super::infill;
 use crate::condense::Element;
 use crate::elasticity::{Shape, Slab, area, shape};
 use crate::mechanics::{CROSS_SIZE, cross};
-use crate::meshed::{Body, held};
+use crate::meshed::{RigidFace, rigid_stiffness};
 use crate::outline::Outline;
 use crate::plate::MindlinPlate;
 use crate::stiffness::CrossStiffness;
@@ -105,7 +105,7 @@ fn the_plate_is_as_stiff_as_the_solid_and_turns_like_a_cantilever() {
     for (density, direction) in [(10.0, 0.0), (20.0, 20.0), (25.0, 40.0)] {
         let geometry = infill(density, direction);
         let solid = Solid(Slab::of(&geometry.finger));
-        let [solid] = held(&geometry, &solid, CROSS_SIZE, [Body::Pad]).unwrap();
+        let [solid] = rigid_stiffness(&geometry, &solid, CROSS_SIZE, [RigidFace::Pad]).unwrap();
         let solid = CrossStiffness::new(solid).unwrap();
         let plate = cross(&geometry, CROSS_SIZE).unwrap();
         for (plate, solid) in [

@@ -7,7 +7,7 @@ use crate::space::{DIRECTION_KEY, Design};
 use crate::task::Task;
 use crate::task::finger::{Coupling, Rcc};
 use finray::FingerError;
-use finray::mechanics::{FingerStiffness, Known};
+use finray::mechanics::{FingerStiffness, StiffnessCache};
 use input::units::MM;
 pub use parameters::numbers::{CENTRE as RCC_KEY, TILTING as TILTING_KEY};
 use serde::{Deserialize, Serialize};
@@ -47,7 +47,7 @@ pub enum FingerSource {
 pub struct ComputedFingers {
     /// File of shape and material.
     pub file: FingerFile,
-    known: Known,
+    cache: StiffnessCache,
 }
 
 /// A finger, and where its remote centre comes from.
@@ -122,7 +122,7 @@ impl FingerSource {
 impl ComputedFingers {
     /// Fingers of a file, with its rib phase.
     pub fn new(file: FingerFile) -> Self {
-        ComputedFingers { file, known: Known::default() }
+        ComputedFingers { file, cache: StiffnessCache::default() }
     }
 
     /// The stiffness of a design from its ribs, computed once; NaN of the infill is refused.
@@ -130,7 +130,7 @@ impl ComputedFingers {
     /// # Errors
     /// If the printed finger cannot be.
     pub fn stiffness(&self, design: &Design) -> Result<FingerStiffness, FingerError> {
-        self.known.stiffness(&self.file.with(design)?, &infill(design, None))
+        self.cache.stiffness(&self.file.with(design)?, &infill(design, None))
     }
 
     fn finger(

@@ -51,7 +51,7 @@ fn row(
     CheckRow::new("F1", text, expected * scale, measured, unit, tolerance)
 }
 
-/// Stiffness of a rigid end (its motions by `follow`), the other end clamped.
+/// Returns the stiffness of a rigid end (its motions by `follow`), the other end clamped.
 fn end<Of: Element>(
     (ring, size): (&Ring, f64),
     element: &Of,
@@ -77,7 +77,7 @@ fn clamped_and_held(place: f64, end: f64) -> Role {
     }
 }
 
-/// X, Y and the turn about Z of a body at a point.
+/// Returns X, Y and the turn about Z of a body at a point.
 fn in_plane(at: Point2<f64>) -> impl Fn(&Point2<f64>, usize) -> [f64; 3] {
     move |p, freedom| match freedom {
         0 => [1.0, 0.0, at.y - p.y],
@@ -153,7 +153,7 @@ fn wall() -> Vec<CheckRow> {
     ]
 }
 
-/// Displacement of an even strain by place.
+/// Returns the displacement of an even strain by place.
 fn field(p: &Point2<f64>) -> [f64; 2] {
     [0.1 * p.x + 0.3 * p.y, -0.2 * p.x + 0.4 * p.y]
 }
@@ -179,7 +179,7 @@ pub fn f2() -> Vec<CheckRow> {
     ]
 }
 
-/// Largest error of a displacement, and twice the work, with the edges moved evenly.
+/// Returns the largest error of a displacement, and twice the work, with the edges moved evenly.
 fn patch(mesh: &Mesh) -> Option<[f64; 2]> {
     let edge: BTreeSet<usize> = mesh.boundary().into_iter().flatten().collect();
     let role = |node| if edge.contains(&node) { Role::Kept } else { Role::Free };

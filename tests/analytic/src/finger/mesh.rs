@@ -5,7 +5,7 @@ use crate::{CheckRow, Tolerance};
 use finray::elasticity::{PlaneStress, Slab};
 use finray::geometry::Geometry;
 use finray::mechanics::{CROSS_SIZE, SIZE};
-use finray::meshed::{Body, held};
+use finray::meshed::{RigidFace, rigid_stiffness};
 use finray::plate::MindlinPlate;
 use nalgebra::Matrix3;
 
@@ -54,13 +54,13 @@ fn halved(design: [f64; 2]) -> Option<[[Matrix3<f64>; 3]; 2]> {
 fn matrices(geometry: &Geometry, factor: f64) -> Option<[Matrix3<f64>; 3]> {
     let slab = Slab::of(&geometry.finger);
     let (plane, plate) = (PlaneStress(slab), MindlinPlate(slab));
-    let bodies = [Body::Pad, Body::PadAndRoof];
-    let [pad, both] = held(geometry, &plane, SIZE * factor, bodies).ok()?;
-    let [across] = held(geometry, &plate, CROSS_SIZE * factor, [Body::Pad]).ok()?;
+    let faces = [RigidFace::Pad, RigidFace::PadAndRoof];
+    let [pad, both] = rigid_stiffness(geometry, &plane, SIZE * factor, faces).ok()?;
+    let [across] = rigid_stiffness(geometry, &plate, CROSS_SIZE * factor, [RigidFace::Pad]).ok()?;
     Some([pad, both, across])
 }
 
-/// Largest difference of two matrices, relative to the springs that the entry couples.
+/// Returns the largest difference of two matrices, relative to the springs that the entry couples.
 fn difference(a: &Matrix3<f64>, b: &Matrix3<f64>) -> f64 {
     let entry = |(i, j)| (a[(i, j)] - b[(i, j)]).abs() / (b[(i, i)] * b[(j, j)]).sqrt();
     (0..9).map(|n| entry((n / 3, n % 3))).fold(0.0, f64::max)

@@ -26,7 +26,7 @@ fn finray9() -> Option<PrintedFinger> {
     PrintedFinger::parse(shipped.text, shipped.file).ok()
 }
 
-/// Finger with an infill of a density (percent) and a direction (degrees).
+/// Returns the finger with an infill of a density (percent) and a direction (degrees).
 fn infill(finger: &PrintedFinger, [density, direction]: [f64; 2]) -> Option<Geometry> {
     let design = Design { density_percent: density, direction_deg: direction, phase_mm: None };
     Geometry::new(finger, &design).ok()

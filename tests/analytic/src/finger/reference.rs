@@ -38,7 +38,7 @@ const TILTING: f64 = 0.08;
 /// Number of the table: its name, its unit, the tabled and the computed value.
 type Quantity = (String, &'static str, fn(&Row) -> f64, fn(&[PlanarStiffness; 2]) -> f64);
 
-/// Design with the largest error for each number of the table, F4 rows.
+/// Returns the design with the largest error for each number of the table, F4 rows.
 pub fn f4() -> Vec<CheckRow> {
     let computed: Option<Vec<_>> = TABLE.iter().map(stiffness).collect();
     quantities().into_iter().map(|quantity| worst(&quantity, computed.as_deref())).collect()

@@ -70,11 +70,14 @@ impl Arguments {
     }
 }
 
+/// Function of a grid point; none where it has no value.
+type Value = Box<dyn Fn(&GridPoint) -> Option<f64> + Sync>;
+
 /// Problem on a grid: maximisation up to a target, in a limited number of evaluations.
 struct GridProblem {
     name: String,
     grid: Grid,
-    value: Box<dyn Fn(&GridPoint) -> Option<f64> + Sync>,
+    value: Value,
     target: f64,
     limit: usize,
 }

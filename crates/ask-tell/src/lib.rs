@@ -2,7 +2,7 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
-// A panic is a defect; what input can reach is an error with a message.
+// A panic is a bug; invalid input must produce an error with a message.
 #![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod cmaes;
@@ -41,7 +41,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// A grid with at least one level on each axis (zero counts as one).
+    /// Creates a grid with at least one level on each axis (zero counts as one).
     pub fn new(levels: Vec<u32>) -> Self {
         Grid { levels: levels.into_iter().map(|n| n.max(1)).collect() }
     }
@@ -56,7 +56,7 @@ impl Grid {
         self.levels.len()
     }
 
-    /// Number of points; saturates.
+    /// Number of points, saturating at `u64::MAX`.
     pub fn size(&self) -> u64 {
         self.levels.iter().fold(1, |n, &l| n.saturating_mul(u64::from(l)))
     }
@@ -74,9 +74,10 @@ impl Grid {
         point.0.len() == self.levels.len() && point.0.iter().zip(&self.levels).all(|(k, n)| k < n)
     }
 
-    /// The grid point whose cell holds `unit`: each axis is cut into `levels[i]` equal cells,
-    /// so that a uniform `unit` gives every level the same chance ([`snap`](Self::snap) gives
-    /// the two end levels half of one). Coordinates outside [0, 1] are clamped.
+    /// Returns the grid point whose cell contains `unit`. Each axis is divided into `levels[i]`
+    /// equal cells, so that all levels are equally likely for a uniform `unit` (with
+    /// [`snap`](Self::snap) the two end levels are half as likely). Coordinates outside [0, 1] are
+    /// clamped.
     pub fn cell(&self, unit: &[f64]) -> GridPoint {
         let level = |(&u, &n): (&f64, &u32)| ((u.max(0.0) * f64::from(n)) as u32).min(n - 1);
         GridPoint(unit.iter().zip(&self.levels).map(level).collect())
@@ -134,37 +135,35 @@ impl Grid {
 pub struct Observation {
     /// The point.
     pub point: GridPoint,
-    /// The objectives, larger is better; none if the evaluation gave no value
-    /// (it diverged, or broke): known to be bad, not known how bad.
+    /// Objective values, larger is better; empty if the evaluation failed (for example diverged).
     pub values: Vec<f64>,
-    /// How far each constraint is violated; 0 or below where it is kept.
+    /// Violation of each constraint; 0 or below if it is satisfied.
     pub violations: Vec<f64>,
 }
 
-/// Merit of what violates constraints, before its violation is taken off: below
-/// whatever an objective may be.
+/// Merit of an infeasible point before its violation is subtracted: below any objective value.
 const INFEASIBLE: f64 = -1e9;
 
 impl Observation {
-    /// Of one objective without constraints.
+    /// Creates an observation of a single objective without constraints.
     pub fn new(point: GridPoint, value: Option<f64>) -> Self {
         Observation { point, values: value.into_iter().collect(), violations: Vec::new() }
     }
 
-    /// The only objective, or the first of several.
+    /// Returns the first objective value.
     pub fn value(&self) -> Option<f64> {
         self.values.first().copied()
     }
 
-    /// Whether it has a value and keeps all constraints.
+    /// Returns whether it has a value and satisfies all constraints.
     pub fn feasible(&self) -> bool {
         !self.values.is_empty() && self.violations.iter().all(|&violation| violation <= 0.0)
     }
 
-    /// One number for optimizers that know no constraints (K. Deb 2000, Comput. Methods
-    /// Appl. Mech. Eng. 186:311): of two feasible points the one with the larger value is
-    /// better, a feasible one is better than one that is not, and of two that are not the one
-    /// that violates less, all constraints added up.
+    /// Returns a single merit for optimizers without constraint handling, by the feasibility rules
+    /// of K. Deb 2000 (Comput. Methods Appl. Mech. Eng. 186:311): of two feasible points the larger
+    /// value is better, a feasible point is better than an infeasible one, and of two infeasible
+    /// points the smaller sum of violations is better.
     pub fn merit(&self) -> Option<f64> {
         let violation: f64 = self.violations.iter().map(|violation| violation.max(0.0)).sum();
         let value = self.value()?;
@@ -185,21 +184,20 @@ pub enum StopReason {
 
 /// A sequential optimizer over a [`Grid`].
 ///
-/// Contract, checked for every implementation by `tests/optimizers.rs`:
-/// proposals depend only on the constructor's arguments and the sequence of
-/// calls; every proposed point lies on the grid and is proposed once; fewer
-/// than `n` points come back only when the grid is exhausted (or, of [`Polished`],
-/// where its search or its polish ends).
+/// Contract, checked for every implementation by `tests/optimizers.rs`: proposals depend only on
+/// the constructor's arguments and the sequence of calls; every proposed point lies on the grid
+/// and is proposed once; fewer than `n` points are returned only when the grid is exhausted (or,
+/// for [`Polished`], when its search or its polishing phase ends).
 pub trait Optimizer {
     /// Proposes up to `n` new points.
     fn ask(&mut self, n: usize) -> Vec<GridPoint>;
 
-    /// Reports the values of all points of the last [`ask`](Self::ask), in its order; or,
-    /// when no point waits for its value, those of points that were measured elsewhere, which
-    /// are then not proposed any more.
+    /// Reports the results of all points of the last [`ask`](Self::ask), in its order; or, when no
+    /// results are pending, those of points that were evaluated elsewhere, which are then no longer
+    /// proposed.
     fn tell(&mut self, observations: &[Observation]);
 
-    /// Why there is nothing more to ask for, if so.
+    /// Returns the reason why there is nothing more to propose, if the search has ended.
     fn stop(&self) -> Option<StopReason>;
 }
 

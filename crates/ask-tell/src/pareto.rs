@@ -1,14 +1,13 @@
-//! Pareto fronts and the volume they dominate, for vectors of which every
-//! component is better larger.
+//! Pareto fronts and hypervolumes. All components are maximised.
 
-/// Whether `a` is at least as good as `b` everywhere and better somewhere.
+/// Returns whether `a` is at least as good as `b` in every component and better in at least one.
 pub fn dominates(a: &[f64], b: &[f64]) -> bool {
     let pairs = || a.iter().zip(b);
     pairs().all(|(a, b)| a >= b) && pairs().any(|(a, b)| a > b)
 }
 
-/// Indices of the points that no other point dominates, ascending; of equal
-/// points the first.
+/// Returns the indices of the non-dominated points, ascending. Of several equal points only the
+/// first is included.
 pub fn front(points: &[Vec<f64>]) -> Vec<usize> {
     let beaten = |i: usize| {
         let by = |(j, other): (usize, &Vec<f64>)| {
@@ -19,15 +18,15 @@ pub fn front(points: &[Vec<f64>]) -> Vec<usize> {
     (0..points.len()).filter(|&i| !beaten(i)).collect()
 }
 
-/// The front of points that come one after the other.
+/// Pareto front that is updated one point at a time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Archive {
     points: Vec<Vec<f64>>,
 }
 
 impl Archive {
-    /// Adds a point, and drops what it dominates; whether it is on the front now. Of equal
-    /// points only the first is.
+    /// Adds a point, removes the points that it dominates, and returns whether it is now on the
+    /// front. A duplicate of a point on the front is not added.
     pub fn add(&mut self, point: Vec<f64>) -> bool {
         if self.points.iter().any(|known| *known == point || dominates(known, &point)) {
             return false;
@@ -37,29 +36,28 @@ impl Archive {
         true
     }
 
-    /// The front, in the order in which its points came.
+    /// Returns the points on the front, in the order in which they were added.
     pub fn points(&self) -> &[Vec<f64>] {
         &self.points
     }
 }
 
-/// A box with sides along the axes; `high` may be infinite.
+/// Axis-aligned box; `high` may be infinite.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cell {
-    /// Smallest corner.
+    /// Lower corner.
     pub low: Vec<f64>,
-    /// Largest corner.
+    /// Upper corner.
     pub high: Vec<f64>,
 }
 
-/// Cuts the region that `points` do not dominate, above `reference` in every
-/// component, into cells that do not overlap: what a new point `y` adds to the
-/// volume is the sum over the cells of the product of `min(y, high) - low`,
-/// where that is positive in every component.
+/// Partitions the non-dominated region above `reference` into disjoint cells. The hypervolume
+/// improvement of a new point `y` is the sum over the cells of the product of
+/// `min(y, high) - low`, over those cells in which every factor is positive.
 ///
-/// By slices along the last component (the hypervolume by slicing objectives of
-/// While et al. 2006, IEEE Trans. Evol. Comput. 10:29, with the complement kept).
-/// Points that are not above the reference in every component count for nothing.
+/// The region is sliced along the last component (hypervolume by slicing objectives, While et al.
+/// 2006, IEEE Trans. Evol. Comput. 10:29, applied to the complement). Points that do not exceed
+/// the reference in every component are ignored.
 pub fn undominated(points: &[Vec<f64>], reference: &[f64]) -> Vec<Cell> {
     slices(&above(points, reference), reference)
 }
@@ -71,7 +69,7 @@ fn above<'a>(points: &'a [Vec<f64>], reference: &[f64]) -> Vec<&'a [f64]> {
 
 fn slices(points: &[&[f64]], reference: &[f64]) -> Vec<Cell> {
     let Some((&floor, lower)) = reference.split_last() else {
-        // Nothing left to differ in: one cell, unless something is there already.
+        // No components left: one cell, unless a point already covers it.
         let free = Cell { low: Vec::new(), high: Vec::new() };
         return if points.is_empty() { vec![free] } else { Vec::new() };
     };
@@ -88,7 +86,7 @@ fn slices(points: &[&[f64]], reference: &[f64]) -> Vec<Cell> {
     cells
 }
 
-/// The floor and all values along an axis, ascending.
+/// Returns the floor and all distinct values along an axis, ascending.
 fn cuts(points: &[&[f64]], axis: usize, floor: f64) -> Vec<f64> {
     let mut cuts: Vec<f64> = points.iter().map(|point| point[axis]).collect();
     cuts.push(floor);
@@ -101,7 +99,7 @@ fn reaching<'a>(points: &[&'a [f64]], axis: usize, high: f64) -> Vec<&'a [f64]> 
     points.iter().filter(|point| point[axis] >= high).copied().collect()
 }
 
-/// Volume between the reference and the points: what they dominate above it.
+/// Returns the hypervolume: the volume above the reference that the points dominate.
 pub fn hypervolume(points: &[Vec<f64>], reference: &[f64]) -> f64 {
     volume(&above(points, reference), reference)
 }

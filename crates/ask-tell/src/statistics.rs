@@ -12,19 +12,19 @@ pub fn mean(values: impl IntoIterator<Item = impl Borrow<f64>>) -> Option<f64> {
     (count > 0.0).then(|| sum / count)
 }
 
-/// Number, mean and spread of values.
+/// Number, mean and sum of squared deviations of values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moments {
     /// Number of values.
     pub count: f64,
     /// Mean; NaN without values.
     pub mean: f64,
-    /// Sum of the squared differences from the mean.
+    /// Sum of the squared deviations from the mean.
     pub squares: f64,
 }
 
 impl Moments {
-    /// Returns the moments of values, which are iterated twice.
+    /// Returns the moments of the values. The iterator is cloned and traversed more than once.
     pub fn of<I>(values: I) -> Self
     where
         I: IntoIterator<Item: Borrow<f64>, IntoIter: Clone>,
@@ -35,7 +35,7 @@ impl Moments {
         Moments { count, mean, squares: values.map(|value| (value - mean).powi(2)).sum() }
     }
 
-    /// Returns the variance of the values, the mean square; NaN without values.
+    /// Returns the population variance (divisor n); NaN without values.
     pub fn variance(&self) -> f64 {
         self.squares / self.count
     }
@@ -45,7 +45,7 @@ impl Moments {
         self.variance().sqrt()
     }
 
-    /// Returns the unbiased variance of the population, over n - 1; NaN for fewer than two values.
+    /// Returns the unbiased sample variance (divisor n - 1); NaN for fewer than two values.
     pub fn sample_variance(&self) -> f64 {
         if self.count > 1.0 { self.squares / (self.count - 1.0) } else { f64::NAN }
     }
@@ -56,27 +56,27 @@ impl Moments {
     }
 }
 
-/// Returns the median, of an even number of values the upper of the two in the middle; `None`
-/// without values.
+/// Returns the median; `None` without values. For an even number of values it is the larger of
+/// the two middle ones.
 pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     quantile(&sorted(values), 0.5)
 }
 
-/// Returns values in ascending order.
+/// Returns the values in ascending order.
 pub fn sorted(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     let mut values: Vec<f64> = values.into_iter().collect();
     values.sort_by(f64::total_cmp);
     values
 }
 
-/// Returns the value that a share (0 to 1) of sorted values lies below, by the nearest rank; `None`
-/// without values.
+/// Returns the quantile of sorted values at probability `share` (0 to 1), rounded to the nearest
+/// rank; `None` without values.
 pub fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let place = share * sorted.len().checked_sub(1)? as f64;
     sorted.get(place.round() as usize).copied()
 }
 
-/// Returns the same as [`quantile`] by linear interpolation between the two nearest ranks.
+/// Returns the quantile of sorted values, interpolated linearly between the two nearest ranks.
 pub fn interpolated_quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let place = share * sorted.len().checked_sub(1)? as f64;
     let [low, high] = [place.floor(), place.ceil()].map(|at| sorted.get(at as usize).copied());
@@ -84,7 +84,7 @@ pub fn interpolated_quantile(sorted: &[f64], share: f64) -> Option<f64> {
     if part == 0.0 { low } else { Some(low? + part * (high? - low?)) }
 }
 
-/// Returns Pearson's correlation of pairs; `None` if one side does not vary.
+/// Returns Pearson's correlation coefficient; `None` if either variable is constant.
 pub fn pearson(first: &[f64], second: &[f64]) -> Option<f64> {
     let (first_mean, second_mean) = (mean(first)?, mean(second)?);
     let sum = |of: fn(f64, f64) -> f64| -> f64 {
@@ -94,13 +94,13 @@ pub fn pearson(first: &[f64], second: &[f64]) -> Option<f64> {
     (scale > 0.0).then(|| sum(|a, b| a * b) / scale)
 }
 
-/// Returns Spearman's rank correlation of pairs; `None` below 3 pairs or if one side does not vary.
+/// Returns Spearman's rank correlation; `None` for fewer than 3 pairs or a constant variable.
 pub fn spearman(pairs: &[(f64, f64)]) -> Option<f64> {
     let (first, second): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
     if pairs.len() < 3 { None } else { pearson(&ranks(&first), &ranks(&second)) }
 }
 
-/// Ranks from 0; equal values share the mean of their ranks.
+/// Returns the ranks, from 0; tied values share the mean of their ranks.
 fn ranks(values: &[f64]) -> Vec<f64> {
     let rank = |v: &f64| {
         let below = values.iter().filter(|other| *other < v).count() as f64;
@@ -120,12 +120,12 @@ pub fn normal_log_pdf(z: f64) -> f64 {
     -0.5 * z * z - 0.5 * log(2.0 * PI)
 }
 
-/// Returns the probability that a standard normal number lies below `z`.
+/// Returns the cumulative distribution function of the standard normal distribution.
 pub fn normal_cdf(z: f64) -> f64 {
     0.5 * erfc(-z * FRAC_1_SQRT_2)
 }
 
-/// Returns the logarithm of [`normal_cdf`], also where that underflows.
+/// Returns the logarithm of [`normal_cdf`], accurate even where `normal_cdf` underflows.
 pub fn normal_log_cdf(z: f64) -> f64 {
     if z > -30.0 {
         return log(normal_cdf(z));

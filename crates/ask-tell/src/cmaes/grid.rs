@@ -15,28 +15,28 @@ const MIN_STD_STEPS: f64 = 0.3;
 const BARREN_GENERATIONS: u32 = 8;
 /// Restarts without a new point after which an unseen point is taken instead.
 const BARREN_RESTARTS: u32 = 3;
-/// Draws for one place of a batch that the generation has no candidate for.
+/// Extra draws for a place in the batch once the generation is full.
 const EXTRA_DRAWS: u32 = 50;
 
 /// BIPOP-CMA-ES over a grid. **Maximises**: it minimises the negated values.
 ///
 /// - *Bounds*: the search space R^n is folded onto the unit cube by reflection at its faces
-///   (`x -> |x - 2 round(x / 2)|`), so no candidate is infeasible and a best point on a face
-///   is an ordinary minimum of the folded function. Axes with one level are left out.
+///   (`x -> |x - 2 round(x / 2)|`), so no candidate is infeasible and an optimum on a face
+///   is an ordinary minimum of the folded function. Axes with one level are omitted.
 /// - *Steps*: the folded candidate is snapped to the nearest grid point. A standard deviation
 ///   never falls below 0.3 steps of its axis.
-/// - *Duplicates* are answered from memory. Eight generations that bring nothing new end
-///   the run; three runs that bring nothing new make way for one unseen point.
-/// - *No value* (`None`, NaN, infinite) ranks behind every value.
+/// - *Duplicates* are looked up. Eight generations without a new point end the run; after three
+///   such runs one unseen point is proposed instead.
+/// - *Missing values* (`None`, NaN, infinite) rank behind every value.
 /// - *Batches* that end within a generation enlarge it: the distribution is updated with all its
-///   candidates and the constants of its true size.
+///   candidates and the strategy parameters for the actual size.
 #[derive(Debug, Clone)]
 pub(crate) struct CmaEsOptimizer {
     costs: Costs,
     restarts: Restarts,
-    /// Candidates, and the grid points they stand for.
+    /// Candidates and the grid points they snap to.
     generation: Vec<(Vec<f64>, GridPoint)>,
-    /// Whether the present generation proposed a new point.
+    /// Whether the current generation proposed a new point.
     fruitful: bool,
     barren_generations: u32,
     barren_restarts: u32,
@@ -52,7 +52,7 @@ impl CmaEsOptimizer {
             sigma: SIGMA,
             min_std: free.iter().map(step).collect(),
             max_lambda: (grid.size() / 10).clamp(8, 512) as usize,
-            // On a grid equal values are common and no sign of convergence.
+            // On a grid equal values are common and do not indicate convergence.
             tolerances: Tolerances { fun: 0.0, fun_hist: 0.0, x: 0.0, x_up: 1e2 },
         };
         CmaEsOptimizer {
@@ -65,7 +65,7 @@ impl CmaEsOptimizer {
         }
     }
 
-    /// The next unseen candidate of the search, or `None` if it has none to offer.
+    /// Returns the next unseen candidate, or `None` after too many draws or barren restarts.
     fn next(&mut self) -> Option<GridPoint> {
         let mut extra = 0;
         while self.barren_restarts < BARREN_RESTARTS && extra < EXTRA_DRAWS {
@@ -77,7 +77,7 @@ impl CmaEsOptimizer {
             let x = self.restarts.current.sample();
             let point = self.costs.proposed.grid().folded(&x);
             let new = self.costs.proposed.insert(&point);
-            // A full generation that waits for values grows by new points only.
+            // A full generation that is waiting for values is only extended by new points.
             if new || !full {
                 self.generation.push((x, point.clone()));
             }
@@ -123,14 +123,14 @@ impl Optimizer for CmaEsOptimizer {
 
     fn tell(&mut self, observations: &[Observation]) {
         self.costs.tell(observations);
-        // Known results before the first ask: the search begins at the best of them.
+        // Results told before the first ask: start at the best of them.
         if self.generation.is_empty()
             && self.restarts.current.generation == 0
             && let Some(best) = self.costs.best()
         {
             self.restarts.current.mean = best.into();
         }
-        // A candidate that was asked and not told would keep its generation waiting for ever.
+        // A candidate whose value is never told would block its generation.
         self.generation.retain(|(_, point)| self.costs.of.contains_key(point));
     }
 

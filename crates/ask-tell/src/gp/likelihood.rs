@@ -7,9 +7,9 @@ use nalgebra::DMatrix;
 
 /// Mean and standard deviation of the normal prior of each log hyperparameter.
 ///
-/// Length scales: Hvarfner et al. 2024 (arXiv 2402.02229), whose log-normal prior grows with
-/// the square root of the dimension; its mode in the scale itself is the mean here. Signal
-/// and noise: about 1 and 1e-4 of the variance of the data, both very wide.
+/// Length scales: log-normal prior of Hvarfner et al. 2024 (arXiv 2402.02229), which scales with
+/// the square root of the dimension; the mean here is the logarithm of its mode. Signal and noise
+/// variance: centred on about 1 and 1e-4 of the variance of the data, both very wide.
 pub(super) fn priors(dimension: usize) -> Vec<(f64, f64)> {
     let length = std::f64::consts::SQRT_2 - 3.0 + 0.5 * libm::log(dimension.max(1) as f64);
     let mut priors = vec![(length, 3f64.sqrt()); dimension];
@@ -17,12 +17,12 @@ pub(super) fn priors(dimension: usize) -> Vec<(f64, f64)> {
     priors
 }
 
-/// Log posterior of `theta`, up to a constant, for points `x` of the unit cube with standardised
-/// values `y`, and its gradient in the order of [`Hyperparameters::to_vec`].
-/// The constant mean is integrated out under a flat prior (the restricted likelihood;
-/// Rasmussen and Williams 2006, section 2.7): its least squares value taken for true, smooth
-/// data would be sure of what lies beyond them.
-/// `None` if the covariance is not positive definite.
+/// Returns the log posterior of `theta`, up to a constant, and its gradient in the order of
+/// [`Hyperparameters::to_vec`], for points `x` of the unit cube with standardised values `y`.
+/// The constant mean is integrated out under a flat prior (restricted likelihood; Rasmussen and
+/// Williams 2006, section 2.7): with a plug-in least-squares mean, the model of smooth data would
+/// be overconfident in extrapolation.
+/// Returns `None` if the covariance is not positive definite.
 pub(super) fn log_posterior(
     x: &[Vec<f64>],
     y: &[f64],

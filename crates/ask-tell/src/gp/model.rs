@@ -1,14 +1,14 @@
-//! The trained Gaussian process.
+//! Gaussian process conditioned on observations.
 
 use super::hyperparameters::Hyperparameters;
 use crate::process::factor::half_solved;
 use crate::process::{Process, matern52, matern52_slope};
 use nalgebra::{DMatrix, DVector};
 
-/// Points in length scales.
+/// Points divided by the length scales.
 #[derive(Debug, Clone)]
 pub(super) struct Scaled {
-    /// One over each length scale.
+    /// Reciprocal of each length scale.
     pub inverse_length: Vec<f64>,
     /// By axis: `columns[a][i]` is coordinate `a` of point `i`.
     columns: Vec<Vec<f64>>,
@@ -31,7 +31,7 @@ impl Scaled {
         self.columns.iter_mut().zip(scaled).for_each(|(column, x)| column.push(x));
     }
 
-    /// Squared distances of a point from all.
+    /// Squared distances from a point to all points.
     pub fn distances2(&self, x: &[f64]) -> Vec<f64> {
         let mut r2 = vec![0.0; self.columns.first().map_or(0, Vec::len)];
         for (column, x) in self.columns.iter().zip(self.scale(x)) {
@@ -41,22 +41,22 @@ impl Scaled {
     }
 }
 
-/// A Gaussian process conditioned on observations. Inputs in the unit cube, outputs in the
+/// Gaussian process conditioned on observations. Inputs are in the unit cube, outputs in the
 /// units of the training values.
 #[derive(Debug, Clone)]
 pub struct Gp {
     signal: f64,
     noise: f64,
     points: Scaled,
-    /// About a constant mean.
+    /// Process with a constant mean.
     process: Process<1>,
 }
 
-/// The term of a constant mean.
+/// Basis function of a constant mean.
 const ONE: [f64; 1] = [1.0];
 
-/// Posterior of the function (without noise) at a point, and its derivatives by the point's
-/// coordinates. The variance holds that of the constant mean (ordinary kriging).
+/// Posterior of the function (without noise) at a point, and its gradient. The variance includes
+/// that of the constant mean (ordinary kriging).
 pub(super) struct Sloped {
     pub mean: f64,
     pub variance: f64,
@@ -65,8 +65,8 @@ pub(super) struct Sloped {
 }
 
 impl Gp {
-    /// Conditions on `y` at `x`. Should the covariance not be positive definite, the noise is
-    /// raised until it is; `None` if even that does not help (values that are not finite).
+    /// Conditions on `y` at `x`. If the covariance is not positive definite, the noise is increased
+    /// until it is; `None` if that fails (values that are not finite).
     pub fn new(
         x: &[Vec<f64>],
         y: &[f64],
@@ -88,13 +88,13 @@ impl Gp {
         None
     }
 
-    /// Observations and believed points together.
+    /// Number of observations and believed points.
     pub(super) fn len(&self) -> usize {
         self.process.len()
     }
 
     /// Posterior mean and variance of the function (without noise) at a point; the variance
-    /// holds that of the constant mean (ordinary kriging).
+    /// includes that of the constant mean (ordinary kriging).
     pub fn predict(&self, x: &[f64]) -> (f64, f64) {
         let k = self.covariances(x);
         (self.process.mean(&k, &ONE), self.process.variance(&k, &ONE, self.signal))
@@ -105,8 +105,8 @@ impl Gp {
         self.process.mean(&self.covariances(x), &ONE)
     }
 
-    /// Takes the posterior mean at `x` for observed (kriging believer). The mean stays as it is,
-    /// the variance falls. Nothing changes if `x` cannot be told from points already there.
+    /// Treats the posterior mean at `x` as an observation (kriging believer). The mean is unchanged
+    /// and the variance decreases. No effect if `x` is numerically a duplicate of another point.
     pub(super) fn believe(&mut self, x: &[f64]) {
         let k = self.covariances(x);
         if self.process.believe(&k, &ONE, self.signal + self.noise) {
@@ -114,7 +114,7 @@ impl Gp {
         }
     }
 
-    /// The posterior at a point with its derivatives.
+    /// Returns the posterior at a point with its gradient.
     pub(super) fn sloped(&self, x: &[f64]) -> Sloped {
         let points = &self.points;
         let r2 = points.distances2(x);
@@ -140,8 +140,8 @@ impl Gp {
         Sloped { mean, variance, mean_slope: slopes.0, variance_slope: slopes.1 }
     }
 
-    /// Posterior mean, and a bound on the variance that needs no triangular solution: that given
-    /// the most correlated observation alone, and that of the mean.
+    /// Returns the posterior mean and an upper bound on the variance that needs no triangular
+    /// solve: the variance given only the most correlated observation, plus that of the mean.
     pub(super) fn bound(&self, x: &[f64]) -> (f64, f64) {
         let k = self.covariances(x);
         let largest = k.iter().copied().fold(0.0, f64::max);
@@ -149,13 +149,13 @@ impl Gp {
         (self.process.mean(&k, &ONE), given + self.process.mean.variance(&k, &ONE))
     }
 
-    /// Covariances of a point of the unit cube with all observations.
+    /// Covariances between a point of the unit cube and all observations.
     fn covariances(&self, x: &[f64]) -> DVector<f64> {
         covariances(&self.points.distances2(x), self.signal)
     }
 }
 
-/// The lower triangle of the covariances of scaled points, zeros above.
+/// Lower triangle of the covariance matrix of scaled points, zeros above.
 fn lower_covariance(columns: &[Vec<f64>], signal: f64, n: usize) -> DMatrix<f64> {
     let mut covariance = DMatrix::zeros(n, n);
     for (j, column) in covariance.as_mut_slice().chunks_exact_mut(n.max(1)).enumerate() {

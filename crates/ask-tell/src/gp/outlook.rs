@@ -1,10 +1,10 @@
-//! What may still come of a search: of points not measured, and of measured ones that a more
-//! costly measurement confirms.
+//! Stopping criterion of a search whose results are confirmed by a more costly evaluation.
 //!
-//! A search measures roughly; what it found may drop when it is confirmed. The values of the search
-//! keep their own process, warped as the optimizer's; the drop, searched less confirmed and never
-//! negative, has a second one over the same axes. A search is settled when no point, measured or
-//! not, is likely to beat the best confirmed one by more than a difference that matters.
+//! The search evaluates points approximately, so a value may drop when it is confirmed. One
+//! Gaussian process models the values of the search, warped as in the optimizer; a second one over
+//! the same axes models the drop, which is the searched minus the confirmed value and never
+//! negative. A search is settled when no point, evaluated or not, is likely to beat the best
+//! confirmed one by more than the least difference that matters.
 
 use super::data::{Standardised, spread, standardise};
 use super::fit::{FitEffort, fit};
@@ -17,13 +17,13 @@ use crate::{Grid, GridPoint, Observation};
 use libm::{exp, sqrt};
 use nalgebra::{DMatrix, DVector};
 
-/// Length scale of the drops, in edges of a square; in more dimensions as a share of the diagonal.
-/// Fitted to the few drops that are known it came out too long, and one large drop was believed of
-/// the whole space (`docs/notes/optimizers.md`).
+/// Length scale of the drops relative to the edge of the unit square; in other dimensions it scales
+/// with the diagonal. It is fixed because fits to the few known drops were too long, so that one
+/// large drop was extrapolated to the whole space (`docs/notes/optimizers.md`).
 const DROP_LENGTH: f64 = 0.15;
-/// Points to which hyperparameters are fitted, at most.
+/// Largest number of points to which hyperparameters are fitted.
 const FITTED: usize = 200;
-/// Grids up to this size are looked through completely, larger ones at candidates.
+/// Grids up to this size are searched exhaustively, larger ones at a sample of candidates.
 const EXHAUSTIVE: u64 = 20_000;
 const CANDIDATES: usize = 6000;
 /// Measured points around which candidates are drawn.
@@ -37,42 +37,42 @@ const NODES: [(f64, f64); 5] = [
     (2.856_970_013_872_806, 0.011_257_411_327_720_69),
 ];
 
-/// What counts as a gain.
+/// Thresholds for a gain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gain {
     /// Least difference that matters, in the objective's unit.
     pub least: f64,
-    /// A gain less likely than this is not expected.
+    /// Probability below which a gain is disregarded.
     pub probability: f64,
     /// Least standard deviation of the noise of the search, in the objective's unit.
     pub noise_floor: f64,
-    /// A value that is not above it is not worth confirming.
+    /// Only values above this are worth confirming.
     pub floor: f64,
 }
 
 /// A point of the search that was confirmed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Confirmed {
-    /// Its place in what the search told.
+    /// Its index among the observations of the search.
     pub at: usize,
     /// Its confirmed value.
     pub value: f64,
-    /// Whether there is nothing more to confirm.
+    /// Whether it cannot be confirmed any further.
     pub last: bool,
 }
 
 /// What to do next.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Advice {
-    /// Confirm these points, or confirm them further, by their places in what the search told.
+    /// Confirm these points, or confirm them further; indices into the observations.
     Confirm(Vec<usize>),
-    /// Search on: a point not measured yet may be better.
+    /// Continue the search: a point not yet evaluated may be better.
     Search,
-    /// Nothing: no point is expected to gain.
+    /// Stop: no point is expected to gain.
     Settled,
 }
 
-/// The models of what was found.
+/// Models of the observations and of the confirmed points.
 #[derive(Debug)]
 pub struct Outlook<'a> {
     grid: &'a Grid,
@@ -88,7 +88,7 @@ struct Model {
     data: Standardised,
 }
 
-/// A process of mean 0: far from what is known no drop is expected.
+/// Zero-mean process: no drop is expected far from the confirmed points.
 #[derive(Debug)]
 struct Drops {
     process: Process<0>,
@@ -113,7 +113,7 @@ impl Model {
 }
 
 impl<'a> Outlook<'a> {
-    /// Of what a search of one objective told, and what of it was confirmed.
+    /// Creates the models from the observations of a single-objective search and its confirmations.
     pub fn new(
         grid: &'a Grid,
         told: &'a [Observation],
@@ -125,7 +125,7 @@ impl<'a> Outlook<'a> {
         outlook
     }
 
-    /// The model of the search; `None` if nothing has a value.
+    /// Fits the model of the search; `None` if no observation has a value.
     fn searched(&self) -> Option<Model> {
         let x = |o: &Observation| self.grid.free_unit(&o.point);
         let values: Vec<Option<f64>> = self.told.iter().map(Observation::value).collect();
@@ -133,8 +133,8 @@ impl<'a> Outlook<'a> {
         Model::new(&points, standardise(&values, self.gain.noise_floor)?.warped())
     }
 
-    /// The model of the drops. Their root mean square stands for their deviation, and at least the
-    /// difference that matters: one large drop, or a few equal ones, do not say that all are so.
+    /// Fits the model of the drops. Its prior standard deviation is their root mean square, but at
+    /// least the difference that matters: a few small drops do not imply that all are small.
     fn drops(&self) -> Option<Drops> {
         let drop = |c: &Confirmed| Some((c.at, (self.told.get(c.at)?.value()? - c.value).max(0.0)));
         let known: Vec<(usize, f64)> = self.confirmed.iter().filter_map(drop).collect();
@@ -153,7 +153,7 @@ impl<'a> Outlook<'a> {
         Some(Drops { process, x, length, signal })
     }
 
-    /// Mean and standard deviation of the drop at a point, before it is cut off at 0.
+    /// Mean and standard deviation of the drop at a point, before truncation at 0.
     fn drop_at(&self, x: &[f64]) -> (f64, f64) {
         self.drop.as_ref().map_or((0.0, 0.0), |drops| {
             let near = drops.x.iter().map(|other| drops.signal * kernel(other, x, drops.length));
@@ -163,16 +163,16 @@ impl<'a> Outlook<'a> {
         })
     }
 
-    /// The best confirmed value.
+    /// Returns the best confirmed value.
     fn best(&self) -> Option<f64> {
         self.confirmed.iter().map(|confirmed| confirmed.value).reduce(f64::max)
     }
 
-    /// What to do next in a search without constraints; of equal points the one of the lower `rank` comes first, and at most
-    /// `at_once` are named.
+    /// Returns what to do next in a search without constraints. Ties are broken in favour of the
+    /// lower `rank`; at most `at_once` points are returned.
     pub fn advise(&self, rank: &[usize], at_once: usize) -> Advice {
         let Some(best) = self.best() else {
-            // Not before the search itself has settled: what leads early is soon overtaken.
+            // Only once the search itself has settled: early leaders are soon overtaken.
             let leader = self.told.iter().filter_map(Observation::value).reduce(f64::max);
             return match leader {
                 Some(leader) if !self.search_gains(leader) => {
@@ -187,7 +187,7 @@ impl<'a> Outlook<'a> {
         }
     }
 
-    /// What to confirm next among the measured points alone.
+    /// Returns what to confirm next, considering only the points already evaluated.
     pub fn confirm_only(&self, rank: &[usize], at_once: usize) -> Advice {
         self.confirm(self.best().unwrap_or(f64::NEG_INFINITY), rank, at_once)
     }
@@ -208,27 +208,27 @@ impl<'a> Outlook<'a> {
             );
         }
         let leaders = self.confirmed.iter().filter(|confirmed| confirmed.value >= best);
-        // The caller's rule knows which of equal ones it would recommend.
+        // `rank` decides between equal ones.
         match leaders.min_by_key(|confirmed| rank(confirmed.at)) {
             Some(leader) if !leader.last => Advice::Confirm(vec![leader.at]),
             _ => Advice::Settled,
         }
     }
 
-    /// The value that a measured point will have once confirmed, in the median; `None` without a value.
+    /// Returns the median of the confirmed value of an evaluated point; `None` without a value.
     pub fn median(&self, at: usize) -> Option<f64> {
         let told = self.told.get(at)?;
         Some(told.value()? - self.drop_at(&self.grid.free_unit(&told.point)).0.max(0.0))
     }
 
-    /// The value that a measured point is expected to have once confirmed, and the probability that
-    /// it is above `bar`; `None` without a value.
+    /// Returns the expected confirmed value of an evaluated point and the probability that it
+    /// exceeds `bar`; `None` without a value above the floor.
     fn measured(&self, at: usize, bar: f64) -> Option<(f64, f64)> {
         let value = self.told.get(at)?.value().filter(|value| *value > self.gain.floor)?;
         let (mean, deviation) = self.drop_at(&self.grid.free_unit(&self.told[at].point));
         let room = value - bar;
         let probability = match () {
-            // A drop is never negative; values are compared on their grid.
+            // A drop is never negative; the tolerance absorbs rounding.
             () if room <= 1e-9 => 0.0,
             () if deviation > 0.0 => exp(normal_log_cdf((room - mean) / deviation)),
             () => f64::from(u8::from(mean < room)),
@@ -236,7 +236,7 @@ impl<'a> Outlook<'a> {
         Some((value - positive_part(mean, deviation), probability))
     }
 
-    /// Whether a point that is not measured may beat `best`.
+    /// Returns whether a point not yet evaluated may beat `best`.
     fn search_gains(&self, best: f64) -> bool {
         let Some(searched) = self.searched() else { return true };
         let bar = best + self.gain.least;
@@ -253,8 +253,8 @@ impl<'a> Outlook<'a> {
         }
     }
 
-    /// Whether the value at a point that was not measured is above `bar` with the probability that
-    /// counts.
+    /// Returns whether the confirmed value at an unevaluated point exceeds `bar` with at least the
+    /// probability of [`Gain`].
     fn unseen(&self, searched: &Model, x: &[f64], bar: f64) -> bool {
         let Model { gp, data } = searched;
         let above = |(mean, variance): (f64, f64), bar: f64| {
@@ -281,7 +281,7 @@ impl<'a> Outlook<'a> {
     }
 }
 
-/// Mean of the positive part of a normal number.
+/// Mean of the positive part of a normal random variable.
 fn positive_part(mean: f64, deviation: f64) -> f64 {
     if deviation <= 0.0 {
         return mean.max(0.0);

@@ -1,33 +1,33 @@
-//! Yeo and Johnson's power transformation (Biometrika 87, 2000) of the training values.
+//! Yeo-Johnson power transformation (Biometrika 87, 2000) of the training values.
 //!
 //! Objectives with a long tail (a few very bad designs, or a narrow peak over a wide plain)
-//! are poorly described by a Gaussian process. The exponent under which the values look most
-//! normal is chosen by maximum likelihood. The transformation rises strictly, so
-//! the order of the values is kept.
+//! are poorly modelled by a Gaussian process. The exponent that makes the values most nearly
+//! normal is chosen by maximum likelihood. The transformation is strictly increasing, so it
+//! preserves the order of the values.
 
 use crate::statistics::Moments;
 use libm::{exp, log, log1p, pow};
 
-/// A transformation: the power, then mean 0 and variance 1 again.
+/// Power transformation followed by standardisation to mean 0 and variance 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Warp {
     lambda: f64,
     mean: f64,
     deviation: f64,
-    /// Geometric mean of the slope over the values that it was made of.
+    /// Geometric mean of the slope over the values it was fitted to.
     pub slope: f64,
 }
 
 impl Warp {
-    /// A standardised value, warped.
+    /// Warps a standardised value.
     pub fn of(&self, value: f64) -> f64 {
         (yeo_johnson(value, self.lambda) - self.mean) / self.deviation
     }
 }
 
-/// The transformation of standardised values by the best of the exponents -1, -0.9 .. 3 (1 changes
-/// nothing), and the values under it; the exponent is chosen by a `sample` of them. `None` if no exponent
-/// gives finite values that differ.
+/// Fits the transformation to standardised values and returns the warped values with it. The
+/// exponent is the most likely one of -1, -0.9 .. 3 (1 is the identity) for `sample`, a subset of
+/// the values. Returns `None` if no exponent gives finite values that differ.
 pub(super) fn warp(values: &[f64], sample: &[f64]) -> Option<(Vec<f64>, Warp)> {
     let mut best: Option<(f64, f64)> = None;
     for step in 0..=40 {
@@ -41,7 +41,7 @@ pub(super) fn warp(values: &[f64], sample: &[f64]) -> Option<(Vec<f64>, Warp)> {
     likelihood.is_finite().then_some((values, warp))
 }
 
-/// Log likelihood of one exponent, the values under it, and the transformation.
+/// Returns the log likelihood of one exponent, the warped values, and the transformation.
 fn warped(values: &[f64], lambda: f64) -> (f64, Vec<f64>, Warp) {
     let n = values.len() as f64;
     // log of the transformation's slope is (lambda - 1) times this, summed over the values.

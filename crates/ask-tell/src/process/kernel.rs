@@ -1,4 +1,4 @@
-//! The Matern 5/2 correlation (Rasmussen and Williams 2006, equation 4.17).
+//! Matern 5/2 correlation (Rasmussen and Williams 2006, equation 4.17).
 
 /// `(1 + s + s^2 / 3) exp(-s)` with `s = sqrt(5) r`, from the squared scaled distance `r^2`.
 #[inline]
@@ -7,24 +7,25 @@ pub fn matern52(r2: f64) -> f64 {
     (1.0 + s + s * s / 3.0) * exp_minus(s)
 }
 
-/// `-d matern52 / d(r^2)`, which is `5/6 (1 + s) exp(-s)`: without a singularity at 0.
+/// `-d matern52 / d(r^2)`, which is `5/6 (1 + s) exp(-s)` and has no singularity at 0.
 #[inline]
 pub fn matern52_slope(r2: f64) -> f64 {
     let s = (5.0 * r2).sqrt();
     5.0 / 6.0 * (1.0 + s) * exp_minus(s)
 }
 
-/// Squared distance of two scaled points.
+/// Squared distance between two scaled points.
 #[inline]
 pub fn distance2(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum()
 }
 
-/// `exp(-s)` for `s >= 0` to a few parts in 1e16, without branches, so that loops over it
-/// run in vector registers; the same on every machine, being additions and products only.
+/// `exp(-s)` for `s >= 0`, accurate to a few parts in 1e16. Branch-free, so that loops over it
+/// vectorise, and made of additions and products only, so that results are identical on every
+/// machine.
 #[inline]
 fn exp_minus(s: f64) -> f64 {
-    /// Adding and subtracting it rounds to a whole number.
+    /// Adding and then subtracting this constant rounds to the nearest integer.
     const ROUND: f64 = 6_755_399_441_055_744.0;
     const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
     const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
@@ -32,7 +33,7 @@ fn exp_minus(s: f64) -> f64 {
     let shifted = x * std::f64::consts::LOG2_E + ROUND;
     let k = shifted - ROUND;
     let r = (x - k * LN2_HIGH) - k * LN2_LOW;
-    // Taylor series; the first term left out is below 4e-18 for |r| <= ln(2) / 2.
+    // Taylor series; the first omitted term is below 4e-18 for |r| <= ln(2) / 2.
     let mut sum = 1.0 / 6_227_020_800.0;
     for reciprocal in [
         1.0 / 479_001_600.0,
@@ -51,8 +52,7 @@ fn exp_minus(s: f64) -> f64 {
     ] {
         sum = sum * r + reciprocal;
     }
-    // The low bits of `shifted` are k; a conversion to whole numbers would keep the loop out of
-    // the vector registers.
+    // The low bits of `shifted` are k; a float-to-integer conversion would prevent vectorisation.
     sum * f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52)
 }
 

@@ -1,7 +1,7 @@
-//! Optimizers of named parameters by ask and tell, as lines of JSON.
+//! Ask-and-tell protocol for named parameters, as JSON lines.
 //!
-//! `docs/guide/python.md` describes the lines. [`Session`] is behind `optimize ask-tell` and
-//! `finger_opt.Optimizer`.
+//! `docs/guide/python.md` describes the messages. `optimize ask-tell` and `finger_opt.Optimizer`
+//! use [`Session`].
 
 mod message;
 mod parameter;

@@ -1,4 +1,4 @@
-//! Varied inputs of an insertion: the keys of a space, and the errors of a cell.
+//! Inputs of a sensitivity analysis: the keys of a space and the errors of a cell.
 
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::Evaluator;
@@ -11,8 +11,8 @@ use parameters::Parameter;
 use parameters::numbers::Kind;
 use std::sync::atomic::AtomicBool;
 
-/// Returns the inputs that are varied together, in the order of the cube's axes: every key of the space
-/// with its bounds, then every error of the cell that is not 0.
+/// Returns the inputs that are varied together, in the order of the axes of the unit cube: every
+/// key of the space that has a range, then every nonzero error of the cell.
 ///
 /// # Errors
 /// If the space has no infill density or direction.
@@ -28,10 +28,10 @@ pub fn inputs(space: &Space, errors: Option<&Errors>) -> Result<Vec<Parameter>, 
 }
 
 /// Returns the evaluation of the insertion at a point of the unit cube of these inputs, by the
-/// coarse-to-fine search; worthless once `stop` is set.
+/// coarse-to-fine search. The result is invalid once `stop` is set.
 ///
 /// # Errors
-/// If the point's design, specimen or rig is impossible.
+/// If the point's design, specimen or rig cannot be built.
 pub fn evaluate(
     inputs: &[Parameter],
     (evaluator, template): (&Evaluator, &Template),

@@ -1,7 +1,7 @@
-//! The table of all numbers that may vary, with the unit in each path and plausible bounds.
+//! Table of all numbers that can vary, with plausible bounds. Each path contains its unit.
 //!
-//! In a pattern `*` stands for a name or a place in a list (a phase, a part, an end of a span), and
-//! `a|b` for either word.
+//! In a pattern `*` matches a name or a list index (a phase, a part, an end of a span), and `a|b`
+//! either word.
 
 /// Infill density.
 pub const DENSITY: &str = "infill_density_percent";
@@ -11,25 +11,25 @@ pub const DIRECTION: &str = "infill_direction_deg";
 pub const FRICTION: &str = "task.friction.plug_socket";
 /// Friction between pad and plug.
 pub const PAD_FRICTION: &str = "task.friction.finger_plug";
-/// Addition to the width of the socket's opening.
+/// Change of the width of the socket's opening.
 pub const CLEARANCE: &str = "task.clearance_mm";
-/// Radius of the edges that lead in, where the task has them sharp.
+/// Radius of the lead-in edges, for a task with sharp ones.
 pub const EDGE_RADIUS: &str = "task.edge_radius_mm";
-/// Chamfer at the socket's opening, where the task has none.
+/// Chamfer at the socket's opening, for a task without one.
 pub const CHAMFER: &str = "task.opening_chamfer_mm";
-/// Compliance and assembly stiffness of a finger together.
+/// Common factor on the stiffness of a finger in compliance and in assembly direction.
 pub const STIFFNESS: &str = "finger.stiffness";
-/// Distance of a finger's remote centre below the TCP.
+/// Distance of a finger's remote centre of compliance below the TCP.
 pub const CENTRE: &str = "finger.rcc_mm";
 /// Rotational spring of a finger about x.
 pub const TILTING: &str = "finger.rotation_x_nm_per_rad";
-/// Stiffness along x of a soft flange; its others go in proportion.
+/// Stiffness along x of a compliant flange; its other stiffnesses scale in proportion.
 pub const FLANGE: &str = "robot.stiffness_n_per_mm";
 /// Shift of the start along x.
 pub const START_ACROSS: &str = "cell.start_across_mm";
-/// Turn of the start about x beside the tilt of the search.
+/// Rotation of the start about x, in addition to the tilt of the search.
 pub const START_TILT: &str = "cell.start_tilt_deg";
-/// Turn of the socket about z.
+/// Rotation of the socket about z.
 pub const SOCKET_YAW: &str = "cell.socket_yaw_deg";
 
 /// How a number is set.
@@ -39,19 +39,19 @@ pub enum Kind {
     Infill,
     /// In the text of a task or finger file, before its checks.
     File,
-    /// In the finger that the files make.
+    /// In the finger built from the files.
     Finger,
-    /// In the robot that its file makes.
+    /// In the robot built from its file.
     Robot,
-    /// Added to a shape of the task: its own value is 0.
+    /// Added to a shape of the task; its nominal value is 0.
     Added,
-    /// Times both springs of the finger.
+    /// Factor on both springs of the finger.
     Springs,
-    /// An error of one insertion, about nominal.
+    /// Random error of an insertion, relative to nominal.
     Error,
 }
 
-/// One row of the table: the pattern of its paths, and plausible bounds in their unit.
+/// Row of the table: pattern of the paths, and plausible bounds in their unit.
 #[derive(Debug, PartialEq)]
 pub struct Number {
     /// Pattern of the paths.
@@ -79,13 +79,13 @@ const fn distance(pattern: &'static str) -> Number {
 const fn length(pattern: &'static str) -> Number {
     file(pattern, LEAST, 1e3)
 }
-/// Least value of what must be above 0.
+/// Least value of a number that must be positive.
 const LEAST: f64 = 1e-9;
 
-/// All numbers that may vary. Those of an arm's joints are not among them: together they are one
-/// published arm.
+/// All numbers that can vary. The joint parameters of an arm are excluded: together they describe
+/// one published arm.
 pub static NUMBERS: &[Number] = &[
-    // No finger has a density of 0.
+    // A density of 0 is not a valid finger.
     number(Kind::Infill, DENSITY, 0.1, 100.0),
     number(Kind::Infill, DIRECTION, 0.0, 90.0),
     file("task.turn_in_base_deg", -360.0, 360.0),
@@ -134,7 +134,7 @@ pub static NUMBERS: &[Number] = &[
     length("finger.holes.block.length_mm|width_mm|overlap_mm"),
     length("finger.print.line_width_mm|smallest_gap_mm"),
     number(Kind::Springs, STIFFNESS, LEAST, 1e6),
-    // The remote centre may lie on either side.
+    // The remote centre may lie on either side of the TCP.
     number(Kind::Finger, CENTRE, -1e6, 1e6),
     number(
         Kind::Finger,
@@ -154,7 +154,7 @@ pub static NUMBERS: &[Number] = &[
 ];
 
 impl Number {
-    /// Returns its paths, with `*` where a name or a place stands.
+    /// Returns its paths, with `*` for a name or a list index.
     pub fn paths(&self) -> Vec<String> {
         let start = vec![String::new()];
         let paths = self.pattern.split('.').fold(start, |paths, word| {

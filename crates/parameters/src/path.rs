@@ -1,4 +1,4 @@
-//! Paths of numbers, checked against the table of all of them.
+//! Paths of numbers, checked against the table of all numbers.
 
 use crate::numbers::{Kind, NUMBERS, Number};
 use input::numbers::unknown;
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::Deref;
 
-/// The path of a number in the table: `task.friction.plug_socket`. Its last word has the unit.
+/// Path of a number in the table: `task.friction.plug_socket`. Its last word ends in the unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Path {
@@ -14,13 +14,13 @@ pub struct Path {
     number: &'static Number,
 }
 
-/// Error of a path that is not in the table; names the nearest that is.
+/// Error for a path that is not in the table; suggests the closest match.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct UnknownPath(String);
 
 impl Path {
-    /// Looks a path up.
+    /// Looks up a path in the table.
     ///
     /// # Errors
     /// If it is not in the table.
@@ -39,7 +39,7 @@ impl Path {
         }
     }
 
-    /// The path as it is written.
+    /// Returns the path as text.
     pub fn as_str(&self) -> &str {
         &self.text
     }
@@ -54,14 +54,14 @@ impl Path {
         self.number.bounds
     }
 
-    /// The unit, with the space before it if it has one; empty for none.
+    /// Unit as a suffix to a value, with a leading space where one is needed; empty if unitless.
     pub fn unit(&self) -> &'static str {
         label(self).1
     }
 }
 
-/// A path with the words of another in place of each `*`; the first takes several if there are more words,
-/// since names may have dots.
+/// Returns the pattern `path` with each `*` replaced by the word at its position. If there are more
+/// words than in the pattern, the first `*` takes several, since names may contain dots.
 fn filled(path: &str, words: &[&str]) -> String {
     let own: Vec<&str> = path.split('.').collect();
     let (mut at, mut more) = (0, words.len().saturating_sub(own.len()));
@@ -106,7 +106,7 @@ impl<T: AsRef<str> + ?Sized> PartialEq<T> for Path {
     }
 }
 
-/// Ends of paths, and the units they stand for.
+/// Suffixes of paths and their units.
 const UNITS: [(&str, &str); 10] = [
     ("_gpa", " GPa"),
     ("_percent", " %"),
@@ -119,10 +119,10 @@ const UNITS: [(&str, &str); 10] = [
     ("_kg", " kg"),
     ("_s", " s"),
 ];
-/// Tables of a task file that labels leave out.
+/// Tables of a task file that labels omit.
 const TABLES: [&str; 5] = ["task", "strategy", "phase", "grip", "finger"];
 
-/// The name of a path in words, and its unit: `task.strategy.tilt_deg` is `tilt`, in `°`.
+/// Returns a path as words, and its unit: `task.strategy.tilt_deg` is `tilt`, in `°`.
 pub fn label(path: &str) -> (String, &'static str) {
     let mut unit = "";
     let mut words = Vec::new();

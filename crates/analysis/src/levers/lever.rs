@@ -1,30 +1,30 @@
-//! Levers as they are reported: each with its ends, and what helps most in a sentence.
+//! Results of the lever analysis: the levers with the ranges at both ends, and a summary sentence.
 
 use insertion::evaluation::INDIFFERENCE_MM;
 use insertion::space::Design;
 use serde::{Deserialize, Serialize};
 
-/// What moves the range of one finger on one task; ranges are those around a taught start.
+/// Effect of the levers on the range of one finger on one task. Ranges are around a taught start.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Levers {
     /// Name of the task.
     pub task: String,
-    /// The finger, and what else its design sets.
+    /// Design of the finger.
     pub design: Design,
-    /// The finger as it is.
+    /// The finger with all numbers unchanged.
     pub base: Base,
     /// Smallest and largest range over infills, mm.
     #[serde(rename = "infill_range_mm")]
     pub infill: [f64; 2],
-    /// The levers, by how much they move the range, most first.
+    /// The levers, by decreasing effect on the range.
     pub levers: Vec<Lever>,
-    /// Names of levers for which no windows were left.
+    /// Names of the levers that exceeded the window budget.
     pub left_out: Vec<String>,
-    /// Windows measured for all this.
+    /// Number of windows measured.
     pub windows: usize,
 }
 
-/// A finger as it is.
+/// Baseline: a finger with all numbers unchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Base {
     /// Its range, mm; 0 where no start inserts.
@@ -33,22 +33,22 @@ pub struct Base {
     pub taught_start_mm: f64,
 }
 
-/// A number that a user could change, in its unit.
+/// Number that a user can change, in its unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Lever {
-    /// In words: `tilt`.
+    /// Name in words: `tilt`.
     pub name: String,
-    /// What it sets: a path in the task or finger file, or a name as in `priors/bench.toml`.
+    /// Number that it sets: a path in the task or finger file, or a name as in `priors/bench.toml`.
     pub key: String,
     /// Unit of `value`, `low` and `high`; empty for none.
     pub unit: String,
-    /// As it is.
+    /// Current value.
     pub value: f64,
-    /// At the lower bound of what it was tried at; of a stroke that is negative the shorter one.
+    /// Value tried at the lower bound; of a negative stroke the shorter one.
     pub low: f64,
-    /// At the upper bound.
+    /// Value tried at the upper bound.
     pub high: f64,
-    /// Where the bounds come from.
+    /// Source of the bounds.
     pub source: String,
     /// Ranges at `low` and at `high`, mm; `None` where no start inserts.
     #[serde(rename = "range_mm")]
@@ -56,7 +56,7 @@ pub struct Lever {
 }
 
 impl Lever {
-    /// By how much the range differs between what was tried, the present value included, mm.
+    /// Difference between the largest and the smallest range tried, including the baseline, mm.
     pub fn span_mm(&self, base: Base) -> f64 {
         let all = self.ends.map(|end| end.unwrap_or(0.0));
         let [low, high] = all
@@ -65,13 +65,13 @@ impl Lever {
         apart([low, high])
     }
 
-    /// A value with its unit: `5°`, `0.2`, `100 mm/s`.
+    /// Formats a value with its unit: `5°`, `0.2`, `100 mm/s`.
     pub fn amount(&self, value: f64) -> String {
         let space = if self.unit.is_empty() || self.unit == "°" { "" } else { " " };
         format!("{}{space}{}", plain(value), self.unit)
     }
 
-    /// The step from the present value to an end: `5° more tilt`.
+    /// Describes the step from the current value to an end: `5° more tilt`.
     fn step(&self, end: usize) -> String {
         let by = [self.low, self.high][end].abs() - self.value.abs();
         let word = if by < 0.0 { "less" } else { "more" };
@@ -80,13 +80,13 @@ impl Lever {
 }
 
 impl Levers {
-    /// What helps most, in one sentence; what moves the range by less than 0.3 mm is not named.
+    /// Summarises the most effective change in one sentence; effects below 0.3 mm are omitted.
     pub fn sentence(&self) -> String {
         let of = |lever: &Lever, end: usize| {
             (apart([self.base.range_mm, lever.ends[end].unwrap_or(0.0)]), lever.step(end))
         };
         let ends = || self.levers.iter().flat_map(|lever| [0, 1].map(|end| of(lever, end)));
-        // Of equals the first.
+        // The first of equals wins.
         let most = |sign: f64| {
             let better =
                 |a: (f64, String), b: (f64, String)| if sign * b.0 > sign * a.0 { b } else { a };
@@ -115,17 +115,17 @@ impl Levers {
     }
 }
 
-/// Whether a difference of ranges matters.
+/// Returns whether a difference of ranges matters.
 pub fn counts(by_mm: f64) -> bool {
     by_mm >= INDIFFERENCE_MM
 }
 
-/// Second less first, mm, without the rounding noise of ranges on the 0.1 mm grid.
+/// Returns second minus first, mm, rounded to the 0.1 mm grid.
 pub fn apart([first, second]: [f64; 2]) -> f64 {
     ((second - first) * 10.0).round() / 10.0
 }
 
-/// A number in few digits.
+/// Formats a number with at most three decimals.
 pub fn plain(value: f64) -> String {
     // Adding 0 turns -0 into 0.
     format!("{}", (value * 1e3).round() / 1e3 + 0.0)

@@ -1,6 +1,8 @@
-//! Levers: numbers beside the infill that a user could change, and what each does to a finger's range.
+//! Levers: numbers other than the infill that a user can change, and their effect on a finger's
+//! range.
 //!
-//! One number at a time goes to the ends of its interval, with the start taught again for each.
+//! One-at-a-time sensitivity analysis: each number is set to both ends of its interval, with the
+//! start taught again each time.
 
 mod lever;
 mod measure;

@@ -1,4 +1,4 @@
-//! Which levers a task and a robot have, and between what values.
+//! Levers of a task and a robot, with their bounds.
 
 use super::question::{Cell, Question};
 use connector::body::{ConvexBody, width};
@@ -13,7 +13,7 @@ use parameters::numbers::{CLEARANCE, Kind};
 use parameters::plan::one_at_a_time::{End, farthest};
 use parameters::{Parameter, Path, Transform};
 
-/// Rows of `priors/bench.toml` that a user can change; the others are what fingers and pads are.
+/// Rows of `priors/bench.toml` that a user can change; the others belong to fingers and pads.
 const OF_BENCH: [&str; 5] = [
     "friction plug-socket",
     "preload",
@@ -21,16 +21,17 @@ const OF_BENCH: [&str; 5] = [
     "clearance",
     "stiffness of the flange",
 ];
-/// Rows of `priors/levers.toml` that come after all others.
+/// Rows of `priors/levers.toml` that are listed after all others.
 const LAST: [&str; 2] = ["stroke to the front", "stroke to the back"];
 
-/// A row with the present value, in the unit of what it sets.
+/// Parameter with the current value of the number it sets, in that number's unit.
 pub struct Row {
     pub parameter: Parameter,
     pub value: f64,
 }
 
-/// The rows that question's task, finger and robot have; a key of the space keeps to its bounds there.
+/// Returns the rows that apply to the task, finger and robot. A key of the space takes its bounds
+/// from the space.
 pub fn rows(question: &Question<'_>, specimen: &Specimen) -> Result<Vec<Row>, Impossible> {
     let own = Priors::parse(LEVERS.text, LEVERS.file)?.parameters;
     let bench = Priors::parse(PRIORS[0].text, PRIORS[0].file)?.parameters;
@@ -49,7 +50,7 @@ pub fn rows(question: &Question<'_>, specimen: &Specimen) -> Result<Vec<Row>, Im
     Ok(first.into_iter().chain(bench).chain(last).filter_map(row).collect())
 }
 
-/// Returns the present value of what a lever sets; `None` if there is no such thing here.
+/// Returns the current value of the number that a lever sets; `None` if it does not exist here.
 fn present(question: &Question<'_>, specimen: &Specimen, path: &Path) -> Option<f64> {
     let Question { evaluator, template, design, .. } = question;
     match path.kind() {
@@ -65,7 +66,7 @@ fn present(question: &Question<'_>, specimen: &Specimen, path: &Path) -> Option<
     }
 }
 
-/// Width of the opening less that of the plug that goes in, the smaller of x and y, m.
+/// Clearance: width of the opening minus that of the plug, the smaller of x and y, m.
 fn clearance(task: &Task) -> f64 {
     let plug = section(&ConvexBody::plug(&task.plug), task.success.depth);
     let free = |axis: usize| width(task.opening[axis]) - width(plug[axis]);
@@ -73,7 +74,7 @@ fn clearance(task: &Task) -> f64 {
 }
 
 impl Row {
-    /// Returns the number and the cell at a bound, or as far on the way to it as can be.
+    /// Returns the number and the cell at a bound, or at the feasible value nearest to it.
     pub fn at(&self, question: &Question<'_>, end: End) -> Option<(f64, Cell)> {
         farthest(&self.parameter, self.value, end, |to| self.changed(question, to))
     }

@@ -1,5 +1,5 @@
-//! The capture map (elsewhere: capture range, region of attraction): how insertions end over two
-//! errors of the start at once, where a tolerance window has one.
+//! Capture map (also: capture range, region of attraction): outcomes of insertions over two start
+//! errors at once. A tolerance window covers only one.
 
 mod plane;
 
@@ -12,7 +12,7 @@ use plane::{LIMIT, value};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Outcomes over two errors of the start, on a grid; read back from its JSON it is the same.
+/// Outcomes over two start errors, on a grid. Its JSON round-trips exactly.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CaptureMap {
     /// Name of the task.
@@ -21,22 +21,22 @@ pub struct CaptureMap {
     pub design: Design,
     /// Shift of the start along y, then the other error.
     pub axes: [Axis; 2],
-    /// Outcome at each value of the second axis, upwards, and in it at each of the first.
+    /// Outcomes: a row for each value of the second axis, ascending; a column for each of the first.
     pub outcomes: Vec<Vec<Mark>>,
-    /// Whether that was simulated; what was not is taken over from its neighbours.
+    /// Whether each outcome was simulated; the others are inferred from their neighbours.
     pub simulated: Vec<Vec<bool>>,
     /// Trials that were simulated.
     pub trials: usize,
-    /// Distance within which the border of the inserting region was looked for along either axis, in
-    /// the axis's unit: the step of the grid unless the trials did not suffice.
+    /// Resolution along either axis at which the border of the inserting region was traced, in the
+    /// axis's unit: the step of the grid unless the trials ran out.
     pub traced_step: f64,
     /// Area of the inserting region in the product of the axes' units.
     pub area: f64,
-    /// That unit: `mm2` or `mm deg`.
+    /// Unit of `area`: `mm2` or `mm deg`.
     pub area_unit: String,
 }
 
-/// An axis of a map: an error of the start, and its values on the grid.
+/// Axis of a map: a start error and its values on the grid.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
     /// `y`, `x`, `yaw` or `tilt`.
@@ -47,7 +47,7 @@ pub struct Axis {
     pub low: f64,
     /// Largest value.
     pub high: f64,
-    /// Distance of neighbours.
+    /// Spacing of the values.
     pub step: f64,
 }
 
@@ -73,7 +73,7 @@ impl CaptureMap {
         }
     }
 
-    /// Outcomes as in [`outcomes`](Self::outcomes), with a trial at every place.
+    /// Simulates a trial at every grid point; same layout as [`outcomes`](Self::outcomes).
     pub fn full(&self, plane: &Plane<'_>) -> Vec<Vec<Mark>> {
         let node = |of: fn(&Axis) -> f64| {
             self.axes.each_ref().map(|axis| (of(axis) * f64::from(STEPS_PER_UNIT)).round() as i32)
@@ -83,7 +83,7 @@ impl CaptureMap {
         places.par_iter().map(|row| row.par_iter().map(mark).collect()).collect()
     }
 
-    /// What it shows, in a sentence.
+    /// Returns a caption of one sentence.
     pub fn caption(&self) -> String {
         let [first, second] = self.axes.each_ref().map(|axis| &axis.name);
         let (area, unit) = (self.area, self.area_unit.replace('2', "²"));
@@ -93,7 +93,7 @@ impl CaptureMap {
         )
     }
 
-    /// Smallest and largest value of an axis, 0 or 1, at which anything inserts; in its unit.
+    /// Smallest and largest value of axis 0 or 1 at which any trial inserts, in the axis's unit.
     pub fn ends(&self, axis: usize) -> Option<[f64; 2]> {
         let row = |row: &Vec<Mark>| row.iter().any(|mark| mark.0 == Outcome::Inserted);
         let column = |at: usize| self.outcomes.iter().any(|row| row[at].0 == Outcome::Inserted);
@@ -105,7 +105,8 @@ impl CaptureMap {
         Some(ends.map(|at| self.axes[axis].value(at)))
     }
 
-    /// The stretch along y around no error, without the second error; mm. `None` if that fails.
+    /// Inserting interval along y around zero error, with no second error, mm. `None` if a trial
+    /// without error fails.
     pub fn window_mm(&self) -> Option<[f64; 2]> {
         let [zero, other] =
             self.axes.each_ref().map(|axis| (-axis.low / axis.step).round() as usize);
@@ -117,7 +118,7 @@ impl CaptureMap {
     }
 }
 
-/// A value at each place of the grid, row by row.
+/// Evaluates `of` at each grid point, row by row.
 fn lattice<T>(low: Node, high: Node, of: impl Fn(Node) -> T) -> Vec<Vec<T>> {
     let row = |other| (low[0]..=high[0]).map(|y| of([y, other])).collect();
     (low[1]..=high[1]).map(row).collect()
@@ -129,13 +130,13 @@ impl Axis {
         Axis { name, unit, low: value(low), high: value(high), step: value(1) }
     }
 
-    /// The value of this number on the grid.
+    /// Returns the value at an index along the axis.
     pub fn value(&self, index: usize) -> f64 {
         self.low + index as f64 * self.step
     }
 }
 
-/// An outcome as a number: 0 inserted, 1 to 4 the failure class, -1 diverged.
+/// Outcome coded as a number: 0 inserted, 1 to 4 the failure class, -1 diverged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "i8", try_from = "i8")]
 pub struct Mark(pub Outcome);

@@ -1,4 +1,4 @@
-//! Sampling plans over parameters: where to evaluate, not how.
+//! Sampling plans: the points at which to evaluate.
 
 pub mod grid;
 pub mod one_at_a_time;

@@ -1,8 +1,8 @@
-//! One parameter at a time, from the present value of its number towards either bound.
+//! One-at-a-time plan: each parameter goes from the current value towards either bound.
 
 use crate::Parameter;
 
-/// Steps between the present value and a bound, of which the farthest that can be is taken.
+/// Number of steps between the current value and a bound; the farthest feasible one is used.
 const STEPS: u32 = 100;
 
 /// Lower or upper bound of a parameter.
@@ -14,8 +14,8 @@ pub enum End {
     High,
 }
 
-/// Returns what a number becomes at a bound of its parameter, or as far on the way to it as can be; `at`
-/// gives `None` for an impossible value of the parameter. The impossible is looked for by bisection.
+/// Returns the result of `at` at a bound of the parameter or, if that is infeasible, at the nearest
+/// feasible value, found by bisection. `at` returns `None` for an infeasible value.
 pub fn farthest<T>(
     parameter: &Parameter,
     number: f64,
@@ -31,7 +31,7 @@ pub fn farthest<T>(
     if let Some(whole) = part(STEPS) {
         return Some(whole);
     }
-    // Possible at `can`, impossible at `cannot`.
+    // Feasible at `can`, infeasible at `cannot`.
     let (mut can, mut cannot) = (0, STEPS);
     while cannot - can > 1 {
         let middle = (can + cannot) / 2;

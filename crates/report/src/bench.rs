@@ -1,4 +1,4 @@
-//! Predictions of the fingers on the bench.
+//! Predicted bench performance of the fingers.
 
 use super::elements::table;
 use crate::answer::words::{infill, interval, mm};
@@ -6,10 +6,10 @@ use insertion::outcome::FailureClass;
 use maud::{Markup, html};
 use study::{BenchFinger, OnBench, StudyRecord};
 
-/// Every finger of the space as predicted, beside the page.
+/// File with the predictions for every finger of the space, next to the page.
 const TABLE: &str = "bench_predictions.csv";
 
-/// The section; `None` without measurements.
+/// Returns the section; `None` without measurements.
 pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     let found = record.on_bench.as_ref()?;
     Some(html! {

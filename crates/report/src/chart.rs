@@ -14,7 +14,7 @@ pub(super) type Chart<'a, 'b> =
     ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 pub(super) type Drawn = Result<(), String>;
 
-/// Draws on a fresh sheet of `size` pixels and returns the SVG.
+/// Draws on a blank canvas of `size` pixels and returns the SVG.
 pub(super) fn sheet(
     plot: &'static str,
     size: (u32, u32),
@@ -32,12 +32,12 @@ pub(super) fn sheet(
     Ok(svg)
 }
 
-/// Any error of the drawing library as text.
+/// Converts an error of the drawing library to text.
 pub(super) fn message(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
 
-/// One axis: label with unit, and range.
+/// Axis: label with unit, and range.
 pub(super) type Axis<'a> = (&'a str, Range<f64>);
 
 /// Draws axes with a grid; `title` may be empty.
@@ -50,8 +50,8 @@ pub(super) fn axes<'a, 'b>(
     framed(area, title, x, y, 62, true)
 }
 
-/// Draws an x axis with a grid below so many rows, the first from y = 0 down to -1, with room for
-/// their names to the left, pixels.
+/// Draws an x axis with vertical grid lines for `count` rows; row i extends from y = -i down to
+/// -(i + 1). `left` is the room for the row names, pixels.
 pub(super) fn rows<'a, 'b>(
     area: &'a Area<'b>,
     title: &str,
@@ -109,7 +109,7 @@ pub(super) fn legend<'a, 'b: 'a>(chart: &mut Chart<'a, 'b>, corner: SeriesLabelP
         .map_err(message)
 }
 
-/// A sans-serif font of whatever system shows it.
+/// Returns the viewer's default sans-serif font.
 pub(super) fn font(size: u32) -> FontDesc<'static> {
     ("sans-serif", size).into_font().transform(FontTransform::None)
 }
@@ -118,7 +118,7 @@ pub(super) fn words(size: u32, colour: Colour, h: HPos, v: VPos) -> TextStyle<'s
     font(size).color(&colour.rgb()).pos(Pos::new(h, v))
 }
 
-/// A tick as few digits as it needs: 0.30000000000000004 is 0.3.
+/// Formats a tick label without rounding noise: 0.30000000000000004 becomes 0.3.
 pub(super) fn tick(value: f64) -> String {
     let rounded = (value * 1e3).round() / 1e3;
     // Adding 0 turns -0 into 0.

@@ -1,14 +1,14 @@
-//! Which evaluations are drawn one by one.
+//! Selection of the evaluations that are shown individually.
 
 use study::{Recorded, StudyRecord};
 
-/// Evaluations that the explorer holds, and that a plot has marks of: with all of 100 000 a page would
-/// have 100 MB.
+/// Largest numbers of evaluations listed in the explorer and marked in a plot: a page with 100 000
+/// of them would take 100 MB.
 pub(super) const LISTED: usize = 5000;
 pub(super) const PLOTTED: usize = 1000;
 
-/// At most about so many of `all`, evaluations of the study, in their order: all if they are no more,
-/// else a tenth as many of the best and others evenly taken.
+/// Selects about `most` of the evaluations `all`, in their order: all of them if there are no more,
+/// otherwise the best (a tenth of `most`), the recommended one and others at even intervals.
 pub(super) fn drawn<'a>(
     record: &StudyRecord,
     all: &'a [Recorded],
@@ -44,7 +44,7 @@ pub(super) fn note(record: &StudyRecord) -> Option<String> {
     })
 }
 
-/// A line through all of a few points, of many only through those at which it turns.
+/// Thins a long line to the points at which its value changes; a short one is kept whole.
 pub(super) fn turning(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     if points.len() <= PLOTTED {
         return points;

@@ -1,4 +1,4 @@
-//! Designs between which several objectives leave the choice.
+//! Pareto front of a study with several objectives.
 
 use super::ReportError;
 use super::chart::{Area, Drawn, around, axes, legend, sheet};
@@ -12,8 +12,8 @@ use maud::{Markup, html};
 use plotters::prelude::*;
 use study::{Recorded, StudyRecord};
 
-/// The first two objectives of all evaluations and the front, on a white ground, `size` pixels;
-/// `None` if there is one objective only or nothing has values.
+/// Plots the first two objectives of all evaluations and the front, `size` pixels; `None` if there
+/// is only one objective or no evaluation has a value.
 pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<Option<String>, ReportError> {
     let several = record.config.objective.single().is_none();
     let any = record.evaluations.iter().any(|recorded| recorded.score.is_some());
@@ -23,7 +23,7 @@ pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<Option<String>, Rep
     sheet("the front", size, |area| draw(area, record)).map(Some)
 }
 
-/// The plot, hypervolume and designs; `None` for a single objective.
+/// Returns the plot, hypervolume and designs; `None` for a single objective.
 pub(super) fn section(answer: &Answer, size: (u32, u32)) -> Result<Option<Markup>, ReportError> {
     let Some(front) = &answer.front else { return Ok(None) };
     let caption = "All evaluated designs by their first two objectives. Rings: the designs \
@@ -53,7 +53,7 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
     points(&mut chart, of(false).map(|(_, p)| p), ring, "violates a constraint")?;
     let front: Vec<(f64, f64)> = record.front().into_iter().filter_map(point).collect();
     points(&mut chart, front.iter().copied(), PointMark::ring(ORANGE, 5, 2), "front")?;
-    // Of three objectives the front is no line in the plane of two.
+    // With three objectives the projected front is not a line.
     if record.config.objective.measures().len() == 2 {
         line(&mut chart, front, ORANGE.rgb().stroke_width(2), "")?;
     }

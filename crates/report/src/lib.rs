@@ -1,9 +1,9 @@
-//! Plots and pages of a study and of the stiffness model: pure functions of
-//! what was measured. Nothing here simulates, and nothing reads or writes files.
+//! Plots and pages of a study and of the stiffness model: pure functions of the recorded results,
+//! without simulation or file access.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
-// A panic is a defect; what input can reach is an error with a message.
+// A panic is a bug; invalid input must produce an error with a message.
 #![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod answer;
@@ -45,11 +45,11 @@ pub use front::svg as front_svg;
 pub use page::{card, page};
 pub use text_table::text_table;
 
-/// Why a plot could not be made: the drawing library refused.
+/// Error of the drawing library.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("cannot draw {plot}: {problem}")]
 pub struct ReportError {
-    /// The plot.
+    /// Name of the plot.
     plot: &'static str,
     /// The library's message.
     problem: String,

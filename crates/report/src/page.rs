@@ -1,4 +1,4 @@
-//! `report.html`: one file, a little script of its own, nothing fetched.
+//! `report.html`: a self-contained page with a small inline script.
 
 use super::beside::Beside;
 use super::elements::{definitions, document, figure};
@@ -9,8 +9,8 @@ use maud::{Markup, html};
 use std::path::Path;
 use study::StudyRecord;
 
-/// Pixels of a plot in the page: narrow, so that its text stays readable when
-/// a phone shrinks it to fit.
+/// Size of a plot in the page, pixels: narrow, so that its text stays readable when scaled down on
+/// a phone.
 pub(super) const PLOT: (u32, u32) = (356, 300);
 /// The report of a study as a page that opens offline. `model` is the stiffness model of the
 /// study.
@@ -52,7 +52,7 @@ fn title(StudyRecord { config, .. }: &StudyRecord) -> String {
 
 type Section = (&'static str, String, Markup);
 
-/// Id, title and body of each section; what does not apply is left out.
+/// Returns id, title and body of each section that applies.
 fn sections(answer: &Answer, model: &Model, beside: &Beside) -> Result<Vec<Section>, ReportError> {
     let record = answer.record;
     let section = |id, title: &str, body: Option<Markup>| Some((id, title.to_owned(), body?));
@@ -60,7 +60,7 @@ fn sections(answer: &Answer, model: &Model, beside: &Beside) -> Result<Vec<Secti
         None => "Fingers as good",
         Some(_) => "As good by simulation alone",
     };
-    // Their words are as wide as they are: on a phone they are moved, not shrunk.
+    // These drawings scroll on a phone instead of being scaled down, so that text stays legible.
     let drawn = |(caption, svg): &(String, String)| {
         html! { div.moved { (figure(svg, caption, caption)) } }
     };

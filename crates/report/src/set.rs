@@ -1,4 +1,4 @@
-//! The designs that are as good as the one that is named, and the reasons to take another.
+//! Designs as good as the recommended one, and reasons to choose another.
 
 use super::elements::table;
 use crate::answer::words::{ACROSS, design, mm, stiffness};
@@ -7,16 +7,16 @@ use insertion::evaluation::objective::Measure;
 use maud::{Markup, html};
 use study::Recorded;
 
-/// Designs that are listed; the explorer has all.
+/// Number of designs listed; the explorer has all.
 const LISTED: usize = 8;
 
-/// The section; `None` if nothing is recommended or several objectives leave the choice.
+/// Returns the section; `None` without a recommended design, as with several objectives.
 pub(super) fn section(answer: &Answer) -> Option<Markup> {
     answer.verdict.finger()?;
     let found = answer.recommended.as_ref()?.as_good.as_ref()?;
     let named = answer.named()?.index;
     let mut designs = found.designs.clone();
-    // The one that is named first, then what loses least.
+    // The recommended one first, then by increasing loss.
     designs
         .sort_by(|a, b| (a.0.index != named).cmp(&(b.0.index != named)).then(a.1.total_cmp(&b.1)));
     let millimetres = answer.record.config.objective.first().unit() == "mm";

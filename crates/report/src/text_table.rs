@@ -2,11 +2,11 @@
 
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets::NOTHING};
 
-/// Width of a terminal, columns.
+/// Assumed width of the terminal, columns.
 const WIDTH: u16 = 80;
 
-/// Returns a table of at most 80 columns without a frame, for which cells are wrapped at need: the
-/// first `left` columns are aligned to the left, the others to the right.
+/// Returns a table without a frame, at most 80 columns wide; cells are wrapped where necessary. The
+/// first `left` columns are left-aligned, the others right-aligned.
 pub fn text_table<const N: usize>(
     left: usize,
     head: [&str; N],

@@ -21,7 +21,7 @@ pub struct CaptureMap {
     pub design: Design,
     /// Shift of the start along y, then the other error.
     pub axes: [Axis; 2],
-    /// Outcomes: a row for each value of the second axis, ascending; a column for each of the first.
+    /// Outcomes: a row per value of the second axis, ascending; a column per value of the first.
     pub outcomes: Vec<Vec<Mark>>,
     /// Whether each outcome was simulated; the others are inferred from their neighbours.
     pub simulated: Vec<Vec<bool>>,

@@ -1,4 +1,4 @@
-//! Commands that an answer ends with: the study again, and what to do next.
+//! Commands suggested with an answer: the next step, and how to run the study again.
 
 use super::trust::Trust;
 use super::{Answer, Verdict};
@@ -11,7 +11,7 @@ use insertion::trial::engine::EngineKind;
 use std::path::Path;
 use study::{CELL, FINGER, Provenance, StudyRecord, input_path, sha256_hex};
 
-/// Inputs of a study by name: what is as shipped by its name, others by their copies in `dir`.
+/// Inputs of a study as command arguments: shipped ones by name, others by their copies in `dir`.
 struct Named<'a> {
     record: &'a StudyRecord,
     dir: &'a Path,
@@ -38,10 +38,10 @@ impl Named<'_> {
     }
 }
 
-/// Fingers that are printed at a time.
+/// Number of fingers to print at a time.
 const PRINTS: usize = 3;
 
-/// What to do next, as a command that runs as it stands, and why; `dir` is the study's folder.
+/// Returns the next step as a complete command, and its purpose; `dir` is the study's folder.
 pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
     let named = Named { record: answer.record, dir };
     let tasks = named.tasks();
@@ -71,28 +71,28 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
     }
 }
 
-/// What to do about a task, by its place, whose nominal start fails, and why: a file of one's own is
-/// tuned where it is.
+/// Returns the command for a task whose nominal start fails, and its purpose; `place` is the index
+/// of the task. A user's own file is tuned in place.
 pub fn mend(record: &StudyRecord, dir: &Path, place: usize) -> (String, &'static str) {
     let (named, role) = (Named { record, dir }, format!("task_{}", place + 1));
     if let Some(shipped) = name(named.provenance(), &role, TASKS) {
         return (format!("optimize task check {shipped}"), "says what stops it");
     }
     let given = record.config.conclusion.task_files.get(place);
-    // A text of Python's is no file.
+    // A task passed as text from Python has no file.
     let file = given.filter(|file| file.ends_with(".toml")).cloned().unwrap_or_else(|| {
         format!("{} --out {}.toml", named.input(&role, TASKS), record.config.tasks[place])
     });
     (format!("optimize task tune {file}"), "looks for a start and a strategy by which it inserts")
 }
 
-/// Whether the one task of a study is no shipped one.
+/// Returns whether the first task of a study is a user's own, not a shipped one.
 pub fn own_task(record: &StudyRecord) -> bool {
     let named = Named { record, dir: Path::new("") };
     name(named.provenance(), "task_1", TASKS).is_none()
 }
 
-/// The command that runs a study again, option by option, to be given in its folder.
+/// Returns the command that runs a study again from its folder, one option per element.
 pub fn again(record: &StudyRecord) -> Vec<String> {
     let config = &record.config;
     let named = Named { record, dir: Path::new("") };
@@ -123,8 +123,8 @@ pub fn again(record: &StudyRecord) -> Vec<String> {
     words
 }
 
-/// The command of a trial of the first task, up to the design and the offset; `dir` is the study's
-/// folder.
+/// Returns the command of a trial of the first task, without the design and the offset; `dir` is
+/// the study's folder.
 pub fn trial(record: &StudyRecord, dir: &Path) -> String {
     let named = Named { record, dir };
     let mut words =
@@ -133,13 +133,13 @@ pub fn trial(record: &StudyRecord, dir: &Path) -> String {
     words.join(" ")
 }
 
-/// Options of a trial that need not be given.
+/// Default options of a trial, which are omitted.
 const USUAL: [&str; 2] = ["--space infill", "--robot servo"];
 
 /// Options from the space to the engine.
 fn setup(named: &Named) -> Vec<String> {
     let provenance = named.provenance();
-    // A cell holds its robot.
+    // A cell includes its robot.
     let robot = match provenance.input_sha256.contains_key(CELL) {
         true => format!("--cell {}", named.input(CELL, &[])),
         false => format!("--robot {}", named.input("robot", ROBOTS)),
@@ -159,7 +159,7 @@ fn setup(named: &Named) -> Vec<String> {
     words
 }
 
-/// The name of the shipped file that an input is.
+/// Returns the name of the shipped file that is identical to an input.
 fn name(provenance: &Provenance, role: &str, shipped: &[Shipped]) -> Option<&'static str> {
     let hash = provenance.input_sha256.get(role)?;
     let own = |one: &&Shipped| sha256_hex(one.text.as_bytes()) == *hash;

@@ -1,4 +1,4 @@
-//! Force against depth of a trial.
+//! Plot of force against depth of a trial.
 
 use super::Film;
 use crate::ReportError;
@@ -8,7 +8,7 @@ use crate::theme::{BLUE, MUTED, RED};
 use insertion::outcome::Outcome;
 use plotters::prelude::{Color, SeriesLabelPosition};
 
-/// Force of the socket on the plug against the depth of its tip, from the search on, as an SVG.
+/// Plots the contact force on the plug against the depth of its tip, from the search on, as an SVG.
 pub fn svg(film: &Film) -> Result<String, ReportError> {
     sheet("force against depth", (760, 480), |area| draw(area, film))
 }

@@ -1,4 +1,4 @@
-//! `optimize ask-tell`: optimizers for any problem.
+//! `optimize ask-tell`: optimizers for any problem, over JSON lines.
 
 use crate::command::{self, Text};
 use crate::context::Context;
@@ -31,7 +31,7 @@ impl command::Request for Request {
                 return Ok(Text::default());
             }
             let answer = if line.len() as u64 <= MAX_LINE_BYTES {
-                // Text that is not UTF-8 is not JSON either: it is answered with an error.
+                // Invalid UTF-8 becomes U+FFFD, so that the session can answer with an error.
                 session.answer(&String::from_utf8_lossy(&line))
             } else {
                 if !line.ends_with(b"\n") {

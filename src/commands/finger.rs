@@ -1,4 +1,4 @@
-//! `optimize finger`: the stiffness of a finger by its ribs.
+//! `optimize finger`: computes the stiffness of a finger from its ribs.
 
 use crate::command;
 use crate::context::Context;
@@ -22,7 +22,7 @@ use std::fmt;
 use std::path::PathBuf;
 use study::write_file;
 
-/// Largest force on the pad that is drawn, N: bends are those of small displacements.
+/// Largest force on the pad for the drawing, N; the deflection is linear (small displacements).
 const LARGEST_LOAD_N: f64 = 1000.0;
 
 /// Compute the stiffness of a printed finger from its ribs.
@@ -69,11 +69,11 @@ fn load(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
-/// Ribs of a finger, the stiffness that they give, and that of the model of measured fingers.
+/// Geometry of a finger, its computed stiffness, and the prediction of the stiffness model.
 pub struct Ribs {
     geometry: Geometry,
     computed: FingerStiffness,
-    /// `None` without a model for this infill, or where `set` changes the shape.
+    /// `None` if the stiffness model does not cover this infill, or if `set` changes the shape.
     measured: Option<Prediction>,
     load_n: [f64; 2],
 }
@@ -110,7 +110,7 @@ impl Ribs {
         picture::svg(&self.geometry, self.load_n).map_err(Failure::input)
     }
 
-    /// Where the first rib lies, mm.
+    /// Position of the first rib, mm.
     fn phase_mm(&self) -> f64 {
         self.geometry.design.phase_mm.unwrap_or(self.geometry.finger.ribs.phase / MM)
     }
@@ -165,7 +165,7 @@ impl Serialize for Ribs {
     }
 }
 
-/// Stiffness in the plane of a finger, by the keys of `--json`.
+/// In-plane stiffness of a finger, as in the output of `--json`.
 #[derive(Serialize)]
 struct Planar {
     compliance_n_per_mm: f64,
@@ -174,7 +174,7 @@ struct Planar {
     centre_below_pad_mm: f64,
     centre_from_pad_mm: f64,
     coupling_yz: f64,
-    /// Of y, z and rx at the pad's middle: N/mm, N, N mm.
+    /// For y, z and rx at the middle of the pad: N/mm, N, N mm.
     stiffness_matrix: [[f64; 3]; 3],
 }
 
@@ -224,7 +224,7 @@ impl fmt::Display for Ribs {
     }
 }
 
-/// Heading of [`planar_row`].
+/// Column headings for [`planar_row`].
 const PLANAR: [&str; 7] = [
     "the part\ntouches",
     "compliance\nN/mm",
@@ -247,7 +247,7 @@ fn planar_row(name: &str, found: &PlanarStiffness) -> [String; 7] {
     ]
 }
 
-/// N/m, N/rad and N m/rad as N/mm, N and N mm.
+/// Converts N/m, N/rad and N m/rad to N/mm, N and N mm.
 fn in_mm(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
     let unit = |i: usize, j: usize| match (i == 2, j == 2) {
         (false, false) => 1.0 / N_PER_MM,

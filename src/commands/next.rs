@@ -1,4 +1,4 @@
-//! `optimize next`: which finger to print next.
+//! `optimize next`: recommends the next fingers to print.
 
 use crate::command;
 use crate::context::Context;
@@ -60,13 +60,13 @@ fn print_cost(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Fingers to print, and those they are chosen from.
+/// Recommended fingers, and those that they were chosen from.
 pub struct Advised {
     /// The task's fingers.
     pub subject: Subject,
-    /// Which of them to print.
+    /// The recommendation.
     pub advice: Advice,
-    /// The file of measurements, and whether it is not there yet.
+    /// File of measurements, and whether it is missing.
     measurements: String,
     missing: bool,
     print_cost_mm: f64,
@@ -117,7 +117,7 @@ impl command::Request for Request {
 
 impl Serialize for Advised {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        /// A finger to print.
+        /// Finger to print.
         #[derive(Serialize)]
         struct Print<'a> {
             #[serde(flatten)]

@@ -1,4 +1,4 @@
-//! `optimize robots`: which robot stands for one's own cell.
+//! `optimize robots`: robot models to choose from for one's own cell.
 
 use crate::command;
 use crate::context::Context;
@@ -13,7 +13,7 @@ use std::fmt;
 #[command(display_order = 50, after_help = "Example: optimize robots --json")]
 pub struct Request {}
 
-/// Shipped robots, and a robot file of one's own to begin with.
+/// Shipped robots, and a template for a user's own robot file.
 #[derive(Serialize)]
 pub struct Listed {
     robots: Vec<ForCell>,

@@ -1,4 +1,4 @@
-//! `optimize export mjcf`: the scene of a trial.
+//! `optimize export mjcf`: writes the scene of a trial as MJCF.
 
 use crate::command;
 use crate::context::Context;
@@ -35,7 +35,7 @@ pub struct Request {
     pub out: PathBuf,
 }
 
-/// File that was written, and the task of its scene.
+/// Written file, and the task of its scene.
 #[derive(Serialize)]
 pub struct Written {
     out: PathBuf,

@@ -1,4 +1,4 @@
-//! `optimize measure add`: a line more in a measurement file.
+//! `optimize measure add`: adds a line to a measurement file.
 
 use crate::command;
 use crate::commands::measure::check::counted;
@@ -88,7 +88,7 @@ fn setting(text: &str) -> Result<(String, String), String> {
     }
 }
 
-/// File that a line was added to, and how many it has.
+/// File to which a line was added, and its number of lines.
 #[derive(Serialize)]
 pub struct Added {
     file: String,
@@ -123,7 +123,7 @@ fn not_shipped(file: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Adds a line of these columns, or with `dry_run` only checks that it can be added, and returns all lines.
+/// Adds a line with these columns and returns all lines; with `dry_run` the file is not written.
 fn added(
     file: &str,
     mut cells: Vec<(&str, String)>,
@@ -133,14 +133,14 @@ fn added(
     if let Some((_, name)) = cells.iter_mut().find(|(column, _)| *column == "task") {
         let TaskFile { source, task } = read_task(name)?;
         let shipped = TASKS.iter().any(|shipped| shipped.text == source.text);
-        // From the folder of the measurements on, if that is around it, else the whole path.
+        // Relative to the folder of the measurements if it lies inside, otherwise absolute.
         let folder = Path::new(file).parent().unwrap_or(Path::new(""));
         let path = Path::new(name).strip_prefix(folder).map(Path::to_owned);
         let path = path.or_else(|_| std::path::absolute(&*name)).map_err(Failure::input)?;
         own = (!shipped).then(|| (task.name.clone(), path.display().to_string()));
         *name = task.name;
     }
-    // Read only now: others may have added lines meanwhile.
+    // Read as late as possible: other processes may have added lines.
     let unusable = |error| Failure::in_file(file, format!("cannot add to it: {error}"));
     let full = |error| Failure::running(format!("{file}: cannot write: {error}"));
     let mut table = Table::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
@@ -180,7 +180,8 @@ impl Request {
     }
 }
 
-/// Asks for each column on standard input; an empty answer is not known, and the end of the input ends it.
+/// Prompts for each column and reads the answers. An empty answer leaves the column empty; end of
+/// input ends the prompts.
 fn asked(answers: &mut impl BufRead) -> Result<Vec<(&'static str, String)>, Failure> {
     let failed = |error: io::Error| Failure::running(format!("cannot ask: {error}"));
     let mut cells = Vec::new();

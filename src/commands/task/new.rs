@@ -1,4 +1,4 @@
-//! `optimize task new`: a task file to begin with.
+//! `optimize task new`: writes a new task file.
 
 use crate::command;
 use crate::context::Context;
@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use study::write_file;
 
-/// Dimensions of the example that is written if none are given: a USB-C plug.
+/// Default dimensions: a USB-C plug.
 const EXAMPLE: [&str; 3] = ["8.25x2.4x6.65", "0.1", "12x6.5x20"];
 
 /// Write a commented task file from a few dimensions, or like another task
@@ -59,7 +59,7 @@ pub struct Request {
     pub engine: EngineKind,
 }
 
-/// A task that was written, its strategy and its check.
+/// Written task, with its strategy and its check.
 pub struct Written {
     name: String,
     checked: TaskCheck,
@@ -77,7 +77,7 @@ impl command::Request for Request {
         };
         let out = self.out.clone().unwrap_or_else(|| format!("{}.toml", self.name).into());
         let file = out.display().to_string();
-        // The name is checked here: what is written can be read.
+        // Parsing checks the name, so that the written file can be read back.
         let written = TaskFile::parse(Source { file: file.clone(), text })?;
         if out.exists() {
             return Err(Failure::usage(format!("{file} exists; name another file with --out")));
@@ -170,13 +170,13 @@ fn text(size: &Size) -> String {
     mm(&[size.width, size.height, size.length])
 }
 
-/// Lengths as the options have them.
+/// Formats lengths as in the command-line options.
 fn mm(lengths: &[f64]) -> String {
     let mm = |length: &f64| ((length / MM * 1e4).round() / 1e4).to_string();
     lengths.iter().map(mm).collect::<Vec<_>>().join("x")
 }
 
-/// The other task's file with this name.
+/// Returns a copy of the other task's file, renamed.
 fn copy(name: &str, TaskFile { source, task }: &TaskFile) -> String {
     let line =
         |key: &str, value: &str| format!("{key} = {}", toml::Value::String(value.to_owned()));

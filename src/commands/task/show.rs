@@ -1,4 +1,4 @@
-//! `optimize task show`: a shipped task file.
+//! `optimize task show`: prints a shipped task file.
 
 use crate::command::{self, Text};
 use crate::context::Context;

@@ -1,4 +1,4 @@
-//! `optimize task tune`: a strategy by which a connector inserts.
+//! `optimize task tune`: finds a strategy with which a connector inserts.
 
 use crate::command;
 use crate::context::{Context, not_stopped};
@@ -58,17 +58,17 @@ pub struct Request {
     pub svg: Option<PathBuf>,
 }
 
-/// A tuned task.
+/// Result of tuning a task.
 pub struct Done {
-    /// The file, as it was given.
+    /// Task file, as given on the command line.
     file: String,
-    /// The task as it was.
+    /// The task before tuning.
     pub task: Task,
-    /// All that was tried.
+    /// All strategies that were tried.
     pub tuned: Tuned,
     /// The soft, the medium and the stiff finger.
     pub fingers: [Finger; 3],
-    /// Their windows on the task as it is written; `None` if no strategy inserts.
+    /// Their windows on the tuned task; `None` if no strategy inserts.
     pub after: Option<Vec<Window>>,
     /// The file that was written, if one was.
     pub written: Option<PathBuf>,
@@ -116,7 +116,7 @@ impl command::Request for Request {
 }
 
 impl Request {
-    /// Returns the file to write; a shipped task is not one.
+    /// Returns the file to write; a shipped task cannot be overwritten.
     fn target(&self) -> Result<Option<&Path>, Failure> {
         match &self.out {
             Some(out) if out.exists() => {
@@ -133,7 +133,7 @@ impl Request {
         }
     }
 
-    /// Writes the task with its best strategy, and the picture; and measures what was written.
+    /// Writes the task with its best strategy, and the drawing; returns the windows of that task.
     fn write(
         &self,
         file: &TaskFile,
@@ -163,7 +163,7 @@ fn rewritten(source: &Source, task: &Task, strategy: &Strategy) -> Result<Source
     Ok(Source { file: source.file.clone(), text })
 }
 
-/// A strategy with the windows of the fingers that tried it, by the keys of `--json`.
+/// Strategy with the windows of the fingers, as in the output of `--json`.
 #[derive(Serialize)]
 struct State<'a> {
     start_mm: [f64; 3],
@@ -290,7 +290,7 @@ fn text(done: &Done) -> String {
     lines(all)
 }
 
-/// A line for each stage: its best, and for the families each.
+/// Returns a line for each stage with its best strategy; for the families stage one per family.
 fn steps(tuned: &Tuned) -> Vec<(String, String)> {
     let mut found = Vec::new();
     for (i, step) in tuned.steps.iter().enumerate() {

@@ -1,13 +1,13 @@
-//! Full factorial search, coarse to fine.
+//! Full factorial search from coarse to fine.
 
 use super::{Grid, GridPoint};
 
-/// Stages after which every axis of at most 2^32 levels shows all of them.
+/// Stage at which every axis of up to 2^32 levels is fully resolved.
 const LAST_STAGE: u32 = 32;
 
 /// Nested lattices: stage `s` is the product of up to `2^s + 1` evenly spaced levels of each axis,
 /// so stage 0 is the centre, stage 1 adds the corners and mid-sides, and the last stage is the
-/// whole grid. Points of an earlier stage come again.
+/// whole grid. Points of earlier stages are repeated.
 ///
 /// Within a stage the points are visited at a stride near the golden section of their number
 /// (and coprime to it), a Korobov lattice in the digits of the index: any prefix of a stage is
@@ -21,7 +21,7 @@ pub(super) fn lattice(grid: Grid) -> impl Iterator<Item = GridPoint> + Send {
     })
 }
 
-/// The levels of each axis that stage `stage` shows, ascending.
+/// Returns the levels of each axis at stage `stage`, ascending.
 fn stage_levels(grid: &Grid, stage: u32) -> Vec<Vec<u32>> {
     let of_axis = |&n: &u32| -> Vec<u32> {
         let (last, parts) = (u64::from(n - 1), 1u64 << stage);
@@ -31,13 +31,13 @@ fn stage_levels(grid: &Grid, stage: u32) -> Vec<Vec<u32>> {
         if parts >= last {
             return (0..n).collect();
         }
-        // The middle of an even number of levels rounds down at every stage alike.
+        // The middle of an even number of levels rounds down at every stage.
         (0..=parts).map(|k| ((2 * k * last + parts - 1) / (2 * parts)) as u32).collect()
     };
     grid.levels().iter().map(of_axis).collect()
 }
 
-/// The point of a lattice at a mixed-radix index; the last axis has the lowest digit.
+/// Returns the point at a mixed-radix index; the last axis is the least significant digit.
 fn decode(mut index: u128, axes: &[Vec<u32>]) -> GridPoint {
     let mut point = vec![0; axes.len()];
     for (level, levels) in point.iter_mut().zip(axes).rev() {
@@ -48,7 +48,7 @@ fn decode(mut index: u128, axes: &[Vec<u32>]) -> GridPoint {
     GridPoint(point)
 }
 
-/// The first number from the golden section of `size` on that shares no factor with it.
+/// Returns the first number at or above the golden section of `size` that is coprime to it.
 fn coprime_stride(size: u128) -> u128 {
     let section =
         (size / 1_000_000).saturating_mul(618_034) + size % 1_000_000 * 618_034 / 1_000_000;
@@ -59,7 +59,7 @@ fn gcd(a: u128, b: u128) -> u128 {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-/// `a * b mod m` by doubling, so that nothing overflows for `m` below 2^127.
+/// `a * b mod m` by doubling, without overflow for `m` below 2^127.
 fn mul_mod(a: u128, b: u128, m: u128) -> u128 {
     if let Some(product) = a.checked_mul(b) {
         return product % m;

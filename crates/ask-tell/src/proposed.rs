@@ -1,14 +1,14 @@
-//! The points an optimizer has already proposed, and a way to any that are left.
+//! Points that an optimizer has already proposed, and access to the remaining ones.
 
 use super::{Grid, GridPoint, Observation, StopReason};
 use crate::stream::stream;
 use rand::RngExt;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Random draws tried before the lattice is walked in order.
+/// Number of random draws before the grid is enumerated in order.
 const DRAWS: usize = 64;
 
-/// The memory that keeps an optimizer from proposing a point twice.
+/// Set of proposed points, to prevent duplicates.
 #[derive(Debug, Clone)]
 pub(crate) struct Proposed {
     grid: Grid,
@@ -19,7 +19,7 @@ pub(crate) struct Proposed {
 }
 
 impl Proposed {
-    /// Nothing proposed yet; `seed` names the stream of [`next_unseen`](Self::next_unseen).
+    /// Creates an empty set; `seed` is for the random stream of [`next_unseen`](Self::next_unseen).
     pub fn new(grid: Grid, seed: u64) -> Self {
         let cursor = grid.points().next();
         Proposed { grid, seed, points: BTreeSet::new(), cursor }
@@ -37,12 +37,12 @@ impl Proposed {
         self.points.contains(point)
     }
 
-    /// Marks `point`; false if it was marked before or does not lie on the grid.
+    /// Marks `point` as proposed; false if it already was, or if it is not on the grid.
     pub fn insert(&mut self, point: &GridPoint) -> bool {
         self.grid.contains(point) && self.points.insert(point.clone())
     }
 
-    /// Whether every grid point has been proposed.
+    /// Returns whether every grid point has been proposed.
     pub fn exhausted(&self) -> bool {
         self.len() >= self.grid.size()
     }
@@ -51,8 +51,8 @@ impl Proposed {
         self.exhausted().then_some(StopReason::GridExhausted)
     }
 
-    /// Marks and returns a point not proposed before: a uniformly drawn one while draws hit
-    /// unseen points often enough, then the first in lexicographic order. `None` if there is none.
+    /// Marks and returns a point not yet proposed: a uniformly drawn one or, if 64 draws find none,
+    /// the first in lexicographic order. `None` if there is none.
     pub fn next_unseen(&mut self) -> Option<GridPoint> {
         if self.exhausted() {
             return None;
@@ -75,7 +75,7 @@ impl Proposed {
     }
 }
 
-/// The points proposed, and the negated merits of those told: infinite where there is none.
+/// Proposed points, and the costs (negated merits) of those told; infinite without a merit.
 #[derive(Debug, Clone)]
 pub(crate) struct Costs {
     pub proposed: Proposed,
@@ -97,7 +97,7 @@ impl Costs {
         }
     }
 
-    /// The free axes of the cheapest point.
+    /// Coordinates of the point of least finite cost, on the free axes.
     pub fn best(&self) -> Option<Vec<f64>> {
         let finite = self.of.iter().filter(|(_, cost)| cost.is_finite());
         let (best, _) = finite.min_by(|a, b| a.1.total_cmp(b.1))?;

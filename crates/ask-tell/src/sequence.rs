@@ -1,16 +1,16 @@
-//! Optimizers that learn nothing.
+//! Non-adaptive optimizers.
 
 use super::{Grid, GridPoint, Observation, Optimizer, StopReason};
 use crate::proposed::Proposed;
 
-/// Proposes the points of a sequence, each once; when it has ended, the points that are left.
+/// Proposes the points of a sequence, each once, and then the remaining grid points.
 pub(crate) struct Sequence<I> {
     proposed: Proposed,
     points: I,
 }
 
 impl<I: Iterator<Item = GridPoint>> Sequence<I> {
-    /// `seed` decides the order of what the sequence leaves.
+    /// `seed` determines the order of the remaining points.
     pub fn new(grid: Grid, seed: u64, points: I) -> Self {
         Sequence { proposed: Proposed::new(grid, seed), points }
     }

@@ -1,4 +1,4 @@
-//! One run of CMA-ES on R^n by ask and tell.
+//! Single run of CMA-ES on R^n, with an ask-and-tell interface.
 
 use super::parameters::Parameters;
 use super::stop::{History, Tolerances};
@@ -10,10 +10,10 @@ use rand::RngExt;
 
 /// Largest condition number of C; above it a run ends.
 const CONDITION: f64 = 1e14;
-/// Iterations after which an eigen decomposition is given up (it takes a few per axis).
+/// Largest number of iterations of an eigendecomposition (which usually takes a few per axis).
 const EIGEN_ITERATIONS: usize = 1000;
 
-/// Start of every run: a uniform point of a box, and a step size.
+/// Start of every run: a uniformly drawn point in a box, and a step size.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StartBox {
     /// Lower corner.
@@ -24,19 +24,19 @@ pub struct StartBox {
     pub sigma: f64,
     /// Least standard deviation per coordinate; empty for none.
     pub min_std: Vec<f64>,
-    /// The population stops doubling here.
+    /// Largest population size.
     pub max_lambda: usize,
-    /// When a run stops.
+    /// Termination tolerances.
     pub tolerances: Tolerances,
 }
 
-/// Difference of one run from the others.
+/// Settings of an individual run.
 #[derive(Debug, Clone)]
 pub(super) struct Plan {
     pub lambda: usize,
-    /// On the step size of the start.
+    /// Factor on the initial step size.
     pub sigma_factor: f64,
-    /// Generations, beside the general limit.
+    /// Limit on generations, in addition to the general one.
     pub limit: u64,
 }
 
@@ -54,13 +54,13 @@ pub struct Solution {
 pub(super) struct CmaEs {
     n: usize,
     start: StartBox,
-    /// Step size of the start.
+    /// Initial step size.
     first_sigma: f64,
     max_generations: u64,
     pub parameters: Parameters,
     pub mean: DVector<f64>,
     sigma: f64,
-    /// Covariance matrix C; only the lower triangle is kept up.
+    /// Covariance matrix C; only the lower triangle is updated.
     c: DMatrix<f64>,
     /// Eigenvectors of C, in columns.
     b: DMatrix<f64>,
@@ -68,7 +68,7 @@ pub(super) struct CmaEs {
     d: DVector<f64>,
     p_sigma: DVector<f64>,
     p_c: DVector<f64>,
-    /// Generations told.
+    /// Number of generations told.
     pub generation: u64,
     history: History,
     seed: u64,
@@ -77,13 +77,13 @@ pub(super) struct CmaEs {
 }
 
 impl CmaEs {
-    /// Number `run` of the runs that draw from the streams of `seed`.
+    /// Creates run number `run`, which draws from its own random streams of `seed`.
     pub fn new(start: &StartBox, seed: u64, run: u64, plan: Plan) -> Self {
         let mut random = stream(seed, run, "cma-es start");
         let uniform = |(l, h): (&f64, &f64)| l + (h - l) * random.random::<f64>();
         let mean: Vec<f64> = start.low.iter().zip(&start.high).map(uniform).collect();
         let (n, dim) = (mean.len(), mean.len() as f64);
-        // pycma's limit: far above what a run that still makes progress needs.
+        // pycma's limit: far more than a run needs while it makes progress.
         let general = (100.0 + 150.0 * (dim + 3.0) * (dim + 3.0) / sqrt(plan.lambda as f64)) as u64;
         let sigma = start.sigma * plan.sigma_factor;
         let mut run = CmaEs {
@@ -123,9 +123,9 @@ impl CmaEs {
         (&self.mean + self.sigma * (&self.b * scaled)).as_slice().to_vec()
     }
 
-    /// Updates the distribution with a generation. A generation of another size than lambda is
-    /// taken with the constants of its own size; fewer than two solutions, or one of another
-    /// dimension, change nothing.
+    /// Updates the distribution with a generation. If its size differs from lambda, the strategy
+    /// parameters for its actual size are used. Fewer than two solutions, or a solution of the wrong
+    /// dimension, are ignored.
     pub fn tell(&mut self, solutions: &[Solution]) {
         if solutions.len() < 2 || solutions.iter().any(|s| s.x.len() != self.n) {
             return;
@@ -212,7 +212,7 @@ impl CmaEs {
         }
     }
 
-    /// Keeps the last axes where C has none (it is not finite, and the run stops).
+    /// Decomposes C. If that fails (C is not finite, and the run ends) the last axes are kept.
     fn decompose(&mut self) {
         if self.n == 0 {
             return;
@@ -224,7 +224,7 @@ impl CmaEs {
         }
     }
 
-    /// Whether the run should end: appendix B.3 of the tutorial.
+    /// Returns whether the run should end, by appendix B.3 of the tutorial.
     pub fn ended(&self) -> bool {
         if self.generation == 0 {
             return false;
@@ -238,13 +238,13 @@ impl CmaEs {
             || self.generation >= self.max_generations
     }
 
-    /// The tutorial's TolX, TolXUp, ConditionCov, NoEffectAxis and NoEffectCoord.
+    /// Returns whether TolX, TolXUp, ConditionCov, NoEffectAxis or NoEffectCoord applies.
     fn distribution_ended(&self) -> bool {
         let (tol, mut axes) = (&self.start.tolerances, 0..self.n);
         let small = |i: usize| self.std(i) < tol.x && (self.sigma * self.p_c[i]).abs() < tol.x;
         let longest = self.d.iter().copied().fold(0.0, f64::max);
         let shortest = self.d.iter().copied().fold(f64::INFINITY, f64::min);
-        // One axis a generation, in turn, as the tutorial has it.
+        // One axis per generation, in turn, as in the tutorial.
         let axis = (self.generation % self.n.max(1) as u64) as usize;
         let along = |i: usize| 0.1 * self.sigma * self.d[axis] * self.b[(i, axis)];
         axes.clone().all(small)

@@ -2,7 +2,7 @@
 
 use libm::{log, sqrt};
 
-/// The constants of a run, in the tutorial's symbols.
+/// Strategy parameters of a run, in the tutorial's notation.
 #[derive(Debug, Clone)]
 pub(super) struct Parameters {
     pub lambda: usize,
@@ -20,14 +20,14 @@ pub(super) struct Parameters {
     pub chi_n: f64,
 }
 
-/// The default population size, `4 + floor(3 ln n)` (48).
+/// Default population size, `4 + floor(3 ln n)` (48).
 pub(super) fn default_lambda(n: usize) -> usize {
     4 + (3.0 * log(n.max(1) as f64)) as usize
 }
 
 impl Parameters {
-    /// The defaults for dimension `n` and population `lambda` (at least 2 is used); the worse
-    /// half gets negative weights (53).
+    /// Returns the defaults for dimension `n` and population size `lambda` (at least 2); the worse
+    /// half of the candidates has negative weights (53).
     pub fn new(n: usize, lambda: usize) -> Self {
         let (lambda, dim) = (lambda.max(2), n.max(1) as f64);
         let raw: Vec<f64> =
@@ -64,7 +64,7 @@ impl Parameters {
     }
 }
 
-/// `(sum w)^2 / sum w^2`; zero without weights.
+/// Variance-effective selection mass `(sum w)^2 / sum w^2`; zero without weights.
 fn effective_mass(weights: &[f64]) -> f64 {
     let (sum, squares) = weights.iter().fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w));
     if squares > 0.0 { sum * sum / squares } else { 0.0 }

@@ -1,8 +1,8 @@
-//! Reasons to end a run that lie in its values: appendix B.3 of the tutorial.
+//! Termination criteria on objective values: appendix B.3 of the tutorial.
 
 use crate::statistics::median;
 
-/// Limits of a run in the tutorial's names; the defaults are pycma's.
+/// Termination tolerances of a run; the defaults are pycma's. Names as in the tutorial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tolerances {
     /// TolFun: range of the last generation and of the best recent values.
@@ -11,7 +11,7 @@ pub struct Tolerances {
     pub fun_hist: f64,
     /// TolX: largest standard deviation and step of the path, in units of x.
     pub x: f64,
-    /// TolXUp: growth of a standard deviation, a factor on the initial step size.
+    /// TolXUp: largest growth of a standard deviation, as a factor on the initial step size.
     pub x_up: f64,
 }
 
@@ -21,7 +21,7 @@ impl Default for Tolerances {
     }
 }
 
-/// The values that the stop reasons look back on.
+/// History of values for the termination criteria.
 #[derive(Debug, Clone, Default)]
 pub(super) struct History {
     /// Best value of each generation, oldest first.
@@ -34,7 +34,7 @@ pub(super) struct History {
 }
 
 impl History {
-    /// Takes in a generation's values, sorted ascending.
+    /// Records a generation's values, sorted ascending.
     pub(super) fn push(&mut self, sorted: &[f64]) {
         let (Some(&best), Some(&worst)) = (sorted.first(), sorted.last()) else { return };
         self.best.push(best);
@@ -44,18 +44,18 @@ impl History {
         self.flat = if best == third { self.flat + 1 } else { 0 };
     }
 
-    /// The tutorial's TolFun, TolFunHist, EqualFunValues and Stagnation.
+    /// Returns whether TolFun, TolFunHist, EqualFunValues or Stagnation of the tutorial applies.
     pub(super) fn ended(&self, n: usize, lambda: usize, tol: &Tolerances) -> bool {
         let recent_length = 10 + (30 * n).div_ceil(lambda);
         let recent = &self.best[self.best.len().saturating_sub(recent_length)..];
         let (small, recent_range) = (self.last_range < tol.fun, range(recent));
-        // Some history is needed, or one generation on a plateau would end a run.
+        // Requires some history; otherwise one generation on a plateau would end a run.
         let unmoved = small && recent_range < tol.fun || recent_range < tol.fun_hist;
         recent.len() > 9 && unmoved || self.flat > 3 || self.stagnated(n, lambda)
     }
 
-    /// The tutorial's rule: the medians of the newest and the oldest 30 % of a window of the
-    /// last `max(120 + 30 n / lambda, 20 % of the run)` generations, at most 20000, are compared.
+    /// Stagnation rule of the tutorial: compares the medians of the newest and the oldest 30 % of the
+    /// last `max(120 + 30 n / lambda, 20 % of the run)` generations, at most 20000.
     fn stagnated(&self, n: usize, lambda: usize) -> bool {
         let length = (120 + 30 * n / lambda).max(self.best.len() / 5).min(20_000);
         if self.best.len() <= length {
@@ -72,7 +72,7 @@ impl History {
     }
 }
 
-/// Largest minus smallest; two equal infinities count as no range.
+/// Largest minus smallest value; 0 if all are the same infinity.
 fn range(values: &[f64]) -> f64 {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);

@@ -3,13 +3,12 @@
 //! Values standardised and warped; Matern 5/2 with one length scale per axis; a constant mean,
 //! unknown and integrated out; fitted noise; hyperparameters by maximum a posteriori; log
 //! expected improvement (Ament et al. 2023, arXiv 2310.20708)
-//! maximised over the grid; batches by the kriging believer. With constraints a model for each of
-//! them, and the improvement times the probability of keeping them; with several objectives a
-//! model for each, and the expected hypervolume improvement.
+//! maximised over the grid; batches by the kriging believer. Each constraint has its own model,
+//! and the expected improvement is multiplied by the probability of feasibility. Several objectives
+//! have a model each, and the acquisition function is the expected hypervolume improvement.
 //!
-//! The linear algebra is nalgebra's, and only what it does without `matrixmultiply`, which
-//! chooses its kernels by the processor: factors, triangular solutions and scalar products, but
-//! no product of two matrices.
+//! Linear algebra uses nalgebra, but no product of two matrices: those use `matrixmultiply`, which
+//! chooses its kernels by processor, so that results would differ between machines.
 
 mod acquisition;
 mod data;

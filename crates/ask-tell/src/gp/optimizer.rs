@@ -1,4 +1,4 @@
-//! The optimizer around the model.
+//! Bayesian optimizer.
 
 use super::search::Room;
 use super::training::{Model, Training};
@@ -9,23 +9,23 @@ use crate::{Grid, GridPoint, Observation, Optimizer, StopReason};
 /// Default least standard deviation of the noise, in objective units: that of a value rounded
 /// to steps of 0.1, 0.1 / sqrt(12).
 pub const DEFAULT_NOISE_FLOOR: f64 = 0.1 * 0.288_675_134_594_812_9;
-/// Points, told and proposed, up to which the process is conditioned on all.
+/// Largest number of points, told and pending, for which the process is conditioned on all.
 const WHOLE: usize = 250;
 
 /// Bayesian optimization over a grid. **Maximises.**
 ///
-/// - *First design*: a scrambled Sobol sequence, one point more than free axes, at least 3.
+/// - *Initial design*: a scrambled Sobol sequence, one more point than free axes, at least 3.
 /// - *Then*: the unseen point with the largest log expected improvement over the best posterior
 ///   mean at an observed point.
-/// - *Constraints*: the improvement over the best feasible point times the probability of
-///   feasibility; that alone while no feasible point is known.
-/// - *Several objectives* (not warped): the expected hypervolume improvement over the front of the
+/// - *Constraints*: expected improvement over the best feasible point times the probability of
+///   feasibility; the probability alone while no feasible point is known.
+/// - *Several objectives* (not warped): expected hypervolume improvement over the front of the
 ///   posterior means.
-/// - *Beyond 250 points* processes of the nearest ones stand for the whole, and hyperparameters are
-///   refitted, to 200 of the points, at each twentieth more: the cost then grows little.
-/// - *Batches*, and points asked and not yet told: kriging believer.
-/// - *No value* (`None`, NaN, infinite) is taught as the worst value seen so far.
-/// - Where the model has nothing to say, the Sobol sequence goes on, and after it random points.
+/// - *Beyond 250 points*: local processes of the nearest points replace the global one, and
+///   hyperparameters are refitted to 200 of the points after every 5 % more, which limits the cost.
+/// - *Batches* and pending points: kriging believer.
+/// - *Missing values* (`None`, NaN, infinite) are replaced by the worst value so far.
+/// - *Fallback* where the model gives no suggestion: the Sobol sequence, then random points.
 #[derive(Debug, Clone)]
 pub(crate) struct GpOptimizer {
     proposed: Proposed,
@@ -35,16 +35,16 @@ pub(crate) struct GpOptimizer {
     free: u64,
     design: SobolSequence,
     told: Vec<Observation>,
-    /// Asked and not told.
+    /// Points asked but not yet told.
     pending: Vec<GridPoint>,
-    /// The models of all that was told, and good points to start a search from, best first;
-    /// `None` when they have to be made anew.
+    /// Models of all observations, and good starting points for the search, best first; `None` if
+    /// they have to be rebuilt.
     model: Option<(Model, Vec<GridPoint>)>,
 }
 
 impl GpOptimizer {
-    /// `noise_floors`: least standard deviation of the noise of each objective, in its units;
-    /// what is missing or not a positive number counts as zero.
+    /// `noise_floors`: least standard deviation of the noise of each objective, in its units; missing
+    /// or non-positive entries count as zero.
     pub fn new(grid: Grid, seed: u64, noise_floors: &[f64]) -> Self {
         GpOptimizer {
             free: grid.free_axes().len() as u64,
@@ -62,8 +62,8 @@ impl GpOptimizer {
         self.proposed.grid().free_unit(point)
     }
 
-    /// Fits and conditions the models for an ask of `n` points, unless that was done for these
-    /// data.
+    /// Returns the models for an ask of `n` points, fitted and conditioned only if the data have
+    /// changed.
     fn train(&mut self, n: usize) -> Option<(Model, Vec<GridPoint>)> {
         let whole = self.told.len() + self.pending.len() + n <= WHOLE;
         let fits = |(model, _): &(Model, _)| matches!(model, Model::Whole(_)) == whole;

@@ -5,11 +5,11 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 /// `K = L L'`.
 pub(crate) type Factor = Cholesky<f64, Dyn>;
 
-/// Least pivot, as a share of the diagonal: below it rounding decides.
+/// Least squared pivot relative to the diagonal; smaller ones are dominated by rounding.
 const LEAST_PIVOT: f64 = 1e-14;
 
-/// Factors a covariance matrix of which only the lower triangle is read; `None` if it is not
-/// positive definite to working precision.
+/// Factorises a covariance matrix, reading only its lower triangle; `None` if it is not positive
+/// definite to working precision.
 pub(crate) fn factor(covariance: DMatrix<f64>) -> Option<Factor> {
     let diagonal = covariance.diagonal();
     let factor = Cholesky::new(covariance)?;
@@ -18,7 +18,8 @@ pub(crate) fn factor(covariance: DMatrix<f64>) -> Option<Factor> {
     (pivots.iter().zip(&diagonal).all(sound) && pivots.sum().is_finite()).then_some(factor)
 }
 
-/// The factor of one point more, of these covariances with the others and this variance.
+/// Extends the factor by one point, given its covariances with the others and its variance; `None`
+/// if the result is not positive definite to working precision.
 pub(crate) fn with_point(factor: &Factor, covariances: &DVector<f64>, own: f64) -> Option<Factor> {
     let n = covariances.len();
     let grown = factor.insert_column(n, covariances.push(own));
@@ -33,8 +34,8 @@ pub(crate) fn half_solved(factor: &Factor, b: &DVector<f64>) -> DVector<f64> {
     x
 }
 
-/// The lower triangle of `K^-1`, zeros above. A third of the work of
-/// [`Cholesky::inverse`], which does not use that the inverse of `L` is triangular, too.
+/// Returns the lower triangle of `K^-1`, zeros above. Takes a third of the operations of
+/// [`Cholesky::inverse`], which does not exploit that the inverse of `L` is triangular.
 pub(crate) fn inverse(factor: &Factor) -> DMatrix<f64> {
     let (l, n) = (factor.l_dirty(), factor.l_dirty().nrows());
     let mut w = DMatrix::identity(n, n);

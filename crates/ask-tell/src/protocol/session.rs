@@ -1,4 +1,4 @@
-//! Session of one optimizer.
+//! Ask-and-tell session with one optimizer.
 
 use super::message::{
     Asked, Best, Direction, Line, MAX_LINE_BYTES, PointResult, Problem, Summary, check_count,
@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Session of ask and tell that starts with its first line, the problem.
+/// Ask-and-tell session. The first line defines the problem.
 #[derive(Default)]
 pub struct Session {
     search: Option<Search>,
@@ -24,11 +24,11 @@ struct Search {
     proposals: Vec<Proposal>,
     /// First id of the current batch. The optimizer learns from whole batches, in order.
     first: usize,
-    /// Number of proposals that were handed out.
+    /// Number of proposals sent to the client.
     asked: usize,
-    /// Points evaluated elsewhere.
+    /// Points that were evaluated elsewhere.
     known: BTreeSet<GridPoint>,
-    /// Results of such points that the optimizer receives after the current batch.
+    /// Results of those points, to be passed to the optimizer after the current batch.
     waiting: Vec<Observation>,
     best: Option<Best>,
 }
@@ -40,10 +40,10 @@ struct Proposal {
 }
 
 impl Session {
-    /// Answers a line with a line of JSON without its end; a valid problem has no answer.
+    /// Returns the answer to a line as JSON without a line break; a valid problem has no answer.
     ///
     /// # Errors
-    /// If the line is not accepted; it changes nothing then.
+    /// If the line is not accepted. The session is then unchanged.
     pub fn answer(&mut self, line: &str) -> Result<Option<String>, String> {
         let answer = match (Line::parse(line)?, &mut self.search) {
             (Line::Problem(problem), None) => {
@@ -66,7 +66,7 @@ impl Session {
         Ok(Some(answer.to_string()))
     }
 
-    /// Returns the error of a line of more than [`MAX_LINE_BYTES`].
+    /// Returns the error message for a line longer than [`MAX_LINE_BYTES`].
     pub fn too_long() -> String {
         format!("the line is longer than {MAX_LINE_BYTES} bytes")
     }
@@ -142,7 +142,8 @@ impl Search {
         Ok(Summary { told, stop: self.learn(), best: self.best.clone() })
     }
 
-    /// Passes results on once the batch is complete. Returns the reason why the search ended.
+    /// Passes the results to the optimizer once the batch is complete. Returns the stop reason if the
+    /// search has ended.
     fn learn(&mut self) -> Option<crate::StopReason> {
         let batch = &self.proposals[self.first..];
         let result = |p: &Proposal| Some(Observation::new(p.point.clone(), p.merit?));
@@ -156,7 +157,7 @@ impl Search {
         self.optimizer.stop()
     }
 
-    /// Returns the point of a result, which must be asked and open, or else new.
+    /// Returns the point of a result, which must be a pending proposal or a new point.
     fn point(
         &self,
         id: Option<usize>,
@@ -197,7 +198,7 @@ impl Search {
         Ok(GridPoint(self.parameters.iter().map(level).collect::<Result<_, _>>()?))
     }
 
-    /// Keeps the better result: of equal ones that of the lower id or the earlier one.
+    /// Keeps the better result; ties go to the lower id or the earlier result.
     fn update_best(&mut self, id: Option<usize>, point: &GridPoint, value: Option<f64>) {
         let Some(value) = value else { return };
         let merit = |value| self.direction.merit(value);

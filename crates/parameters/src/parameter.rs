@@ -1,4 +1,4 @@
-//! A number that may vary, with its distribution and bounds.
+//! Uncertain number with its distribution and bounds.
 
 use crate::numbers::Kind;
 use crate::path::Path;
@@ -8,7 +8,7 @@ use input::{Check, InputError, shown};
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
 
-/// Spacing of the values of a number.
+/// Spacing of values.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Scale {
@@ -19,51 +19,51 @@ pub enum Scale {
     Log,
 }
 
-/// Transform of the number that the files have.
+/// Operation of a parameter on the number in the files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Transform {
-    /// It is multiplied.
+    /// Multiplies the number.
     Factor,
-    /// It is added to.
+    /// Is added to the number.
     Shift,
-    /// The bounds are values of the number itself.
+    /// Replaces the number.
     Value,
 }
 
-/// One uncertain number: drawn evenly between its bounds or, with value and deviation, normally and
-/// cut off there. A row of a file of priors, levers or of a cell.
+/// Uncertain number: uniform between its bounds or, if value and deviation are given, a normal
+/// distribution truncated there. Row of a file of priors, levers or of a cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parameter {
-    /// In words: `friction plug-socket`.
+    /// Name in words: `friction plug-socket`.
     pub name: String,
-    /// The number.
+    /// Path of the number that it sets.
     #[serde(rename = "sets")]
     pub path: Path,
-    /// How it is set.
+    /// Operation on the number.
     #[serde(rename = "as")]
     pub transform: Transform,
-    /// Scale on which it is drawn evenly, or normally.
+    /// Scale of the distribution: uniform or normal in the value or in its logarithm.
     pub scale: Scale,
-    /// Its median before it is cut off.
+    /// Median before truncation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
-    /// Its standard deviation; on a log scale `sd / value` is that of the logarithm.
+    /// Standard deviation before truncation; on a log scale `sd / value` is that of the logarithm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sd: Option<f64>,
     /// Lower bound.
     pub low: f64,
     /// Upper bound.
     pub high: f64,
-    /// Whether it is one number for all tasks.
+    /// Whether all tasks share one value.
     pub shared: bool,
-    /// Where value or bounds come from.
+    /// Source of the value or the bounds.
     pub source: String,
 }
 
 impl Parameter {
-    /// Returns a number that varies evenly between two values.
+    /// Returns a parameter with a uniform distribution between two values.
     pub fn uniform(path: Path, [low, high]: [f64; 2]) -> Self {
         Parameter {
             name: path.to_string(),
@@ -79,7 +79,7 @@ impl Parameter {
         }
     }
 
-    /// Returns the value that this share of the distribution lies below; `share` in 0 to 1.
+    /// Returns the quantile of the distribution at probability `share`, 0 to 1.
     pub fn at(&self, share: f64) -> f64 {
         let Parameter { low, high, .. } = *self;
         match (self.scale, self.value.zip(self.sd)) {
@@ -98,12 +98,12 @@ impl Parameter {
         }
     }
 
-    /// Returns the value where it is not drawn: its own, else the middle of its bounds.
+    /// Returns the nominal value: `value` if given, else the middle of the bounds on its scale.
     pub fn middle(&self) -> f64 {
         self.value.unwrap_or_else(|| self.at(0.5))
     }
 
-    /// Returns a number under this value of the parameter.
+    /// Applies a value of the parameter to a number.
     pub fn applied(&self, number: f64, value: f64) -> f64 {
         match self.transform {
             Transform::Factor => number * value,
@@ -112,7 +112,7 @@ impl Parameter {
         }
     }
 
-    /// Returns the value under which a number stays as it is.
+    /// Returns the value of the parameter that leaves a number unchanged.
     pub fn neutral(&self, number: f64) -> f64 {
         match self.transform {
             Transform::Factor => 1.0,
@@ -121,7 +121,7 @@ impl Parameter {
         }
     }
 
-    /// Checks the row of a file.
+    /// Checks a row of a file.
     ///
     /// # Errors
     /// If a bound, the value or the transform cannot be used with this path.
@@ -154,7 +154,7 @@ impl Parameter {
         }
     }
 
-    /// What of the row does not go with its path.
+    /// Returns an error message if bounds or transform do not suit the path.
     fn mismatch(&self) -> Option<String> {
         use Transform::{Factor, Shift, Value};
         let [least, most] = self.path.bounds();
@@ -180,17 +180,18 @@ impl Parameter {
     }
 }
 
-/// The standard normal number that this share of those between two others lies below.
+/// Quantile of the standard normal distribution truncated to `from .. to`.
 fn cut_normal(share: f64, from: f64, to: f64) -> f64 {
     let [below, above] = [from, to].map(normal_cdf);
     normal_quantile(below + share * (above - below))
 }
 
-/// Goes before the path in the name of a stream: parameters more or less leave the others as they were.
+/// Prefix of the path in the name of a random stream. Each parameter has its own stream, so that
+/// adding or removing one does not change the draws of the others.
 const PURPOSE: &str = "cell ";
 
-/// Returns `count` draws of parameters, in their order; draw `i` of one is a function of the seed, `i`
-/// and its path alone.
+/// Returns `count` draws of the parameters, in their order. Draw `i` of a parameter depends only on
+/// the seed, `i` and its path.
 pub fn draws(parameters: &[Parameter], seed: u64, count: u32) -> Vec<Vec<f64>> {
     let draw = |i: u32| {
         let share =

@@ -12,17 +12,18 @@ fn is_linear(scale: &Scale) -> bool {
     *scale == Scale::Linear
 }
 
-/// Design variable: a number that varies in levels; values are `low + k * step`, on a log scale `low * step^k`.
+/// Design variable with discrete levels: values are `low + k * step`, on a log scale `low *
+/// step^k`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Variable {
-    /// The number it sets (`infill_density_percent`).
+    /// Path of the number that it sets (`infill_density_percent`).
     pub key: Path,
     /// Smallest value, in the unit of the key.
     pub low: f64,
     /// Largest value, in the unit of the key.
     pub high: f64,
-    /// Smallest difference that can be made; on a log scale the factor between neighbours.
+    /// Difference between neighbouring values; on a log scale their ratio.
     pub step: f64,
     /// Spacing of the values.
     #[serde(default, skip_serializing_if = "is_linear")]
@@ -74,12 +75,12 @@ impl Variable {
         }
     }
 
-    /// The level whose value is nearest.
+    /// Returns the level with the nearest value.
     pub fn nearest(&self, value: f64) -> u32 {
         self.steps_to(value).round().clamp(0.0, f64::from(self.levels() - 1)) as u32
     }
 
-    /// The value of level `k`, rounded so that it prints as it was written.
+    /// Returns the value of a level, rounded so that it prints as written in the file.
     pub fn value(&self, level: u32) -> f64 {
         match self.scale {
             Scale::Linear => {
@@ -89,19 +90,19 @@ impl Variable {
             Scale::Log => {
                 let share = f64::from(level) / self.steps().round().max(1.0);
                 let value = self.low * libm::pow(self.high / self.low, share);
-                // Four digits.
+                // Four significant digits.
                 format!("{value:.3e}").parse().unwrap_or(value)
             }
         }
     }
 
-    /// Returns the same as a number that varies evenly between its bounds.
+    /// Converts to a parameter with a uniform distribution between the bounds.
     pub fn parameter(&self) -> Parameter {
         let source = self.source.clone();
         Parameter { source, ..Parameter::uniform(self.key.clone(), [self.low, self.high]) }
     }
 
-    /// Returns the smallest and the largest value, and the one nearest to zero.
+    /// Returns the smallest value, the one nearest to zero and the largest, without duplicates.
     pub fn extremes(&self) -> Vec<f64> {
         let last = self.levels() - 1;
         let zero = (-self.low / self.step).round().clamp(0.0, f64::from(last)) as u32;
@@ -112,7 +113,8 @@ impl Variable {
     }
 }
 
-/// Returns all combinations of extreme values; a variable that would make them above `most` is left out.
+/// Returns all combinations of extreme values. A variable is skipped if the combinations would
+/// exceed `most`.
 pub fn corners<'a>(parameters: impl IntoIterator<Item = &'a Variable>, most: usize) -> Vec<Design> {
     let mut designs = vec![Design::default()];
     for parameter in parameters {
@@ -129,7 +131,7 @@ pub fn corners<'a>(parameters: impl IntoIterator<Item = &'a Variable>, most: usi
     designs
 }
 
-/// A checked search space.
+/// Validated search space.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "RawSpace")]
 pub struct Space {
@@ -137,26 +139,26 @@ pub struct Space {
     pub name: String,
     /// One-line description for lists.
     pub description: String,
-    /// The variables in file order: the order of the unit cube's axes.
+    /// The variables in file order, which is the order of the axes of the unit cube.
     #[serde(rename = "parameter")]
     pub parameters: Vec<Variable>,
 }
 
-/// A design: values by key, in the units the keys carry.
+/// Design: values by key, in the units of the keys.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Design(pub BTreeMap<String, f64>);
 
 impl Design {
-    /// A design of infill density (percent) and direction (degrees).
+    /// Returns a design with infill density (percent) and direction (degrees).
     pub fn infill(density_percent: f64, direction_deg: f64) -> Self {
         Design::default().with(DENSITY_KEY, density_percent).with(DIRECTION_KEY, direction_deg)
     }
 
-    /// The same, if there are such fingers; `given` names who gave it.
+    /// Like [`infill`](Self::infill), but checks the bounds; `given` names the source in errors.
     ///
     /// # Errors
-    /// If a value lies beyond its bounds, or is not a number.
+    /// If a value is out of bounds or NaN.
     pub fn checked_infill(
         density_percent: f64,
         direction_deg: f64,
@@ -165,7 +167,7 @@ impl Design {
         let infill = NUMBERS.iter().filter(|number| number.kind == Kind::Infill);
         for (number, value) in infill.zip([density_percent, direction_deg]) {
             let [least, most] = number.bounds;
-            // Written so that a NaN is outside.
+            // `contains` is false for NaN.
             let inside = (least..=most).contains(&value);
             let must = format!("lie in {least} .. {most}");
             Check { file: given }.require(number.pattern, value, inside, &must)?;
@@ -173,19 +175,19 @@ impl Design {
         Ok(Design::infill(density_percent, direction_deg))
     }
 
-    /// The design with this value under a key, in the unit of the key.
+    /// Returns the design with a key set to a value, in the unit of the key.
     pub fn with(&self, key: &str, value: f64) -> Self {
         let mut design = self.clone();
         design.0.insert(key.to_owned(), value);
         design
     }
 
-    /// The value of a key, in the unit of the key.
+    /// Returns the value of a key, in the unit of the key.
     pub fn get(&self, key: &str) -> Option<f64> {
         self.0.get(key).copied()
     }
 
-    /// `infill density 20 %, infill direction 10°`: for readers.
+    /// Formats for display: `infill density 20 %, infill direction 10°`.
     pub fn labelled(&self) -> String {
         let value = |(key, value): (&String, &f64)| {
             let (name, unit) = crate::label(key);
@@ -204,7 +206,7 @@ impl std::fmt::Display for Design {
 }
 
 const MOST_PARAMETERS: usize = 100;
-/// Smallest step: a thousand times the digit to which values are rounded.
+/// Smallest step: a thousand times the rounding of values.
 const FINEST_STEP: f64 = 1e-6;
 
 #[derive(Deserialize)]
@@ -215,7 +217,7 @@ struct RawSpace {
     parameter: Vec<Variable>,
 }
 
-/// A space inside another file, which is named by whoever reads that.
+/// Space inside another file; the reader of that file adds its name to errors.
 impl TryFrom<RawSpace> for Space {
     type Error = InputError;
     fn try_from(raw: RawSpace) -> Result<Self, InputError> {
@@ -224,10 +226,10 @@ impl TryFrom<RawSpace> for Space {
 }
 
 impl Space {
-    /// Reads and checks a space; `file` is named in errors.
+    /// Parses and checks a space; `file` is named in errors.
     ///
     /// # Errors
-    /// If the text is not such a file, or a value cannot be used.
+    /// If the text cannot be parsed, or a value is invalid.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         Self::check(read(text, file)?, file)
     }
@@ -250,18 +252,18 @@ impl Space {
         Ok(Space { name: raw.name, description: raw.description, parameters: raw.parameter })
     }
 
-    /// Levels per axis: what an optimizer may know of the space.
+    /// Returns the number of levels per axis, which define the optimizer's grid.
     pub fn levels(&self) -> Vec<u32> {
         self.parameters.iter().map(Variable::levels).collect()
     }
 
-    /// The grid point nearest to a design.
+    /// Returns the grid point nearest to a design.
     pub fn point(&self, design: &Design) -> GridPoint {
         let level = |p: &Variable| p.nearest(design.get(&p.key).unwrap_or(p.low));
         GridPoint(self.parameters.iter().map(level).collect())
     }
 
-    /// The design at a grid point (one level per parameter, each below its count).
+    /// Returns the design at a grid point (one valid level per parameter).
     pub fn design(&self, point: &GridPoint) -> Design {
         let values = self.parameters.iter().zip(&point.0);
         Design(values.map(|(p, &level)| (p.key.to_string(), p.value(level))).collect())
@@ -329,7 +331,8 @@ source = "paper"
     }
 
     proptest! {
-        /// Whatever is accepted has levels that can be counted, and each is the nearest to its value.
+        /// Whatever is accepted has levels that can be counted, and each is the nearest to its
+        /// value.
         #[test]
         fn accepted_levels_are_few_and_found_again(
             low in -1e3..1e3f64,

@@ -1,4 +1,4 @@
-//! The windows of a finger and of its levers.
+//! Measurement of the windows of a finger and of its levers.
 
 use super::lever::{Base, Lever, Levers};
 use super::question::{Cell, Question};
@@ -19,11 +19,11 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// Most windows that are measured.
+/// Largest number of windows measured.
 const MOST_WINDOWS: usize = 20;
 
-/// A lever that is measured: its row, its ends, and of each end the place of its window; of an end
-/// that changes nothing that of the base.
+/// Lever to be measured: its row, its end values, and the index of the window of each end. An end
+/// that changes nothing has the index of the baseline.
 struct Tried {
     row: Row,
     values: [f64; 2],
@@ -31,9 +31,9 @@ struct Tried {
 }
 
 impl Question<'_> {
-    /// Measures the levers, on the threads of the current pool; `infill` is the smallest and the
-    /// largest range over infills, mm, for which the softest and the stiffest are measured if it is
-    /// not known. Worthless once `stop` is set.
+    /// Measures the levers, on the threads of the current pool. `infill` is the smallest and the
+    /// largest range over infills, mm; if it is not known, the softest and the stiffest infill are
+    /// measured. The result is invalid once `stop` is set.
     ///
     /// # Errors
     /// If the finger cannot be simulated as it is.
@@ -59,7 +59,7 @@ impl Question<'_> {
             taught_start_mm: grid_mm(found[0].taught.unwrap_or(0)),
         };
         let mut levers: Vec<_> = tried.into_iter().map(|one| one.lever(&ranges)).collect();
-        // Stable, so that equals stay in their order.
+        // Stable sort: equal levers keep their order.
         levers.sort_by(|a, b| b.span_mm(base).total_cmp(&a.span_mm(base)));
         let over = || {
             let all = || ranges[..infills].iter().map(|range| range.unwrap_or(0.0));
@@ -76,15 +76,15 @@ impl Question<'_> {
         })
     }
 
-    /// The levers, their ends added to the cells that are measured, the first of which is the finger
-    /// as it is; and the names of those for which no windows are left.
+    /// Returns the levers to measure and the names of those that exceed the window budget. The
+    /// cells of their ends are appended to `cells`, the first of which is the baseline.
     fn tried(&self, cells: &mut Vec<Cell>) -> Result<(Vec<Tried>, Vec<String>), Impossible> {
         let base = cells[0].clone();
         let (mut tried, mut left_out) = (Vec::new(), Vec::new());
         for row in rows(self, &base.0)? {
             let (mut more, mut values, mut places) = (Vec::new(), [row.value; 2], [0; 2]);
             for (end, bound) in [End::Low, End::High].into_iter().enumerate() {
-                // A chamfer of 0 is the same shape in another form, which moves a window, too.
+                // A chamfer of 0 describes the same shape differently, which can shift a window.
                 let changed = row.at(self, bound).filter(|(value, _)| *value != row.value);
                 let Some((value, cell)) = changed else { continue };
                 if cell != base {
@@ -109,7 +109,7 @@ impl Question<'_> {
         self.evaluator.under(self.template, (design, given), &[])
     }
 
-    /// The design with the infill of the space whose finger is softest, and with that of the stiffest.
+    /// Returns the design with the softest and with the stiffest infill of the space.
     fn extremes(&self) -> Result<[Design; 2], Impossible> {
         let Question { evaluator, space, design, .. } = self;
         let values = |key: &'static str| {
@@ -133,7 +133,7 @@ impl Question<'_> {
         Ok([with(all.first()), with(all.last())])
     }
 
-    /// The window around the start that is taught for this cell.
+    /// Measures the window around the start taught for this cell.
     fn window(
         &self,
         specimen: &Specimen,
@@ -142,7 +142,7 @@ impl Question<'_> {
     ) -> Result<Evaluation, Impossible> {
         let mut specimen = specimen.clone();
         specimen.task.strategy.rule = StartRule::Taught;
-        // A specimen has its finger and its task already.
+        // The specimen already has its finger and its task.
         let evaluator = Evaluator {
             surrogate: Arc::clone(&self.evaluator.surrogate),
             fingers: FingerSource::Paper,
@@ -160,7 +160,7 @@ fn range_mm(evaluation: &Evaluation) -> Option<f64> {
     (window.nominal == Outcome::Inserted).then(|| window.range_mm())
 }
 
-/// A value without the rounding noise of sums and products.
+/// Rounds a value to 9 decimals to remove floating-point noise.
 fn written(value: f64) -> f64 {
     (value * 1e9).round() / 1e9
 }

@@ -1,4 +1,4 @@
-//! The finger and the task of which levers are asked for.
+//! Input of the lever analysis: finger and task.
 
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::template::Template;
@@ -6,19 +6,19 @@ use insertion::robot::Robot;
 use insertion::space::{Design, Space};
 use insertion::surrogate::Prediction;
 
-/// Finger on a task whose levers are measured.
+/// Finger and task whose levers are to be measured.
 pub struct Question<'a> {
-    /// Measures it.
+    /// Evaluator for the windows.
     pub evaluator: &'a Evaluator,
     /// The task; one of the evaluator's.
     pub template: &'a Template,
-    /// The space, whose bounds hold for the keys that it has.
+    /// The space. Its bounds take precedence for the keys that it has.
     pub space: &'a Space,
-    /// The finger, and what else its design sets.
+    /// Design of the finger.
     pub design: &'a Design,
-    /// Its stiffness, unless it is to be predicted.
+    /// Given stiffness of the finger; predicted if `None`.
     pub given: Option<Prediction>,
 }
 
-/// Specimen and robot of one window.
+/// Specimen and robot for one window.
 pub(super) type Cell = (Specimen, Robot);

@@ -1,4 +1,4 @@
-//! Trials over the plane of two errors of the start.
+//! Trials over the plane of two start errors.
 
 use clap::ValueEnum;
 use input::units::MM;
@@ -9,10 +9,10 @@ use parameters::numbers::{SOCKET_YAW, START_ACROSS, START_TILT};
 use parameters::plan::grid::{Node, STEPS_PER_UNIT};
 use std::sync::OnceLock;
 
-/// How far a map reaches along both axes at most, in steps of the grid: 16 mm, and 8 mm or degrees.
+/// Largest extent of a map along both axes, in grid steps: 16 mm, and 8 mm or degrees.
 pub(super) const LIMIT: Node = [16 * STEPS_PER_UNIT, 8 * STEPS_PER_UNIT];
 
-/// The two errors of a map: a shift of the start along y, and another.
+/// Pair of errors of a map: a shift of the start along y, and another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum Axes {
     /// Shifts of the start along y and x
@@ -43,23 +43,23 @@ impl Axes {
     }
 }
 
-/// A finger on its task under the two errors: the part is grasped once for each value of the second.
+/// Trials of a finger under two errors. The part is grasped once for each value of the second.
 pub struct Plane<'a> {
     rig: &'a dyn Rig,
     grasp: Grasp<'a>,
     pub(super) axes: Axes,
-    /// From the lowest value of the second error up.
+    /// One per value of the second error, ascending.
     grasped: Vec<OnceLock<Box<dyn Grasped + 'a>>>,
 }
 
 impl<'a> Plane<'a> {
-    /// Of this grasp; its conditions are replaced.
+    /// Creates the plane for a grasp; the conditions of the grasp are replaced.
     pub fn new(rig: &'a dyn Rig, grasp: Grasp<'a>, axes: Axes) -> Self {
         let grasped = (-LIMIT[1]..=LIMIT[1]).map(|_| OnceLock::new()).collect();
         Plane { rig, grasp, axes, grasped }
     }
 
-    /// How the trial of these errors ends.
+    /// Returns the outcome of the trial with these errors.
     pub(super) fn outcome(&self, [y, other]: Node) -> Outcome {
         let hold = || {
             let conditions = Draw::under([(self.axes.second().1, value(other))]).conditions;
@@ -74,7 +74,7 @@ impl<'a> Plane<'a> {
     }
 }
 
-/// A coordinate of the grid in the unit of its axis.
+/// Converts a grid coordinate to the unit of its axis.
 pub(super) fn value(node: i32) -> f64 {
     f64::from(node) / f64::from(STEPS_PER_UNIT)
 }

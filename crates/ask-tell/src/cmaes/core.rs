@@ -124,8 +124,8 @@ impl CmaEs {
     }
 
     /// Updates the distribution with a generation. If its size differs from lambda, the strategy
-    /// parameters for its actual size are used. Fewer than two solutions, or a solution of the wrong
-    /// dimension, are ignored.
+    /// parameters for its actual size are used. Fewer than two solutions, or a solution of the
+    /// wrong dimension, are ignored.
     pub fn tell(&mut self, solutions: &[Solution]) {
         if solutions.len() < 2 || solutions.iter().any(|s| s.x.len() != self.n) {
             return;

@@ -54,8 +54,8 @@ impl History {
         recent.len() > 9 && unmoved || self.flat > 3 || self.stagnated(n, lambda)
     }
 
-    /// Stagnation rule of the tutorial: compares the medians of the newest and the oldest 30 % of the
-    /// last `max(120 + 30 n / lambda, 20 % of the run)` generations, at most 20000.
+    /// Stagnation rule of the tutorial: compares the medians of the newest and the oldest 30 % of
+    /// the last `max(120 + 30 n / lambda, 20 % of the run)` generations, at most 20000.
     fn stagnated(&self, n: usize, lambda: usize) -> bool {
         let length = (120 + 30 * n / lambda).max(self.best.len() / 5).min(20_000);
         if self.best.len() <= length {

@@ -43,8 +43,8 @@ pub(crate) struct GpOptimizer {
 }
 
 impl GpOptimizer {
-    /// `noise_floors`: least standard deviation of the noise of each objective, in its units; missing
-    /// or non-positive entries count as zero.
+    /// `noise_floors`: least standard deviation of the noise of each objective, in its units;
+    /// missing or non-positive entries count as zero.
     pub fn new(grid: Grid, seed: u64, noise_floors: &[f64]) -> Self {
         GpOptimizer {
             free: grid.free_axes().len() as u64,

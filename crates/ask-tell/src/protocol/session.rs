@@ -142,8 +142,8 @@ impl Search {
         Ok(Summary { told, stop: self.learn(), best: self.best.clone() })
     }
 
-    /// Passes the results to the optimizer once the batch is complete. Returns the stop reason if the
-    /// search has ended.
+    /// Passes the results to the optimizer once the batch is complete. Returns the stop reason if
+    /// the search has ended.
     fn learn(&mut self) -> Option<crate::StopReason> {
         let batch = &self.proposals[self.first..];
         let result = |p: &Proposal| Some(Observation::new(p.point.clone(), p.merit?));

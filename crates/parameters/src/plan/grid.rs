@@ -1,62 +1,64 @@
-//! Tracing of outcomes over the plane of two parameters: where to look next.
+//! Adaptive tracing of outcomes over the plane of two parameters.
 //!
-//! On a coarse lattice, which grows until its border fails, then at half the distance and again: a
-//! place between two that end alike is taken over from them, one between two that differ is tried.
-//! First the border of the inserting region; then probes where all seemed alike, since islands hide
-//! there; then what was taken over beside that border; with what is left the other borders.
+//! A coarse lattice is extended until the trials on its border fail, then its spacing is halved
+//! repeatedly. A point between two equal outcomes takes that outcome without a trial; a point
+//! between two different ones is simulated. Order: border of the inserting region; probes in
+//! uniform areas, to find islands; points next to the border whose outcome was inferred; other
+//! borders with the remaining trials.
 
 use ask_tell::stream::stream;
 use rand::seq::SliceRandom;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Steps of the grid to a millimetre or a degree.
+/// Grid steps per millimetre or degree.
 pub const STEPS_PER_UNIT: i32 = 4;
-/// Most trials of a map.
+/// Largest number of trials of a map.
 pub const MOST_TRIALS: usize = 300;
-/// Trials of them where all seems alike.
+/// Number of those trials reserved for probes in uniform areas.
 const PROBES: usize = 60;
-/// Distance of the first lattice, in steps of the grid; of a large region it is doubled.
+/// Spacing of the first lattice, in grid steps; doubled for a large region.
 const COARSE: i32 = 4;
-/// Places of a lattice from which on it is doubled.
+/// Number of lattice points above which the spacing is doubled.
 const MOST_COARSE: usize = 110;
 
-/// Place on the grid: steps along both axes, from no error.
+/// Grid point: steps along both axes from zero error.
 pub type Node = [i32; 2];
 
-/// What a trial ends in.
+/// Outcome of a trial.
 pub trait Ends: Copy + PartialEq + Send + Sync {
-    /// Whether it is inside the region that is traced.
+    /// Returns whether it belongs to the traced region.
     fn inside(self) -> bool;
 }
 
-/// Outcome at a place.
+/// Outcome at a grid point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Found<T> {
     /// The outcome.
     pub outcome: T,
-    /// If not it is taken over from its neighbours.
+    /// Whether it was simulated; otherwise it was inferred from its neighbours.
     pub simulated: bool,
 }
 
-/// Outcomes at every place from `low` to `high`.
+/// Outcomes at every grid point from `low` to `high`.
 pub struct Traced<'a, T> {
     /// Lowest corner.
     pub low: Node,
     /// Highest corner.
     pub high: Node,
-    /// Every place from `low` to `high`.
+    /// Every grid point from `low` to `high`.
     pub nodes: BTreeMap<Node, Found<T>>,
-    /// Trials that were measured.
+    /// Number of trials simulated.
     pub trials: usize,
-    /// Distance of the places that are simulated first, steps of the grid.
+    /// Spacing of the initial lattice, grid steps.
     coarse: i32,
-    /// Distance within which the border of the inserting region was looked for, steps of the grid.
+    /// Resolution at which the border of the inserting region was traced, grid steps.
     pub step: i32,
     measure: &'a (dyn Fn(Node) -> T + Sync),
 }
 
-/// Traces the region that inserts around no error, up to `limit`, a multiple of 8, along either axis.
+/// Traces the inserting region around zero error, up to `limit` along either axis (a multiple of
+/// 8).
 pub fn trace<T: Ends>(limit: Node, measure: &(dyn Fn(Node) -> T + Sync)) -> Traced<'_, T> {
     let (low, high) = ([-2 * COARSE, -COARSE], [2 * COARSE, COARSE]);
     let nodes = BTreeMap::new();
@@ -70,7 +72,7 @@ pub fn trace<T: Ends>(limit: Node, measure: &(dyn Fn(Node) -> T + Sync)) -> Trac
         if probed {
             traced.verify();
         }
-        // Between the places of the lattice the border may reach farther.
+        // Between the lattice points the region may extend further.
         if traced.extend(limit) {
             continue;
         }
@@ -89,7 +91,8 @@ fn differ<T: Ends>(a: T, b: T) -> bool {
 }
 
 impl<T: Ends> Traced<'_, T> {
-    /// Simulates the lattice, which grows on each side until that fails; whether it has grown.
+    /// Simulates the lattice, extended on each side until no trial there inserts. Returns whether
+    /// it has grown.
     fn extend(&mut self, limit: Node) -> bool {
         let first = (self.low, self.high);
         loop {
@@ -128,13 +131,13 @@ impl<T: Ends> Traced<'_, T> {
         }
     }
 
-    /// Fills the grid from the lattice on, at half its distance and again; tries what lies between
-    /// outcomes that differ in the sense given, as long as there are no more trials than `most`. Gives
-    /// the last distance at which that was all.
+    /// Refines the lattice by repeatedly halving its spacing. Points between outcomes that differ
+    /// by `differ` are simulated, up to `most` trials. Returns the finest spacing that was
+    /// completed.
     fn refine(&mut self, differ: fn(T, T) -> bool, most: usize) -> i32 {
         let (mut half, mut complete, mut traced) = (self.coarse / 2, true, self.coarse);
         while half >= 1 {
-            // First the middles of edges, then those of faces.
+            // First the edge midpoints, then the face centres.
             for odd in [1, 2] {
                 let mut unsure = Vec::new();
                 for node in self.lattice(half) {
@@ -159,8 +162,9 @@ impl<T: Ends> Traced<'_, T> {
         traced
     }
 
-    /// Outcomes at this distance from a place along the axes on which it lies between two; of a face's
-    /// middle along the one axis on which they are alike, if there is one.
+    /// Outcomes of the neighbours at distance `by` along the axes on which the point lies between
+    /// two. For a face centre, only those along the axis on which both are equal, if there is just
+    /// one.
     fn around(&self, node: Node, by: i32, between: [bool; 2], differ: fn(T, T) -> bool) -> Vec<T> {
         let pair = |axis: usize| -> Vec<T> {
             let beside = [-by, by].map(|by| moved(node, axis, by));
@@ -175,7 +179,7 @@ impl<T: Ends> Traced<'_, T> {
         }
     }
 
-    /// Tries places amid taken over ones that all insert, or all do not.
+    /// Simulates inferred points whose neighbours are all inferred and equal to them.
     fn probe(&mut self) {
         let alike = |(node, found): &(&Node, &Found<T>)| {
             let same = |beside: Node| {
@@ -191,7 +195,7 @@ impl<T: Ends> Traced<'_, T> {
         self.simulate(uniform, MOST_TRIALS);
     }
 
-    /// Tries what was taken over beside a trial that ended otherwise, until nothing is.
+    /// Simulates inferred points next to a trial with a different outcome, until none is left.
     fn verify(&mut self) {
         loop {
             let doubtful = |(node, found): &(&Node, &Found<T>)| {
@@ -209,8 +213,8 @@ impl<T: Ends> Traced<'_, T> {
         }
     }
 
-    /// Tries those places that were not yet; if that were more trials than `most`, evenly taken ones of
-    /// them. Whether it was all.
+    /// Simulates those points that have not been simulated; an evenly spaced subset if that would
+    /// exceed `most` trials. Returns whether all were simulated.
     fn simulate(&mut self, mut wanted: Vec<Node>, most: usize) -> bool {
         wanted.retain(|&node| !self.simulated(node));
         let (all, room) = (wanted.len(), most.saturating_sub(self.trials));
@@ -228,7 +232,7 @@ impl<T: Ends> Traced<'_, T> {
         self.nodes.get(&node).is_some_and(|found| found.simulated)
     }
 
-    /// Places at this distance from one another; by the second axis, so that neighbours share a grasp.
+    /// Lattice points at a spacing, ordered by the second axis, so that neighbours share a grasp.
     fn lattice(&self, distance: i32) -> Vec<Node> {
         let along = |axis: usize| (self.low[axis]..=self.high[axis]).step_by(distance as usize);
         along(1).flat_map(|other| along(0).map(move |y| [y, other])).collect()
@@ -270,8 +274,8 @@ mod tests {
 
     const LIMIT: Node = [64, 32];
 
-    /// Places, trials and step of a made-up region (in mm), how many places it has otherwise, and how
-    /// many of them in whether they insert.
+    /// Places, trials and step of a made-up region (in mm), how many places it has otherwise, and
+    /// how many of them in whether they insert.
     fn traced(region: &(dyn Fn(f64, f64) -> Outcome + Sync)) -> (usize, usize, i32, [usize; 2]) {
         let of = |node: Node| {
             let [y, x] = node.map(|at| f64::from(at) / f64::from(STEPS_PER_UNIT));

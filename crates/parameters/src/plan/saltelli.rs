@@ -1,23 +1,24 @@
-//! First-order and total Sobol indices: shares of a function's variance, with intervals.
+//! First-order and total Sobol indices of a function, with bootstrap intervals.
 //!
-//! [`Sample::points`] gives the points of the unit cube to evaluate, in any order and in parallel;
-//! [`Sample::indices`] takes the values in the order of the points.
+//! [`Sample::points`] returns the points of the unit cube to evaluate, which can be done in any
+//! order and in parallel; [`Sample::indices`] takes the values in the order of the points.
 //!
 //! Estimators of Jansen (Comput. Phys. Commun. 117 (1999) 35, doi:10.1016/S0010-4655(98)00154-4) on
-//! the design of Saltelli et al. (Comput. Phys. Commun. 181 (2010) 259, doi:10.1016/j.cpc.2009.09.018): two
-//! independent samples A and B, and for each input A with that input from B.
+//! the design of Saltelli et al. (Comput. Phys. Commun. 181 (2010) 259,
+//! doi:10.1016/j.cpc.2009.09.018): two independent samples A and B, and for each input A with that
+//! input from B.
 
 use ask_tell::SobolSequence;
 use ask_tell::statistics::Moments;
 use ask_tell::stream::stream;
 use rand::RngExt;
 
-/// Resamples of a bootstrap: enough for the ends of a 95 % interval.
+/// Number of bootstrap resamples: enough for the ends of a 95 % interval.
 const RESAMPLES: usize = 1000;
-/// Probability outside a 95 % interval on each side.
+/// Tail probability on each side of a 95 % interval.
 const TAIL: f64 = 0.025;
 
-/// An estimate with its 95 % interval by the bootstrap (percentiles), in the unit of the values.
+/// Estimate with its 95 % percentile bootstrap interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
     /// Point estimate.
@@ -28,16 +29,16 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// Sobol indices of an input, without unit; estimates may leave 0 .. 1 by their error.
+/// Sobol indices of an input, dimensionless. Estimates may lie outside 0 .. 1 by sampling error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Indices {
-    /// First-order index S_i: the share of the variance that fixing the input alone removes.
+    /// First-order index S_i: share of the variance due to this input alone.
     pub first: Interval,
-    /// Total index S_Ti: the share that is left if all other inputs are fixed.
+    /// Total index S_Ti: share of the variance due to this input and all its interactions.
     pub total: Interval,
 }
 
-/// Sample of the unit cube for estimating indices.
+/// Sample of the unit cube for estimating Sobol indices.
 #[derive(Debug, Clone)]
 pub struct Sample {
     a: Vec<Vec<f64>>,
@@ -46,8 +47,8 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Sample of `rows` pairs of points of `dimension` inputs, from a scrambled Sobol sequence of twice
-    /// as many axes.
+    /// Draws `rows` pairs of points of `dimension` inputs from a scrambled Sobol sequence of twice
+    /// the dimension.
     pub fn new(dimension: usize, rows: usize, seed: u64) -> Self {
         let sequence = SobolSequence::new(2 * dimension, seed, 0, "sensitivity sample");
         let halves = |row: Vec<f64>| (row[..dimension].to_vec(), row[dimension..].to_vec());
@@ -55,7 +56,7 @@ impl Sample {
         Sample { a, b, seed }
     }
 
-    /// Points to evaluate: `rows * (dimension + 2)`, coordinates in 0 .. 1.
+    /// Returns the points to evaluate: `rows * (dimension + 2)`, coordinates in 0 .. 1.
     pub fn points(&self) -> Vec<Vec<f64>> {
         let mut points = [self.a.clone(), self.b.clone()].concat();
         for input in 0..self.a.first().map_or(0, Vec::len) {
@@ -68,7 +69,7 @@ impl Sample {
         points
     }
 
-    /// Indices of each input, from the values at [`Sample::points`], in their order;
+    /// Estimates the indices of each input from the values at [`Sample::points`], in their order;
     /// `None` if the values do not vary.
     pub fn indices(&self, values: &[f64]) -> Option<Vec<Indices>> {
         let rows = self.a.len();
@@ -96,7 +97,7 @@ impl Sample {
     }
 }
 
-/// Variance of both samples together over some rows.
+/// Variance of both samples pooled, over some rows.
 fn variance(of_a: &[f64], of_b: &[f64], rows: &[usize]) -> f64 {
     Moments::of(rows.iter().flat_map(|&row| [of_a[row], of_b[row]])).sample_variance()
 }

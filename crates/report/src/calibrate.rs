@@ -1,4 +1,4 @@
-//! `optimize calibrate`: predictions on the bench and what was learned of the parameters, as text.
+//! Text output of `optimize calibrate`: bench predictions and posteriors of the parameters.
 
 use super::text_table;
 use calibration::calibrate::{Calibration, TaskResult};
@@ -7,10 +7,10 @@ use calibration::subject::Subject;
 use calibration::table::{Moved, by_range, moved, together, warnings};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY};
 
-/// Fingers in the table.
+/// Number of fingers in the table.
 const LISTED: usize = 5;
 
-/// Returns a task's result within 80 columns.
+/// Returns the result for a task, within 80 columns.
 pub fn text(subject: &Subject, result: &TaskResult) -> String {
     let accuracy = result.trust(subject.emulator.error_mm);
     let emulator = &subject.emulator;
@@ -50,7 +50,7 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
         .collect::<String>()
 }
 
-/// Returns the effect of the measurements on the parameters, within 80 columns.
+/// Returns prior and posterior intervals of the parameters, within 80 columns.
 pub fn parameters_text(calibration: &Calibration) -> String {
     let row = |Moved { name, task, prior, posterior, moved }: Moved| {
         let span = |[low, _, high]: [f64; 3]| format!("{low:.2} to {high:.2}");

@@ -1,4 +1,5 @@
-//! Best so far, and each value, against evaluations; of several objectives the hypervolume.
+//! Convergence plot: values and best so far against evaluations; with several objectives the
+//! hypervolume.
 
 use super::ReportError;
 use super::chart::{Area, Drawn, around, axes, legend, message, sheet, words};
@@ -13,8 +14,8 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 use study::{Recorded, StudyRecord, volume};
 
-/// Value of each evaluation and best so far (of several objectives the hypervolume) against the
-/// number of evaluations, on a white ground; `size` pixels.
+/// Plots the value of each evaluation and the best so far (with several objectives the hypervolume)
+/// against the number of evaluations; `size` pixels.
 pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<String, ReportError> {
     sheet("the convergence", size, |area| draw(area, record))
 }
@@ -39,8 +40,8 @@ pub(super) fn section(record: &StudyRecord, size: (u32, u32)) -> Result<Markup, 
     Ok(figure(&svg(record, size)?, "best value against evaluations", &caption))
 }
 
-/// Best value of a design that keeps all constraints after each evaluation, from the first
-/// such value on; of several objectives the hypervolume: `(evaluation, value)`.
+/// Returns `(evaluation, value)`: the best feasible value after each evaluation, from the first
+/// feasible one on; with several objectives the hypervolume.
 pub(super) fn best_so_far(record: &StudyRecord) -> Vec<(f64, f64)> {
     let goals = record.config.goals();
     let Some(measure) = goals.objectives.single() else {
@@ -63,7 +64,7 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
     let objectives = &record.config.objective;
     let best = best_so_far(record);
     let at = |r: &Recorded| Some((r.index as f64, r.value()?));
-    // The values of one of several objectives have no place beside a volume.
+    // With several objectives only the hypervolume is plotted.
     let values: Vec<f64> = match objectives.single() {
         Some(_) => record.evaluations.iter().filter_map(Recorded::value).collect(),
         None => best.iter().map(|b| b.1).collect(),

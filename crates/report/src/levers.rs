@@ -1,4 +1,4 @@
-//! What would help more than the infill: tornado diagram, table, JSON.
+//! Output of the lever analysis: tornado diagram, table, JSON.
 
 use super::chart::{Area, Drawn, around, rows, sheet, words as text_style};
 use super::marks::{bar, dashed, label};
@@ -9,7 +9,7 @@ use plotters::prelude::Color;
 use plotters::style::text_anchor::{HPos, VPos};
 use serde_json::{Value, json};
 
-/// The levers for other programs, the sentence first.
+/// Returns the levers as JSON, with the summary sentence.
 pub fn json(levers: &Levers) -> Value {
     let mut fields = json!({"sentence": levers.sentence()});
     if let (Some(fields), Value::Object(all)) = (fields.as_object_mut(), json!(levers)) {
@@ -18,17 +18,17 @@ pub fn json(levers: &Levers) -> Value {
     fields
 }
 
-/// Bar of a diagram: from the range of the finger as it is to those at both ends.
+/// Bar of the diagram: from the baseline range to the ranges at both ends.
 struct Bar<'a> {
     name: &'a str,
     span_mm: f64,
-    /// Range, mm, and what gives it.
+    /// Range, mm, and the value that produces it.
     ends: [(f64, String); 2],
     /// The lever; `None` for the infill.
     lever: Option<&'a Lever>,
 }
 
-/// The levers with the infill among them, largest span first.
+/// Returns the bars of the levers and the infill, largest span first.
 fn bars(levers: &Levers) -> Vec<Bar<'_>> {
     let bar = |lever: &'_ Lever| {
         let end = |end: usize| {
@@ -52,7 +52,7 @@ fn bars(levers: &Levers) -> Vec<Bar<'_>> {
     bars
 }
 
-/// The sentence, and a table of 80 columns with the sources below.
+/// Returns the summary sentence, and a table of 80 columns with the sources below.
 pub fn text(levers: &Levers) -> String {
     let base = levers.base;
     let mut text = format!(
@@ -80,17 +80,17 @@ pub fn text(levers: &Levers) -> String {
     text + &format!("\n{} windows{left_out}\nsources\n{sources}", levers.windows)
 }
 
-/// Width of the diagram, height of a row and of what is above and below them, room for the names;
-/// pixels.
+/// Dimensions in pixels: width of the diagram, height of a row, height above and below the rows,
+/// and room for the names.
 const WIDTH: u32 = 640;
 const ROW: u32 = 42;
 const HEAD_AND_FOOT: u32 = 110;
 const LEFT: u32 = 220;
-/// Size of the words: 12 pixels where the diagram is as wide as it was drawn.
+/// Font size in plot units: 12 pixels when the diagram is shown at full width.
 const TEXT: u32 = 15;
 
-/// Draws the ranges at both ends of each lever as bars from the range of the finger as it is, largest
-/// span first; the infill's in a colour of its own, grey what is too little to matter.
+/// Draws the ranges at both ends of each lever as bars from the baseline, largest span first. The
+/// infill has its own colour; negligible effects are grey.
 ///
 /// # Errors
 /// If the drawing library refuses.
@@ -103,7 +103,7 @@ pub fn svg(levers: &Levers) -> Result<String, ReportError> {
 fn draw(area: &Area<'_>, levers: &Levers, bars: &[Bar<'_>]) -> Drawn {
     let base = levers.base.range_mm;
     let ends = bars.iter().flat_map(|bar| [bar.ends[0].0, bar.ends[1].0]);
-    // Beside a bar is room for the words at its end.
+    // Leaves room beside the bars for the labels at their ends.
     let range = around(ends.chain([base]), 0.22);
     let (left, title) = (range.start, format!("{}: range with one number changed", levers.task));
     let now = format!("range (mm), now {base:.1}");

@@ -1,4 +1,4 @@
-//! How the trials of a study ended, and what decided its results.
+//! Outcomes of the trials of a study, and its settings and provenance.
 
 use super::elements::{definitions, table};
 use crate::answer::{Answer, command, lines, words};
@@ -10,9 +10,9 @@ use insertion::surrogate::Model;
 use maud::{Markup, html};
 use study::{Provenance, Recorded, StudyRecord};
 
-/// Key of the remote centre, where a space has it among its parameters.
+/// Key of the remote centre, for spaces that include it as a parameter.
 const REMOTE_CENTRE_KEY: &str = "finger.rcc_mm";
-/// Lines of the recommended finger that stand elsewhere on the page.
+/// Names of the lines on the recommended finger that appear elsewhere on the page.
 const SAID: [&str; 9] = [
     "best design",
     "firm range",
@@ -25,7 +25,7 @@ const SAID: [&str; 9] = [
     "  stiffest",
 ];
 
-/// What decided the results, how to read them, and how to make them again; folded.
+/// Returns collapsible sections: how to read the numbers, settings, and how to reproduce the study.
 pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
     let found = answer.recommended.iter().flat_map(|found| lines::recommended(answer, found));
     let found = found.filter(|_| answer.verdict.finger().is_some());
@@ -47,7 +47,7 @@ pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
     }
 }
 
-/// What limits the numbers.
+/// Returns notes on the limitations of the numbers.
 fn reading(answer: &Answer, model: &Model) -> Vec<String> {
     let goals = answer.record.config.goals();
     let robust = goals.need(Measure::RobustRange);

@@ -1,4 +1,4 @@
-//! The sheet to measure windows by hand: how, and boxes to fill in, on A4.
+//! Printable A4 sheet for measuring windows by hand: instructions and boxes to fill in.
 
 use super::elements::{inert, styled};
 use input::units::{DEG, MM};
@@ -7,9 +7,9 @@ use insertion::task::Task;
 use insertion::trial::Probe;
 use maud::{Markup, html};
 
-/// Boxes in a row: starts outward, or near an end.
+/// Number of boxes in a row.
 const BOXES: i32 = 12;
-/// What an insertion looks like, and each failure class.
+/// Description of a successful insertion, then of each failure class.
 const MEANINGS: [&str; 5] = [
     "seated, upright, held",
     "the plug slips out of the fingers before it is at the socket (drawn as that begins)",
@@ -18,19 +18,20 @@ const MEANINGS: [&str; 5] = [
     "the plug leaves the fingers, or slips in them, in search or push",
 ];
 
-/// How an insertion may end, as simulated.
+/// Example of an outcome, simulated.
 #[derive(Debug, Clone)]
 pub struct Picture {
-    /// How it ended.
+    /// The outcome.
     pub outcome: Outcome,
-    /// Plug, fingertips and socket at the end, seen along x.
+    /// Drawing of plug, fingertips and socket at the end, viewed along x.
     pub svg: String,
-    /// The task that it is of.
+    /// Name of the task.
     pub task: String,
 }
 
-/// The sheet as a page: how to measure on a task, as commands name it, then a page for each finger (infill
-/// density, percent, and direction, degrees); one picture of each outcome.
+/// Returns the sheet: instructions for the task, with a picture of each outcome, then a page for
+/// each finger (infill density, percent, and direction, degrees). `name` is the task as given to
+/// commands.
 pub fn page(task: &Task, name: &str, fingers: &[(f64, f64)], pictures: &[Picture]) -> String {
     let body = html! {
         section { (how(task, pictures)) }
@@ -68,7 +69,7 @@ fn how(task: &Task, pictures: &[Picture]) -> Markup {
     }
 }
 
-/// What tells the friction, before the first insertion with a finger.
+/// Returns the instructions for the friction probe before the first insertion with a finger.
 fn probe() -> Markup {
     let Probe { force, stroke, speed, slides } = Probe::USUAL;
     let [stroke, speed] = [stroke, speed].map(|length| length / MM);

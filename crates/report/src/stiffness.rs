@@ -1,4 +1,4 @@
-//! `optimize stiffness`: how well the stiffness model fits, as table, JSON and plot.
+//! Output of `optimize stiffness`: fit of the stiffness model, as table, JSON and plot.
 
 use super::chart::{Area, Drawn, around, axes, legend, message, sheet, words};
 use super::marks::{PointMark, dashed, line, points};
@@ -13,7 +13,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// Leave-one-out errors of every model on both axes, and what was chosen.
+/// Returns the leave-one-out errors of every model on both axes, and the models chosen.
 pub fn table(model: &Model) -> String {
     let mut text = format!(
         "Stiffness of one finger, fitted to {}{}.\n\
@@ -55,7 +55,7 @@ pub fn table(model: &Model) -> String {
     text
 }
 
-/// A number, or a dash where there is none.
+/// Formats a number; a dash if it is not finite.
 fn decimals(value: f64, places: usize) -> String {
     if value.is_finite() { format!("{value:.places$}") } else { "-".to_owned() }
 }
@@ -67,7 +67,8 @@ fn key(axis: Axis) -> &'static str {
     }
 }
 
-/// The same as JSON: `designs`, `models` (a list, one of each axis and model), `used` (per axis).
+/// Returns the content of [`table`] as JSON: `designs`, `models` (a list, one of each axis and
+/// model), `used` (per axis).
 pub fn json(model: &Model) -> Value {
     let models = model.loo.iter().map(|row| {
         json!({
@@ -93,8 +94,8 @@ pub fn json(model: &Model) -> Value {
     })
 }
 
-/// Four panels: both axes of stiffness against direction and against density, curves with a band of
-/// one standard deviation, and the measured designs.
+/// Plots both axes of stiffness against direction and against density, in four panels: curves with
+/// a band of one standard deviation, and the measured designs.
 pub fn svg(model: &Model) -> Result<String, ReportError> {
     sheet("the stiffness model", (1160, 880), |area| {
         let (head, body) = area.split_vertically(58);
@@ -113,7 +114,7 @@ pub fn svg(model: &Model) -> Result<String, ReportError> {
     })
 }
 
-/// Axis of stiffness, and whether a panel has the direction along x, not the density.
+/// Stiffness axis of each panel, and whether its x axis is the direction (otherwise the density).
 const PANELS: [(Axis, bool); 4] = [
     (Axis::Compliance, true),
     (Axis::Compliance, false),
@@ -121,13 +122,13 @@ const PANELS: [(Axis, bool); 4] = [
     (Axis::Assembly, false),
 ];
 
-/// Steps along a curve of a model that computes no finger.
+/// Steps along a curve if the model does not compute the mechanics of each finger.
 const SAMPLES: u32 = 80;
 
 const SERIES: [Colour; 3] = [BLUE, ORANGE, GREEN];
 
 fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> Drawn {
-    // Value along x, and value that tells the curves apart; the other way round as well.
+    // Maps (density, direction) to (value along x, value of the curve), and back.
     let swapped = |(density, direction): (f64, f64)| match by_direction {
         true => (direction, density),
         false => (density, direction),
@@ -147,8 +148,9 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> Drawn
     let span = limits.end - limits.start;
     let x = (limits.start - 0.15 * span).max(0.0)..limits.end + 0.2 * span;
     let curves = levels(measured.iter().map(|m| of(m).1));
-    // Each place may take the mechanics of a finger, a third of a second: then only the ends and where
-    // the other panel of the axis has its curves, so that both share them.
+    // If each point needs the mechanics of a finger (a third of a second), only the ends and the
+    // curve values of the other panel of the axis are used, so that both panels share the
+    // computations.
     let places: Vec<f64> = if model.ratios {
         let levels = levels(measured.iter().map(|m| of(m).0));
         [x.start].into_iter().chain(levels).chain([x.end]).collect()
@@ -194,7 +196,7 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> Drawn
     legend(&mut chart, corner)
 }
 
-/// In the colour of the nearest curve, filled if the design lies on it.
+/// Returns a mark in the colour of the nearest curve, filled if the design lies on it.
 fn mark(level: f64, curves: &[f64]) -> PointMark {
     let distances = curves.iter().map(|curve| (curve - level).abs()).zip(SERIES);
     let nearest = distances.min_by(|a, b| a.0.total_cmp(&b.0));
@@ -202,7 +204,7 @@ fn mark(level: f64, curves: &[f64]) -> PointMark {
     if distance < 1e-9 { PointMark::disc(colour, 5) } else { PointMark::ring(colour, 5, 2) }
 }
 
-/// Smallest, middle and largest of the distinct values.
+/// Returns the smallest, middle and largest of the distinct values.
 fn levels(values: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut sorted = sorted(values);
     sorted.dedup();

@@ -1,4 +1,4 @@
-//! The designs that are as good as the recommended one, and which of them is the safe choice.
+//! Designs as good as the recommended one, and the safe choice among them.
 
 use super::trust::Measured;
 use input::units::N_PER_MM;
@@ -6,21 +6,21 @@ use insertion::evaluation::objective::Measure;
 use insertion::space::label;
 use study::{Recorded, StudyRecord};
 
-/// The designs within the study's indifference of the recommended one.
+/// Designs within the study's indifference threshold of the recommended one.
 #[derive(Debug, Clone)]
 pub struct AsGood<'a> {
-    /// They themselves, the recommended one with them, by evaluation; and what each loses against it
-    /// in the first objective.
+    /// The designs in order of evaluation, including the recommended one, each with its loss
+    /// against the recommended one in the first objective.
     pub designs: Vec<(&'a Recorded, f64)>,
-    /// Smallest and largest value of each parameter that the space leaves free.
+    /// Smallest and largest value of each free parameter of the space.
     pub spread: Vec<Spread<'a>>,
-    /// Share of the space that lies nearest to one of them, 0 to 1: their number says little, since a
-    /// search looks most where it is best.
+    /// Share of the space that is nearest to one of them, 0 to 1. Their number is less informative,
+    /// since a search samples good regions more densely.
     pub share: f64,
-    /// Which to take for other reasons: the reason, the design, what is least or most of it and the
-    /// unit of that; none if there is no other.
+    /// Alternatives for other reasons: reason, design, its extreme value and the unit of that
+    /// value. Empty if there is only one design.
     pub alternatives: Vec<(&'static str, &'a Recorded, f64, &'static str)>,
-    /// Which to take without a reason of one's own; `None` if there is no other.
+    /// Default choice; `None` if there is only one design.
     pub safe: Option<Safe<'a>>,
 }
 
@@ -38,11 +38,11 @@ pub struct Spread<'a> {
 pub struct Safe<'a> {
     /// The design.
     pub design: &'a Recorded,
-    /// Its range on a robot, mm, if it was measured; else it is the one of least force.
+    /// Its range measured on a robot, mm; if `None`, it was chosen for its least force.
     pub measured_mm: Option<f64>,
     /// Largest contact force, N, if any trial inserted.
     pub force_n: Option<f64>,
-    /// What it loses against the recommended one, in the unit of the first objective.
+    /// Loss against the recommended one, in the unit of the first objective.
     pub loss: f64,
 }
 
@@ -65,7 +65,7 @@ impl<'a> AsGood<'a> {
         let designs = record.as_good(index);
         let force = |r: &Recorded| record.measure(r, Measure::PeakForce);
         let stiffness = |r: &Recorded| r.stiffness.compliance.mean / N_PER_MM;
-        // Without a second there is nothing to choose.
+        // With a single design there is no choice.
         let among = if designs.len() < 2 { &[] } else { &designs[..] };
         let forces = || among.iter().filter_map(|&(design, _)| Some((design, force(design)?)));
         let stiffnesses = || among.iter().map(|&(design, _)| (design, stiffness(design)));
@@ -103,10 +103,10 @@ impl<'a> AsGood<'a> {
     }
 }
 
-/// Points of the space that are asked which design they lie nearest to.
+/// Number of points at which the nearest design is determined.
 const ASKED: u32 = 500;
 
-/// Share of evenly spread points whose nearest design, parameters over their spans, is in the set.
+/// Share of evenly spread points whose nearest design is in the set; parameters are scaled by span.
 fn share(record: &StudyRecord, set: &[(&Recorded, f64)]) -> f64 {
     let space = &record.config.space;
     let unit = |design: &Recorded| -> Vec<f64> {
@@ -118,7 +118,7 @@ fn share(record: &StudyRecord, set: &[(&Recorded, f64)]) -> f64 {
         .iter()
         .map(|found| (unit(found), set.iter().any(|(member, _)| member.index == found.index)))
         .collect();
-    // Roberts' sequence: the root of x^(d + 1) = x + 1 fills d dimensions evenly.
+    // Roberts' low-discrepancy sequence in d dimensions, from the root of x^(d + 1) = x + 1.
     let dimension = space.parameters.len() as u32;
     let root = (0..60).fold(1.5_f64, |x, _| libm::pow(1.0 + x, 1.0 / f64::from(dimension + 1)));
     let within = |&number: &u32| {

@@ -1,5 +1,5 @@
-//! Answer of a study, found once from its record: terminal, page, JSON and Python say it, and
-//! compute nothing of their own. Lengths in mm, forces in N.
+//! Answer of a study, computed once from its record. Terminal, page, JSON and Python only format
+//! it. Lengths in mm, forces in N.
 
 mod alike;
 pub mod command;
@@ -25,50 +25,51 @@ pub use start::Start;
 pub use trust::{Measured, Trust};
 pub use verdict::{Verdict, expectation};
 
-/// The answer of a study.
+/// Answer of a study.
 #[derive(Debug, Clone)]
 pub struct Answer<'a> {
     /// The study.
     pub record: &'a StudyRecord,
-    /// What to do.
+    /// Recommended action.
     pub verdict: Verdict<'a>,
-    /// How far to trust it.
+    /// Trustworthiness of the result.
     pub trust: Trust,
-    /// Designs that count: the evaluations of the present model.
+    /// Number of designs evaluated with the current model.
     pub designs: usize,
-    /// Number of them that keep all constraints and have a value.
+    /// Number of them that satisfy all constraints and have a value.
     pub feasible: usize,
-    /// The recommended design, or of a front its first; `None` if none has a value and keeps all
-    /// constraints.
+    /// Recommended design, or the first of a front; `None` if no design has a value and satisfies
+    /// all constraints.
     pub recommended: Option<Recommended<'a>>,
-    /// The design that violates the constraints least, and each constraint with its value, in
-    /// words; `None` if none has values.
+    /// Design with the least constraint violation, and a description of each constraint with its
+    /// value; `None` if no design has values.
     pub nearest: Option<(&'a Recorded, Vec<String>)>,
-    /// The designs that were walked, step by step, and repeated at their ends, best first; each with
-    /// its firm range, mm, aggregated over the tasks.
+    /// Designs confirmed step by step with repeats at the window ends, best first, each with its
+    /// firm range, mm, aggregated over the tasks.
     pub walked: Vec<(&'a Recorded, f64)>,
-    /// Front of several objectives, to choose from; `None` for a single one.
+    /// Pareto front to choose from; `None` for a single objective.
     pub front: Option<Front<'a>>,
-    /// The smallest and the largest range of the designs, mm; `None` if none has a range.
+    /// Smallest and largest range of the designs, mm; `None` if no design has a range.
     pub spread_mm: Option<[f64; 2]>,
-    /// The fingers that were measured on a robot: those given to the study, else the published ones;
-    /// none of several tasks.
+    /// Fingers measured on a robot: those given to the study, else the published ones; empty for
+    /// several tasks unless measurements were given.
     pub measured: Vec<Measured>,
-    /// How our simulation orders fingers on the bench, for the tasks of which that is known.
+    /// Agreement of simulated and measured rankings of fingers, for the tasks for which it is
+    /// known.
     pub orders: Vec<(&'a str, Order)>,
 }
 
-/// Designs none of which is at least as good as another in all objectives.
+/// Pareto front: non-dominated designs.
 #[derive(Debug, Clone)]
 pub struct Front<'a> {
     /// The designs, best in the first objective first.
     pub designs: Vec<&'a Recorded>,
-    /// Volume that they dominate.
+    /// Hypervolume that they dominate.
     pub volume: Volume,
 }
 
 impl<'a> Answer<'a> {
-    /// The answer of a study as it stands.
+    /// Computes the answer of a study in its current state.
     pub fn of(record: &'a StudyRecord) -> Self {
         let (config, current) = (&record.config, record.current());
         let front = || Front { designs: record.front(), volume: volume(&config.goals(), current) };
@@ -101,8 +102,8 @@ impl<'a> Answer<'a> {
         answer
     }
 
-    /// The evaluation of the finger that the verdict names, or would without measurements; `None` if
-    /// there is none to print.
+    /// Returns the evaluation of the finger that the verdict recommends, or would recommend without
+    /// measurements; `None` if there is none to print.
     pub fn named(&self) -> Option<&'a Recorded> {
         let found = self.recommended.as_ref()?;
         match (&self.verdict, &found.as_good) {
@@ -112,8 +113,8 @@ impl<'a> Answer<'a> {
         }
     }
 
-    /// The finger that the verdict names, and what simulation finds of it on each task; `None` if it
-    /// names none.
+    /// Returns the finger that the verdict recommends and its simulated evaluation on each task;
+    /// `None` if it recommends none.
     pub fn shown(&self) -> Option<(&'a Design, Vec<&'a Evaluation>)> {
         let finger = self.verdict.finger()?;
         match &self.record.on_bench {
@@ -123,7 +124,7 @@ impl<'a> Answer<'a> {
     }
 }
 
-/// The fingers that were measured on a robot: those given to the study, else the published ones.
+/// Returns the fingers measured on a robot: those given to the study, else the published ones.
 fn measured(record: &StudyRecord) -> Vec<Measured> {
     let given = record.on_bench.as_ref().map(|found| {
         let ranges = found.ranges.iter();

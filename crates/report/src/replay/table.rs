@@ -1,4 +1,4 @@
-//! A recording as a table: one line each millisecond, units in the header.
+//! CSV table of a recording: one line per millisecond, units in the header.
 
 use input::units::MM;
 use insertion::trial::Recording;
@@ -8,7 +8,7 @@ const HEADER: &str = "time_s,phase,force_n,force_x_n,force_y_n,force_z_n,depth_m
     tip_x_mm,tip_y_mm,tip_z_mm,finger_minus_y_bend_y_mm,finger_minus_y_bend_z_mm,\
     finger_plus_y_bend_y_mm,finger_plus_y_bend_z_mm,contact_points";
 
-/// The table as CSV.
+/// Returns the recording as CSV.
 pub fn csv(recording: &Recording) -> String {
     let mut out = HEADER.to_owned() + "\n";
     for frame in &recording.frames {
@@ -26,7 +26,7 @@ pub fn csv(recording: &Recording) -> String {
     out
 }
 
-/// The phase at a time; the last one from its end on.
+/// Returns the phase at a time; after the end the last one.
 fn phase(recording: &Recording, time_s: f64) -> &str {
     let phases = &recording.trial.phases;
     let now = phases.iter().find(|phase| time_s <= phase.time_s + 1e-9).or(phases.last());

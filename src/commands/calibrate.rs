@@ -1,4 +1,4 @@
-//! `optimize calibrate`: what few measurements say of every finger.
+//! `optimize calibrate`: predicts all fingers from simulation and a few measurements.
 
 use crate::command;
 use crate::context::Context;

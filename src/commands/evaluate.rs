@@ -1,4 +1,4 @@
-//! `optimize evaluate`: the tolerance window of one finger.
+//! `optimize evaluate`: measures the tolerance window of one finger.
 
 use crate::command;
 use crate::context::{Context, not_stopped};
@@ -53,7 +53,7 @@ pub struct Request {
     pub no_ribs: bool,
 }
 
-/// Measurements of a finger.
+/// Evaluation of a finger.
 #[derive(Serialize)]
 pub struct Evaluated {
     /// The finger on its task.
@@ -64,10 +64,10 @@ pub struct Evaluated {
     pub evaluation: Evaluation,
     /// Wall-clock duration of the evaluation, s.
     pub wall_s: f64,
-    /// Bands at the window's ends in which repeats differ, if there is a window and repeats were asked for.
+    /// Bands at the window's ends in which repeats differ; `None` without a window or repeats.
     #[serde(serialize_with = "serialize_bands", skip_serializing_if = "Option::is_none")]
     pub bands: Option<Bands>,
-    /// The same finger with springs computed from its ribs, if that was asked for.
+    /// The same finger with springs computed from its ribs, if requested.
     #[serde(
         rename = "computed",
         serialize_with = "computed",
@@ -101,7 +101,7 @@ impl command::Request for Request {
 }
 
 impl Request {
-    /// Returns all that is needed beside the finger.
+    /// Returns setup and plan of the evaluation.
     pub(crate) fn prepared(&self) -> Result<(Setup, Plan), Failure> {
         let mut setup = self.setup.setup()?;
         if let Some(name) = &self.uncertainty {
@@ -115,9 +115,9 @@ impl Request {
         if self.walk { Search::Walk } else { Search::Strides }
     }
 
-    /// Measures the finger once more, from its ribs, with the start taught where the task's own does
-    /// not insert; nothing if a finger model was asked for, if the finger is given by its springs, or
-    /// if the engine has no such fingers.
+    /// Evaluates the finger again with springs computed from its ribs; the start is taught if the
+    /// task's own start does not insert. Returns `None` if a finger model was requested, if the
+    /// finger is given by its springs, or if this model is not available.
     fn by_ribs(
         &self,
         setup: &Setup,
@@ -140,7 +140,7 @@ impl Request {
     }
 }
 
-/// The window of the one task, or why there is none.
+/// Serializes the evaluation, or the reason why there is none.
 fn computed<S: Serializer>(by_ribs: &Option<ByRibs>, serializer: S) -> Result<S::Ok, S::Error> {
     match by_ribs {
         None => serializer.serialize_none(),

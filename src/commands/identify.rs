@@ -1,4 +1,4 @@
-//! `optimize identify`: from the robot's logs to the numbers of its cell.
+//! `optimize identify`: estimates the parameters of a cell from the robot's logs.
 
 use crate::command;
 use crate::context::{Context, not_stopped};
@@ -57,9 +57,9 @@ pub struct Request {
     pub seed: u64,
 }
 
-/// What the logs say of the cell.
+/// Result of the identification.
 pub struct Done {
-    /// The numbers of the cell.
+    /// Identified parameters of the cell.
     pub done: IdentifyDone,
     written: Vec<PathBuf>,
 }
@@ -127,7 +127,7 @@ impl fmt::Display for Done {
     }
 }
 
-/// What was identified, as a cell file.
+/// Returns the identified parameters as a cell file.
 fn cell(setup: &Setup, found: &Identified, logs: usize) -> Priors {
     let task = setup.task_names().concat();
     Priors {
@@ -139,7 +139,7 @@ fn cell(setup: &Setup, found: &Identified, logs: usize) -> Priors {
     }
 }
 
-/// A robot file of this robot: a soft flange, or the file that it was read from.
+/// Returns the robot as a robot file: the identified soft flange, otherwise the original file.
 fn robot_table(setup: &Setup, robot: &Robot) -> Option<toml::Table> {
     let (Drive::Servo(servo), true) = (&robot.drive, *robot != setup.evaluator.robot) else {
         return setup.inputs.get("robot")?.parse().ok();

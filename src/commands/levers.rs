@@ -1,4 +1,4 @@
-//! `optimize levers`: what would help more than the infill.
+//! `optimize levers`: one-at-a-time sensitivity of the range to numbers other than the infill.
 
 use crate::command;
 use crate::context::{Context, not_stopped};
@@ -36,7 +36,7 @@ pub struct Request {
     pub svg: Option<PathBuf>,
 }
 
-/// Levers of a finger, the sentence first.
+/// Levers of a finger, with a summary sentence.
 #[derive(Serialize)]
 pub struct Found {
     sentence: String,
@@ -48,7 +48,7 @@ pub struct Found {
 impl command::Request for Request {
     type Response = Found;
 
-    /// Measures the levers, and the softest and the stiffest infill of the space beside them.
+    /// Measures the levers, and the softest and the stiffest infill of the space for comparison.
     fn run(&self, context: &Context<'_>) -> Result<Found, Failure> {
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
@@ -74,8 +74,8 @@ impl fmt::Display for Found {
     }
 }
 
-/// Measures the levers of a design on one of the setup's tasks, its stiffness predicted unless given; `infill`
-/// is the smallest and largest range over infills, mm, if that is known.
+/// Measures the levers of a design on one of the setup's tasks. The stiffness is predicted unless
+/// given; `infill` is the smallest and largest range over infills, mm, if known.
 pub(crate) fn levers(
     setup: &Setup,
     template: &Template,

@@ -1,4 +1,4 @@
-//! `optimize man`: the command line, described for `man`.
+//! `optimize man`: prints the manual page.
 
 use crate::command::{self, Text};
 use crate::context::Context;

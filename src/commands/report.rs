@@ -1,4 +1,4 @@
-//! `optimize report`: the tables and plots of a study made again.
+//! `optimize report`: rewrites the tables and plots of a study.
 
 use crate::command;
 use crate::context::Context;
@@ -16,7 +16,7 @@ pub struct Request {
     pub dir: PathBuf,
 }
 
-/// Page that was written.
+/// Report page that was written.
 #[derive(Serialize)]
 pub struct Written {
     page: PathBuf,

@@ -34,7 +34,7 @@ impl command::Request for Request {
 }
 
 impl Request {
-    /// Opens the study to go on with it.
+    /// Opens the study to continue it.
     pub fn open(&self) -> Result<OpenStudy, Failure> {
         let mut study = Study::resume(&self.dir)?;
         let no_confirm = study.config.conclusion.no_confirm || self.run.no_confirm;

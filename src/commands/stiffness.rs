@@ -1,4 +1,4 @@
-//! `optimize stiffness`: the stiffness model and how well it fits.
+//! `optimize stiffness`: shows the stiffness model and its goodness of fit.
 
 use crate::command;
 use crate::context::Context;
@@ -38,7 +38,7 @@ pub struct Request {
     pub infill: InfillRequest,
 }
 
-/// Model of the stiffness, and what it predicts if that was asked for.
+/// Stiffness model, and its prediction for an infill if one was given.
 pub struct Fitted {
     model: Arc<Model>,
     predicted: Option<Prediction>,

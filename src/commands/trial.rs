@@ -1,4 +1,4 @@
-//! `optimize trial`: one simulated insertion.
+//! `optimize trial`: simulates one insertion.
 
 use crate::command;
 use crate::context::{Context, not_stopped};
@@ -86,23 +86,23 @@ pub struct Done {
     pub chosen: Chosen,
     /// Shift of the start along y, mm.
     pub offset_mm: f64,
-    /// How it ended.
+    /// The trial.
     #[serde(flatten, serialize_with = "whole")]
     pub trial: Trial,
-    /// By how much the task's start was moved before that, grid steps, if it is taught.
+    /// Shift of the taught start from that of the task, grid steps, if the start is taught.
     #[serde(
         rename = "taught_start_mm",
         serialize_with = "taught_mm",
         skip_serializing_if = "Option::is_none"
     )]
     pub taught: Option<OffsetStep>,
-    /// How often each outcome was met in the repeats, if they were asked for.
+    /// Number of repeats with each outcome, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub repeats: Option<BTreeMap<String, usize>>,
-    /// Its course from the start of the search on, if that was asked for.
+    /// Time series from the start of the search on, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<Series>,
-    /// The page that plays it, if it was asked for.
+    /// Replay page, if requested.
     #[serde(rename = "film", skip_serializing_if = "Option::is_none")]
     pub page: Option<String>,
     /// Files that were written.
@@ -164,12 +164,12 @@ impl command::Request for Request {
     }
 }
 
-/// Course of a trial from the start of the search on, a value for each sample.
+/// Time series of a trial from the start of the search on, one value per sample.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Series {
     /// Simulated time since the trial began, s.
     pub time_s: Vec<f64>,
-    /// Place of the phase among the trial's phases.
+    /// Index of the phase among the trial's phases.
     pub phase: Vec<u32>,
     /// Position of the TCP, mm.
     pub tcp_mm: Vec<[f64; 3]>,
@@ -197,7 +197,7 @@ impl Series {
     }
 }
 
-/// How a trial ended, by the keys of `--json`.
+/// Result of a trial, as in the output of `--json`.
 #[derive(Serialize)]
 pub struct Ended<'a> {
     outcome: &'a str,

@@ -1,4 +1,4 @@
-//! `optimize export finger`: a finger for the printer.
+//! `optimize export finger`: exports a finger for printing.
 
 use crate::command;
 use crate::context::Context;
@@ -60,11 +60,11 @@ pub enum Format {
 /// Files that were written.
 #[derive(Serialize)]
 pub struct Written {
-    /// The one asked for.
+    /// The requested file.
     out: PathBuf,
     /// Title of the finger.
     title: String,
-    /// For a slicer outline and base.
+    /// Outline and base, for slicer settings.
     beside: Vec<PathBuf>,
 }
 
@@ -137,7 +137,7 @@ fn page(request: &PrintRequest, geometry: &Geometry, out: &Path) -> Result<Strin
     Ok(write(geometry, &AtPad { ribs: &ribs, measured }))
 }
 
-/// Writes settings for a slicer, and beside them outline and base.
+/// Writes settings for a slicer, and next to them outline and base.
 fn settings(out: &Path, geometry: &Geometry, text: &str) -> Result<Vec<PathBuf>, Failure> {
     let title = export::title(geometry);
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
@@ -147,7 +147,7 @@ fn settings(out: &Path, geometry: &Geometry, text: &str) -> Result<Vec<PathBuf>,
         (&outline, closed(Prism::outline(geometry), geometry)?.stl(&format!("{title}, outline"))),
         (&base, closed(Prism::base(geometry), geometry)?.stl(&format!("{title}, solid base"))),
     ];
-    // Nobody named these files.
+    // The user did not name these files, so existing ones must not be overwritten.
     for (file, content) in &parts {
         if std::fs::read(file).is_ok_and(|found| found != *content) {
             let problem = "is there already, with other contents; remove it, or give another --out";

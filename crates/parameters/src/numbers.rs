@@ -32,7 +32,7 @@ pub const START_TILT: &str = "cell.start_tilt_deg";
 /// Rotation of the socket about z.
 pub const SOCKET_YAW: &str = "cell.socket_yaw_deg";
 
-/// How a number is set.
+/// Object on which a number is set, and how.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// A coordinate of the infill.
@@ -56,7 +56,7 @@ pub enum Kind {
 pub struct Number {
     /// Pattern of the paths.
     pub pattern: &'static str,
-    /// How it is set.
+    /// Object on which it is set.
     pub kind: Kind,
     /// Smallest and largest plausible value.
     pub bounds: [f64; 2],

@@ -44,7 +44,7 @@ impl Path {
         &self.text
     }
 
-    /// How the number is set.
+    /// Returns the object on which the number is set.
     pub fn kind(&self) -> Kind {
         self.number.kind
     }

@@ -37,7 +37,7 @@ pub struct Request {
     pub out: PathBuf,
 }
 
-/// What to write of a finger.
+/// Output format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Format {
     /// Closed surface, binary, mm

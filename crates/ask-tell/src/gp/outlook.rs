@@ -61,7 +61,7 @@ pub struct Confirmed {
     pub last: bool,
 }
 
-/// What to do next.
+/// Recommended next step.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Advice {
     /// Confirm these points, or confirm them further; indices into the observations.

@@ -48,7 +48,8 @@ pub struct Request {
     #[command(flatten)]
     pub repeat: Option<RepeatRequest>,
     /// Leave out the window with springs computed from the ribs
-    // On which of the two the bench agrees depends on the task (docs/notes/finger.md).
+    // Which of the two models agrees better with the bench depends on the task
+    // (docs/notes/finger.md).
     #[arg(long, hide = true)]
     pub no_ribs: bool,
 }

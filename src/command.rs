@@ -60,7 +60,7 @@ impl Response for Text {}
 /// Result of a command as other programs take it.
 #[derive(Debug)]
 pub struct Called {
-    /// What `--json` prints.
+    /// Output of `--json`.
     pub json: String,
     /// SVG or page that shows the result, if there is one.
     pub picture: Option<String>,

@@ -14,7 +14,7 @@ const GRACE: Duration = Duration::from_millis(400);
 /// Set by Ctrl-C or a polite kill.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// What may cancel a command, and who sees how far it is.
+/// Surroundings of a command: cancellation and progress.
 pub struct Context<'a> {
     /// Cancels the command once it is set.
     pub stop: &'a AtomicBool,

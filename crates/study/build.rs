@@ -4,7 +4,7 @@ use sha2::{Digest, Sha256};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What decides the evaluation of a design.
+/// Sources that decide the evaluation of a design.
 const SIMULATION: [&str; 11] = [
     "Cargo.lock",
     "crates/ask-tell/src/normal.rs",
@@ -18,7 +18,7 @@ const SIMULATION: [&str; 11] = [
     "crates/parameters",
     "data",
 ];
-/// What else decides the course of a study and what it recommends.
+/// Further sources that decide the course and the recommendation of a study.
 const STUDY: [&str; 3] = ["crates/ask-tell", "crates/calibration", "crates/study"];
 /// The workspace, in which these paths lie.
 const WORKSPACE: &str = "../..";

@@ -56,7 +56,7 @@ pub struct Arguments {
     strides: bool,
     #[command(flatten)]
     finger_model: FingerModelRequest,
-    /// What becomes of the nominal start, in place of what the task file says
+    /// How the nominal start is chosen, in place of the task file's rule
     #[arg(long, value_enum)]
     start: Option<StartRule>,
     /// Folder that tables are written to

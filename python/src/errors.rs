@@ -97,7 +97,7 @@ pub fn placed(place: Place, error: PyErr) -> PyErr {
     set.map_or_else(|other| other, |()| error)
 }
 
-/// What a signal has raised: Ctrl-C as the library has it.
+/// Converts an exception raised by a signal: Ctrl-C becomes the library's error.
 pub fn signalled(error: PyErr) -> PyErr {
     match Python::with_gil(|py| error.get_type(py).is(&PyKeyboardInterrupt::type_object(py))) {
         true => Interrupted::new_err("interrupted"),

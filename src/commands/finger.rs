@@ -53,7 +53,7 @@ pub struct Request {
     /// Draw the finger, at rest and under a force on its pad
     #[arg(long, value_name = "FILE.svg")]
     pub svg: Option<PathBuf>,
-    /// That force, N: y towards the part, z up; as -5,0 is a grasp, 0,10 a part that pulls up
+    /// Force on the pad, N: y towards the part, z up; -5,0 is a grasp, 0,10 a part that pulls up
     #[arg(long, value_name = "Y,Z", default_value = "-5,0", value_parser = load,
         allow_hyphen_values = true)]
     pub load_n: [f64; 2],

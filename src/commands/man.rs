@@ -9,7 +9,7 @@ use crate::manual;
 #[derive(Debug, clap::Args)]
 #[command(display_order = 92, after_help = "Example: optimize man > optimize.1")]
 pub struct Request {
-    /// What is printed
+    /// Format of the output
     #[arg(long, value_enum, hide = true, default_value_t)]
     pub format: Format,
 }

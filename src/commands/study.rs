@@ -65,22 +65,22 @@ pub struct Request {
     #[arg(long, value_name = "NAME", default_value = "range",
           value_parser = Words::<Objectives>::new(Measure::ALL.map(Measure::name)))]
     pub objective: Objectives,
-    /// What a design must keep to, as in 'peak-force<=30' or 'success-rate>=0.9'; may be given
+    /// Constraint on a design, for example 'peak-force<=30' or 'success-rate>=0.9'; may be given
     /// several times
     #[arg(long = "constraint", value_name = "LIMIT")]
     pub constraints: Vec<Constraint>,
     /// Errors for success-rate and robust-range: typical, or the path of a file [default: typical]
     #[arg(long, value_name = "NAME")]
     pub uncertainty: Option<String>,
-    /// What was measured on the bench, published or the path of a file: the study then ends with
+    /// Bench measurements, published or the path of a file: the study then ends with
     /// the finger that is best there, predicted from all simulations and these measurements
     #[arg(long, value_name = "FILE")]
     pub measurements: Option<String>,
-    /// What nobody measured, and its bounds, for --measurements: bench, or the path of a file
+    /// Priors of the parameters that were not measured, for --measurements: bench, or the path of a file
     /// [default: bench]
     #[arg(long, value_name = "NAME")]
     pub priors: Option<String>,
-    /// What is made of the values of several tasks [default: min]
+    /// Aggregation over several tasks [default: min]
     #[arg(long, value_enum)]
     pub aggregate: Option<AggregateKind>,
     /// Weight of each task, by commas, for --aggregate weighted

@@ -64,7 +64,7 @@ pub struct Request {
     /// Simulated time between two samples of the course, s, in the JSON
     #[arg(long, value_name = "S", hide = true, value_parser = sampling)]
     pub every_s: Option<f64>,
-    /// What is recorded.
+    /// Recording of the trial.
     #[command(flatten)]
     pub film: FilmRequest,
     /// Write force and pose at 500 Hz, as a robot logs them, from the search on

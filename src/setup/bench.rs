@@ -34,7 +34,7 @@ pub struct BenchRequest {
     /// Tasks, robot, space, finger model.
     #[command(flatten)]
     pub setup: SetupRequest,
-    /// What was measured on the bench: published, or the path of a file
+    /// Bench measurements: published, or the path of a file
     #[arg(long, value_name = "FILE")]
     pub measurements: String,
 }
@@ -46,7 +46,7 @@ pub struct BenchRequest {
 )))]
 #[command(mut_arg("no_cache", |off| off.help("Simulate anew, and keep nothing")))]
 pub struct HowCalibrated {
-    /// What nobody measured, and its bounds: bench, or the path of a file
+    /// Priors of the parameters that were not measured: bench, or the path of a file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_PRIORS)]
     pub priors: String,
     /// How much is computed.
@@ -121,7 +121,7 @@ pub(crate) fn folds(done: usize, of: usize) -> Part {
 pub(crate) struct Ground<'a> {
     /// Tasks, robot, fingers, space.
     pub setup: &'a Setup,
-    /// What nobody measured.
+    /// Priors of the parameters that were not measured.
     pub priors: &'a Priors,
     /// Simulations per task.
     pub simulations: usize,
@@ -129,7 +129,7 @@ pub(crate) struct Ground<'a> {
     pub seed: u64,
     /// Where they are kept, if they are.
     pub cache: Option<PathBuf>,
-    /// What may cancel it, and who sees how far it is.
+    /// Cancellation and progress.
     pub context: &'a Context<'a>,
 }
 

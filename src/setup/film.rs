@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use study::write_file;
 
-/// What is made of a recorded trial.
+/// Outputs of a recorded trial.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct FilmRequest {
     /// Record the trial: a page that plays it, or a table of every millisecond

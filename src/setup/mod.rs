@@ -48,7 +48,7 @@ pub struct Setup {
     pub measured: Option<Measured>,
     /// The texts all this was read from.
     pub inputs: Inputs,
-    /// What messages call the task files: their paths, as they were given.
+    /// Names of the task files in messages: their paths, as they were given.
     pub task_files: Vec<String>,
 }
 

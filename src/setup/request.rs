@@ -65,7 +65,7 @@ impl TaskSource {
     }
 }
 
-/// What a trial, an evaluation, a calibration and a study have in common.
+/// Options that a trial, an evaluation, a calibration and a study share.
 #[derive(Debug, Clone, clap::Args)]
 pub struct SetupRequest {
     /// Task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas
@@ -90,7 +90,7 @@ pub struct SetupRequest {
     /// Where the springs of a finger come from that were not measured.
     #[command(flatten)]
     pub finger_model: FingerModelRequest,
-    /// What becomes of the nominal start, in place of what the task file says
+    /// How the nominal start is chosen, in place of the task file's rule
     #[arg(long, value_enum)]
     pub start: Option<StartRule>,
 }

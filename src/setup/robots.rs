@@ -16,7 +16,7 @@ pub struct ForCell {
     /// Its description.
     #[serde(default)]
     pub description: String,
-    /// What it gives at the TCP along x, y and z, upright, N/mm; `None` of one that does not give.
+    /// Stiffness at the TCP along x, y and z, upright, N/mm; `None` of a rigid robot.
     pub stiffness_n_per_mm: Option<[f64; 3]>,
     /// By how much it trails a command of constant speed, s.
     #[serde(default)]

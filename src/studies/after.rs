@@ -1,4 +1,4 @@
-//! What is measured of the finger that a study names after its answer.
+//! Analyses of the recommended finger after the answer of a study.
 
 use super::around::{Around, LEVERS, MAPS, ROBOTS, subject, write};
 use super::open::Ended;

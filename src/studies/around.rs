@@ -16,10 +16,10 @@ pub(crate) const LEVERS: &str = "levers.json";
 pub(crate) const MAPS: &str = "maps.json";
 pub(crate) const ROBOTS: &str = "robots.json";
 
-/// What is known of the named finger beside its window.
+/// Analyses of the recommended finger beside its window.
 #[derive(Debug, Clone, Default)]
 pub struct Around {
-    /// What would help it more than its infill.
+    /// Its levers, if they were measured.
     pub levers: Option<Levers>,
     /// How insertions end over two errors of the start.
     pub maps: Vec<CaptureMap>,
@@ -37,7 +37,7 @@ struct Kept<T> {
 }
 
 impl Around {
-    /// What the folder of a study holds of the finger that it names.
+    /// Reads the analyses of the recommended finger from the folder of a study.
     pub(crate) fn read(dir: &Path, record: &StudyRecord) -> Self {
         let Some((provenance, design)) = subject(record) else { return Around::default() };
         let levers: Option<Levers> = read(&dir.join(LEVERS), (&provenance, &design));
@@ -61,7 +61,7 @@ pub(crate) fn subject(record: &StudyRecord) -> Option<(Provenance, Design)> {
     one.then_some((provenance, design))
 }
 
-/// What a file holds; `None` where it is missing, damaged or of something else.
+/// Reads a file; `None` where it is missing, damaged or of something else.
 fn read<T: DeserializeOwned>(
     path: &Path,
     (provenance, design): (&Provenance, &Design),

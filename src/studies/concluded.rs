@@ -16,7 +16,7 @@ use std::sync::{Mutex, PoisonError};
 pub struct Concluded {
     ended: Ended,
     around: Around,
-    /// What remains to be printed.
+    /// Text that remains to be printed.
     rest: String,
     /// Why levers and maps are missing, if that failed.
     failed: Mutex<Option<Failure>>,

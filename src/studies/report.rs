@@ -35,7 +35,7 @@ pub(crate) fn write(dir: &Path, record: &StudyRecord, model: &Model) -> Result<(
     Ok(())
 }
 
-/// What the study kept beside its page.
+/// Reads the analyses that the study kept beside its page.
 fn beside(dir: &Path, record: &StudyRecord) -> Result<Beside, Failure> {
     let read = |name: &str| files::read_own(&dir.join(name), LARGEST_OWN).ok();
     let names = printer::FILES.iter().map(|(name, _)| *name);

@@ -226,7 +226,7 @@ impl Check<'_> {
     /// The values, if each passes a check of one value, such as [`Check::finite`].
     ///
     /// # Errors
-    /// That of the first value that does not.
+    /// Error of the first value that fails the check.
     pub fn each<const N: usize>(
         &self,
         key: &str,

@@ -58,7 +58,7 @@ pub const UNCERTAINTIES: &[Shipped] = shipped! { "typical": "uncertainties/typic
 /// Distributions of what nobody measured in a cell, for `calibrate`.
 pub const PRIORS: &[Shipped] = shipped! { "bench": "priors/bench.toml" };
 
-/// What a user can change of a cell beside the infill, for `levers`.
+/// Numbers of a cell that a user can change beside the infill, for `levers`.
 pub const LEVERS: Shipped = Shipped {
     name: "levers",
     file: "priors/levers.toml",

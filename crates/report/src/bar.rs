@@ -143,7 +143,7 @@ fn percent(value: f64) -> String {
     format!("{value:.1}%")
 }
 
-/// What ends a bar, in a word.
+/// Returns the outcome at the end of a bar in a word.
 fn short(end: Option<Outcome>) -> &'static str {
     match end {
         Some(Outcome::Failed(class)) => class.short(),

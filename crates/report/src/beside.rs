@@ -18,7 +18,7 @@ pub struct Beside {
     pub files: Vec<&'static str>,
     /// Where nothing inserts, an SVG of the design that comes nearest at the nominal start.
     pub nominal: Option<String>,
-    /// What moves the window: a sentence, and an SVG.
+    /// Levers of the window: a sentence and an SVG.
     pub levers: Option<(String, String)>,
     /// The window under two robots.
     pub robots: Vec<UnderRobot>,

@@ -104,7 +104,7 @@ pub struct Conclusion {
     /// The measurement file, as it was given; unknown in folders up to version 0.4.0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub measurements: Option<String>,
-    /// What messages call the task files, in the order of the tasks: their paths, as they were given.
+    /// Names of the task files in messages, in the order of the tasks: their paths, as they were given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub task_files: Vec<String>,
 }

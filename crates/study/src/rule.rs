@@ -71,7 +71,7 @@ impl Rule<'_> {
         self.standing(recorded, &windows)
     }
 
-    /// What the search found, by the first objective; designs that cannot be recommended have no value.
+    /// Returns the evaluations by the first objective; designs that cannot be recommended have no value.
     pub fn observed(&self, found: &[Recorded]) -> Vec<Observation> {
         let of = |recorded: &Recorded| {
             let value = self.as_recorded(recorded).value();

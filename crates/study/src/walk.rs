@@ -43,7 +43,7 @@ pub enum Confirmed {
     Walked,
 }
 
-/// What counts as a gain over the best confirmed design.
+/// Returns the least gain over the best confirmed design that counts.
 pub(super) fn gain(config: &StudyConfig) -> Gain {
     let (least, noise_floor) = (config.indifference_mm, DEFAULT_NOISE_FLOOR);
     Gain { least, probability: 0.02, noise_floor, floor: 0.0 }
@@ -251,14 +251,14 @@ fn standing(rule: &Rule, found: &Recorded, row: &Row) -> Standing {
 pub struct Kept {
     dir: PathBuf,
     provenance: Provenance,
-    /// What the file held: measured again it would be the same.
+    /// Lines of the file: measured again they would be the same.
     known: Vec<Row>,
     /// A place for each design that was chosen, in that order.
     rows: Mutex<Vec<(u64, Option<Row>)>>,
 }
 
 impl Kept {
-    /// What is known of a study, nothing of it chosen yet.
+    /// Reads the confirmations of a study, before any is chosen.
     pub fn read(study: &Study) -> Self {
         let (dir, provenance) = (study.dir().to_owned(), study.provenance().clone());
         let file = WalkFile::read(&dir, Some(&provenance));

@@ -29,7 +29,7 @@ pub struct Request {
     /// Which finger.
     #[command(flatten)]
     pub finger: PrintRequest,
-    /// What to write
+    /// Format of the file
     #[arg(long, value_enum)]
     pub format: Format,
     /// File to write

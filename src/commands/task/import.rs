@@ -79,7 +79,7 @@ pub struct Request {
     /// Contact engine that tries the nominal start
     #[arg(long, value_enum, default_value_t)]
     pub engine: EngineKind,
-    /// What to call plug and socket in messages and in the task's file, if not by their paths
+    /// Names of plug and socket in messages and in the task file, in place of their paths
     #[arg(long, hide = true, num_args = 2, allow_hyphen_values = true)]
     pub names: Vec<String>,
 }
@@ -92,19 +92,19 @@ pub struct ImportedTask {
     pub unit: Unit,
     /// Direction of insertion in the files.
     pub along: Along,
-    /// What was found out or mended, and why: what of, and a sentence.
+    /// Findings and repairs: the subject and a sentence.
     pub said: Vec<(&'static str, String)>,
     /// Whether the normals of plug and of socket pointed inward.
     pub inward: [bool; 2],
     /// The strategies that were tried; none if the file has problems.
     pub tuned: Option<Tuned>,
-    /// What is wrong with the file that was written, and whether its nominal start inserts.
+    /// Check of the written file, with its nominal start.
     pub checked: TaskCheck,
     out: PathBuf,
     resolution: u32,
 }
 
-/// What is known of a task before it is written.
+/// Task before it is written.
 struct Found {
     imported: Imported,
     unit: Unit,
@@ -140,7 +140,7 @@ impl command::Request for Request {
 }
 
 impl Request {
-    /// What messages call plug and socket.
+    /// Returns the names of plug and socket in messages.
     fn called(&self) -> [String; 2] {
         let paths = || [&self.plug, self.socket()].map(|path| path.display().to_string());
         <[String; 2]>::try_from(self.names.clone()).unwrap_or_else(|_| paths())

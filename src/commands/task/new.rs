@@ -36,16 +36,16 @@ pub struct Request {
     /// Name of the task: letters, digits, - and _
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// What goes in: width (y, between the jaws) x height (x) x length, mm
+    /// Plug: width (y, between the jaws) x height (x) x length, mm
     #[arg(long, value_name = "WxHxL", requires = "clearance", group = "tip")]
     pub plug: Option<Size>,
-    /// What goes in, if it is a cylinder: diameter x length, mm
+    /// Cylindrical plug: diameter x length, mm
     #[arg(long, value_name = "DxL", requires = "clearance", group = "tip", value_parser = Size::round)]
     pub round: Option<Size>,
     /// Opening less plug in x and y, mm: both sides together
     #[arg(long, value_name = "C", requires = "tip", value_parser = clearance)]
     pub clearance: Option<f64>,
-    /// What the fingers hold, above the plug: width x height x length, mm [default: the plug itself]
+    /// Body that the fingers hold, above the plug: width x height x length, mm [default: the plug itself]
     #[arg(long, value_name = "WxHxL", requires = "tip")]
     pub body: Option<Size>,
     /// Another task: ket8, ket12, rj45, usb, or the path of a task file

@@ -165,7 +165,7 @@ pub(crate) struct Columns<'a> {
     /// All but keys of a space file, the needed ones first.
     pub all: &'a [&'a str],
     pub needed: usize,
-    /// What a line says by those that are needed.
+    /// Information that a line gives by the required columns.
     pub why: &'a str,
 }
 

@@ -1,4 +1,4 @@
-//! What is wrong with a log, in sentences for who recorded it, before anything is fitted to it.
+//! Faults of a log, as sentences for its author, before anything is fitted to it.
 
 use super::log::{Ended, Log, Moment, Run};
 use super::read::median_gap;
@@ -51,7 +51,7 @@ impl std::fmt::Display for Remark {
     }
 }
 
-/// What was found in one log.
+/// Faults of one log.
 struct Remarks<'a> {
     log: &'a Log,
     found: Vec<Remark>,
@@ -66,7 +66,7 @@ impl Remarks<'_> {
     }
 }
 
-/// What is wrong with a log of a run of `task`; none if nothing is.
+/// Returns the faults of a log of a run of `task`; none if there are none.
 pub fn remarks(run: &Run, task: &Task) -> Vec<Remark> {
     let mut remarks = Remarks { log: &run.log, found: Vec::new() };
     clock(&mut remarks);

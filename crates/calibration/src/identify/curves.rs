@@ -64,8 +64,8 @@ impl Curves {
         }
     }
 
-    /// What is commanded, or, where that was not recorded, where the TCP was; with the log's first tilt
-    /// unless it tells the commanded one.
+    /// Commanded pose, or the measured pose of the TCP where that was not recorded; with the log's first
+    /// tilt unless the commanded one is recorded.
     pub fn path(&self) -> Option<Path> {
         let commanded = self.target.as_ref().unwrap_or(&self.tcp);
         let tilt = self.tilt.first().copied().unwrap_or(0.0);

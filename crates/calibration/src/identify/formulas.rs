@@ -1,4 +1,4 @@
-//! What stands in the logs by itself: stiffness of the robot, preload, friction.
+//! Numbers read from the logs by formulas: stiffness of the robot, preload, friction.
 
 use super::curves::{Curves, STEP_S, accelerations, rates, smoothed};
 use ask_tell::statistics::{Moments, mean};

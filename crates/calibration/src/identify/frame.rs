@@ -102,7 +102,7 @@ impl Frame {
     /// A pose in the base (m; axis-angle, rad) as one in the task's frame.
     ///
     /// # Errors
-    /// What would be right, if the TCP is turned from upright by more than a tilt about x.
+    /// The accepted rotation, if the TCP is turned from upright by more than a tilt about x.
     pub(super) fn pose(&self, place: [f64; 3], turn: [f64; 3]) -> Result<Target, String> {
         let position = self.base.inverse_transform_point(&Vector3::from(place).into()).coords;
         let rotation = UnitQuaternion::from_scaled_axis(Vector3::from(turn));

@@ -69,7 +69,7 @@ pub enum Ended {
 /// A log and what is known of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
-    /// What was recorded.
+    /// Recorded log.
     pub log: Log,
     /// The finger's infill, and what else its columns set.
     pub design: Design,

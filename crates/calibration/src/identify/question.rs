@@ -29,7 +29,7 @@ const EACH: usize = 5;
 const PRELOAD_MM: f64 = 0.02;
 const STRATEGY: &str = "task.strategy.";
 
-/// What is asked.
+/// Logs, unknowns and settings of an identification.
 pub struct Question<'a> {
     /// Knows the fingers; its robot is the start, of which the logs may tell more.
     pub evaluator: &'a Evaluator,
@@ -50,7 +50,7 @@ pub struct Compared {
     pub after: (Curves, Outcome),
 }
 
-/// What the logs say.
+/// Result of an identification.
 pub struct Identified {
     pub robot: Robot,
     /// The robot's axes x, y and z as far as the logs tell them.
@@ -67,7 +67,7 @@ pub struct Identified {
 pub struct IdentifyDone {
     /// Name of the task.
     pub task: String,
-    /// What is to be known of the logs, each a sentence.
+    /// Remarks on the logs, each a sentence.
     pub remarks: Vec<Remark>,
     /// Numbers of the cell, and the curves they come from.
     pub found: Identified,

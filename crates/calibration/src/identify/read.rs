@@ -62,7 +62,7 @@ pub fn parse(text: &str, file: &str, frame: Option<&Frame>) -> Result<Log, Fault
     Ok(log)
 }
 
-/// What only a whole log shows to be in another unit.
+/// Checks the units that only a whole log reveals.
 fn check_units(log: &Log) -> Result<(), String> {
     let gap = median_gap(log);
     if gap > SLOWEST_S {

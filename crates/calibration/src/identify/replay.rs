@@ -95,7 +95,7 @@ impl Logged {
         if self.curves.target.is_some() { 6 } else { 3 }
     }
 
-    /// What was measured.
+    /// Returns the measured data.
     pub fn data(&self) -> Vec<Datum> {
         let off = off(&self.curves);
         let datum = |bin: Range<usize>| {

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 /// Coordinates of the unknowns, standard normal before any data.
 pub type Coordinates = Vec<f64>;
 
-/// What a member predicts of the data, in their order; `None` where it cannot be compared.
+/// Predictions of the data by a member, in their order; `None` where they cannot be compared.
 pub type Predicted = Vec<Option<f64>>;
 
 /// A number that was measured, and the standard deviation of its error, model and sensor together.

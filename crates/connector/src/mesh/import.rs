@@ -72,7 +72,7 @@ pub struct Imported {
     pub play: [f64; 2],
     /// Width of the chamfer of the opening in x and in y, and its depth, m.
     pub chamfer: [f64; 3],
-    /// What the fingers hold: width between the jaws, height in x, length above the seated socket, m.
+    /// Body that the fingers hold: width between the jaws, height in x, length above the seated socket, m.
     pub body: [f64; 3],
     /// Largest intrusion of a part into the clearance, m, its point, m, and its body.
     pub intrusion: Option<(f64, Point3<f64>, &'static str)>,

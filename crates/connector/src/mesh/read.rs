@@ -22,7 +22,7 @@ pub struct Body {
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
-/// What reads a STEP file.
+/// Message for STEP files, which the Python package reads.
 const STEP: &str = "is a STEP file, which Python reads: `pip install 'finger_opt[step]'`, then \
                     `fo.import_parts(...)` (docs/guide/python.md); or export STL";
 

@@ -32,7 +32,7 @@ pub struct Bench<'a> {
     pub stop: &'a AtomicBool,
 }
 
-/// What came of a strategy.
+/// Result of a strategy.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tried {
     /// The strategy, its start where it was taught.

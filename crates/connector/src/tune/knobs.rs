@@ -21,7 +21,7 @@ pub struct Knob {
     row: Parameter,
 }
 
-/// What a knob sets.
+/// Number that a knob sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Sets {
     Tilt,

@@ -54,9 +54,9 @@ pub enum Stage {
 pub struct Step {
     /// The stage that tried it.
     pub stage: Stage,
-    /// What it changes: `like a key`.
+    /// Name of the change: `like a key`.
     pub what: String,
-    /// What came of it.
+    /// Outcome of the stage.
     pub tried: Tried,
     /// Least range of another finger with the socket turned either way, mm, if that was checked.
     pub turned_mm: Option<f64>,
@@ -68,8 +68,8 @@ impl Step {
     }
 }
 
-/// What the recommended strategy keeps under a change: least range of three other fingers, mm; 0
-/// where one of them fails.
+/// Least range of three other fingers with the recommended strategy under a change, mm; 0 where one
+/// of them fails.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Kept {
     /// The change: `yaw +1°`.
@@ -85,7 +85,7 @@ pub struct Tuned {
     pub steps: Vec<Step>,
     /// Index of the recommended step.
     pub best: usize,
-    /// What other fingers keep under changes; empty unless it was asked for.
+    /// Ranges of other fingers under changes; empty unless it was asked for.
     pub kept: Vec<Kept>,
     /// Windows measured for all this.
     pub windows: usize,
@@ -255,7 +255,7 @@ impl Tuned {
         Ok(())
     }
 
-    /// What a strategy keeps with some fingers, with a turned socket and with other friction.
+    /// Returns the least ranges of a strategy with some fingers, a turned socket and other friction.
     fn kept(
         &self,
         bench: &Bench,

@@ -94,7 +94,7 @@ fn block(geometry: &Geometry) -> [f64; 2] {
     geometry.block().map_or([0.0; 2], |(_, block)| [block.length / MM, wing(block.width) / MM])
 }
 
-/// What is written on the held part.
+/// Label of the held part.
 const HELD: &str = "held by the gripper";
 
 /// Draws the profile, the part of it that the gripper holds, and the block of its holes, these hidden.

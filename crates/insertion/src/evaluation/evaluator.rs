@@ -75,7 +75,7 @@ pub struct Evaluator {
 pub struct Specimen {
     /// The task, with the numbers that the design sets.
     pub task: Task,
-    /// What it was made of.
+    /// Design of the specimen.
     pub design: Design,
     /// Finger that the design gives.
     pub finger: Finger,

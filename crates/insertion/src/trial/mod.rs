@@ -132,8 +132,8 @@ pub trait Rig: Send + Sync {
         None
     }
 
-    /// What becomes of such a grasp along that course, sampled each `every_s` seconds from where it
-    /// begins: once for each path; empty if it is not simulated.
+    /// Samples of such a grasp along that course, each `every_s` seconds from its start: one series for
+    /// each path; empty if it is not simulated.
     fn follow(&self, _grasp: Grasp<'_>, _course: Course<'_>, _every_s: f64) -> Vec<Followed> {
         Vec::new()
     }

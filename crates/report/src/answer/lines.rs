@@ -67,7 +67,7 @@ fn members(record: &StudyRecord, front: &Front) -> Vec<Line> {
 /// Designs of a front that are told.
 const MEMBERS: usize = 4;
 
-/// What is to be mended or known before the finger is printed.
+/// Returns the caveats to settle before the finger is printed.
 pub fn caveats(answer: &Answer) -> Vec<Line> {
     let one = answer.recommended.as_ref().filter(|_| answer.verdict.finger().is_some());
     let simulated = one.filter(|_| answer.front.is_none() && answer.record.on_bench.is_none());

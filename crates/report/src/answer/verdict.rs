@@ -1,4 +1,4 @@
-//! What to do with an answer: the sentence that stands first, and what may be expected.
+//! Verdict of an answer: its headline and the expected result.
 
 use super::trust::Measured;
 use super::words::{evaluated, finger, interval, mm, outcome, span};
@@ -12,7 +12,7 @@ use study::Recorded;
 /// Share of the space from which on it is said that the finger hardly matters.
 const MANY: f64 = 0.5;
 
-/// What to do.
+/// Recommended action.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Verdict<'a> {
     /// Print this finger.
@@ -30,7 +30,7 @@ pub enum Verdict<'a> {
         design: &'a Design,
         /// Its measured range, mm; `None` if it is known from below only, or not at all.
         range_mm: Option<f64>,
-        /// What it tolerates at the least, mm, if its range is not known.
+        /// Lower bound of the range, mm, if the range itself is not known.
         at_least_mm: Option<f64>,
     },
     /// Choose from a front.
@@ -139,8 +139,7 @@ impl<'a> Verdict<'a> {
     }
 }
 
-/// What may be expected of the finger, and how far that is to be trusted, in a sentence without its
-/// full stop.
+/// Returns the expected result of the finger and its reliability, in a sentence without its full stop.
 pub fn expectation(answer: &Answer) -> String {
     if let Some(best) = answer.record.on_bench.as_ref().and_then(|found| found.best.first()) {
         let [range, low, high] = [best.range_mm, best.low_mm, best.high_mm];

@@ -8,7 +8,7 @@ use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, label};
 use insertion::surrogate::Estimate;
 use study::{Recorded, StudyRecord};
 
-/// That a search settled, and what that means.
+/// Returns the sentence that the search settled, with its meaning.
 pub fn settled(record: &StudyRecord) -> String {
     let (evaluations, gain_mm) = (record.evaluations.len(), record.config.indifference_mm);
     format!("after {evaluations} evaluations: no finger is expected to gain {gain_mm} mm")
@@ -60,7 +60,7 @@ pub fn outcome(outcome: Outcome) -> String {
     format!("{}{class}", outcome.label())
 }
 
-/// What to change where the nominal start already ends so, in a sentence without its full stop.
+/// Returns the remedy for this outcome of the nominal start, in a sentence without its full stop.
 pub fn remedy(nominal: Outcome) -> &'static str {
     match nominal {
         Outcome::Failed(FailureClass::ContactLossBeforeSearch) => {

@@ -1,4 +1,4 @@
-//! What the logs of attempts said of their cell, as JSON, text and a page.
+//! Result of an identification from logs, as JSON, text and a page.
 
 mod page;
 #[cfg(test)]

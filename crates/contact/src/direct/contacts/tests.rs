@@ -1,4 +1,4 @@
-//! What the detector spares, against what it would find anew.
+//! Contacts kept by the detector, compared with a fresh detection.
 
 use super::*;
 use crate::scene::{Body, BodyId, Motion, Shape};

@@ -30,18 +30,24 @@ def _by_name(space: object) -> TypeGuard[Mapping[str, Sequence[float]]]:
     return isinstance(space, Mapping)
 
 
+def _by_parameter(point: object) -> TypeGuard[Mapping[object, object]]:
+    return isinstance(point, Mapping)
+
+
 def _told(point: object, value: float | None) -> dict[str, Any]:
     """The result of a point: one that was asked, its id, or the values of another."""
     if isinstance(point, Point):
         return {"id": point.id, "value": value}
-    if isinstance(point, Integral) and not isinstance(point, bool) and point >= 0:
+    if isinstance(point, Integral) and not isinstance(point, bool) and int(point) >= 0:
         return {"id": int(point), "value": value}
-    if not isinstance(point, Mapping):
+    if not _by_parameter(point):
         raise wrong("points", f"{shown(point)}; accepted: points that were asked, their ids, or a dict of values by parameter")
-    values = {str(name): number(one) for name, one in point.items()}
-    for name, one in values.items():
-        if one is None:
-            raise wrong("points", f"`{name}` is {shown(point[name])}; accepted: a finite number")
+    values: dict[str, float] = {}
+    for name, one in point.items():
+        found = number(one)
+        if found is None:
+            raise wrong("points", f"`{name}` is {shown(one)}; accepted: a finite number")
+        values[str(name)] = found
     return {"values": values, "value": value}
 
 

@@ -73,7 +73,7 @@ class Asked:
             finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
                 computed for a space with numbers of the printed finger].
             finger: Finger file of finger_model computed: finray9, or the path of one.
-            start: What becomes of the nominal start, in place of what the task file says.
+            start: How the nominal start is chosen, in place of the task file's rule.
             budget: Evaluations in all; run the same command with a larger one to go on [default: until no
                 design is expected to gain 0.3 mm, at most 500; 200 for other optimizers and objectives].
             polish: Then up to N evaluations more, by Nelder-Mead from the best design; the budget of such a
@@ -82,14 +82,14 @@ class Asked:
                 good.
             optimizer: Optimizer.
             objective: Measure that is optimized; two or three, by commas, give a front.
-            constraint: What a design must keep to, as in 'peak-force<=30' or 'success-rate>=0.9'.
+            constraint: Constraint on a design, for example 'peak-force<=30' or 'success-rate>=0.9'.
             uncertainty: Errors for success-rate and robust-range: typical, or the path of a file [default:
                 typical].
-            measurements: What was measured on the bench, published or the path of a file: the study then ends
-                with the finger that is best there, predicted from all simulations and these measurements.
-            priors: What nobody measured, and its bounds, for measurements: bench, or the path of a file
-                [default: bench].
-            aggregate: What is made of the values of several tasks [default: min].
+            measurements: Bench measurements, published or the path of a file: the study then ends with the
+                finger that is best there, predicted from all simulations and these measurements.
+            priors: Priors of the parameters that were not measured, for measurements: bench, or the path of a
+                file [default: bench].
+            aggregate: Aggregation over several tasks [default: min].
             weights: Weight of each task, by commas, for aggregate weighted.
             seed: Seed; the same seed gives the same study.
             batch: Designs proposed and evaluated at a time; part of the study, unlike threads [default: that of

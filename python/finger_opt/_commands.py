@@ -113,7 +113,7 @@ def evaluate(
         finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
             computed for a space with numbers of the printed finger].
         finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
+        start: How the nominal start is chosen, in place of the task file's rule.
         stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
         stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
         set: A number of the task or the finger, as in spaces/codesign.toml.
@@ -186,7 +186,7 @@ def trial(
         finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
             computed for a space with numbers of the printed finger].
         finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
+        start: How the nominal start is chosen, in place of the task file's rule.
         stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
         stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
         set: A number of the task or the finger, as in spaces/codesign.toml.
@@ -257,7 +257,7 @@ def capture_map(
         finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
             computed for a space with numbers of the printed finger].
         finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
+        start: How the nominal start is chosen, in place of the task file's rule.
         stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
         stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
         set: A number of the task or the finger, as in spaces/codesign.toml.
@@ -305,7 +305,7 @@ def finger(
         phase_mm: Where the first rib lies, mm [default: the finger file's].
         set: A number of the finger file, as finger.skin.thickness_mm=0.8.
         svg: Draw the finger, at rest and under a force on its pad.
-        load_n: That force, N: y towards the part, z up; as -5,0 is a grasp, 0,10 a part that pulls up.
+        load_n: Force on the pad, N: y towards the part, z up; -5,0 is a grasp, 0,10 a part that pulls up.
 
     Raises:
         InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
@@ -370,7 +370,7 @@ def sensitivity(
         finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
             computed for a space with numbers of the printed finger].
         finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
+        start: How the nominal start is chosen, in place of the task file's rule.
         objective: Range that is looked at.
         uncertainty: Errors of the cell that are varied, too: typical, none, or the path of a file.
         samples: Rows of the sample: evaluations are this times (inputs + 2).
@@ -422,7 +422,7 @@ def levers(
         finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
             computed for a space with numbers of the printed finger].
         finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
+        start: How the nominal start is chosen, in place of the task file's rule.
         stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
         stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
         set: A number of the task or the finger, as in spaces/codesign.toml.
@@ -469,7 +469,7 @@ def calibrate(
     result is to be trusted: each measured finger predicted without it.
 
     Args:
-        measurements: What was measured on the bench: published, or the path of a file.
+        measurements: Bench measurements: published, or the path of a file.
         task: ket8, ket12, rj45, usb, or the path of a task file; several by commas [default: that of the
             measurements, if they are of one].
         space: Search space: infill, codesign, finger, or the path of a space file.
@@ -480,8 +480,8 @@ def calibrate(
         finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
             computed for a space with numbers of the printed finger].
         finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
-        priors: What nobody measured, and its bounds: bench, or the path of a file.
+        start: How the nominal start is chosen, in place of the task file's rule.
+        priors: Priors of the parameters that were not measured: bench, or the path of a file.
         simulations: Simulations per task that the emulator of a bench prediction is made of; one in eight
             measures its error [default: 200, or as the study has it].
         samples: Samples of a bench prediction's posterior [default: 300, or as the study has it].
@@ -539,7 +539,7 @@ def identify(
         finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
             computed for a space with numbers of the printed finger].
         finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
+        start: How the nominal start is chosen, in place of the task file's rule.
         frame: Task's frame in the robot's base: origin_mm and axis_angle_rad, as a pendant shows them;
             force_sign = 1 or -1, tool_mass_kg; and upright_axis_angle_rad of the TCP, gravity_compensated =
             false if need be.
@@ -588,7 +588,7 @@ def next_print(
     measured; the file of measurements may have no line yet, or not be there.
 
     Args:
-        measurements: What was measured on the bench: published, or the path of a file.
+        measurements: Bench measurements: published, or the path of a file.
         task: ket8, ket12, rj45, usb, or the path of a task file; several by commas [default: that of the
             measurements, if they are of one].
         space: Search space: infill, codesign, finger, or the path of a space file.
@@ -599,11 +599,11 @@ def next_print(
         finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
             computed for a space with numbers of the printed finger].
         finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
+        start: How the nominal start is chosen, in place of the task file's rule.
         count: Fingers to print at a time.
         among: Fingers that may be printed.
         print_cost_mm: Gain of range that is worth the print and the measurement, mm; below it: stop.
-        priors: What nobody measured, and its bounds: bench, or the path of a file.
+        priors: Priors of the parameters that were not measured: bench, or the path of a file.
         simulations: Simulations per task that the emulator of a bench prediction is made of; one in eight
             measures its error [default: 200, or as the study has it].
         samples: Samples of a bench prediction's posterior [default: 300, or as the study has it].
@@ -680,7 +680,7 @@ def export_mjcf(
         finger_model: Where a finger's remote centre and unmeasured springs come from [default: paper;
             computed for a space with numbers of the printed finger].
         finger: Finger file of finger_model computed: finray9, or the path of one.
-        start: What becomes of the nominal start, in place of what the task file says.
+        start: How the nominal start is chosen, in place of the task file's rule.
         stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
         stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
         set: A number of the task or the finger, as in spaces/codesign.toml.
@@ -716,7 +716,7 @@ def export_finger(
 
     Args:
         study: Folder of a study: its best design.
-        format: What to write.
+        format: Format of the file.
         out: File to write.
         density: Infill density, percent.
         direction: Infill direction, degrees.
@@ -784,10 +784,11 @@ def new_task(
 
     Args:
         name: Name of the task: letters, digits, - and _.
-        plug: What goes in: width (y, between the jaws) x height (x) x length, mm.
-        round: What goes in, if it is a cylinder: diameter x length, mm.
+        plug: width (y, between the jaws) x height (x) x length, mm.
+        round: Cylindrical plug: diameter x length, mm.
         clearance: Opening less plug in x and y, mm: both sides together.
-        body: What the fingers hold, above the plug: width x height x length, mm [default: the plug itself].
+        body: Body that the fingers hold, above the plug: width x height x length, mm [default: the plug
+            itself].
         like: Another task: ket8, ket12, rj45, usb, or the path of a task file.
         out: File to write [default: NAME.toml].
         engine: Contact engine that tries the nominal start.

@@ -51,9 +51,12 @@ class Bench:
     def written(self, date: str) -> bool:
         """Whether the file has a line of this finger, measured so, of that day."""
         wanted = {"task": self.task.name, **self.finger, "date": date}
-        if not self.out.exists():
+        try:
+            content = self.out.read_bytes()
+        except FileNotFoundError:
+            # Also between two looks: while another finger is checked, the file exists for a moment.
             return False
-        header, *lines = rows(self.out, self.out.read_bytes()) or [[]]
+        header, *lines = rows(self.out, content) or [[]]
         found = [row for row in (dict(zip(header, line)) for line in lines) if wanted.items() <= row.items()]
         return any(row.get("note", "").startswith(NOTE) for row in found)
 

@@ -180,3 +180,21 @@ fn every_crate_that_decides_a_figure_is_in_its_scope() {
         assert_eq!(missing(&needed, &all), Vec::<&String>::new(), "{scope}");
     }
 }
+
+/// README's first command: `cargo run` finds the program only if exactly one package names a default.
+#[test]
+fn cargo_run_runs_optimize() {
+    let root = manifest("");
+    let members = root["workspace"]["default-members"].as_array().unwrap().iter();
+    let folders = members.flat_map(|member| match member.as_str().unwrap().strip_suffix("/*") {
+        Some(folder) => std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder))
+            .unwrap()
+            .map(|entry| format!("{folder}/{}", entry.unwrap().file_name().display()))
+            .collect(),
+        None => vec![member.as_str().unwrap().to_owned()],
+    });
+    let defaults: Vec<_> = folders
+        .filter_map(|folder| manifest(&format!("{folder}/"))["package"].get("default-run").cloned())
+        .collect();
+    assert_eq!(defaults, [Value::from("optimize")]);
+}

@@ -27,7 +27,7 @@ fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
     name = "lab",
     version,
     arg_required_else_help = true,
-    after_help = "Example: cargo run --release -p lab -- check"
+    after_help = "Example: cargo run --release -p lab --bin lab -- check"
 )]
 struct Cli {
     #[command(subcommand)]

@@ -3,8 +3,8 @@
 
 use crate::failure::Failure;
 use std::ffi::OsString;
-use std::process::{Command, ExitCode, Stdio};
-use std::sync::{Mutex, PoisonError};
+use std::process::{ChildStdin, Command, ExitCode, Stdio};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use study::SOURCES;
 
 /// Names another interpreter than `python3`.
@@ -39,17 +39,33 @@ pub fn run(executor: &str, words: &[OsString]) -> Result<ExitCode, Failure> {
         let said = String::from_utf8_lossy(&found.stderr);
         return Err(missing(said.lines().last().unwrap_or("nothing")));
     }
+    // The package ends the study when its input ends, which is also when this process is killed.
+    // Watched before it starts: a signal may come as soon as it runs.
+    let input = Arc::new(Mutex::new(Input { stopped: false, pipe: None }));
+    let watched = Arc::clone(&input);
+    let stop = move || *locked(&watched) = Input { stopped: true, pipe: None };
+    let watch = ctrlc::set_handler(stop);
+    watch.map_err(|error| Failure::running(format!("cannot watch for Ctrl-C: {error}")))?;
     let mut study = command("from finger_opt.executors import command; sys.exit(command())");
     let study = study.args(words).env(SOURCES_KEY, SOURCES).stdin(Stdio::piped()).spawn();
     let mut study = study.map_err(|error| missing(&error.to_string()))?;
-    // The package ends the study when its input ends, which is also when this process is killed.
-    let input = Mutex::new(study.stdin.take());
-    let stop = move || drop(input.lock().unwrap_or_else(PoisonError::into_inner).take());
-    let watch = ctrlc::set_handler(stop);
-    watch.map_err(|error| Failure::running(format!("cannot watch for Ctrl-C: {error}")))?;
+    let pipe = study.stdin.take();
+    let mut held = locked(&input);
+    held.pipe = pipe.filter(|_| !held.stopped);
+    drop(held);
     let status = study.wait().map_err(|error| Failure::running(error.to_string()))?;
     match status.code() {
         Some(code) => Ok(ExitCode::from(u8::try_from(code).unwrap_or(1))),
         None => Err(Failure::running(format!("the Python package was ended: {status}"))),
     }
+}
+
+/// Input of the interpreter.
+struct Input {
+    stopped: bool,
+    pipe: Option<ChildStdin>,
+}
+
+fn locked(input: &Mutex<Input>) -> MutexGuard<'_, Input> {
+    input.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -151,6 +151,11 @@ fn a_measured_design_shows_its_range_on_a_robot() {
         html.contains("measured on a robot, 20 % infill at 20°: 4.1 mm")
             && html.contains("<td>4.1 mm</td>")
     );
+    let (_, ranges) = html.split_once("ends not recorded</p>").expect("ranges below the scale");
+    let (name, bar) = ranges.split_once("<div class=\"track range\">").expect("a bar");
+    let (bar, _) = bar.split_once("</div>").expect("its end");
+    assert!(name.contains("measured on a robot") && bar.contains("left:0.0%"), "{bar}");
+    assert!(!bar.contains("<b"), "no start to be offset from: {bar}");
 }
 
 #[test]

@@ -98,8 +98,10 @@ fn head(map: &CaptureMap) -> [Vec<Entry>; 2] {
 fn draw_head(area: &Area<'_>, [title, entries]: &[Vec<Entry>; 2]) -> Drawn {
     let text = |size| words(size, INK, HPos::Left, VPos::Center);
     let middle = |row: i32| ROW * row + 18;
-    for Entry { text: part, at: (x, row), .. } in title {
-        area.draw_text(part, &text(17), (*x, middle(*row))).map_err(message)?;
+    for parts in title.chunk_by(|a, b| a.at.1 == b.at.1) {
+        let line = parts.iter().map(|part| &*part.text).collect::<Vec<_>>().join(" ");
+        let row = parts.first().map_or(0, |part| part.at.1);
+        area.draw_text(&line, &text(17), (LEFT, middle(row))).map_err(message)?;
     }
     for Entry { text: entry, colour, at: (x, row) } in entries {
         let (left, y) = (x - 20, middle(*row));

@@ -159,6 +159,23 @@ fn a_measured_design_shows_its_range_on_a_robot() {
 }
 
 #[test]
+fn the_widest_searched_design_is_named_beside_another_recommended_one() {
+    let mut study = study();
+    let best = study.best().map(|best| (best.index, best.value().unwrap())).unwrap();
+    let widest = |study: &StudyRecord| {
+        let mut answer = crate::answer::Answer::of(study);
+        let found = answer.recommended.as_mut().unwrap();
+        found.design = study.evaluations.iter().find(|other| other.index != best.0).unwrap();
+        answer.verdict = crate::answer::Verdict::NoneFeasible;
+        crate::answer::lines::widest(&answer, answer.recommended.as_ref().unwrap()).unwrap().1
+    };
+    assert!(widest(&study).ends_with(&format!("{:.1} mm in the search, not repeated", best.1)));
+    study.firm_values.insert(best.0, 3.0);
+    assert!(widest(&study).ends_with("mm in the search, 3.0 mm in repeats"));
+    assert!(!whole(&study).contains("Widest in the search"), "the best itself is recommended");
+}
+
+#[test]
 fn a_best_design_outside_the_hull_is_warned_of() {
     let recorded = walked(0, [10.0, 40.0]);
     let distance =

@@ -25,7 +25,7 @@ impl Bar {
         Bar { name, parts, ends: [None; 2], width_only: false }
     }
 
-    /// Returns a bar of ranges, mm, from outer to inner, whose ends were not recorded.
+    /// Returns a bar of ranges, mm, from outer to inner, whose ends are not known here.
     fn width_only(name: String, ranges_mm: &[(&'static str, f64)]) -> Self {
         let parts = ranges_mm.iter().map(|&(class, range_mm)| (class, [0.0, range_mm])).collect();
         Bar { width_only: true, ..Bar::placed(name, parts) }
@@ -91,14 +91,15 @@ fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> V
         rows.push(Bar::placed(text, window.map(|window| ("ribs", window)).into_iter().collect()));
     }
     if let Trust::Published { nearest, .. } = &answer.trust {
-        rows.extend(nearest.get(at).iter().flat_map(|(_, fingers)| fingers).map(measured));
+        rows.extend(nearest.get(at).iter().flat_map(|(_, fingers)| fingers).map(published));
     }
     rows
 }
 
-/// Returns the bar of a measured finger, of which only the range is known.
-fn measured(Measured { design: finger, range_mm }: &Measured) -> Bar {
-    let name = format!("measured on a robot, {}: {}", design(finger), mm(*range_mm));
+/// Returns the bar of a published finger, of which only the range is known.
+fn published(Measured { design: finger, range_mm }: &Measured) -> Bar {
+    let range = mm(*range_mm);
+    let name = format!("measured on a robot, {}: {range}, ends not recorded", design(finger));
     Bar::width_only(name, &[("measured", *range_mm)])
 }
 
@@ -108,8 +109,10 @@ fn on_bench(answer: &Answer, bench: &OnBench) -> Vec<Bar> {
     let name = format!("on the bench: {} ({interval})", mm(best.range_mm));
     let expected = Bar::width_only(name, &[("likely", best.high_mm), ("measured", best.low_mm)]);
     let mut rows = vec![expected];
-    if let Verdict::MeasuredBefore { design, range_mm: Some(range_mm), .. } = answer.verdict {
-        rows.push(measured(&Measured { design: design.clone(), range_mm }));
+    if let Verdict::MeasuredBefore { design: finger, range_mm: Some(range_mm), .. } = answer.verdict
+    {
+        let name = format!("measured on a robot, {}: {}", design(finger), mm(range_mm));
+        rows.push(Bar::width_only(name, &[("measured", range_mm)]));
     }
     rows.push(Bar::simulated(&bench.simulated.window, None));
     rows
@@ -144,7 +147,7 @@ fn bars(on: &str, rows: &[Bar]) -> Markup {
             div.ticks aria-hidden="true" {
                 @for mm in ticks { span style={ "left:" (percent(at(f64::from(mm)))) } { (format!("{mm:+}").replace("+0", "0")) } }
             }
-            @if !ranges.is_empty() { p.muted { "Ranges on the same scale, ends not recorded" } }
+            @if !ranges.is_empty() { p.muted { "Ranges without their ends, on the same scale" } }
             @for Bar { name, parts, .. } in ranges {
                 p.name { (name) }
                 div.track.range { (filled(parts, |mm| at(low + mm) - 100.0 * ROOM)) }

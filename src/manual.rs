@@ -88,7 +88,10 @@ fn option(argument: &Arg) -> DescribedOption {
         flag: !takes,
         kind: kind(argument),
         value: value.filter(|_| takes).map(ToString::to_string),
-        words: words.filter(|_| takes).map(str::to_owned).collect(),
+        words: words
+            .filter(|_| takes && !argument.is_hide_possible_values_set())
+            .map(str::to_owned)
+            .collect(),
         default: default.filter(|_| takes).collect::<Vec<_>>().join(","),
         help: argument.get_help().map(ToString::to_string),
     }

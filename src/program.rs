@@ -44,7 +44,7 @@ const ABOUT: &str = "Finds the 3D-printed compliant finger that makes a connecto
     Exit codes: 0 done, 1 failed or interrupted while running, 2 bad usage or bad input file.";
 
 /// Version, commit and first digits of the hash of the sources.
-static LONG_VERSION: LazyLock<String> = LazyLock::new(|| {
+static VERSION: LazyLock<String> = LazyLock::new(|| {
     let [version, commit] = [env!("CARGO_PKG_VERSION"), env!("FINGER_OPT_COMMIT")];
     format!("{version} ({commit}, sources {})", &::study::SOURCES[..8])
 });
@@ -52,8 +52,7 @@ static LONG_VERSION: LazyLock<String> = LazyLock::new(|| {
 /// Returns the command line of the program.
 pub fn program() -> clap::Command {
     let root = clap::Command::new("optimize")
-        .version(env!("CARGO_PKG_VERSION"))
-        .long_version(LONG_VERSION.as_str())
+        .version(VERSION.as_str())
         .subcommand_negates_reqs(true)
         .arg_required_else_help(true)
         .args_conflicts_with_subcommands(true);

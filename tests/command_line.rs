@@ -143,6 +143,9 @@ fn bad_usage_is_answered_with_2_and_what_would_be_right() {
         ("--task usb --budget 5 --seed -1", &["--seed"]),
         ("--task usb --budget 5 --optimizer pg", &["gp, cma-es"]),
         ("--task usb --budget 5 --objective x", &["range, centred-range"]),
+        ("--task usb --budget 5 --constraint peak-forc<=3", &["did you mean `peak-force`"]),
+        ("--task usb --budget 5 --engine drect", &["'direct'"]),
+        ("export finger --format stk --out f.stl", &["'stl'"]),
         ("--task usbb --budget 5", &["usbb", "`usb`", "ket8, ket12, rj45, usb"]),
         ("--task usb --budget 5 --robot rigit", &["did you mean `rigid`"]),
         ("--task usb --budget 5 --space x.toml", &["x.toml", "space"]),
@@ -333,10 +336,10 @@ fn every_help_shows_an_example_and_the_shell_and_man_are_served() {
         assert!(optimize(&["completions", shell]).succeeds().contains("optimize"), "{shell}");
     }
     assert!(optimize(&["man"]).succeeds().starts_with(".ie"));
-    let short = format!("optimize {}", env!("CARGO_PKG_VERSION"));
-    assert_eq!(optimize_line("-V").succeeds().trim_end(), short);
-    let long = optimize_line("--version").succeeds().trim_end().to_owned();
-    assert!(long.starts_with(&format!("{short} (")) && long.contains(", sources "), "{long}");
+    let number = format!("optimize {} (", env!("CARGO_PKG_VERSION"));
+    let version = optimize_line("--version").succeeds().trim_end().to_owned();
+    assert!(version.starts_with(&number) && version.contains(", sources "), "{version}");
+    assert_eq!(optimize_line("-V").succeeds().trim_end(), version);
     optimize(&["task"]).fails(2, &["new", "show", "check", "import"]);
 }
 

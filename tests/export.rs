@@ -112,6 +112,19 @@ fn every_format_of_a_studys_best_finger_is_written() {
         ("3mf", "f.3mf", ""),
     ] {
         export(format, file).succeeds();
+        if (format, file) != ("sheet", "sheet.svg") {
+            let written = std::fs::read(folder.join(file)).unwrap();
+            optimize_line(&format!(
+                "export finger {} --out {}",
+                study.display(),
+                folder.join(file).display()
+            ))
+            .succeeds();
+            assert!(
+                written == std::fs::read(folder.join(file)).unwrap(),
+                "{file}: another format by its ending"
+            );
+        }
         let text = std::fs::read(folder.join(file)).unwrap();
         let text = String::from_utf8_lossy(&text);
         assert!(text.contains(words), "{file}");
@@ -124,6 +137,10 @@ fn every_format_of_a_studys_best_finger_is_written() {
     }
     assert!(folder.join("f-outline.stl").is_file() && folder.join("f-base.stl").is_file());
     export("sheet", "sheet.pdf").fails(2, &["sheet.pdf", ".svg or .html"]);
+    export("stl", "f.3MF").fails(2, &["--format stl", "f.3MF", "must end in .stl"]);
+    export("dxf", "f.html").fails(2, &["--format dxf", "must end in .dxf"]);
+    let unknown = format!("export finger {} --out f.txt", studies.dir("usb").display());
+    optimize_line(&unknown).fails(2, &["--out f.txt", "give --format"]);
     let finger = include_str!("../fingers/finray9.toml").replace("data/measured", "none");
     let finger = studies.file("finger.toml", &finger);
     for command in

@@ -705,12 +705,12 @@ def export_mjcf(
 def export_finger(
     study: StrPath | None = None,
     *,
-    format: Literal["stl", "3mf", "svg", "dxf", "sheet", "cura", "prusaslicer"],
     out: StrPath,
     density: float | None = None,
     direction: float | None = None,
     finger: StrPath | None = None,
     phase_mm: float | None = None,
+    format: Literal["stl", "3mf", "svg", "dxf", "sheet", "cura", "prusaslicer"] | None = None,
 ) -> tuple[Path, ...]:
     """Export a finger for the printer: the best of a study, or one with a given infill, as ``optimize export finger`` does.
 
@@ -719,12 +719,12 @@ def export_finger(
 
     Args:
         study: Folder of a study: its best design.
-        format: File format.
         out: File to write.
         density: Infill density, percent.
         direction: Infill direction, degrees.
         finger: finray9, or the path of a finger file [default: the study's, or finray9].
         phase_mm: Position of the first rib, mm [default: as in the finger file].
+        format: File format [default: that of the ending of FILE; of .svg the profile].
 
     Raises:
         InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
@@ -734,8 +734,8 @@ def export_finger(
     if study is not None:
         without("study", "its best design is exported", density=density, direction=direction)
     return called("export finger", {
-        "dir": study, "format": format, "out": out, "density": density, "direction": direction, "finger": finger,
-        "phase_mm": phase_mm,
+        "dir": study, "out": out, "density": density, "direction": direction, "finger": finger, "phase_mm": phase_mm,
+        "format": format,
     }, Files).paths
 
 

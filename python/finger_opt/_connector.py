@@ -157,7 +157,7 @@ def _strategies(found: Tuned, ax: Drawing | None) -> Drawing:
     """The strategies that were tried; a cross fails once the socket is turned, a ring is what was taken."""
     axes = axes_of(ax, width=9.0)
     names = {"as-it-is": "as it is", "start": "start taught", "families": "like a shipped task", "search": "searched"}
-    colours = dict(zip(names, ("black", *(COLOURS[number] for number in (2, 4, 0))), strict=True))
+    colours = dict(zip(names, ("black", *(COLOURS[number] for number in (2, 4, -1))), strict=True))
     taken = next(at for at, step in enumerate(found.steps, 1) if (step.stage, step.what) == (found.by.stage, found.by.what))
     for at, step in enumerate(found.steps, 1):
         axes.plot(at, step.least_range_mm or 0.0, "x" if step.turned_least_range_mm == 0.0 else "o", color=colours[step.stage])

@@ -10,6 +10,8 @@ from ._words import End
 #: Words and colours of outcomes by their numbers in a map, as on the pages.
 WORDS = {number: words for number, words, _ in _native.outcomes()}
 COLOURS = {number: colour for number, _, colour in _native.outcomes()}
+#: Colour of curves and bars that show no outcome, as on the pages.
+BLUE = "#1867B2"
 
 
 def ending(end: End | None) -> str:

@@ -132,7 +132,7 @@ def _bar(found: Evaluation, ax: Drawing | None) -> Drawing:
     low, high = found.negative_mm, found.positive_mm
     label = f"{found.task}, {finger(found.infill_density_percent, found.infill_direction_deg)}"
     y = len(axes.patches)
-    axes.barh(y, high - low, left=low, height=0.6, color=COLOURS[0])
+    axes.barh(y, high - low, left=low, height=0.6, color=COLOURS[0], edgecolor="0.3")
     ends: list[tuple[float, End | None, str]] = [
         (low, found.failure_negative, "right"), (high, found.failure_positive, "left"),
     ]
@@ -141,7 +141,7 @@ def _bar(found: Evaluation, ax: Drawing | None) -> Drawing:
         text = textwrap.fill(ending(end).replace("class ", "class\u00a0"), 20)
         text = text if inserts else f"does not insert from its start:\n{ending(end)}"
         axes.annotate(text, (at, y), (4 if side == "left" else -4, 0), textcoords="offset points", ha=side, va="center",
-                      fontsize=8, color=colour(end))
+                      fontsize=8)
     axes.axvline(0.0, color="0.3", linewidth=0.8)
     axes.set_yticks([*axes.get_yticks(), y] if y else [y], [*(tick.get_text() for tick in axes.get_yticklabels()), label] if y else [label])
     reach = max(2.2 * max(-low, high, 1.0), *(abs(edge) for edge in axes.get_xlim()))
@@ -164,8 +164,8 @@ def _card(found: Evaluation) -> str:
 
     bars = [(-reach, low, colour(found.failure_negative)), (low, high, COLOURS[0]), (high, reach, colour(found.failure_positive))]
     drawn = "".join(
-        f"<rect x='{at(a):.1f}' y='8' width='{max(0.0, at(b) - at(a)):.1f}' height='18' fill='{fill}' "
-        f"fill-opacity='{0.9 if fill == COLOURS[0] else 0.35}'/>" for a, b, fill in bars
+        f"<rect x='{at(a):.1f}' y='8' width='{max(0.0, at(b) - at(a)):.1f}' height='18' fill='{fill}'/>"
+        for a, b, fill in bars
     )
     marks = "".join(
         f"<text x='{at(mm):.1f}' y='42' font-size='12' text-anchor='middle' fill='currentColor'>{text}</text>"

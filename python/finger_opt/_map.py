@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ._drawn import COLOURS, WORDS
+from ._drawn import BLUE, COLOURS, WORDS, ending
 from ._evaluation import Subject
 from ._plot import axes as axes_of
 from ._result import PICTURE, Result, equal
@@ -71,9 +71,9 @@ def _outcomes(found: CaptureMap, ax: Drawing | None) -> Drawing:
     edges = [np.arange(axis.low - axis.step / 2, axis.high + axis.step, axis.step) for axis in found.axes]
     shape = found.outcomes.shape
     axes.pcolormesh(edges[0][: shape[1] + 1], edges[1][: shape[0] + 1], found.outcomes, cmap=colours,
-                    norm=BoundaryNorm(np.arange(-1.5, 5.0), colours.N), alpha=0.85)
+                    norm=BoundaryNorm(np.arange(-1.5, 5.0), colours.N))
     met = [number for number in numbers if (found.outcomes == number).any()]
-    axes.legend(handles=[Patch(color=COLOURS[number], label=WORDS[number]) for number in met], loc="upper left",
+    axes.legend(handles=[Patch(color=COLOURS[number], label=ending(number) if number > 0 else WORDS[number]) for number in met], loc="upper left",
                 bbox_to_anchor=(1.0, 1.0), frameon=False)
     axes.plot(0, 0, "+", color="white", markersize=10)
     labels = [f"error of the start in {axis.name}, {axis.unit}" for axis in found.axes]
@@ -137,7 +137,7 @@ def _tornado(found: Levers, ax: Drawing | None) -> Drawing:
     base = found.base.range_mm or 0.0
     rows = list(reversed(found.levers))
     for y, lever in enumerate(rows):
-        ends = zip(lever.range_mm, (lever.low, lever.high), (y + 0.2, y - 0.2), ("#9cc3e6", COLOURS[0]), strict=True)
+        ends = zip(lever.range_mm, (lever.low, lever.high), (y + 0.2, y - 0.2), ("#9cc3e6", BLUE), strict=True)
         for end, value, place, fill in ends:
             reach = end or 0.0
             axes.barh(place, reach - base, left=base, height=0.4, color=fill)

@@ -17,7 +17,7 @@ from . import _native
 from ._answer import Answer, Recommended
 from ._asked import Asked
 from ._call import called, checked, keywords, wrong
-from ._drawn import COLOURS
+from ._drawn import BLUE, COLOURS
 from ._plot import axes as axes_of, text
 from ._result import PICTURE, Found, Result
 from ._run import run_open
@@ -191,7 +191,7 @@ def _convergence(study: Study, ax: Drawing | None) -> Drawing:
         values = study.to_dataframe()[column].to_numpy(dtype=float)
         best = np.fmin.accumulate(values) if least else np.fmax.accumulate(values)
         axes.plot(np.arange(1, len(values) + 1), values, ".", color="0.6", label="evaluation")
-        axes.step(np.arange(1, len(values) + 1), best, where="post", color=COLOURS[0], label="best so far")
+        axes.step(np.arange(1, len(values) + 1), best, where="post", color=BLUE, label="best so far")
         axes.set_ylabel(label)
         axes.legend(loc="lower right")
     axes.set(xlabel="evaluation", title=_named(study))

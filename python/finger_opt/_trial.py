@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._drawn import COLOURS, WORDS, framed
+from ._drawn import BLUE, WORDS, framed
 from ._evaluation import Subject
 from ._native import InputError
 from ._plot import axes as axes_of, text
@@ -114,7 +114,7 @@ def _force(trial: Trial, ax: Drawing | None) -> Drawing:
     """The contact force over time; a stroke where a phase ends."""
     axes = axes_of(ax)
     series = trial.series
-    line = axes.plot(series.time_s, np.linalg.norm(series.force_n, axis=1), color=COLOURS[0], linewidth=1.0)[0]
+    line = axes.plot(series.time_s, np.linalg.norm(series.force_n, axis=1), color=BLUE, linewidth=1.0)[0]
     # Room above for the names of the phases, none below.
     line.sticky_edges.y.append(0.0)
     axes.margins(y=0.2)

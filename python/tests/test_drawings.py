@@ -36,6 +36,13 @@ def test_it_draws_into_the_axes_given_or_new_ones(what, fake, axes):
     assert found._repr_html_()
 
 
+def test_a_map_names_the_classes_with_their_numbers(fake, axes):
+    fo.capture_map("usb", 20, 10, **fake).plot(axes)
+    words = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert "inserted" in words
+    assert all("(class " in text for text in words if text not in ("inserted", "diverged"))
+
+
 def test_a_study_draws_its_course_and_its_designs(fake, tmp_path, axes):
     study = fo.Study.create("usb", budget=8, out=tmp_path / "study", no_cache=True, **fake).run(progress=False)
     assert study.plot(axes) is axes and axes.has_data()

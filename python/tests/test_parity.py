@@ -237,3 +237,9 @@ def test_importing_loads_no_more_than_it_needs():
     code = f"import sys, finger_opt; print(*({heavy!r} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == []
+
+
+def test_the_package_runs_as_the_program(command):
+    for words in (["--version"], ["task", "show", "usb"], ["--task", "usb", "--engine", "drect"]):
+        done = subprocess.run([sys.executable, "-m", "finger_opt", *words], capture_output=True, text=True, check=False)
+        assert (done.returncode, done.stdout, done.stderr) == command(*words)

@@ -66,7 +66,8 @@ pub struct Request {
           value_parser = Words::<Objectives>::new(Measure::ALL.map(Measure::name)))]
     pub objective: Objectives,
     /// Constraint, for example 'peak-force<=30' or 'success-rate>=0.9'; may be given several times
-    #[arg(long = "constraint", value_name = "LIMIT")]
+    #[arg(long = "constraint", value_name = "LIMIT", hide_possible_values = true,
+          value_parser = Words::<Constraint>::new(Measure::ALL.map(Measure::name)))]
     pub constraints: Vec<Constraint>,
     /// Errors for success-rate and robust-range: typical, or the path of a file [default: typical]
     #[arg(long, value_name = "NAME")]

@@ -34,7 +34,7 @@ impl<T: FromStr<Err: Display> + Clone + Send + Sync + 'static> TypedValueParser 
     fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<T, Error> {
         let words = self.words.clone();
         let near = move |text: &str| {
-            let mut unknown = text.split(',').filter(|word| !words.contains(word));
+            let mut unknown = text.split([',', '<', '>']).filter(|word| !words.contains(word));
             let near = unknown.find_map(|word| nearest(word, &words));
             near.map_or(String::new(), |near| format!("; did you mean `{near}`?"))
         };

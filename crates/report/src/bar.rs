@@ -16,11 +16,23 @@ struct Bar {
     name: String,
     parts: Vec<(&'static str, [f64; 2])>,
     ends: [Option<Outcome>; 2],
+    /// Whether only the range is known: the parts then begin at 0 and have no place on the scale.
+    width_only: bool,
 }
 
 impl Bar {
-    fn new(name: String, class: &'static str, span: [f64; 2]) -> Self {
-        Bar { name, parts: vec![(class, span)], ends: [None; 2] }
+    fn placed(name: String, parts: Vec<(&'static str, [f64; 2])>) -> Self {
+        Bar { name, parts, ends: [None; 2], width_only: false }
+    }
+
+    /// Returns a bar of ranges, mm, from outer to inner, whose ends are not known here.
+    fn width_only(name: String, ranges_mm: &[(&'static str, f64)]) -> Self {
+        let parts = ranges_mm.iter().map(|&(class, range_mm)| (class, [0.0, range_mm])).collect();
+        Bar { width_only: true, ..Bar::placed(name, parts) }
+    }
+
+    fn ending(self, window: &Window) -> Self {
+        Bar { ends: [window.end_negative, window.end_positive], ..self }
     }
 
     fn simulated(window: &Window, firm: Option<[f64; 2]>) -> Self {
@@ -31,7 +43,7 @@ impl Bar {
             None => format!("simulated: {} mm, not confirmed", span(whole)),
         };
         let parts = [("light", whole)].into_iter().chain(inner).collect();
-        Bar { name, parts, ends: [window.end_negative, window.end_positive] }
+        Bar::placed(name, parts).ending(window)
     }
 }
 
@@ -59,8 +71,7 @@ fn on_robot(robot: &UnderRobot) -> Bar {
     let window = &robot.measured.window;
     let inserts = window.nominal == Outcome::Inserted;
     let parts = inserts.then(|| ("light", ends_mm(window))).into_iter().collect();
-    let name = format!("on {}", robot.words());
-    Bar { name, parts, ends: [window.end_negative, window.end_positive] }
+    Bar::placed(format!("on {}", robot.words()), parts).ending(window)
 }
 
 fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> Vec<Bar> {
@@ -77,57 +88,58 @@ fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> V
             ByRibs::Measured(tasks) => tasks.get(at).map(|task| ends_mm(&task.window)),
             ByRibs::Refused(_) => None,
         };
-        let parts = window.map(|window| ("ribs", window)).into_iter().collect();
-        rows.push(Bar { name: text, parts, ends: [None; 2] });
+        rows.push(Bar::placed(text, window.map(|window| ("ribs", window)).into_iter().collect()));
     }
     if let Trust::Published { nearest, .. } = &answer.trust {
-        rows.extend(nearest.get(at).iter().flat_map(|(_, fingers)| fingers).map(measured));
+        rows.extend(nearest.get(at).iter().flat_map(|(_, fingers)| fingers).map(published));
     }
     rows
 }
 
-/// Returns the bar of a measured finger; only its range is known, so it is centred on the start.
-fn measured(Measured { design: finger, range_mm }: &Measured) -> Bar {
-    Bar::new(
-        format!("measured on a robot, {}: {}", design(finger), mm(*range_mm)),
-        "measured",
-        [-range_mm / 2.0, range_mm / 2.0],
-    )
+/// Returns the bar of a published finger, of which only the range is known.
+fn published(Measured { design: finger, range_mm }: &Measured) -> Bar {
+    let range = mm(*range_mm);
+    let name = format!("measured on a robot, {}: {range}, ends not recorded", design(finger));
+    Bar::width_only(name, &[("measured", *range_mm)])
 }
 
 fn on_bench(answer: &Answer, bench: &OnBench) -> Vec<Bar> {
     let Some(best) = bench.best.first() else { return Vec::new() };
-    let [low, high] = [best.low_mm, best.high_mm];
-    let name = format!("on the bench: {} ({})", mm(best.range_mm), interval([low, high]));
-    let mut expected = Bar::new(name, "likely", [-high / 2.0, high / 2.0]);
-    expected.parts.push(("measured", [-low / 2.0, low / 2.0]));
+    let interval = interval([best.low_mm, best.high_mm]);
+    let name = format!("on the bench: {} ({interval})", mm(best.range_mm));
+    let expected = Bar::width_only(name, &[("likely", best.high_mm), ("measured", best.low_mm)]);
     let mut rows = vec![expected];
-    if let Verdict::MeasuredBefore { design, range_mm: Some(range_mm), .. } = answer.verdict {
-        rows.push(measured(&Measured { design: design.clone(), range_mm }));
+    if let Verdict::MeasuredBefore { design: finger, range_mm: Some(range_mm), .. } = answer.verdict
+    {
+        let name = format!("measured on a robot, {}: {}", design(finger), mm(range_mm));
+        rows.push(Bar::width_only(name, &[("measured", range_mm)]));
     }
     rows.push(Bar::simulated(&bench.simulated.window, None));
     rows
 }
 
+/// Draws the bars on one scale: the windows with their ends above its ticks, mere ranges below them.
 fn bars(on: &str, rows: &[Bar]) -> Markup {
-    let all = || rows.iter().flat_map(|row| row.parts.iter().flat_map(|(_, span)| *span));
+    let spans = |row: &Bar| row.parts.iter().flat_map(|(_, span)| *span).collect::<Vec<_>>();
+    let (ranges, windows): (Vec<&Bar>, Vec<&Bar>) = rows.iter().partition(|row| row.width_only);
+    let all = || windows.iter().flat_map(|row| spans(row));
     let (low, high) = (all().fold(-0.5, f64::min), all().fold(0.5, f64::max));
-    let width = (high - low) / (1.0 - 2.0 * ROOM);
+    let widest = ranges.iter().flat_map(|row| spans(row)).fold(high - low, f64::max);
+    let width = widest / (1.0 - 2.0 * ROOM);
     let at = |mm: f64| 100.0 * (ROOM + (mm - low) / width);
     let step = if high - low > 4.0 { 2 } else { 1 };
     let ticks = (low.ceil() as i32..=high.floor() as i32).filter(|mm| mm % step == 0);
+    let outcome = |end: Option<Outcome>| end.map_or(String::new(), class);
     html! {
         div.bars {
             p.muted { "Offset of the start along y" (on) ", mm" }
-            @for Bar { name, parts, ends } in rows {
+            @for Bar { name, parts, ends, .. } in windows {
                 p.name { (name) }
                 div.track {
-                    @for (class, [from, to]) in parts {
-                        i class=(class) style={ "left:" (percent(at(*from))) ";width:" (percent(at(*to) - at(*from))) } {}
-                    }
+                    (filled(parts, at))
                     @if let Some((_, [from, to])) = parts.first() {
-                        span.below style={ "right:" (percent(100.5 - at(*from))) } title=(end(ends[0])) { (short(ends[0])) }
-                        span.above style={ "left:" (percent(at(*to) + 0.5)) } title=(end(ends[1])) { (short(ends[1])) }
+                        span.below style={ "right:" (percent(100.5 - at(*from))) } title=(end(ends[0])) { (outcome(ends[0])) }
+                        span.above style={ "left:" (percent(at(*to) + 0.5)) } title=(end(ends[1])) { (outcome(ends[1])) }
                     }
                     b style={ "left:" (percent(at(0.0))) } {}
                 }
@@ -135,6 +147,20 @@ fn bars(on: &str, rows: &[Bar]) -> Markup {
             div.ticks aria-hidden="true" {
                 @for mm in ticks { span style={ "left:" (percent(at(f64::from(mm)))) } { (format!("{mm:+}").replace("+0", "0")) } }
             }
+            @if !ranges.is_empty() { p.muted { "Ranges without their ends, on the same scale" } }
+            @for Bar { name, parts, .. } in ranges {
+                p.name { (name) }
+                div.track.range { (filled(parts, |mm| at(low + mm) - 100.0 * ROOM)) }
+            }
+        }
+    }
+}
+
+/// Returns the parts of a bar; `at` gives the place of a length, percent of the width.
+fn filled(parts: &[(&'static str, [f64; 2])], at: impl Fn(f64) -> f64) -> Markup {
+    html! {
+        @for (class, [from, to]) in parts {
+            i class=(class) style={ "left:" (percent(at(*from))) ";width:" (percent(at(*to) - at(*from))) } {}
         }
     }
 }
@@ -143,11 +169,8 @@ fn percent(value: f64) -> String {
     format!("{value:.1}%")
 }
 
-/// Returns the outcome beyond an end of a bar, in a word.
-fn short(end: Option<Outcome>) -> &'static str {
-    match end {
-        Some(Outcome::Failed(class)) => class.short(),
-        Some(outcome) => outcome.label(),
-        None => "",
-    }
+/// Returns an outcome in a word, a failure with the number of its class: `jammed (3)`.
+fn class(outcome: Outcome) -> String {
+    let number = outcome.failure().map_or(String::new(), |number| format!(" ({number})"));
+    format!("{}{number}", outcome.short())
 }

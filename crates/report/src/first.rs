@@ -26,6 +26,9 @@ pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
                 (expectation(answer)) ". "
                 @if answer.verdict.finger().is_some() { span.trust { (answer.trust.label()) } }
             }
+            @if let Some((_, text)) = widest(answer) {
+                p.muted { "Widest in the search: " (text) "." }
+            }
             @for (_, text) in lines::caveats(answer) { p.warn { (text) } }
         }
         div.first {
@@ -39,6 +42,12 @@ pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
         }
         div.next { h2 { "Next step: " (why) } pre { code { (command) } } }
     }
+}
+
+/// Returns why the widest searched design is not the recommended one; bench predictions have other reasons.
+fn widest(answer: &Answer) -> Option<lines::Line> {
+    let found = answer.recommended.as_ref().filter(|_| answer.record.on_bench.is_none())?;
+    lines::widest(answer, found)
 }
 
 /// Colours of the sheet, and those of the page.

@@ -2,7 +2,10 @@
 
 use super::ReportError;
 use super::chart::{Area, Drawn, axes, message, sheet, words};
-use super::theme::{BLUE, Colour, GREEN, INK, LINES, MUTED, ORANGE, PAPER, RED};
+use super::theme::{
+    Colour, DIVERGED, INK, INSERTED, JAMMED, LOST, LOST_EARLY, MISSED, MUTED, PAPER,
+};
+use crate::answer::words::outcome as numbered;
 use analysis::map::{Axis, CaptureMap};
 use insertion::outcome::{FailureClass, Outcome};
 use plotters::prelude::*;
@@ -10,16 +13,18 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 /// Every outcome with its colour, in the order of the legend.
 const COLOURS: [(Outcome, Colour); 6] = [
-    (Outcome::Inserted, GREEN),
-    (Outcome::Failed(FailureClass::ContactLossBeforeSearch), INK),
-    (Outcome::Failed(FailureClass::PlugMissed), BLUE),
-    (Outcome::Failed(FailureClass::Jammed), ORANGE),
-    (Outcome::Failed(FailureClass::ContactLossInInsertion), RED),
-    (Outcome::Diverged, LINES),
+    (Outcome::Inserted, INSERTED),
+    (Outcome::Failed(FailureClass::ContactLossBeforeSearch), LOST_EARLY),
+    (Outcome::Failed(FailureClass::PlugMissed), MISSED),
+    (Outcome::Failed(FailureClass::Jammed), JAMMED),
+    (Outcome::Failed(FailureClass::ContactLossInInsertion), LOST),
+    (Outcome::Diverged, DIVERGED),
 ];
-const SIZE: (u32, u32) = (600, 430);
-/// Height of title and legend, pixels.
-const HEAD: u32 = 66;
+/// Width, and height without title and legend, pixels: on a phone the text stays legible.
+const SIZE: (u32, u32) = (440, 360);
+/// Height of a row of the title and of the legend, pixels.
+const ROW: i32 = 22;
+const LEFT: i32 = 14;
 
 /// Every outcome as a map has it: its number (0 inserted, 1 to 4 the failure class, -1 diverged), its words, and
 /// its colour on a light page, `#RRGGBB`.
@@ -34,34 +39,81 @@ pub fn outcomes() -> [(i8, &'static str, String); 6] {
     })
 }
 
-/// The outcome at each place, a dot where it was simulated.
+/// Draws the outcome at each place, with a dot where it was simulated.
 ///
 /// # Errors
 /// If the drawing library refuses.
 pub fn svg(map: &CaptureMap) -> Result<String, ReportError> {
-    sheet("the capture map", SIZE, |area| {
-        let (head, body) = area.split_vertically(HEAD);
-        legend(&head, map)?;
+    let head = head(map);
+    let rows = head[1].last().map_or(0, |entry| entry.at.1 + 1);
+    let height = (ROW * rows) as u32 + 10;
+    sheet("the capture map", (SIZE.0, SIZE.1 + height), |area| {
+        let (top, body) = area.split_vertically(height);
+        draw_head(&top, &head)?;
         draw(&body, map)
     })
 }
 
-fn legend(area: &Area<'_>, map: &CaptureMap) -> Drawn {
-    let text = |size, colour| words(size, colour, HPos::Left, VPos::Center);
+/// A text of title or legend, the colour that it explains, and its place: pixels from the left, and row.
+struct Entry {
+    text: String,
+    colour: Option<Colour>,
+    at: (i32, i32),
+}
+
+/// Places texts in rows from `first` on, each after so many pixels; no row is wider than the map.
+fn placed(
+    texts: impl IntoIterator<Item = (String, Option<Colour>)>,
+    before: i32,
+    first: i32,
+) -> Vec<Entry> {
+    let mut next = (LEFT, first);
+    let place = |(text, colour): (String, _)| {
+        // Wide enough for the usual fonts.
+        let width = before + 8 * text.chars().count() as i32;
+        if next.0 > LEFT && next.0 + width > SIZE.0 as i32 {
+            next = (LEFT, next.1 + 1);
+        }
+        let at = (next.0 + before, next.1);
+        next.0 += width + 8;
+        Entry { text, colour, at }
+    };
+    texts.into_iter().map(place).collect()
+}
+
+/// Returns the parts of the title and the entries of the legend below.
+fn head(map: &CaptureMap) -> [Vec<Entry>; 2] {
+    let area = format!("{:.1} {} insert", map.area, map.area_unit.replace('2', "²"));
     let design = map.design.labelled();
-    let comma = if design.is_empty() { "" } else { ", " };
-    let unit = map.area_unit.replace('2', "²");
-    let title = format!("{}{comma}{design}: {:.1} {unit} insert", map.task, map.area);
-    area.draw_text(&title, &text(19, INK), (20, 22)).map_err(message)?;
+    let of = [&*map.task, &design].into_iter().filter(|text| !text.is_empty());
+    let of = of.flat_map(|text| text.split(", ")).map(|part| format!("{part},"));
+    let title = placed(of.chain([area]).map(|text| (text, None)), 0, 0);
     let met = |outcome| map.outcomes.iter().flatten().any(|mark| mark.0 == outcome);
-    let mut x = 20;
-    for (outcome, colour) in COLOURS.into_iter().filter(|(outcome, _)| met(*outcome)) {
-        area.draw(&Rectangle::new([(x, 44), (x + 14, 58)], filled(colour))).map_err(message)?;
-        area.draw_text(outcome.label(), &text(15, INK), (x + 20, 52)).map_err(message)?;
-        x += 44 + 8 * outcome.label().len() as i32;
+    let met = COLOURS.into_iter().filter(|(outcome, _)| met(*outcome));
+    let entries = met.map(|(outcome, colour)| (numbered(outcome), Some(colour)));
+    let rows = title.last().map_or(0, |part| part.at.1 + 1);
+    [title, placed(entries.chain([("simulated".to_owned(), None)]), 20, rows)]
+}
+
+fn draw_head(area: &Area<'_>, [title, entries]: &[Vec<Entry>; 2]) -> Drawn {
+    let text = |size| words(size, INK, HPos::Left, VPos::Center);
+    let middle = |row: i32| ROW * row + 18;
+    for parts in title.chunk_by(|a, b| a.at.1 == b.at.1) {
+        let line = parts.iter().map(|part| &*part.text).collect::<Vec<_>>().join(" ");
+        let row = parts.first().map_or(0, |part| part.at.1);
+        area.draw_text(&line, &text(17), (LEFT, middle(row))).map_err(message)?;
     }
-    area.draw(&Circle::new((x + 6, 51), 2, MUTED.rgb().filled())).map_err(message)?;
-    area.draw_text("simulated", &text(15, INK), (x + 16, 52)).map_err(message)
+    for Entry { text: entry, colour, at: (x, row) } in entries {
+        let (left, y) = (x - 20, middle(*row));
+        match colour {
+            Some(colour) => area
+                .draw(&Rectangle::new([(left, y - 7), (left + 14, y + 7)], colour.rgb().filled())),
+            None => area.draw(&Circle::new((left + 7, y), 2, MUTED.rgb().filled())),
+        }
+        .map_err(message)?;
+        area.draw_text(entry, &text(15), (*x, y)).map_err(message)?;
+    }
+    Ok(())
 }
 
 fn draw(area: &Area<'_>, map: &CaptureMap) -> Drawn {
@@ -77,27 +129,27 @@ fn draw(area: &Area<'_>, map: &CaptureMap) -> Drawn {
         // What ends alike side by side is one rectangle.
         for stretch in row.chunk_by(|a, b| a == b) {
             let to = from + stretch.len();
-            let colour = COLOURS
-                .into_iter()
-                .find(|(outcome, _)| Some(*outcome) == stretch.first().map(|mark| mark.0));
+            let outcome = stretch.first().map(|mark| mark.0);
+            let colour = COLOURS.into_iter().find(|(of, _)| Some(*of) == outcome);
             let corners = [
                 (first.value(from) - half(first), y - half(second)),
                 (first.value(to) - half(first), y + half(second)),
             ];
-            let style = filled(colour.map_or(PAPER, |(_, colour)| colour));
+            let style = colour.map_or(PAPER, |(_, colour)| colour).rgb().filled();
             chart.draw_series([Rectangle::new(corners, style)]).map_err(message)?;
             from = to;
         }
     }
-    let dots = map.simulated.iter().enumerate().flat_map(|(at, row)| {
-        let simulated = row.iter().enumerate().filter(|(_, is)| **is);
-        simulated.map(move |(i, _)| (first.value(i), second.value(at)))
-    });
-    let dots = dots.map(|at| Circle::new(at, 1, MUTED.rgb().filled()));
+    let dots =
+        map.simulated.iter().zip(&map.outcomes).enumerate().flat_map(|(at, (row, marks))| {
+            let simulated = row.iter().zip(marks).enumerate().filter(|(_, (is, _))| **is);
+            simulated.map(move |(i, (_, mark))| {
+                let colour = if mark.0 == Outcome::Inserted { LOST_EARLY } else { INSERTED };
+                Circle::new((first.value(i), second.value(at)), 1, colour.rgb().filled())
+            })
+        });
     chart.draw_series(dots).map(|_| ()).map_err(message)
 }
 
-/// So that dots and the grid are seen on it.
-fn filled(colour: Colour) -> ShapeStyle {
-    colour.rgb().mix(0.5).filled()
-}
+#[cfg(test)]
+mod tests;

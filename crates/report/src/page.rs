@@ -59,12 +59,13 @@ fn sections(answer: &Answer, model: &Model, beside: &Beside) -> Result<Vec<Secti
         None => "Ties",
         Some(_) => "Ties by simulation alone",
     };
-    // These drawings scroll on a phone instead of being scaled down, so that text stays legible.
+    // This drawing scrolls on a phone instead of being scaled down, so that text stays legible.
     let drawn = |(caption, svg): &(String, String)| {
         html! { div.moved { (figure(svg, caption, caption)) } }
     };
-    let maps = (!beside.maps.is_empty())
-        .then(|| html! { div.views { @for map in &beside.maps { (drawn(map)) } } });
+    let maps = (!beside.maps.is_empty()).then(|| {
+        html! { div.views.maps { @for (caption, svg) in &beside.maps { (figure(svg, caption, caption)) } } }
+    });
     let sections = [
         section("bench", "Predicted for the bench", bench::section(record)),
         section("set", set_title, set::section(answer)),

@@ -1,6 +1,6 @@
 //! Designs as good as the recommended one, and reasons to choose another.
 
-use super::elements::table;
+use super::elements::stacked;
 use crate::answer::words::{ACROSS, design, mm, stiffness};
 use crate::answer::{Answer, Ties, lines};
 use insertion::evaluation::objective::Measure;
@@ -24,22 +24,24 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
         let loss = if millimetres { mm(loss.max(0.0)) } else { String::new() };
         let force = answer.record.measure(recorded, Measure::PeakForce);
         let robot = answer.measured.iter().find(|found| found.design == recorded.design);
-        vec![
+        let cells = [
             design(&recorded.design),
             reasons(found, recorded, named),
             loss,
             force.map_or(String::new(), |force| format!("{force:.0} N")),
             stiffness(recorded.stiffness.compliance),
             robot.map_or(String::new(), |robot| mm(robot.range_mm)),
-        ]
+        ];
+        cells.map(|cell| html! { (cell) }).to_vec()
     };
-    let head = ["finger", "", "expected loss", "largest force", ACROSS, "measured"];
+    let head =
+        ["finger", "reason to choose it", "expected loss", "largest force", ACROSS, "measured"];
     let rows: Vec<_> = designs.iter().take(LISTED).map(row).collect();
     Some(html! {
         p { (lines::tied(answer, found).1) "." }
         @if let Some((name, text)) = lines::safe(found) { p { b { (name) } " " (text) "." } }
         @if let Some(text) = lines::spread(answer) { p { b { "infill" } " " (text) "." } }
-        @if rows.len() > 1 { (table(&head, &rows)) }
+        @if rows.len() > 1 { (stacked(&head, &rows)) }
         @if designs.len() > LISTED { p.muted { (designs.len() - LISTED) " more in the explorer." } }
     })
 }

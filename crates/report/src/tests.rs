@@ -151,6 +151,30 @@ fn a_measured_design_shows_its_range_on_a_robot() {
         html.contains("measured on a robot, 20 % infill at 20°: 4.1 mm")
             && html.contains("<td>4.1 mm</td>")
     );
+    let (_, ranges) = html.split_once("Ranges without their ends").expect("ranges below the scale");
+    let (name, bar) = ranges.split_once("<div class=\"track range\">").expect("a bar");
+    let (bar, _) = bar.split_once("</div>").expect("its end");
+    assert!(name.contains("20°: 4.1 mm, ends not recorded") && bar.contains("left:0.0%"), "{bar}");
+    assert!(!bar.contains("<b"), "no start to be offset from: {bar}");
+}
+
+#[test]
+fn the_widest_searched_design_is_named_beside_another_recommended_one() {
+    let mut study = study();
+    let best = study.best().map(|best| (best.index, best.value().unwrap())).unwrap();
+    let widest = |study: &StudyRecord| {
+        let mut answer = crate::answer::Answer::of(study);
+        let found = answer.recommended.as_mut().unwrap();
+        found.design = study.evaluations.iter().find(|other| other.index != best.0).unwrap();
+        answer.verdict = crate::answer::Verdict::NoneFeasible;
+        let line = crate::answer::lines::widest(&answer, answer.recommended.as_ref().unwrap());
+        line.map(|(_, text)| text)
+    };
+    assert_eq!(widest(&study), None, "not repeated");
+    study.firm_values.insert(best.0, 3.0);
+    let said = format!("{:.1} mm in the search, 3.0 mm in repeats", best.1);
+    assert!(widest(&study).is_some_and(|text| text.ends_with(&said)));
+    assert!(!whole(&study).contains("Widest in the search"), "the best itself is recommended");
 }
 
 #[test]

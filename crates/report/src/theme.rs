@@ -27,12 +27,25 @@ colours! {
     ORANGE = "orange", (178, 78, 12), "#f0a060";
     GREEN = "green", (38, 132, 82), "#62c894";
     RED = "red", (190, 50, 44), "#f2837b";
+    // Outcomes differ in lightness too, for readers who cannot tell red from green.
+    INSERTED = "inserted", (206, 239, 210), "#CEEFD2";
+    LOST_EARLY = "lost-early", (59, 41, 102), "#4B357F";
+    MISSED = "missed", (63, 105, 213), "#3F69D5";
+    JAMMED = "jammed", (207, 122, 17), "#CF7A11";
+    LOST = "lost", (162, 32, 42), "#A2202A";
+    DIVERGED = "diverged", (139, 145, 153), "#8B9199";
 }
 
 impl Colour {
     /// For drawing; in a file this is what is seen.
     pub fn rgb(self) -> RGBColor {
         RGBColor(self.light.0, self.light.1, self.light.2)
+    }
+
+    /// Returns the name of its variable, without the hyphens.
+    #[cfg(test)]
+    pub fn name(self) -> &'static str {
+        self.name
     }
 
     /// As the drawing library writes it, and as CSS takes it.

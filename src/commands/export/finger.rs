@@ -23,15 +23,15 @@ use study::write_file;
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 2,
-    after_help = "Example: optimize export finger results/rj45-gp-seed0 --format stl --out finger.stl"
+    after_help = "Example: optimize export finger results/rj45-gp-seed0 --out finger.stl"
 )]
 pub struct Request {
     /// The finger.
     #[command(flatten)]
     pub finger: PrintRequest,
-    /// File format
+    /// File format [default: that of the ending of FILE; of .svg the profile]
     #[arg(long, value_enum)]
-    pub format: Format,
+    pub format: Option<Format>,
     /// File to write
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
@@ -74,7 +74,8 @@ impl command::Request for Request {
     fn run(&self, _context: &Context<'_>) -> Result<Written, Failure> {
         let geometry = self.finger.geometry()?;
         let (out, title) = (&self.out, export::title(&geometry));
-        match self.format {
+        let format = self.format()?;
+        match format {
             Format::Stl => {
                 write_file(out, &closed(Prism::finger(&geometry), &geometry)?.stl(&title))?
             }
@@ -88,7 +89,7 @@ impl command::Request for Request {
             Format::Dxf => write_file(out, &profile::dxf(&geometry, &title))?,
             Format::Sheet => write_file(out, &page(&self.finger, &geometry, out)?)?,
             Format::Cura | Format::Prusaslicer => {
-                let cura = self.format == Format::Cura;
+                let cura = format == Format::Cura;
                 let text = if cura { slicer::cura } else { slicer::prusaslicer };
                 let beside = settings(out, &geometry, &text(&geometry))?;
                 return Ok(Written { out: out.clone(), title, beside });
@@ -96,6 +97,52 @@ impl command::Request for Request {
         }
         Ok(Written { out: out.clone(), title, beside: Vec::new() })
     }
+}
+
+impl Request {
+    /// Returns the format, from the ending of the file unless it is given.
+    fn format(&self) -> Result<Format, Failure> {
+        let ending = ending(&self.out);
+        let written = |format: &&Format| format.endings().contains(&&*ending);
+        let of_ending = Format::value_variants().iter().find(written);
+        match (self.format, of_ending) {
+            (Some(format), Some(_)) if !written(&&format) => {
+                let accepted = format.endings().iter().map(|ending| format!(".{ending}"));
+                let accepted = accepted.collect::<Vec<_>>().join(" or ");
+                let name = format.to_possible_value();
+                let name = name.as_ref().map_or("", |value| value.get_name());
+                let out = self.out.display();
+                Err(Failure::usage(format!(
+                    "--format {name} and --out {out} contradict each other: the file must end in {accepted}"
+                )))
+            }
+            (Some(format), _) | (None, Some(&format)) => Ok(format),
+            (None, None) => Err(Failure::usage(format!(
+                "--out {}: the ending names no format; give --format",
+                self.out.display()
+            ))),
+        }
+    }
+}
+
+impl Format {
+    /// Returns the endings of its files, in lower case.
+    fn endings(self) -> &'static [&'static str] {
+        match self {
+            Format::Stl => &["stl"],
+            Format::ThreeMf => &["3mf"],
+            Format::Svg => &["svg"],
+            Format::Dxf => &["dxf"],
+            Format::Sheet => &["svg", "html", "htm"],
+            Format::Cura => &["curaprofile"],
+            Format::Prusaslicer => &["ini"],
+        }
+    }
+}
+
+/// Returns the ending of a file's name, in lower case.
+fn ending(file: &Path) -> String {
+    file.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
 impl command::Response for Written {}
@@ -123,10 +170,9 @@ fn closed(
 }
 
 fn page(request: &PrintRequest, geometry: &Geometry, out: &Path) -> Result<String, Failure> {
-    let ending = out.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase);
-    let write = match ending.as_deref() {
-        Some("svg") => sheet::svg,
-        Some("html" | "htm") => sheet::html,
+    let write = match &*ending(out) {
+        "svg" => sheet::svg,
+        "html" | "htm" => sheet::html,
         _ => {
             let problem = format!("--out {}: must end in .svg or .html", out.display());
             return Err(Failure::usage(problem));

@@ -80,7 +80,8 @@ impl Lever {
 }
 
 impl Levers {
-    /// Summarises the most effective change in one sentence; effects below 0.3 mm are omitted.
+    /// Summarises the most effective change besides the infill in one sentence; effects below 0.3 mm are
+    /// omitted.
     pub fn sentence(&self) -> String {
         let of = |lever: &Lever, end: usize| {
             (apart([self.base.range_mm, lever.ends[end].unwrap_or(0.0)]), lever.step(end))
@@ -92,26 +93,18 @@ impl Levers {
                 |a: (f64, String), b: (f64, String)| if sign * b.0 > sign * a.0 { b } else { a };
             ends().reduce(better).filter(|(by, _)| counts(sign * by))
         };
-        let infill = Some(apart(self.infill)).filter(|by| counts(*by));
-        let it = if infill.is_some() { "it" } else { &self.task };
-        let lever = match (most(1.0), most(-1.0)) {
-            (Some((by, step)), _) => Some(format!("{step} widens {it} by {by:.1} mm")),
-            (None, Some((by, step))) => {
-                let least = format!("nothing widens {it} by {INDIFFERENCE_MM} mm");
-                Some(format!("{least}, and {step} narrows it by {:.1} mm", -by))
+        let task = &self.task;
+        match (most(1.0), most(-1.0)) {
+            (Some((by, step)), _) => format!("{step} widens {task} by {by:.1} mm."),
+            (None, Some((by, step))) => format!(
+                "Nothing widens {task} by {INDIFFERENCE_MM} mm, and {step} narrows it by {:.1} mm.",
+                -by
+            ),
+            (None, None) if counts(apart(self.infill)) => {
+                format!("Nothing but the infill moves {task} by {INDIFFERENCE_MM} mm.")
             }
-            (None, None) => None,
-        };
-        let infill = infill.map(|by| format!("the infill moves {} by {by:.1} mm", self.task));
-        let sentence = match (infill, lever) {
-            (Some(infill), Some(lever)) => format!("{infill}; {lever}."),
-            (Some(infill), None) => {
-                format!("{infill}; nothing else moves it by {INDIFFERENCE_MM} mm.")
-            }
-            (None, Some(lever)) => format!("{lever}."),
-            (None, None) => format!("nothing tried moves {} by {INDIFFERENCE_MM} mm.", self.task),
-        };
-        sentence[..1].to_uppercase() + &sentence[1..]
+            (None, None) => format!("Nothing tried moves {task} by {INDIFFERENCE_MM} mm."),
+        }
     }
 }
 

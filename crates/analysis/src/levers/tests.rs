@@ -19,17 +19,9 @@ fn the_sentence_names_what_helps_most_and_nothing_that_moves_little() {
     let little = || lever("preload", [0.1, 0.3, 0.9], [Some(3.8), Some(4.2)]);
     let just = || lever("grip force", [2.5, 5.0, 10.0], [Some(4.0), Some(4.3)]);
     for (infill, levers, said) in [
-        (
-            [3.6, 4.0],
-            vec![tilt()],
-            "The infill moves usb by 0.4 mm; 5 mm more tilt widens it by 0.9 mm.",
-        ),
+        ([3.6, 4.0], vec![tilt()], "5 mm more tilt widens usb by 0.9 mm."),
         ([3.8, 4.0], vec![little(), tilt()], "5 mm more tilt widens usb by 0.9 mm."),
-        (
-            [3.7, 4.0],
-            vec![little()],
-            "The infill moves usb by 0.3 mm; nothing else moves it by 0.3 mm.",
-        ),
+        ([3.7, 4.0], vec![little()], "Nothing but the infill moves usb by 0.3 mm."),
         ([4.0; 2], vec![little(), just()], "5 mm more grip force widens usb by 0.3 mm."),
         (
             [4.0; 2],

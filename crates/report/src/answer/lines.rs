@@ -60,7 +60,18 @@ pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
     let limits = limits.map(|(measure, text)| line("constraint", format!("{measure} {text}")));
     let tied = found.ties.iter().map(|ties| tied(answer, ties));
     let safe = found.ties.iter().filter_map(safe);
-    found.tasks.iter().flat_map(of_task).chain(limits).chain(tied).chain(safe).collect()
+    let why = widest(answer, found);
+    found.tasks.iter().flat_map(of_task).chain(limits).chain(why).chain(tied).chain(safe).collect()
+}
+
+/// Returns the best design of the search and its value in the repeats, if it was repeated and another one is recommended.
+pub fn widest(answer: &Answer, found: &Recommended) -> Option<Line> {
+    let (measure, _) = found.objective.filter(|(measure, _)| measure.unit() == "mm")?;
+    let named = [Some(found.design), answer.named()].map(|named| named.map(|named| named.index));
+    let best = answer.record.best().filter(|best| !named.contains(&Some(best.index)))?;
+    let repeated = measure.show(*answer.record.firm_values.get(&best.index)?);
+    let (design, searched) = (words::design(&best.design), measure.show(best.value()?));
+    Some(line("widest", format!("{design}: {searched} in the search, {repeated} in repeats")))
 }
 
 /// Returns the first designs of a front.

@@ -233,7 +233,7 @@
     svg.append(make("text", { x: W - 6, y: H - 3, "text-anchor": "end" }, `${end.toFixed(2)} s`));
     films.forEach((film, i) => svg.append(make("polyline", { class: `film${i}`, points: film.time.map((t, n) => `${x(t).toFixed(1)},${y(film[key][n]).toFixed(1)}`).join(" ") })));
     const cursor = svg.appendChild(make("line", { class: "cursor", y1: TOP, y2: H - FOOT }));
-    const value = svg.appendChild(make("text", { x: W - 6, y: 12, "text-anchor": "end" }));
+    const value = svg.appendChild(make("text", { x: LEFT, y: H - 3 }));
     cursors.push(() => {
       cursor.setAttribute("x1", x(state.time)); cursor.setAttribute("x2", x(state.time));
       value.textContent = films.map((film) => film[key][frameAt(film, state.time).index].toFixed(2)).join(" | ");

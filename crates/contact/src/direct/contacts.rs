@@ -1,6 +1,7 @@
 //! Collision detection: the points at which bodies of the listed pairs touch or are about to. While
 //! two shapes hardly move against one another their points stay, and only the gaps are renewed.
 
+mod patches;
 #[cfg(test)]
 mod tests;
 
@@ -15,8 +16,6 @@ use rapier3d_f64::parry;
 /// Units of length of the shapes in a metre: some of parry's tolerances are absolute and made for
 /// parts of 1 m (in metres it drops the crossing of edges of 1 mm at less than a degree).
 const MILLIMETRES: f64 = 1e3;
-/// Most points of a manifold that are kept.
-const POINTS: usize = 4;
 /// Distance from a surface at which a neighbour covers it, m.
 const COVER: f64 = 20e-6;
 /// Tolerance for a neighbour, m: more than contacts sink, less than any gap.
@@ -30,7 +29,7 @@ const STILL: f64 = 10e-6;
 pub(super) struct Touch {
     /// Number of its pair of bodies in the scene.
     pub pair: usize,
-    /// Number of its pair of geoms; their points follow one another.
+    /// Number of its patch, that of its first pair of geoms; the points of a patch follow one another.
     pub geoms: usize,
     /// Midway between the two surfaces, world, m.
     pub point: Point3<f64>,
@@ -133,6 +132,7 @@ impl Detector {
             }
             candidate.report(geoms, &pose, &relative, found);
         }
+        patches::join(found);
     }
 }
 
@@ -253,17 +253,12 @@ impl Candidate {
             self.points.push([place(i), second].map(|place| Point3::from(place / MILLIMETRES)));
         };
         let count = points.len();
-        if count <= POINTS {
+        if count <= patches::POINTS {
             return (0..count).for_each(add);
         }
-        let deepest = best(count, |i| -points[i].dist);
-        let far = best(count, |i| (middle(i) - middle(deepest)).norm_squared());
-        let line = middle(far) - middle(deepest);
-        let side = |i: usize| line.cross(&(middle(i) - middle(deepest))).dot(&axis);
-        let mut chosen = vec![deepest, far, best(count, side), best(count, |i| -side(i))];
-        chosen.sort_unstable();
-        chosen.dedup();
-        chosen.into_iter().for_each(add);
+        let middle = |i| middle(i) / MILLIMETRES;
+        let gap = |i: usize| points[i].dist / MILLIMETRES;
+        patches::extremes(count, middle, gap, &axis).into_iter().for_each(add);
     }
 
     /// Appends the points with the gaps that they have now.
@@ -281,9 +276,4 @@ impl Candidate {
             });
         }
     }
-}
-
-/// First index below `count` with the largest value.
-fn best(count: usize, value: impl Fn(usize) -> f64) -> usize {
-    (1..count).fold(0, |best, i| if value(i) > value(best) { i } else { best })
 }

@@ -143,11 +143,13 @@ impl Crossing {
 
 #[test]
 fn crossing_a_round_rim_takes_the_force_of_the_formula() {
-    // rapier keeps a normal until its points have slid by 1 mm.
-    let exact = |engine: &Box<dyn Engine>| !engine.version().starts_with("rapier");
     let sum = RADII[0] + RADII[1];
     let friction = libm::atan(FRICTION);
-    for engine in engines().into_iter().filter(exact) {
+    for engine in engines() {
+        // It keeps a normal until its points have slid by 1 mm.
+        if engine.version().starts_with("rapier") {
+            continue;
+        }
         for overlap in [0.15 * MM, 0.3 * MM] {
             let mut crossing = Crossing::new(&*engine, overlap, None);
             let (mut peak, mut expected, mut mean) = (0.0f64, 0.0f64, 0.0);

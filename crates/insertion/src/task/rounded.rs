@@ -6,7 +6,7 @@
 //! leave a ball.
 
 use super::edges::{Cut, Edge, Face, HalfSpace, SAME, corners, same, spaces};
-use super::geometry::{self, Moments};
+use super::geometry;
 use contact::scene::Shape;
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
@@ -27,7 +27,6 @@ pub struct Rounded {
     /// Corners of a hull inside it, at most 1 um below the arcs (of a ball 4 % of the radius), from the
     /// smallest corner, m.
     inside: Vec<Point3<f64>>,
-    moments: Moments,
 }
 
 impl Rounded {
@@ -38,24 +37,15 @@ impl Rounded {
         edges: &[(Edge, Cut)],
     ) -> Option<Self> {
         let size = max - min;
-        let moments = (0.0, Vector3::zeros(), nalgebra::Matrix3::zeros());
         let (pieces, inside) = (Vec::new(), Vec::new());
-        let mut made = Rounded { min: *min, size, edges: edges.to_vec(), pieces, inside, moments };
-        let mut points = match made.whole() {
-            Some(core) => vec![core],
-            None => made.flush()?,
-        };
-        // Arcs at balls, which no piece has as points.
+        let mut made = Rounded { min: *min, size, edges: edges.to_vec(), pieces, inside };
+        made.pieces = made.whole().map_or_else(|| made.flush(), |core| Some(vec![core]))?;
         let balls: Vec<_> = made.ends().filter_map(|end| made.ball(&end)).collect();
-        let corners = |(shape, at): &(Shape, Vector3<f64>)| {
-            shape.corners().iter().map(|p| p + at).collect::<Vec<_>>()
-        };
-        made.pieces.append(&mut points);
         let hulls = made.pieces.iter().filter(|(shape, _)| matches!(shape, Shape::Hull { .. }));
-        let all: Vec<_> = hulls.chain(&balls).flat_map(corners).collect();
-        let (inside, faces) = geometry::hull(&all)?;
-        made.moments = geometry::surface_moments(&inside, &faces);
-        made.inside = inside;
+        let points = hulls
+            .chain(&balls)
+            .flat_map(|(shape, at)| shape.corners().into_iter().map(move |point| point + at));
+        made.inside = geometry::hull(&points.collect::<Vec<_>>())?.0;
         Some(made)
     }
 
@@ -67,11 +57,6 @@ impl Rounded {
     /// Returns the corners of a hull inside it, at most 1 um below its arcs.
     pub fn corners(&self) -> impl Iterator<Item = Point3<f64>> {
         self.inside.iter().map(|point| point + self.min)
-    }
-
-    pub(super) fn moments(&self) -> Moments {
-        let (volume, centre, second) = self.moments;
-        (volume, centre + self.min, second)
     }
 
     /// Returns the largest corner, m.
@@ -344,7 +329,7 @@ mod tests {
         // Steiner's formula.
         let [a, b, c] = [3.0, 5.0, 9.0];
         let exact = a * b * c + (a * b + b * c + c * a) + PI / 4.0 * (a + b + c) + PI / 6.0;
-        let volume = made.moments.0 / MM.powi(3);
+        let volume = geometry::volume(&Solid::Rounded(made)) / MM.powi(3);
         assert!((volume / exact - 1.0).abs() < 2e-3, "{volume} {exact}");
     }
 }

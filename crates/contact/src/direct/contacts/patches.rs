@@ -27,15 +27,24 @@ pub(super) fn join(touches: &mut Vec<Touch>) {
     if !manifolds.iter().enumerate().any(alike) {
         return;
     }
-    let mut patches: Vec<Patch> = Vec::new();
+    let mut patches: Vec<Vec<Touch>> = Vec::new();
     for manifold in manifolds {
-        match patches.iter_mut().find_map(|patch| Some((patch.with(manifold)?, patch))) {
-            Some((gaps, patch)) => patch.add(manifold, gaps),
-            None => patches.push(Patch::new(manifold)),
+        match patches.iter_mut().find(|patch| share_plane(patch, manifold)) {
+            Some(patch) => patch.extend(manifold),
+            None => patches.push(manifold.to_vec()),
         }
     }
     touches.clear();
-    patches.iter().for_each(|patch| patch.report(touches));
+    for patch in patches {
+        let Touch { geoms, normal, .. } = patch[0];
+        if patch.iter().all(|touch| touch.geoms == geoms) {
+            touches.extend(patch);
+            continue;
+        }
+        let (place, gap) = (|i: usize| patch[i].point.coords, |i: usize| patch[i].gap);
+        let chosen = extremes(patch.len(), place, gap, &normal).into_iter();
+        touches.extend(chosen.map(|i| Touch { geoms, ..patch[i] }));
+    }
 }
 
 /// Returns whether two touches may belong to one patch.
@@ -43,89 +52,29 @@ fn alike(a: &Touch, b: &Touch) -> bool {
     a.pair == b.pair && a.normal.dot(&b.normal) > ALIKE && a.friction == b.friction
 }
 
-/// Patch in the making.
-struct Patch {
-    touches: Vec<Touch>,
-    gaps: Gaps,
-    /// Number of manifolds.
-    parts: usize,
-}
-
-impl Patch {
-    fn new(manifold: &[Touch]) -> Self {
-        let mut patch = Patch { touches: Vec::new(), gaps: Gaps::default(), parts: 0 };
-        let gaps = patch.gaps.with(manifold, &manifold[0]);
-        patch.add(manifold, gaps);
-        patch
+/// Returns whether a manifold lies in the plane of a patch, with a gap that is linear over both.
+fn share_plane(patch: &[Touch], manifold: &[Touch]) -> bool {
+    let first = &patch[0];
+    let coplanar = |touch: &Touch| {
+        let way = touch.point - first.point;
+        way.dot(&first.normal).abs() < FLAT + TILT * way.norm()
+    };
+    if !alike(first, &manifold[0]) || !manifold.iter().all(coplanar) {
+        return false;
     }
-
-    /// Returns the gaps of the patch with a manifold; `None` if they share no plane.
-    fn with(&self, manifold: &[Touch]) -> Option<Gaps> {
-        let first = &self.touches[0];
-        let coplanar = |touch: &Touch| {
-            let way = touch.point - first.point;
-            way.dot(&first.normal).abs() < FLAT + TILT * way.norm()
-        };
-        if !alike(first, &manifold[0]) || !manifold.iter().all(coplanar) {
-            return None;
-        }
-        let gaps = self.gaps.with(manifold, first);
-        let (mean, slope) = gaps.fit()?;
-        let off = |touch: &Touch| touch.gap - mean - slope.dot(&(touch.point - first.point));
-        let (own, other) = (self.touches.iter().rev().take(POINTS), manifold.iter());
-        own.chain(other).all(|touch| off(touch).abs() < FLAT).then_some(gaps)
-    }
-
-    fn add(&mut self, manifold: &[Touch], gaps: Gaps) {
-        let geoms = self.touches.first().unwrap_or(&manifold[0]).geoms;
-        self.touches.extend(manifold.iter().map(|touch| Touch { geoms, ..*touch }));
-        self.gaps = gaps;
-        self.parts += 1;
-    }
-
-    fn report(&self, found: &mut Vec<Touch>) {
-        if self.parts == 1 {
-            return found.extend(&self.touches);
-        }
-        let place = |i: usize| self.touches[i].point.coords;
-        let gap = |i: usize| self.touches[i].gap;
-        let chosen = extremes(self.touches.len(), place, gap, &self.touches[0].normal);
-        found.extend(chosen.into_iter().map(|i| self.touches[i]));
-    }
-}
-
-/// Sums over the points of a patch for a linear fit of the gap, about its first point.
-#[derive(Clone, Copy, Default)]
-struct Gaps {
-    count: f64,
-    place: Vector3<f64>,
-    square: Matrix3<f64>,
-    gap: f64,
-    product: Vector3<f64>,
-}
-
-impl Gaps {
-    fn with(mut self, manifold: &[Touch], first: &Touch) -> Self {
-        for touch in manifold {
-            let place = touch.point - first.point;
-            self.count += 1.0;
-            self.place += place;
-            self.square += place * place.transpose();
-            self.gap += touch.gap;
-            self.product += place * touch.gap;
-        }
-        self
-    }
-
-    /// Returns the gap at the first point and its slope, by least squares.
-    fn fit(&self) -> Option<(f64, Vector3<f64>)> {
-        let spread = self.square - self.place * self.place.transpose() / self.count;
-        // No slope across a line or off the plane.
-        let least = 1e-6 * spread.trace() + NARROW * FLAT;
-        let slope = (spread + Matrix3::from_diagonal_element(least)).try_inverse()?
-            * (self.product - self.place * (self.gap / self.count));
-        Some(((self.gap - slope.dot(&self.place)) / self.count, slope))
-    }
+    let points =
+        || patch.iter().chain(manifold).map(|touch| (touch.point - first.point, touch.gap));
+    let count = (patch.len() + manifold.len()) as f64;
+    let place = points().map(|(place, _)| place).sum::<Vector3<f64>>() / count;
+    let mean = points().map(|(_, gap)| gap).sum::<f64>() / count;
+    let centred = || points().map(|(at, gap)| (at - place, gap - mean));
+    let spread: Matrix3<f64> = centred().map(|(at, _)| at * at.transpose()).sum();
+    let product: Vector3<f64> = centred().map(|(at, gap)| at * gap).sum();
+    // No slope across a line or off the plane.
+    let least = Matrix3::from_diagonal_element(1e-6 * spread.trace() + NARROW * FLAT);
+    let Some(inverse) = (spread + least).try_inverse() else { return false };
+    let slope = inverse * product;
+    centred().all(|(at, gap)| (gap - slope.dot(&at)).abs() < FLAT)
 }
 
 /// Returns at most four points of a patch, the deepest among them, that span it.

@@ -71,8 +71,9 @@ fn cuboid(name: &str, size_mm: [f64; 3], middle_mm: [f64; 3]) -> Geom {
     Geom { name: name.into(), shape: Shape::Box { half }, pose, friction: None }
 }
 
-/// A plug of 20 g, 8 mm wide, in a bore with this gap on all sides, and that above its floor.
-fn plug_in_bore(gap_mm: f64, floor_mm: f64, gravity: f64) -> Box<dyn World> {
+/// A plug of 20 g, 8 mm wide, its edges sharp or round, in a bore with this gap on all sides, and that
+/// above its floor.
+fn plug_in_bore(gap_mm: f64, floor_mm: f64, gravity: f64, radius_mm: f64) -> Box<dyn World> {
     let middle = 4.0 + gap_mm + 5.0;
     let walls = [
         cuboid("wall -x", [10.0, 40.0, 20.0], [-middle, 0.0, 10.0]),
@@ -81,6 +82,12 @@ fn plug_in_bore(gap_mm: f64, floor_mm: f64, gravity: f64) -> Box<dyn World> {
         cuboid("wall +y", [40.0, 10.0, 20.0], [0.0, middle, 10.0]),
         cuboid("floor", [40.0, 40.0, 10.0], [0.0, 0.0, -5.0]),
     ];
+    let mut body = cuboid("plug", [8.0, 8.0, 15.0], [0.0; 3]);
+    if radius_mm > 0.0 {
+        let half = Vector3::new(4.0, 4.0, 7.5);
+        let core = half.map(|half| (half - radius_mm) * MM);
+        body.shape = Shape::RoundBox { core, radius: radius_mm * MM };
+    }
     let inertia = Inertia { mass: 0.02, centre: Point3::origin(), moments: Vector3::repeat(4e-7) };
     let mut scene = Scene { gravity: Vector3::new(0.0, 0.0, -gravity), ..Scene::default() };
     let socket = scene.body(Body {
@@ -93,7 +100,7 @@ fn plug_in_bore(gap_mm: f64, floor_mm: f64, gravity: f64) -> Box<dyn World> {
         name: "plug".into(),
         motion: Motion::Free(inertia),
         pose: Pose::translation(0.0, 0.0, (7.5 + floor_mm) * MM),
-        geoms: vec![cuboid("plug", [8.0, 8.0, 15.0], [0.0; 3])],
+        geoms: vec![body],
     });
     scene.contact(socket, plug, Friction::hard(0.2));
     Direct::default().world(&scene)
@@ -107,16 +114,16 @@ fn ten_steps(bencher: Bencher, world: &dyn World) {
     });
 }
 
-/// So near its walls and floor that contacts are foreseen, and pressed by nothing.
-#[divan::bench(sample_count = 100, sample_size = 10)]
-fn contact_detection_10_steps(bencher: Bencher) {
-    ten_steps(bencher, &*plug_in_bore(0.1, 0.1, 0.0));
+/// So near its walls and floor that contacts are foreseen, and pressed by nothing; by its radius, mm.
+#[divan::bench(args = [0.0, 0.3], sample_count = 100, sample_size = 10)]
+fn contact_detection_10_steps(bencher: Bencher, radius_mm: f64) {
+    ten_steps(bencher, &*plug_in_bore(0.1, 0.1, 0.0, radius_mm));
 }
 
 /// Standing on the floor between walls that it touches.
 #[divan::bench(sample_count = 100, sample_size = 10)]
 fn solver_10_steps(bencher: Bencher) {
-    ten_steps(bencher, &*plug_in_bore(0.0, 0.0, 9.81));
+    ten_steps(bencher, &*plug_in_bore(0.0, 0.0, 9.81, 0.0));
 }
 
 #[divan::bench(sample_count = 5, sample_size = 1)]

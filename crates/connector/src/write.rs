@@ -5,7 +5,7 @@ use input::units::{DEG, GRAM, MM};
 use insertion::task::{
     Ending, Hold, PadTorsion, Part, Phase, Sensed, Solid, Stage, StartRule, Task,
 };
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use std::fmt::Write;
 
 #[derive(Debug, Clone, Default)]
@@ -67,9 +67,11 @@ fn parts(out: &mut String, body: &str, parts: &[Part]) {
 
 fn solid(solid: &Solid) -> String {
     match solid {
-        Solid::Box { min, max } => {
-            let [x, y, z] = [0, 1, 2].map(|i| pair([min[i], max[i]]));
-            format!("shape = \"box\"\nx_mm = {x}\ny_mm = {y}\nz_mm = {z}\n")
+        Solid::Box { min, max } => cuboid(min, max),
+        Solid::Rounded(rounded) => {
+            let cut = |(at, key, size)| format!("{{ at = \"{at}\", {key} = {} }}", mm(size));
+            let edges = list(rounded.cuts().map(cut));
+            cuboid(&rounded.min, &rounded.max()) + &format!("edges = {edges}\n")
         }
         Solid::Cylinder { centre, radius, z } => {
             let (centre, diameter, z) = (pair(*centre), mm(2.0 * radius), pair(*z));
@@ -89,6 +91,11 @@ fn solid(solid: &Solid) -> String {
             format!("shape = \"hull\"\npoints_mm = {}\n", list(points.iter().map(point)))
         }
     }
+}
+
+fn cuboid(min: &Vector3<f64>, max: &Vector3<f64>) -> String {
+    let [x, y, z] = [0, 1, 2].map(|i| pair([min[i], max[i]]));
+    format!("shape = \"box\"\nx_mm = {x}\ny_mm = {y}\nz_mm = {z}\n")
 }
 
 fn grip(out: &mut String, task: &Task) {

@@ -34,6 +34,13 @@ pub enum Shape {
         /// Points, m.
         points: Vec<Point3<f64>>,
     },
+    /// Points within a radius of a core: a box with round edges and corners, a capsule, a ball.
+    RoundBox {
+        /// Half extents of the core along x, y and z, m; any of them may be 0.
+        core: Vector3<f64>,
+        /// Radius, m.
+        radius: f64,
+    },
 }
 
 /// Shape on a body.
@@ -271,13 +278,12 @@ impl Scene {
 }
 
 impl Shape {
-    /// Returns the corners, m; of a cylinder those of a 16-sided prism inside it (for pictures and extents).
+    /// Returns the corners, m; of a cylinder those of a 16-sided prism inside it, of an arc every 22.5
+    /// degrees (for pictures and extents).
     pub fn corners(&self) -> Vec<Point3<f64>> {
         match self {
             Shape::Box { half } => {
-                let sign = |i: usize, bit: usize| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
-                let corner = |i| Vector3::from_fn(|axis, _| sign(i, axis) * half[axis]).into();
-                (0..8).map(corner).collect()
+                octants().map(|signs| signs.component_mul(half).into()).collect()
             }
             Shape::Cylinder { half_height, radius } => {
                 let corner = |i: u32| {
@@ -288,8 +294,27 @@ impl Shape {
                 (0..32).map(corner).collect()
             }
             Shape::Hull { points } => points.clone(),
+            Shape::RoundBox { core, radius } => {
+                let angle = |i: u32| f64::from(i) * std::f64::consts::FRAC_PI_8;
+                let outward = |i: u32| {
+                    let (up, around) = (angle(i / 5), angle(i % 5));
+                    let [level, height] = [libm::cos(up), libm::sin(up)];
+                    Vector3::new(level * libm::cos(around), level * libm::sin(around), height)
+                };
+                let point = |i| core + outward(i) * *radius;
+                let octant = |signs: Vector3<f64>| {
+                    (0..25).map(move |i| Point3::from(point(i).component_mul(&signs)))
+                };
+                octants().flat_map(octant).collect()
+            }
         }
     }
+}
+
+/// Returns the signs of x, y and z in the eight octants.
+fn octants() -> impl Iterator<Item = Vector3<f64>> {
+    let sign = |i: usize, bit: usize| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
+    (0..8).map(move |i| Vector3::from_fn(|axis, _| sign(i, axis)))
 }
 
 #[cfg(test)]

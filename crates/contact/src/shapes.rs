@@ -40,7 +40,24 @@ pub fn shared(shape: &Shape, scale: f64) -> (SharedShape, Pose) {
             let hull = SharedShape::convex_hull(&points);
             (hull.unwrap_or_else(|| SharedShape::ball(0.0)), Pose::identity())
         }
+        Shape::RoundBox { core, radius } => {
+            let (half, radius) = (core * scale, radius * scale);
+            let shape = match extended(core)[..] {
+                [] => SharedShape::ball(radius),
+                [axis] => {
+                    let end = pm::Vector::from(Vector3::ith(axis, half[axis]));
+                    SharedShape::capsule(-end, end, radius)
+                }
+                _ => SharedShape::round_cuboid(half.x, half.y, half.z, radius),
+            };
+            (shape, Pose::identity())
+        }
     }
+}
+
+/// Returns the axes along which the core of a round box extends.
+pub(super) fn extended(core: &Vector3<f64>) -> Vec<usize> {
+    (0..3).filter(|&axis| core[axis] > 0.0).collect()
 }
 
 /// Returns the centre and half extents, m, of the box in the shape's frame that encloses it.

@@ -91,7 +91,7 @@ fn part_key(body: &str, name: &str, field: &str) -> String {
 /// Name of the field that gives a part's extent along an axis.
 fn field(solid: &Solid, axis: usize) -> &'static str {
     match solid {
-        Solid::Box { .. } => ["x_mm", "y_mm", "z_mm"][axis],
+        Solid::Box { .. } | Solid::Rounded(_) => ["x_mm", "y_mm", "z_mm"][axis],
         Solid::Cylinder { .. } => ["diameter_mm", "diameter_mm", "z_mm"][axis],
         Solid::Prism { axis: along, .. } if *along == axis => "span_mm",
         Solid::Prism { .. } => "outline_mm",

@@ -1,22 +1,22 @@
 //! Collision detection: the points at which bodies of the listed pairs touch or are about to. While
 //! two shapes hardly move against one another their points stay, and only the gaps are renewed.
 
+mod lines;
+mod patches;
 #[cfg(test)]
 mod tests;
 
 use super::body::MovingBody;
-use crate::scene::{Friction, Geom, GeomPair, Pose, Scene};
+use crate::scene::{Friction, Geom, GeomPair, Pose, Scene, Shape};
 use crate::shapes;
 use nalgebra::{Matrix3, Point3, Vector3};
 use parry::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
-use parry::shape::SharedShape;
+use parry::shape::{Cuboid, SharedShape, SupportMap};
 use rapier3d_f64::parry;
 
 /// Units of length of the shapes in a metre: some of parry's tolerances are absolute and made for
 /// parts of 1 m (in metres it drops the crossing of edges of 1 mm at less than a degree).
 const MILLIMETRES: f64 = 1e3;
-/// Most points of a manifold that are kept.
-const POINTS: usize = 4;
 /// Distance from a surface at which a neighbour covers it, m.
 const COVER: f64 = 20e-6;
 /// Tolerance for a neighbour, m: more than contacts sink, less than any gap.
@@ -24,13 +24,15 @@ const SEAM: f64 = 2e-6;
 /// Way that two shapes may move against one another before their points are found anew, m: a
 /// hundredth of the offset grid, a twentieth of the gap at which contacts are foreseen.
 const STILL: f64 = 10e-6;
+/// ... and of round shapes, as a share of their radius: the turn of the normal, rad.
+const ROLL: f64 = 2e-3;
 
 /// Point of contact between two bodies.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Touch {
     /// Number of its pair of bodies in the scene.
     pub pair: usize,
-    /// Number of its pair of geoms; their points follow one another.
+    /// Number of its patch, that of its first pair of geoms; the points of a patch follow one another.
     pub geoms: usize,
     /// Midway between the two surfaces, world, m.
     pub point: Point3<f64>,
@@ -47,6 +49,8 @@ pub(super) struct Touch {
 struct Solid {
     body: usize,
     shape: SharedShape,
+    /// Core and radius of a round shape, mm.
+    round: Option<(Cuboid, f64)>,
     /// parry's frame of the shape in the body frame.
     pose: Pose,
     /// Enclosing box: its frame in the body frame, and half extents, m.
@@ -125,7 +129,12 @@ impl Detector {
             let pose = bodies[first.body].pose * first.pose;
             let other = bodies[second.body].pose * second.pose;
             let relative = pose.inv_mul(&other);
-            if !candidate.still(&relative, second.reach) {
+            let round = [first, second].map(|solid| solid.round.map_or(0.0, |(_, radius)| radius));
+            let way = match round[0] + round[1] {
+                0.0 => STILL,
+                radius => STILL.min(ROLL * radius / MILLIMETRES),
+            };
+            if !candidate.still(&relative, second.reach, way) {
                 candidate.compute(&relative, (first, second), self.prediction);
                 candidate.drop_covered(&self.solids);
                 candidate.choose(self.prediction);
@@ -133,6 +142,7 @@ impl Detector {
             }
             candidate.report(geoms, &pose, &relative, found);
         }
+        patches::join(found);
     }
 }
 
@@ -143,6 +153,13 @@ impl Solid {
         let mut solid = Solid {
             body,
             shape,
+            round: match geom.shape {
+                Shape::RoundBox { core, radius } => {
+                    let half = core * MILLIMETRES;
+                    Some((Cuboid::new(half.into()), radius * MILLIMETRES))
+                }
+                _ => None,
+            },
             pose: geom.pose * turn,
             frame: geom.pose * Pose::translation(centre.x, centre.y, centre.z),
             half,
@@ -155,6 +172,14 @@ impl Solid {
         };
         solid.enclose(&Pose::identity());
         solid
+    }
+
+    /// Core, in parry's frame, and radius, mm; a sharp shape is its own.
+    fn core(&self) -> Option<(&dyn SupportMap, f64)> {
+        match &self.round {
+            Some((core, radius)) => Some((core, *radius)),
+            None => Some((self.shape.as_support_map()?, 0.0)),
+        }
     }
 
     fn enclose(&mut self, body: &Pose) {
@@ -210,6 +235,9 @@ impl Candidate {
             prediction * MILLIMETRES,
             &mut self.manifold,
         );
+        if solids.0.round.is_some() || solids.1.round.is_some() {
+            lines::add_ends(&mut self.manifold, &relative, [solids.0, solids.1], prediction);
+        }
     }
 
     /// Drops the points on faces that another shape of the same body covers: at a seam of flush
@@ -229,12 +257,12 @@ impl Candidate {
 
     /// Whether no point of the second shape, which reaches so far, m, has moved against the first
     /// since the points were found.
-    fn still(&self, relative: &Pose, reach: f64) -> bool {
+    fn still(&self, relative: &Pose, reach: f64, way: f64) -> bool {
         self.found_at.as_ref().is_some_and(|before| {
             let moved = (relative.translation.vector - before.translation.vector).norm();
             // Half the angle, if it is small; of a quaternion that changed its sign about 2.
             let turned = relative.rotation.coords - before.rotation.coords;
-            moved + 2.0 * turned.norm() * reach < STILL
+            moved + 2.0 * turned.norm() * reach < way
         })
     }
 
@@ -253,17 +281,12 @@ impl Candidate {
             self.points.push([place(i), second].map(|place| Point3::from(place / MILLIMETRES)));
         };
         let count = points.len();
-        if count <= POINTS {
+        if count <= patches::POINTS {
             return (0..count).for_each(add);
         }
-        let deepest = best(count, |i| -points[i].dist);
-        let far = best(count, |i| (middle(i) - middle(deepest)).norm_squared());
-        let line = middle(far) - middle(deepest);
-        let side = |i: usize| line.cross(&(middle(i) - middle(deepest))).dot(&axis);
-        let mut chosen = vec![deepest, far, best(count, side), best(count, |i| -side(i))];
-        chosen.sort_unstable();
-        chosen.dedup();
-        chosen.into_iter().for_each(add);
+        let middle = |i| middle(i) / MILLIMETRES;
+        let gap = |i: usize| points[i].dist / MILLIMETRES;
+        patches::extremes(count, middle, gap, &axis).into_iter().for_each(add);
     }
 
     /// Appends the points with the gaps that they have now.
@@ -281,9 +304,4 @@ impl Candidate {
             });
         }
     }
-}
-
-/// First index below `count` with the largest value.
-fn best(count: usize, value: impl Fn(usize) -> f64) -> usize {
-    (1..count).fold(0, |best, i| if value(i) > value(best) { i } else { best })
 }

@@ -30,7 +30,7 @@ pub struct Direct {
     pub step_s: f64,
     /// Gap at which a contact is foreseen, m: farther than anything moves in a step.
     pub prediction: f64,
-    /// Stiffness of a contact point, N/m, whatever the masses. It stands for the give of loaded
+    /// Stiffness of a corner of a contact patch, N/m, whatever the masses and the facets. It stands for the give of loaded
     /// edges, socket and board, which the exact boxes lack, and makes the forces of a redundant
     /// contact unique. It decides when a key wedges: `docs/notes/calibration.md`.
     pub contact_stiffness: f64,

@@ -5,7 +5,8 @@ use super::{AXES, HEAVY, axis_name, driven_axis_name, geom_names, mesh_name};
 use crate::scene::{
     Body, BodyId, Geom, Inertia, Joint, Motion, Pose, Scene, Shape, Spring, Springs,
 };
-use nalgebra::{Point3, Vector3};
+use crate::shapes::extended;
+use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 
 /// Colours of the bodies in turn: red, green, blue.
 const COLOURS: [[f64; 3]; 6] = [
@@ -16,6 +17,8 @@ const COLOURS: [[f64; 3]; 6] = [
     [0.51, 0.45, 0.70],
     [0.55, 0.55, 0.55],
 ];
+/// Least half thickness of a mesh, m.
+const THIN: f64 = 1e-6;
 /// Opacity of fixed bodies.
 const SEE_THROUGH: f64 = 0.5;
 
@@ -118,25 +121,61 @@ fn joint(name: &str, frame: &Pose, axis: usize) -> Element {
 }
 
 fn geom_element(scene: &Scene, body: usize, geom: &Geom, name: &str) -> Element {
-    let element = placed(Element::new("geom").with("name", name), &geom.pose);
+    let element = placed(Element::new("geom").with("name", name), &(geom.pose * upright(geom)));
     let element = match &geom.shape {
         Shape::Box { half } => element.with("type", "box").numbers("size", half.iter().copied()),
         Shape::Cylinder { half_height, radius } => {
             element.with("type", "cylinder").numbers("size", [*radius, *half_height])
         }
-        Shape::Hull { .. } => element.with("type", "mesh").with("mesh", mesh_name(name)),
+        Shape::RoundBox { core, radius } if mesh(&geom.shape).is_none() => {
+            let element = element.with("type", if core.max() > 0.0 { "capsule" } else { "sphere" });
+            element.numbers("size", [*radius, core.max()])
+        }
+        Shape::Hull { .. } | Shape::RoundBox { .. } => {
+            element.with("type", "mesh").with("mesh", mesh_name(name))
+        }
     };
     let [r, g, b] = COLOURS[body % COLOURS.len()];
     let fixed = scene.bodies[body].motion == Motion::Fixed;
     element.numbers("rgba", [r, g, b, if fixed { SEE_THROUGH } else { 1.0 }])
 }
 
-/// Meshes of the hulls.
+/// Returns the turn of MuJoCo's capsules, which lie along z.
+fn upright(geom: &Geom) -> Pose {
+    let Shape::RoundBox { core, .. } = &geom.shape else { return Pose::identity() };
+    let turn = match extended(core)[..] {
+        [axis] => UnitQuaternion::rotation_between(&Vector3::z(), &Vector3::ith(axis, 1.0)),
+        _ => None,
+    };
+    Pose::from_parts(Translation3::identity(), turn.unwrap_or_default())
+}
+
+/// Returns the points of a geom that is a mesh in MuJoCo.
+fn mesh(shape: &Shape) -> Option<Vec<Point3<f64>>> {
+    match shape {
+        Shape::Hull { points } => Some(points.clone()),
+        // A box with a margin has no contact at its edges; a flat mesh is refused.
+        Shape::RoundBox { core, .. } if extended(core).len() > 1 => {
+            Some(Shape::Box { half: core.map(|half| half.max(THIN)) }.corners())
+        }
+        _ => None,
+    }
+}
+
+/// Returns the distance, m, at which a geom touches: the radius of a mesh that is a core.
+pub(super) fn margin(shape: &Shape) -> f64 {
+    match shape {
+        Shape::RoundBox { radius, .. } if mesh(shape).is_some() => *radius,
+        _ => 0.0,
+    }
+}
+
+/// Meshes of the hulls and cores.
 pub(super) fn assets(scene: &Scene) -> Element {
     let names = geom_names(scene);
     let geoms = scene.bodies.iter().flat_map(|body| &body.geoms).zip(names.iter().flatten());
     let mesh = |(geom, name): (&Geom, &String)| {
-        let Shape::Hull { points } = &geom.shape else { return None };
+        let points = mesh(&geom.shape)?;
         let corners = points.iter().flat_map(|point| <[f64; 3]>::from(point.coords));
         Some(Element::new("mesh").with("name", mesh_name(name)).numbers("vertex", corners))
     };

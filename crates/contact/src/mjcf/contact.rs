@@ -14,6 +14,7 @@
 //! `b_f` must be small. With MuJoCo's choice, `b_f = b`, a plug that slides at 100 mm/s with
 //! friction 0.2 would float at 0.055 mm, near a connector's clearance; here at 0.011 mm.
 
+use super::body::margin;
 use super::{HEAVY, MjcfSettings, geom_names, xml::Element};
 use crate::scene::{
     Body, BodyId, ContactPair, Friction, GeomPair, Inertia, Joint, Motion, Pose, Scene, Spring,
@@ -29,6 +30,8 @@ const IMPEDANCES: [f64; 2] = [1e-4, 0.9999];
 /// Returns the pairs of geoms that may touch.
 pub(super) fn pairs(scene: &Scene, settings: &MjcfSettings) -> Element {
     let names = geom_names(scene).concat();
+    let margins: Vec<_> =
+        scene.bodies.iter().flat_map(|body| &body.geoms).map(|geom| margin(&geom.shape)).collect();
     let pair = |pair: GeomPair| {
         let ContactPair { first, second, .. } = scene.contacts[pair.bodies];
         let weight = inverse_weight(scene, first) + inverse_weight(scene, second);
@@ -40,6 +43,10 @@ pub(super) fn pairs(scene: &Scene, settings: &MjcfSettings) -> Element {
         // Friction knows no gap; its stiffness only has to be negative, too.
         let friction = [solref[0], -settings.friction_rate * impedance];
         let element = Element::new("pair").with("geom1", &names[pair.first]);
+        let element = match margins[pair.first] + margins[pair.second] {
+            0.0 => element,
+            margin => element.with("margin", margin),
+        };
         rough(element.with("geom2", &names[pair.second]), pair.friction)
             .numbers("solref", solref)
             .numbers("solreffriction", friction)

@@ -1,21 +1,20 @@
-//! Chamfers and radii along the edges of a box: the hull they leave, and round edges for a task.
+//! Chamfers and radii along the edges of a box: the solid they leave, and round edges for a task.
 
 use super::geometry::{self, Solid};
+use super::rounded::Rounded;
 use super::{Part, Task};
 use input::units::MM;
 use nalgebra::{Matrix3, Point3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
-/// Flats of a rounded edge, tangent to the arc: their corners stand out by 1.2 % of the radius.
-const FLATS: usize = 4;
 /// Corners nearer to one another are one, m.
 pub const SAME: f64 = 1e-6 * MM;
 
 /// A face of a box: its axis, and which end of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Face {
-    axis: usize,
-    high: bool,
+    pub(super) axis: usize,
+    pub(super) high: bool,
 }
 
 /// Cut along an edge, m.
@@ -25,6 +24,15 @@ pub enum Cut {
     Chamfer(f64),
     /// An arc that is tangent to both faces.
     Radius(f64),
+}
+
+impl Cut {
+    /// Returns how far it reaches along either face, m.
+    pub fn size(self) -> f64 {
+        match self {
+            Cut::Chamfer(size) | Cut::Radius(size) => size,
+        }
+    }
 }
 
 /// An edge by its two faces.
@@ -52,14 +60,19 @@ pub fn same(a: &Edge, b: &Edge) -> bool {
 }
 
 /// All points with `normal . p <= distance`: normal and distance.
-type HalfSpace = (Vector3<f64>, f64);
+pub(super) type HalfSpace = (Vector3<f64>, f64);
 
 fn through(point: &Vector3<f64>, normal: Vector3<f64>) -> HalfSpace {
     (normal, normal.dot(point))
 }
 
 impl Face {
-    fn outward(self) -> Vector3<f64> {
+    pub(super) fn name(self) -> String {
+        let sign = if self.high { '+' } else { '-' };
+        format!("{sign}{}", ["x", "y", "z"][self.axis])
+    }
+
+    pub(super) fn outward(self) -> Vector3<f64> {
         Vector3::ith(self.axis, if self.high { 1.0 } else { -1.0 })
     }
 }
@@ -80,19 +93,33 @@ pub fn cut(
     if !fit(&(max - min), edges) {
         return Err(ROOM);
     }
-    let faces = (0..3).flat_map(|axis| [false, true].map(|high| Face { axis, high }));
-    let corner = |face: Face| if face.high { max } else { min };
-    let mut spaces: Vec<_> = faces.map(|face| through(corner(face), face.outward())).collect();
-    for ([first, second], cut) in edges {
-        let mut at = *corner(*first);
-        at[second.axis] = corner(*second)[second.axis];
-        flats(&mut spaces, [first.outward(), second.outward()], &at, *cut);
+    if edges.iter().any(|(_, cut)| matches!(cut, Cut::Radius(_))) {
+        return Rounded::new(min, max, edges).map(Solid::Rounded).ok_or(THIN);
     }
-    let corners = corners(&spaces);
+    let corners = corners(&spaces(min, max, edges, |_| 1));
     match geometry::hull(&corners) {
         Some((points, _)) if points.len() == corners.len() => Ok(Solid::Hull { points }),
         _ => Err(THIN),
     }
+}
+
+/// Returns the half-spaces of a box whose edges are cut, an arc by so many chords.
+pub(super) fn spaces(
+    min: &Vector3<f64>,
+    max: &Vector3<f64>,
+    edges: &[(Edge, Cut)],
+    chords: impl Fn(&Edge) -> usize,
+) -> Vec<HalfSpace> {
+    let faces = (0..3).flat_map(|axis| [false, true].map(|high| Face { axis, high }));
+    let corner = |face: Face| if face.high { max } else { min };
+    let mut spaces: Vec<_> = faces.map(|face| through(corner(face), face.outward())).collect();
+    for (edge, cut) in edges {
+        let [first, second] = *edge;
+        let mut at = *corner(first);
+        at[second.axis] = corner(second)[second.axis];
+        flats(&mut spaces, [first.outward(), second.outward()], &at, *cut, chords(edge));
+    }
+    spaces
 }
 
 impl Solid {
@@ -107,7 +134,7 @@ impl Solid {
 fn fit(size: &Vector3<f64>, edges: &[(Edge, Cut)]) -> bool {
     let reach = |edge: Edge| {
         let cut = edges.iter().find(|(other, _)| same(other, &edge));
-        cut.map_or(0.0, |(_, Cut::Chamfer(reach) | Cut::Radius(reach))| *reach)
+        cut.map_or(0.0, |(_, cut)| cut.size())
     };
     let room = |face: Face, side: Face| {
         let across = Face { high: !side.high, ..side };
@@ -116,25 +143,33 @@ fn fit(size: &Vector3<f64>, edges: &[(Edge, Cut)]) -> bool {
     edges.iter().all(|([a, b], _)| room(*a, *b) && room(*b, *a))
 }
 
-/// The planes that a cut puts in place of the edge between the faces with these outward normals.
-fn flats(spaces: &mut Vec<HalfSpace>, [a, b]: [Vector3<f64>; 2], edge: &Vector3<f64>, cut: Cut) {
+/// Adds the planes that a cut puts in place of the edge between the faces with these outward normals:
+/// of an arc, through its chords.
+fn flats(
+    spaces: &mut Vec<HalfSpace>,
+    [a, b]: [Vector3<f64>; 2],
+    edge: &Vector3<f64>,
+    cut: Cut,
+    chords: usize,
+) {
     match cut {
         Cut::Chamfer(leg) => {
             spaces.push(through(&(edge - a * leg), (a + b).normalize()));
         }
         Cut::Radius(radius) => {
             let centre = edge - (a + b) * radius;
-            for i in 1..=FLATS {
-                let turn = FRAC_PI_2 * i as f64 / (FLATS + 1) as f64;
+            let step = FRAC_PI_2 / chords as f64;
+            for i in 0..chords {
+                let turn = (i as f64 + 0.5) * step;
                 let normal = a * libm::cos(turn) + b * libm::sin(turn);
-                spaces.push(through(&(centre + normal * radius), normal));
+                spaces.push(through(&(centre + normal * (radius * libm::cos(step / 2.0))), normal));
             }
         }
     }
 }
 
 /// Returns the points that three of the planes share and that lie in all the half-spaces.
-fn corners(spaces: &[HalfSpace]) -> Vec<Point3<f64>> {
+pub(super) fn corners(spaces: &[HalfSpace]) -> Vec<Point3<f64>> {
     let mut found: Vec<Point3<f64>> = Vec::new();
     for (i, a) in spaces.iter().enumerate() {
         for (j, b) in spaces.iter().enumerate().skip(i + 1) {
@@ -262,11 +297,9 @@ mod tests {
     fn a_radius_takes_off_what_a_quarter_circle_leaves_of_a_square() {
         let exact = (1.0 - PI / 4.0) * 0.8 * 0.8 * 10.0;
         let taken = missing("+x+y", Cut::Radius(0.8 * MM));
-        // Tangents leave a little more than the arc: tan t / t of it, t half the angle between two.
-        let half = PI / 4.0 / (FLATS + 1) as f64;
-        let more = (libm::tan(half) / half - 1.0) * PI / 4.0 * 0.8 * 0.8 * 10.0;
-        assert!((taken - (exact - more)).abs() < 1e-9, "{taken}");
-        assert!(more < 0.04 * exact);
+        // Chords lie at most 0.8 um below the arc.
+        let more = 0.8e-3 * 0.8 * PI / 2.0 * 10.0;
+        assert!((exact..exact + more).contains(&taken), "{taken} {exact}");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Exact convex parts, and the mass properties of a body made of them.
 
+use super::rounded::Rounded;
 use contact::scene::{Geom, Inertia, Pose, Shape};
 use input::units::MM;
 use nalgebra::{Matrix3, Point2, Point3, Translation3, Vector3};
@@ -59,12 +60,28 @@ pub enum Solid {
         /// Corners of the hull.
         points: Vec<Point3<f64>>,
     },
+    /// A box with round edges.
+    Rounded(Rounded),
 }
 
+/// Volume, m3; centroid, m; second moments about it per unit of density (integral of x xT), m5.
+pub type Moments = (f64, Vector3<f64>, Matrix3<f64>);
+
 impl Part {
-    /// Returns the part as a geom on a body whose frame is the part's frame.
+    /// Returns the part as a geom, of round edges a hull within 1 um, on a body whose frame is the part's frame.
     pub fn geom(&self) -> Geom {
-        let (shape, origin) = self.solid.shape();
+        self.placed(self.solid.shape())
+    }
+
+    /// Returns the exact geoms for contacts, as [`Part::geom`].
+    pub fn geoms(&self) -> Vec<Geom> {
+        match &self.solid {
+            Solid::Rounded(rounded) => rounded.pieces().map(|piece| self.placed(piece)).collect(),
+            _ => vec![self.geom()],
+        }
+    }
+
+    fn placed(&self, (shape, origin): (Shape, Vector3<f64>)) -> Geom {
         Geom {
             name: self.name.clone(),
             shape,
@@ -83,7 +100,7 @@ impl Solid {
                 Shape::Cylinder { half_height: (z[1] - z[0]) / 2.0, radius: *radius },
                 Vector3::new(centre[0], centre[1], (z[0] + z[1]) / 2.0),
             ),
-            Solid::Prism { .. } | Solid::Hull { .. } => {
+            Solid::Prism { .. } | Solid::Hull { .. } | Solid::Rounded(_) => {
                 let corners = self.corners();
                 let middle =
                     corners.iter().map(|p| p.coords).sum::<Vector3<f64>>() / corners.len() as f64;
@@ -105,6 +122,7 @@ impl Solid {
                 span.iter().flat_map(|&at| outline.iter().map(move |p| place(at, p))).collect()
             }
             Solid::Hull { points } => points.clone(),
+            Solid::Rounded(rounded) => rounded.corners().collect(),
             _ => {
                 let (shape, origin) = self.shape();
                 shape.corners().into_iter().map(|p| p + origin).collect()
@@ -112,8 +130,7 @@ impl Solid {
         }
     }
 
-    /// Volume, m3; centroid, m; second moments about it per unit of density (integral of x xT), m5.
-    fn moments(&self) -> (f64, Vector3<f64>, Matrix3<f64>) {
+    fn moments(&self) -> Moments {
         match self {
             Solid::Box { min, max } => {
                 let size = max - min;
@@ -130,9 +147,9 @@ impl Solid {
                 (volume, middle, Matrix3::from_diagonal(&Vector3::new(across, across, along)))
             }
             Solid::Prism { axis, outline, span } => prism_moments(*axis, outline, *span),
-            Solid::Hull { points } => {
+            Solid::Hull { .. } | Solid::Rounded(_) => {
                 // The task file's checks leave no flat hull.
-                let (corners, faces) = hull(points).unwrap_or_default();
+                let (corners, faces) = hull(&self.corners()).unwrap_or_default();
                 surface_moments(&corners, &faces)
             }
         }
@@ -193,11 +210,7 @@ pub fn volume(solid: &Solid) -> f64 {
     solid.moments().0
 }
 
-fn prism_moments(
-    axis: usize,
-    outline: &[[f64; 2]],
-    span: [f64; 2],
-) -> (f64, Vector3<f64>, Matrix3<f64>) {
+fn prism_moments(axis: usize, outline: &[[f64; 2]], span: [f64; 2]) -> Moments {
     // Polygon area, centroid and second moments by Green's theorem.
     let (mut area, mut first, mut second) = (0.0, [0.0; 2], [0.0; 3]);
     for (i, p) in outline.iter().enumerate() {
@@ -243,10 +256,7 @@ pub fn hull(points: &[Point3<f64>]) -> Option<Triangles> {
 const FLAT: f64 = 1e-3 * MM * MM * MM;
 
 /// Volume, centroid and second moments about it within a closed surface of outward triangles.
-pub fn surface_moments(
-    corners: &[Point3<f64>],
-    faces: &[[usize; 3]],
-) -> (f64, Vector3<f64>, Matrix3<f64>) {
+pub fn surface_moments(corners: &[Point3<f64>], faces: &[[usize; 3]]) -> Moments {
     let (mut volume, mut first, mut second) = (0.0, Vector3::zeros(), Matrix3::zeros());
     for face in faces {
         let [a, b, c] = face.map(|corner| corners[corner].coords);

@@ -7,9 +7,11 @@ pub mod geometry;
 mod latch;
 mod raw;
 mod raw_part;
+mod rounded;
 
 pub use geometry::{Part, Solid};
 pub use latch::Latch;
+pub use rounded::Rounded;
 
 use crate::task::finger::FingerModel;
 use input::units::read::{deg, mm};

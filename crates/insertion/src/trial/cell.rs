@@ -74,7 +74,7 @@ pub fn build(task: &Task, robot: &Mounted, finger: &Finger) -> WorkCell {
     let plug_pose = tcp * Pose::translation(0.0, 0.0, -task.grip.tcp_z);
     let (command, flange) = flange(&mut scene, &robot.flange, tcp);
     let plug = scene.body(plug_body(task, plug_pose));
-    let geoms = task.socket.iter().map(Part::geom).collect();
+    let geoms = task.socket.iter().flat_map(Part::geoms).collect();
     let socket = scene.body(body("socket", Motion::Fixed, Pose::identity(), geoms));
     let stand = scene.body(stand_body(task, plug_pose));
     let hands = [-1.0, 1.0].map(|side| hand(&mut scene, task, finger, flange, tcp, side));
@@ -162,7 +162,7 @@ fn pad_friction(task: &Task) -> Friction {
 fn plug_body(task: &Task, pose: Pose) -> Body {
     let mass = task.plug.mass - latch_mass(task);
     let inertia = geometry::inertia(task.plug.rigid(), mass);
-    body("plug", Motion::Free(inertia), pose, task.plug.rigid().map(Part::geom).collect())
+    body("plug", Motion::Free(inertia), pose, task.plug.rigid().flat_map(Part::geoms).collect())
 }
 
 fn latch_mass(task: &Task) -> f64 {
@@ -175,7 +175,7 @@ fn latch_mass(task: &Task) -> f64 {
 fn sprung(scene: &mut Scene, task: &Task, latch: &Latch, plug: BodyId) -> BodyId {
     let inertia = geometry::inertia(task.plug.sprung(), latch_mass(task));
     let pose = scene.bodies[plug.0].pose;
-    let geoms = task.plug.sprung().map(Part::geom).collect();
+    let geoms = task.plug.sprung().flat_map(Part::geoms).collect();
     let body = scene.body(body("latch", Motion::Free(inertia), pose, geoms));
     let mut arm = inertia.centre - latch.hinge;
     arm[latch.axis] = 0.0;

@@ -101,6 +101,7 @@ impl Solid {
         match self {
             Solid::Box { min, max } => [min, max].into_iter().for_each(moved),
             Solid::Cylinder { centre, .. } => *centre = [centre[0] + x, centre[1] + y],
+            Solid::Rounded(rounded) => moved(&mut rounded.min),
             Solid::Hull { points } => points.iter_mut().map(|p| &mut p.coords).for_each(moved),
             Solid::Prism { axis, outline, span } => {
                 let by = [x, y, 0.0];

@@ -60,3 +60,51 @@ fn boxes_apart_along_the_face_of_one_are_told_at_once() {
         assert_eq!([first.separated(second, 0.1e-3), second.separated(first, 0.1e-3)], [apart; 2]);
     }
 }
+
+/// Touches of two bodies with these gaps at these places of a plane, each of its own geoms.
+fn touches(points: &[[f64; 3]]) -> Vec<Touch> {
+    let touch = |(geoms, [x, y, gap]): (usize, &[f64; 3])| {
+        let (point, normal) = (Point3::new(*x, *y, 0.5 * gap), Vector3::z());
+        Touch { pair: 0, geoms, point, normal, gap: *gap, friction: Friction::hard(0.3) }
+    };
+    points.iter().enumerate().map(touch).collect()
+}
+
+fn joined(points: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let mut touches = touches(points);
+    patches::join(&mut touches);
+    touches.iter().map(|touch| [touch.point.x, touch.point.y, touch.gap]).collect()
+}
+
+#[test]
+fn a_patch_keeps_the_corners_that_span_it() {
+    let grid = (0..25).map(|i| [f64::from(i % 5) * 1e-3, f64::from(i / 5) * 1e-3]);
+    let tilted: Vec<_> = grid.map(|[x, y]| [x, y, -1e-6 + 2e-3 * x - 1e-3 * y]).collect();
+    let found = joined(&tilted);
+    let expected = [0, 4, 20, 24].map(|i| tilted[i]);
+    assert_eq!(found, expected);
+    // A row is an edge, points side by side a corner.
+    assert_eq!(joined(&tilted[..5]), [tilted[0], tilted[4]]);
+    assert_eq!(joined(&[[0.0; 3], [5e-5, 0.0, 0.0], [0.0, 5e-5, 0.0]]).len(), 1);
+}
+
+#[test]
+fn faces_of_different_height_friction_or_direction_are_no_patch() {
+    let square = [[0.0, 0.0], [2e-3, 0.0], [0.0, 2e-3], [2e-3, 2e-3]];
+    let face = |gap: f64, shift: f64| square.map(|[x, y]| [x + shift, y, gap]);
+    let count = |gap, shift| joined(&[face(0.0, 0.0), face(gap, shift)].concat()).len();
+    assert_eq!(count(0.0, 3e-3), 4);
+    assert_eq!(count(50e-6, 3e-3), 8, "a step");
+    let all = touches(&[face(0.0, 0.0), face(0.0, 3e-3)].concat());
+    for change in [
+        |touch: &mut Touch| touch.friction = Friction::hard(0.1),
+        |touch: &mut Touch| touch.pair = 1,
+        |touch: &mut Touch| touch.normal = Vector3::new(0.1, 0.0, 0.995),
+        |touch: &mut Touch| touch.point.z += 1e-3,
+    ] {
+        let mut all = all.clone();
+        all[4..].iter_mut().for_each(change);
+        patches::join(&mut all);
+        assert_eq!(all.len(), 8);
+    }
+}

@@ -1,0 +1,55 @@
+//! Ends of a line or face of contact of a round shape. parry clips the faces of the cores, whatever
+//! the normal: of two edges that touch along a line it often finds one point, somewhere on it.
+
+use super::{MILLIMETRES, Solid};
+use parry::math as pm;
+use parry::query::details::contact_support_map_support_map_with_params;
+use parry::query::gjk::{GJKResult, VoronoiSimplex};
+use parry::query::{ContactManifold, TrackedContact};
+use parry::shape::PackedFeatureId;
+use rapier3d_f64::parry;
+
+/// Angle by which one shape is turned to find an end, rad: along 10 mm, the gap foreseen.
+const TURN: f64 = 0.02;
+
+/// Adds the points at which the shapes touch if one is turned a little, each way.
+pub(super) fn add_ends(
+    manifold: &mut ContactManifold<(), ()>,
+    relative: &pm::Pose,
+    solids: [&Solid; 2],
+    prediction: f64,
+) {
+    let Some(first) = manifold.points.first() else { return };
+    let ([Some((a, own)), Some((b, other))], normal) = (solids.map(Solid::core), manifold.local_n1)
+    else {
+        return;
+    };
+    let about = first.local_p1;
+    let axes = normal.any_orthonormal_pair();
+    let axes = [axes.0, axes.1];
+    // Farther by what the turn takes them apart.
+    let reach = prediction * MILLIMETRES + own + other;
+    for (i, j) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+        let turn = pm::Rotation::from_scaled_axis((axes[0] * i + axes[1] * j) * TURN);
+        let turned = pm::Pose::from_parts(
+            about + turn * (relative.translation - about),
+            turn * relative.rotation,
+        );
+        let mut simplex = VoronoiSimplex::new();
+        let found = contact_support_map_support_map_with_params(
+            &turned,
+            a,
+            b,
+            2.0 * reach,
+            &mut simplex,
+            Some(normal),
+        );
+        let GJKResult::ClosestPoints(p1, p2, _) = found else { continue };
+        let p2 = relative * turned.inverse_transform_point(p2);
+        let [p1, p2] = [p1 + normal * own, p2 - normal * other];
+        let unknown = PackedFeatureId::UNKNOWN;
+        let distance = (p2 - p1).dot(normal);
+        let p2 = relative.inverse_transform_point(p2);
+        manifold.points.push(TrackedContact::new(p1, p2, unknown, unknown, distance));
+    }
+}

@@ -35,6 +35,7 @@ mod grasp;
 mod incline;
 mod jamming;
 mod peg;
+pub mod planar;
 mod spring;
 mod table;
 

@@ -125,13 +125,18 @@ impl Problem<'_> {
 
 /// Returns normal and tangential forces of two contacts that balance a load within both friction
 /// cones.
-pub(super) fn held_forces(touches: &[Touch; 2], pose: &V3, load: V3, friction: f64) -> Option<Vector4<f64>> {
-    let column = |i: usize, normal, tangential| {
-        Problem::wrench(&touches[i], pose, normal, tangential)
-    };
+pub(super) fn held_forces(
+    touches: &[Touch; 2],
+    pose: &V3,
+    load: V3,
+    friction: f64,
+) -> Option<Vector4<f64>> {
+    let column =
+        |i: usize, normal, tangential| Problem::wrench(&touches[i], pose, normal, tangential);
     // Moments in units of a force at 10 mm, so that the least squares weigh alike.
     let scale = V3::new(1.0, 1.0, 100.0);
-    let columns = [column(0, 1.0, 0.0), column(0, 0.0, 1.0), column(1, 1.0, 0.0), column(1, 0.0, 1.0)];
+    let columns =
+        [column(0, 1.0, 0.0), column(0, 0.0, 1.0), column(1, 1.0, 0.0), column(1, 0.0, 1.0)];
     let matrix = Matrix3x4::from_columns(&columns.map(|column| column.component_mul(&scale)));
     let particular = matrix.pseudo_inverse(1e-12).ok()? * -load.component_mul(&scale);
     let between = (touches[1].point - touches[0].point).try_normalize(0.0)?;

@@ -16,6 +16,7 @@
 //! | `path` | steps of the drive, snaps, limit of the force |
 //! | `wedging` | friction cones of two contacts, indeterminate cases |
 //! | `trial` | outcome of an insertion and force over depth |
+//! | `sample` | random insertions |
 //!
 //! Coordinates: x across the hole, z along its axis and out of it; the mouth lies in z = 0 and the
 //! hole's axis in x = 0. Angles are positive from x to z. SI units.
@@ -25,6 +26,7 @@ mod feature;
 mod modes;
 mod outline;
 mod path;
+pub mod sample;
 mod trial;
 mod wedging;
 

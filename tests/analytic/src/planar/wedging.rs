@@ -18,9 +18,7 @@ use super::{Assembly, Feature, V2, V3};
 /// first, rad; negative if it lies outside.
 pub fn cone_margin(first: &Touch, second: &Touch, friction: f64) -> f64 {
     let between = second.point - first.point;
-    let angle = |normal: &V2, line: &V2| {
-        libm::atan2(normal.perp(line).abs(), normal.dot(line))
-    };
+    let angle = |normal: &V2, line: &V2| libm::atan2(normal.perp(line).abs(), normal.dot(line));
     let widest = angle(&first.normal, &between).max(angle(&second.normal, &-between));
     libm::atan(friction) - widest
 }
@@ -61,7 +59,8 @@ pub const TWO_POINT: [Feature; 2] = [
 /// [`TWO_POINT`]: their gaps are linear in the position.
 pub fn two_point_pose(assembly: &Assembly, tilt: f64) -> V3 {
     let geometry = Geometry::new(assembly);
-    let gap = |i: usize, tip: V2| geometry.touch(TWO_POINT[i], &assembly.support.pose(tip, tilt)).gap;
+    let gap =
+        |i: usize, tip: V2| geometry.touch(TWO_POINT[i], &assembly.support.pose(tip, tilt)).gap;
     // The wall is upright: its gap is that across.
     let across = V2::new(-gap(0, V2::zeros()), 0.0);
     let rate = gap(1, across + V2::y()) - gap(1, across);

@@ -36,6 +36,7 @@ mod incline;
 mod jamming;
 mod peg;
 pub mod planar;
+pub mod slab;
 mod spring;
 mod table;
 

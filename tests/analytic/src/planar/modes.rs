@@ -61,7 +61,7 @@ impl Problem<'_> {
         if same.is_some() {
             return same;
         }
-        let near = self.near(2.0 * bound);
+        let near = self.near(bound);
         let found = choices(&near).into_iter().filter_map(|choice| self.state(&choice));
         let within = found.filter(|state| self.moved(state) <= bound);
         within.min_by(|a, b| {

@@ -9,7 +9,7 @@ use super::{Assembly, V2, V3};
 /// from no farther away, so that the way through the air counts for no sliding.
 const SHORTEST: f64 = 1e-9;
 /// Way of the peg per step of the drive beyond which an equilibrium is not the next one.
-const NEARBY: f64 = 30.0;
+const NEARBY: f64 = 10.0;
 /// Resistance at the begin of a snap, as a multiple of the stiffness.
 const VISCOSITY: f64 = 1e3;
 /// Way of the peg in a step of a snap, m.

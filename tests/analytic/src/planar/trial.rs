@@ -69,6 +69,11 @@ impl Trial {
         }
     }
 
+    /// Returns the target of the springs at the start, just above the mouth.
+    pub fn start(&self) -> V3 {
+        Insertion::above(self.assembly, self.lateral, self.tilt).target
+    }
+
     /// Inserts the peg by steps of the drive, m.
     ///
     /// # Errors

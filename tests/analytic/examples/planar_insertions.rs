@@ -1,7 +1,9 @@
 //! Agreement of the engines with the planar referee over random insertions.
 //!
-//! Arguments: engine (direct, rapier, mujoco), flats of an arc, number of insertions.
+//! Arguments: engine (direct, rapier, mujoco), flats of an arc, number of insertions, and the
+//! stiffness of the referee's contacts, N/m (0: rigid).
 
+use analytic_checks::planar::Record;
 use analytic_checks::planar::sample::draw;
 use analytic_checks::slab::{Case, Rounding, agreement, table};
 use contact::Engine;
@@ -29,11 +31,13 @@ fn engine(name: &str) -> Option<Box<dyn Engine>> {
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [name, flats, count] = arguments.as_slice() else {
-        eprintln!("arguments: engine, flats of an arc, number of insertions");
+    let [name, flats, count, stiffness] = arguments.as_slice() else {
+        eprintln!("arguments: engine, flats of an arc, number of insertions, stiffness in N/m");
         std::process::exit(2);
     };
-    let (Some(engine), Ok(flats), Ok(count)) = (engine(name), flats.parse(), count.parse()) else {
+    let (Some(engine), Ok(flats), Ok(count), Ok(stiffness)) =
+        (engine(name), flats.parse(), count.parse(), stiffness.parse::<f64>())
+    else {
         eprintln!(
             "engines: direct, direct-fine, direct-stiff, rapier, mujoco (feature); whole numbers after it"
         );
@@ -42,8 +46,16 @@ fn main() {
     let started = std::time::Instant::now();
     let cases: Vec<Case> = (0..count)
         .filter_map(|index| {
-            let trial = draw(index);
-            let expected = trial.run(STEP).ok()?;
+            let mut trial = draw(index);
+            let mut expected = trial.run(STEP).ok()?;
+            if stiffness > 0.0 {
+                // Rigid contacts decide which cases are determinate.
+                if expected.indeterminate() {
+                    return None;
+                }
+                trial.assembly.compliance = 1.0 / stiffness;
+                expected = Record { could_wedge: false, ..trial.run(STEP).ok()? };
+            }
             Some(Case::new(engine.as_ref(), (index, trial, expected), Rounding::Flats(flats)))
         })
         .collect();

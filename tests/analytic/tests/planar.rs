@@ -29,6 +29,7 @@ fn base() -> Assembly {
         hole: Hole { half_width: 4.05 * MM, radius: 0.0, chamfer: None },
         friction: 0.2,
         support: Support { lateral: 2600.0, axial: 4e4, angular: 2.0, centre: 21.0 * MM },
+        compliance: 0.0,
     }
 }
 

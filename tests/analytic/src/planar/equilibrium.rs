@@ -51,8 +51,8 @@ impl Problem<'_> {
         V3::new(force.x, force.y, (touch.point - pose.xy()).perp(&force))
     }
 
-    /// Returns the equilibrium for given modes, at most one of them sticking; `None` if Newton's
-    /// method fails.
+    /// Returns the equilibrium for given modes, of rigid contacts at most one sticking; `None` if
+    /// Newton's method fails.
     pub fn solve(&self, modes: &[(Feature, Mode)]) -> Option<State> {
         let mut forces = 3;
         let columns = modes.iter().map(|(_, mode)| {
@@ -88,7 +88,7 @@ impl Problem<'_> {
         for contact in &state.contacts {
             let touch = self.geometry.touch(contact.feature, &state.pose);
             balance += Self::wrench(&touch, &state.pose, contact.normal, contact.tangential);
-            rows.push(touch.gap / UNITS[0]);
+            rows.push((touch.gap + self.assembly.compliance * contact.normal) / UNITS[0]);
             if contact.mode == Mode::Stick {
                 rows.push(self.slip(&touch, &state.pose) / UNITS[0]);
             }

@@ -5,7 +5,8 @@
 //! a polygon (the core) and the disc of a radius that is swept along it. Contacts are rigid, with
 //! Coulomb friction. For each step of the drive the equilibrium is sought among the contact modes
 //! (open, sliding to either side, sticking) by Newton's method, so a force has the precision of the
-//! arithmetic. No collision library is used, and no code of the engines.
+//! arithmetic. Contacts can be made compliant, to tell what the stiffness of an engine's contacts is
+//! worth. No collision library is used, and no code of the engines.
 //!
 //! | module | content |
 //! | --- | --- |
@@ -99,6 +100,8 @@ pub struct Assembly {
     pub friction: f64,
     /// Springs of the peg.
     pub support: Support,
+    /// Compliance of a contact along its normal, m/N; 0 for rigid contacts.
+    pub compliance: f64,
 }
 
 impl Assembly {

@@ -88,11 +88,15 @@ impl Problem<'_> {
     /// Returns the equilibrium of a choice of modes if it meets all conditions of contact.
     fn state(&self, choice: &[(Feature, Mode)]) -> Option<State> {
         let state = match choice {
-            [(first, Mode::Stick), (second, Mode::Stick)] => self.locked([*first, *second]),
+            [(first, Mode::Stick), (second, Mode::Stick)] if self.assembly.compliance == 0.0 => {
+                self.locked([*first, *second])
+            }
             _ => self.solve(choice),
         }?;
+        let normals = state.contacts.iter().map(|contact| contact.normal);
+        let sunk = self.assembly.compliance * normals.fold(0.0, f64::max);
         let valid = state.contacts.iter().all(|contact| self.holds(contact, &state.pose))
-            && self.geometry.separation(&state.pose) >= -GAP;
+            && self.geometry.separation(&state.pose) >= -sunk - GAP;
         valid.then_some(state)
     }
 

@@ -38,6 +38,7 @@ pub fn draw(index: u64) -> Trial {
             angular: log_uniform(random, 0.5, 20.0),
             centre: random.random_range(10.0..30.0) * MM,
         },
+        compliance: 0.0,
     };
     let captured = clearance / 2.0 + tip + rim;
     let lateral = random.random_range(-ASIDE..ASIDE) * captured;

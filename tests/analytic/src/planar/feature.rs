@@ -116,15 +116,18 @@ impl Geometry {
                 let normal = edge.outward();
                 let gap = (at - edge.from).dot(&normal) - radii;
                 let point = at - normal * peg.radius;
-                Touch { gap, normal, point, reach: within(&edge, &at) }
+                let reach = within(&edge, &at).min(LEVER * beyond(peg, corner, &-normal));
+                Touch { gap, normal, point, reach }
             }
             Feature::HoleCorner { side, corner, edge } => {
                 let (edge, at) = (peg.edge(edge), self.hole[side].points[corner]);
                 let normal = -edge.outward();
                 let gap = -(at - edge.from).dot(&normal) - radii;
                 // On the peg's surface: the gap beyond the hole's.
-                let point = at + normal * (self.hole[side].radius + gap);
-                Touch { gap, normal, point, reach: within(&edge, &at) }
+                let body = &self.hole[side];
+                let point = at + normal * (body.radius + gap);
+                let reach = within(&edge, &at).min(LEVER * beyond(body, corner, &normal));
+                Touch { gap, normal, point, reach }
             }
             Feature::Corners { side, peg: i, hole: j } => {
                 let body = &self.hole[side];
@@ -157,13 +160,17 @@ impl Geometry {
     }
 }
 
+/// Length, m, by which an angle is taken for a distance along the outlines: a corner touches an edge
+/// only at a normal between those of its own edges.
+const LEVER: f64 = 10e-3;
+
 /// Returns how far inside an edge a point's projection lies, m; negative outside.
 fn within(edge: &Edge, point: &V2) -> f64 {
     let along = (point - edge.from).dot(&edge.along);
     along.min(edge.length - along)
 }
 
-/// Returns how far a vector from a corner points beyond both of its edges, m.
+/// Returns how far a vector from a corner points beyond both of its edges, in its unit.
 fn beyond(outline: &Outline, corner: usize, vector: &V2) -> f64 {
     let (before, after) = (outline.edge(corner - 1), outline.edge(corner));
     vector.dot(&before.along).min(-vector.dot(&after.along))

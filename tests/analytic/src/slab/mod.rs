@@ -4,7 +4,10 @@
 //! freedom. The frame of the peg lies in the middle of its tip, z along the peg.
 
 mod compare;
+mod forms;
 mod round;
+mod rounded;
+mod wedge;
 
 use crate::build::{self, Measured};
 use crate::planar::{Assembly, Outcome, Record, Trial, V3};
@@ -14,7 +17,9 @@ use input::units::{GRAM, MM};
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 
 pub use compare::{Agreement, Case, agreement, table};
+pub use forms::sharp;
 pub use round::Rounding;
+pub use rounded::rounded;
 
 /// Mass of the peg, kg.
 const MASS: f64 = 20.0 * GRAM;
@@ -28,12 +33,15 @@ const AVERAGING: f64 = 5e-3;
 /// Peg in a world.
 pub(crate) struct Slab {
     pub world: Box<dyn World>,
-    peg: BodyId,
+    pub peg: BodyId,
     flange: BodyId,
+    /// Bodies on the left and on the right of the hole.
+    pub hole: [BodyId; 2],
     assembly: Assembly,
-    /// Pose of the flange, at which the springs are at rest.
+    /// Pose at which the springs are at rest.
     pub target: V3,
-    pub tilt: f64,
+    /// Tilt of the target at the start, at which the flange is upright.
+    tilt: f64,
 }
 
 /// Returns the turn by a tilt, which is positive from x to z.
@@ -41,32 +49,32 @@ fn turn(tilt: f64) -> UnitQuaternion<f64> {
     UnitQuaternion::from_axis_angle(&Vector3::y_axis(), -tilt)
 }
 
-/// Returns the frame of the compliance centre in the world; it does not turn with the peg.
-fn flange_pose(target: &V3) -> Pose {
-    Pose::translation(target.x, 0.0, target.y)
-}
-
 impl Slab {
-    /// Places the unloaded peg with its compliance centre and tilt at a target.
-    pub fn new(engine: &dyn Engine, assembly: &Assembly, target: V3, rounding: Rounding) -> Self {
+    /// Places the unloaded peg with its compliance centre and tilt at a target, on springs of a
+    /// damping ratio.
+    pub fn new(
+        engine: &dyn Engine,
+        assembly: &Assembly,
+        target: V3,
+        rounding: Rounding,
+        damping: f64,
+    ) -> Self {
         let mut scene = Scene::default();
-        let flange = scene.body(build::driven("flange", flange_pose(&target), Vec::new()));
+        let start = Pose::translation(target.x, 0.0, target.y);
+        let flange = scene.body(build::driven("flange", start, Vec::new()));
         let peg = scene.body(peg_body(assembly, &target, rounding));
         let arm = Translation3::new(0.0, 0.0, assembly.support.centre);
         let in_child = Pose::from_parts(arm, turn(target.z).inverse());
-        build::joint(
-            &mut scene,
-            "springs",
-            [flange, peg],
-            [Pose::identity(), in_child],
-            axes(assembly),
-        );
-        for (name, geom) in ["left", "right"].into_iter().zip(rounding.hole(&assembly.hole)) {
+        let frames = [Pose::identity(), in_child];
+        build::joint(&mut scene, "springs", [flange, peg], frames, axes(assembly, damping));
+        let [left, right] = rounding.hole(&assembly.hole);
+        let hole = [("left", left), ("right", right)].map(|(name, geom)| {
             let body = scene.body(build::fixed(name, Pose::identity(), vec![geom]));
             scene.contact(body, peg, Friction::hard(assembly.friction));
-        }
+            body
+        });
         let world = engine.world(&scene);
-        Slab { world, peg, flange, assembly: *assembly, target, tilt: target.z }
+        Slab { world, peg, flange, hole, assembly: *assembly, target, tilt: target.z }
     }
 
     /// Returns the coordinates of the compliance centre.
@@ -76,11 +84,12 @@ impl Slab {
         V3::new(centre.x, centre.z, -pose.rotation.scaled_axis().y)
     }
 
-    /// Returns the load of the springs on the compliance centre.
+    /// Returns the load of the springs, whose axes turn with the flange, on the compliance centre.
     pub fn load(&self) -> V3 {
-        let mut rest = self.target;
-        rest.z = self.tilt;
-        self.assembly.support.stiffness().component_mul(&(rest - self.pose()))
+        let (sin, cos) = libm::sincos(self.target.z - self.tilt);
+        let turned = |v: V3, sin: f64| V3::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y, v.z);
+        let stiffness = self.assembly.support.stiffness();
+        turned(stiffness.component_mul(&turned(self.target - self.pose(), -sin)), sin)
     }
 
     /// Returns the depth of the middle of the tip, m.
@@ -88,19 +97,21 @@ impl Slab {
         -self.assembly.support.tip(&self.pose()).y
     }
 
-    /// Drives the flange down by the way of a step.
-    pub fn step(&mut self, speed: f64) -> Measured<()> {
-        self.target.y -= speed * self.world.step_s();
-        self.world.drive(self.flange, flange_pose(&self.target));
+    /// Drives the target at a velocity for a step.
+    pub fn step(&mut self, velocity: &V3) -> Measured<()> {
+        self.target += velocity * self.world.step_s();
+        let at = Translation3::new(self.target.x, 0.0, self.target.y);
+        let pose = Pose::from_parts(at, turn(self.target.z - self.tilt));
+        self.world.drive(self.flange, pose);
         self.world.step()
     }
 
-    /// Drives the flange for the time of averaging, and returns the mean depth and force.
-    pub fn sample(&mut self, speed: f64) -> Measured<[f64; 2]> {
+    /// Drives the target for the time of averaging, and returns the mean depth and force.
+    pub fn sample(&mut self, velocity: &V3) -> Measured<[f64; 2]> {
         let count = build::steps(self.world.as_ref(), AVERAGING).max(1);
         let mut sum = [0.0, 0.0];
         for _ in 0..count {
-            self.step(speed)?;
+            self.step(velocity)?;
             sum = [sum[0] + self.depth(), sum[1] - self.load().y];
         }
         Ok(sum.map(|sum| sum / count as f64))
@@ -108,11 +119,11 @@ impl Slab {
 }
 
 /// Returns the springs along x, z and about y; the other axes are locked.
-fn axes(assembly: &Assembly) -> [Option<Spring>; 6] {
+fn axes(assembly: &Assembly, damping: f64) -> [Option<Spring>; 6] {
     let inertia = inertia(assembly).moments.y;
     let stiffness = assembly.support.stiffness();
     let spring = |stiffness: f64, mass: f64| {
-        Some(Spring::new(stiffness, 2.0 * DAMPING * (stiffness * mass).sqrt()))
+        Some(Spring::new(stiffness, 2.0 * damping * (stiffness * mass).sqrt()))
     };
     let [x, z] = [stiffness.x, stiffness.y].map(|stiffness| spring(stiffness, MASS));
     [x, None, z, None, spring(stiffness.z, inertia), None]
@@ -139,11 +150,11 @@ fn peg_body(assembly: &Assembly, target: &V3, rounding: Rounding) -> Body {
 /// # Errors
 /// If the simulation diverges.
 pub fn run(engine: &dyn Engine, trial: &Trial, rounding: Rounding) -> Measured<Record> {
-    let mut slab = Slab::new(engine, &trial.assembly, trial.start(), rounding);
+    let mut slab = Slab::new(engine, &trial.assembly, trial.start(), rounding, DAMPING);
     let mut forces = Vec::new();
     let mut last = [f64::NEG_INFINITY, 0.0];
     while last[0] < trial.depth && last[1] < trial.limit {
-        last = slab.sample(SPEED)?;
+        last = slab.sample(&(V3::y() * -SPEED))?;
         forces.push(last);
     }
     let outcome = match last[0] < trial.depth {

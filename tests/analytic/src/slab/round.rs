@@ -1,6 +1,6 @@
 //! Shapes of peg and hole with rounded edges.
 
-use crate::planar::{Hole, Peg, V2};
+use crate::planar::{Chamfer, Hole, Peg, V2};
 use contact::scene::{Geom, Pose, Shape};
 use input::units::MM;
 use nalgebra::Point3;
@@ -34,13 +34,24 @@ impl Rounding {
         self.geom("peg", &[edge(-1.0), edge(1.0)], peg.radius, &top, THICKNESS)
     }
 
-    /// Returns the bodies on the left and on the right of the hole.
+    /// Returns the bodies on the left and on the right of the hole; a chamfer has sharp edges.
     pub fn hole(self, hole: &Hole) -> [Geom; 2] {
         [(-1.0, "left"), (1.0, "right")].map(|(side, name)| {
             let (wall, far) = (side * hole.half_width, side * (hole.half_width + HOLE));
+            let others = [V2::new(far, 0.0), V2::new(far, -HOLE), V2::new(wall, -HOLE)];
+            if let Some(Chamfer { width, angle }) = hole.chamfer {
+                let low = V2::new(wall, -width * libm::tan(angle));
+                let points = [V2::new(wall + side * width, 0.0), low];
+                return self.geom(
+                    name,
+                    &[],
+                    0.0,
+                    &[&others[..], &points].concat(),
+                    2.0 * THICKNESS,
+                );
+            }
             let core = V2::new(wall + side * hole.radius, -hole.radius);
             let rim = (core, V2::new(-side, 0.0), V2::new(0.0, 1.0));
-            let others = [V2::new(far, 0.0), V2::new(far, -HOLE), V2::new(wall, -HOLE)];
             self.geom(name, &[rim], hole.radius, &others, 2.0 * THICKNESS)
         })
     }

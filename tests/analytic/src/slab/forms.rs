@@ -6,7 +6,7 @@
 //! one-point force here).
 
 use super::{Rounding, Slab};
-use crate::build::Measured;
+use crate::build::{self, Measured};
 use crate::planar::{Assembly, Chamfer, Hole, Insertion, Peg, Support, V2, V3};
 use crate::{CheckRow, Tolerance};
 use contact::Engine;
@@ -122,7 +122,22 @@ fn chamfer_measured(engine: &dyn Engine) -> Measured {
     }
 }
 
-/// Returns the rows P1 to P5.
+/// Returns the angle of the tilted flank, and that of the force on it, to the plane of the mouth where
+/// the flank is pressed on a sharp rim without friction, degrees.
+fn flank_normal(engine: &dyn Engine) -> Measured<[f64; 2]> {
+    let mut assembly = base();
+    assembly.friction = 0.0;
+    assembly.hole = Hole { half_width: 4.5 * MM, radius: 0.0, chamfer: None };
+    let start = assembly.support.pose(V2::new(0.0, -3.0 * MM), 1.5 * TILT);
+    let mut slab = Slab::new(engine, &assembly, start, Rounding::Flats(0), 0.3);
+    for _ in 0..build::steps(slab.world.as_ref(), 0.5) {
+        slab.step(&(V3::x() * SLOW))?;
+    }
+    let force = slab.world.contact(slab.hole[1], slab.peg).net;
+    Ok([-slab.pose().z, libm::atan2(force.z, -force.x)].map(|angle| angle / DEG))
+}
+
+/// Returns the rows P1 to P5, and P10 for a sharp rim.
 pub fn sharp(engine: &dyn Engine) -> Vec<CheckRow> {
     let share = Tolerance::Relative(0.01);
     let depth = 7.0 * MM;
@@ -140,6 +155,7 @@ pub fn sharp(engine: &dyn Engine) -> Vec<CheckRow> {
         [|row| row[0], |[force, _, moment]| moment / (4.0 * MM * force)];
     let onset = |course: &Course| course.onset().map_or(f64::NAN, |depth| depth / MM);
     let closed = chamfer_measured(engine);
+    let normal = flank_normal(engine);
     vec![
         CheckRow::new("P1", "Fz on a chamfer of 60 deg", chamfer_force(), closed, "N", share),
         new("P1", "Fz on a chamfer of 45 deg, tilted", 0.75 * MM, force, "N"),
@@ -154,5 +170,13 @@ pub fn sharp(engine: &dyn Engine) -> Vec<CheckRow> {
         ),
         new("P4", "Fz at two points, 5 mm inside", FOOT + 5.0 * MM, force, "N"),
         new("P5", "M/(r Fz) of sliding, 5 mm inside", FOOT + 5.0 * MM, ratio, "-"),
+        CheckRow::new(
+            "P10",
+            "normal of a tilted flank on a sharp rim",
+            normal.map_or(f64::NAN, |[flank, _]| flank),
+            normal.map(|[_, force]| force),
+            "deg",
+            Tolerance::Absolute(0.01),
+        ),
     ]
 }

@@ -3,7 +3,7 @@
 use crate::planar::{Chamfer, Hole, Peg, V2};
 use contact::scene::{Geom, Pose, Shape};
 use input::units::MM;
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
 /// Size of the peg in y, m; that of the hole is twice as much.
@@ -23,6 +23,9 @@ impl Rounding {
     /// Returns the peg, with the middle of its tip at the origin.
     pub fn peg(self, peg: &Peg) -> Geom {
         let half = peg.half_width;
+        if peg.radius <= 0.0 {
+            return brick("peg", V2::new(-half, 0.0), V2::new(half, PEG), THICKNESS);
+        }
         let edge = |side: f64| {
             (
                 V2::new(side * (half - peg.radius), peg.radius),
@@ -49,6 +52,9 @@ impl Rounding {
                     &[&others[..], &points].concat(),
                     2.0 * THICKNESS,
                 );
+            }
+            if hole.radius <= 0.0 {
+                return brick(name, V2::new(wall, -HOLE), V2::new(far, 0.0), 2.0 * THICKNESS);
             }
             let core = V2::new(wall + side * hole.radius, -hole.radius);
             let rim = (core, V2::new(-side, 0.0), V2::new(0.0, 1.0));
@@ -80,6 +86,14 @@ impl Rounding {
             friction: None,
         }
     }
+}
+
+/// Returns a box between two corners.
+fn brick(name: &str, from: V2, to: V2, thickness: f64) -> Geom {
+    let (half, middle) = ((to - from).abs() / 2.0, (to + from) / 2.0);
+    let half = Vector3::new(half.x, thickness / 2.0, half.y);
+    let pose = Pose::translation(middle.x, 0.0, middle.y);
+    Geom { name: name.into(), shape: Shape::Box { half }, pose, friction: None }
 }
 
 /// Returns the corners of the flats that are tangent to a quarter of a circle, with those to the

@@ -16,9 +16,11 @@
 //! | T13 | a soft flange whose command sets off |
 //! | T14 | net force of a contact that sticks and that slides |
 //! | T15 | moment of a contact patch of friction against a turn |
+//! | P1 .. P10 | planar insertion: force over depth, wedging, rounded edges (`slab`) |
 //! | F1 .. F4 | the computed stiffness of a printed finger |
 //!
-//! T9, `lab cross-check`, compares two engines on trials. The file of each check gives the
+//! P1 to P10 are not among the checks of `lab check` yet: those of rounded edges need cores with a
+//! radius. T9, `lab cross-check`, compares two engines on trials. The file of each check gives the
 //! formula of the expected value, with its source.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
@@ -35,6 +37,8 @@ mod grasp;
 mod incline;
 mod jamming;
 mod peg;
+pub mod planar;
+pub mod slab;
 mod spring;
 mod table;
 

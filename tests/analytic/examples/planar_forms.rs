@@ -1,6 +1,6 @@
 //! The closed forms P1 to P10 in an engine.
 //!
-//! Arguments: engine (direct, rapier, mujoco), flats of an arc, factor of the stiffness of direct's
+//! Arguments: engine (direct, rapier, mujoco), flats of an arc or `core`, factor of the stiffness of direct's
 //! contacts.
 
 use analytic_checks::slab::{Rounding, rounded, sharp};
@@ -23,14 +23,18 @@ fn engine(name: &str, stiffer: f64) -> Option<Box<dyn Engine>> {
     }
 }
 
+fn rounding(word: &str) -> Option<Rounding> {
+    if word == "core" { Some(Rounding::Core) } else { word.parse().ok().map(Rounding::Flats) }
+}
+
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [name, flats, stiffer] = arguments.as_slice() else {
         eprintln!("arguments: engine, flats of an arc, factor of the stiffness");
         std::process::exit(2);
     };
-    let (Ok(flats), Ok(stiffer)) = (flats.parse(), stiffer.parse()) else {
-        eprintln!("flats: a whole number; factor: a number");
+    let (Some(rounding), Ok(stiffer)) = (rounding(flats), stiffer.parse()) else {
+        eprintln!("flats: a whole number or core; factor: a number");
         std::process::exit(2);
     };
     let Some(engine) = engine(name, stiffer) else {
@@ -38,6 +42,6 @@ fn main() {
         std::process::exit(2);
     };
     let mut rows = sharp(engine.as_ref());
-    rows.extend(rounded(engine.as_ref(), Rounding::Flats(flats)));
+    rows.extend(rounded(engine.as_ref(), rounding));
     print!("{}", analytic_checks::table(&rows));
 }

@@ -1,6 +1,6 @@
 //! Agreement of the engines with the planar referee over random insertions.
 //!
-//! Arguments: engine (direct, rapier, mujoco), flats of an arc, number of insertions, and the
+//! Arguments: engine (direct, rapier, mujoco), flats of an arc or `core`, number of insertions, and the
 //! stiffness of the referee's contacts, N/m (0: rigid).
 
 use analytic_checks::planar::Record;
@@ -29,14 +29,18 @@ fn engine(name: &str) -> Option<Box<dyn Engine>> {
     }
 }
 
+fn rounding(word: &str) -> Option<Rounding> {
+    if word == "core" { Some(Rounding::Core) } else { word.parse().ok().map(Rounding::Flats) }
+}
+
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [name, flats, count, stiffness] = arguments.as_slice() else {
         eprintln!("arguments: engine, flats of an arc, number of insertions, stiffness in N/m");
         std::process::exit(2);
     };
-    let (Some(engine), Ok(flats), Ok(count), Ok(stiffness)) =
-        (engine(name), flats.parse(), count.parse(), stiffness.parse::<f64>())
+    let (Some(engine), Some(rounding), Ok(count), Ok(stiffness)) =
+        (engine(name), rounding(flats), count.parse(), stiffness.parse::<f64>())
     else {
         eprintln!(
             "engines: direct, direct-fine, direct-stiff, rapier, mujoco (feature); whole numbers after it"
@@ -56,7 +60,7 @@ fn main() {
                 trial.assembly.compliance = 1.0 / stiffness;
                 expected = Record { could_wedge: false, ..trial.run(STEP).ok()? };
             }
-            Some(Case::new(engine.as_ref(), (index, trial, expected), Rounding::Flats(flats)))
+            Some(Case::new(engine.as_ref(), (index, trial, expected), rounding))
         })
         .collect();
     print!("{}", table(&cases));

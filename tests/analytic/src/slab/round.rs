@@ -17,6 +17,8 @@ const HOLE: f64 = 30.0 * MM;
 pub enum Rounding {
     /// Hull with so many flats, tangent to the arc, between the two faces.
     Flats(usize),
+    /// Core with a radius.
+    Core,
 }
 
 impl Rounding {
@@ -25,6 +27,9 @@ impl Rounding {
         let half = peg.half_width;
         if peg.radius <= 0.0 {
             return brick("peg", V2::new(-half, 0.0), V2::new(half, PEG), THICKNESS);
+        }
+        if self == Rounding::Core {
+            return core("peg", V2::new(-half, 0.0), V2::new(half, PEG), peg.radius, THICKNESS);
         }
         let edge = |side: f64| {
             (
@@ -56,8 +61,12 @@ impl Rounding {
             if hole.radius <= 0.0 {
                 return brick(name, V2::new(wall, -HOLE), V2::new(far, 0.0), 2.0 * THICKNESS);
             }
-            let core = V2::new(wall + side * hole.radius, -hole.radius);
-            let rim = (core, V2::new(-side, 0.0), V2::new(0.0, 1.0));
+            if self == Rounding::Core {
+                let (from, to) = (V2::new(wall, -HOLE), V2::new(far, 0.0));
+                return core(name, from, to, hole.radius, 2.0 * THICKNESS);
+            }
+            let middle = V2::new(wall + side * hole.radius, -hole.radius);
+            let rim = (middle, V2::new(-side, 0.0), V2::new(0.0, 1.0));
             self.geom(name, &[rim], hole.radius, &others, 2.0 * THICKNESS)
         })
     }
@@ -72,7 +81,7 @@ impl Rounding {
         others: &[V2],
         thickness: f64,
     ) -> Geom {
-        let Rounding::Flats(flats) = self;
+        let flats = if let Rounding::Flats(flats) = self { flats } else { 0 };
         let corners = rounded.iter().flat_map(|&(core, first, second)| {
             arc_corners(radius, flats).into_iter().map(move |[a, b]| core + first * a + second * b)
         });
@@ -94,6 +103,16 @@ fn brick(name: &str, from: V2, to: V2, thickness: f64) -> Geom {
     let half = Vector3::new(half.x, thickness / 2.0, half.y);
     let pose = Pose::translation(middle.x, 0.0, middle.y);
     Geom { name: name.into(), shape: Shape::Box { half }, pose, friction: None }
+}
+
+/// Returns a box between two corners whose edges are round; its core is as thick as the slab.
+fn core(name: &str, from: V2, to: V2, radius: f64, thickness: f64) -> Geom {
+    let mut geom = brick(name, from, to, thickness);
+    if let Shape::Box { half } = geom.shape {
+        let core = Vector3::new(half.x - radius, half.y, half.z - radius);
+        geom.shape = Shape::RoundBox { core, radius };
+    }
+    geom
 }
 
 /// Returns the corners of the flats that are tangent to a quarter of a circle, with those to the

@@ -1,15 +1,14 @@
 //! The engine `direct` on the closed forms P1 to P10, and on random insertions of the planar referee.
 //!
-//! Rounded edges are hulls of 64 flats here. The peak of P8 and the normals of P10 hold only for a
-//! core with a radius: a flat is off the arc's normal by up to 0.7 degrees, which at this friction
-//! is 4 % of the peak. They, and all rounded forms at the 4 flats of a task's edges, await it.
+//! Rounded edges are cores with a radius. The normals of P10 are those of a moving contact here, whose
+//! points are found anew only after some way: they lag by up to 0.2 degrees. At rest they are exact
+//! (tests of `contact`).
 
 use analytic_checks::CheckRow;
 use analytic_checks::planar::sample::draw;
 use analytic_checks::slab::{Case, Rounding, agreement, rounded, sharp, table};
 use contact::direct::Direct;
 
-const FLATS: Rounding = Rounding::Flats(64);
 /// Step of the referee's drive, m.
 const STEP: f64 = 20e-6;
 
@@ -49,9 +48,9 @@ fn deviation_at_two_points_halves_with_the_compliance() {
 }
 
 #[test]
-fn direct_meets_the_forms_of_rounded_edges_that_flats_can() {
-    passes(&rounded(&direct(1.0), FLATS), |row| {
-        ["P6", "P7", "P9"].contains(&row.check) || row.quantity == "Fz behind it"
+fn direct_meets_the_forms_of_rounded_edges() {
+    passes(&rounded(&direct(1.0), Rounding::Core), |row| {
+        ["P6", "P7", "P8", "P9"].contains(&row.check)
     });
 }
 
@@ -61,7 +60,7 @@ fn direct_has_the_outcomes_of_the_referee() {
     let cases = (0..60).map(|index| {
         let trial = draw(index);
         let expected = trial.run(STEP).unwrap();
-        Case::new(&direct(10.0), (index, trial, expected), FLATS)
+        Case::new(&direct(10.0), (index, trial, expected), Rounding::Core)
     });
     let cases: Vec<Case> = cases.collect();
     let found = agreement(&cases);

@@ -33,7 +33,7 @@ const ACROSS: [f64; 2] = [0.8 * MM, 0.45 * MM];
 /// Move of a round tip to either side in x, m.
 const ROUND_ACROSS: f64 = 0.5 * MM;
 /// Share of a round opening's half that the tip's lowest point starts beyond its middle.
-const ROUND_AHEAD: f64 = 0.7;
+const ROUND_AHEAD: f64 = 0.75;
 /// Command of the push beyond the seat, m, and its speed, m/s.
 const PUSH: [f64; 2] = [4.0 * MM, 100.0 * MM];
 /// Tilt that counts as upright beyond what the play allows, degrees.

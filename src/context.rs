@@ -37,7 +37,7 @@ impl<'a> Context<'a> {
         Context { stop, shown: None }
     }
 
-    /// Lets Ctrl-C or SIGTERM cancel a command of the terminal. After [`GRACE`] the process exits, which the
+    /// Lets Ctrl-C or SIGTERM cancel a command of the terminal. After the grace period the process exits, which the
     /// journal of the study in `dir` survives.
     ///
     /// # Errors

@@ -158,9 +158,11 @@ def sources(task: Given | Iterable[Given] | None) -> str | None:
             found.append({"file": one.file, "text": one.to_toml()})
         elif isinstance(one, str) and not os.path.isfile(one):
             found += [name.strip() for name in one.split(",") if name]
-        else:
+        elif isinstance(one, (str, os.PathLike)):
             # A path may have a comma in it.
             found.append(os.fspath(one))
+        else:
+            raise TypeError(f"task: is {one!r}; give a name, the path of a task file, or a Task")
     return "\0" + dumps(word(found))
 
 

@@ -14,7 +14,7 @@ fn sources(folder: &Path, each: &mut dyn FnMut(&Path, &str)) {
     }
 }
 
-/// What std takes from the system's mathematical library (`clippy.toml` denies the same by type).
+/// Functions that std takes from the system's mathematical library (`clippy.toml` denies the same by type).
 const SYSTEM: [&str; 27] = [
     "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sin_cos", "exp", "exp2", "exp_m1", "ln",
     "ln_1p", "log", "log2", "log10", "powf", "hypot", "cbrt", "sinh", "cosh", "tanh", "asinh",

@@ -48,7 +48,7 @@ fn calibration_and_the_next_print_answer_in_the_agreed_form() {
 }
 
 const HEAD: &str = "task,infill_density_percent,infill_direction_deg,range_mm\n";
-/// What makes a prediction quick.
+/// Options that make a prediction quick.
 const FEW: [&str; 6] = ["--task", "ket8", "--simulations", "24", "--samples", "20"];
 
 #[test]

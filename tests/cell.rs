@@ -25,7 +25,7 @@ fn friction(value: f64) -> String {
     row("friction", "task.friction.plug_socket", "value", &numbers, false)
 }
 
-/// What a command prints as JSON, but for the time it took and the cell.
+/// Returns the JSON of a command without the time it took and the cell.
 fn printed(line: &str) -> serde_json::Value {
     let mut found = optimize_line(&format!("{line} --json")).json();
     let keys = found.as_object_mut().unwrap();
@@ -37,7 +37,7 @@ fn printed(line: &str) -> serde_json::Value {
 
 const TRIAL: &str = "trial --density 20 --direction 10 --task";
 
-/// What was identified on one task stays with it, and that is said, in words and in JSON.
+/// A cell identified on one task stays with it, and that is said, in words and in JSON.
 #[test]
 fn a_cell_of_another_task_says_what_it_leaves_out() {
     let folder = Studies::new();

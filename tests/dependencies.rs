@@ -1,4 +1,4 @@
-//! What decides a number: libraries are pinned, and our crates counted by provenance and by scripts/stale.sh.
+//! Code that decides a number: libraries are pinned, and our crates counted by provenance and by scripts/stale.sh.
 
 use std::collections::BTreeSet;
 use std::path::Path;

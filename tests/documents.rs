@@ -1,4 +1,4 @@
-//! What the documents promise: links that lead somewhere, as many words as a person reads, and
+//! Promises of the documents: links that lead somewhere, as many words as a person reads, and
 //! every command.
 
 use finger_opt::commands::COMMANDS;

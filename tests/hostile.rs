@@ -1,4 +1,4 @@
-//! What others do to a study while it runs, and files that are not what they should be.
+//! Interference of others with a study while it runs, and files that are not what they should be.
 #![cfg(unix)]
 
 mod common;

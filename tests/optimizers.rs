@@ -1,4 +1,4 @@
-//! What the trait states, checked for every optimizer.
+//! Promises of the trait, checked for every optimizer.
 
 use ask_tell::pareto::hypervolume;
 use ask_tell::{Grid, GridPoint, Observation, Optimizer, OptimizerKind, StopReason, build};
@@ -133,7 +133,7 @@ fn the_number_of_threads_changes_nothing() {
     assert!([1, 2, 8].into_iter().all(|threads| with(threads) == one));
 }
 
-/// What `docs/notes/reliability.md` says of proposals, as far as one machine can tell.
+/// The claims of `docs/notes/reliability.md` of proposals, as far as one machine can tell.
 #[test]
 #[cfg(all(target_arch = "x86_64", target_os = "linux"))]
 fn the_proposals_are_those_of_every_other_machine() {

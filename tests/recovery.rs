@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 /// How long after a signal a process may still take on a busy machine; what is ended here would go on
 /// for longer.
 const SOON: Duration = Duration::from_secs(4);
-/// What makes a prediction for the bench quick.
+/// Options that make a prediction for the bench quick.
 const FEW: [&str; 6] = ["--task", "ket8", "--simulations", "24", "--samples", "20"];
 const HEAD: &str = "task,infill_density_percent,infill_direction_deg,range_mm\n";
 /// Kills of each flag; set the environment variable `KILLS` for more.

@@ -248,7 +248,7 @@ fn a_known_evaluation_leaves_the_journal_that_a_measured_one_does() {
     assert_eq!(cached("codesign", 4, &["--space", "codesign"]), 0);
 }
 
-/// What the best design of a study's JSON was, and from which evaluation.
+/// Returns the best design in a study's JSON, and its evaluation.
 fn best_of(json: &serde_json::Value) -> u64 {
     json["best"]["evaluation"].as_u64().expect("a best design")
 }

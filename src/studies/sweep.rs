@@ -43,7 +43,7 @@ impl Sweep {
     /// Measures fingers.
     ///
     /// # Errors
-    /// That of the first finger that cannot be simulated; if `stop` is set meanwhile.
+    /// The error of the first finger that cannot be simulated; if `stop` is set meanwhile.
     pub fn measure(
         &self,
         fingers: &[FingerRequest],

@@ -44,7 +44,7 @@ pub fn end(child: Child) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
-/// What a study answers, without where it is and what it took from the cache.
+/// Returns the answer of a study without where it is and what it took from the cache.
 pub fn answer(ran: &Ran) -> serde_json::Value {
     let mut json = ran.json();
     let fields = json.as_object_mut().expect("an object");

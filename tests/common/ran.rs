@@ -1,10 +1,10 @@
-//! What a finished command left; shared by the tests of `optimize` and of `lab`.
+//! Output of a finished command; shared by the tests of `optimize` and of `lab`.
 #![allow(dead_code, reason = "each test file uses its own part of this")]
 
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// What a finished command left.
+/// Output of a finished command.
 pub struct Ran {
     pub code: Option<i32>,
     pub stdout: String,

@@ -1,4 +1,4 @@
-//! What is mutated, and what is asked of the program about it.
+//! Subjects of the mutation, and what is asked of the program about it.
 
 use super::common::Ran;
 use super::mutation::{Mutation, mutated};
@@ -255,7 +255,7 @@ fn judged(arguments: &[String]) -> How {
     Ok("accepted")
 }
 
-/// What is accepted can be read again: its report is made from the files.
+/// An accepted study can be read again: its report is made from the files.
 fn read_again(out: &Path) -> Result<()> {
     for words in ["report", "resume --quiet --json"] {
         let again = at_once(&format!("{words} {}", out.display()))?;

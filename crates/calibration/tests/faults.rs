@@ -24,7 +24,7 @@ use rayon::prelude::*;
 
 /// Numbers of a cell and starts of its attempts, from the table of the reference.
 const CELLS: &str = include_str!("../../../results/reference/identify/truth.csv");
-/// What is drawn, as in the reference, and its column there.
+/// Parameters that are drawn, as in the reference, and their columns there.
 const HIDDEN: [(&str, &str); 5] = [
     ("friction plug-socket", "friction_plug_socket"),
     ("stiffness of the flange", "flange_stiffness_factor"),

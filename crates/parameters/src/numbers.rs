@@ -4,7 +4,6 @@
 //! In a pattern `*` matches a name or a list index (a phase, a part, an end of a span), and `a|b`
 //! either word.
 
-use crate::path::filled;
 use input::{Check, InputError, shown};
 use toml::Value;
 
@@ -218,10 +217,25 @@ pub fn paths(kind: Kind) -> Vec<String> {
 /// Returns the problem of a number that is out of the bounds of its path, if it is; one that is not in
 /// the table has none.
 pub fn problem(path: &str, value: f64) -> Option<String> {
-    let words: Vec<&str> = path.split('.').collect();
-    let is = |own: &String| filled(own, &words) == path;
-    let row = NUMBERS.iter().find(|number| number.paths().iter().any(is))?;
+    let row = NUMBERS.iter().find(|number| fits(number.pattern, path))?;
     out_of_bounds(value, row.bounds)
+}
+
+/// Returns whether a pattern has this path; a name in place of `*` may have dots of its own.
+fn fits(pattern: &str, path: &str) -> bool {
+    let (word, rest) = match pattern.split_once('.') {
+        Some((word, rest)) => (word, Some(rest)),
+        None => (pattern, None),
+    };
+    let ends = path.match_indices('.').map(|(end, _)| end).chain([path.len()]);
+    ends.into_iter().any(|end| {
+        let fitting = word == "*" || word.split('|').any(|one| one == &path[..end]);
+        fitting
+            && match (rest, path.get(end + 1..)) {
+                (Some(rest), Some(path)) => fits(rest, path),
+                (rest, path) => rest.is_none() && path.is_none(),
+            }
+    })
 }
 
 /// Checks a number against the bounds of its path.
@@ -301,6 +315,26 @@ fn check_value(check: Check<'_>, key: &str, value: &Value, rows: &[Row]) -> Resu
 fn out_of_bounds(value: f64, [low, high]: [f64; 2]) -> Option<String> {
     // Written so that a NaN is outside.
     let outside = !(low..=high).contains(&value);
-    let [value, low, high] = [value, low, high].map(shown);
-    outside.then(|| format!("is {value}; it must lie in {low} .. {high}"))
+    outside.then(|| {
+        let [value, low, high] = [value, low, high].map(shown);
+        format!("is {value}; it must lie in {low} .. {high}")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_path_of_the_table_has_its_bounds_and_others_have_none() {
+        for path in NUMBERS.iter().flat_map(Number::paths) {
+            let named = path.replacen('*', "a name.with a dot", 1).replace('*', "0");
+            assert!(problem(&named, f64::NAN).is_some(), "{named}");
+        }
+        for path in ["task.friction", "task.friction.plug_socket.more", "friction.plug_socket", ""]
+        {
+            assert_eq!(problem(path, f64::NAN), None, "{path}");
+        }
+        assert_eq!(problem(FRICTION, 0.2), None);
+    }
 }

@@ -64,7 +64,7 @@ impl Path {
 
 /// Returns the pattern `path` with each `*` replaced by the word at its position. If there are more
 /// words than in the pattern, the first `*` takes several, since names may contain dots.
-pub(crate) fn filled(path: &str, words: &[&str]) -> String {
+fn filled(path: &str, words: &[&str]) -> String {
     let own: Vec<&str> = path.split('.').collect();
     let (mut at, mut more) = (0, words.len().saturating_sub(own.len()));
     let fill = |word: &&str| {

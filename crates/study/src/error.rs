@@ -47,7 +47,7 @@ pub enum StudyError {
     Interfered {
         /// The journal.
         path: PathBuf,
-        /// What happened to it.
+        /// The change that was found in it.
         problem: String,
     },
     /// A design of the space cannot be simulated.

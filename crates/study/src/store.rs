@@ -15,7 +15,7 @@ pub trait Store: Send {
     /// Checks that the storage is unchanged and `len` bytes long.
     ///
     /// # Errors
-    /// What happened to it.
+    /// The change that was found.
     fn check(&mut self, _len: u64) -> Result<(), String> {
         Ok(())
     }

@@ -23,17 +23,13 @@ fn engine(name: &str, stiffer: f64) -> Option<Box<dyn Engine>> {
     }
 }
 
-fn rounding(word: &str) -> Option<Rounding> {
-    if word == "core" { Some(Rounding::Core) } else { word.parse().ok().map(Rounding::Flats) }
-}
-
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [name, flats, stiffer] = arguments.as_slice() else {
         eprintln!("arguments: engine, flats of an arc, factor of the stiffness");
         std::process::exit(2);
     };
-    let (Some(rounding), Ok(stiffer)) = (rounding(flats), stiffer.parse()) else {
+    let (Some(rounding), Ok(stiffer)) = (Rounding::named(flats), stiffer.parse()) else {
         eprintln!("flats: a whole number or core; factor: a number");
         std::process::exit(2);
     };

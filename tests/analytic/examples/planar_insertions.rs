@@ -29,10 +29,6 @@ fn engine(name: &str) -> Option<Box<dyn Engine>> {
     }
 }
 
-fn rounding(word: &str) -> Option<Rounding> {
-    if word == "core" { Some(Rounding::Core) } else { word.parse().ok().map(Rounding::Flats) }
-}
-
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [name, flats, count, stiffness] = arguments.as_slice() else {
@@ -40,7 +36,7 @@ fn main() {
         std::process::exit(2);
     };
     let (Some(engine), Some(rounding), Ok(count), Ok(stiffness)) =
-        (engine(name), rounding(flats), count.parse(), stiffness.parse::<f64>())
+        (engine(name), Rounding::named(flats), count.parse(), stiffness.parse::<f64>())
     else {
         eprintln!(
             "engines: direct, direct-fine, direct-stiff, rapier, mujoco (feature); whole numbers after it"

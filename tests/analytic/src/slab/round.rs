@@ -22,6 +22,11 @@ pub enum Rounding {
 }
 
 impl Rounding {
+    /// Returns the representation of a word: `core`, or a number of flats.
+    pub fn named(word: &str) -> Option<Self> {
+        if word == "core" { Some(Rounding::Core) } else { word.parse().ok().map(Rounding::Flats) }
+    }
+
     /// Returns the peg, with the middle of its tip at the origin.
     pub fn peg(self, peg: &Peg) -> Geom {
         let half = peg.half_width;

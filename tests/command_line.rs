@@ -122,6 +122,46 @@ fn a_study_prints_its_best_design_and_leaves_a_table() {
 }
 
 #[test]
+fn a_force_that_the_connector_does_not_withstand_comes_first() {
+    let studies = Studies::new();
+    let usb = include_str!("../tasks/usb.toml");
+    // The closed formula gives 5 N at the nominal start, and 1 N more for each mm.
+    let study = |name: &str, force_n: f64| {
+        let task = studies
+            .file(&format!("{name}.toml"), format!("{usb}\n[limits]\nforce_n = {force_n}\n"));
+        studies.study(name, 30, &["--task", &task, "--no-levers", "--no-map"]).succeeds().to_owned()
+    };
+    let weak = study("weak", 6.5);
+    let first = weak.lines().next().unwrap();
+    assert!(first.starts_with("force ") && first.contains("its connector takes"), "{weak}");
+    assert!(weak.contains("--constraint 'peak-force<=6'"), "{weak}");
+    let answer =
+        studies.study("weak", 30, &["--task", &studies.word("weak.toml"), "--json"]).json();
+    assert_eq!(answer["answer"]["force"]["limit_n"], 6.5);
+    assert!(studies.read("weak/report.html").contains("Force: up to"));
+    assert!(
+        study("strong", 60.0).starts_with("Print ") || study("strong", 60.0).starts_with("Any ")
+    );
+    // A robot that stops near that force.
+    let robot =
+        include_str!("../robots/servo.toml").replace("stop_force_n = 150.0", "stop_force_n = 7.0");
+    let robot = studies.file("robot.toml", robot);
+    let stops = studies.study("stops", 30, &["--robot", &robot, "--no-levers", "--no-map"]);
+    assert!(stops.succeeds().contains("stops at 7 N"), "{}", stops.stdout);
+    // With a wide indifference some design keeps to the limit, and the safe choice is such a one.
+    study("middling", 8.25);
+    let task = studies.word("middling.toml");
+    let more = ["--task", &task, "--indifference-mm", "8", "--json", "--no-levers", "--no-map"];
+    let wide = studies.study("wide", 30, &more).json();
+    let safe = &wide["answer"]["as_good"]["safe"];
+    assert!(safe["peak_force_n"].as_f64() <= Some(8.25), "{safe}");
+    let fast = studies.file("fast.toml", format!("{usb}\n[limits]\nspeed_mm_per_s = 5\n"));
+    let fast = optimize(&["task", "check", &fast]);
+    fast.fails(2, &["1 problem"]);
+    assert!(fast.stdout.contains("limits.speed_mm_per_s allows at most 5"), "{}", fast.stdout);
+}
+
+#[test]
 fn progress_goes_to_standard_error_unless_quiet() {
     let studies = Studies::new();
     let dir = studies.dir("s");

@@ -63,6 +63,7 @@ if probe:
     "tasks": Call(
         "tasks", "_lists.Tasks", example="[task.name for task in fo.tasks().tasks]\n['ket8', 'ket12', 'rj45', 'usb']"
     ),
+    "config": Call("config"),
     "robots": Call("robots", "_lists.Robots"),
     "measure sheet": Call(
         "measuring_sheet", positional=("task", "fingers", "out"), names={"finger": "fingers"},

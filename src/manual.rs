@@ -1,5 +1,6 @@
 //! Description of the command line: reference page, and a list for other languages.
 
+use crate::project::NO_CONFIG;
 use clap::{Arg, ArgAction};
 use serde::Serialize;
 use std::any::TypeId;
@@ -54,7 +55,7 @@ pub fn commands(mut program: clap::Command) -> Vec<Described> {
         let nested =
             || command.get_subcommands().filter(|c| !c.is_hide_set() && c.get_name() != "help");
         if nested().next().is_none() {
-            let own = |a: &&Arg| !["help", "version"].contains(&a.get_id().as_str());
+            let own = |a: &&Arg| !["help", "version", NO_CONFIG].contains(&a.get_id().as_str());
             let (hidden, shown): (Vec<&Arg>, Vec<&Arg>) =
                 command.get_arguments().filter(own).partition(|argument| argument.is_hide_set());
             let [options, hidden] =

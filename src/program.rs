@@ -2,9 +2,10 @@
 
 use crate::command::Command;
 use crate::commands::{COMMANDS, study};
-use crate::executor;
 use crate::failure::{Failure, described_numbers};
+use crate::project::{NO_CONFIG, OptionDefault, Project, with_defaults};
 use crate::terminal::say;
+use crate::{executor, help};
 use clap::ArgMatches;
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -37,7 +38,7 @@ const GROUPS: [(usize, &str, &str, &str); 3] = [
     ),
 ];
 
-const ABOUT: &str = "Finds the 3D-printed compliant finger that makes a connector insertion most robust\n\n\
+const ABOUT: &str = "Finds the 3D-printed compliant finger that makes an insertion most robust\n\n\
     Without a subcommand it runs a study: an optimizer proposes fingers, their insertions are simulated from shifted \
     starting positions, and the result is the finger that tolerates the largest shift. Running the same command again \
     continues the study.\n\n\
@@ -53,10 +54,12 @@ static VERSION: LazyLock<String> = LazyLock::new(|| {
 pub fn program() -> clap::Command {
     let root = clap::Command::new("optimize")
         .version(VERSION.as_str())
+        .styles(help::styles())
         .subcommand_negates_reqs(true)
         .arg_required_else_help(true)
         .args_conflicts_with_subcommands(true);
-    let root = described(STUDY.augment(root), ABOUT, "Example: optimize --task usb --budget 200");
+    let root = help::with_headings(STUDY.augment(root).arg(help::no_config()));
+    let root = described(root, ABOUT, "Example: optimize --task usb --budget 200");
     let mut groups = GROUPS.map(|(order, name, about, example)| {
         let group = clap::Command::new(name)
             .display_order(order)
@@ -65,7 +68,10 @@ pub fn program() -> clap::Command {
         described(group, about, example)
     });
     let mut commands = Vec::new();
-    let mut below: Vec<_> = COMMANDS.iter().map(|command| (command.path, command.clap())).collect();
+    let mut below: Vec<_> = COMMANDS
+        .iter()
+        .map(|command| (command.path, help::with_headings(command.clap())))
+        .collect();
     below.sort_by_key(|(_, command)| command.get_display_order());
     for (path, command) in below {
         match *path {
@@ -93,7 +99,19 @@ fn described(command: clap::Command, about: &'static str, example: &'static str)
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     survive_size_limit();
     let words: Vec<OsString> = arguments.into_iter().collect();
-    let matches = match program().try_get_matches_from(&words) {
+    let (program, defaults) = match with_project(program(), &words) {
+        Ok(found) => found,
+        Err(failure) => {
+            say(&format!("error: {failure}"));
+            return ExitCode::from(failure.exit_code());
+        }
+    };
+    let short = !words.iter().any(|word| word == "--help");
+    let program = match short {
+        true => program.clone().override_help(help::short(&program)),
+        false => program,
+    };
+    let matches = match program.try_get_matches_from(&words) {
         Ok(matches) => matches,
         Err(usage) if usage.use_stderr() => {
             say(described_numbers(&usage.render().to_string()).trim_end());
@@ -105,14 +123,58 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let done = chosen(&matches).and_then(|(command, matches)| {
         // Only a study has this option.
         match matches.try_get_one::<String>("executor").ok().flatten() {
-            Some(executor) => executor::run(executor, words.get(1..).unwrap_or_default()),
-            None => command.print(matches, program).map(|()| ExitCode::SUCCESS),
+            Some(executor) => {
+                let set = defaults.iter().map(|set| set.word().into());
+                let words: Vec<OsString> = words.iter().skip(1).cloned().chain(set).collect();
+                executor::run(executor, &words)
+            }
+            None => command.print(matches, self::program).map(|()| ExitCode::SUCCESS),
         }
     });
     done.unwrap_or_else(|failure| {
         say(&format!("error: {failure}"));
         ExitCode::from(failure.exit_code())
     })
+}
+
+/// Returns the command line with the defaults of the project file, which are named on standard error.
+fn with_project(
+    program: clap::Command,
+    words: &[OsString],
+) -> Result<(clap::Command, Vec<OptionDefault>), Failure> {
+    let texts: Vec<&str> = words.iter().skip(1).filter_map(|word| word.to_str()).collect();
+    let given = |option: &str| {
+        let named = |word: &str| word.strip_prefix("--")?.strip_prefix(option).map(str::to_owned);
+        texts
+            .iter()
+            .filter_map(|word| named(word))
+            .any(|rest| rest.is_empty() || rest.starts_with('='))
+    };
+    let (mut path, mut command) = (Vec::new(), &program);
+    while let Some(below) = texts.get(path.len()).and_then(|name| command.find_subcommand(name)) {
+        path.push(below.get_name().to_owned());
+        command = below;
+    }
+    let help = ["-h", "--help", "-V", "--version", "help"];
+    let aside =
+        given(NO_CONFIG) || texts.is_empty() || texts.iter().any(|word| help.contains(word));
+    let takes = command
+        .get_arguments()
+        .any(|arg| arg.get_long() == Some("task") || path[..] == ["measure"]);
+    if aside || !takes {
+        return Ok((program, Vec::new()));
+    }
+    let Some(project) = Project::current()? else { return Ok((program, Vec::new())) };
+    let mut defaults = project.defaults(command, given);
+    if !defaults.is_empty() {
+        let value = project.words(&defaults);
+        say(&value);
+        defaults.push(OptionDefault { option: "project", value });
+    }
+    // Of a file that is named without its option.
+    let positional = texts.get(path.len()).is_some_and(|word| !word.starts_with('-'));
+    defaults.retain(|set| set.option != "file" || !positional);
+    Ok((with_defaults(program, &path, &defaults), defaults))
 }
 
 /// Returns the command that was chosen, and its options.

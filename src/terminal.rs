@@ -1,13 +1,15 @@
 //! Standard output and standard error, without control characters.
 
 use crate::failure::Failure;
+use clap::builder::styling::{AnsiColor, Style};
 use input::files::visible;
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 
 /// Prints to standard output; a closed pipe (`| head`) is not an error.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    match out.write_all(shown(text).as_bytes()).and_then(|()| out.flush()) {
+    let text = if takes_colours(&out) { coloured(&shown(text)) } else { shown(text) };
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::running(format!("cannot write the output: {error}")))
         }
@@ -22,5 +24,69 @@ fn shown(text: &str) -> String {
 
 /// Writes a line on standard error; a failure is ignored, so that it does not end a study.
 pub fn say(text: &str) {
-    let _ = writeln!(io::stderr(), "{}", shown(text));
+    let text = if takes_colours(&io::stderr()) { coloured(&shown(text)) } else { shown(text) };
+    let _ = writeln!(io::stderr(), "{text}");
+}
+
+/// Returns whether a stream takes colours: a terminal, unless `NO_COLOR` is set or `TERM` is dumb.
+fn takes_colours(stream: &impl IsTerminal) -> bool {
+    let set = |name| std::env::var_os(name).filter(|value| !value.is_empty());
+    let dumb = || set("TERM").is_some_and(|term| term == "dumb");
+    stream.is_terminal() && set("NO_COLOR").is_none() && !dumb()
+}
+
+/// Column of the text of a line, after its name.
+const INDENT: usize = 14;
+
+/// Returns text with coloured names of lines, errors and warnings.
+fn coloured(text: &str) -> String {
+    text.split_inclusive('\n').map(coloured_line).collect()
+}
+
+fn coloured_line(line: &str) -> String {
+    const RED: Style = AnsiColor::Red.on_default().bold();
+    const YELLOW: Style = AnsiColor::Yellow.on_default().bold();
+    const CYAN: Style = AnsiColor::Cyan.on_default();
+    let name = || {
+        let (name, rest) = line.split_at_checked(INDENT)?;
+        let gap = name.ends_with(' ') && !rest.starts_with([' ', '\n']);
+        let words = name.starts_with(|c: char| c.is_lowercase()) && !name.contains([':', '=', ',']);
+        // A name of several words has single spaces.
+        (gap && words && !name.trim_end().contains("  ")).then_some(INDENT)
+    };
+    let (end, style) = match line {
+        _ if line.starts_with("error:") => (6, RED),
+        _ if line.starts_with("warning:") => (8, YELLOW),
+        _ => match name() {
+            Some(end) if line.starts_with("force ") || line.starts_with("warning ") => {
+                (end, YELLOW)
+            }
+            Some(end) => (end, CYAN),
+            None => return line.to_owned(),
+        },
+    };
+    let (name, rest) = line.split_at(end);
+    format!("{style}{name}{style:#}{rest}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_lines_are_coloured_and_text_is_not() {
+        let plain = [
+            "Print the finger with 10 % infill",
+            "[plug]",
+            "mass_g = 5.0  # grams",
+            "{\"a\": 1}",
+            "",
+        ];
+        for text in plain {
+            assert_eq!(coloured(text), text);
+        }
+        assert_eq!(coloured("ends          jammed\n"), "\u{1b}[36mends          \u{1b}[0mjammed\n");
+        assert!(coloured("error: x").starts_with("\u{1b}[1m\u{1b}[31merror:\u{1b}[0m"));
+        assert!(coloured("warning       measure it").starts_with("\u{1b}[1m\u{1b}[33m"));
+    }
 }

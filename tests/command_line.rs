@@ -122,6 +122,145 @@ fn a_study_prints_its_best_design_and_leaves_a_table() {
 }
 
 #[test]
+fn a_force_that_the_connector_does_not_withstand_comes_first() {
+    let studies = Studies::new();
+    let usb = include_str!("../tasks/usb.toml");
+    // The closed formula gives 5 N at the nominal start, and 1 N more for each mm.
+    let study = |name: &str, force_n: f64| {
+        let task = studies
+            .file(&format!("{name}.toml"), format!("{usb}\n[limits]\nforce_n = {force_n}\n"));
+        studies.study(name, 30, &["--task", &task, "--no-levers", "--no-map"]).succeeds().to_owned()
+    };
+    let weak = study("weak", 6.5);
+    let first = weak.lines().next().unwrap();
+    assert!(first.starts_with("force ") && first.contains("its connector takes"), "{weak}");
+    assert!(weak.contains("--constraint 'peak-force<=6'"), "{weak}");
+    let answer =
+        studies.study("weak", 30, &["--task", &studies.word("weak.toml"), "--json"]).json();
+    assert_eq!(answer["answer"]["force"]["limit_n"], 6.5);
+    assert!(studies.read("weak/report.html").contains("Force: up to"));
+    assert!(
+        study("strong", 60.0).starts_with("Print ") || study("strong", 60.0).starts_with("Any ")
+    );
+    // A robot that stops near that force.
+    let robot =
+        include_str!("../robots/servo.toml").replace("stop_force_n = 150.0", "stop_force_n = 7.0");
+    let robot = studies.file("robot.toml", robot);
+    let stops = studies.study("stops", 30, &["--robot", &robot, "--no-levers", "--no-map"]);
+    assert!(stops.succeeds().contains("stops at 7 N"), "{}", stops.stdout);
+    // With a wide indifference some design keeps to the limit, and the safe choice is such a one.
+    study("middling", 8.25);
+    let task = studies.word("middling.toml");
+    let more = ["--task", &task, "--indifference-mm", "8", "--json", "--no-levers", "--no-map"];
+    let wide = studies.study("wide", 30, &more).json();
+    let safe = &wide["answer"]["as_good"]["safe"];
+    assert!(safe["peak_force_n"].as_f64() <= Some(8.25), "{safe}");
+    let fast = studies.file("fast.toml", format!("{usb}\n[limits]\nspeed_mm_per_s = 5\n"));
+    let fast = optimize(&["task", "check", &fast]);
+    fast.fails(2, &["1 problem"]);
+    assert!(fast.stdout.contains("limits.speed_mm_per_s allows at most 5"), "{}", fast.stdout);
+}
+
+#[test]
+fn the_short_help_is_a_screen_and_the_long_one_has_every_option_below_a_heading() {
+    let short = optimize_line("-h").succeeds().to_owned();
+    assert!(
+        short.lines().count() < 50 && short.lines().all(|line| line.chars().count() <= 80),
+        "{short}"
+    );
+    let titles = ["Study:", "Design:", "Connector:", "Bench:", "Files:"];
+    assert!(titles.iter().all(|title| short.contains(&format!("\n{title}\n"))), "{short}");
+    for command in finger_opt::commands::COMMANDS {
+        assert!(short.contains(&format!("\n  {} ", command.path[0])), "{}", command.path[0]);
+    }
+    let long = optimize_line("study --help").succeeds().to_owned();
+    let (_, headed) = long.split_once("\nTask, robot and finger:\n").expect("a heading");
+    assert!(
+        ["\nSearch:\n", "\nBench:\n", "\nRun:\n", "\nOutput:\n"]
+            .iter()
+            .all(|title| headed.contains(title))
+    );
+    assert!(!headed.contains("\nOptions:\n") && headed.contains("--budget"), "{long}");
+    for (line, near) in [
+        ("--task usb --executor slrum", "did you mean `slurm`"),
+        ("--task usb --objective rnage", "did you mean `range`"),
+        ("--task usb --optimizer cmaes", "did you mean `cma-es`"),
+        ("--task usb --engine direkt", "'direct'"),
+        ("--task usb --robot servp", "did you mean `servo`"),
+        ("export finger --format stk --out f.stl", "'stl'"),
+    ] {
+        optimize_line(line).fails(2, &[near]);
+    }
+}
+
+#[test]
+fn the_project_file_gives_defaults_that_options_precede() {
+    let studies = Studies::new();
+    let folder = |name: &str| studies.dir(name);
+    fs::create_dir_all(folder("lab/below")).expect("a folder");
+    let lines = |below: &str, line: &str| {
+        let mut command = common::command(&line.split_whitespace().collect::<Vec<_>>());
+        common::run(command.current_dir(folder(below)))
+    };
+    studies.file(
+        "lab/finger-opt.toml",
+        "task = \"usb\"\nrobot = \"rigid\"\ncell = \"cell.toml\"\nmeasurements = \"bench.csv\"\n",
+    );
+    let study = "--engine fake --budget 4 --no-levers --no-map --json --out s";
+    // Cell and measurements are not there yet.
+    let found = lines("lab", study);
+    assert_eq!((&found.json()["task"], &found.json()["robot"]), (&"usb".into(), &"rigid".into()));
+    let first = found.stderr.lines().next().unwrap_or_default();
+    assert_eq!(first, "finger-opt.toml sets task usb, robot rigid");
+    let recorded = studies.read("lab/s/study.toml");
+    assert!(
+        recorded.contains("project = \"finger-opt.toml sets task usb, robot rigid\""),
+        "{recorded}"
+    );
+    // An option precedes the file, which is found from below, and can be ignored.
+    let other = lines(
+        "lab/below",
+        "--engine fake --budget 4 --no-levers --no-map --json --robot servo --out s",
+    );
+    assert_eq!(other.json()["robot"], "servo");
+    assert!(other.stderr.contains("lab/finger-opt.toml sets task usb"), "{}", other.stderr);
+    lines("lab", "evaluate --no-config --density 20 --direction 10").fails(2, &["--task"]);
+    let config = lines("lab/below", "config").succeeds().to_owned();
+    assert!(
+        config.contains("rigid") && config.contains("infill") && config.contains("(default)"),
+        "{config}"
+    );
+    // `measure add` and `measure check` take the file of the measurements.
+    let window = "measure add --density 10 --direction 6 --negative-mm -4.1 --positive-mm 5.2";
+    lines("lab", &format!("{window} --failure-negative 4 --failure-positive 3")).succeeds();
+    assert!(
+        studies.read("lab/bench.csv").contains("usb,10,6"),
+        "{}",
+        studies.read("lab/bench.csv")
+    );
+    lines("lab", "measure check").succeeds();
+    // With an identified cell, which contains a robot.
+    studies.file("lab/cell.toml", include_str!("fixtures/v0.5.0/cell.toml"));
+    let cell = lines("lab", "evaluate --engine fake --density 20 --direction 10");
+    assert!(
+        cell.stderr.starts_with("finger-opt.toml sets task usb, cell cell.toml\n"),
+        "{}",
+        cell.stderr
+    );
+    let bench = lines("lab", "next --engine fake --no-cache --simulations 16 --samples 20");
+    assert!(
+        bench.stderr.contains("sets task usb, priors cell.toml, measurements bench.csv"),
+        "{}",
+        bench.stderr
+    );
+    studies.file("lab/finger-opt.toml", "seed = 3\n");
+    lines("lab", "config")
+        .fails(2, &["finger-opt.toml", "seed: belongs to one study; give --seed"]);
+    studies.file("lab/finger-opt.toml", "tasks = \"usb\"\n");
+    lines("lab", study).fails(2, &["finger-opt.toml", "tasks"]);
+}
+
+#[test]
 fn progress_goes_to_standard_error_unless_quiet() {
     let studies = Studies::new();
     let dir = studies.dir("s");

@@ -68,6 +68,18 @@ class AsGood(Result):
 
 
 @dataclass(frozen=True, repr=False)
+class ExcessForce(Result):
+    """A contact force that the connector or the robot does not withstand, or only just."""
+
+    task: str
+    peak_force_n: float
+    #: That of the connector, or the stop force of the robot.
+    limit_n: float
+    of_connector: bool
+    warning: str
+
+
+@dataclass(frozen=True, repr=False)
 class NextStep(Result):
     """A command to go on with, and why."""
 
@@ -88,6 +100,7 @@ class Answer(Result):
     expectation: str
     #: Its values by key.
     finger: dict[str, float] | None
+    force: ExcessForce | None
     trust: Trust
     start: StartAdvice | None
     as_good: AsGood | None

@@ -22,9 +22,9 @@ from ._trial import Trial
 from ._words import Axes, Engine, FingerModel, Numbers, RobotName, SpaceName, Start, StrPath, TaskName
 
 __all__ = [
-    "calibrate", "capture_map", "check_task", "compare", "evaluate", "export_finger", "export_mjcf", "finger",
-    "identify", "levers", "load_study", "measuring_sheet", "new_task", "next_print", "robots", "sensitivity",
-    "tasks", "trial", "tune_task",
+    "calibrate", "capture_map", "check_task", "compare", "config", "evaluate", "export_finger", "export_mjcf",
+    "finger", "identify", "levers", "load_study", "measuring_sheet", "new_task", "next_print", "robots",
+    "sensitivity", "tasks", "trial", "tune_task",
 ]
 #: Those that the page of the package does not name.
 _FURTHER = """"""
@@ -360,7 +360,7 @@ def sensitivity(
     seed: int = 0,
     svg: StrPath | None = None,
 ) -> Sensitivity:
-    """Rank the inputs (design, task, cell) by their share of the variance, as ``optimize sensitivity`` does.
+    """Rank the inputs by their share of the variance: design, task, cell, as ``optimize sensitivity`` does.
 
     Args:
         task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
@@ -464,7 +464,7 @@ def calibrate(
     no_cache: bool = False,
     out: StrPath | None = None,
 ) -> Calibration:
-    """Predict the range of every finger on the bench from simulations and a few measurements, as ``optimize calibrate`` does.
+    """Predict the range of every finger on the bench: from simulations and a few measurements, as ``optimize calibrate`` does.
 
     Simulates the task with drawn values of the parameters that were not measured (friction, preload, robot,
     finger), compares with the measurements, models the discrepancy as a Gaussian process over the
@@ -737,6 +737,22 @@ def export_finger(
         "dir": study, "out": out, "density": density, "direction": direction, "finger": finger, "phase_mm": phase_mm,
         "format": format,
     }, Files).paths
+
+
+@checked
+def config() -> Found:
+    """Print the settings of finger-opt.toml in this folder or above, as ``optimize config`` does.
+
+    The file sets task, robot, cell, measurements, space and threads for all commands in its folder and
+    below. Options precede it; no_config ignores it. Seed and budget belong to one study and cannot be set
+    there.
+
+    Raises:
+        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
+        StudyError: It fails while it runs, or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    return called("config", {}, Found)
 
 
 @checked

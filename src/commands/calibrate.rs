@@ -15,7 +15,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use study::write_file;
 
-/// Predict the range of every finger on the bench from simulations and a few measurements.
+/// Predict the range of every finger on the bench: from simulations and a few measurements.
 ///
 /// Simulates the task with drawn values of the parameters that were not measured (friction, preload, robot,
 /// finger), compares with the measurements, models the discrepancy as a Gaussian process over the stiffness, and

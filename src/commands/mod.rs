@@ -4,6 +4,7 @@ pub mod ask_tell;
 pub mod calibrate;
 pub mod compare;
 pub mod completions;
+pub mod config;
 pub mod evaluate;
 pub mod finger;
 pub mod identify;
@@ -50,6 +51,7 @@ pub static COMMANDS: &[Command] = &[
     Command::of::<calibrate::Request>(&["calibrate"]),
     Command::of::<compare::Request>(&["compare"]),
     Command::of::<completions::Request>(&["completions"]),
+    Command::of::<config::Request>(&["config"]),
     Command::of::<evaluate::Request>(&["evaluate"]),
     Command::of::<export::finger::Request>(&["export", "finger"]),
     Command::of::<export::mjcf::Request>(&["export", "mjcf"]),

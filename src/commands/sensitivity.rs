@@ -20,7 +20,7 @@ use study::write_file;
 
 const SAMPLES: RangeInclusive<u32> = 4..=10_000;
 
-/// Rank the inputs (design, task, cell) by their share of the variance
+/// Rank the inputs by their share of the variance: design, task, cell
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 16,

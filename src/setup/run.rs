@@ -4,6 +4,7 @@ use super::Setup;
 use crate::failure::Failure;
 use crate::failure::wide;
 use calibration::bench::{Effort, Settings};
+use input::shipped::nearest;
 use rayon::ThreadPool;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -98,11 +99,27 @@ pub struct RunRequest {
     pub accept_changed: bool,
     /// Executor that measures designs, by the installed Python package: dask://HOST:PORT, slurm,
     /// slurm:JOBS, processes or processes:N [default: the threads of this process]
-    #[arg(long, value_name = "WHERE")]
+    #[arg(long, value_name = "WHERE", value_parser = executor)]
     pub executor: Option<String>,
     /// Effort of the bench prediction.
     #[command(flatten)]
     pub effort: EffortRequest,
+    /// Project file and what it set, recorded in study.toml
+    #[arg(long, hide = true)]
+    pub project: Option<String>,
+}
+
+/// Kinds of executors; a colon separates the rest.
+const EXECUTORS: [&str; 3] = ["dask", "slurm", "processes"];
+
+fn executor(text: &str) -> Result<String, String> {
+    let (kind, _) = text.split_once(':').unwrap_or((text, ""));
+    if EXECUTORS.contains(&kind) {
+        return Ok(text.to_owned());
+    }
+    let near = nearest(kind, &EXECUTORS).map(|near| format!("; did you mean `{near}`?"));
+    let forms = "dask://HOST:PORT, slurm, slurm:JOBS, processes or processes:N";
+    Err(format!("must be {forms}{}", near.unwrap_or_default()))
 }
 
 impl RunRequest {
@@ -116,7 +133,8 @@ impl RunRequest {
         let bench = setup.measured.as_ref().map(|_| self.effort.or(effort));
         let measurements = setup.measured.as_ref().map(|measured| measured.file.clone());
         let task_files = setup.task_files.clone();
-        Conclusion { no_confirm: self.no_confirm, bench, measurements, task_files }
+        let (no_confirm, project) = (self.no_confirm, self.project.clone());
+        Conclusion { no_confirm, bench, measurements, task_files, project }
     }
 
     /// Returns the number of threads; 0 for one per processor.

@@ -57,7 +57,10 @@ pub struct Ended {
 impl OpenStudy {
     pub(crate) fn new(mut study: Study, setup: Setup, run: RunRequest) -> Result<Self, Failure> {
         check(&study.config, &setup)?;
-        study.conclude_by(run.conclusion(&setup, study.config.conclusion.bench))?;
+        let before = &study.config.conclusion;
+        let mut conclusion = run.conclusion(&setup, before.bench);
+        conclusion.project = conclusion.project.or_else(|| before.project.clone());
+        study.conclude_by(conclusion)?;
         let goals = study.config.goals();
         let plan = setup.plan(study.config.seed, |measure| goals.need(measure))?;
         let cache = run.cache(&setup);

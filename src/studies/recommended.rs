@@ -1,7 +1,7 @@
 //! Recommendation and answer of a study as JSON.
 
 use insertion::evaluation::objective::{Measure, Objectives};
-use report::answer::{Answer, Ties, Trust, command, expectation};
+use report::answer::{Answer, Ties, Trust, command, expectation, lines};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use study::{ByRibs, OnBench, StudyRecord};
@@ -143,11 +143,23 @@ pub fn advice(answer: &Answer, dir: &Path) -> Value {
         "headline": answer.verdict.headline(),
         "expectation": expectation(answer),
         "finger": answer.verdict.finger(),
+        "force": force(answer),
         "trust": trust(&answer.trust),
         "start": start,
         "as_good": as_good.map(|as_good| equivalent(answer, as_good)),
         "next": {"command": command, "why": why.to_string()},
     })
+}
+
+/// Returns the contact force that connector or robot do not withstand, and what to do about it; null if
+/// there is none.
+fn force(answer: &Answer) -> Value {
+    let (Some(excess), Some((_, text))) = (&answer.force, lines::force(answer)) else {
+        return Value::Null;
+    };
+    let mut json = json!(excess);
+    json["warning"] = text.into();
+    json
 }
 
 fn trust(trust: &Trust) -> Value {

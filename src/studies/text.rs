@@ -25,7 +25,9 @@ pub fn analyses(PostAnalysis { levers, robots, .. }: &PostAnalysis) -> String {
 
 /// Returns the answer and the next command.
 fn shown(answer: &Answer, dir: &Path, verbose: &str) -> String {
-    let mut text = format!("{}\n{}\n", answer.verdict.headline(), expectation(answer));
+    // Before everything that invites to print it.
+    let mut text = layout::lines(lines::force(answer));
+    text += &format!("{}\n{}\n", answer.verdict.headline(), expectation(answer));
     text += &layout::lines(lines::brief(answer));
     text += verbose;
     // Not wrapped, to be copied.

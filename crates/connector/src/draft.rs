@@ -6,8 +6,8 @@ use input::{Place, Placed};
 use insertion::finger::Pad;
 use insertion::task::finger::FingerModel;
 use insertion::task::{
-    Friction, Grip, Hold, PadTorsion, Part, Plug, Solid, StartRule, Strategy, Success, Task,
-    geometry,
+    Friction, Grip, Hold, Limits, PadTorsion, Part, Plug, Solid, StartRule, Strategy, Success,
+    Task, geometry,
 };
 use nalgebra::Vector3;
 use parameters::numbers;
@@ -133,6 +133,7 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
         finger: like.map_or(FingerModel::default(), |task| task.finger),
         strategy: Strategy { tilt: 0.0, start: [0.0; 3], rule: StartRule::Given, phases: vec![] },
         success: Success::default(),
+        limits: like.map_or(Limits::default(), |task| task.limits),
     }
 }
 

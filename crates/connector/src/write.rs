@@ -3,7 +3,7 @@
 use super::hold;
 use input::units::{DEG, GRAM, MM};
 use insertion::task::{
-    Ending, Hold, PadTorsion, Part, Phase, Sensed, Solid, Stage, StartRule, Task,
+    Ending, Hold, Limits, PadTorsion, Part, Phase, Sensed, Solid, Stage, StartRule, Task,
 };
 use nalgebra::{Point3, Vector3};
 use std::fmt::Write;
@@ -52,6 +52,14 @@ pub fn task(task: &Task, notes: &Notes) -> String {
         mm(task.success.depth),
         round(task.success.tilt / DEG, 100.0)
     );
+    let Limits { force, speed } = task.limits;
+    let limits = [("force_n", force.map(|n| format!("{n:?}"))), ("speed_mm_per_s", speed.map(mm))];
+    let limits =
+        limits.iter().filter_map(|(key, value)| Some(format!("{key} = {}\n", value.as_ref()?)));
+    let limits: String = limits.collect();
+    if !limits.is_empty() {
+        let _ = write!(out, "\n[limits]\n# Of the data sheet.\n{limits}");
+    }
     out
 }
 

@@ -128,6 +128,7 @@ pub static NUMBERS: &[Number] = &[
     file("task.strategy.phase.*.latency_s", 0.0, 1e3),
     length("task.success.depth_mm"),
     file("task.success.tilt_deg", LEAST, 360.0),
+    fixed("task.limits.force_n|speed_mm_per_s", LEAST, 1e6),
     // Connectors that are drafted from dimensions.
     fixed("connector.size_mm", 0.5, 200.0),
     fixed("connector.clearance_mm", 1e-3, 20.0),

@@ -21,6 +21,7 @@ pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
     html! {
         header {
             p.muted { (lines::searched(answer)) " · " (answer.record.config.robot) }
+            @if let Some((_, text)) = lines::force(answer) { p.warn { "Force: " (text) "." } }
             h1 { (answer.verdict.headline()) }
             p.lead {
                 (expectation(answer)) ". "

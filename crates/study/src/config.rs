@@ -107,6 +107,9 @@ pub struct Conclusion {
     /// Paths of the task files, as given, in the order of the tasks.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub task_files: Vec<String>,
+    /// Project file and the options that it set, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub project: Option<String>,
 }
 
 impl StudyConfig {

@@ -16,6 +16,7 @@ use super::config::{Conclusion, StudyConfig};
 use super::confirmed;
 use super::error::StudyError;
 use super::journal::{self, Contents, Journal};
+use super::limits::ForceLimits;
 use super::on_bench::{BENCH_FILE, OnBench};
 use super::provenance::{Provenance, Segment};
 use super::record::{Recorded, StudyRecord, first_current};
@@ -285,9 +286,10 @@ impl StudyRecord {
         evaluations: Vec<Recorded>,
         foreign: usize,
     ) -> Self {
-        let finger = read_inputs(dir, &segments)
-            .ok()
-            .and_then(|inputs| FingerFile::parse(inputs.get(FINGER)?, "inputs/finger").ok());
+        let inputs = read_inputs(dir, &segments).unwrap_or_default();
+        let finger =
+            inputs.get(FINGER).and_then(|text| FingerFile::parse(text, "inputs/finger").ok());
+        let limits = ForceLimits::of(&inputs, config.tasks.len());
         let on_bench = segments.last().and_then(|segment| OnBench::read(dir, &segment.provenance));
         let goals = config.goals();
         let rule = Rule { goals: &goals, space: &config.space };
@@ -302,6 +304,7 @@ impl StudyRecord {
             foreign,
             walked,
             finger,
+            limits,
             firm_values,
             on_bench,
             settled,

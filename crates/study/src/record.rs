@@ -1,6 +1,7 @@
 //! Record of a study: its configuration, evaluations and analyses.
 
 use super::StudyConfig;
+use super::limits::ForceLimits;
 use super::on_bench::OnBench;
 use super::provenance::Segment;
 use ask_tell::pareto;
@@ -41,6 +42,8 @@ pub struct StudyRecord {
     pub walked: Vec<Walked>,
     /// Finger file, if the fingers were computed.
     pub finger: Option<FingerFile>,
+    /// Largest contact forces, from task and robot files.
+    pub limits: ForceLimits,
     /// Firm values of the first objective of the designs whose ends were repeated, by evaluation.
     pub firm_values: BTreeMap<u64, f64>,
     /// Bench prediction, if there are measurements.

@@ -50,6 +50,8 @@ pub struct Task {
     pub strategy: Strategy,
     /// Criterion of an insertion.
     pub success: Success,
+    /// Loads that the connector withstands; no trial depends on them.
+    pub limits: Limits,
 }
 
 /// The connector half that the fingers hold.
@@ -229,6 +231,18 @@ pub struct Phase {
     pub speed: f64,
     /// Condition that ends the move.
     pub ending: Ending,
+}
+
+/// Largest loads of a connector, from its data sheet.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Limits {
+    /// Contact force between plug and socket, N.
+    #[serde(rename = "force_n")]
+    pub force: Option<f64>,
+    /// Speed of a phase, m/s.
+    #[serde(rename = "speed_mm_per_s", deserialize_with = "mm")]
+    pub speed: Option<f64>,
 }
 
 /// Criterion of an insertion.

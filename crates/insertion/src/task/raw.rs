@@ -4,8 +4,8 @@ use super::finger::{RawFinger, finger};
 use super::latch::{RawLatch, latch};
 use super::raw_part::{RawPart, interval, parts};
 use super::{
-    Ending, Friction, Grip, PadTorsion, Phase, Plug, Sensed, Stage, StartRule, Strategy, Success,
-    Task,
+    Ending, Friction, Grip, Limits, PadTorsion, Phase, Plug, Sensed, Stage, StartRule, Strategy,
+    Success, Task,
 };
 use input::units::MM;
 use input::units::read::{deg, gram, mm};
@@ -30,6 +30,8 @@ struct RawTask {
     finger: RawFinger,
     strategy: RawStrategy,
     success: Success,
+    #[serde(default)]
+    limits: Limits,
 }
 
 #[derive(Deserialize)]
@@ -137,6 +139,8 @@ fn checked(raw: RawTask, file: &str) -> Result<Task, InputError> {
         return check.fail("grip.shoulder_z_mm", "must be above grip.tcp_z_mm");
     }
     check_torsion(check, &raw.friction)?;
+    let (strategy, limits) = (strategy(check, raw.strategy)?, raw.limits);
+    check_speed(check, &strategy, limits)?;
     Ok(Task {
         name: raw.name,
         description: raw.description,
@@ -150,9 +154,20 @@ fn checked(raw: RawTask, file: &str) -> Result<Task, InputError> {
         grip: raw.grip,
         friction: raw.friction,
         finger: finger(check, &raw.finger)?,
-        strategy: strategy(check, raw.strategy)?,
+        strategy,
         success: raw.success,
+        limits,
     })
+}
+
+/// Checks that no phase is faster than the connector allows.
+fn check_speed(check: Check<'_>, strategy: &Strategy, limits: Limits) -> Result<(), InputError> {
+    let Some(most) = limits.speed else { return Ok(()) };
+    // A phase may have the very speed of the limit, which was converted to SI as well.
+    let Some(fast) = strategy.phases.iter().find(|phase| phase.speed > most) else { return Ok(()) };
+    let [speed, most] = [fast.speed, most].map(|speed| shown(speed / MM));
+    let problem = format!("is {speed}; limits.speed_mm_per_s allows at most {most}");
+    check.fail(&format!("strategy.phase \"{}\" speed_mm_per_s", fast.name), problem)
 }
 
 /// Checks that the torsional friction of a pad is not more than that of the largest contact patch.

@@ -1,5 +1,6 @@
 //! Designs that tie with the recommended one, and the safe choice among them.
 
+use super::force::ExcessForce;
 use super::trust::Measured;
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::Measure;
@@ -82,9 +83,14 @@ impl<'a> Ties<'a> {
             let found = measured.iter().find(|measured| measured.design == design.design);
             found.map(|measured| measured.range_mm)
         };
-        let printed = among.iter().filter_map(|&(r, loss)| Some((r, loss, on_robot(r)?)));
+        // Only within the limits of connector and robot, if any design is.
+        let within = |(r, _): &&(&Recorded, f64)| ExcessForce::of(record, &r.tasks()).is_none();
+        let any = among.iter().any(|member| within(&member));
+        let safest = || among.iter().filter(move |member| !any || within(member));
+        let printed = safest().filter_map(|&(r, loss)| Some((r, loss, on_robot(r)?)));
         let printed = printed.max_by(|a, b| a.2.total_cmp(&b.2).then(b.0.index.cmp(&a.0.index)));
-        let gentle = forces().min_by(value).map(|(design, _)| design);
+        let gentle = safest().filter_map(|&(design, _)| Some((design, force(design)?)));
+        let gentle = gentle.min_by(value).map(|(design, _)| design);
         let loss = |design: &Recorded| among.iter().find(|(r, _)| r.index == design.index);
         let safe = match (printed, gentle) {
             (Some((design, loss, measured_mm)), _) => Some((design, loss, Some(measured_mm))),

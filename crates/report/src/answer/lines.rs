@@ -1,7 +1,7 @@
 //! An answer line by line, each a name and a text, for terminal and page alike.
 
 use super::words::{self, ends_mm, evaluated, interval, mm, span};
-use super::{Answer, Front, OnTask, Recommended, Spread, Ties};
+use super::{Answer, ExcessForce, Front, OnTask, Recommended, Spread, Ties};
 use ask_tell::statistics::mean;
 use calibration::order::Order;
 use insertion::evaluation::objective::Measure;
@@ -96,6 +96,29 @@ pub fn caveats(answer: &Answer) -> Vec<Line> {
     let bench = answer.record.on_bench.iter().flat_map(|bench| &bench.warnings);
     let warnings = bench.map(|words| line("warning", words));
     advice.into_iter().chain(found.and_then(extrapolated)).chain(warnings).collect()
+}
+
+/// Returns the force that connector or robot do not withstand, and what to do about it.
+pub fn force(answer: &Answer) -> Option<Line> {
+    let excess = answer.force.as_ref()?;
+    let ties = answer.recommended.as_ref().and_then(|found| found.ties.as_ref());
+    let safe = ties.and_then(|ties| ties.safe.as_ref()).filter(|safe| {
+        let design = &safe.design.design;
+        let other = answer.verdict.finger() != Some(design) && answer.record.on_bench.is_none();
+        other && ExcessForce::of(answer.record, &safe.design.tasks()).is_none()
+    });
+    let remedy = match safe {
+        Some(safe) => format!("take the safe choice, {}", words::design(&safe.design.design)),
+        None => format!("try --constraint 'peak-force<={:.0}'", acceptable(answer)),
+    };
+    Some(line("force", format!("{}; {remedy}", excess.words())))
+}
+
+/// Returns the largest force that all connectors and the robot withstand, N.
+fn acceptable(answer: &Answer) -> f64 {
+    let limits = &answer.record.limits;
+    let each = (0..answer.record.config.tasks.len()).map(|task| limits.acceptable(task));
+    each.fold(f64::INFINITY, f64::min).floor()
 }
 
 /// Returns tasks, optimizer and number of evaluations.

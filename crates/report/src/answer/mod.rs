@@ -3,6 +3,7 @@
 
 mod alike;
 pub mod command;
+mod force;
 pub mod lines;
 mod recommended;
 mod robots;
@@ -19,6 +20,7 @@ use insertion::space::Design;
 use study::{Recorded, StudyRecord, Volume, Walked, nearest, volume};
 
 pub use alike::{Safe, Spread, Ties};
+pub use force::ExcessForce;
 pub use recommended::{OnTask, Recommended};
 pub use robots::UnderRobot;
 pub use start::Start;
@@ -54,6 +56,8 @@ pub struct Answer<'a> {
     /// Fingers measured on a robot: those given to the study, else the published ones; empty for
     /// several tasks.
     pub measured: Vec<Measured>,
+    /// Contact force of the finger to print, if it exceeds what connector or robot withstand.
+    pub force: Option<ExcessForce>,
     /// Agreement of the simulated with the measured order of fingers, for the tasks with measurements.
     pub orders: Vec<(&'a str, Order)>,
 }
@@ -94,10 +98,12 @@ impl<'a> Answer<'a> {
             front: config.objective.single().is_none().then(front),
             spread_mm: record.spread_mm(),
             measured,
+            force: None,
             orders: config.tasks().enumerate().filter_map(order).collect(),
         };
         answer.verdict = Verdict::of(&answer, &answer.measured);
         answer.trust = Trust::of(record, answer.named());
+        answer.force = answer.shown().and_then(|(_, tasks)| ExcessForce::of(record, &tasks));
         answer
     }
 

@@ -1,0 +1,51 @@
+//! Contact force of a finger against what its connector and the robot withstand.
+
+use insertion::evaluation::Evaluation;
+use insertion::evaluation::objective::Measure;
+use serde::Serialize;
+use study::StudyRecord;
+
+/// Contact force that a connector or the robot does not withstand, or only just.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExcessForce {
+    /// Task on which it occurs.
+    pub task: String,
+    /// Largest contact force in the trials that insert, N.
+    pub peak_force_n: f64,
+    /// Limit, N: that of the connector, or the stop force of the robot.
+    pub limit_n: f64,
+    /// Whether the limit is that of the connector.
+    pub of_connector: bool,
+    #[serde(skip)]
+    robot: String,
+}
+
+impl ExcessForce {
+    /// Returns the first task whose contact force exceeds what is acceptable; `None` if there is none.
+    pub fn of(record: &StudyRecord, tasks: &[&Evaluation]) -> Option<Self> {
+        let limits = &record.limits;
+        let exceeds = |(place, (task, found)): (usize, (&str, &&Evaluation))| {
+            let peak_force_n = Measure::PeakForce.value(found)?;
+            if peak_force_n <= limits.acceptable(place) {
+                return None;
+            }
+            let connector = limits.connectors.get(place).copied().flatten();
+            let connector = connector.filter(|&limit| peak_force_n > limit);
+            let (task, robot) = (task.to_owned(), record.config.robot.clone());
+            let limit_n = connector.or(limits.stop)?;
+            let of_connector = connector.is_some();
+            Some(ExcessForce { task, peak_force_n, limit_n, of_connector, robot })
+        };
+        record.config.tasks().zip(tasks).enumerate().find_map(exceeds)
+    }
+
+    /// Returns `149 N on ket8: the robot servo stops at 150 N`.
+    pub fn words(&self) -> String {
+        let ExcessForce { task, peak_force_n, limit_n, of_connector, robot } = self;
+        let limit = match of_connector {
+            true => format!("its connector takes {limit_n:.0} N (limits.force_n)"),
+            false => format!("the robot {robot} stops at {limit_n:.0} N"),
+        };
+        format!("up to {peak_force_n:.0} N on {task}: {limit}")
+    }
+}

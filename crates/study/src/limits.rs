@@ -1,0 +1,39 @@
+//! Largest contact forces that the connectors of a study and its robot withstand.
+
+use super::folder::Inputs;
+use insertion::robot::Robot;
+use insertion::task::Task;
+
+/// Share of a robot's stop force from which on a force counts as too near to it: peaks of repeated insertions
+/// differ by about as much.
+const STOP_SHARE: f64 = 0.9;
+
+/// Largest contact forces of a study, N.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ForceLimits {
+    /// Limit of each connector, for those whose task file has one.
+    pub connectors: Vec<Option<f64>>,
+    /// Stop force of the robot, if its file is known.
+    pub stop: Option<f64>,
+}
+
+impl ForceLimits {
+    /// Reads the limits from the input files of a study; none from a file that cannot be read.
+    pub(super) fn of(inputs: &Inputs, tasks: usize) -> Self {
+        let connector = |number: usize| {
+            let text = inputs.get(&format!("task_{number}"))?;
+            Task::parse(text, "").ok()?.limits.force
+        };
+        let robot = inputs.get("robot").and_then(|text| Robot::parse(text, "").ok());
+        ForceLimits {
+            connectors: (1..=tasks).map(connector).collect(),
+            stop: robot.map(|robot| robot.stop_force),
+        }
+    }
+
+    /// Returns the largest acceptable force on a task, by its index; infinite if there is none.
+    pub fn acceptable(&self, task: usize) -> f64 {
+        let connector = self.connectors.get(task).copied().flatten().unwrap_or(f64::INFINITY);
+        self.stop.map_or(connector, |stop| connector.min(STOP_SHARE * stop))
+    }
+}

@@ -1,0 +1,66 @@
+//! `optimize config`: prints the settings that hold in this folder.
+
+use crate::command;
+use crate::context::Context;
+use crate::failure::Failure;
+use crate::layout::lines;
+use crate::project::{PROJECT_FILE, Project, Settings};
+use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE};
+use serde::Serialize;
+use std::fmt;
+
+/// Print the settings of finger-opt.toml in this folder or above
+///
+/// The file sets task, robot, cell, measurements, space and threads for all commands in its folder and below.
+/// Options precede it; --no-config ignores it. Seed and budget belong to one study and cannot be set there.
+#[derive(Debug, clap::Args)]
+#[command(display_order = 45, after_help = "Example: optimize config --json")]
+pub struct Request {}
+
+/// Settings that hold in the current folder.
+#[derive(Serialize)]
+pub struct Held {
+    /// Path of the project file.
+    file: Option<String>,
+    /// What it sets, by option.
+    settings: Settings,
+}
+
+impl command::Request for Request {
+    type Response = Held;
+
+    fn run(&self, _context: &Context<'_>) -> Result<Held, Failure> {
+        let found = Project::current()?;
+        let (file, settings) = found.map(|found| (found.file, found.settings)).unzip();
+        Ok(Held { file, settings: settings.unwrap_or_default() })
+    }
+}
+
+impl command::Response for Held {}
+
+impl fmt::Display for Held {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Settings { task, robot, cell, measurements, space, threads } = self.settings.clone();
+        let none = format!("no {PROJECT_FILE} in this folder or above");
+        let file = self.file.clone();
+        let from = file.clone().unwrap_or_default();
+        let threads = threads.map(|count| count.to_string());
+        let held = [
+            ("task", task, "none"),
+            ("robot", robot, DEFAULT_ROBOT),
+            ("cell", cell, "none"),
+            ("measurements", measurements, "none"),
+            ("space", space, DEFAULT_SPACE),
+            ("threads", threads, "one per processor"),
+        ];
+        let held = held.into_iter().map(|(key, set, default)| {
+            let (value, origin) = match &set {
+                Some(value) => (value.as_str(), from.as_str()),
+                None => (default, "default"),
+            };
+            (key.to_owned(), format!("{value:<24} ({origin})"))
+        });
+        let first = ("file".to_owned(), file.unwrap_or(none));
+        f.write_str(&lines(std::iter::once(first).chain(held)))
+    }
+}

@@ -1,0 +1,166 @@
+//! Project file `finger-opt.toml`: defaults of options for the commands that are run in its folder or below.
+
+use crate::failure::Failure;
+use clap::Command;
+use input::files::{LARGEST_INPUT, read_named};
+use input::shipped::MEASUREMENTS;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Name of the file.
+pub const PROJECT_FILE: &str = "finger-opt.toml";
+/// Option that ignores the file.
+pub const NO_CONFIG: &str = "no-config";
+/// Keys that determine a study, with the options that set them.
+const OF_STUDY: [&str; 2] = ["seed", "budget"];
+
+/// Keys of a project file; paths are relative to its folder.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// Task or tasks, by commas.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub task: Option<String>,
+    /// Robot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub robot: Option<String>,
+    /// Identified cell.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cell: Option<String>,
+    /// Measurements from the bench.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measurements: Option<String>,
+    /// Search space.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub space: Option<String>,
+    /// Threads.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub threads: Option<u16>,
+}
+
+/// A project file that was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Project {
+    /// Its path.
+    pub file: String,
+    /// Its keys, with paths as a command takes them.
+    pub settings: Settings,
+}
+
+/// Default of an option, from a project file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OptionDefault {
+    /// Option, or positional argument of a measurement file.
+    pub option: &'static str,
+    /// Its value.
+    pub value: String,
+}
+
+impl Project {
+    /// Returns the project of the current folder: the file in it or in the nearest folder above.
+    ///
+    /// # Errors
+    /// If the file is invalid.
+    pub fn current() -> Result<Option<Self>, Failure> {
+        let Ok(folder) = std::env::current_dir() else { return Ok(None) };
+        let found = folder.ancestors().find(|above| above.join(PROJECT_FILE).is_file());
+        let Some(found) = found else { return Ok(None) };
+        let beside = if found == folder { Path::new("") } else { found };
+        Project::read(beside).map(Some)
+    }
+
+    fn read(folder: &Path) -> Result<Self, Failure> {
+        let path = folder.join(PROJECT_FILE);
+        let file = path.display().to_string();
+        let text = read_named(&path, LARGEST_INPUT)
+            .map_err(|error| Failure::in_file(&file, format!("cannot read it: {error}")))?;
+        let table: toml::Table = input::read(&text, &file).map_err(Failure::input)?;
+        if let Some(key) = OF_STUDY.iter().find(|key| table.contains_key(**key)) {
+            let problem = format!("{key}: belongs to one study; give --{key} on the command line");
+            return Err(Failure::in_file(&file, problem));
+        }
+        let mut settings: Settings = input::read(&text, &file).map_err(Failure::input)?;
+        let Settings { task, robot, cell, measurements, space, .. } = &mut settings;
+        for value in [task, robot, cell, measurements, space].into_iter().flatten() {
+            let each = value.split(',').map(|name| beside(folder, name.trim()));
+            *value = each.collect::<Vec<_>>().join(",");
+        }
+        Ok(Project { file, settings })
+    }
+
+    /// Returns the defaults for a command; `given` tells whether an option is on the command line, which
+    /// precedes.
+    pub fn defaults(&self, command: &Command, given: impl Fn(&str) -> bool) -> Vec<OptionDefault> {
+        let Settings { task, robot, cell, measurements, space, threads } = self.settings.clone();
+        let name = command.get_name();
+        let takes = |long: &str| command.get_arguments().any(|arg| arg.get_long() == Some(long));
+        // Only what is there can be read; `next` and `measure add` begin such a file.
+        let begins = ["next", "add"].contains(&name);
+        let measurements = measurements.filter(|file| begins || exists(file));
+        let file = (["add", "check"].contains(&name) && !takes("svg")).then_some("file");
+        // A study with other goals makes no use of measurements.
+        let other = ["objective", "constraint", "aggregate"].into_iter().any(&given);
+        let bench = takes("measurements").then_some("measurements").filter(|_| !other);
+        let measured = measurements.is_some() && bench.is_some() || given("measurements");
+        // The cell is a prior where measurements correct it. `identify` makes it; a robot contradicts it.
+        let cell = cell.filter(|file| exists(file) && name != "identify");
+        let cell = cell.filter(|_| !["cell", "priors", "robot"].into_iter().any(&given));
+        let held = if measured && takes("priors") { "priors" } else { "cell" };
+        let cell = cell.filter(|_| takes(held));
+        let robot = robot.filter(|_| cell.is_none() && !given("cell") && !given("priors"));
+        let threads = threads.map(|count| count.to_string());
+        [
+            (Some("task"), task),
+            (Some("robot"), robot),
+            (Some(held), cell),
+            (file.or(bench), measurements),
+            (Some("space"), space),
+            (Some("threads"), threads),
+        ]
+        .into_iter()
+        .filter_map(|(option, value)| Some(OptionDefault { option: option?, value: value? }))
+        .filter(|set| (set.option == "file" || takes(set.option)) && !given(set.option))
+        .collect()
+    }
+
+    /// Returns the file and what it sets: `finger-opt.toml sets task usb, robot ur5e`.
+    pub fn words(&self, defaults: &[OptionDefault]) -> String {
+        let set =
+            defaults.iter().map(|OptionDefault { option, value }| format!("{option} {value}"));
+        format!("{} sets {}", self.file, set.collect::<Vec<_>>().join(", "))
+    }
+}
+
+impl OptionDefault {
+    /// Returns the word of the command line that sets the option.
+    pub fn word(&self) -> String {
+        format!("--{}={}", self.option, self.value)
+    }
+}
+
+/// Returns the path of a file in the folder of the project, or the name as it is if there is none.
+fn beside(folder: &Path, name: &str) -> String {
+    let path = folder.join(name);
+    let is_path = path.is_file() || name.contains(['.', '/']);
+    if is_path { path.display().to_string() } else { name.to_owned() }
+}
+
+fn exists(file: &str) -> bool {
+    PathBuf::from(file).is_file() || MEASUREMENTS.iter().any(|shipped| shipped.name == file)
+}
+
+/// Sets the defaults in the command of this path; returns the command line with them.
+pub fn with_defaults(program: Command, path: &[String], defaults: &[OptionDefault]) -> Command {
+    if let [name, below @ ..] = path {
+        return program.mut_subcommand(name, |command| with_defaults(command, below, defaults));
+    }
+    defaults.iter().fold(program, |program, set| {
+        let of = |arg: &&clap::Arg| arg.get_long().unwrap_or(arg.get_id().as_str()) == set.option;
+        let Some(id) = program.get_arguments().find(of).map(|arg| arg.get_id().clone()) else {
+            return program;
+        };
+        // clap keeps defaults as long as the program runs.
+        let value: &'static str = set.value.clone().leak();
+        program.mut_arg(id, |arg| arg.required(false).default_value(value))
+    })
+}

@@ -1,7 +1,7 @@
 //! Context of a running command: cancellation and progress.
 
 use crate::failure::Failure;
-use crate::progress::{Part, Progress};
+use crate::progress::{Busy, Part, Progress};
 use crate::terminal::{self, say};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -77,6 +77,11 @@ impl<'a> Context<'a> {
         if let Some(shown) = &self.shown {
             *shown.progress() = Some(Progress::of_study(study, !shown.quiet));
         }
+    }
+
+    /// Begins to show work of unknown length, until the result is dropped.
+    pub fn busy(&self, what: &'static str) -> Option<Busy> {
+        self.shown.as_ref().filter(|shown| !shown.quiet && !shown.json).map(|_| Busy::new(what))
     }
 
     /// Ends the progress that is shown.

@@ -5,6 +5,8 @@ use crate::studies::standing::Standing;
 use crate::terminal::say;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, stderr};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use study::{Recorded, Study};
 
@@ -118,6 +120,45 @@ impl Progress {
 impl Drop for Progress {
     fn drop(&mut self) {
         self.bar.iter().for_each(ProgressBar::finish_and_clear);
+    }
+}
+
+/// Work of unknown length, shown until it is dropped: a spinner on a terminal, a line every few seconds elsewhere.
+pub struct Busy {
+    spinner: Option<ProgressBar>,
+    lines: Option<(Sender<()>, JoinHandle<()>)>,
+}
+
+impl Busy {
+    /// Begins to show this work.
+    pub fn new(what: &'static str) -> Self {
+        if stderr().is_terminal() {
+            let spinner = ProgressBar::new_spinner().with_message(what);
+            if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}, {elapsed} elapsed") {
+                spinner.set_style(style);
+            }
+            spinner.enable_steady_tick(Duration::from_millis(500));
+            return Busy { spinner: Some(spinner), lines: None };
+        }
+        let (sender, receiver) = channel();
+        let begun = Instant::now();
+        let lines = std::thread::spawn(move || {
+            while receiver.recv_timeout(EVERY) == Err(RecvTimeoutError::Timeout) {
+                say(&format!("{what}: {} s", begun.elapsed().as_secs()));
+            }
+        });
+        Busy { spinner: None, lines: Some((sender, lines)) }
+    }
+}
+
+impl Drop for Busy {
+    fn drop(&mut self) {
+        self.spinner.iter().for_each(ProgressBar::finish_and_clear);
+        if let Some((sender, lines)) = self.lines.take() {
+            drop(sender);
+            // It only writes lines.
+            let _ = lines.join();
+        }
     }
 }
 

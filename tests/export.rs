@@ -241,3 +241,49 @@ fn prusaslicer_prints_the_ribs_of_the_design() {
     assert!(found.len() + 4 >= geometry.ribs, "{found:?}");
     assert_pitch(&found, &geometry);
 }
+
+/// One 3MF with the settings of the object: no option of the slicer, direction and pitch of twelve designs, and a
+/// solid base.
+#[test]
+fn a_3mf_with_settings_is_printed_as_designed() {
+    if Command::new("prusa-slicer").arg("--help").output().is_err() {
+        eprintln!("left out: slicing, for want of prusa-slicer (scripts/tools.sh prusa-slicer)");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for density in [10.0, 16.0, 23.0, 30.0] {
+        for direction in [0.0, 14.0, 40.0] {
+            let geometry = finray9(density, direction);
+            std::fs::write(folder.path().join("finger.3mf"), slicer::project(&geometry).unwrap())
+                .unwrap();
+            let lines = middle_layer(folder.path(), "finger.3mf", &[]);
+            let start = lines.iter().map(|line| line[0].min(line[2])).fold(f64::MAX, f64::min);
+            let end = lines.iter().map(|line| line[0].max(line[2])).fold(f64::MIN, f64::max);
+            // Turned from Y to X, of what lies across the finger in its ribbed part.
+            let turned = |&[x, y, to_x, to_y]: &Line| {
+                let (dx, dy) = if to_y > y { (to_x - x, to_y - y) } else { (x - to_x, y - to_y) };
+                let across = dy > 2.0 && (x + to_x) / 2.0 - start < 40.0;
+                across.then_some(libm::atan2(dx, dy).to_degrees())
+            };
+            let mut angles: Vec<f64> = lines.iter().filter_map(turned).collect();
+            angles.sort_by(f64::total_cmp);
+            let angle = angles[angles.len() / 2];
+            assert!((angle - direction).abs() < 1.0, "{density} %, {direction}°: {angle}°");
+            let found = ribs(&lines, direction);
+            let pitch = (found[found.len() - 1] - found[0]) / (found.len() - 1) as f64;
+            let expected = geometry.lines.pitch * 1e3;
+            assert!(
+                (pitch / expected - 1.0).abs() < 0.05,
+                "{density} %, {direction}°: {pitch} mm, not {expected}"
+            );
+            // The base is as full as lines of 0.4 mm side by side make it.
+            let solid = |[x, y, to_x, to_y]: &Line| {
+                let inside = end - (x + to_x) / 2.0 < 9.0;
+                if inside { libm::hypot(to_x - x, to_y - y) } else { 0.0 }
+            };
+            let area = 0.4 * lines.iter().map(solid).sum::<f64>();
+            let width = geometry.finger.outline.width * 1e3;
+            assert!(area > 0.8 * 9.0 * width, "{density} %, {direction}°: {area} mm2");
+        }
+    }
+}

@@ -3,7 +3,7 @@
 mod common;
 
 use clap::ValueEnum;
-use common::{Ran, Studies, optimize};
+use common::{Ran, Studies, optimize, optimize_line};
 use connector::check::problems;
 use connector::draft::{Dimensions, Size, draft};
 use connector::mesh::import::{Along, Imported, Mesh, Request, Unit, few_faces, import};
@@ -57,6 +57,8 @@ fn drafted(plug: &str, clearance_mm: f64, body: Option<&str>) -> Task {
         round,
         clearance: clearance_mm * MM,
         body: body.map(|body| body.parse().unwrap()),
+        key: None,
+        chamfer: None,
     };
     draft("mine", &size, None).unwrap()
 }
@@ -606,8 +608,17 @@ fn explore(path: &str, known: &mut Vec<String>) {
         let path = format!("{path}.{key}");
         path.trim_start_matches('.').replace("plug.part", "part").replace("socket.part", "part")
     };
-    let sections =
-        ["plug", "plug.latch", "socket", "grip", "friction", "finger", "strategy", "success"];
+    let sections = [
+        "plug",
+        "plug.latch",
+        "socket",
+        "grip",
+        "friction",
+        "finger",
+        "strategy",
+        "success",
+        "limits",
+    ];
     let mut below = Vec::new();
     if path.ends_with("part") {
         known.push("part.shape".to_owned());
@@ -630,4 +641,41 @@ fn explore(path: &str, known: &mut Vec<String>) {
             explore(&path, known);
         }
     }
+}
+
+/// A keyed round plug and a chamfered opening; the page that shows a task in three dimensions.
+#[test]
+fn a_key_and_a_chamfer_are_in_the_file_and_the_task_is_shown() {
+    let studies = Studies::new();
+    let make = |words: &str, name: &str| {
+        let file = studies.word(name);
+        optimize_line(&format!(
+            "task new mine {words} --clearance 0.2 --body 12x12x20 --out {file}"
+        ));
+        studies.read(name)
+    };
+    let keyed = make("--round 8x12 --key 2x1", "keyed.toml");
+    assert!(
+        keyed.contains("Made by: optimize task new mine --round 8x12 --key 2x1 --clearance 0.2"),
+        "{keyed}"
+    );
+    assert!(keyed.contains("name = \"key\"") && keyed.contains("x_mm = [3.8"), "{keyed}");
+    let chamfered = make("--plug 8x4x8 --chamfer-mm 0.5", "chamfered.toml");
+    assert!(chamfered.contains("shape = \"hull\""), "{chamfered}");
+    optimize_line("task new a --plug 8x4x8 --clearance 0.1 --key 2x1")
+        .fails(2, &["--key", "--plug"]);
+    optimize_line("task new a --round 8x12 --clearance 0.1 --chamfer-mm 0.5")
+        .fails(2, &["--chamfer-mm", "--round"]);
+    optimize_line("task new a --round 8x12 --clearance 0.1 --key 2").fails(2, &["WIDTHxHEIGHT"]);
+    optimize_line("task new a --round 8x12 --clearance 0.1 --key 8x1")
+        .fails(2, &["narrower than the plug"]);
+    let page = studies.word("shown.html");
+    optimize_line(&format!("task show {} --html {page}", studies.word("chamfered.toml")))
+        .succeeds();
+    let page = studies.read("shown.html");
+    assert!(page.contains("mine: ") && page.contains("nominal start with servo"));
+    assert_eq!(
+        optimize_line(&format!("task show {}", studies.word("keyed.toml"))).succeeds(),
+        keyed
+    );
 }

@@ -35,6 +35,7 @@ Else
     Optimizer       the optimizers, for any problem
     gym             an insertion as an environment, to learn a search
     tasks, robots   what is shipped
+    config          the settings of finger-opt.toml, which is read only so
     perform         the unit of work of a study, for an executor of one's own
 
 Each call takes the words of the command line ``optimize`` as keywords; help(fo.evaluate) lists them. Results are

@@ -710,7 +710,7 @@ def export_finger(
     direction: float | None = None,
     finger: StrPath | None = None,
     phase_mm: float | None = None,
-    format: Literal["stl", "3mf", "svg", "dxf", "sheet", "cura", "prusaslicer"] | None = None,
+    format: Literal["stl", "3mf", "svg", "dxf", "sheet", "cura", "prusaslicer", "prusaslicer-3mf"] | None = None,
 ) -> tuple[Path, ...]:
     """Export a finger for the printer: the best of a study, or one with a given infill, as ``optimize export finger`` does.
 
@@ -790,6 +790,8 @@ def new_task(
     plug: tuple[float, float, float] | None = None,
     round: tuple[float, float] | None = None,
     clearance: float | None = None,
+    key: tuple[float, float] | None = None,
+    chamfer_mm: float | None = None,
     body: tuple[float, float, float] | None = None,
     like: StrPath | None = None,
     out: StrPath | None = None,
@@ -806,6 +808,9 @@ def new_task(
         plug: width (y, between the jaws) x height (x) x length, mm.
         round: Cylindrical plug: diameter x length, mm.
         clearance: Clearance, mm: opening minus plug in x and y, both sides together.
+        key: Key of a cylindrical plug, on its side across the jaws (+x): width x height beyond the
+            cylinder, mm.
+        chamfer_mm: Chamfer of 45 degrees at the opening of a plug with flat sides, mm.
         body: Body that the fingers hold, above the plug: width x height x length, mm [default: the plug
             itself].
         like: Task to start from: ket8, ket12, rj45, usb, or the path of a task file.
@@ -822,8 +827,8 @@ def new_task(
     if plug is None and round is None:
         without("no plug", "they go with plug or round", clearance=clearance, body=body)
     return called("task new", {
-        "name": name, "plug": plug, "round": round, "clearance": clearance, "body": body, "like": like, "out": out,
-        "engine": engine,
+        "name": name, "plug": plug, "round": round, "clearance": clearance, "key": key, "chamfer_mm": chamfer_mm,
+        "body": body, "like": like, "out": out, "engine": engine,
     }, NewTask)
 
 

@@ -41,7 +41,7 @@ class Result:
 
     def __repr__(self) -> str:
         shown = ((field.name, getattr(self, field.name)) for field in dataclasses.fields(self) if field.repr)
-        inner = ", ".join(f"{name}={value!r}" for name, value in shown if value is not None)
+        inner = ", ".join(f"{name}={_short(value)}" for name, value in shown if value is not None)
         return f"{type(self).__name__}({inner})"
 
     def _repr_html_(self) -> str:
@@ -65,6 +65,21 @@ class Found(Result):
 
     def __dir__(self) -> list[str]:
         return [*self._found, *super().__dir__()]
+
+
+#: Longest lists and texts of a repr that are not cut.
+ITEMS, LETTERS = 6, 200
+
+
+def _short(value: Any) -> str:
+    """The repr of a field: of what is long its beginning and its length."""
+    if (is_tuple(value) or is_list(value)) and len(value) > ITEMS:
+        inner = ", ".join(_short(one) for one in value[: ITEMS // 2])
+        return f"<{len(value)}: {inner}, ..>"
+    if is_numpy(value) and np.size(value) > ITEMS:
+        return f"<array of {np.shape(value)}>"
+    text = repr(value)
+    return text if isinstance(value, Result) or len(text) <= LETTERS else f"{text[:LETTERS]}.."
 
 
 def equal(one: Any, other: Any) -> bool:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import socket
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import suppress
 from typing import Any
@@ -74,14 +75,32 @@ def terminal() -> bool:
 class Progress:
     """A line on standard error (in a notebook: under the cell) that says how far it is."""
 
-    def __init__(self, shown: bool) -> None:
+    def __init__(self, shown: bool, callbacks: Sequence[Callable[[int], object]] = ()) -> None:
         self.shown = shown
+        self.callbacks = callbacks
+        self.done: int | None = None
         self.live = terminal() or "ipykernel" in sys.modules
         self.last = float("-inf") if self.live else time.monotonic()
+        self.bar: Any | None = None
+        if shown and self.live:
+            with suppress(ImportError):
+                self.bar = importlib.import_module("tqdm.auto").tqdm(unit="evaluation")
 
     def show(self, study: _native.Guided, ended: bool = False) -> None:
         """The line, if it is time for it: twice a second where it can be written over."""
         now = time.monotonic()
+        if self.callbacks or self.bar is not None:
+            done, evaluations, best = study.progress()
+            if self.bar is not None:
+                self.bar.total = evaluations
+                self.bar.set_postfix_str(best, refresh=False)
+                self.bar.update(done - self.bar.n)
+            # Those of earlier runs are not new.
+            for callback in self.callbacks if self.done not in (None, done) else ():
+                callback(done)
+            self.done = done
+            if self.bar is not None:
+                return
         if not self.shown or not (ended or now - self.last > (0.5 if self.live else 10.0)):
             return
         self.last = now
@@ -91,12 +110,19 @@ class Progress:
         say((f"\r{line:78}" if self.live else line) + end)
 
 
+    def close(self) -> None:
+        """Ends the bar."""
+        if self.bar is not None:
+            self.bar.close()
+
+
 def run_open(
     begin: Callable[[int | None], _native.Guided],
     executor: Any | None,
     progress: bool,
     workers: int | None,
     retries: int,
+    callbacks: Sequence[Callable[[int], object]] = (),
 ) -> tuple[str, str | None]:
     """Opens a study and runs it to its end; gives what it prints, and why it is of no use, if so."""
     own: Executor | None = None
@@ -105,7 +131,7 @@ def run_open(
         executor = own = ThreadPoolExecutor(study.threads() or os.cpu_count())
     else:
         study = begin(workers or workers_of(executor))
-    performer, shown = Performer(), Progress(progress)
+    performer, shown = Performer(), Progress(progress, callbacks)
     try:
         ending = Course(study, executor, performer, retries, shown).run()
         shown.show(study, ended=True)
@@ -114,6 +140,7 @@ def run_open(
         say(f"\ninterrupted; {study.hint()}\n")
         raise _native.Interrupted(f"interrupted; {study.hint()}") from None
     finally:
+        shown.close()
         performer.stop.set()
         if own is not None:
             own.shutdown(wait=True, cancel_futures=True)

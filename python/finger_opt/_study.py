@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import html
 import io
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -65,6 +66,7 @@ class Study(Asked):
         *,
         workers: int | None = None,
         retries: int = 10,
+        callbacks: Iterable[Callable[[Study, int], object]] = (),
     ) -> Study:
         """Runs the study until its budget is spent, and writes its report.
 
@@ -74,15 +76,17 @@ class Study(Asked):
             executor: Any ``concurrent.futures.Executor``, or what has its ``submit``: designs are measured there,
                 and the journal is the same as with any other, or none, for the same batch. Without, they are
                 measured on the threads of this process.
-            progress: Show a line on standard error.
+            progress: Show a line on standard error; the bar of ``tqdm`` if it is installed.
             workers: Measurements at a time; as many as the executor has unless given.
             retries: How often a measurement that a worker lost, or whose result is refused, is done again.
+            callbacks: Called with the study and the number of its evaluations whenever there are more.
 
         Raises:
             StudyError: The executor fails, or the folder cannot be written.
             Interrupted: Ctrl-C.
         """
-        _, unusable = run_open(self._open, executor, progress, workers, retries)
+        told = [functools.partial(callback, self) for callback in callbacks]
+        _, unusable = run_open(self._open, executor, progress, workers, retries, told)
         if unusable is not None:
             raise _native.StudyError(unusable)
         return self
@@ -111,6 +115,30 @@ class Study(Asked):
         """The recommended design, as ``recommended`` of ``--json``; ``None`` while there is none."""
         found = json.loads(self._read().best()) if self._begun() else None
         return None if found is None else Recommended.from_json(found)
+
+    @property
+    def best_params(self) -> dict[str, float]:
+        """Values of the recommended design by key; an error while there is none, as in Optuna."""
+        return dict(self._recommended().values)
+
+    @property
+    def best_value(self) -> float:
+        """The first objective of the recommended design, on the bench if there are measurements."""
+        best = self._recommended()
+        if best.bench is not None:
+            return best.bench.range_mm
+        if best.objectives:
+            return next(iter(best.objectives.values()))
+        objective = _objective(self)
+        if objective is None or best.evaluation is None:
+            raise ValueError("the study has no value yet")
+        return float(self.to_dataframe()[objective[0]][best.evaluation])
+
+    def _recommended(self) -> Recommended:
+        best = self.best
+        if best is None:
+            raise ValueError("no design is recommended yet")
+        return best
 
     @property
     def answer(self) -> Answer | None:

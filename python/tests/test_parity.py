@@ -68,6 +68,7 @@ ELSEWHERE = {
     ("measure check", "task"): "Measurements(tasks=)",
     ("measure sheet", "finger"): "fingers: several",
     ("task show", "name"): "source",
+    ("task show", "html"): "trial(film=True)",
     ("task check", "file"): "task",
     ("task tune", "file"): "task",
 }

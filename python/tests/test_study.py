@@ -101,8 +101,15 @@ def test_every_executor_gives_the_journal_of_one_machine(create, expected):
 def test_a_study_as_python_sees_it(create, tmp_path):
     study = create("seen")
     assert "not begun" in study._repr_html_()
-    assert (study.best, len(study)) == (None, 0)
-    assert study.run(progress=False) is study
+    assert (study.best, study.answer, len(study)) == (None, None, 0)
+    with pytest.raises(ValueError, match="no design is recommended yet"):
+        study.best_params
+    told = []
+    assert study.run(progress=False, callbacks=[lambda same, done: told.append((same is study, done))]) is study
+    assert told[-1] == (True, BUDGET) and told == sorted(told)
+    assert study.best_params == study.best.values
+    assert study.best_value == study.to_dataframe()["range_mm"][study.best.evaluation]
+    assert len(repr(study.answer)) < 2000
     frame = study.to_dataframe()
     assert len(frame) == len(study) == BUDGET
     assert frame["range_mm"].max() == study.best.range_mm

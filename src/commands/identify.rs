@@ -69,9 +69,11 @@ pub struct Done {
 
 impl command::Request for Request {
     type Response = Done;
+    const PROGRESS: bool = true;
 
     fn run(&self, context: &Context<'_>) -> Result<Done, Failure> {
         let stop = context.stop;
+        let _busy = context.busy("fitting the cell to the logs");
         let setup = self.setup.setup()?;
         let template = setup.only_task()?;
         let source = find("priors", PRIORS, &self.priors)?;

@@ -47,9 +47,11 @@ pub struct Found {
 
 impl command::Request for Request {
     type Response = Found;
+    const PROGRESS: bool = true;
 
     /// Measures the levers, and the softest and the stiffest infill of the space for comparison.
     fn run(&self, context: &Context<'_>) -> Result<Found, Failure> {
+        let _busy = context.busy("measuring the levers");
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
         let given = chosen.given.then_some(chosen.specimen.stiffness);

@@ -58,8 +58,11 @@ pub struct Mapped {
 impl command::Request for Request {
     type Response = Mapped;
 
+    const PROGRESS: bool = true;
+
     fn run(&self, context: &Context<'_>) -> Result<Mapped, Failure> {
         let stop = context.stop;
+        let _busy = context.busy("tracing the map");
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
         let taught = setup.evaluator.taught(&chosen.specimen, stop).map_err(Failure::input)?;
@@ -122,8 +125,10 @@ impl fmt::Display for Mapped {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Mapped { chosen, map, .. } = self;
         let [first, second] = &map.axes;
-        let mut lines =
-            vec![("area".to_owned(), format!("{:.1} {} insert", map.area, map.area_unit))];
+        let mut lines = vec![(
+            "area".to_owned(),
+            format!("{:.1} {}, of starts that insert", map.area, map.area_unit),
+        )];
         for (number, axis) in map.axes.iter().enumerate() {
             let ends = map.ends(number);
             let text = ends.map_or("nothing inserts".to_owned(), |[low, high]| {

@@ -180,12 +180,12 @@ impl fmt::Display for Advised {
         for (i, print) in advice.next.iter().enumerate() {
             lines.push(format!("{}. {}", i + 1, design(&subject.designs[print.finger])));
             lines.push(format!(
-                "   expected {:.1} mm (80 %: {:.1} to {:.1}), gain {:.2} mm: {}",
-                print.expected_mm,
-                print.low_mm,
-                print.high_mm,
-                print.expected_gain_mm,
-                print.reason
+                "   expected {:.1} mm (80 %: {:.1} to {:.1}): {}",
+                print.expected_mm, print.low_mm, print.high_mm, print.reason
+            ));
+            lines.push(format!(
+                "   expected improvement {:.2} mm, counting 0 where it turns out narrower",
+                print.expected_gain_mm
             ));
         }
         if advice.stop {

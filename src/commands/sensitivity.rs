@@ -57,7 +57,10 @@ impl command::Request for Request {
     type Response = Ranked;
 
     /// Simulates the sample and ranks the inputs.
+    const PROGRESS: bool = true;
+
     fn run(&self, context: &Context<'_>) -> Result<Ranked, Failure> {
+        let _busy = context.busy("simulating the sample");
         let found = self.found(context.stop)?;
         if let Some(path) = &self.svg {
             write_file(path, &shown::svg(&found)?)?;

@@ -20,7 +20,7 @@ use insertion::stiffness;
 use insertion::stiffness::three;
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
-use insertion::trial::{Grasp, Trial};
+use insertion::trial::{Grasp, Recording, Trial};
 use serde::{Serialize, Serializer};
 use serde_json::json;
 use std::sync::atomic::AtomicBool;
@@ -141,6 +141,21 @@ pub(crate) fn nominal_start(
     let trial = rig.hold(Grasp { stop, ..Grasp::of(&shaped) }).trial(0.0);
     not_stopped(stop)?;
     Ok((finger, trial))
+}
+
+/// Returns the measured finger of medium stiffness, shaped for the task, and the recording of its trial at the
+/// nominal start.
+pub(crate) fn nominal_recording(
+    task: &Task,
+    robot: &Robot,
+    stop: &AtomicBool,
+) -> Result<(Finger, Recording), Failure> {
+    let shaped = medium()?.shaped(&task.finger, 0.0);
+    let rig = EngineKind::default().rig(task, robot, &shaped, 1.0).map_err(Failure::input)?;
+    let recording = rig.record(Grasp { stop, ..Grasp::of(&shaped) }, 0.0);
+    not_stopped(stop)?;
+    let recording = recording.ok_or_else(|| Failure::running("the engine records no trials"))?;
+    Ok((shaped, recording))
 }
 
 /// Returns the shipped measured finger of medium compliance stiffness.

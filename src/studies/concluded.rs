@@ -42,7 +42,10 @@ pub fn run(open: OpenStudy, context: &Context<'_>, all: bool) -> Result<Conclude
     let answer = Answer::of(&ended.record);
     context.print(&text::ended(&ended, &answer, all))?;
     // The answer does not depend on the analyses.
-    let (found, failure) = match ended.analyse(&answer, context.stop) {
+    let busy = context.busy("levers and maps of the finger");
+    let analysed = ended.analyse(&answer, context.stop);
+    drop(busy);
+    let (found, failure) = match analysed {
         Ok(found) => (found, None),
         Err(failure) => (PostAnalysis::default(), Some(failure)),
     };

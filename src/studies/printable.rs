@@ -3,11 +3,11 @@
 use crate::failure::Failure;
 use finray::export::prism::Prism;
 use finray::export::sheet::{self, AtPad};
-use finray::export::title;
+use finray::export::{slicer, title};
 use finray::mechanics;
 use insertion::evaluation::evaluator::Evaluator;
 use report::answer::Answer;
-use report::printer::{SHEET, SURFACE, THREE_MF, recommended};
+use report::printer::{PROJECT, SHEET, SURFACE, THREE_MF, recommended};
 use std::path::Path;
 use study::write_own_file;
 
@@ -20,6 +20,9 @@ pub(crate) fn write(dir: &Path, answer: &Answer, evaluator: &Evaluator) -> Resul
             .three_mf(&title(&geometry))
             .map_err(|error| Failure::running(format!("{THREE_MF}: {error}")))?;
         write_own_file(&dir.join(THREE_MF), &three_mf)?;
+    }
+    if let Ok(project) = slicer::project(&geometry) {
+        write_own_file(&dir.join(PROJECT), &project)?;
     }
     if let Ok(ribs) = mechanics::compute(&geometry) {
         let design = answer.verdict.finger();

@@ -22,6 +22,10 @@ const BEYOND_BODY: f64 = 2.0 * MM;
 const BELOW_TIP: f64 = 0.5 * MM;
 /// Air between the pads and the socket when the plug is seated, m.
 const BELOW_PADS: f64 = 1.0 * MM;
+/// Largest overlap of a key with its cylinder, m.
+const KEY_ROOT: f64 = 0.45 * MM;
+/// Area below which what a slot leaves of a wall is left out, m2.
+const SLIVER: f64 = 1e-10;
 /// Thickness of the floor, m.
 const FLOOR: f64 = 2.0 * MM;
 /// Share of its length by which a plug without a body goes in.
@@ -61,6 +65,14 @@ impl Size {
     }
 }
 
+/// Width and height of a key from WIDTHxHEIGHT in mm, m.
+///
+/// # Errors
+/// As of [`Size::round`].
+pub fn key(text: &str) -> Result<[f64; 2], String> {
+    lengths(text, "give WIDTHxHEIGHT in mm, as in 2x1")
+}
+
 /// Dimensions, m, of a text that has them in mm with an x between them.
 fn lengths<const N: usize>(text: &str, right: &str) -> Result<[f64; N], String> {
     let numbers: Result<Vec<f64>, _> =
@@ -83,6 +95,10 @@ pub struct Dimensions {
     pub round: bool,
     /// Opening less plug, in x and in y, m.
     pub clearance: f64,
+    /// Key of a round plug at +x: its width in y and how far it stands out, m.
+    pub key: Option<[f64; 2]>,
+    /// Chamfer at the opening of a plug that is not round, m.
+    pub chamfer: Option<f64>,
     /// Body that the fingers hold; without it they hold the plug's upper end.
     pub body: Option<Size>,
 }
@@ -93,6 +109,9 @@ pub enum DraftError {
     /// Clearance that is not less than the plug's smallest side; both in mm.
     #[error("--clearance: is {0} mm; it must be less than the smallest side of the plug, {1} mm")]
     TooLoose(f64, f64),
+    /// Key as wide as the plug or wider; both in mm.
+    #[error("--key: is {0} mm wide; it must be narrower than the plug, {1} mm")]
+    WideKey(f64, f64),
     /// Plug or body too short for the pads: its option, its length and the least, mm.
     #[error(
         "{0}: is {1} mm long; the pads are {height} mm high and must stay outside of the socket, so \
@@ -109,6 +128,7 @@ impl Placed for DraftError {
     fn place(&self) -> Place {
         match self {
             DraftError::TooLoose(..) => Place::option("--clearance"),
+            DraftError::WideKey(..) => Place::option("--key"),
             DraftError::TooShort(option, ..) => Place::option(option),
             DraftError::Plan(_) => Place::default(),
         }
@@ -162,6 +182,16 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
         }
         false => vec![upright("plug", plug, 0.0)],
     };
+    if let Some([wide, high]) = size.key {
+        if wide + size.clearance >= plug.width {
+            return Err(DraftError::WideKey(wide / MM, width));
+        }
+        let radius = plug.width / 2.0;
+        // It joins the cylinder without more overlap than parts may have.
+        let root = libm::sqrt(radius * radius - wide * wide / 4.0).max(radius - KEY_ROOT);
+        let across = [-wide / 2.0, wide / 2.0];
+        parts.push(block("key", [[root, radius + high], across, [0.0, plug.length]]));
+    }
     parts.extend(body.map(|body| upright("body", body, plug.length)));
     task.plug.mass = DENSITY * parts.iter().map(|part| geometry::volume(&part.solid)).sum::<f64>();
     task.plug.parts = parts;
@@ -180,6 +210,9 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
         return Err(DraftError::TooShort(option, held.length / MM, least / MM));
     }
     (task.opening, task.socket) = housing(size, floor);
+    if let Some(leg) = size.chamfer {
+        task = task.chamfered(leg);
+    }
     Ok(plan::complete(task)?)
 }
 
@@ -200,10 +233,15 @@ fn part(name: &str, solid: Solid) -> Part {
 /// Opening, and a socket of walls about it and a floor.
 fn housing(size: &Dimensions, floor: f64) -> ([[f64; 2]; 2], Vec<Part>) {
     let hole = size.round.then(|| Hole::new(size.plug.width, size.clearance));
-    let opening = [size.plug.height, size.plug.width].map(|plug| {
+    let mut opening = [size.plug.height, size.plug.width].map(|plug| {
         let half = hole.map_or((plug + size.clearance) / 2.0, |hole| hole.flat);
         [-half, half]
     });
+    let slot = size.key.map(|[wide, high]| {
+        let reach = (size.plug.width + size.clearance) / 2.0 + high;
+        [reach, (wide + size.clearance) / 2.0]
+    });
+    opening[0][1] = slot.map_or(opening[0][1], |[reach, _]| reach);
     let outer = [0, 1].map(|axis| {
         let half = opening[axis][1];
         let body = |body: Size| [body.height, body.width][axis] / 2.0 - half + BEYOND_BODY;
@@ -213,7 +251,10 @@ fn housing(size: &Dimensions, floor: f64) -> ([[f64; 2]; 2], Vec<Part>) {
     });
     let ([[left, right], [low, high]], z) = (opening, [-floor, 0.0]);
     let mut parts = match hole {
-        Some(hole) => hole.walls(outer.map(|[_, edge]| edge), z),
+        Some(hole) => {
+            let walls = hole.walls(outer.map(|[_, edge]| edge), z);
+            slot.map_or(walls.clone(), |slot| slotted(&walls, slot))
+        }
         None => vec![
             block("wall at -y", [outer[0], [outer[1][0], low], z]),
             block("wall at +y", [outer[0], [high, outer[1][1]], z]),
@@ -223,6 +264,49 @@ fn housing(size: &Dimensions, floor: f64) -> ([[f64; 2]; 2], Vec<Part>) {
     };
     parts.push(block("floor", [outer[0], outer[1], [-floor - FLOOR, -floor]]));
     (opening, parts)
+}
+
+/// Returns prisms about a hole with a slot from it to `reach` along x and to `half` on either side in y.
+fn slotted(walls: &[Part], [reach, half]: [f64; 2]) -> Vec<Part> {
+    let pieces = |wall: &Part| -> Vec<Part> {
+        let Solid::Prism { axis, outline, span } = &wall.solid else { return vec![wall.clone()] };
+        if outline.iter().all(|[x, _]| *x <= 0.0) {
+            return vec![wall.clone()];
+        }
+        let above = side(outline, [0.0, -1.0], -half);
+        let below = side(outline, [0.0, 1.0], -half);
+        let between = side(&side(outline, [0.0, 1.0], half), [0.0, -1.0], half);
+        let beyond = side(&between, [-1.0, 0.0], -reach);
+        let left = [above, below, beyond].into_iter().filter(|piece| area(piece) > SLIVER);
+        let part = |(at, outline): (usize, Vec<[f64; 2]>)| {
+            let name =
+                if at == 0 { wall.name.clone() } else { format!("{} {}", wall.name, at + 1) };
+            Part { name, solid: Solid::Prism { axis: *axis, outline, span: *span }, friction: None }
+        };
+        left.enumerate().map(part).collect()
+    };
+    walls.iter().flat_map(pieces).collect()
+}
+
+/// Returns the part of a convex outline in the half plane `normal . p <= distance` (Sutherland and Hodgman).
+fn side(outline: &[[f64; 2]], normal: [f64; 2], distance: f64) -> Vec<[f64; 2]> {
+    let over = |p: [f64; 2]| normal[0] * p[0] + normal[1] * p[1] - distance;
+    let next = outline.iter().cycle().skip(1);
+    let edges = outline.iter().zip(next).map(|(&from, &to)| (from, to));
+    let kept = edges.flat_map(|(from, to)| {
+        let [a, b] = [over(from), over(to)];
+        let crossing =
+            (a * b < 0.0).then(|| [0, 1].map(|i| from[i] + (to[i] - from[i]) * a / (a - b)));
+        (a <= 0.0).then_some(from).into_iter().chain(crossing)
+    });
+    kept.collect()
+}
+
+/// Returns the area of a convex outline, m2.
+fn area(outline: &[[f64; 2]]) -> f64 {
+    let next = outline.iter().cycle().skip(1);
+    let twice: f64 = outline.iter().zip(next).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum();
+    twice.abs() / 2.0
 }
 
 /// Largest error of the hole's diameter, as a share of the clearance, as far as the flats allow.
@@ -278,7 +362,8 @@ mod tests {
     fn a_clearance_is_less_than_the_plug_is_thick_and_sizes_are_within_bounds() {
         let plug: Size = "8x2.4x25".parse().unwrap();
         let draft = |clearance| {
-            let size = Dimensions { plug, round: false, clearance, body: None };
+            let (key, chamfer) = (None, None);
+            let size = Dimensions { plug, round: false, clearance, key, chamfer, body: None };
             draft("mine", &size, None)
         };
         assert!(draft(2.3 * MM).is_ok());
@@ -290,6 +375,38 @@ mod tests {
             let error = size.parse::<Size>().unwrap_err();
             assert!(error.contains("must lie in 0.5 .. 200 mm"), "{size}: {error}");
         }
+    }
+
+    /// The slot takes from the walls what the key and its clearance need, and the key keeps them.
+    #[test]
+    fn a_key_has_its_slot() {
+        let (diameter, clearance, [wide, high]) = (8.0 * MM, 0.1 * MM, key("2x1").unwrap());
+        let hole = Hole::new(diameter, clearance);
+        let walls = hole.walls([12.0 * MM; 2], [-5.0 * MM, 0.0]);
+        let slot = [(diameter + clearance) / 2.0 + high, (wide + clearance) / 2.0];
+        let left = slotted(&walls, slot);
+        let volume = |parts: &[Part]| -> f64 {
+            parts.iter().map(|part| geometry::volume(&part.solid)).sum()
+        };
+        // Between the circle and the end of the slot, by the circular segment.
+        let (radius, half) = ((diameter + clearance) / 2.0, slot[1]);
+        let under = half * libm::sqrt(radius * radius - half * half)
+            + radius * radius * libm::asin(half / radius);
+        let expected = 5.0 * MM * (2.0 * half * slot[0] - under);
+        let found = volume(&walls) - volume(&left);
+        assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
+        let size = |key| Dimensions {
+            plug: Size::round("8x12").unwrap(),
+            round: true,
+            clearance,
+            key: Some(key),
+            chamfer: None,
+            body: Some("12x12x20".parse().unwrap()),
+        };
+        let task = draft("keyed", &size([wide, high]), None).unwrap();
+        assert!(task.plug.parts.iter().any(|part| part.name == "key"));
+        assert!(crate::check::problems(&task).is_empty(), "{:?}", crate::check::problems(&task));
+        assert!(draft("keyed", &size([8.0 * MM, high]), None).is_err());
     }
 
     #[test]

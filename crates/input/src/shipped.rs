@@ -3,7 +3,7 @@
 use crate::files::{self, LARGEST_INPUT};
 use crate::place::{Place, Placed};
 use std::path::Path;
-use strsim::levenshtein;
+use strsim::osa_distance;
 
 /// A file within the program.
 #[derive(Debug, Clone, Copy)]
@@ -124,9 +124,9 @@ pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, Sh
 
 /// Returns the name that differs least from `name`, if less than half of it differs.
 pub fn nearest<'a>(name: &str, names: &[&'a str]) -> Option<&'a str> {
-    let distance = |other: &&&str| levenshtein(name, other);
+    let distance = |other: &&&str| osa_distance(name, other);
     let best = names.iter().min_by_key(distance)?;
-    (2 * levenshtein(name, best) <= name.chars().count()).then_some(*best)
+    (2 * osa_distance(name, best) <= name.chars().count()).then_some(*best)
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 
 use crate::answer::words::{design, end, ends_mm, interval, mm, span};
 use crate::answer::{Answer, Measured, OnTask, Recommended, Trust, UnderRobot, Verdict, lines};
+use crate::glossary::explained;
 use insertion::evaluation::Window;
 use insertion::outcome::Outcome;
 use maud::{Markup, html};
@@ -39,7 +40,10 @@ impl Bar {
         let whole = ends_mm(window);
         let inner = firm.map(|firm| ("firm", firm));
         let name = match firm {
-            Some(firm) => format!("simulated: firm {} mm, light {} mm", span(firm), span(whole)),
+            Some(firm) => {
+                let [firm, whole] = [firm, whole].map(span);
+                format!("simulated: firm {firm} mm (dark), single trials {whole} mm")
+            }
             None => format!("simulated: {} mm, not confirmed", span(whole)),
         };
         let parts = [("light", whole)].into_iter().chain(inner).collect();
@@ -134,7 +138,7 @@ fn bars(on: &str, rows: &[Bar]) -> Markup {
         div.bars {
             p.muted { "Offset of the start along y" (on) ", mm" }
             @for Bar { name, parts, ends, .. } in windows {
-                p.name { (name) }
+                p.name { (explained(name)) }
                 div.track {
                     (filled(parts, at))
                     @if let Some((_, [from, to])) = parts.first() {
@@ -149,7 +153,7 @@ fn bars(on: &str, rows: &[Bar]) -> Markup {
             }
             @if !ranges.is_empty() { p.muted { "Ranges without their ends, on the same scale" } }
             @for Bar { name, parts, .. } in ranges {
-                p.name { (name) }
+                p.name { (explained(name)) }
                 div.track.range { (filled(parts, |mm| at(low + mm) - 100.0 * ROOM)) }
             }
         }

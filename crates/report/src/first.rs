@@ -3,6 +3,7 @@
 
 use super::beside::{Beside, Film};
 use super::elements::{figure, inert};
+use super::glossary::explained;
 use super::printer::{self, recommended};
 use super::replay::{ENDS, pair_file};
 use super::{bar, explore};
@@ -24,11 +25,11 @@ pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
             @if let Some((_, text)) = lines::force(answer) { p.warn { "Force: " (text) "." } }
             h1 { (answer.verdict.headline()) }
             p.lead {
-                (expectation(answer)) ". "
+                (explained(&expectation(answer))) ". "
                 @if answer.verdict.finger().is_some() { span.trust { (answer.trust.label()) } }
             }
             @if let Some((_, text)) = widest(answer) {
-                p.muted { "Widest in the search: " (text) "." }
+                p.muted { "Widest in the search: " (explained(&text)) "." }
             }
             @for (_, text) in lines::caveats(answer) { p.warn { (text) } }
         }

@@ -19,6 +19,7 @@ mod elements;
 mod explore;
 mod first;
 mod front;
+mod glossary;
 pub mod identify;
 pub mod levers;
 pub mod map;

@@ -83,7 +83,7 @@ fn placed(
 
 /// Returns the parts of the title and the entries of the legend below.
 fn head(map: &CaptureMap) -> [Vec<Entry>; 2] {
-    let area = format!("{:.1} {} insert", map.area, map.area_unit.replace('2', "²"));
+    let area = format!("area that inserts {:.1} {}", map.area, map.area_unit.replace('2', "²"));
     let design = map.design.labelled();
     let of = [&*map.task, &design].into_iter().filter(|text| !text.is_empty());
     let of = of.flat_map(|text| text.split(", ")).map(|part| format!("{part},"));

@@ -10,11 +10,17 @@ use study::StudyRecord;
 pub const SURFACE: &str = "finger.stl";
 /// The same with its unit of length.
 pub const THREE_MF: &str = "finger.3mf";
+/// Outline and solid base with the settings of PrusaSlicer.
+pub const PROJECT: &str = "finger-prusaslicer.3mf";
 /// Sheet for printing it and checking the print.
 pub const SHEET: &str = "finger-sheet.html";
 /// The files and their labels.
-pub const FILES: [(&str, &str); 3] =
-    [(SURFACE, SURFACE), (THREE_MF, "3MF"), (SHEET, "print sheet")];
+pub const FILES: [(&str, &str); 4] = [
+    (PROJECT, "3MF for PrusaSlicer"),
+    (THREE_MF, "3MF with ribs"),
+    (SURFACE, "STL with ribs"),
+    (SHEET, "print sheet"),
+];
 
 /// Returns the finger file of a study, else the shipped one.
 pub(super) fn finger_file(record: &StudyRecord) -> Option<FingerFile> {

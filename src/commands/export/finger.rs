@@ -55,6 +55,9 @@ pub enum Format {
     Cura,
     /// Configuration of PrusaSlicer (.ini), with the outline beside it
     Prusaslicer,
+    /// Outline and solid base with the settings of PrusaSlicer, in one 3MF; do not turn it on the bed
+    #[value(name = "prusaslicer-3mf")]
+    Project,
 }
 
 /// Files that were written.
@@ -84,6 +87,11 @@ impl command::Request for Request {
                     .three_mf(&title)
                     .map_err(|error| Failure::running(format!("{}: {error}", out.display())))?;
                 write_file(out, &bytes)?;
+            }
+            Format::Project => {
+                let project = slicer::project(&geometry);
+                let failure = |error| Failure::running(format!("{}: {error}", out.display()));
+                write_file(out, &project.map_err(failure)?)?;
             }
             Format::Svg => write_file(out, &profile::svg(&geometry, &title))?,
             Format::Dxf => write_file(out, &profile::dxf(&geometry, &title))?,
@@ -130,7 +138,7 @@ impl Format {
     fn endings(self) -> &'static [&'static str] {
         match self {
             Format::Stl => &["stl"],
-            Format::ThreeMf => &["3mf"],
+            Format::ThreeMf | Format::Project => &["3mf"],
             Format::Svg => &["svg"],
             Format::Dxf => &["dxf"],
             Format::Sheet => &["svg", "html", "htm"],

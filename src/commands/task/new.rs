@@ -7,7 +7,7 @@ use crate::layout::wrapped;
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{begun, brief, chosen};
-use connector::draft::{DENSITY, Dimensions, Hole, Size, draft};
+use connector::draft::{self, DENSITY, Dimensions, Hole, Size};
 use connector::tune::Tuned;
 use connector::write::{self, Notes};
 use input::shipped::Source;
@@ -46,6 +46,12 @@ pub struct Request {
     /// Clearance, mm: opening minus plug in x and y, both sides together
     #[arg(long, value_name = "C", requires = "tip", value_parser = clearance)]
     pub clearance: Option<f64>,
+    /// Key of a cylindrical plug, on its side across the jaws (+x): width x height beyond the cylinder, mm
+    #[arg(long, value_name = "WxH", requires = "round", conflicts_with = "plug", value_parser = draft::key)]
+    pub key: Option<[f64; 2]>,
+    /// Chamfer of 45 degrees at the opening of a plug with flat sides, mm
+    #[arg(long, value_name = "MM", requires = "plug", conflicts_with = "round", value_parser = chamfer)]
+    pub chamfer_mm: Option<f64>,
     /// Body that the fingers hold, above the plug: width x height x length, mm [default: the plug itself]
     #[arg(long, value_name = "WxHxL", requires = "tip")]
     pub body: Option<Size>,
@@ -128,14 +134,18 @@ fn drafted(
     stop: &AtomicBool,
 ) -> Result<(String, Option<Tuned>), Failure> {
     let (size, example) = dimensions(request)?;
-    let task = draft(&request.name, &size, like.map(|like| &like.task)).map_err(Failure::input)?;
+    let task =
+        draft::draft(&request.name, &size, like.map(|like| &like.task)).map_err(Failure::input)?;
     let body = size.body.map_or(String::new(), |body| format!(" --body {}", text(&body)));
     let tip = match size.round {
         true => format!("--round {}", mm(&[size.plug.width, size.plug.length])),
         false => format!("--plug {}", text(&size.plug)),
     };
     let (name, clearance_mm) = (&request.name, size.clearance / MM);
-    let command = format!("optimize task new {name} {tip} --clearance {clearance_mm}{body}");
+    let key = size.key.map_or(String::new(), |key| format!(" --key {}", mm(&key)));
+    let leg = size.chamfer.map_or(String::new(), |leg| format!(" --chamfer-mm {}", mm(&[leg])));
+    let command =
+        format!("optimize task new {name} {tip}{key} --clearance {clearance_mm}{leg}{body}");
     let mut head = vec![format!("Made by: {command}")];
     if size.round {
         let hole = Hole::new(size.plug.width, size.clearance);
@@ -158,13 +168,15 @@ fn dimensions(request: &Request) -> Result<(Dimensions, bool), Failure> {
     if let (Some(plug), Some(clearance)) = (tip, request.clearance) {
         let (clearance, body) = (clearance * MM, request.body);
         let round = request.round.is_some();
-        return Ok((Dimensions { plug, round, clearance, body }, false));
+        let (key, chamfer) = (request.key, request.chamfer_mm.map(|mm| mm * MM));
+        return Ok((Dimensions { plug, round, clearance, key, chamfer, body }, false));
     }
     let [plug, clearance, body] = EXAMPLE;
     let parse = |text: &str| text.parse::<Size>().map_err(Failure::usage);
     let clearance = self::clearance(clearance).map_err(Failure::usage)?;
     let (plug, body) = (parse(plug)?, Some(parse(body)?));
-    Ok((Dimensions { plug, round: false, clearance: clearance * MM, body }, true))
+    let (clearance, key, chamfer) = (clearance * MM, None, None);
+    Ok((Dimensions { plug, round: false, clearance, key, chamfer, body }, true))
 }
 
 fn text(size: &Size) -> String {
@@ -197,4 +209,10 @@ fn copy(name: &str, TaskFile { source, task }: &TaskFile) -> String {
 fn clearance(text: &str) -> Result<f64, String> {
     let mm = text.parse::<f64>().map_err(|_| "give a number of mm, as in 0.1".to_owned())?;
     numbers::problem("connector.clearance_mm", mm).map_or(Ok(mm), |problem| Err(problem + " mm"))
+}
+
+fn chamfer(text: &str) -> Result<f64, String> {
+    let mm = text.parse::<f64>().map_err(|_| "give a number of mm, as in 0.3".to_owned())?;
+    let problem = numbers::problem("task.socket.part.x.edges.0.chamfer_mm", mm);
+    problem.map_or(Ok(mm), |problem| Err(problem + " mm"))
 }

@@ -25,7 +25,7 @@ pub struct Prism {
 /// Reason why there is no closed surface.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{0}")]
-pub struct PrismError(String);
+pub struct PrismError(pub(super) String);
 
 /// Share by which a volume may differ from area times depth.
 const VOLUME_TOLERANCE: f64 = 1e-3;
@@ -192,15 +192,28 @@ impl Prism {
     /// # Errors
     /// If the zip cannot be written.
     pub fn three_mf(&self, title: &str) -> ZipResult<Vec<u8>> {
+        self.three_mf_with(title, &[])
+    }
+
+    /// Returns the two surfaces as one, the triangles of the other after those of this one.
+    pub(super) fn and(mut self, other: &Prism) -> Self {
+        let first = self.corners.len() as u32;
+        self.corners.extend(&other.corners);
+        self.triangles.extend(other.triangles.iter().map(|t| t.map(|corner| corner + first)));
+        self
+    }
+
+    /// Returns a 3MF file with further texts.
+    pub(super) fn three_mf_with(&self, title: &str, more: &[(&str, &str)]) -> ZipResult<Vec<u8>> {
         let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
         let parts = [
             ("[Content_Types].xml", TYPES),
             ("_rels/.rels", RELATIONS),
-            ("3D/3dmodel.model", &self.three_mf_model(title)),
+            ("3D/3dmodel.model", &*self.three_mf_model(title)),
         ];
         // No clock: the entries carry the format's first date.
         let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
-        for (name, text) in parts {
+        for &(name, text) in parts.iter().chain(more) {
             zip.start_file(name, options)?;
             zip.write_all(text.as_bytes())?;
         }
@@ -211,7 +224,9 @@ impl Prism {
         let declaration = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
         let model = html! {
             model unit="millimeter" xml:lang="en-US"
-                xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02" {
+                xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+                xmlns:slic3rpe="http://schemas.slic3r.org/3mf/2017/06" {
+                metadata name="slic3rpe:Version3mf" { "1" }
                 metadata name="Title" { (title) }
                 metadata name="Application" { "finger-opt " (env!("CARGO_PKG_VERSION")) }
                 resources {

@@ -5,10 +5,12 @@
 //! A slicer's density is not the design's: its pitch follows from its own line width. So the
 //! settings give the pitch. Where the first rib lies is the slicer's choice.
 
+use super::prism::{Prism, PrismError};
 use super::{mm, title};
 use crate::geometry::Geometry;
 use crate::printed::PrintedFinger;
 use input::units::MM;
+use maud::html;
 use std::f64::consts::PI;
 
 /// Height of a layer, mm: half the line width of the published fingers, a usual choice.
@@ -58,39 +60,77 @@ gradual_infill_steps = 0
     )
 }
 
-/// Returns the configuration for PrusaSlicer, 2.4 or later: `prusa-slicer --load FILE`. The fill pattern is
-/// `alignedrectilinear`: `rectilinear` turns by 90 degrees from layer to layer.
+/// Returns the configuration for PrusaSlicer, 2.4 or later: `prusa-slicer --load FILE`.
 pub fn prusaslicer(geometry: &Geometry) -> String {
+    let lines = settings(geometry).into_iter().map(|(key, value)| format!("{key} = {value}\n"));
+    notes(geometry) + &lines.collect::<String>()
+}
+
+/// Returns the settings of PrusaSlicer. The fill pattern is `alignedrectilinear`: `rectilinear` turns by
+/// 90 degrees from layer to layer.
+fn settings(geometry: &Geometry) -> Vec<(&'static str, String)> {
     let (count, width) = walls(&geometry.finger);
     let (wall, line) = (mm(width), mm(geometry.finger.line_width));
-    let notes = notes(geometry);
     // At the design's pitch: the spacing of lines that touch (their ends are half circles of the
     // layer's height) over the pitch.
     let touching = geometry.finger.line_width / MM - LAYER * (1.0 - PI / 4.0);
     let density = touching / (geometry.lines.pitch / MM) * 100.0;
     // PrusaSlicer counts from X, counter-clockwise; the design from Y, clockwise.
     let angle = (90.0 - geometry.design.direction_deg).rem_euclid(180.0);
-    format!(
-        "{notes}layer_height = {LAYER}
-extrusion_width = {line}
-perimeters = {count}
-perimeter_generator = classic
-extra_perimeters = 0
-external_perimeter_extrusion_width = {wall}
-perimeter_extrusion_width = {wall}
-top_solid_layers = 0
-bottom_solid_layers = 0
-ensure_vertical_shell_thickness = 0
-solid_infill_below_area = 0
-fill_pattern = alignedrectilinear
-infill_extrusion_width = {line}
-fill_density = {density:.3}%
-fill_angle = {angle}
-infill_every_layers = 1
-infill_anchor = 0
-infill_anchor_max = 0
-"
-    )
+    let off = || "0".to_owned();
+    vec![
+        ("layer_height", LAYER.to_string()),
+        ("extrusion_width", line.clone()),
+        ("perimeters", count.to_string()),
+        ("perimeter_generator", "classic".to_owned()),
+        ("extra_perimeters", off()),
+        ("external_perimeter_extrusion_width", wall.clone()),
+        ("perimeter_extrusion_width", wall),
+        ("top_solid_layers", off()),
+        ("bottom_solid_layers", off()),
+        ("ensure_vertical_shell_thickness", off()),
+        ("solid_infill_below_area", off()),
+        ("fill_pattern", "alignedrectilinear".to_owned()),
+        ("infill_extrusion_width", line),
+        ("fill_density", format!("{density:.3}%")),
+        ("fill_angle", angle.to_string()),
+        ("infill_every_layers", "1".to_owned()),
+        ("infill_anchor", off()),
+        ("infill_anchor_max", off()),
+    ]
+}
+
+/// Returns a 3MF file with outline and solid base and PrusaSlicer's settings for this object, which are read when
+/// it is opened as a project. The angle is that of the bed: the object must not be turned.
+///
+/// # Errors
+/// If a surface is not closed, or the zip cannot be written.
+pub fn project(geometry: &Geometry) -> Result<Vec<u8>, PrismError> {
+    let (outline, base) = (Prism::outline(geometry)?, Prism::base(geometry)?);
+    let ends = [outline.triangles.len(), outline.triangles.len() + base.triangles.len()];
+    let config = html! {
+        config {
+            object id="1" instances_count="1" {
+                @for (key, value) in settings(geometry) { metadata type="object" key=(key) value=(value) {} }
+                volume firstid="0" lastid=(ends[0] - 1) {
+                    metadata type="volume" key="name" value="outline" {}
+                    metadata type="volume" key="volume_type" value="ModelPart" {}
+                }
+                volume firstid=(ends[0]) lastid=(ends[1] - 1) {
+                    metadata type="volume" key="name" value="solid base" {}
+                    metadata type="volume" key="modifier" value="1" {}
+                    metadata type="volume" key="volume_type" value="ParameterModifier" {}
+                    metadata type="volume" key="fill_density" value="100%" {}
+                    metadata type="volume" key="fill_pattern" value="rectilinear" {}
+                }
+            }
+        }
+    };
+    let config = config.into_string().replace("></metadata>", "/>");
+    let config = format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{config}");
+    let both = outline.and(&base);
+    both.three_mf_with(&title(geometry), &[("Metadata/Slic3r_PE_model.config", &config)])
+        .map_err(|error| PrismError(error.to_string()))
 }
 
 /// Returns the number and width, m, of the walls that make the skin: the fewest at most two lines wide.

@@ -341,7 +341,7 @@ fn tolerated(Evaluation { window, taught, .. }: &Evaluation) -> String {
     let start =
         taught.map_or(String::new(), |steps| format!(", start taught {:+.1}", grid_mm(steps)));
     let (range, ends) = (mm(window.range_mm()), span(ends_mm(window)));
-    format!("{range} ({ends}{start}); --finger-model computed")
+    format!("{range} ({ends}{start})")
 }
 
 /// Returns the position of a taught start; `None` if it was not taught.

@@ -75,16 +75,22 @@ fn headline(IdentifyDone { task, found, .. }: &IdentifyDone) -> String {
         |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let attempts = counted(found.compared.len(), "attempt");
     let probes = counted(found.probes.len(), "probe");
-    let identified = found.unknowns.iter().filter(|one| one.from != From::Prior).count();
+    let of =
+        |origins: &[From]| found.unknowns.iter().filter(|one| origins.contains(&one.from)).count();
+    let identified = of(&[From::Formula, From::Fit]);
+    let fixed = match of(&[From::Files]) {
+        0 => String::new(),
+        count => format!(" ({count} more were not fitted)"),
+    };
     let misfit = match found.smoothed.misfit[..] {
         [first, .., last] if last.is_finite() => {
             format!("; misfit {first:.2} standard deviations before the fit, {last:.2} after")
         }
         _ => String::new(),
     };
-    let all = found.unknowns.len();
+    let all = identified + of(&[From::Prior]);
     format!(
-        "{attempts} and {probes} on {task} identify {identified} of {all} numbers of the cell{misfit}"
+        "{attempts} and {probes} on {task} identify {identified} of {all} numbers of the cell{fixed}{misfit}"
     )
 }
 
@@ -96,7 +102,7 @@ fn by_origin(found: &Identified) -> Vec<(String, String)> {
         (!names.is_empty()).then(|| (origin(from).to_owned(), names.join(", ")))
     };
     let share = format!("{:.0} % of the data", 100.0 * found.smoothed.compared);
-    let all = [From::Formula, From::Fit, From::Prior].map(named);
+    let all = [From::Formula, From::Fit, From::Prior, From::Files].map(named);
     all.into_iter().flatten().chain([("compared".to_owned(), share)]).collect()
 }
 
@@ -104,6 +110,8 @@ fn by_origin(found: &Identified) -> Vec<(String, String)> {
 fn unknown(one: &Unknown) -> Vec<Markup> {
     let Unknown { prior, posterior, left, from, advice } = one;
     let identified = *from != From::Prior;
+    let source = posterior.source.strip_prefix(origin(*from)).unwrap_or(&posterior.source);
+    let source = source.trim_start_matches([':', ' ']);
     let (share, expected) = match (left, from) {
         // The fit started from the formula's value, so its own share is not of the prior.
         (_, From::Formula) => (deviation(posterior) / deviation(prior), None),
@@ -116,14 +124,15 @@ fn unknown(one: &Unknown) -> Vec<Markup> {
         html! { (amount(prior)) },
         html! { @if identified { (amount(posterior)) } @else { "as before" } },
         html! {
-            (format!("{:.0} %", 100.0 * share))
+            // The data may even widen it.
+            @if share < 1.0 { (format!("{:.0} %", 100.0 * share)) } @else { "all of it" }
             div.track {
                 i.firm style={ "left:0;width:" (percent(share)) } {}
                 @if let Some(expected) = expected { b style={ "left:" (percent(expected)) } {} }
             }
         },
         html! {
-            (origin(*from)) @if identified { ": " (posterior.source) }
+            (origin(*from)) @if identified && !source.is_empty() { ": " (source) }
             @if let Some(advice) = advice { ": " (advice) }
         },
     ]

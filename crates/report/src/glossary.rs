@@ -1,0 +1,51 @@
+//! Terms of the first screen, explained on hover and touch in the words of the guide.
+
+use maud::{Markup, html};
+
+/// Terms, each with its explanation, which `docs/guide/start.md` contains.
+pub(crate) const TERMS: [(&str, &str); 5] = [
+    (
+        "firm",
+        "between the outermost starts that insert in all repeats, with friction, start and time step \
+         slightly varied",
+    ),
+    (
+        "single trials",
+        "the interval of start shifts along y, on a grid of 0.1 mm, from which the trial inserts",
+    ),
+    ("from its ribs", "the window with springs computed from the ribs"),
+    ("similar fingers", "fingers of similar stiffness on the publication's robot"),
+    ("in repeats", "its repeated range"),
+];
+
+/// Returns a text with its first term of each kind explained.
+pub(super) fn explained(text: &str) -> Markup {
+    let found = TERMS.iter().filter_map(|(term, tip)| Some((text.find(term)?, *term, *tip)));
+    let Some((at, term, tip)) = found.min_by_key(|(at, ..)| *at) else { return html! { (text) } };
+    let (before, after) = (&text[..at], &text[at + term.len()..]);
+    html! {
+        (before)
+        // Focus stands for hover where there is no pointer.
+        span.term tabindex="0" data-tip=(tip) aria-label={ (term) ": " (tip) } { (term) }
+        (explained(after))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_guide_has_the_same_explanations() {
+        let guide = include_str!("../../../docs/guide/start.md").replace('*', "").to_lowercase();
+        let guide = guide.split_whitespace().collect::<Vec<_>>().join(" ");
+        for (term, tip) in TERMS {
+            assert!(guide.contains(&tip.to_lowercase()), "{term}: {tip}");
+        }
+        let shown = explained("simulated: firm -4.4 to +5.7 mm & more").into_string();
+        assert!(
+            shown.starts_with("simulated: <span class=\"term\"") && shown.ends_with("&amp; more"),
+            "{shown}"
+        );
+    }
+}

@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
-"""Measures other optimizers on the problems of `lab/src/bin/optimizers.rs`.
+"""Measures our optimizers and others on test functions and recorded landscapes.
 
     python3 -m venv venv
     venv/bin/pip install cma==4.5.0 optuna==5.0.0 botorch==0.18.1 torch==2.15.0 scipy==1.17.1
     venv/bin/python scripts/peers.py run pycma --csv pycma.csv
     venv/bin/python scripts/peers.py run tpe gpsampler botorch --csv peers.csv \\
         --landscape results/reference/landscapes/{usb,ket8,ket12,rj45}.csv
-    scripts/reference.sh optimizers
+    venv/bin/python scripts/peers.py run gp cma-es --csv ours.csv \\
+        --landscape results/reference/landscapes/{usb,ket8,ket12,rj45}.csv
     venv/bin/python scripts/peers.py ratios results/reference/optimizers/ours.csv pycma.csv peers.csv
 
 `run` prints a line per problem and appends every run to the CSV (with the columns of
-`ours.csv`); `ratios` prints Markdown. pycma needs neither
+`ours.csv`); `ratios` prints Markdown. Ours need the package finger_opt, pycma needs neither
 optuna nor torch, tpe needs no torch.
 """
 import argparse
@@ -114,6 +115,23 @@ def landscape(file):
                    max(values.values()) - SHORTFALL_MM - 1e-9, LANDSCAPE_LIMIT)
 
 
+def our_run(method, problem, seed):
+    from finger_opt import Optimizer
+
+    names = [f"x{i}" for i in range(len(problem.levels))]
+    space = {name: (0, n - 1, 1) for name, n in zip(names, problem.levels)}
+    optimizer = Optimizer(space, method, seed)
+    for evaluation in range(1, problem.limit + 1):
+        points = optimizer.ask(1)
+        if not points:
+            return None
+        value = problem.value(tuple(int(points[0][name]) for name in names))
+        if value >= problem.target:
+            return evaluation
+        optimizer.tell(points, [value])
+    return None
+
+
 def optuna_run(make, problem, seed):
     import optuna
 
@@ -181,7 +199,9 @@ def botorch_run(problem, seed):
     return None
 
 
+OURS = ["gp", "cma-es", "random", "sobol", "grid"]
 GRID_METHODS = {
+    **{method: lambda p, s, method=method: our_run(method, p, s) for method in OURS},
     "tpe": lambda p, s: optuna_run(lambda samplers, seed: samplers.TPESampler(seed=seed), p, s),
     "gpsampler": lambda p, s: optuna_run(
         lambda samplers, seed: samplers.GPSampler(seed=seed, deterministic_objective=True), p, s),
@@ -232,7 +252,7 @@ def work(methods, problems):
 
 def run(arguments):
     need = {"pycma": "cma", "tpe": "optuna", "gpsampler": "optuna", "botorch": "botorch"}
-    for package in {need[method] for method in arguments.methods}:
+    for package in {need[method] for method in arguments.methods if method in need}:
         found = version(package)
         assert found == PINNED[package], f"{package} {PINNED[package]} is required, not {found}"
     problems = functions() + [landscape(file) for file in arguments.landscape]
@@ -288,7 +308,7 @@ def ratios(arguments):
     print("| --- | --- | --- | --- |")
     for problem, methods in runs.items():
         ours_name, of = ("cma-es", mean) if "pycma" in methods else ("gp", median)
-        peers = {m: r for m, r in methods.items() if m == "pycma" or m in GRID_METHODS}
+        peers = {m: r for m, r in methods.items() if m == "pycma" or m in GRID_METHODS and m not in OURS}
         if not peers or ours_name not in methods:
             continue
         reached = lambda r: "" if None not in r else f" ({sum(v is not None for v in r)}/{len(r)})"

@@ -2,9 +2,9 @@
 # Regenerates every figure under results/reference from the current sources, and records the hash
 # of these sources (scripts/stale.sh). Parts can be selected:
 #
-#     scripts/reference.sh                          all parts but the last six
+#     scripts/reference.sh                          all parts but the last four
 #     scripts/reference.sh validation               one part
-#     scripts/reference.sh landscapes firm settled maps identify peers   the parts omitted by default
+#     scripts/reference.sh landscapes settled identify peers   the parts omitted by default
 #
 # Landscapes are recorded functions for benchmarking optimizers, not figures of the current
 # model: if they change, all of results/reference/optimizers.md must be regenerated. Peers
@@ -12,7 +12,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-parts="stiffness finger shapes bench levers check windows validation validation-ur5e trials studies pictures answers objectives instructions optimizers"
+parts="stiffness finger shapes bench levers check windows validation validation-ur5e trials studies pictures answers objectives instructions"
 cargo build --release
 optimize=${OPTIMIZE:-target/release/optimize}
 lab=${LAB:-target/release/lab}
@@ -226,20 +226,6 @@ instructions() {
     record windows "$reference/instructions.txt"
 }
 
-# All runs of our optimizers for the tables of results/reference/optimizers.md.
-optimizers() {
-    local folder="$reference/optimizers" landscapes=() task
-    for task in $recorded; do
-        landscapes+=("$reference/landscapes/$task.csv")
-    done
-    {
-        "$programs/optimizers" --optimizers gp branin hartmann6
-        "$programs/optimizers" --seeds 400 rastrigin | sed 1d
-        "$programs/optimizers" "${landscapes[@]}" | sed 1d
-    } > "$folder/ours.csv"
-    record optimizers "$folder/ours.csv"
-}
-
 # Prints the selected columns of a table without commas in its cells, without the header.
 columns() {
     awk -F, -v names="$1" 'BEGIN { n = split(names, name, ",") }
@@ -272,17 +258,6 @@ EOF
     record windows "$folder"/*.csv
 }
 
-# All designs of the four tasks with the current sources, and the firm ranges of the widest and of random ones.
-# Takes an hour and a half of processor time.
-firm() {
-    local folder="$reference/landscapes/firm" task
-    mkdir -p "$folder"
-    for task in usb ket8 ket12 rj45; do
-        "$programs/landscape" --task "$task" > "$folder/$task.csv"
-    done
-    record windows "$folder"/*.csv
-}
-
 # Studies without a budget, ten seeds on each task, compared with the best firm range of all designs.
 settled() {
     local file="$reference/landscapes/firm/studies.csv" task seed
@@ -298,20 +273,6 @@ settled() {
     record studies "$file"
 }
 
-# Capture maps of a finger for each task, and the number of grid points at which a full grid of trials differs.
-maps() {
-    local folder="$reference/maps" finger task density direction other
-    mkdir -p "$folder"
-    for finger in "usb 10 26" "ket8 10 0" "ket12 10 0" "rj45 18 20"; do
-        read -r task density direction <<< "$finger"
-        for other in x yaw; do
-            "$programs/capture_map" --task "$task" --density "$density" --direction "$direction" \
-                --axes "y,$other" --svg "$folder/$task-$other.svg" > "$folder/$task-$other.csv"
-        done
-    done 2> "$folder/maps.txt"
-    record maps "$folder"/*
-}
-
 # Identification of hidden cells in MuJoCo from their logs. Takes over an hour; needs `lab` with the feature mujoco.
 identify() {
     local folder="$reference/identify"
@@ -320,23 +281,28 @@ identify() {
     record windows "$folder"/*
 }
 
+# All runs of the tables of results/reference/optimizers.md but Rastrigin's, which a test of ask-tell repeats.
 peers() {
-    local python=${PYTHON:-venv/bin/python} csv="$work/peers.csv"
+    local python=${PYTHON:-venv/bin/python} csv="$work/peers.csv" folder="$reference/optimizers"
     local landscapes=() task
     for task in $recorded; do
         landscapes+=("$reference/landscapes/$task.csv")
     done
+    "$python" scripts/peers.py run gp cma-es random sobol grid --csv "$work/ours.csv" \
+        --landscape "${landscapes[@]}"
+    grep '^rastrigin' "$folder/ours.csv" >> "$work/ours.csv"
+    mv "$work/ours.csv" "$folder/ours.csv"
     "$python" scripts/peers.py run tpe --csv "$csv" --landscape "${landscapes[@]}"
     "$python" scripts/peers.py run gpsampler botorch --seeds 10 --csv "$csv" \
         --landscape "${landscapes[@]}"
     "$python" scripts/peers.py run pycma --only "rastrigin 2" --seeds 100 --csv "$csv"
-    mv "$csv" "$reference/optimizers/peers.csv"
-    record optimizers "$reference/optimizers/peers.csv"
+    mv "$csv" "$folder/peers.csv"
+    record optimizers "$folder"/*.csv
 }
 
 for part in ${*:-$parts}; do
-    case " $parts landscapes firm settled maps identify peers " in
+    case " $parts landscapes settled identify peers " in
         *" $part "*) echo "== $part" >&2; "$part" ;;
-        *) echo "unknown part $part; available: $parts landscapes firm settled maps identify peers" >&2; exit 2 ;;
+        *) echo "unknown part $part; available: $parts landscapes settled identify peers" >&2; exit 2 ;;
     esac
 done

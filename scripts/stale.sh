@@ -26,7 +26,7 @@ sources() {
         checks) paths="$simulation tests/analytic/src robots" ;;
         bench) paths="$simulation crates/ask-tell crates/study crates/calibration data tasks robots spaces priors" ;;
         levers) paths="$simulation crates/calibration crates/connector crates/analysis/src/levers data tasks robots spaces priors" ;;
-        optimizers) paths="crates/ask-tell lab/src/bin/optimizers.rs results/reference/landscapes" ;;
+        optimizers) paths="crates/ask-tell results/reference/landscapes" ;;
         *) echo "scripts/stale.sh: unknown scope $1" >&2; exit 2 ;;
     esac
     echo "$paths"

@@ -3,33 +3,6 @@
 mod common;
 
 use common::lab;
-use std::fs;
-use std::process::Command;
-
-#[test]
-fn the_optimizers_are_counted_on_functions_and_recorded_landscapes() {
-    let folder = tempfile::tempdir().unwrap();
-    let landscape = folder.path().join("hill.csv");
-    let rows: String = (0..8)
-        .flat_map(|a| (0..9).map(move |b| (a, b)))
-        .map(|(a, b)| format!("{a},{b},{}.0,x\n", 20 - (a - 6i32).abs() - (b - 2i32).abs()))
-        .collect();
-    fs::write(&landscape, format!("a,b,range_mm,more\n{rows}")).unwrap();
-    let run = |problem: &str, optimizers: &str| {
-        let mut program = Command::new(env!("CARGO_BIN_EXE_optimizers"));
-        common::run(program.args(["--seeds", "3", "--optimizers", optimizers, problem]))
-    };
-    let found = run(landscape.to_str().unwrap(), "gp,grid");
-    let rows: Vec<&str> = found.succeeds().lines().collect();
-    assert!(rows.len() == 1 + 2 * 3 && rows.iter().all(|row| !row.ends_with(',')), "{rows:?}");
-    assert!(rows[1].starts_with("hill landscape,gp,0,"), "{rows:?}");
-    assert!(run("sphere", "cma-es").succeeds().contains("\nsphere 5-D to 1e-8,cma-es,2,"));
-    run("no.csv", "gp").fails(1, &["no.csv"]);
-    fs::write(&landscape, "a,range_mm\n1,1\n1,1\n2,\n").unwrap();
-    run(landscape.to_str().unwrap(), "gp").succeeds();
-    fs::write(&landscape, "a,b,range_mm\n1,1,1\n2,2,1\n").unwrap();
-    run(landscape.to_str().unwrap(), "gp").fails(1, &["2 designs for a grid of 4"]);
-}
 
 #[test]
 fn an_engine_agrees_with_itself_in_the_cross_check() {

@@ -7,7 +7,7 @@ use crate::layout;
 use crate::setup::Setup;
 use crate::setup::finger::{Chosen, FingerRequest};
 use crate::setup::request::SetupRequest;
-use analysis::map::{Axes, CaptureMap, Mark, Plane};
+use analysis::map::{Axes, CaptureMap, Plane};
 use insertion::evaluation::OffsetStep;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::space::Design;
@@ -75,16 +75,6 @@ impl command::Request for Request {
     }
 }
 
-impl Request {
-    /// Simulates a trial at every place of the map.
-    pub fn full(&self, map: &CaptureMap, stop: &AtomicBool) -> Result<Vec<Vec<Mark>>, Failure> {
-        let setup = self.setup.setup()?;
-        let specimen = self.finger.choose(&setup)?.specimen;
-        let taught = setup.evaluator.taught(&specimen, stop).map_err(Failure::input)?;
-        on_plane((&setup, &specimen), taught, self.axes, stop, |plane| map.full(plane))
-    }
-}
-
 /// Traces the map of a finger, a specimen and its design, from this taught start.
 ///
 /// # Errors
@@ -96,23 +86,12 @@ pub(crate) fn map_of(
     axes: Axes,
     stop: &AtomicBool,
 ) -> Result<CaptureMap, Failure> {
-    on_plane((setup, specimen), taught, axes, stop, |plane| {
-        CaptureMap::trace(&specimen.task.name, design.clone(), plane)
-    })
-}
-
-fn on_plane<T>(
-    (setup, specimen): (&Setup, &Specimen),
-    taught: Option<OffsetStep>,
-    axes: Axes,
-    stop: &AtomicBool,
-    measure: impl FnOnce(&Plane) -> T,
-) -> Result<T, Failure> {
     let rig = setup.evaluator.rig(specimen, taught, 1.0).map_err(Failure::input)?;
     let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
-    let measured = measure(&Plane::new(&*rig, grasp, axes));
+    let plane = Plane::new(&*rig, grasp, axes);
+    let map = CaptureMap::trace(&specimen.task.name, design.clone(), &plane);
     not_stopped(stop)?;
-    Ok(measured)
+    Ok(map)
 }
 
 impl command::Response for Mapped {

@@ -7,9 +7,8 @@ pub use plane::{Axes, Plane};
 
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::Design;
-use parameters::plan::grid::{self, Node, STEPS_PER_UNIT, Traced};
+use parameters::plan::grid::{self, Node, Traced};
 use plane::{LIMIT, value};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Outcomes over two start errors, on a grid. Its JSON round-trips exactly.
@@ -71,16 +70,6 @@ impl CaptureMap {
             area: inserting as f64 * value(1) * value(1),
             area_unit: format!("mm {}", names[1][1]).replace("mm mm", "mm2"),
         }
-    }
-
-    /// Simulates a trial at every grid point; same layout as [`outcomes`](Self::outcomes).
-    pub fn full(&self, plane: &Plane<'_>) -> Vec<Vec<Mark>> {
-        let node = |of: fn(&Axis) -> f64| {
-            self.axes.each_ref().map(|axis| (of(axis) * f64::from(STEPS_PER_UNIT)).round() as i32)
-        };
-        let places = lattice(node(|axis| axis.low), node(|axis| axis.high), |node| node);
-        let mark = |node: &Node| Mark(plane.outcome(*node));
-        places.par_iter().map(|row| row.par_iter().map(mark).collect()).collect()
     }
 
     /// Returns a caption of one sentence.
@@ -171,6 +160,7 @@ mod tests {
     use insertion::finger::Finger;
     use insertion::trial::Grasp;
     use insertion::trial::fake::{FakeRig, window_mm};
+    use parameters::plan::grid::STEPS_PER_UNIT;
 
     /// A millimetre and a degree take 1 mm off both ends of the closed form's window.
     #[test]
@@ -186,7 +176,15 @@ mod tests {
             let map = on(1);
             assert_eq!(map, on(3));
             assert_eq!(map, serde_json::from_str(&serde_json::to_string(&map).unwrap()).unwrap());
-            assert_eq!(map.outcomes, map.full(&plane));
+            let node = |of: fn(&Axis) -> f64| {
+                map.axes
+                    .each_ref()
+                    .map(|axis| (of(axis) * f64::from(STEPS_PER_UNIT)).round() as i32)
+            };
+            let full = lattice(node(|axis| axis.low), node(|axis| axis.high), |node| {
+                Mark(plane.outcome(node))
+            });
+            assert_eq!(map.outcomes, full);
             let inside = |[below, above]: [f64; 2]| {
                 (0.0..0.25).contains(&(below - low)) && (0.0..0.25).contains(&(high - above))
             };

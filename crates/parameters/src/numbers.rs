@@ -128,6 +128,8 @@ pub static NUMBERS: &[Number] = &[
     file("task.strategy.phase.*.latency_s", 0.0, 1e3),
     length("task.success.depth_mm"),
     file("task.success.tilt_deg", LEAST, 360.0),
+    distance("task.success.mated.tip_mm.*"),
+    length("task.success.mated.lateral_mm"),
     // Connectors that are drafted from dimensions.
     fixed("connector.size_mm", 0.5, 200.0),
     fixed("connector.clearance_mm", 1e-3, 20.0),

@@ -10,6 +10,7 @@ use insertion::finger::file::is_shape;
 use insertion::finger::model::{FingerModelKind, FingerSource};
 use insertion::space::{Space, Variable};
 use insertion::task::StartRule;
+use insertion::task::parts_file::with_parts;
 use insertion::trial::engine::EngineKind;
 use serde::Deserialize;
 use std::convert::Infallible;
@@ -58,10 +59,11 @@ impl TaskSource {
     /// # Errors
     /// If there is no such task or file.
     pub fn read(&self) -> Result<Source, Failure> {
-        match self {
-            TaskSource::Named(name) => resolve("task", TASKS, name).map_err(Failure::task),
-            TaskSource::Given(source) => Ok(source.clone()),
-        }
+        let source = match self {
+            TaskSource::Named(name) => resolve("task", TASKS, name).map_err(Failure::task)?,
+            TaskSource::Given(source) => source.clone(),
+        };
+        with_parts(source).map_err(Failure::task)
     }
 }
 

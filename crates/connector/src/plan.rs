@@ -260,7 +260,7 @@ fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat, play: f64) {
     let (length, share) = MISSING;
     let depth = seat.depth * (1.0 - share) - half * libm::sin(tilt) - length;
     let depth = (depth.max(seat.depth / 2.0) / (0.1 * MM)).floor() * 0.1 * MM;
-    task.success = Success { depth, tilt };
+    task.success = Success { depth, tilt, mated: None };
 }
 
 fn phases(task: &Task, search: &Moves, seat: f64) -> Vec<Phase> {

@@ -35,14 +35,19 @@ pub struct Seating<'a> {
     plug: &'a ConvexBody<'a>,
     socket: &'a ConvexBody<'a>,
     opening: [[f64; 2]; 2],
+    mated: Option<[f64; 3]>,
 }
 
 impl<'a> Seating<'a> {
     pub fn new(task: &Task, plug: &'a ConvexBody, socket: &'a ConvexBody) -> Self {
-        Seating { plug, socket, opening: task.opening }
+        let mated = task.success.mated.map(|mated| mated.tip);
+        Seating { plug, socket, opening: task.opening, mated }
     }
 
     pub fn deepest(&self) -> Seat {
+        if let Some([x, y, z]) = self.mated {
+            return Seat { depth: -z, at: [x, y], stopped_by: None };
+        }
         let [bottom, top] = self.plug.extent(2);
         let mut at = self.opening.map(|[low, high]| (low + high) / 2.0);
         let mut free = 0.0;

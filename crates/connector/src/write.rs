@@ -3,7 +3,7 @@
 use super::hold;
 use input::units::{DEG, GRAM, MM};
 use insertion::task::{
-    Ending, Hold, Limits, PadTorsion, Part, Phase, Sensed, Solid, Stage, StartRule, Task,
+    Ending, Hold, Limits, Mated, PadTorsion, Part, Phase, Sensed, Solid, Stage, StartRule, Task,
 };
 use nalgebra::{Point3, Vector3};
 use std::fmt::Write;
@@ -52,6 +52,15 @@ pub fn task(task: &Task, notes: &Notes) -> String {
         mm(task.success.depth),
         round(task.success.tilt / DEG, 100.0)
     );
+    if let Some(Mated { tip, lateral }) = &task.success.mated {
+        let _ = write!(
+            out,
+            "\n[success.mated]\n# The plug's tip when it is mated, and how far an inserted one may be aside.\n\
+             tip_mm = {}\nlateral_mm = {}\n",
+            list(tip.iter().map(|&v| mm(v))),
+            mm(*lateral)
+        );
+    }
     let Limits { force, speed } = task.limits;
     let limits = [("force_n", force.map(|n| format!("{n:?}"))), ("speed_mm_per_s", speed.map(mm))];
     let limits =

@@ -106,6 +106,12 @@ impl Friction {
     pub fn hard(coefficient: f64) -> Self {
         Friction { coefficient, torsion: Torsion::Radius(0.0) }
     }
+
+    /// Returns the friction of two geoms with coefficients of their own, if any: the smaller one counts.
+    pub fn of_geoms(self, [first, second]: [Option<f64>; 2]) -> Self {
+        let own = first.into_iter().chain(second).reduce(f64::min);
+        Friction { coefficient: own.unwrap_or(self.coefficient), ..self }
+    }
 }
 
 impl ContactPair {
@@ -265,9 +271,7 @@ impl Scene {
             let (a, b) = (pair.first.0, pair.second.0);
             for (i, first) in self.bodies[a].geoms.iter().enumerate() {
                 for (j, second) in self.bodies[b].geoms.iter().enumerate() {
-                    let own = first.friction.into_iter().chain(second.friction).reduce(f64::min);
-                    let coefficient = own.unwrap_or(pair.friction.coefficient);
-                    let friction = Friction { coefficient, ..pair.friction };
+                    let friction = pair.friction.of_geoms([first.friction, second.friction]);
                     let (first, second) = (from[a] + i, from[b] + j);
                     found.push(GeomPair { bodies, first, second, friction });
                 }

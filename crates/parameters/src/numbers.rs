@@ -129,6 +129,8 @@ pub static NUMBERS: &[Number] = &[
     length("task.success.depth_mm"),
     file("task.success.tilt_deg", LEAST, 360.0),
     fixed("task.limits.force_n|speed_mm_per_s", LEAST, 1e6),
+    distance("task.success.mated.tip_mm.*"),
+    length("task.success.mated.lateral_mm"),
     // Connectors that are drafted from dimensions.
     fixed("connector.size_mm", 0.5, 200.0),
     fixed("connector.clearance_mm", 1e-3, 20.0),

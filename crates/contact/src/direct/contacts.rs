@@ -2,6 +2,7 @@
 //! two shapes hardly move against one another their points stay, and only the gaps are renewed.
 
 mod lines;
+mod near;
 mod patches;
 #[cfg(test)]
 mod tests;
@@ -10,9 +11,11 @@ use super::body::MovingBody;
 use crate::scene::{Friction, Geom, GeomPair, Pose, Scene, Shape};
 use crate::shapes;
 use nalgebra::{Matrix3, Point3, Vector3};
+use near::{NearList, tree};
 use parry::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
 use parry::shape::{Cuboid, SharedShape, SupportMap};
 use rapier3d_f64::parry;
+use std::sync::Arc;
 
 /// Units of length of the shapes in a metre: some of parry's tolerances are absolute and made for
 /// parts of 1 m (in metres it drops the crossing of edges of 1 mm at less than a degree).
@@ -48,6 +51,7 @@ pub(super) struct Touch {
 #[derive(Clone)]
 struct Solid {
     body: usize,
+    friction: Option<f64>,
     shape: SharedShape,
     /// Core and radius of a round shape, mm.
     round: Option<(Cuboid, f64)>,
@@ -65,12 +69,12 @@ struct Solid {
     /// Farthest point of the shape from the origin of parry's frame, m.
     reach: f64,
     /// Other shapes of the same body that may cover a part of this one.
-    neighbours: Vec<usize>,
+    neighbours: Arc<[usize]>,
 }
 
 /// Pair of shapes that may touch.
 #[derive(Clone)]
-pub(super) struct Candidate {
+struct Candidate {
     pair: GeomPair,
     manifold: ContactManifold<(), ()>,
     /// Pose of the second shape in the frame of the first when the points were found.
@@ -85,8 +89,8 @@ pub(super) struct Candidate {
 #[derive(Clone)]
 pub(super) struct Detector {
     solids: Vec<Solid>,
-    /// Pairs of geoms.
-    pub candidates: Vec<Candidate>,
+    /// Pairs of bodies, in the order of the scene.
+    lists: Vec<NearList>,
     prediction: f64,
 }
 
@@ -94,53 +98,60 @@ impl Detector {
     /// Detector that foresees contacts up to a gap of `prediction`, m.
     pub fn new(scene: &Scene, prediction: f64) -> Self {
         let mut solids: Vec<Solid> = Vec::new();
+        let mut bodies = Vec::new();
         for (index, body) in scene.bodies.iter().enumerate() {
+            let from = solids.len();
             solids.extend(body.geoms.iter().map(|geom| Solid::new(index, geom)));
+            bodies.push((from..solids.len(), Arc::new(tree(&solids[from..]))));
         }
         for i in 0..solids.len() {
-            let (own, all) = (&solids[i], 0..solids.len());
-            let near =
-                |&j: &usize| j != i && solids[j].body == own.body && !own.apart(&solids[j], COVER);
-            solids[i].neighbours = all.filter(near).collect();
+            let (own, (range, tree)) = (&solids[i], &bodies[solids[i].body]);
+            let boxed = own.enclosing(2.0 * COVER);
+            let found = tree.intersect_aabb(&boxed);
+            let mut near: Vec<_> = found.map(|leaf| range.start + leaf as usize).collect();
+            near.retain(|&j| j != i && !own.apart(&solids[j], COVER));
+            near.sort_unstable();
+            solids[i].neighbours = near.into();
         }
-        let candidate = |pair: GeomPair| Candidate {
-            pair,
-            manifold: ContactManifold::new(),
-            found_at: None,
-            axis: Vector3::zeros(),
-            points: Vec::new(),
+        let mut from = 0;
+        let list = |(number, pair): (usize, &crate::scene::ContactPair)| {
+            let [(first, tree), (second, _)] =
+                [pair.first, pair.second].map(|body| bodies[body.0].clone());
+            let list = NearList::new(number, pair.friction, from, (first, tree), second, &solids);
+            from += list.pairs();
+            list
         };
-        let candidates = scene.geom_pairs().into_iter().map(candidate).collect();
-        Detector { solids, candidates, prediction }
+        let lists = scene.contacts.iter().enumerate().map(list).collect();
+        Detector { lists, solids, prediction }
     }
 
     /// Finds the contacts at the bodies' poses.
     pub fn detect(&mut self, bodies: &[MovingBody], found: &mut Vec<Touch>) {
         found.clear();
-        for solid in &mut self.solids {
-            solid.enclose(&bodies[solid.body].pose);
-        }
-        for (geoms, candidate) in self.candidates.iter_mut().enumerate() {
-            let (first, second) =
-                (&self.solids[candidate.pair.first], &self.solids[candidate.pair.second]);
-            if first.apart(second, self.prediction) || first.separated(second, self.prediction) {
-                continue;
+        for list in &mut self.lists {
+            let [first, second] = list.bodies.map(|body| bodies[body].pose);
+            list.renew(&first.inv_mul(&second), &self.solids, self.prediction);
+            for &solid in &list.solids {
+                let solid = &mut self.solids[solid];
+                solid.enclose(&bodies[solid.body].pose);
             }
-            let pose = bodies[first.body].pose * first.pose;
-            let other = bodies[second.body].pose * second.pose;
-            let relative = pose.inv_mul(&other);
-            let round = [first, second].map(|solid| solid.round.map_or(0.0, |(_, radius)| radius));
-            let way = match round[0] + round[1] {
-                0.0 => STILL,
-                radius => STILL.min(ROLL * radius / MILLIMETRES),
-            };
-            if !candidate.still(&relative, second.reach, way) {
-                candidate.compute(&relative, (first, second), self.prediction);
-                candidate.drop_covered(&self.solids);
-                candidate.choose(self.prediction);
-                candidate.found_at = Some(relative);
+            for &(geoms, candidate) in &list.near {
+                let candidate = &mut list.candidates[candidate];
+                let (first, second) =
+                    (&self.solids[candidate.pair.first], &self.solids[candidate.pair.second]);
+                if first.apart(second, self.prediction) || first.separated(second, self.prediction)
+                {
+                    continue;
+                }
+                candidate.find(
+                    geoms,
+                    [first, second],
+                    bodies,
+                    &self.solids,
+                    self.prediction,
+                    found,
+                );
             }
-            candidate.report(geoms, &pose, &relative, found);
         }
         patches::join(found);
     }
@@ -152,6 +163,7 @@ impl Solid {
         let (centre, half) = shapes::bounds(&geom.shape);
         let mut solid = Solid {
             body,
+            friction: geom.friction,
             shape,
             round: match geom.shape {
                 Shape::RoundBox { core, radius } => {
@@ -168,7 +180,7 @@ impl Solid {
             axes: Matrix3::identity(),
             centre: Vector3::zeros(),
             reach: centre.norm() + half.norm(),
-            neighbours: Vec::new(),
+            neighbours: Arc::new([]),
         };
         solid.enclose(&Pose::identity());
         solid
@@ -220,6 +232,38 @@ impl Solid {
 }
 
 impl Candidate {
+    fn new(pair: GeomPair) -> Self {
+        let (manifold, points) = (ContactManifold::new(), Vec::new());
+        Candidate { pair, manifold, found_at: None, axis: Vector3::zeros(), points }
+    }
+
+    /// Appends the points at the bodies' poses, found anew if the shapes have moved.
+    fn find(
+        &mut self,
+        geoms: usize,
+        [first, second]: [&Solid; 2],
+        bodies: &[MovingBody],
+        solids: &[Solid],
+        prediction: f64,
+        found: &mut Vec<Touch>,
+    ) {
+        let pose = bodies[first.body].pose * first.pose;
+        let other = bodies[second.body].pose * second.pose;
+        let relative = pose.inv_mul(&other);
+        let round = [first, second].map(|solid| solid.round.map_or(0.0, |(_, radius)| radius));
+        let way = match round[0] + round[1] {
+            0.0 => STILL,
+            radius => STILL.min(ROLL * radius / MILLIMETRES),
+        };
+        if !self.still(&relative, second.reach, way) {
+            self.compute(&relative, (first, second), prediction);
+            self.drop_covered(solids);
+            self.choose(prediction);
+            self.found_at = Some(relative);
+        }
+        self.report(geoms, &pose, &relative, found);
+    }
+
     /// Computes the manifold from scratch.
     fn compute(&mut self, relative: &Pose, solids: (&Solid, &Solid), prediction: f64) {
         // With points left in it parry would only move them along.

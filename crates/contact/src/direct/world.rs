@@ -35,8 +35,10 @@ pub(super) struct DirectWorld {
     solver: Solver,
     touches: Vec<Touch>,
     contacts: Vec<Contact>,
-    /// Contact patch of each pair of geoms that touch; empty if no friction has patches.
-    patches: Vec<Option<Patch>>,
+    /// Whether a friction has patches.
+    patched: bool,
+    /// Contact patches, each with the number of its pair of geoms.
+    patches: Vec<(usize, Patch)>,
 }
 
 impl DirectWorld {
@@ -54,10 +56,8 @@ impl DirectWorld {
             joints: scene.joints.iter().map(SprungJoint::new).collect(),
             pairs: scene.contacts.clone(),
             forces: vec![ContactForce::default(); scene.contacts.len()],
-            patches: vec![
-                None;
-                if scene.patched().is_some() { detector.candidates.len() } else { 0 }
-            ],
+            patched: scene.patched().is_some(),
+            patches: Vec::new(),
             detector,
             system: Blocks::new(size, eliminated, &coupled),
             values: vec![Vector6::zeros(); size],
@@ -90,7 +90,7 @@ impl DirectWorld {
                 Torsion::Radius(radius) => arm.map(|arm| lever(&arm, &(touch.normal * radius))),
                 Torsion::Patch => {
                     let aside = |p: &Patch| p.aside(&ends[0].pose, &touch.point, &touch.normal);
-                    let aside = self.patches[touch.geoms].as_ref().map_or(Vector3::zeros(), aside);
+                    let aside = self.patch(touch.geoms).map_or(Vector3::zeros(), aside);
                     let at_point = arm.map(|arm| lever(&arm, &Vector3::zeros()));
                     at_point.map(|lever| moved_aside(&lever, &aside, &touch.normal))
                 }
@@ -109,9 +109,13 @@ impl DirectWorld {
         }
     }
 
+    fn patch(&self, geoms: usize) -> Option<&Patch> {
+        self.patches.iter().find(|(at, _)| *at == geoms).map(|(_, patch)| patch)
+    }
+
     /// Sets the patches as these contacts load them; without contacts the new ones, evenly.
     fn press(&mut self, contacts: Option<&[Contact]>) {
-        if self.patches.is_empty() {
+        if !self.patched {
             return;
         }
         let mut from = 0;
@@ -119,12 +123,12 @@ impl DirectWorld {
             let Touch { geoms, pair, normal, friction, .. } = touches[0];
             let load = |i: usize| contacts.map_or(0.0, |all| all[i].impulse.dot(&all[i].normal));
             if friction.torsion == Torsion::Patch
-                && (contacts.is_some() || self.patches[geoms].is_none())
+                && (contacts.is_some() || self.patch(geoms).is_none())
             {
                 let frame = self.bodies[self.pairs[pair].first.0].pose.inverse();
                 let loaded = |(i, touch): (usize, &Touch)| (frame * touch.point, load(from + i));
                 let points: Vec<_> = touches.iter().enumerate().map(loaded).collect();
-                self.patches[geoms] = Some(Patch::new(&points, &(frame * normal)));
+                self.patches.push((geoms, Patch::new(&points, &(frame * normal))));
             }
             from += touches.len();
         }
@@ -196,7 +200,7 @@ impl DirectWorld {
             }
         }
         self.add_forces();
-        self.patches.fill(None);
+        self.patches.clear();
         let contacts = std::mem::take(&mut self.contacts);
         self.press(Some(&contacts));
         self.contacts = contacts;

@@ -5,16 +5,19 @@ mod edges;
 pub mod finger;
 pub mod geometry;
 mod latch;
+pub mod parts_file;
 mod raw;
 mod raw_part;
 mod rounded;
 
 pub use geometry::{Part, Solid};
 pub use latch::Latch;
+pub use raw_part::MAX_PARTS;
 pub use rounded::Rounded;
 
 use crate::task::finger::FingerModel;
 use input::units::read::{deg, mm};
+use nalgebra::{Vector2, Vector3};
 use serde::{Deserialize, Deserializer};
 
 /// A checked task, in SI units, in the task frame: origin at the centre of the socket's opening on
@@ -255,4 +258,26 @@ pub struct Success {
     /// Largest angle between the plug's axis and z, rad.
     #[serde(rename = "tilt_deg", deserialize_with = "deg")]
     pub tilt: f64,
+    /// Mated pose by which the plug's place is judged; without it the tip must lie in the opening.
+    #[serde(default)]
+    pub mated: Option<Mated>,
+}
+
+/// Mated pose of an upright plug.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mated {
+    /// Tip of the plug in the task frame, m.
+    #[serde(rename = "tip_mm", deserialize_with = "mm")]
+    pub tip: [f64; 3],
+    /// Largest lateral distance of an inserted plug's tip from there, m.
+    #[serde(rename = "lateral_mm", deserialize_with = "mm")]
+    pub lateral: f64,
+}
+
+impl Mated {
+    /// Returns the lateral distance of a tip, task frame, from the mated one, m.
+    pub fn aside(&self, tip: &Vector3<f64>) -> f64 {
+        (tip.xy() - Vector2::new(self.tip[0], self.tip[1])).norm()
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::finger::{RawFinger, finger};
 use super::latch::{RawLatch, latch};
+use super::parts_file::PartsFile;
 use super::raw_part::{RawPart, interval, parts};
 use super::{
     Ending, Friction, Grip, Limits, PadTorsion, Phase, Plug, Sensed, Stage, StartRule, Strategy,
@@ -32,6 +33,7 @@ struct RawTask {
     success: Success,
     #[serde(default)]
     limits: Limits,
+    parts: Option<PartsFile>,
 }
 
 #[derive(Deserialize)]
@@ -39,6 +41,7 @@ struct RawTask {
 struct RawPlug {
     #[serde(rename = "mass_g", deserialize_with = "gram")]
     mass: f64,
+    #[serde(default)]
     part: Vec<RawPart>,
     latch: Option<RawLatch>,
 }
@@ -50,6 +53,7 @@ struct RawSocket {
     opening_x: [f64; 2],
     #[serde(rename = "opening_y_mm", deserialize_with = "mm")]
     opening_y: [f64; 2],
+    #[serde(default)]
     part: Vec<RawPart>,
 }
 
@@ -131,6 +135,9 @@ fn checked(raw: RawTask, file: &str) -> Result<Task, InputError> {
     let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     if raw.name.is_empty() || !raw.name.chars().all(plain) {
         return check.fail("name", "must be letters, digits, - and _ only, as in \"usb\"");
+    }
+    if let (true, Some(PartsFile { file, .. })) = (part.is_empty(), &raw.parts) {
+        return check.fail("parts.file", format!("{file} must lie beside the task file"));
     }
     let held = parts(check, "plug.part", raw.plug.part)?;
     let latch = raw.plug.latch.map(|raw| latch(check, &raw, &held)).transpose()?;

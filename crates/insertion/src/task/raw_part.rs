@@ -60,8 +60,8 @@ pub struct RawEdges {
     radius: Option<f64>,
 }
 
-/// Largest number of parts of a plug or a socket: the cost of collision detection grows with their product.
-const MAX_PARTS: usize = 200;
+/// Largest number of parts of a plug or a socket: a trial looks only at those that are near one another.
+pub const MAX_PARTS: usize = 3000;
 const MAX_CORNERS: usize = 256;
 /// Thinnest part and narrowest opening, m.
 pub const THINNEST: f64 = 1e-3 * MM;

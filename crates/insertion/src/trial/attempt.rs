@@ -434,6 +434,11 @@ impl<'a> Attempt<'a> {
         self.phases.push(end);
     }
 
+    /// Whether the leading edge was inside the opening, and the plug is not beside its mated pose.
+    pub fn entered(&self) -> bool {
+        self.watch.entered && !self.placement().astray(&self.task)
+    }
+
     pub fn result(self, end: Result<(), Stop>) -> Trial {
         let placement = self.placement();
         // At rest, or where a bottomed part stopped the robot: what passes by may tip on.
@@ -442,7 +447,7 @@ impl<'a> Attempt<'a> {
             seated: held && self.stage == Stage::Assembly && placement.seated(&self.task),
             gripped: self.watch.gripped(),
             lost_in: (end == Err(Stop::Lost)).then_some(self.stage),
-            entered: self.watch.entered,
+            entered: self.entered(),
         };
         let diverged = matches!(end, Err(Stop::Diverged | Stop::Interrupted));
         let outcome = if diverged { Outcome::Diverged } else { classify(facts) };

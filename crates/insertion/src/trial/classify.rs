@@ -7,14 +7,17 @@
 //!    limit) before the search began: class 1; later: class 4. So does a part that is
 //!    seated, but that one finger has let go of: pushed aside by more than twice the
 //!    grasp force, it stands where it is driven by the other finger alone.
-//! 3. Its leading edge is not inside the opening when the search ends: class 2, "a failed search
-//!    phase in which the plug is missed" (paper, Sec. "Failure Cases").
+//! 3. Its leading edge is not inside the opening when the search ends, or it ends beside its mated
+//!    pose: class 2, "a failed search phase in which the plug is missed" (paper, Sec. "Failure Cases").
 //! 4. Otherwise it entered and is not seated, whether fingers still touch it or not: class 3.
 
 use crate::outcome::{FailureClass, Outcome};
 use crate::task::{Stage, Task};
 use contact::scene::Pose;
 use nalgebra::Vector3;
+
+/// Lateral distance beyond that of an inserted plug at which the plug has missed, m.
+const ASTRAY: f64 = 0.5e-3;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Placement {
@@ -33,8 +36,17 @@ impl Placement {
     pub fn seated(&self, task: &Task) -> bool {
         let [x, y] = task.opening;
         // Deep beside the socket is not inserted.
-        let inside = within(self.tip.x, x) && within(self.tip.y, y);
+        let inside = match &task.success.mated {
+            Some(mated) => mated.aside(&self.tip) <= mated.lateral,
+            None => within(self.tip.x, x) && within(self.tip.y, y),
+        };
         inside && -self.tip.z >= task.success.depth && self.tilt <= task.success.tilt
+    }
+
+    /// Whether the plug is beside the place in which it mates, as one pitch of its pins aside.
+    pub fn astray(&self, task: &Task) -> bool {
+        let mated = task.success.mated.as_ref();
+        mated.is_some_and(|mated| mated.aside(&self.tip) > mated.lateral + ASTRAY)
     }
 
     /// Margin of this outcome; see [`super::Trial::margin`].
@@ -87,7 +99,31 @@ pub fn classify(facts: Facts) -> Outcome {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixtures::task;
+    use crate::task::Mated;
     use FailureClass::*;
+
+    /// 2 x 5 header: a pitch of 2.54 mm aside is deep and upright, and has missed.
+    #[test]
+    fn a_plug_beside_its_mated_pose_is_not_seated_and_has_missed() {
+        let mut header = task("usb");
+        let mated = Mated { tip: [0.2e-3, 0.0, -12.5e-3], lateral: 0.1e-3 };
+        for (x_mm, seated, astray) in [
+            (0.2, true, false),
+            (0.29, true, false),
+            (0.5, false, false),
+            (0.2 + 2.54, false, true),
+            (0.2 - 2.54, false, true),
+        ] {
+            let placement = Placement { tip: Vector3::new(x_mm * 1e-3, 0.0, -12.4e-3), tilt: 0.0 };
+            header.success.mated = Some(mated);
+            assert_eq!(placement.seated(&header), seated, "{x_mm}");
+            assert_eq!(placement.astray(&header), astray, "{x_mm}");
+            // By the opening of 7.55 mm all are.
+            header.success.mated = None;
+            assert!(placement.seated(&header) && !placement.astray(&header), "{x_mm}");
+        }
+    }
 
     #[test]
     fn every_rule_decides_in_its_order() {

@@ -2,6 +2,7 @@
 
 use super::classify::within;
 use crate::task::Task;
+use crate::task::geometry::hull;
 use contact::scene::Pose;
 use input::units::MM;
 use nalgebra::{Point3, Vector3};
@@ -47,6 +48,8 @@ impl Watch {
     }
 }
 
+/// Corners of a plug of which only those of the hull count.
+const MANY: usize = 500;
 /// Depth of an edge that is inside, m: more than contacts sink, less than any preload.
 const DEPTH: f64 = 0.15 * MM;
 /// Overlap of an edge that leans on a wall, m: more than contacts sink, less than a clearance.
@@ -63,8 +66,11 @@ impl LeadingEdge {
     pub fn new(task: &Task) -> Self {
         // A latch gives way, and leads nothing.
         let corners = task.plug.rigid().flat_map(|part| part.solid.corners());
+        let corners: Vec<_> = corners.filter(|corner| corner.z < task.success.depth).collect();
+        // Of many corners those of the hull are looked at in every step.
+        let few = if corners.len() > MANY { hull(&corners) } else { None };
         LeadingEdge {
-            corners: corners.filter(|corner| corner.z < task.success.depth).collect(),
+            corners: few.map_or(corners, |(corners, _)| corners),
             opening: task.opening.map(|[from, to]| [from - LEANING, to + LEANING]),
         }
     }

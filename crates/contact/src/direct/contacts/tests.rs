@@ -108,3 +108,51 @@ fn faces_of_different_height_friction_or_direction_are_no_patch() {
         assert_eq!(all.len(), 8);
     }
 }
+
+/// Socket of a tile of `count` x `count` boxes of 1 mm under a cube of 2 mm, which moves by steps.
+fn over_tiles(count: i32, way: &[Pose]) -> (Vec<Vec<(Point3<f64>, f64)>>, usize) {
+    let cube = |half: f64, x: f64, y: f64, z: f64| {
+        let shape = Shape::Box { half: Vector3::repeat(half) };
+        Geom { name: String::new(), shape, pose: Pose::translation(x, y, z), friction: None }
+    };
+    let middle = count / 2;
+    let place = |i: i32| f64::from(i - middle) * 1e-3;
+    let tiles =
+        (0..count * count).map(|i| cube(0.5e-3, place(i % count), place(i / count), -0.5e-3));
+    let mut scene = Scene::default();
+    for geoms in [tiles.collect(), vec![cube(1e-3, 0.0, 0.0, 1e-3)]] {
+        let (name, pose) = (String::new(), Pose::identity());
+        scene.body(Body { name, motion: Motion::Fixed, pose, geoms });
+    }
+    scene.contact(BodyId(0), BodyId(1), Friction::hard(0.3));
+    let mut bodies: Vec<_> = scene.bodies.iter().map(|body| MovingBody::new(body, 0)).collect();
+    let mut detector = Detector::new(&scene, 0.2e-3);
+    let mut touched = Vec::new();
+    for pose in way {
+        bodies[1].put(*pose);
+        let mut found = Vec::new();
+        detector.detect(&bodies, &mut found);
+        touched.push(found.iter().map(|touch| (touch.point, touch.gap)).collect());
+    }
+    (touched, detector.lists[0].candidates.len())
+}
+
+/// A socket of 3 000 parts has the contacts of one of 25 about the plug, and only these are looked at.
+#[test]
+fn parts_far_away_change_no_contact_and_are_not_looked_at() {
+    let way: Vec<_> = (0..40)
+        .map(|i| {
+            at(
+                0.02e-3 * f64::from(i),
+                0.013e-3 * f64::from(i),
+                0.05e-3,
+                Vector3::z() * 0.01 * f64::from(i),
+            )
+        })
+        .collect();
+    let (few, _) = over_tiles(5, &way);
+    let (many, looked_at) = over_tiles(55, &way);
+    assert!(few.iter().all(|touches| touches.len() >= 4), "{few:?}");
+    assert_eq!(few, many);
+    assert!(looked_at <= 40, "{looked_at} of 3025");
+}

@@ -99,7 +99,7 @@ impl Driven {
                 seated: stop == Stop::ForceLimit && self.seated_s > 0.0,
                 gripped: self.attempt.watch.gripped(),
                 lost_in: (stop == Stop::Lost).then_some(self.attempt.stage),
-                entered: self.attempt.watch.entered,
+                entered: self.attempt.entered(),
             })),
         }
     }

@@ -1,0 +1,137 @@
+//! Neighbour lists (Verlet 1967, Phys. Rev. 159:98): the shapes of two bodies that may touch before
+//! the bodies have moved by a margin against one another. Only these are looked at in a step.
+
+use super::{Candidate, Solid};
+use crate::scene::{Friction, GeomPair, Pose};
+use nalgebra::Vector3;
+use parry::bounding_volume::Aabb;
+use parry::partitioning::{Bvh, BvhBuildStrategy};
+use rapier3d_f64::parry;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Way that two bodies may move against one another before their list is made anew, m.
+const MARGIN: f64 = 0.5e-3;
+
+/// Pairs of shapes of two bodies.
+#[derive(Clone)]
+pub(super) struct NearList {
+    /// Indices of the bodies.
+    pub bodies: [usize; 2],
+    /// Number of each pair that may touch, counted through all pairs of the scene, and its index in `candidates`.
+    pub near: Vec<(usize, usize)>,
+    /// Shapes of these pairs.
+    pub solids: Vec<usize>,
+    /// All pairs that were near once: they keep their points.
+    pub candidates: Vec<Candidate>,
+    number: usize,
+    friction: Friction,
+    /// Number of the first pair.
+    from: usize,
+    first: Range<usize>,
+    second: Range<usize>,
+    /// Boxes of the first body's shapes in its frame.
+    tree: Arc<Bvh>,
+    /// Farthest point of the second body's shapes from its origin, m.
+    reach: f64,
+    index: BTreeMap<usize, usize>,
+    /// Pose of the second body in the frame of the first when the list was made.
+    made_at: Option<Pose>,
+}
+
+/// Returns the hierarchy of the boxes of a body's shapes in its frame.
+pub(super) fn tree(solids: &[Solid]) -> Bvh {
+    let boxes: Vec<_> = solids.iter().map(|solid| solid.enclosing(0.0)).collect();
+    Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
+}
+
+impl Solid {
+    /// Box in the axes in which it was enclosed last, larger by a margin on all sides, m.
+    pub(super) fn enclosing(&self, margin: f64) -> Aabb {
+        let margin = Vector3::repeat(margin);
+        Aabb::new((self.low - margin).into(), (self.high + margin).into())
+    }
+}
+
+impl NearList {
+    /// List of the pair of bodies of a number in the scene; its pairs of shapes are counted `from` there on.
+    pub fn new(
+        number: usize,
+        friction: Friction,
+        from: usize,
+        (first, tree): (Range<usize>, Arc<Bvh>),
+        second: Range<usize>,
+        solids: &[Solid],
+    ) -> Self {
+        let far = |solid: &Solid| solid.frame.translation.vector.norm() + solid.half.norm();
+        let bodies = [&first, &second].map(|range| solids.get(range.start).map_or(0, |s| s.body));
+        NearList {
+            reach: solids[second.clone()].iter().map(far).fold(0.0, f64::max),
+            near: Vec::new(),
+            solids: Vec::new(),
+            candidates: Vec::new(),
+            index: BTreeMap::new(),
+            made_at: None,
+            bodies,
+            number,
+            friction,
+            from,
+            first,
+            second,
+            tree,
+        }
+    }
+
+    /// Number of pairs of shapes.
+    pub fn pairs(&self) -> usize {
+        self.first.len() * self.second.len()
+    }
+
+    /// Makes the list anew if the bodies have moved; `relative` is the second one's pose in the first's frame.
+    pub fn renew(&mut self, relative: &Pose, solids: &[Solid], prediction: f64) {
+        let near = self.made_at.as_ref().is_some_and(|before| {
+            let moved = (relative.translation.vector - before.translation.vector).norm();
+            // Half the angle, if it is small; of a quaternion that changed its sign about 2.
+            let turned = relative.rotation.coords - before.rotation.coords;
+            moved + 2.0 * turned.norm() * self.reach < MARGIN
+        });
+        if near {
+            return;
+        }
+        self.made_at = Some(*relative);
+        let mut found: Vec<(usize, [usize; 2])> = Vec::new();
+        for second in self.second.clone() {
+            let frame = relative * solids[second].frame;
+            let turn = frame.rotation.to_rotation_matrix().into_inner();
+            let half = turn.abs() * solids[second].half + Vector3::repeat(prediction + MARGIN);
+            let middle = frame.translation.vector;
+            let boxed = Aabb::new((middle - half).into(), (middle + half).into());
+            let ends = self.tree.intersect_aabb(&boxed).map(|leaf| leaf as usize);
+            let (wide, own) = (self.second.len(), second - self.second.start);
+            let pair =
+                |leaf: usize| (self.from + leaf * wide + own, [self.first.start + leaf, second]);
+            found.extend(ends.map(pair));
+        }
+        found.sort_unstable();
+        self.solids = found.iter().flat_map(|(_, pair)| *pair).collect();
+        self.solids.sort_unstable();
+        self.solids.dedup();
+        self.near.clear();
+        for (key, [first, second]) in found {
+            let candidates = &mut self.candidates;
+            let at = *self.index.entry(key).or_insert_with(|| {
+                let own = [first, second].map(|solid| solids[solid].friction);
+                let friction = self.friction.of_geoms(own);
+                candidates.push(Candidate::new(GeomPair {
+                    bodies: self.number,
+                    first,
+                    second,
+                    friction,
+                }));
+                candidates.len() - 1
+            });
+            self.near.push((key, at));
+        }
+    }
+}

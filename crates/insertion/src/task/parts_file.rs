@@ -1,0 +1,101 @@
+//! Parts of a task in a file of their own beside it: many of them would hide the rest of the task.
+
+use input::files::{LARGEST_INPUT, read_named};
+use input::shipped::Source;
+use input::{Check, InputError};
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+use std::fmt::Write;
+use std::path::Path;
+use toml::Table;
+
+/// Line before the parts in a text that has them appended.
+const APPENDED: &str = "\n# Parts of the file named under [parts]:\n";
+
+/// File of the parts, relative to the task file, and the hash of its text.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PartsFile {
+    /// Name of the file.
+    pub file: String,
+    /// SHA-256 of its text, hexadecimal.
+    pub sha256: String,
+}
+
+/// SHA-256 of a text, hexadecimal.
+pub fn sha256(text: &str) -> String {
+    Sha256::digest(text).iter().fold(String::new(), |mut hex, byte| {
+        let _ = write!(hex, "{byte:02x}");
+        hex
+    })
+}
+
+/// Returns a task file with the parts of its parts file appended, if it names one: the text is then
+/// complete, and a study copies it as such.
+///
+/// # Errors
+/// If the parts file cannot be read, or has changed.
+pub fn with_parts(source: Source) -> Result<Source, InputError> {
+    if !source.text.contains("[parts]") || source.text.contains(APPENDED) {
+        return Ok(source);
+    }
+    // What is no TOML is told by the parser of the task.
+    let Ok(mut table) = source.text.parse::<Table>() else { return Ok(source) };
+    let named = table.remove("parts").and_then(|named| named.try_into::<PartsFile>().ok());
+    let Some(named) = named else { return Ok(source) };
+    let check = Check { file: &source.file };
+    let beside = Path::new(&source.file).parent().unwrap_or(Path::new("")).join(&named.file);
+    let parts = match read_named(&beside, LARGEST_INPUT) {
+        Ok(text) => text,
+        Err(error) => {
+            return check.fail("parts.file", format!("cannot read {}: {error}", named.file));
+        }
+    };
+    if sha256(&parts) != named.sha256 {
+        let problem =
+            format!("{} has changed since the task was written; import it again", named.file);
+        return check.fail("parts.sha256", problem);
+    }
+    Ok(Source { text: joined(&source.text, &parts), file: source.file })
+}
+
+/// Text of a task file with the text of its parts file appended.
+pub fn joined(task: &str, parts: &str) -> String {
+    format!("{task}{APPENDED}{parts}")
+}
+
+/// Text of a task file without appended parts.
+pub fn without_parts(text: &str) -> &str {
+    text.split(APPENDED).next().unwrap_or(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use input::shipped::TASKS;
+
+    /// A shipped task whose socket lies in a file beside it is the same task; one whose file changed is refused.
+    #[test]
+    fn parts_beside_the_task_are_read_with_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let usb = TASKS.iter().find(|file| file.name == "usb").unwrap();
+        let (from, to) =
+            (usb.text.find("[[socket.part]]").unwrap(), usb.text.find("[grip]").unwrap());
+        let parts = &usb.text[from..to];
+        let named = format!("[parts]\nfile = \"usb.parts.toml\"\nsha256 = \"{}\"\n", sha256(parts));
+        let text = format!("{}{}{named}", &usb.text[..from], &usb.text[to..]);
+        let file = folder.path().join("usb.toml").display().to_string();
+        let source = || Source { file: file.clone(), text: text.clone() };
+        let missing = with_parts(source()).unwrap_err().to_string();
+        assert!(missing.contains("usb.parts.toml"), "{missing}");
+        std::fs::write(folder.path().join("usb.parts.toml"), parts).unwrap();
+        let read = with_parts(source()).unwrap();
+        let [found, expected] =
+            [&read.text, usb.text].map(|text| super::super::Task::parse(text, "usb").unwrap());
+        assert_eq!(found, expected);
+        assert_eq!(without_parts(&read.text), text);
+        assert_eq!(with_parts(read.clone()).unwrap(), read);
+        std::fs::write(folder.path().join("usb.parts.toml"), "").unwrap();
+        assert!(with_parts(source()).unwrap_err().to_string().contains("has changed"));
+    }
+}

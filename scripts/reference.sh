@@ -93,7 +93,8 @@ EOF
 
 check() {
     "$lab" check > "$reference/check.txt"
-    record checks "$reference/check.txt"
+    "$lab" check --engine rapier > "$reference/check_rapier.txt" || true # T12 and one row of P7
+    record checks "$reference"/check{,_rapier}.txt
 }
 
 # Half the step against the production step on three fingers, and coarse-to-fine against exhaustive search on all.

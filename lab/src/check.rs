@@ -53,7 +53,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.convergence || arguments.searches {
         return arguments.windows();
     }
-    let rows = analytic_checks::run(&|factor| engine.build(factor));
+    let mut rows = analytic_checks::run(&|factor| engine.build(factor));
+    rows.extend(analytic_checks::slab::forms(engine.name()));
     let failed = rows.iter().filter(|row| !row.passed).count();
     print(&analytic_checks::table(&rows))?;
     verdict("checks", failed, rows.len())

@@ -1,27 +1,8 @@
 //! The closed forms P1 to P10 in an engine.
 //!
-//! Arguments: engine (direct, rapier, mujoco), flats of an arc or `core`, factor of the stiffness of direct's
-//! contacts.
+//! Arguments: engine (direct, rapier, mujoco), flats of an arc or `core`, factor of the stiffness of contacts.
 
-use analytic_checks::slab::{Rounding, rounded, sharp};
-use contact::Engine;
-use contact::direct::Direct;
-use contact::rapier::Rapier;
-
-fn engine(name: &str, stiffer: f64) -> Option<Box<dyn Engine>> {
-    match name {
-        "direct" => {
-            let soft = Direct::default();
-            let contact_stiffness = stiffer * soft.contact_stiffness;
-            let step_s = soft.step_s / stiffer.sqrt();
-            Some(Box::new(Direct { step_s, contact_stiffness, ..soft }))
-        }
-        "rapier" => Some(Box::new(Rapier::default())),
-        #[cfg(feature = "mujoco")]
-        "mujoco" => Some(Box::new(contact::mujoco::Mujoco::default())),
-        _ => None,
-    }
-}
+use analytic_checks::slab::{Rounding, engine, rounded, sharp};
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -10,7 +10,12 @@ pub fn table(rows: &[CheckRow]) -> String {
             Tolerance::Relative(share) => (percent(row.error()), percent(share)),
             Tolerance::Absolute(error) => (number(row.error()), number(error)),
         };
-        let verdict = if row.passed { "ok" } else { "FAIL" };
+        let within = row.error().abs() <= row.tolerance.largest();
+        let verdict = match (row.passed, within) {
+            (false, _) => "FAIL",
+            (true, true) => "ok",
+            (true, false) => "halves",
+        };
         let [expected, measured] = [row.expected, row.measured].map(number);
         let unit = row.unit.to_owned();
         let (check, quantity) = (row.check.to_owned(), row.quantity.clone());

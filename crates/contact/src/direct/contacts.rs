@@ -55,6 +55,8 @@ struct Solid {
     shape: SharedShape,
     /// Core and radius of a round shape, mm.
     round: Option<(Cuboid, f64)>,
+    /// Outward normals of the faces of a hull, and distances of their planes from the origin, mm.
+    faces: Vec<(Vector3<f64>, f64)>,
     /// parry's frame of the shape in the body frame.
     pose: Pose,
     /// Enclosing box: its frame in the body frame, and half extents, m.
@@ -164,6 +166,7 @@ impl Solid {
         let mut solid = Solid {
             body,
             friction: geom.friction,
+            faces: faces(&shape),
             shape,
             round: match geom.shape {
                 Shape::RoundBox { core, radius } => {
@@ -225,10 +228,36 @@ impl Solid {
                 return false;
             }
             let local = solids[j].pose.inverse_transform_point(&outside).coords * MILLIMETRES;
-            let distance = solids[j].shape.distance_to_local_point(local.into(), true);
-            distance < SEAM * MILLIMETRES
+            solids[j].distance(&local) < SEAM * MILLIMETRES
         })
     }
+
+    /// Returns the distance of a point, in parry's frame, mm; 0 inside. Beyond `SEAM` it may be less.
+    fn distance(&self, place: &Vector3<f64>) -> f64 {
+        if let Some((core, radius)) = &self.round {
+            let beside = place.abs() - Vector3::from(core.half_extents);
+            return (beside.map(|way| way.max(0.0)).norm() - radius).max(0.0);
+        }
+        if !self.faces.is_empty() {
+            let beyond = self.faces.iter().map(|(face, far)| face.dot(place) - far);
+            let beyond = beyond.fold(f64::NEG_INFINITY, f64::max);
+            if beyond <= 0.0 || beyond >= SEAM * MILLIMETRES {
+                return beyond.max(0.0);
+            }
+        }
+        self.shape.distance_to_local_point((*place).into(), true)
+    }
+}
+
+/// Returns the planes of a hull's faces.
+fn faces(shape: &SharedShape) -> Vec<(Vector3<f64>, f64)> {
+    let Some(hull) = shape.as_convex_polyhedron() else { return Vec::new() };
+    let farthest = |normal: &Vector3<f64>| {
+        let ways = hull.points().iter().map(|point| Vector3::from(*point).dot(normal));
+        ways.fold(f64::NEG_INFINITY, f64::max)
+    };
+    let normals = hull.faces().iter().map(|face| Vector3::from(face.normal));
+    normals.map(|normal| (normal, farthest(&normal))).collect()
 }
 
 impl Candidate {

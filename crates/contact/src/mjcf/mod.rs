@@ -43,6 +43,9 @@ pub struct MjcfSettings {
     pub friction_rate: f64,
     /// Tolerance of MuJoCo's solver.
     pub tolerance: f64,
+    /// Whether two meshes may touch at several points. At a rim MuJoCo gives them wrong normals; without,
+    /// a face of a mesh bears at one point only.
+    pub multiccd: bool,
 }
 
 impl Default for MjcfSettings {
@@ -56,6 +59,7 @@ impl Default for MjcfSettings {
             contact_mass: 0.1,
             friction_rate: 3000.0,
             tolerance: 1e-10,
+            multiccd: true,
         }
     }
 }
@@ -106,6 +110,12 @@ pub fn supports(scene: &Scene) -> Result<(), NotMjcf> {
 pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<String, NotMjcf> {
     supports(scene)?;
     let g = scene.gravity;
+    // A diverged state must stay visible, not be reset.
+    let flags = Element::new("flag").with("autoreset", "disable");
+    let flags = match settings.multiccd {
+        true => flags,
+        false => flags.with("multiccd", "disable"),
+    };
     let option = Element::new("option")
         .with("timestep", settings.step_s)
         .numbers("gravity", [g.x, g.y, g.z])
@@ -116,8 +126,7 @@ pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<Strin
         .with("impratio", settings.stick_damping / (settings.friction_rate * settings.contact_mass))
         .with("solver", "Newton")
         .with("tolerance", settings.tolerance)
-        // A diverged state must stay visible, not be reset.
-        .holding([Element::new("flag").with("autoreset", "disable")]);
+        .holding([flags]);
     let geom = Element::new("geom").with("contype", 0).with("conaffinity", 0);
     let model = Element::new("mujoco").with("model", name).holding([
         Element::new("compiler").with("angle", "radian").with("autolimits", "true"),

@@ -8,6 +8,12 @@ use rapier3d_f64::prelude as rp;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+/// Units of length in a metre: parry keeps the points and the normal of two shapes until they have slid by
+/// 0.001 units, which in metres is as much as an edge is round. Masses and times are SI.
+const LENGTH: f64 = 1e3;
+/// Units of a moment, and of a moment of inertia, in SI's.
+const MOMENT: f64 = LENGTH * LENGTH;
+
 pub(super) struct RapierWorld {
     world: rp::PhysicsWorld,
     bodies: Vec<rp::RigidBodyHandle>,
@@ -31,7 +37,7 @@ impl rp::PhysicsHooks for Frictions {
 impl RapierWorld {
     pub fn new(scene: &Scene, settings: &Rapier) -> Self {
         let mut world = rp::PhysicsWorld::new();
-        world.gravity = scene.gravity.into();
+        world.gravity = (scene.gravity * LENGTH).into();
         world.integration_parameters = parameters(settings);
         let bodies = scene.bodies.iter().zip(groups(scene));
         let bodies: Vec<_> =
@@ -64,16 +70,16 @@ impl World for RapierWorld {
     fn pose(&self, body: BodyId) -> Pose {
         let pose = self.world.bodies[self.bodies[body.0]].position();
         let rotation = UnitQuaternion::new_unchecked(pose.rotation.into());
-        Pose::from_parts(Vector3::from(pose.translation).into(), rotation)
+        Pose::from_parts((Vector3::from(pose.translation) / LENGTH).into(), rotation)
     }
 
     fn drive(&mut self, body: BodyId, pose: Pose) {
         let body = &mut self.world.bodies[self.bodies[body.0]];
-        body.set_next_kinematic_position(shapes::pose(&pose, 1.0));
+        body.set_next_kinematic_position(shapes::pose(&pose, LENGTH));
     }
 
     fn place(&mut self, body: BodyId, pose: Pose) {
-        self.world.bodies[self.bodies[body.0]].set_position(shapes::pose(&pose, 1.0), true);
+        self.world.bodies[self.bodies[body.0]].set_position(shapes::pose(&pose, LENGTH), true);
     }
 
     fn set_spring(&mut self, joint: JointId, axis: usize, spring: Spring) {
@@ -87,8 +93,8 @@ impl World for RapierWorld {
         // rapier adds up forces until they are reset.
         body.reset_forces(true);
         body.reset_torques(true);
-        body.add_force(force.into(), true);
-        body.add_torque(moment.into(), true);
+        body.add_force((force * LENGTH).into(), true);
+        body.add_torque((moment * MOMENT).into(), true);
     }
 
     fn contact(&self, first: BodyId, second: BodyId) -> ContactForce {
@@ -139,7 +145,7 @@ fn add_pair(
             let solved = manifold.data.solver_contacts.iter();
             solved.map(|contact| &manifold.points[contact.contact_indices()[0] as usize].data)
         };
-        let pressed = active().map(|point| point.impulse).sum::<f64>() / parameters.dt;
+        let pressed = active().map(|point| point.impulse).sum::<f64>() / parameters.dt / LENGTH;
         sum.net += Vector3::from(manifold.data.normal) * (sign * pressed);
         sum.normal_sum += pressed;
         // `Simplified` friction is one force for the whole manifold, repeated at each active point:
@@ -147,7 +153,7 @@ fn add_pair(
         let Some(point) = active().next() else { continue };
         let rubbed = Vector3::from(point.warmstart_tangent_world);
         let substep = parameters.dt / parameters.num_solver_iterations as f64;
-        sum.net -= rubbed * (sign / substep);
+        sum.net -= rubbed * (sign / substep / LENGTH);
     }
 }
 
@@ -162,9 +168,9 @@ fn parameters(settings: &Rapier) -> rp::IntegrationParameters {
         num_solver_iterations: settings.substeps,
         contact_softness: softness,
         static_contact_softness: softness,
-        normalized_prediction_distance: settings.prediction,
-        normalized_max_corrective_velocity: settings.corrective_velocity,
-        normalized_allowed_linear_error: settings.allowed_error,
+        normalized_prediction_distance: settings.prediction * LENGTH,
+        normalized_max_corrective_velocity: settings.corrective_velocity * LENGTH,
+        normalized_allowed_linear_error: settings.allowed_error * LENGTH,
         // Recycled contacts let a block slide 34 mm past an edge before it drops.
         contact_recycling: false,
         contact_clustering: false,
@@ -199,18 +205,19 @@ fn insert_body(
         Motion::Fixed | Motion::Mechanism(_) => rp::RigidBodyBuilder::fixed(),
         Motion::Driven => rp::RigidBodyBuilder::kinematic_position_based(),
         Motion::Free(inertia) | Motion::Carried(inertia) => {
-            let (centre, moments) = (inertia.centre.coords.into(), inertia.moments.into());
+            let centre = (inertia.centre.coords * LENGTH).into();
+            let moments = (inertia.moments * MOMENT).into();
             let properties = rp::MassProperties::new(centre, inertia.mass, moments);
             rp::RigidBodyBuilder::dynamic().additional_mass_properties(properties)
         }
     };
     let weight = if matches!(body.motion, Motion::Carried(_)) { 0.0 } else { 1.0 };
-    let pose = shapes::pose(&body.pose, 1.0);
+    let pose = shapes::pose(&body.pose, LENGTH);
     let handle = world.insert_body(builder.gravity_scale(weight).pose(pose).can_sleep(false));
     for geom in &body.geoms {
-        let (shape, turn) = shapes::shared(&geom.shape, 1.0);
+        let (shape, turn) = shapes::shared(&geom.shape, LENGTH);
         let collider = rp::ColliderBuilder::new(shape)
-            .position(shapes::pose(&(geom.pose * turn), 1.0))
+            .position(shapes::pose(&(geom.pose * turn), LENGTH))
             .density(0.0)
             .user_data(world.colliders.len() as u128)
             .active_hooks(rp::ActiveHooks::MODIFY_SOLVER_CONTACTS)
@@ -233,8 +240,8 @@ const JOINT_AXES: [rp::JointAxis; 6] = [
 /// Returns the joint with its springs.
 fn generic_joint(joint: &Joint) -> rp::GenericJoint {
     let mut made = rp::GenericJoint::new(rp::JointAxesMask::empty());
-    made.set_local_frame1(shapes::pose(&joint.in_parent, 1.0));
-    made.set_local_frame2(shapes::pose(&joint.in_child, 1.0));
+    made.set_local_frame1(shapes::pose(&joint.in_parent, LENGTH));
+    made.set_local_frame2(shapes::pose(&joint.in_child, LENGTH));
     made.set_contacts_enabled(false);
     // Coupled springs are refused before; see `supports`.
     let Springs::Axes(axes) = &joint.springs else { return made };
@@ -251,7 +258,12 @@ fn generic_joint(joint: &Joint) -> rp::GenericJoint {
 
 /// Gives an axis its spring.
 fn set_motor(joint: &mut rp::GenericJoint, axis: rp::JointAxis, spring: &Spring) {
+    let turns = matches!(axis, rp::JointAxis::AngX | rp::JointAxis::AngY | rp::JointAxis::AngZ);
+    // Units of the coordinate, and of a force or moment in those of the coordinate and mass.
+    let (way, rate) = if turns { (1.0, MOMENT) } else { (LENGTH, 1.0) };
     joint.set_motor_model(axis, rp::MotorModel::ForceBased);
-    joint.set_motor(axis, spring.target, 0.0, spring.stiffness, spring.damping);
-    joint.set_motor_max_force(axis, if spring.limit.is_finite() { spring.limit } else { f64::MAX });
+    let [stiffness, damping] = [spring.stiffness, spring.damping].map(|of| of * rate);
+    joint.set_motor(axis, spring.target * way, 0.0, stiffness, damping);
+    let limit = spring.limit * way * rate;
+    joint.set_motor_max_force(axis, if limit.is_finite() { limit } else { f64::MAX });
 }

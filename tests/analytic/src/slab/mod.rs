@@ -3,11 +3,14 @@
 //! A joint keeps y and the turns about x and z, so that the engine, too, has three degrees of
 //! freedom. The frame of the peg lies in the middle of its tip, z along the peg.
 
+mod check;
 mod compare;
+mod engines;
 mod forms;
 mod round;
 mod rounded;
 mod wedge;
+mod yaw;
 
 use crate::build::{self, Measured};
 use crate::planar::{Assembly, Outcome, Record, Trial, V3};
@@ -16,10 +19,13 @@ use contact::{Engine, World};
 use input::units::{GRAM, MM};
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 
+pub use check::forms;
 pub use compare::{Agreement, Case, agreement, table};
+pub use engines::engine;
 pub use forms::sharp;
 pub use round::Rounding;
 pub use rounded::rounded;
+pub use yaw::{turned, yaw};
 
 /// Mass of the peg, kg.
 const MASS: f64 = 20.0 * GRAM;

@@ -109,8 +109,12 @@ fn faces_of_different_height_friction_or_direction_are_no_patch() {
     }
 }
 
-/// Socket of a tile of `count` x `count` boxes of 1 mm under a cube of 2 mm, which moves by steps.
-fn over_tiles(count: i32, way: &[Pose]) -> (Vec<Vec<(Point3<f64>, f64)>>, usize) {
+/// Point and gap of each touch.
+type Gaps = Vec<(Point3<f64>, f64)>;
+
+/// Touches of a socket of `count` x `count` boxes of 1 mm with a cube of 2 mm that moves over it, and the number of
+/// pairs that were looked at.
+fn over_tiles(count: i32, way: &[Pose]) -> (Vec<Gaps>, usize) {
     let cube = |half: f64, x: f64, y: f64, z: f64| {
         let shape = Shape::Box { half: Vector3::repeat(half) };
         Geom { name: String::new(), shape, pose: Pose::translation(x, y, z), friction: None }

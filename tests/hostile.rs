@@ -249,7 +249,7 @@ fn input_files_that_mean_nothing_are_refused_before_anything_is_simulated() {
         ("settle_s", "settle_s = 999.0", "it may take 60 s"),
         ("move_mm", "move_mm = [0.0, 0.0, -1e9]", "must lie in -1000 .. 1000"),
         ("[grip]", cylinder, "diameter_mm: is 1e160"),
-        ("[grip]", &few, "there must be 1 to 200"),
+        ("[grip]", &few, "there must be 1 to 3000"),
         ("[grip]", &many, "is longer than"),
         ("finger_plug =", "finger_plug = 0.0", "finger_plug_torsion_mm: is"),
         ("description", "description = \"\\u001b[31m\"", "control character"),

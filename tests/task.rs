@@ -617,6 +617,7 @@ fn explore(path: &str, known: &mut Vec<String>) {
         "finger",
         "strategy",
         "success",
+        "success.mated",
         "limits",
     ];
     let mut below = Vec::new();

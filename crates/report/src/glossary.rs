@@ -18,9 +18,9 @@ pub(crate) const TERMS: [(&str, &str); 5] = [
     ("in repeats", "its repeated range"),
 ];
 
-/// Returns a text with its first term of each kind explained.
+/// Returns a text with its terms explained.
 pub(super) fn explained(text: &str) -> Markup {
-    let found = TERMS.iter().filter_map(|(term, tip)| Some((text.find(term)?, *term, *tip)));
+    let found = TERMS.iter().filter_map(|(term, tip)| Some((place(text, term)?, *term, *tip)));
     let Some((at, term, tip)) = found.min_by_key(|(at, ..)| *at) else { return html! { (text) } };
     let (before, after) = (&text[..at], &text[at + term.len()..]);
     html! {
@@ -29,6 +29,16 @@ pub(super) fn explained(text: &str) -> Markup {
         span.term tabindex="0" data-tip=(tip) aria-label={ (term) ": " (tip) } { (term) }
         (explained(after))
     }
+}
+
+/// Returns where a text has a term that is not a part of a word.
+fn place(text: &str, term: &str) -> Option<usize> {
+    let apart = |at: &usize| {
+        let letter = |c: Option<char>| c.is_some_and(char::is_alphanumeric);
+        let (before, after) = (&text[..*at], &text[*at + term.len()..]);
+        !letter(before.chars().next_back()) && !letter(after.chars().next())
+    };
+    text.match_indices(term).map(|(at, _)| at).find(apart)
 }
 
 #[cfg(test)]
@@ -47,5 +57,7 @@ mod tests {
             shown.starts_with("simulated: <span class=\"term\"") && shown.ends_with("&amp; more"),
             "{shown}"
         );
+        let plain = "simulated: -5.3 to +2.0 mm, not confirmed";
+        assert_eq!(explained(plain).into_string(), plain);
     }
 }

@@ -4,8 +4,8 @@ use super::folder::Inputs;
 use insertion::robot::Robot;
 use insertion::task::Task;
 
-/// Share of a robot's stop force from which on a force counts as too near to it: peaks of repeated insertions
-/// differ by about as much.
+/// Share of a robot's stop force from which on a force counts as too near to it. An assumption: the scatter of
+/// peak forces on a robot is not measured.
 const STOP_SHARE: f64 = 0.9;
 
 /// Largest contact forces of a study, N.

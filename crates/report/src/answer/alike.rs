@@ -83,10 +83,9 @@ impl<'a> Ties<'a> {
             let found = measured.iter().find(|measured| measured.design == design.design);
             found.map(|measured| measured.range_mm)
         };
-        // Only within the limits of connector and robot, if any design is.
+        // Within the limits of connectors and robot.
         let within = |(r, _): &&(&Recorded, f64)| ExcessForce::of(record, &r.tasks()).is_none();
-        let any = among.iter().any(|member| within(&member));
-        let safest = || among.iter().filter(move |member| !any || within(member));
+        let safest = || among.iter().filter(within);
         let printed = safest().filter_map(|&(r, loss)| Some((r, loss, on_robot(r)?)));
         let printed = printed.max_by(|a, b| a.2.total_cmp(&b.2).then(b.0.index.cmp(&a.0.index)));
         let gentle = safest().filter_map(|&(design, _)| Some((design, force(design)?)));

@@ -103,9 +103,7 @@ pub fn force(answer: &Answer) -> Option<Line> {
     let excess = answer.force.as_ref()?;
     let ties = answer.recommended.as_ref().and_then(|found| found.ties.as_ref());
     let safe = ties.and_then(|ties| ties.safe.as_ref()).filter(|safe| {
-        let design = &safe.design.design;
-        let other = answer.verdict.finger() != Some(design) && answer.record.on_bench.is_none();
-        other && ExcessForce::of(answer.record, &safe.design.tasks()).is_none()
+        answer.verdict.finger() != Some(&safe.design.design) && answer.record.on_bench.is_none()
     });
     let remedy = match safe {
         Some(safe) => format!("take the safe choice, {}", words::design(&safe.design.design)),

@@ -170,7 +170,7 @@ def test_progress_is_not_needed_by_a_script_either(tmp_path, fake):
         *((f"slurm:{number}", "a whole number from 1 to 10000") for number in ("abc", "0")),
         *((f"dask:{place}", "as in dask://127.0.0.1:8786")
           for place in ("", "//", "//127.0.0.1", "//:8786", "//127.0.0.1:x", "//127.0.0.1:70000")),
-        ("cloud", "is none of dask://HOST:PORT"),
+        ("cloud", "must be dask://HOST:PORT"),
     ],
 )
 def test_an_executor_that_cannot_be_is_one_line(executor, right, tmp_path, fake):

@@ -1,7 +1,7 @@
 //! An answer line by line, each a name and a text, for terminal and page alike.
 
 use super::words::{self, ends_mm, evaluated, interval, mm, span};
-use super::{Answer, ExcessForce, Front, OnTask, Recommended, Spread, Ties};
+use super::{Answer, Front, OnTask, Recommended, Spread, Ties};
 use ask_tell::statistics::mean;
 use calibration::order::Order;
 use insertion::evaluation::objective::Measure;

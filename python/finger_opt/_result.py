@@ -76,8 +76,10 @@ def _short(value: Any) -> str:
     if (is_tuple(value) or is_list(value)) and len(value) > ITEMS:
         inner = ", ".join(_short(one) for one in value[: ITEMS // 2])
         return f"<{len(value)}: {inner}, ..>"
-    if is_numpy(value) and np.size(value) > ITEMS:
-        return f"<array of {np.shape(value)}>"
+    if is_numpy(value):
+        array: Any = value
+        if array.size > ITEMS:
+            return f"<array of {array.shape}>"
     text = repr(value)
     return text if isinstance(value, Result) or len(text) <= LETTERS else f"{text[:LETTERS]}.."
 

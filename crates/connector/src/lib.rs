@@ -8,6 +8,7 @@ pub mod body;
 pub mod check;
 pub mod draft;
 pub mod hold;
+pub mod mating;
 pub mod mesh;
 pub mod nominal;
 pub mod picture;

@@ -1,0 +1,257 @@
+//! Height maps.
+
+use crate::mesh::Triangle;
+use rayon::prelude::*;
+
+/// Height of what is not there, m; small enough for sums to stay finite.
+pub const NOWHERE: f32 = 1e6;
+
+/// Side of a part that a map shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Envelope {
+    /// Highest place of each column.
+    Upper,
+    /// Lowest place of each column.
+    Lower,
+}
+
+impl Envelope {
+    /// Height of a column without material.
+    pub fn empty(self) -> f32 {
+        match self {
+            Envelope::Upper => -NOWHERE,
+            Envelope::Lower => NOWHERE,
+        }
+    }
+
+    fn outer(self, a: f32, b: f32) -> f32 {
+        if (self == Envelope::Upper) == (a > b) { a } else { b }
+    }
+
+    fn inner(self, a: f32, b: f32) -> f32 {
+        if (self == Envelope::Upper) == (a > b) { b } else { a }
+    }
+}
+
+/// Rectangle in x and y, m: lower and upper bound of each axis.
+pub type Window = [[f64; 2]; 2];
+
+/// Heights at the middles of cells, m.
+#[derive(Debug, Clone)]
+pub struct Map {
+    /// Side shown.
+    pub envelope: Envelope,
+    /// Size of a cell in x and y, m.
+    pub step: [f64; 2],
+    /// Index of the first cell in x and y; cell i lies from i to i + 1 steps.
+    pub first: [i32; 2],
+    /// Cells in x and y.
+    pub count: [usize; 2],
+    /// Heights, row by row.
+    pub heights: Vec<f32>,
+}
+
+/// Bounds of triangles in x, y and z, m.
+pub fn bounds(triangles: &[Triangle]) -> [[f64; 2]; 3] {
+    [0, 1, 2].map(|axis| {
+        let values = triangles.iter().flatten().map(|p| p[axis]);
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+    })
+}
+
+impl Map {
+    /// Envelope of triangles within a window.
+    pub fn new(
+        triangles: &[Triangle],
+        envelope: Envelope,
+        step: [f64; 2],
+        window: Option<Window>,
+    ) -> Self {
+        let [x, y, _] = bounds(triangles);
+        let [wx, wy] = window.unwrap_or([x, y]);
+        let ranges = [[x[0].max(wx[0]), x[1].min(wx[1])], [y[0].max(wy[0]), y[1].min(wy[1])]];
+        let first = [0, 1].map(|axis| (ranges[axis][0] / step[axis]).floor() as i32);
+        let count = [0, 1].map(|axis| {
+            let last = (ranges[axis][1] / step[axis]).floor() as i32;
+            usize::try_from(last - first[axis] + 1).unwrap_or(0)
+        });
+        let heights = vec![envelope.empty(); count[0] * count[1]];
+        let mut map = Map { envelope, step, first, count, heights };
+        if !map.heights.is_empty() {
+            triangles.iter().for_each(|triangle| map.draw(triangle));
+        }
+        map
+    }
+
+    /// Middle of the cell of an index.
+    pub fn middle(&self, axis: usize, index: usize) -> f64 {
+        (f64::from(self.first[axis]) + index as f64 + 0.5) * self.step[axis]
+    }
+
+    fn draw(&mut self, [a, b, c]: &Triangle) {
+        let area = (b - a).xy().perp(&(c - a).xy());
+        let (low, high) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
+        let Some([from, to]) = self.cells(1, low, high) else { return };
+        if area.abs() < 1e-3 * self.step[0] * self.step[1] * 1e-3 {
+            return;
+        }
+        let normal = (b - a).cross(&(c - a));
+        let slope = [-normal.x / normal.z, -normal.y / normal.z];
+        let (bottom, top) = (a.z.min(b.z).min(c.z), a.z.max(b.z).max(c.z));
+        for row in from..=to {
+            let y = self.middle(1, row);
+            let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
+            for (p, q) in [(a, b), (b, c), (c, a)] {
+                let (p, q) = if p.y <= q.y { (p, q) } else { (q, p) };
+                if p.y <= y && y <= q.y {
+                    let x = if q.y > p.y { p.x + (q.x - p.x) * (y - p.y) / (q.y - p.y) } else { p.x };
+                    left = left.min(x).min(if q.y > p.y { x } else { q.x });
+                    right = right.max(x).max(if q.y > p.y { x } else { q.x });
+                }
+            }
+            let Some([start, end]) = self.cells(0, left, right) else { continue };
+            let at = a.z + slope[1] * (y - a.y);
+            for column in start..=end {
+                let z = at + slope[0] * (self.middle(0, column) - a.x);
+                let z = z.clamp(bottom, top) as f32;
+                let cell = &mut self.heights[row * self.count[0] + column];
+                *cell = self.envelope.outer(*cell, z);
+            }
+        }
+    }
+
+    /// Cells whose middles lie between two coordinates.
+    fn cells(&self, axis: usize, low: f64, high: f64) -> Option<[usize; 2]> {
+        let first = f64::from(self.first[axis]) + 0.5;
+        let from = (low / self.step[axis] - first - 1e-9).ceil().max(0.0);
+        let to = (high / self.step[axis] - first + 1e-9).floor().min(self.count[axis] as f64 - 1.0);
+        (from <= to).then_some([from as usize, to as usize])
+    }
+
+    /// Height of a cell by its index; empty outside.
+    pub fn at(&self, x: i32, y: i32) -> f32 {
+        let [i, j] = [x - self.first[0], y - self.first[1]];
+        let inside = i >= 0 && j >= 0 && (i as usize) < self.count[0] && (j as usize) < self.count[1];
+        if inside { self.heights[j as usize * self.count[0] + i as usize] } else { self.envelope.empty() }
+    }
+
+    /// The map without a margin of material: each cell takes the innermost height within a radius.
+    pub fn eroded(&self, radius: [usize; 2]) -> Map {
+        self.filtered(radius, radius, Envelope::inner)
+    }
+
+    /// The map with material grown by a radius.
+    pub fn dilated(&self, radius: [usize; 2]) -> Map {
+        self.filtered(radius, radius, Envelope::outer)
+    }
+
+    /// Each cell the innermost of itself and the cells `back` before and `on` after it.
+    pub fn inner(&self, back: usize, on: usize) -> Map {
+        self.filtered([back; 2], [on; 2], Envelope::inner)
+    }
+
+    fn filtered(&self, back: [usize; 2], on: [usize; 2], take: fn(Envelope, f32, f32) -> f32) -> Map {
+        let [nx, ny] = self.count;
+        let mut map = self.clone();
+        if nx == 0 || ny == 0 || (back == [0; 2] && on == [0; 2]) {
+            return map;
+        }
+        let (envelope, empty) = (self.envelope, self.envelope.empty());
+        let along = |row: &mut [f32]| {
+            let old = row.to_vec();
+            let near = |at: isize| usize::try_from(at).ok().and_then(|at| old.get(at)).copied();
+            for (i, cell) in row.iter_mut().enumerate() {
+                for at in i as isize - back[0] as isize..=(i + on[0]) as isize {
+                    *cell = take(envelope, *cell, near(at).unwrap_or(empty));
+                }
+            }
+        };
+        map.heights.chunks_mut(nx).for_each(along);
+        let old = map.heights.clone();
+        for (j, row) in map.heights.chunks_mut(nx).enumerate() {
+            for at in j as isize - back[1] as isize..=(j + on[1]) as isize {
+                match usize::try_from(at).ok().filter(|at| *at < ny) {
+                    Some(at) => {
+                        let other = &old[at * nx..(at + 1) * nx];
+                        row.iter_mut().zip(other).for_each(|(a, b)| *a = take(envelope, *a, *b));
+                    }
+                    None => row.iter_mut().for_each(|a| *a = take(envelope, *a, empty)),
+                }
+            }
+        }
+        map
+    }
+
+    /// Coarser maps of cells of `factor` cells each: the outermost and the innermost height.
+    pub fn coarser(&self, factor: usize) -> [Map; 2] {
+        let factor = factor as i32;
+        let first = self.first.map(|first| first.div_euclid(factor));
+        let last = [0, 1].map(|axis| {
+            (self.first[axis] + self.count[axis] as i32 - 1).div_euclid(factor) - first[axis] + 1
+        });
+        let count = last.map(|count| usize::try_from(count).unwrap_or(0));
+        let step = self.step.map(|step| step * f64::from(factor));
+        [Envelope::outer as fn(Envelope, f32, f32) -> f32, Envelope::inner].map(|take| {
+            let mut heights = vec![f32::NAN; count[0] * count[1]];
+            for y in first[1] * factor..(first[1] + count[1] as i32) * factor {
+                for x in first[0] * factor..(first[0] + count[0] as i32) * factor {
+                    let row = (y.div_euclid(factor) - first[1]) as usize;
+                    let cell = &mut heights[row * count[0] + (x.div_euclid(factor) - first[0]) as usize];
+                    let z = self.at(x, y);
+                    *cell = if cell.is_nan() { z } else { take(self.envelope, *cell, z) };
+                }
+            }
+            Map { envelope: self.envelope, step, first, count, heights }
+        })
+    }
+}
+
+/// Height at which a plug shifted by whole cells rests; stops at `enough`.
+pub fn rest(socket: &Map, plug: &Map, shift: [i32; 2], enough: f32) -> f32 {
+    let ([snx, _], [pnx, pny]) = (socket.count, plug.count);
+    let span = |axis: usize| {
+        let offset = plug.first[axis] + shift[axis] - socket.first[axis];
+        let from = (-offset).max(0);
+        let to = (plug.count[axis] as i32).min(socket.count[axis] as i32 - offset);
+        (offset, from, to)
+    };
+    let ((ox, fromx, tox), (oy, fromy, toy)) = (span(0), span(1));
+    if fromx >= tox || fromy >= toy {
+        return -NOWHERE;
+    }
+    debug_assert!(toy as usize <= pny);
+    let mut highest = -NOWHERE;
+    // Rows far apart first: what does not fit is seen early.
+    for phase in 0..8 {
+        for row in (fromy + phase..toy).step_by(8) {
+            let plug_row = row as usize * pnx;
+            let socket_row = (row + oy) as usize * snx;
+            let p = &plug.heights[plug_row + fromx as usize..plug_row + tox as usize];
+            let s = &socket.heights[socket_row + (fromx + ox) as usize..socket_row + (tox + ox) as usize];
+            highest = row_rest(s, p, highest);
+        }
+        if highest >= enough {
+            break;
+        }
+    }
+    highest
+}
+
+fn row_rest(socket: &[f32], plug: &[f32], highest: f32) -> f32 {
+    let mut lanes = [highest; 8];
+    let (s, p) = (socket.chunks_exact(8), plug.chunks_exact(8));
+    let tail = s.remainder().iter().zip(p.remainder());
+    let tail = tail.fold(highest, |high, (s, p)| if s - p > high { s - p } else { high });
+    for (s, p) in s.zip(p) {
+        for i in 0..8 {
+            let z = s[i] - p[i];
+            lanes[i] = if z > lanes[i] { z } else { lanes[i] };
+        }
+    }
+    lanes.iter().fold(tail, |high, z| if *z > high { *z } else { high })
+}
+
+/// Maps of several turned parts.
+pub fn maps(parts: &[Vec<Triangle>], envelope: Envelope, step: f64) -> Vec<Map> {
+    parts.par_iter().map(|part| Map::new(part, envelope, [step; 2], None)).collect()
+}

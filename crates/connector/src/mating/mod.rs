@@ -1,0 +1,109 @@
+//! Mated pose of two connector parts from their triangles.
+//!
+//! For a straight insertion two height maps decide: with S the upper envelope of the socket and P
+//! the lower envelope of the plug, seen along the axis, the plug shifted by d comes to rest at
+//! z(d) = max over x of S(x) - P(x - d). Closed solids are not needed.
+
+mod assembled;
+mod engagement;
+mod frame;
+mod map;
+mod refine;
+mod search;
+mod select;
+
+pub use assembled::assembled;
+use crate::mesh::Triangle;
+use nalgebra::{Isometry3, Unit, Vector3};
+
+/// Straight mate of a plug in its socket.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mate {
+    /// Plug file to socket file, mated, m.
+    pub pose: Isometry3<f64>,
+    /// Direction in which the plug leaves, in the axes of the socket file.
+    pub out: Unit<Vector3<f64>>,
+    /// Directions across it, in the axes of the socket file, along which the play is measured.
+    pub across: [Unit<Vector3<f64>>; 2],
+    /// Depth along the axis over which the parts engage, m.
+    pub engaged_m: f64,
+    /// Total lateral play along each of `across`, m, without the faces that interfere.
+    pub play_m: [f64; 2],
+    /// Total play about the axis, rad; a full turn if nothing blocks it.
+    pub yaw_rad: f64,
+    /// Interference that had to be eroded for the plug to go in, m.
+    pub overlap_m: f64,
+    /// Area of the plug's side walls that face a wall of the socket, on the weaker sides, m2.
+    pub walls_m2: f64,
+    /// Whether nothing stops the plug; the pose then has its tip at the far side of the socket.
+    pub through: bool,
+}
+
+/// Result of the search for a mate.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Found {
+    /// One mate.
+    One(Mate),
+    /// One of several mates that are equal by symmetry, and their number.
+    Symmetric(Mate, usize),
+    /// Different mates of similar engagement, the best first.
+    Ambiguous(Vec<Mate>),
+}
+
+/// Error of a search for a mate.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum MatingError {
+    /// A part has no area.
+    #[error("the {0} holds no triangles with an area")]
+    Empty(&'static str),
+    /// No seat that encloses the plug from four sides.
+    #[error(
+        "the plug fits into the socket along none of their axes: no pose is at least {least_mm} mm deep \
+         with walls on four sides; if the parts do mate, give their assembly in the mated pose"
+    )]
+    NoFit {
+        /// Least engagement, mm.
+        least_mm: f64,
+    },
+    /// The parts of an assembly are not mated, or block one another in every direction.
+    #[error("the plug cannot be withdrawn from its pose in the assembly along any axis")]
+    Blocked,
+    /// Stopped by the caller.
+    #[error("stopped")]
+    Stopped,
+}
+
+/// Progress and cancellation of a search.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    /// Callback for the share that is done.
+    pub progress: &'a (dyn Fn(f64) + Sync),
+    /// Whether to stop.
+    pub stopped: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl Watch<'_> {
+    /// Watch that neither shows progress nor stops.
+    pub const NONE: Watch<'static> = Watch { progress: &|_| {}, stopped: &|| false };
+
+    fn check(&self, share: f64) -> Result<(), MatingError> {
+        (self.progress)(share);
+        if (self.stopped)() { Err(MatingError::Stopped) } else { Ok(()) }
+    }
+}
+
+/// Finds the mated pose of two parts in frames of their own, m.
+///
+/// # Errors
+/// If a part is empty, nothing fits, or the caller stops.
+pub fn mates(
+    plug: &[Triangle],
+    socket: &[Triangle],
+    watch: &Watch,
+) -> Result<Found, MatingError> {
+    let parts = frame::Parts::new(plug, socket)?;
+    watch.check(0.0)?;
+    let rough = search::seats(&parts, watch)?;
+    let fine = refine::refined(&parts, rough, watch)?;
+    select::select(&parts, fine)
+}

@@ -1,0 +1,190 @@
+//! Rough search for seats: all axes, turns and shifts on coarse maps that bound the height of rest.
+
+use super::frame::{Parts, outs, turned, turns};
+use super::map::{Envelope, Map, NOWHERE, bounds, maps, rest};
+use super::{MatingError, Watch};
+use crate::mesh::Triangle;
+use input::units::MM;
+use rayon::prelude::*;
+
+/// Least depth of a seat, m.
+pub const LEAST: f64 = 0.4 * MM;
+/// Largest total play of a plug in its seat, m.
+pub const MOST_PLAY: f64 = 0.5 * MM;
+/// Interference allowed for in a second pass, m: springs are drawn unloaded.
+const INTERFERENCE: f64 = 0.2 * MM;
+/// Least cell of the maps, m.
+const LEAST_CELL: f64 = 0.1 * MM;
+/// Comparisons of two cells that the search may take.
+const EFFORT: f64 = 30e9;
+/// Cells of a fine map along a side of a coarse one.
+pub const FINE: usize = 4;
+/// Most seats for each pair of axes.
+const MOST_SEATS: usize = 12;
+
+/// Seat on the maps.
+#[derive(Debug, Clone, Copy)]
+pub struct Seat {
+    /// Number of the direction out of the socket.
+    pub out: usize,
+    /// Number of the plug's turn.
+    pub turn: usize,
+    /// Shift of the plug in cells of the fine maps.
+    pub shift: [i32; 2],
+    /// Climb out of the seat towards the lowest side, m.
+    pub depth: f64,
+}
+
+/// Turned triangles of both parts, and the fine maps.
+pub struct Scene {
+    /// Socket, for each direction out of it.
+    pub sockets: Vec<Vec<Triangle>>,
+    /// Plug in each turn.
+    pub plugs: Vec<Vec<Triangle>>,
+    /// Cell of the fine maps, m.
+    pub step: f64,
+    /// Upper envelopes of the sockets.
+    pub upper: Vec<Map>,
+    /// Lower envelopes of the plugs.
+    pub lower: Vec<Map>,
+}
+
+impl Scene {
+    fn new(parts: &Parts) -> Self {
+        let sockets: Vec<_> =
+            outs().iter().map(|turn| turned(&parts.socket.triangles, turn)).collect();
+        let plugs: Vec<_> = turns().iter().map(|turn| turned(&parts.plug.triangles, turn)).collect();
+        let step = cell(&sockets, &plugs) / FINE as f64;
+        let (upper, lower) =
+            (maps(&sockets, Envelope::Upper, step), maps(&plugs, Envelope::Lower, step));
+        Scene { sockets, plugs, step, upper, lower }
+    }
+}
+
+/// Cell of the coarse maps with which the search takes its effort, m.
+fn cell(sockets: &[Vec<Triangle>], plugs: &[Vec<Triangle>]) -> f64 {
+    let sizes = |part: &Vec<Triangle>| bounds(part).map(|[low, high]| high - low);
+    let (sockets, plugs): (Vec<_>, Vec<_>) =
+        (sockets.iter().map(sizes).collect(), plugs.iter().map(sizes).collect());
+    let pair = |s: &[f64; 3], p: &[f64; 3]| p[0].min(s[0]) * p[1].min(s[1]) * (s[0] + p[0]) * (s[1] + p[1]);
+    let work: f64 = sockets.iter().flat_map(|s| plugs.iter().map(move |p| pair(s, p))).sum();
+    // Two bounds, with and without interference.
+    (4.0 * work / EFFORT).sqrt().sqrt().max(LEAST_CELL)
+}
+
+/// Coarse maps of a part: outermost heights, and innermost heights of two cells each way.
+struct Coarse {
+    outer: Map,
+    inner: Map,
+}
+
+impl Coarse {
+    fn new(fine: &Map, erosion: usize) -> Self {
+        let [outer, inner] = fine.eroded([erosion; 2]).coarser(FINE);
+        let inner = match fine.envelope {
+            Envelope::Upper => inner.inner(0, 1),
+            Envelope::Lower => inner.inner(1, 0),
+        };
+        Coarse { outer, inner }
+    }
+}
+
+/// Seats of all pairs of axes.
+pub fn seats(parts: &Parts, watch: &Watch) -> Result<(Scene, Vec<Seat>), MatingError> {
+    let scene = Scene::new(parts);
+    let mut seats = Vec::new();
+    for (pass, interference) in [0.0, INTERFERENCE].into_iter().enumerate() {
+        let erosion = (interference / 2.0 / scene.step).round() as usize;
+        let coarse = |fine: &Vec<Map>| -> Vec<Coarse> {
+            fine.par_iter().map(|map| Coarse::new(map, erosion)).collect()
+        };
+        let (sockets, plugs) = (coarse(&scene.upper), coarse(&scene.lower));
+        for (out, socket) in sockets.iter().enumerate() {
+            watch.check(0.6 * (pass * sockets.len() + out) as f64 / (2 * sockets.len()) as f64)?;
+            let of = |(turn, plug): (usize, &Coarse)| enclosed(socket, plug, [out, turn]);
+            let found: Vec<Vec<Seat>> = plugs.par_iter().enumerate().map(of).collect();
+            seats.extend(found.into_iter().flatten());
+        }
+    }
+    Ok((scene, seats))
+}
+
+/// Heights of rest for each shift, from below.
+struct Rests {
+    first: [i32; 2],
+    count: [usize; 2],
+    heights: Vec<f32>,
+}
+
+impl Rests {
+    fn new(socket: &Coarse, plug: &Coarse, range: [f32; 2]) -> Self {
+        let (s, p) = (&socket.outer, &plug.outer);
+        let first = [0, 1].map(|a| s.first[a] - p.first[a] - p.count[a] as i32);
+        let count = [0, 1].map(|a| s.count[a] + p.count[a] + 1);
+        let height = |number: usize| {
+            let shift =
+                [first[0] + (number % count[0]) as i32, first[1] + (number / count[0]) as i32];
+            let one = rest(&socket.outer, &plug.inner, shift, range[1]);
+            let z = if one < range[1] {
+                one.max(rest(&socket.inner, &plug.outer, shift, range[1]))
+            } else {
+                one
+            };
+            z.clamp(range[0], range[1])
+        };
+        let heights = (0..count[0] * count[1]).map(height).collect();
+        Rests { first, count, heights }
+    }
+
+    fn at(&self, x: i32, y: i32, outside: f32) -> f32 {
+        let inside = x >= 0 && y >= 0 && x < self.count[0] as i32 && y < self.count[1] as i32;
+        if inside { self.heights[y as usize * self.count[0] + x as usize] } else { outside }
+    }
+}
+
+/// Seats from which the plug must climb to each of four sides.
+fn enclosed(socket: &Coarse, plug: &Coarse, [out, turn]: [usize; 2]) -> Vec<Seat> {
+    let extremes = |map: &Map| {
+        let there = map.heights.iter().filter(|z| z.abs() < NOWHERE / 2.0);
+        there.fold([NOWHERE, -NOWHERE], |[low, high], z| [low.min(*z), high.max(*z)])
+    };
+    let (s, p) = (extremes(&socket.outer), extremes(&plug.outer));
+    let range = [s[0] - p[1], s[1] - p[0] - LEAST as f32];
+    if range[0] >= range[1] {
+        return Vec::new();
+    }
+    let rests = Rests::new(socket, plug, range);
+    let step = socket.outer.step[0];
+    // A bound is as wide as two cells more.
+    let radius = (MOST_PLAY / step).ceil() as i32 + 2;
+    let mut found: Vec<(f32, [i32; 2])> = Vec::new();
+    for y in 0..rests.count[1] as i32 {
+        for x in 0..rests.count[0] as i32 {
+            let z = rests.at(x, y, range[0]);
+            let climb = |[dx, dy]: [i32; 2]| {
+                let path = (1..=radius).map(|r| rests.at(x + r * dx, y + r * dy, range[0]));
+                path.fold(z, f32::max) - z
+            };
+            let least =
+                [[1, 0], [-1, 0], [0, 1], [0, -1]].into_iter().map(climb).fold(NOWHERE, f32::min);
+            if f64::from(least) >= LEAST {
+                found.push((least, [x, y]));
+            }
+        }
+    }
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut seats: Vec<(f32, [i32; 2])> = Vec::new();
+    for (depth, place) in found {
+        let near = |other: &[i32; 2]| {
+            (other[0] - place[0]).abs() <= radius / 2 && (other[1] - place[1]).abs() <= radius / 2
+        };
+        if seats.len() < MOST_SEATS && !seats.iter().any(|(_, other)| near(other)) {
+            seats.push((depth, place));
+        }
+    }
+    let seat = |(depth, place): (f32, [i32; 2])| {
+        let shift = [0, 1].map(|a| (place[a] + rests.first[a]) * FINE as i32 + FINE as i32 / 2);
+        Seat { out, turn, shift, depth: f64::from(depth) }
+    };
+    seats.into_iter().map(seat).collect()
+}

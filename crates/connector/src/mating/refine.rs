@@ -1,6 +1,6 @@
 //! Refinement of rough seats: shift, height, interference and engagement.
 
-use super::engagement::{score, walls};
+use super::engagement::{Sides, common, score};
 use super::frame::Parts;
 use super::map::{Envelope, Map, NOWHERE, bounds, rest};
 use super::search::{FINE, MOST_PLAY, Scene, Seat};
@@ -12,14 +12,18 @@ use rayon::prelude::*;
 /// Distance within which two walls face one another, m.
 const REACH: f64 = 0.3 * MM;
 /// Interference at which parts were not drawn for one another, m.
-const MOST_OVERLAP: f64 = 0.5 * MM;
+const MOST_OVERLAP: f64 = 2.0 * MM;
 /// Interference tried, m.
-const OVERLAPS: [f64; 8] = [0.0, 0.02e-3, 0.05e-3, 0.1e-3, 0.15e-3, 0.2e-3, 0.25e-3, 0.3e-3];
+const OVERLAPS: [f64; 9] = [0.0, 0.02e-3, 0.05e-3, 0.1e-3, 0.15e-3, 0.2e-3, 0.3e-3, 0.4e-3, 0.5e-3];
+/// Interference of faces that touch, m.
+const TOLERANCE: f64 = 0.02 * MM;
 /// Difference of heights of one seat, m.
 const LEVEL: f32 = 0.02e-3;
 /// Least cell, m, and most cells of a map.
 const LEAST_CELL: f64 = 0.01 * MM;
 const MOST_CELLS: f64 = 1e6;
+/// Most times that the middle of the shifts tried moves.
+const MOST_MOVES: usize = 4;
 /// Most seats refined, and share of the best that is still refined.
 const MOST: usize = 48;
 const SHARE: f64 = 0.4;
@@ -41,6 +45,8 @@ pub struct Pose {
     pub overlap: f64,
     /// Area of facing walls on the weaker sides, m2.
     pub walls: f64,
+    /// Area of interfering walls, m2.
+    pub jam: f64,
     /// Climb out of the seat towards the lowest side, m.
     pub depth: f64,
 }
@@ -48,7 +54,7 @@ pub struct Pose {
 impl Pose {
     /// Engagement, less for interference.
     pub fn value(&self) -> f64 {
-        self.walls * (1.0 - self.overlap / MOST_OVERLAP)
+        (self.walls - self.jam / 2.0) * (1.0 - self.overlap / MOST_OVERLAP)
     }
 
     fn near(&self, other: &Pose) -> bool {
@@ -74,8 +80,8 @@ fn seated(z: f32, socket: [f64; 2], plug: [f64; 2]) -> (f64, bool) {
     }
 }
 
-/// Lowest rest near a shift, in the middle of the shifts that have it.
-fn lowest(socket: &Map, plug: &Map, about: [i32; 2], radius: i32) -> ([i32; 2], f32) {
+/// Shifts near a shift with the lowest rest, and that.
+fn lowest(socket: &Map, plug: &Map, about: [i32; 2], radius: i32) -> (Vec<[i32; 2]>, f32) {
     let mut low = NOWHERE;
     let mut rests = Vec::new();
     let mut shifts: Vec<_> =
@@ -83,18 +89,24 @@ fn lowest(socket: &Map, plug: &Map, about: [i32; 2], radius: i32) -> ([i32; 2], 
     shifts.sort_by_key(|[x, y]| x * x + y * y);
     for [x, y] in shifts {
         let shift = [about[0] + x, about[1] + y];
-        let z = rest(socket, plug, shift, low + LEVEL);
+        let z = rest(socket, plug, shift, low + 2.0 * LEVEL);
         low = low.min(z);
         rests.push((shift, z));
     }
-    let level: Vec<_> = rests.into_iter().filter(|(_, z)| *z <= low + LEVEL).collect();
+    rests.retain(|(_, z)| *z <= low + LEVEL);
+    (rests.into_iter().map(|(shift, _)| shift).collect(), low)
+}
+
+/// Shift nearest to the mean of shifts.
+fn middle(shifts: &[[i32; 2]]) -> [i32; 2] {
     let mean = [0, 1].map(|a| {
-        level.iter().map(|(shift, _)| f64::from(shift[a])).sum::<f64>() / level.len() as f64
+        shifts.iter().map(|shift| f64::from(shift[a])).sum::<f64>() / shifts.len() as f64
     });
     let off = |shift: &[i32; 2]| {
         (f64::from(shift[0]) - mean[0]).powi(2) + (f64::from(shift[1]) - mean[1]).powi(2)
     };
-    level.into_iter().min_by(|a, b| off(&a.0).total_cmp(&off(&b.0))).unwrap_or((about, low))
+    let nearest = shifts.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+    nearest.copied().unwrap_or_default()
 }
 
 /// Climb out of a seat towards its lowest side, m.
@@ -119,14 +131,19 @@ pub fn refined(
         maps.par_iter().map(|map| [1, radius.max(2)].map(|r| map.eroded([r; 2]))).collect()
     };
     let (upper, lower) = (eroded(&scene.upper), eroded(&scene.lower));
-    let reach = (REACH / scene.step).ceil() as usize;
+    let faces: Vec<Sides> = scene.lower.par_iter().map(Sides::new).collect();
     let rough = |seat: &Seat| {
         let poses = [0, 1].map(|level| {
             let (socket, plug) = (&upper[seat.out][level], &lower[seat.turn][level]);
-            let (shift, z) = lowest(socket, plug, seat.shift, FINE as i32 / 2 + 1);
+            let level = lowest(socket, plug, seat.shift, FINE as i32 / 2 + 1);
+            let (shift, z) = (middle(&level.0), level.1);
             let (z, through) =
                 seated(z, heights(&scene.sockets[seat.out]), heights(&scene.plugs[seat.turn]));
-            let sides = walls(&scene.upper[seat.out], &scene.lower[seat.turn], shift, z as f32, reach);
+            let sides = faces[seat.turn].facing(
+                &scene.upper[seat.out],
+                (shift, z as f32),
+                [REACH, scene.step],
+            );
             Pose {
                 out: seat.out,
                 turn: seat.turn,
@@ -135,6 +152,7 @@ pub fn refined(
                 through,
                 overlap: 0.0,
                 walls: score(&sides),
+                jam: 0.0,
                 depth: seat.depth,
             }
         });
@@ -150,6 +168,7 @@ pub fn refined(
         }
     }
     watch.check(0.7)?;
+    if std::env::var("D").is_ok() { for p in &kept { eprintln!("rough {p:?}"); } }
     let mut fine: Vec<Pose> = kept.par_iter().filter_map(|pose| finer(&scene, pose)).collect();
     fine.sort_by(|a, b| b.value().total_cmp(&a.value()));
     Ok((scene, fine))
@@ -160,18 +179,18 @@ fn finer(scene: &Scene, pose: &Pose) -> Option<Pose> {
     let (socket, plug) = (&scene.sockets[pose.out], &scene.plugs[pose.turn]);
     let [px, py, _] = bounds(plug);
     let [sx, sy, _] = bounds(socket);
-    let common = |p: [f64; 2], s: [f64; 2], shift: f64| {
+    let overlapping = |p: [f64; 2], s: [f64; 2], shift: f64| {
         [(p[0] + shift).max(s[0]) - 2.0 * MM, (p[1] + shift).min(s[1]) + 2.0 * MM]
     };
-    let window = [common(px, sx, pose.shift[0]), common(py, sy, pose.shift[1])];
+    let window = [overlapping(px, sx, pose.shift[0]), overlapping(py, sy, pose.shift[1])];
     let area: f64 = window.iter().map(|[low, high]| (high - low).max(0.0)).product();
     let step = (area / MOST_CELLS).sqrt().max(LEAST_CELL);
     let back = [0, 1].map(|a| window[a].map(|v| v - pose.shift[a]));
     let upper = Map::new(socket, Envelope::Upper, [step; 2], Some(window));
     let lower = Map::new(plug, Envelope::Lower, [step; 2], Some(back));
+    let (faces, tight) = (Sides::new(&lower), lower.eroded([(TOLERANCE / step).ceil() as usize; 2]));
     let about = pose.shift.map(|v| (v / step).round() as i32);
     let radius = (1.5 * scene.step / step).ceil() as i32 + 1;
-    let reach = (REACH / step).ceil() as usize;
     let mut best: Option<Pose> = None;
     let mut last = None;
     for overlap in OVERLAPS {
@@ -180,18 +199,40 @@ fn finer(scene: &Scene, pose: &Pose) -> Option<Pose> {
             continue;
         }
         let (s, p) = (upper.eroded([cells / 2; 2]), lower.eroded([cells - cells / 2; 2]));
-        let (shift, z) = lowest(&s, &p, about, radius);
-        let (z, through) = seated(z, heights(socket), heights(plug));
-        let sides = walls(&upper, &lower, shift, z as f32, reach);
+        let settle = |mut about: [i32; 2]| {
+            let mut found = None;
+            for _ in 0..MOST_MOVES {
+                let (level, z) = lowest(&s, &p, about, radius);
+                let (z, through) = seated(z, heights(socket), heights(plug));
+                let engaged = |shift: &[i32; 2]| {
+                    score(&faces.facing(&upper, (*shift, z as f32), [REACH, TOLERANCE]))
+                };
+                let scores: Vec<_> = level.iter().map(engaged).collect();
+                let most = scores.iter().copied().fold(0.0, f64::max);
+                let good = level.iter().zip(&scores).filter(|(_, score)| **score >= 0.99 * most);
+                let shift = middle(&good.map(|(shift, _)| *shift).collect::<Vec<_>>());
+                found = Some((shift, z, engaged(&shift), through));
+                // The best place may lie beyond the shifts tried.
+                if (0..2).all(|a| (shift[a] - about[a]).abs() < radius) {
+                    break;
+                }
+                about = shift;
+            }
+            found
+        };
+        let Some((shift, z, walls, through)) = settle(about) else { continue };
+        let jam = common(&upper, &tight, shift, z as f32) / overlap.max(step);
         let side = ((MOST_PLAY + overlap) / step).ceil() as i32;
         let next = Pose {
             shift: shift.map(|v| f64::from(v) * step),
             z,
             through,
             overlap,
-            walls: score(&sides),
+            walls,
+            jam,
             ..*pose
         };
+        if std::env::var("D").is_ok() { eprintln!("out {} turn {} shift {:?} e {:.3} z {:.3} walls {:.2} jam {:.2} climb {:.2} plateau {} step {:.4}", next.out, next.turn, next.shift.map(|v| v*1e3), overlap*1e3, z*1e3, next.walls*1e6, next.jam*1e6, climb(&s, &p, shift, z, side)*1e3, 0, step*1e3); }
         if best.as_ref().is_none_or(|best| next.value() > best.value()) {
             best = Some(Pose { depth: climb(&s, &p, shift, z, side), ..next });
         }

@@ -16,7 +16,7 @@ const INTERFERENCE: f64 = 0.2 * MM;
 /// Least cell of the maps, m.
 const LEAST_CELL: f64 = 0.1 * MM;
 /// Comparisons of two cells that the search may take.
-const EFFORT: f64 = 30e9;
+const EFFORT: f64 = 10e9;
 /// Cells of a fine map along a side of a coarse one.
 pub const FINE: usize = 4;
 /// Most seats for each pair of axes.
@@ -101,7 +101,10 @@ pub fn seats(parts: &Parts, watch: &Watch) -> Result<(Scene, Vec<Seat>), MatingE
         let (sockets, plugs) = (coarse(&scene.upper), coarse(&scene.lower));
         for (out, socket) in sockets.iter().enumerate() {
             watch.check(0.6 * (pass * sockets.len() + out) as f64 / (2 * sockets.len()) as f64)?;
-            let of = |(turn, plug): (usize, &Coarse)| enclosed(socket, plug, [out, turn]);
+            let of = |(turn, plug): (usize, &Coarse)| {
+                let passed = bounds(&scene.sockets[out])[2][0] - bounds(&scene.plugs[turn])[2][1];
+                enclosed(socket, plug, [out, turn], passed as f32)
+            };
             let found: Vec<Vec<Seat>> = plugs.par_iter().enumerate().map(of).collect();
             seats.extend(found.into_iter().flatten());
         }
@@ -142,17 +145,17 @@ impl Rests {
     }
 }
 
-/// Seats from which the plug must climb to each of four sides.
-fn enclosed(socket: &Coarse, plug: &Coarse, [out, turn]: [usize; 2]) -> Vec<Seat> {
-    let extremes = |map: &Map| {
-        let there = map.heights.iter().filter(|z| z.abs() < NOWHERE / 2.0);
-        there.fold([NOWHERE, -NOWHERE], |[low, high], z| [low.min(*z), high.max(*z)])
-    };
-    let (s, p) = (extremes(&socket.outer), extremes(&plug.outer));
-    let range = [s[0] - p[1], s[1] - p[0] - LEAST as f32];
-    if range[0] >= range[1] {
-        return Vec::new();
-    }
+/// Seats from which the plug must climb to each of four sides; below the height `passed` it has gone
+/// through.
+fn enclosed(
+    socket: &Coarse,
+    plug: &Coarse,
+    [out, turn]: [usize; 2],
+    passed: f32,
+) -> Vec<Seat> {
+    let extremes = |map: &Map, take: fn(f32, f32) -> f32| map.heights.iter().copied().fold(map.envelope.empty(), take);
+    let highest = extremes(&socket.outer, f32::max) - extremes(&plug.outer, f32::min);
+    let range = [passed, highest - LEAST as f32];
     let rests = Rests::new(socket, plug, range);
     let step = socket.outer.step[0];
     // A bound is as wide as two cells more.

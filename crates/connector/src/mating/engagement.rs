@@ -2,6 +2,15 @@
 
 use super::map::{Map, NOWHERE};
 
+/// Height of a level, m; most levels looked through, and taken.
+const BIN: f32 = 0.02e-3;
+const MOST_BINS: usize = 2000;
+const MOST_LEVELS: usize = 8;
+/// A level is taken if one in so many cells touches there.
+const MANY: usize = 100;
+/// A plug is stopped where one in so many cells touches.
+const STOPPED: usize = 6;
+
 /// Area of the plug's walls that look along +x, -x, +y and -y and face a wall of the socket, m2.
 pub type Walls = [f64; 4];
 
@@ -84,14 +93,85 @@ impl Sides {
     }
 }
 
-/// Volume that both parts fill, from the contact upward, m3.
-pub fn common(socket: &Map, plug: &Map, shift: [i32; 2], z: f32) -> f64 {
-    let mut sum = 0.0;
-    for y in plug.first[1]..plug.first[1] + plug.count[1] as i32 {
-        for x in plug.first[0]..plug.first[0] + plug.count[0] as i32 {
-            let height = socket.at(x + shift[0], y + shift[1]) - plug.at(x, y) - z;
-            sum += f64::from(height.max(0.0));
+/// Socket and plug in contact.
+pub struct Contact<'a> {
+    /// Upper envelope of the socket.
+    pub socket: &'a Map,
+    /// Lower envelope of the plug, without the tolerance.
+    pub plug: &'a Map,
+    /// Side walls of the plug.
+    pub sides: &'a Sides,
+    /// Distance within which walls face one another, and depth of harmless interference, m.
+    pub limits: [f64; 2],
+}
+
+impl Contact<'_> {
+    /// Facing walls on the weaker sides, and half the side walls of what both parts fill, m2.
+    pub fn areas(&self, shift: [i32; 2], z: f32) -> [f64; 2] {
+        let walls = score(&self.sides.facing(self.socket, (shift, z), self.limits));
+        let mut jam = 0.0;
+        self.each(shift, |cell, rest| {
+            if rest <= z {
+                return;
+            }
+            for (side, [dx, dy]) in SIDES.into_iter().enumerate() {
+                let beside = self.rest([cell[0] + dx, cell[1] + dy], shift).max(z);
+                jam += f64::from((rest - beside).max(0.0)) * self.plug.step[1 - side / 2] / 2.0;
+            }
+        });
+        [walls, jam]
+    }
+
+    /// Heights below `z` at which much of the plug would touch, until most of it has.
+    pub fn levels(&self, shift: [i32; 2], z: f32) -> Vec<f32> {
+        let mut bins: Vec<(usize, f32)> = vec![(0, -NOWHERE); MOST_BINS];
+        let (mut above, mut all) = (0, 0);
+        self.each(shift, |_, rest| {
+            if rest < -NOWHERE / 2.0 {
+                return;
+            }
+            all += 1;
+            let bin = (z - rest) / BIN;
+            if bin < 1.0 {
+                above += 1;
+            } else if let Some(bin) = bins.get_mut(bin as usize) {
+                *bin = (bin.0 + 1, bin.1.max(rest));
+            }
+        });
+        let mut found = Vec::new();
+        for (count, top) in bins {
+            if count * MANY > all {
+                found.push(top);
+            }
+            above += count;
+            if above * STOPPED > all || found.len() == MOST_LEVELS {
+                break;
+            }
+        }
+        found
+    }
+
+    /// Cells of the plug that the socket fills, too.
+    pub fn shared(&self, shift: [i32; 2], z: f32) -> Vec<[i32; 2]> {
+        let mut cells = Vec::new();
+        self.each(shift, |cell, rest| {
+            if rest > z {
+                cells.push(cell);
+            }
+        });
+        cells
+    }
+
+    fn rest(&self, [x, y]: [i32; 2], shift: [i32; 2]) -> f32 {
+        self.socket.at(x + shift[0], y + shift[1]) - self.plug.at(x, y)
+    }
+
+    fn each(&self, shift: [i32; 2], mut see: impl FnMut([i32; 2], f32)) {
+        let [nx, ny] = self.plug.count.map(|count| count as i32);
+        for y in self.plug.first[1]..self.plug.first[1] + ny {
+            for x in self.plug.first[0]..self.plug.first[0] + nx {
+                see([x, y], self.rest([x, y], shift));
+            }
         }
     }
-    sum * plug.step[0] * plug.step[1]
 }

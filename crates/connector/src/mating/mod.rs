@@ -8,13 +8,19 @@ mod assembled;
 mod engagement;
 mod frame;
 mod map;
+mod precise;
 mod refine;
 mod search;
 mod select;
+mod symmetry;
 
 pub use assembled::assembled;
 use crate::mesh::Triangle;
+use input::units::MM;
 use nalgebra::{Isometry3, Unit, Vector3};
+
+/// Largest total play of a plug in its seat, m: of connectors, and of toys and enlarged ones.
+const ROOMS: [f64; 2] = [0.5 * MM, 2.0 * MM];
 
 /// Straight mate of a plug in its socket.
 #[derive(Debug, Clone, PartialEq)]
@@ -103,7 +109,16 @@ pub fn mates(
 ) -> Result<Found, MatingError> {
     let parts = frame::Parts::new(plug, socket)?;
     watch.check(0.0)?;
-    let rough = search::seats(&parts, watch)?;
-    let fine = refine::refined(&parts, rough, watch)?;
-    select::select(&parts, fine)
+    let scene = search::Scene::new(&parts);
+    let pairs = symmetry::pairs(&scene);
+    let few: Vec<_> = pairs.iter().map(|(pair, _)| *pair).collect();
+    // The tightest fit guides: a looser one counts only where there is none.
+    for room in ROOMS {
+        let seats = search::seats(&scene, &few, room, watch)?;
+        let poses = refine::refined(&scene, &seats, room, watch)?;
+        if let Some(found) = select::select(&parts, &scene, &poses, (&pairs, room)) {
+            return Ok(found);
+        }
+    }
+    Err(MatingError::NoFit { least_mm: search::LEAST / MM })
 }

@@ -1,22 +1,20 @@
 //! Refinement of rough seats: shift, height, interference and engagement.
 
-use super::engagement::{Sides, common, score};
-use super::frame::Parts;
-use super::map::{Envelope, Map, NOWHERE, bounds, rest};
-use super::search::{FINE, MOST_PLAY, Scene, Seat};
+use super::engagement::{Contact, SIDES, Sides, score};
+use super::map::{Envelope, Map, NOWHERE, Window, bounds, rest};
+use super::search::{FINE, Scene, Seat};
 use super::{MatingError, Watch};
 use crate::mesh::Triangle;
 use input::units::MM;
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 
-/// Distance within which two walls face one another, m.
-const REACH: f64 = 0.3 * MM;
-/// Interference at which parts were not drawn for one another, m.
-const MOST_OVERLAP: f64 = 2.0 * MM;
+/// Distance within which two walls face one another, as a share of the play.
+const REACH: f64 = 0.6;
 /// Interference tried, m.
 const OVERLAPS: [f64; 9] = [0.0, 0.02e-3, 0.05e-3, 0.1e-3, 0.15e-3, 0.2e-3, 0.3e-3, 0.4e-3, 0.5e-3];
 /// Interference of faces that touch, m.
-const TOLERANCE: f64 = 0.02 * MM;
+pub const TOLERANCE: f64 = 0.02 * MM;
 /// Difference of heights of one seat, m.
 const LEVEL: f32 = 0.02e-3;
 /// Least cell, m, and most cells of a map.
@@ -25,7 +23,7 @@ const MOST_CELLS: f64 = 1e6;
 /// Most times that the middle of the shifts tried moves.
 const MOST_MOVES: usize = 4;
 /// Most seats refined, and share of the best that is still refined.
-const MOST: usize = 48;
+const MOST: usize = 24;
 const SHARE: f64 = 0.4;
 
 /// Pose on the maps, refined.
@@ -54,19 +52,19 @@ pub struct Pose {
 impl Pose {
     /// Engagement, less for interference.
     pub fn value(&self) -> f64 {
-        (self.walls - self.jam / 2.0) * (1.0 - self.overlap / MOST_OVERLAP)
+        self.walls - self.jam / 2.0
     }
 
-    fn near(&self, other: &Pose) -> bool {
+    fn near(&self, other: &Pose, room: f64) -> bool {
         let apart = [0, 1].map(|a| (self.shift[a] - other.shift[a]).abs());
         (self.out, self.turn) == (other.out, other.turn)
-            && apart.into_iter().all(|v| v < MOST_PLAY)
-            && (self.z - other.z).abs() < MOST_PLAY
+            && apart.into_iter().all(|v| v < room)
+            && (self.z - other.z).abs() < room
     }
 }
 
 /// Heights of the lowest and the highest place of a part, m.
-fn heights(part: &[Triangle]) -> [f64; 2] {
+pub fn heights(part: &[Triangle]) -> [f64; 2] {
     bounds(part)[2]
 }
 
@@ -121,121 +119,214 @@ fn climb(socket: &Map, plug: &Map, shift: [i32; 2], z: f64, reach: i32) -> f64 {
 
 /// Refines seats; the best first.
 pub fn refined(
-    _parts: &Parts,
-    (scene, seats): (Scene, Vec<Seat>),
+    scene: &Scene,
+    seats: &[Seat],
+    room: f64,
     watch: &Watch,
-) -> Result<(Scene, Vec<Pose>), MatingError> {
+) -> Result<Vec<Pose>, MatingError> {
     watch.check(0.6)?;
-    let eroded = |maps: &Vec<Map>| -> Vec<[Map; 2]> {
-        let radius = ((0.1 * MM / scene.step).round() as usize).max(1);
-        maps.par_iter().map(|map| [1, radius.max(2)].map(|r| map.eroded([r; 2]))).collect()
-    };
-    let (upper, lower) = (eroded(&scene.upper), eroded(&scene.lower));
-    let faces: Vec<Sides> = scene.lower.par_iter().map(Sides::new).collect();
-    let rough = |seat: &Seat| {
-        let poses = [0, 1].map(|level| {
-            let (socket, plug) = (&upper[seat.out][level], &lower[seat.turn][level]);
-            let level = lowest(socket, plug, seat.shift, FINE as i32 / 2 + 1);
-            let (shift, z) = (middle(&level.0), level.1);
-            let (z, through) =
-                seated(z, heights(&scene.sockets[seat.out]), heights(&scene.plugs[seat.turn]));
-            let sides = faces[seat.turn].facing(
-                &scene.upper[seat.out],
-                (shift, z as f32),
-                [REACH, scene.step],
-            );
-            Pose {
-                out: seat.out,
-                turn: seat.turn,
-                shift: shift.map(|s| f64::from(s) * scene.step),
-                z,
-                through,
-                overlap: 0.0,
-                walls: score(&sides),
-                jam: 0.0,
-                depth: seat.depth,
-            }
-        });
-        poses.into_iter().max_by(|a, b| a.walls.total_cmp(&b.walls))
-    };
-    let mut poses: Vec<Pose> = seats.par_iter().filter_map(rough).collect();
-    poses.sort_by(|a, b| b.walls.total_cmp(&a.walls));
+    let rough = Rough::new(scene, room);
+    let mut poses: Vec<Pose> = seats.par_iter().filter_map(|seat| rough.pose(seat)).collect();
+    poses.sort_by(|a, b| b.value().total_cmp(&a.value()));
     let mut kept: Vec<Pose> = Vec::new();
     for pose in poses {
-        let good = kept.first().is_none_or(|best| pose.walls > SHARE * best.walls);
-        if good && kept.len() < MOST && !kept.iter().any(|other| other.near(&pose)) {
+        let good = kept.first().is_none_or(|best| pose.value() > SHARE * best.value());
+        if good && kept.len() < MOST && !kept.iter().any(|other| other.near(&pose, room)) {
             kept.push(pose);
         }
     }
     watch.check(0.7)?;
-    if std::env::var("D").is_ok() { for p in &kept { eprintln!("rough {p:?}"); } }
-    let mut fine: Vec<Pose> = kept.par_iter().filter_map(|pose| finer(&scene, pose)).collect();
-    fine.sort_by(|a, b| b.value().total_cmp(&a.value()));
-    Ok((scene, fine))
-}
-
-/// Seat on maps of fine cells, with as much interference as makes it best.
-fn finer(scene: &Scene, pose: &Pose) -> Option<Pose> {
-    let (socket, plug) = (&scene.sockets[pose.out], &scene.plugs[pose.turn]);
-    let [px, py, _] = bounds(plug);
-    let [sx, sy, _] = bounds(socket);
-    let overlapping = |p: [f64; 2], s: [f64; 2], shift: f64| {
-        [(p[0] + shift).max(s[0]) - 2.0 * MM, (p[1] + shift).min(s[1]) + 2.0 * MM]
-    };
-    let window = [overlapping(px, sx, pose.shift[0]), overlapping(py, sy, pose.shift[1])];
-    let area: f64 = window.iter().map(|[low, high]| (high - low).max(0.0)).product();
-    let step = (area / MOST_CELLS).sqrt().max(LEAST_CELL);
-    let back = [0, 1].map(|a| window[a].map(|v| v - pose.shift[a]));
-    let upper = Map::new(socket, Envelope::Upper, [step; 2], Some(window));
-    let lower = Map::new(plug, Envelope::Lower, [step; 2], Some(back));
-    let (faces, tight) = (Sides::new(&lower), lower.eroded([(TOLERANCE / step).ceil() as usize; 2]));
-    let about = pose.shift.map(|v| (v / step).round() as i32);
-    let radius = (1.5 * scene.step / step).ceil() as i32 + 1;
-    let mut best: Option<Pose> = None;
-    let mut last = None;
-    for overlap in OVERLAPS {
-        let cells = (overlap / step).round() as usize;
-        if last.replace(cells) == Some(cells) {
-            continue;
-        }
-        let (s, p) = (upper.eroded([cells / 2; 2]), lower.eroded([cells - cells / 2; 2]));
-        let settle = |mut about: [i32; 2]| {
-            let mut found = None;
-            for _ in 0..MOST_MOVES {
-                let (level, z) = lowest(&s, &p, about, radius);
-                let (z, through) = seated(z, heights(socket), heights(plug));
-                let engaged = |shift: &[i32; 2]| {
-                    score(&faces.facing(&upper, (*shift, z as f32), [REACH, TOLERANCE]))
-                };
-                let scores: Vec<_> = level.iter().map(engaged).collect();
-                let most = scores.iter().copied().fold(0.0, f64::max);
-                let good = level.iter().zip(&scores).filter(|(_, score)| **score >= 0.99 * most);
-                let shift = middle(&good.map(|(shift, _)| *shift).collect::<Vec<_>>());
-                found = Some((shift, z, engaged(&shift), through));
-                // The best place may lie beyond the shifts tried.
-                if (0..2).all(|a| (shift[a] - about[a]).abs() < radius) {
-                    break;
-                }
-                about = shift;
-            }
-            found
-        };
-        let Some((shift, z, walls, through)) = settle(about) else { continue };
-        let jam = common(&upper, &tight, shift, z as f32) / overlap.max(step);
-        let side = ((MOST_PLAY + overlap) / step).ceil() as i32;
-        let next = Pose {
-            shift: shift.map(|v| f64::from(v) * step),
-            z,
-            through,
-            overlap,
-            walls,
-            jam,
-            ..*pose
-        };
-        if std::env::var("D").is_ok() { eprintln!("out {} turn {} shift {:?} e {:.3} z {:.3} walls {:.2} jam {:.2} climb {:.2} plateau {} step {:.4}", next.out, next.turn, next.shift.map(|v| v*1e3), overlap*1e3, z*1e3, next.walls*1e6, next.jam*1e6, climb(&s, &p, shift, z, side)*1e3, 0, step*1e3); }
-        if best.as_ref().is_none_or(|best| next.value() > best.value()) {
-            best = Some(Pose { depth: climb(&s, &p, shift, z, side), ..next });
+    if std::env::var("D").is_ok() {
+        for p in &kept {
+            eprintln!("rough {p:?}");
         }
     }
-    best
+    let mut fine: Vec<Pose> =
+        kept.par_iter().filter_map(|pose| Fine::new(scene, pose, room).best(pose)).collect();
+    fine.sort_by(|a, b| b.value().total_cmp(&a.value()));
+    watch.check(0.9)?;
+    Ok(fine)
+}
+
+/// Maps for the first look at a seat.
+struct Rough<'a> {
+    scene: &'a Scene,
+    upper: Vec<[Map; 2]>,
+    lower: Vec<[Map; 2]>,
+    sides: Vec<Sides>,
+    room: f64,
+}
+
+impl<'a> Rough<'a> {
+    fn new(scene: &'a Scene, room: f64) -> Self {
+        let radius = ((0.1 * MM / scene.step).round() as usize).max(2);
+        let eroded = |maps: &Vec<Map>| -> Vec<[Map; 2]> {
+            maps.par_iter().map(|map| [1, radius].map(|r| map.eroded([r; 2]))).collect()
+        };
+        let sides = scene.lower.par_iter().map(Sides::new).collect();
+        Rough { scene, upper: eroded(&scene.upper), lower: eroded(&scene.lower), sides, room }
+    }
+
+    fn pose(&self, seat: &Seat) -> Option<Pose> {
+        let step = self.scene.step;
+        let (socket, plug) = (&self.scene.sockets[seat.out], &self.scene.plugs[seat.turn]);
+        let contact = Contact {
+            socket: &self.scene.upper[seat.out],
+            plug: &self.lower[seat.turn][0],
+            sides: &self.sides[seat.turn],
+            limits: [REACH * self.room, step],
+        };
+        let mut found: Vec<Pose> = Vec::new();
+        for level in [0, 1] {
+            let (s, p) = (&self.upper[seat.out][level], &self.lower[seat.turn][level]);
+            let (shifts, z) = lowest(s, p, seat.shift, FINE as i32 / 2 + 1);
+            let shift = middle(&shifts);
+            let (z, through) = seated(z, heights(socket), heights(plug));
+            let below = if through { Vec::new() } else { contact.levels(shift, z as f32) };
+            for z in [z].into_iter().chain(below.into_iter().map(f64::from)) {
+                let [walls, jam] = contact.areas(shift, z as f32);
+                found.push(Pose {
+                    out: seat.out,
+                    turn: seat.turn,
+                    shift: shift.map(|s| f64::from(s) * step),
+                    z,
+                    through,
+                    overlap: 0.0,
+                    walls,
+                    jam,
+                    depth: seat.depth,
+                });
+            }
+        }
+        found.into_iter().max_by(|a, b| a.value().total_cmp(&b.value()))
+    }
+}
+
+/// Maps of fine cells about a pose.
+pub struct Fine {
+    /// Side of a cell, m.
+    pub step: f64,
+    upper: Map,
+    lower: Map,
+    tight: Map,
+    sides: Sides,
+    heights: [[f64; 2]; 2],
+    /// Rectangle of the socket that the plug can touch, m.
+    pub window: Window,
+    radius: i32,
+    room: f64,
+}
+
+impl Fine {
+    /// Maps about a pose.
+    pub fn new(scene: &Scene, pose: &Pose, room: f64) -> Self {
+        let (socket, plug) = (&scene.sockets[pose.out], &scene.plugs[pose.turn]);
+        let ([px, py, _], [sx, sy, _]) = (bounds(plug), bounds(socket));
+        let common = |p: [f64; 2], s: [f64; 2], shift: f64| {
+            [(p[0] + shift).max(s[0]) - 4.0 * room, (p[1] + shift).min(s[1]) + 4.0 * room]
+        };
+        let window = [common(px, sx, pose.shift[0]), common(py, sy, pose.shift[1])];
+        let area: f64 = window.iter().map(|[low, high]| (high - low).max(0.0)).product();
+        let step = (area / MOST_CELLS).sqrt().max(LEAST_CELL);
+        let back = [0, 1].map(|a| window[a].map(|v| v - pose.shift[a]));
+        let upper = Map::new(socket, Envelope::Upper, [step; 2], Some(window));
+        let lower = Map::new(plug, Envelope::Lower, [step; 2], Some(back));
+        let tight = lower.eroded([(TOLERANCE / step).ceil() as usize; 2]);
+        let radius = (1.5 * scene.step / step).ceil() as i32 + 1;
+        let heights = [heights(socket), heights(plug)];
+        let sides = Sides::new(&lower);
+        Fine { step, upper, lower, tight, sides, heights, window, radius, room }
+    }
+
+    fn contact(&self) -> Contact<'_> {
+        Contact {
+            socket: &self.upper,
+            plug: &self.tight,
+            sides: &self.sides,
+            limits: [REACH * self.room, TOLERANCE],
+        }
+    }
+
+    /// Seat with as much interference as makes it best.
+    fn best(&self, pose: &Pose) -> Option<Pose> {
+        let mut about = pose.shift.map(|v| (v / self.step).round() as i32);
+        let (mut best, mut last): (Option<Pose>, _) = (None, None);
+        for overlap in OVERLAPS {
+            let cells = (overlap / self.step).round() as usize;
+            if last.replace(cells) == Some(cells) {
+                continue;
+            }
+            let s = self.upper.eroded([cells / 2; 2]);
+            let p = self.lower.eroded([cells - cells / 2; 2]);
+            let Some((shift, z)) = self.settled([&s, &p], about) else { continue };
+            let (z, through) = seated(z, self.heights[0], self.heights[1]);
+            let contact = self.contact();
+            let below = if through { Vec::new() } else { contact.levels(shift, z as f32) };
+            for z in [z].into_iter().chain(below.into_iter().map(f64::from)) {
+                let [walls, jam] = contact.areas(shift, z as f32);
+                let at = shift.map(|v| f64::from(v) * self.step);
+                let next = Pose { shift: at, z, through, walls, jam, ..*pose };
+                if std::env::var("D").is_ok() {
+                    eprintln!("out {} turn {} shift {:?} e {:.3} z {:.3} walls {:.2} jam {:.2} value {:.2} step {:.4}", next.out, next.turn, next.shift.map(|v| v*1e3), overlap*1e3, z*1e3, walls*1e6, jam*1e6, next.value()*1e6, self.step*1e3);
+                }
+                if best.as_ref().is_none_or(|best| next.value() > best.value()) {
+                    about = shift;
+                    best = Some(next);
+                }
+            }
+        }
+        let best = best?;
+        let shift = best.shift.map(|v| (v / self.step).round() as i32);
+        let overlap = self.interference(shift, best.z);
+        let side = ((self.room + 2.0 * overlap) / self.step).ceil() as i32;
+        let free = (overlap / self.step).ceil() as usize;
+        let (s, p) = (self.upper.eroded([free / 2; 2]), self.tight.eroded([free - free / 2; 2]));
+        let depth = climb(&s, &p, shift, best.z, side);
+        Some(Pose { depth, overlap, ..best })
+    }
+
+    /// Lowest shift near a shift with the most facing walls, and its height.
+    fn settled(&self, [socket, plug]: [&Map; 2], mut about: [i32; 2]) -> Option<([i32; 2], f32)> {
+        let mut found = None;
+        for _ in 0..MOST_MOVES {
+            let (level, z) = lowest(socket, plug, about, self.radius);
+            let (seat, _) = seated(z, self.heights[0], self.heights[1]);
+            let limits = [REACH * self.room, TOLERANCE];
+            let engaged = |shift: &[i32; 2]| {
+                score(&self.sides.facing(&self.upper, (*shift, seat as f32), limits))
+            };
+            let scores: Vec<_> = level.iter().map(engaged).collect();
+            let most = scores.iter().copied().fold(0.0, f64::max);
+            let good = level.iter().zip(&scores).filter(|(_, score)| **score >= 0.99 * most);
+            let shift = middle(&good.map(|(shift, _)| *shift).collect::<Vec<_>>());
+            found = Some((shift, z));
+            // The best place may lie beyond the shifts tried.
+            if (0..2).all(|a| (shift[a] - about[a]).abs() < self.radius) {
+                break;
+            }
+            about = shift;
+        }
+        found
+    }
+
+    /// Cells of the plug that the socket fills, too, at a pose.
+    pub fn shared(&self, pose: &Pose) -> Vec<[i32; 2]> {
+        let shift = pose.shift.map(|v| (v / self.step).round() as i32);
+        self.contact().shared(shift, pose.z as f32 + LEVEL)
+    }
+
+    /// Width of what both parts fill, m.
+    fn interference(&self, shift: [i32; 2], z: f64) -> f64 {
+        let cells = self.contact().shared(shift, z as f32 + LEVEL);
+        let mut cells: BTreeSet<[i32; 2]> = cells.into_iter().collect();
+        let mut width = if cells.is_empty() { 0.0 } else { TOLERANCE };
+        while !cells.is_empty() {
+            let inner = |[x, y]: &[i32; 2]| {
+                SIDES.iter().all(|[dx, dy]| cells.contains(&[x + dx, y + dy]))
+            };
+            cells = cells.iter().copied().filter(inner).collect();
+            width += 2.0 * self.step;
+        }
+        width
+    }
 }

@@ -9,8 +9,6 @@ use rayon::prelude::*;
 
 /// Least depth of a seat, m.
 pub const LEAST: f64 = 0.4 * MM;
-/// Largest total play of a plug in its seat, m.
-pub const MOST_PLAY: f64 = 0.5 * MM;
 /// Interference allowed for in a second pass, m: springs are drawn unloaded.
 const INTERFERENCE: f64 = 0.2 * MM;
 /// Least cell of the maps, m.
@@ -19,6 +17,8 @@ const LEAST_CELL: f64 = 0.1 * MM;
 const EFFORT: f64 = 10e9;
 /// Cells of a fine map along a side of a coarse one.
 pub const FINE: usize = 4;
+/// Pairs of axes between two looks at the clock.
+const AT_ONCE: usize = 24;
 /// Most seats for each pair of axes.
 const MOST_SEATS: usize = 12;
 
@@ -50,7 +50,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    fn new(parts: &Parts) -> Self {
+    /// Maps of both parts.
+    pub fn new(parts: &Parts) -> Self {
         let sockets: Vec<_> =
             outs().iter().map(|turn| turned(&parts.socket.triangles, turn)).collect();
         let plugs: Vec<_> = turns().iter().map(|turn| turned(&parts.plug.triangles, turn)).collect();
@@ -89,9 +90,13 @@ impl Coarse {
     }
 }
 
-/// Seats of all pairs of axes.
-pub fn seats(parts: &Parts, watch: &Watch) -> Result<(Scene, Vec<Seat>), MatingError> {
-    let scene = Scene::new(parts);
+/// Seats of pairs of axes in which the plug has at most `room` of play, m.
+pub fn seats(
+    scene: &Scene,
+    pairs: &[[usize; 2]],
+    room: f64,
+    watch: &Watch,
+) -> Result<Vec<Seat>, MatingError> {
     let mut seats = Vec::new();
     for (pass, interference) in [0.0, INTERFERENCE].into_iter().enumerate() {
         let erosion = (interference / 2.0 / scene.step).round() as usize;
@@ -99,17 +104,19 @@ pub fn seats(parts: &Parts, watch: &Watch) -> Result<(Scene, Vec<Seat>), MatingE
             fine.par_iter().map(|map| Coarse::new(map, erosion)).collect()
         };
         let (sockets, plugs) = (coarse(&scene.upper), coarse(&scene.lower));
-        for (out, socket) in sockets.iter().enumerate() {
-            watch.check(0.6 * (pass * sockets.len() + out) as f64 / (2 * sockets.len()) as f64)?;
-            let of = |(turn, plug): (usize, &Coarse)| {
+        for (number, few) in pairs.chunks(AT_ONCE).enumerate() {
+            let done = pass * pairs.len() + number * AT_ONCE;
+            watch.check(0.6 * done as f64 / (2 * pairs.len()) as f64)?;
+            let of = |pair: &[usize; 2]| {
+                let [out, turn] = *pair;
                 let passed = bounds(&scene.sockets[out])[2][0] - bounds(&scene.plugs[turn])[2][1];
-                enclosed(socket, plug, [out, turn], passed as f32)
+                enclosed((&sockets[out], &plugs[turn]), *pair, passed as f32, room)
             };
-            let found: Vec<Vec<Seat>> = plugs.par_iter().enumerate().map(of).collect();
+            let found: Vec<Vec<Seat>> = few.par_iter().map(of).collect();
             seats.extend(found.into_iter().flatten());
         }
     }
-    Ok((scene, seats))
+    Ok(seats)
 }
 
 /// Heights of rest for each shift, from below.
@@ -148,10 +155,10 @@ impl Rests {
 /// Seats from which the plug must climb to each of four sides; below the height `passed` it has gone
 /// through.
 fn enclosed(
-    socket: &Coarse,
-    plug: &Coarse,
+    (socket, plug): (&Coarse, &Coarse),
     [out, turn]: [usize; 2],
     passed: f32,
+    room: f64,
 ) -> Vec<Seat> {
     let extremes = |map: &Map, take: fn(f32, f32) -> f32| map.heights.iter().copied().fold(map.envelope.empty(), take);
     let highest = extremes(&socket.outer, f32::max) - extremes(&plug.outer, f32::min);
@@ -159,7 +166,7 @@ fn enclosed(
     let rests = Rests::new(socket, plug, range);
     let step = socket.outer.step[0];
     // A bound is as wide as two cells more.
-    let radius = (MOST_PLAY / step).ceil() as i32 + 2;
+    let radius = (room / step).ceil() as i32 + 2;
     let mut found: Vec<(f32, [i32; 2])> = Vec::new();
     for y in 0..rests.count[1] as i32 {
         for x in 0..rests.count[0] as i32 {

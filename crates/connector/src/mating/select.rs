@@ -1,37 +1,46 @@
 //! Choice among refined poses.
 
-use super::frame::{Parts, outs, turns};
+use super::frame::Parts;
+use super::map::bounds;
 use super::refine::Pose;
-use super::{Found, Mate, MatingError, search::{LEAST, Scene}};
+use super::search::{LEAST, Scene};
+use super::{Found, precise};
 use input::units::MM;
-use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 
-/// Mate of a pose.
-fn mate(parts: &Parts, pose: &Pose) -> Mate {
-    let socket = outs()[pose.out] * parts.socket.own;
-    let plug = turns()[pose.turn] * parts.plug.own;
-    let moved = Translation3::new(pose.shift[0], pose.shift[1], pose.z)
-        * UnitQuaternion::from_rotation_matrix(&plug);
-    let back = socket.inverse();
-    Mate {
-        pose: Isometry3::from_parts(Translation3::identity(), UnitQuaternion::from_rotation_matrix(&back)) * moved,
-        out: Unit::new_normalize(back * Vector3::z()),
-        across: [Vector3::x(), Vector3::y()].map(|axis| Unit::new_normalize(back * axis)),
-        engaged_m: pose.depth,
-        play_m: [0.0; 2],
-        yaw_rad: 0.0,
-        overlap_m: pose.overlap,
-        walls_m2: pose.walls,
-        through: pose.through,
-    }
-}
+/// Share of the best engagement that is similar: the maps know it within some hundredths.
+const SIMILAR: f64 = 0.97;
+/// Difference of depth of equal mates, m.
+const SAME: f64 = 0.05 * MM;
+/// Share of the plug's outline that walls must face over the least depth.
+const GUIDED: f64 = 0.25;
 
-/// Mates of similar engagement.
-pub fn select(parts: &Parts, (_scene, poses): (Scene, Vec<Pose>)) -> Result<Found, MatingError> {
-    let mates: Vec<Mate> = poses.iter().map(|pose| mate(parts, pose)).collect();
-    match mates.len() {
-        0 => Err(MatingError::NoFit { least_mm: LEAST / MM }),
-        1 => Ok(Found::One(mates[0].clone())),
-        _ => Ok(Found::Ambiguous(mates)),
+/// Choice among poses, the best first; none if no pose guides the plug.
+pub fn select(
+    parts: &Parts,
+    scene: &Scene,
+    poses: &[Pose],
+    (pairs, room): (&[([usize; 2], usize)], f64),
+) -> Option<Found> {
+    let guided = |pose: &&Pose| {
+        let [x, y, _] = bounds(&scene.plugs[pose.turn]);
+        let size = ((x[1] - x[0]) * (y[1] - y[0])).sqrt();
+        pose.depth >= LEAST && pose.walls >= LEAST * GUIDED * size
+    };
+    let poses: Vec<_> = poses.iter().filter(guided).collect();
+    let best = poses.first()?;
+    let number = |pose: &Pose| {
+        let pair = pairs.iter().find(|(pair, _)| *pair == [pose.out, pose.turn]);
+        pair.map_or(1, |(_, count)| *count)
+    };
+    let similar = poses.iter().filter(|pose| pose.value() >= SIMILAR * best.value());
+    let (equal, others): (Vec<&&Pose>, Vec<&&Pose>) = similar.partition(|pose| {
+        (pose.depth - best.depth).abs() < SAME && pose.walls > SIMILAR * best.walls
+    });
+    let mate = |pose: &Pose| precise::mate(parts, scene, pose, room);
+    if others.is_empty() {
+        let count = equal.iter().map(|pose| number(pose)).sum();
+        let mate = mate(best);
+        return Some(if count > 1 { Found::Symmetric(mate, count) } else { Found::One(mate) });
     }
+    Some(Found::Ambiguous([*best].into_iter().chain(others.into_iter().copied()).map(mate).collect()))
 }

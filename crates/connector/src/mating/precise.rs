@@ -1,0 +1,170 @@
+//! Exact seat and play of a pose.
+
+use super::Mate;
+use super::frame::{Parts, outs, turns};
+use super::map::{Envelope, Map, Window, bounds, rest};
+use super::refine::{Fine, Pose};
+use super::search::Scene;
+use crate::mesh::Triangle;
+use input::units::MM;
+use nalgebra::{Isometry3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
+use std::collections::BTreeSet;
+use std::f64::consts::TAU;
+
+/// Cell along the direction in which play is measured, m, and most cells of a map.
+const CELL: f64 = 0.005 * MM;
+const MOST_CELLS: f64 = 1.5e6;
+/// Height above the seat at which play is measured, m: so that the stop itself does not count.
+const LIFT: f64 = 0.1 * MM;
+/// Margin about what interferes that is left out, m.
+const MARGIN: f64 = 0.1 * MM;
+/// First angle tried for the play about the axis, rad, the factor to the next, and the largest.
+const FIRST_ANGLE: f64 = 1e-3;
+const NEXT_ANGLE: f64 = 1.6;
+const MOST_ANGLE: f64 = TAU / 8.0;
+/// Halvings of the play about the axis.
+const HALVINGS: usize = 5;
+/// Times that x and y are centred.
+const ROUNDS: usize = 2;
+
+/// Parts without what interferes.
+struct Bench<'a> {
+    socket: &'a [Triangle],
+    plug: &'a [Triangle],
+    window: Window,
+    /// Cells of the plug, of side `step`, that interfere, with a margin.
+    left_out: BTreeSet<[i32; 2]>,
+    step: f64,
+    shift: [f64; 2],
+}
+
+impl Bench<'_> {
+    fn maps(&self, step: [f64; 2], turn: f64) -> [Map; 2] {
+        let [x, y, _] = bounds(self.plug);
+        let middle = Vector3::new((x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0, 0.0);
+        let about = Rotation3::from_axis_angle(&Vector3::z_axis(), turn);
+        let by = middle + Vector3::new(self.shift[0], self.shift[1], 0.0);
+        let plug: Vec<Triangle> =
+            self.plug.iter().map(|corners| corners.map(|p| about * (p - middle) + by)).collect();
+        let mut maps = [(self.socket, Envelope::Upper), (&plug, Envelope::Lower)]
+            .map(|(part, envelope)| Map::new(part, envelope, step, Some(self.window)));
+        maps.iter_mut().for_each(|map| self.without(map));
+        maps
+    }
+
+    /// Removes what interferes from a map.
+    fn without(&self, map: &mut Map) {
+        if self.left_out.is_empty() {
+            return;
+        }
+        let (nx, empty) = (map.count[0], map.envelope.empty());
+        for index in 0..map.heights.len() {
+            let place = [map.middle(0, index % nx), map.middle(1, index / nx)];
+            let cell = [0, 1].map(|a| ((place[a] - self.shift[a]) / self.step).floor() as i32);
+            if self.left_out.contains(&cell) {
+                map.heights[index] = empty;
+            }
+        }
+    }
+
+    /// Cells, m, of which one axis is fine.
+    fn cells(&self, axis: usize) -> [f64; 2] {
+        let area: f64 = self.window.iter().map(|[low, high]| high - low).product();
+        let other = (area / MOST_CELLS / CELL).max(2.0 * CELL);
+        let mut cells = [other; 2];
+        cells[axis] = CELL;
+        cells
+    }
+
+    /// Centres the plug along an axis and returns its play, m.
+    fn centre(&mut self, axis: usize, height: f64, most: f64) -> f64 {
+        let step = self.cells(axis);
+        let [upper, lower] = self.maps(step, 0.0);
+        let free = |offset: i32| {
+            let mut shift = [0; 2];
+            shift[axis] = offset;
+            rest(&upper, &lower, shift, height as f32) < height as f32
+        };
+        let most = (most / CELL) as i32;
+        // The pose on the maps may touch by a cell or two.
+        let Some(first) = (0..=most / 8).flat_map(|k| [k, -k]).find(|k| free(*k)) else { return 0.0 };
+        let high = (first..first + most).take_while(|k| free(*k)).last().unwrap_or(first);
+        let low = (first - most..=first).rev().take_while(|k| free(*k)).last().unwrap_or(first);
+        self.shift[axis] += f64::from(low + high) / 2.0 * CELL;
+        f64::from(high - low + 1) * CELL
+    }
+
+    /// Height at which the plug rests, m.
+    fn rest(&self) -> f64 {
+        let step = self.cells(0);
+        let [upper, lower] = self.maps(step, 0.0);
+        f64::from(rest(&upper, &lower, [0; 2], f32::MAX))
+    }
+
+    /// Play about the axis, rad.
+    fn yaw(&self, height: f64) -> f64 {
+        let area: f64 = self.window.iter().map(|[low, high]| high - low).product();
+        let step = [(area / MOST_CELLS).sqrt().max(2.0 * CELL); 2];
+        let free = |angle: f64| {
+            let [upper, lower] = self.maps(step, angle);
+            rest(&upper, &lower, [0; 2], height as f32) < height as f32
+        };
+        let side = |sign: f64| {
+            let (mut low, mut high) = (0.0, FIRST_ANGLE);
+            while free(sign * high) {
+                if high >= MOST_ANGLE {
+                    return TAU / 2.0;
+                }
+                (low, high) = (high, (high * NEXT_ANGLE).min(MOST_ANGLE));
+            }
+            for _ in 0..HALVINGS {
+                let middle = (low + high) / 2.0;
+                if free(sign * middle) { low = middle } else { high = middle }
+            }
+            low
+        };
+        side(1.0) + side(-1.0)
+    }
+}
+
+/// Mate of a pose, exact.
+pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, room: f64) -> Mate {
+    let fine = Fine::new(scene, pose, room);
+    let margin = (MARGIN / fine.step).ceil() as i32;
+    let about = move |[x, y]: [i32; 2]| {
+        (-margin..=margin).flat_map(move |dy| (-margin..=margin).map(move |dx| [x + dx, y + dy]))
+    };
+    let left_out = fine.shared(pose).into_iter().flat_map(about).collect();
+    let (socket, plug) = (&scene.sockets[pose.out], &scene.plugs[pose.turn]);
+    let mut bench =
+        Bench { socket, plug, window: fine.window, left_out, step: fine.step, shift: pose.shift };
+    let height = pose.z + LIFT;
+    let mut play = [0.0; 2];
+    for _ in 0..ROUNDS {
+        play = [0, 1].map(|axis| bench.centre(axis, height, 2.0 * room));
+    }
+    let rest = bench.rest();
+    let z = if pose.through || (rest - pose.z).abs() > LIFT { pose.z } else { rest };
+    let yaw_rad = bench.yaw(height);
+    placed(parts, &Pose { z, shift: bench.shift, ..pose.clone() }, play, yaw_rad)
+}
+
+/// Mate in the axes of the files.
+fn placed(parts: &Parts, pose: &Pose, play_m: [f64; 2], yaw_rad: f64) -> Mate {
+    let back = (outs()[pose.out] * parts.socket.own).inverse();
+    let plug = turns()[pose.turn] * parts.plug.own;
+    let moved = Translation3::new(pose.shift[0], pose.shift[1], pose.z)
+        * UnitQuaternion::from_rotation_matrix(&plug);
+    let turned = UnitQuaternion::from_rotation_matrix(&back);
+    Mate {
+        pose: Isometry3::from_parts(Translation3::identity(), turned) * moved,
+        out: Unit::new_normalize(back * Vector3::z()),
+        across: [Vector3::x(), Vector3::y()].map(|axis| Unit::new_normalize(back * axis)),
+        engaged_m: pose.depth,
+        play_m,
+        yaw_rad,
+        overlap_m: pose.overlap,
+        walls_m2: pose.walls,
+        through: pose.through,
+    }
+}

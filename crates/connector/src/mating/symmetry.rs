@@ -1,0 +1,82 @@
+//! Turns of the parts that are equal by their own symmetry.
+
+use super::frame::{outs, turned, turns};
+use super::map::{Envelope, Map, bounds};
+use super::search::Scene;
+use crate::mesh::Triangle;
+use input::units::MM;
+use nalgebra::{Rotation3, Vector3};
+use rayon::prelude::*;
+
+/// Difference of heights of equal parts, m.
+const SAME: f32 = 0.05e-3;
+/// One in so many cells may differ.
+const RARE: usize = 1000;
+
+/// Pairs of a direction out of the socket and a turn of the plug, one for all that are equal, and
+/// how many are.
+pub fn pairs(scene: &Scene) -> Vec<([usize; 2], usize)> {
+    let (turns, count) = (turns(), turns().len());
+    let step = 2.0 * scene.step;
+    let plugs = maps(&scene.plugs, Envelope::Lower, step);
+    let sockets: Vec<_> = turns
+        .iter()
+        .map(|turn| turned(&scene.sockets[0], &(turn * outs()[0].inverse())))
+        .collect();
+    let sockets = maps(&sockets, Envelope::Upper, step);
+    let number = |turn: Rotation3<f64>| {
+        turns.iter().position(|other| (other.matrix() - turn.matrix()).amax() < MM).unwrap_or(0)
+    };
+    let mut root: Vec<usize> = (0..outs().len() * count).collect();
+    let mut join = |a: usize, b: usize| {
+        let (a, b) = (root[a], root[b]);
+        root.iter_mut().filter(|r| **r == a.max(b)).for_each(|r| *r = a.min(b));
+    };
+    for (a, b) in alike(&plugs) {
+        (0..outs().len()).for_each(|out| join(out * count + a, out * count + b));
+    }
+    for (a, b) in alike(&sockets).into_iter().filter(|(a, _)| a % 4 == 0) {
+        // The second socket turned back about the axis looks out as one of the six.
+        let back = turns[b / 4 * 4] * turns[b].inverse();
+        for (turn, of) in turns.iter().enumerate() {
+            join(a / 4 * count + turn, b / 4 * count + number(back * of));
+        }
+    }
+    let size = |i: usize| root.iter().filter(|root| **root == i).count();
+    let first = (0..root.len()).filter(|i| root[*i] == *i);
+    first.map(|i| ([i / count, i % count], size(i))).collect()
+}
+
+fn maps(parts: &[Vec<Triangle>], envelope: Envelope, step: f64) -> Vec<Map> {
+    let centred = |part: &Vec<Triangle>| {
+        let [x, y, z] = bounds(part);
+        let by = Vector3::new((x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0, z[0]);
+        let moved: Vec<Triangle> = part.iter().map(|corners| corners.map(|p| p - by)).collect();
+        Map::new(&moved, envelope, [step; 2], None)
+    };
+    parts.par_iter().map(centred).collect()
+}
+
+/// Pairs of maps that show the same, both ways.
+fn alike(maps: &[Map]) -> Vec<(usize, usize)> {
+    let ranges: Vec<[Map; 2]> =
+        maps.par_iter().map(|map| [map.eroded([1; 2]), map.dilated([1; 2])]).collect();
+    let within = |a: &Map, [inner, outer]: &[Map; 2]| {
+        let [nx, ny] = a.count.map(|count| count as i32);
+        let mut others = 0;
+        for y in a.first[1]..a.first[1] + ny {
+            for x in a.first[0]..a.first[0] + nx {
+                let (z, one, two) = (a.at(x, y), inner.at(x, y), outer.at(x, y));
+                others += usize::from(z < one.min(two) - SAME || z > one.max(two) + SAME);
+            }
+        }
+        others * RARE <= a.heights.len()
+    };
+    let near = |a: &Map, b: &Map| {
+        (0..2).all(|i| a.count[i].abs_diff(b.count[i]) <= 1 && (a.first[i] - b.first[i]).abs() <= 1)
+    };
+    let all = (0..maps.len()).flat_map(|a| (0..maps.len()).map(move |b| (a, b)));
+    let all: Vec<_> = all.filter(|(a, b)| a != b && near(&maps[*a], &maps[*b])).collect();
+    let same = |(a, b): &(usize, usize)| within(&maps[*a], &ranges[*b]) && within(&maps[*b], &ranges[*a]);
+    all.into_par_iter().filter(same).collect()
+}

@@ -6,6 +6,8 @@ use input::units::MM;
 use insertion::task::geometry::outline_by;
 use insertion::task::{Part, Plug};
 use nalgebra::{Point2, Point3, Vector3};
+use parry::bounding_volume::Aabb;
+use parry::partitioning::{Bvh, BvhBuildStrategy};
 use parry::query;
 use parry::shape::SharedShape;
 use rapier3d_f64::parry;
@@ -19,8 +21,21 @@ pub struct ConvexBody<'a> {
     /// Parts of the task, body frame, m.
     pub parts: &'a [Part],
     shapes: Vec<Placed>,
+    /// Boxes about the parts, mm.
+    tree: Bvh,
     /// Indices of the parts that give way to another body.
     yielding: &'a [usize],
+}
+
+/// Overlap of a part of one body with a part of another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touching {
+    /// Depth, m.
+    pub depth: f64,
+    /// Direction in which it is shallowest, from the first body to the second.
+    pub normal: Vector3<f64>,
+    /// Index of each part in its body.
+    pub parts: [usize; 2],
 }
 
 struct Placed {
@@ -43,7 +58,10 @@ impl<'a> ConvexBody<'a> {
             // A cylinder bulges beyond its 16 corners by 2 %.
             Placed { shape, pose: geom.pose * turn, centre, radius: 1.02 * far }
         };
-        ConvexBody { parts, shapes: parts.iter().map(place).collect(), yielding: &[] }
+        let shapes: Vec<Placed> = parts.iter().map(place).collect();
+        let boxes: Vec<Aabb> = shapes.iter().map(|part| part.boxed(&Pose::identity())).collect();
+        let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
+        ConvexBody { parts, shapes, tree, yielding: &[] }
     }
 
     /// Body of a plug, whose latch gives way.
@@ -54,12 +72,38 @@ impl<'a> ConvexBody<'a> {
 
     /// Depth of the deepest overlap with another body, m, and the index of each part in its body.
     pub fn overlap(&self, own: &Pose, other: &ConvexBody, at: &Pose) -> Option<(f64, [usize; 2])> {
-        let stiff = (0..self.shapes.len()).filter(|i| !self.yielding.contains(i));
-        let pairs = stiff.flat_map(|i| (0..other.shapes.len()).map(move |j| [i, j]));
+        let pairs = self.near_pairs(own, other, at).filter(|[i, _]| !self.yielding.contains(i));
         let deep = pairs.filter_map(|[i, j]| {
             Some((self.shapes[i].overlap(own, &other.shapes[j], at)?, [i, j]))
         });
         deep.max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Returns all overlaps with another body.
+    pub fn overlaps(&self, own: &Pose, other: &ConvexBody, at: &Pose) -> Vec<Touching> {
+        let touching = |parts: [usize; 2]| {
+            let [first, second] = [&self.shapes[parts[0]], &other.shapes[parts[1]]];
+            let (depth, normal) = first.penetration(own, second, at)?;
+            Some(Touching { depth, normal, parts })
+        };
+        self.near_pairs(own, other, at).filter_map(touching).collect()
+    }
+
+    /// Pairs of parts of this and another body whose boxes meet, in order.
+    fn near_pairs<'b>(
+        &'b self,
+        own: &Pose,
+        other: &'b ConvexBody,
+        at: &Pose,
+    ) -> impl Iterator<Item = [usize; 2]> + 'b {
+        let relative = at.inv_mul(own);
+        (0..self.shapes.len()).flat_map(move |i| {
+            let boxed = self.shapes[i].boxed(&relative);
+            let near = other.tree.intersect_aabb(&boxed).map(|j| j as usize);
+            let mut near: Vec<usize> = near.collect();
+            near.sort_unstable();
+            near.into_iter().map(move |j| [i, j])
+        })
     }
 
     /// Overlaps among its own parts: depth, m, and indices.
@@ -120,8 +164,19 @@ impl<'a> ConvexBody<'a> {
 }
 
 impl Placed {
+    /// Box about the part, its body at a pose, mm.
+    fn boxed(&self, at: &Pose) -> Aabb {
+        let part = self.shape.compute_aabb(&shapes::pose(&self.pose, MILLIMETRES));
+        part.transform_by(&shapes::pose(at, MILLIMETRES))
+    }
+
     /// Penetration depth of this part, its body at `own`, in another, m.
     fn overlap(&self, own: &Pose, other: &Placed, at: &Pose) -> Option<f64> {
+        self.penetration(own, other, at).map(|(depth, _)| depth)
+    }
+
+    /// As `overlap`, with its normal.
+    fn penetration(&self, own: &Pose, other: &Placed, at: &Pose) -> Option<(f64, Vector3<f64>)> {
         let apart = (own * self.centre - at * other.centre).norm() > self.radius + other.radius;
         if apart {
             return None;
@@ -129,7 +184,8 @@ impl Placed {
         let here = shapes::pose(&(own * self.pose), MILLIMETRES);
         let there = shapes::pose(&(at * other.pose), MILLIMETRES);
         let contact = query::contact(&here, &*self.shape, &there, &*other.shape, 0.0);
-        contact.ok().flatten().map(|contact| -contact.dist * MM).filter(|&depth| depth > 0.0)
+        let contact = contact.ok().flatten()?;
+        (contact.dist < 0.0).then(|| (-contact.dist * MM, Vector3::from(contact.normal1)))
     }
 }
 

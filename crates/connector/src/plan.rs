@@ -60,7 +60,7 @@ pub enum PlanError {
 }
 
 /// Task with grasp point, strategy and success derived from shapes, opening, shoulder and faces.
-pub fn complete(mut task: Task) -> Result<Task, PlanError> {
+pub fn complete(task: Task) -> Result<Task, PlanError> {
     let (plug_parts, socket_parts) = (task.plug.parts.clone(), task.socket.clone());
     let (plug, socket) = (ConvexBody::new(&plug_parts), ConvexBody::new(&socket_parts));
     let seat = Seating::new(&task, &plug, &socket).deepest();
@@ -69,20 +69,32 @@ pub fn complete(mut task: Task) -> Result<Task, PlanError> {
         let names = (plug_parts[by].name.clone(), socket_parts[on].name.clone());
         return Err(PlanError::NoEntry(seat.depth / MM, names.0, names.1));
     }
-    let held = held(&plug, task.grip.shoulder_z, Some(task.grip.faces_y));
+    Ok(planned(task, &plug, &socket, &seat))
+}
+
+/// Task with grasp point, strategy and success derived from shapes, opening, shoulder, faces and mated pose.
+pub fn mated(task: Task) -> Task {
+    let (plug_parts, socket_parts) = (task.plug.parts.clone(), task.socket.clone());
+    let (plug, socket) = (ConvexBody::new(&plug_parts), ConvexBody::new(&socket_parts));
+    let seat = Seating::new(&task, &plug, &socket).deepest();
+    planned(task, &plug, &socket, &seat)
+}
+
+fn planned(mut task: Task, plug: &ConvexBody, socket: &ConvexBody, seat: &Seat) -> Task {
+    let held = held(plug, task.grip.shoulder_z, Some(task.grip.faces_y));
     let cover = held.cover[0].min(held.cover[1]);
     task.grip.tcp_z = round_mm(task.grip.shoulder_z - BELOW_SHOULDER.min(0.8 * cover));
     task.grip.slip_limit = round_mm((Pad::PAPER.height / 2.0).min(0.9 * cover));
-    let play = Seating::new(&task, &plug, &socket).play(WITHIN * seat.depth, seat.at, 1);
-    success(&mut task, &plug, &seat, play);
+    let play = Seating::new(&task, plug, socket).play(WITHIN * seat.depth, seat.at, 1);
+    success(&mut task, plug, seat, play);
     let height = |part: &&Part| extent(part.solid.corners(), 2)[0];
-    let lowest = plug_parts.iter().min_by(|a, b| height(a).total_cmp(&height(b)));
+    let lowest = plug.parts.iter().min_by(|a, b| height(a).total_cmp(&height(b)));
     let family = match lowest.map(|part| &part.solid) {
         Some(Solid::Cylinder { .. }) => &Family::Peg,
         _ => &Family::Key,
     };
-    task.strategy = family.strategy(&task, &plug, seat.depth);
-    Ok(task)
+    task.strategy = family.strategy(&task, plug, seat.depth);
+    task
 }
 
 /// Connectors that a search is known to suit.
@@ -260,7 +272,7 @@ fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat, play: f64) {
     let (length, share) = MISSING;
     let depth = seat.depth * (1.0 - share) - half * libm::sin(tilt) - length;
     let depth = (depth.max(seat.depth / 2.0) / (0.1 * MM)).floor() * 0.1 * MM;
-    task.success = Success { depth, tilt, mated: None };
+    task.success = Success { depth, tilt, mated: task.success.mated };
 }
 
 fn phases(task: &Task, search: &Moves, seat: f64) -> Vec<Phase> {

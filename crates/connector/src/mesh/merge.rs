@@ -73,6 +73,11 @@ pub fn solids(pieces: &[Piece]) -> Vec<Solid> {
     convex.iter().map(solid).collect()
 }
 
+/// Returns the hull of points as a box, a prism or a hull; `None` without volume.
+pub fn solid_of(points: &[Point3<f64>]) -> Option<Solid> {
+    Convex::new(points).as_ref().map(solid)
+}
+
 fn solid(convex: &Convex) -> Solid {
     let (min, max) = (convex.low, convex.high);
     let prism = [2, 0, 1].into_iter().find_map(|axis| Some((axis, extruded(convex, axis)?)));

@@ -4,11 +4,13 @@ mod axes;
 mod cut;
 mod decompose;
 pub mod import;
+pub mod mated;
 mod mend;
 mod merge;
 pub mod place;
 mod read;
 mod reduce;
+pub mod skin;
 mod surface;
 
 use super::plan::PlanError;

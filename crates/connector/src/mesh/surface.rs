@@ -123,7 +123,8 @@ fn snap(value: f64) -> f64 {
     (value / GRID).round() * GRID
 }
 
-fn weld(triangles: &[Triangle], unit: f64) -> (Vec<Point3<f64>>, Vec<[usize; 3]>) {
+/// Welds the corners of triangles given in a unit of `unit` metres, and drops faces without area or with a back.
+pub fn weld(triangles: &[Triangle], unit: f64) -> (Vec<Point3<f64>>, Vec<[usize; 3]>) {
     let mut places: BTreeMap<[i64; 3], usize> = BTreeMap::new();
     let mut points = Vec::new();
     let mut index = |p: &Point3<f64>| {

@@ -72,7 +72,7 @@ impl DirectWorld {
     /// Finds the contacts and sets them up for the solver.
     fn find_contacts(&mut self) {
         let step = self.settings.step_s;
-        self.detector.detect(&self.bodies, &mut self.touches);
+        self.detector.detect(&self.bodies, step, &mut self.touches);
         self.contacts.clear();
         // Force at the end of the step: k gap + c rate; `share` is that of the gap at its start.
         let spring = self.settings.contact_stiffness * step;

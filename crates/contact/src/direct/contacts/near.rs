@@ -1,6 +1,7 @@
 //! Neighbour lists (Verlet 1967, Phys. Rev. 159:98): the shapes of two bodies that may touch before
 //! the bodies have moved by a margin against one another. Only these are looked at in a step.
 
+use super::super::body::MovingBody;
 use super::{Candidate, Solid};
 use crate::scene::{Friction, GeomPair, Pose};
 use nalgebra::Vector3;
@@ -86,6 +87,16 @@ impl NearList {
     /// Number of pairs of shapes.
     pub fn pairs(&self) -> usize {
         self.first.len() * self.second.len()
+    }
+
+    /// Returns the largest speed of a point of the second body against the first, m/s.
+    pub fn speed(&self, bodies: &[MovingBody]) -> f64 {
+        let [first, second] = self.bodies.map(|body| &bodies[body]);
+        let own = first.velocity - second.velocity;
+        let (linear, angular) = (own.fixed_rows::<3>(0).norm(), own.fixed_rows::<3>(3).norm());
+        let apart = (first.centre - second.centre).norm();
+        let turned = first.velocity.fixed_rows::<3>(3).norm() * apart;
+        linear + turned + angular * self.reach
     }
 
     /// Makes the list anew if the bodies have moved; `relative` is the second one's pose in the first's frame.

@@ -135,7 +135,7 @@ fn over_tiles(count: i32, way: &[Pose]) -> (Vec<Gaps>, usize) {
     for pose in way {
         bodies[1].put(*pose);
         let mut found = Vec::new();
-        detector.detect(&bodies, &mut found);
+        detector.detect(&bodies, 5e-4, &mut found);
         touched.push(found.iter().map(|touch| (touch.point, touch.gap)).collect());
     }
     (touched, detector.lists[0].candidates.len())

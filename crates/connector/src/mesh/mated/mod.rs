@@ -1,0 +1,196 @@
+//! Task from a plug and a socket whose mated pose is known: skins as convex parts, grip, search and success.
+
+mod grip;
+mod overlap;
+mod reach;
+
+use super::Triangle;
+use super::skin::skin;
+use crate::body::{ConvexBody, clipped, extent, span, width};
+use crate::{draft, plan};
+pub use grip::Grasp;
+use input::units::MM;
+use insertion::task::{Mated, Part, Solid, Success, Task};
+use nalgebra::{Matrix3, Point3, Vector3};
+pub use overlap::Interference;
+use reach::Reach;
+
+/// Handle that is put on a plug without a place to hold: width in x, between the jaws, and length, m.
+pub const HANDLE: [f64; 3] = [12.0 * MM, 10.0 * MM, 20.0 * MM];
+/// Height of the tip whose middle is the plug's axis, m.
+const TIP: f64 = 1.0 * MM;
+/// Allowance for the lateral place of a mated plug beyond its play, m.
+const ASIDE: f64 = 0.1 * MM;
+/// Least play assumed between plug and opening, m.
+const LEAST_PLAY: f64 = 0.02 * MM;
+
+/// Pair in its mated pose.
+pub struct Pair<'a> {
+    /// Plug, mated, m.
+    pub plug: &'a [Triangle],
+    /// Socket in the same axes, m.
+    pub socket: &'a [Triangle],
+    /// Direction in which the plug leaves.
+    pub out: Vector3<f64>,
+    /// Directions across it along which the jaws may close, the preferred one first.
+    pub jaws: &'a [Vector3<f64>],
+    /// Depth over which they engage, m.
+    pub engaged: f64,
+    /// Play along two directions across, m.
+    pub play: [(Vector3<f64>, f64); 2],
+}
+
+/// Settings of the task.
+pub struct Request<'a> {
+    /// Name of the task.
+    pub name: &'a str,
+    /// Task whose keys are taken, all but the shapes.
+    pub like: Option<&'a Task>,
+    /// Size of a handle (x, between the jaws, length), m, in place of the plug's own faces.
+    pub handle: Option<[f64; 3]>,
+}
+
+/// Task of a pair.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Made {
+    /// Task.
+    pub task: Task,
+    /// Direction along which the jaws close.
+    pub jaws: Vector3<f64>,
+    /// Whether the plug is held by a handle that its drawing lacks.
+    pub handle: bool,
+    /// What was left out.
+    pub interference: Vec<Interference>,
+}
+
+/// Pair in the task's axes: the plug in its own frame, the socket in that of the task.
+struct Placed {
+    plug: Vec<Triangle>,
+    socket: Vec<Triangle>,
+    jaws: Vector3<f64>,
+    play: [f64; 2],
+}
+
+impl Placed {
+    fn new(pair: &Pair, jaws: Vector3<f64>) -> Self {
+        let turn = Matrix3::from_rows(&[jaws.cross(&pair.out), jaws, pair.out].map(|v| v.transpose()));
+        let turned = |triangles: &[Triangle], by: Vector3<f64>| -> Vec<Triangle> {
+            triangles.iter().map(|t| t.map(|p| Point3::from(turn * p.coords + by))).collect()
+        };
+        let plug = turned(pair.plug, Vector3::zeros());
+        let [low, _] = extent(plug.iter().flatten(), 2);
+        let tip = plug.iter().flat_map(|face| clipped(face, 2, [low, low + TIP]));
+        let tip: Vec<Point3<f64>> = tip.collect();
+        let [x, y] = [0, 1].map(|axis| extent(&tip, axis)).map(|[a, b]| (a + b) / 2.0);
+        let play = [0, 1].map(|axis| {
+            let along = |(way, _): &&(Vector3<f64>, f64)| (turn * way)[axis].abs() > 0.7;
+            pair.play.iter().find(along).map_or(0.0, |(_, play)| *play)
+        });
+        Placed {
+            plug: turned(pair.plug, Vector3::new(-x, -y, -low)),
+            socket: turned(pair.socket, Vector3::new(-x, -y, -low - pair.engaged)),
+            jaws,
+            play,
+        }
+    }
+}
+
+/// Returns the task of a pair in its mated pose.
+pub fn task(pair: &Pair, request: &Request) -> Made {
+    let first = pair.jaws.first().copied().unwrap_or_else(Vector3::y);
+    let high = |placed: &Placed| extent(placed.socket.iter().flatten(), 2)[1].max(0.0);
+    let held = |jaws: &Vector3<f64>| {
+        let placed = Placed::new(pair, *jaws);
+        let grasp = grip::own(&placed.plug, pair.engaged + high(&placed))?;
+        Some((placed, grasp))
+    };
+    let own = if request.handle.is_some() { None } else { pair.jaws.iter().find_map(held) };
+    let handle = own.is_none();
+    let (placed, grasp) = own.unwrap_or_else(|| {
+        let placed = Placed::new(pair, first);
+        let size = request.handle.unwrap_or(HANDLE);
+        let grasp = grip::handle(&placed.plug, size, pair.engaged + high(&placed));
+        (placed, grasp)
+    });
+    let (mut plug, mut socket) = skins(&placed, pair.engaged);
+    let interference = overlap::cut(&mut plug, &mut socket, pair.engaged);
+    plug.push(grasp.part.clone());
+    let mut task = draft::blank(request.name, request.like);
+    task.plug.mass = draft::DENSITY * volume(&placed.plug).max(grasp_volume(&grasp));
+    (task.plug.parts, task.socket) = (plug, socket);
+    let play = placed.play.map(|play| play.max(LEAST_PLAY));
+    task.opening = opening(&placed.plug, pair.engaged, play);
+    let lateral = play[0].hypot(play[1]) / 2.0 + ASIDE;
+    let mated = Mated { tip: [0.0, 0.0, -pair.engaged], lateral };
+    task.success = Success { mated: Some(mated), ..Success::default() };
+    (task.grip.shoulder_z, task.grip.faces_y) = (grasp.shoulder, grasp.faces);
+    let task = plan::mated(task);
+    Made { task, jaws: placed.jaws, handle, interference }
+}
+
+/// Parts of plug and socket where the other one can touch them.
+fn skins(placed: &Placed, depth: f64) -> (Vec<Part>, Vec<Part>) {
+    let mated: Vec<Triangle> =
+        placed.plug.iter().map(|t| t.map(|p| p - Vector3::z() * depth)).collect();
+    let reach = Reach::new(&mated, &placed.socket);
+    let (plug, socket) = rayon::join(
+        || skin(&mated, |face, normal| reach.of_plug(face, normal)),
+        || skin(&placed.socket, |face, normal| reach.of_socket(face, normal)),
+    );
+    let named = |name: &str, solids: Vec<Solid>| -> Vec<Part> {
+        let part = |(i, solid)| Part { name: format!("{name} {i}"), solid, friction: None };
+        (1..).zip(solids).map(part).collect()
+    };
+    let raised = plug.into_iter().map(|solid| raised(solid, depth)).collect();
+    (named("plug", raised), named("socket", socket))
+}
+
+fn raised(solid: Solid, by: f64) -> Solid {
+    match solid {
+        Solid::Box { min, max } => {
+            let up = Vector3::z() * by;
+            Solid::Box { min: min + up, max: max + up }
+        }
+        Solid::Prism { axis: 2, outline, span } => {
+            Solid::Prism { axis: 2, outline, span: span.map(|z| z + by) }
+        }
+        Solid::Prism { axis, outline, span } => {
+            let outline = outline.into_iter().map(|[a, z]| [a, z + by]).collect();
+            Solid::Prism { axis, outline, span }
+        }
+        other => Solid::Hull {
+            points: other.corners().into_iter().map(|p| p + Vector3::z() * by).collect(),
+        },
+    }
+}
+
+/// Opening that leaves the plug its play, m: about all of the plug that goes below the top.
+fn opening(plug: &[Triangle], depth: f64, play: [f64; 2]) -> [[f64; 2]; 2] {
+    let below: Vec<Point3<f64>> =
+        plug.iter().flat_map(|face| clipped(face, 2, [f64::NEG_INFINITY, depth])).collect();
+    [0, 1].map(|axis| {
+        let [low, high] = span(below.iter().map(|p| p[axis]));
+        [low - play[axis] / 2.0, high + play[axis] / 2.0]
+    })
+}
+
+fn volume(triangles: &[Triangle]) -> f64 {
+    let of = |[a, b, c]: &Triangle| a.coords.dot(&b.coords.cross(&c.coords)) / 6.0;
+    triangles.iter().map(of).sum()
+}
+
+fn grasp_volume(grasp: &Grasp) -> f64 {
+    insertion::task::geometry::volume(&grasp.part.solid)
+}
+
+/// Returns the play of the parts about the mated pose at a depth, m, in x and y.
+pub fn play(task: &Task, depth: f64) -> [f64; 2] {
+    let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
+    let seating = crate::seat::Seating::new(task, &plug, &socket);
+    [0, 1].map(|axis| seating.play(depth, [0.0, 0.0], axis))
+}
+
+/// Widths of an opening, m.
+pub fn widths(opening: [[f64; 2]; 2]) -> [f64; 2] {
+    opening.map(width)
+}

@@ -1,0 +1,133 @@
+//! Faces that the other body can touch on the way to the mated pose.
+
+use crate::body::{extent, span};
+use crate::mesh::Triangle;
+use input::units::MM;
+use nalgebra::Vector3;
+
+/// Side of a cell of the height maps, m.
+const CELL: f64 = 0.25 * MM;
+/// Way aside of tilt, play and misfit within which a face counts as reached, m.
+const ASIDE: f64 = 1.0 * MM;
+/// Allowance in height, m.
+const ABOVE: f64 = 0.6 * MM;
+/// Height of the plug's tip and of the socket's rim that meet in the search, m.
+const SEARCHED: f64 = 1.5 * MM;
+/// Way of the search about the opening, m.
+const SEARCH: f64 = 4.0 * MM;
+/// Sine of the slope from which on a face looks away from the other body: one that moves along the axis, tilted, does
+/// not come from behind.
+const AWAY: f64 = 0.35;
+/// Most cells of a map along one side.
+const MOST_CELLS: f64 = 1200.0;
+
+/// Heights of the highest triangles over the cells of a grid.
+struct Envelope {
+    low: [f64; 2],
+    cell: f64,
+    size: [usize; 2],
+    heights: Vec<f64>,
+}
+
+impl Envelope {
+    /// Upper envelope of triangles whose heights are counted in the direction of `sign`.
+    fn new(triangles: &[Triangle], sign: f64) -> Self {
+        let ranges = [0, 1].map(|axis| extent(triangles.iter().flatten(), axis));
+        let longest = ranges.iter().map(|[low, high]| high - low).fold(0.0, f64::max);
+        let cell = CELL.max(longest / MOST_CELLS);
+        let low = ranges.map(|[low, _]| low - ASIDE - cell);
+        let size = [0, 1].map(|i| ((ranges[i][1] + ASIDE - low[i]) / cell) as usize + 2);
+        let heights = vec![f64::NEG_INFINITY; size[0] * size[1]];
+        let mut map = Envelope { low, cell, size, heights };
+        for triangle in triangles {
+            let [a, b, c] = *triangle;
+            let long = (b - a).norm().max((c - a).norm()).max((c - b).norm());
+            let steps = ((long / (0.7 * cell)).ceil() as usize).max(1);
+            for i in 0..=steps {
+                for j in 0..=steps - i {
+                    let (u, v) = (i as f64 / steps as f64, j as f64 / steps as f64);
+                    let p = a + (b - a) * u + (c - a) * v;
+                    let at = map.index([p.x, p.y]);
+                    map.heights[at] = map.heights[at].max(sign * p.z);
+                }
+            }
+        }
+        map.widen();
+        map
+    }
+
+    fn place(&self, v: f64, axis: usize) -> usize {
+        (((v - self.low[axis]) / self.cell).max(0.0) as usize).min(self.size[axis] - 1)
+    }
+
+    fn index(&self, [x, y]: [f64; 2]) -> usize {
+        self.place(y, 1) * self.size[0] + self.place(x, 0)
+    }
+
+    /// Replaces each height by the largest within [`ASIDE`].
+    fn widen(&mut self) {
+        let reach = (ASIDE / self.cell).ceil() as usize + 1;
+        let [wide, high] = self.size;
+        let largest = |from: &[f64], at: usize, count: usize, stride: usize, first: usize| {
+            let range = at.saturating_sub(reach)..(at + reach + 1).min(count);
+            range.map(|i| from[first + i * stride]).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let along = |i: usize| largest(&self.heights, i % wide, wide, 1, i - i % wide);
+        let rows: Vec<f64> = (0..wide * high).map(along).collect();
+        let across = |i: usize| largest(&rows, i / wide, high, wide, i % wide);
+        self.heights = (0..wide * high).map(across).collect();
+    }
+
+    /// Returns the largest height over the box of a triangle.
+    fn over(&self, triangle: &Triangle) -> f64 {
+        let [x, y] = [0, 1].map(|axis| extent(triangle, axis).map(|v| self.place(v, axis)));
+        let beside = (0..2).any(|axis| {
+            let [low, high] = extent(triangle, axis);
+            let most = self.low[axis] + self.size[axis] as f64 * self.cell;
+            high < self.low[axis] || low > most
+        });
+        if beside {
+            return f64::NEG_INFINITY;
+        }
+        let row = |j: usize| &self.heights[j * self.size[0] + x[0]..=j * self.size[0] + x[1]];
+        (y[0]..=y[1]).flat_map(row).copied().fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+/// Faces that a plug and a socket can touch; both in their mated pose in the task frame.
+pub struct Reach {
+    socket: Envelope,
+    plug: Envelope,
+    tip: f64,
+    about: [[f64; 2]; 2],
+}
+
+impl Reach {
+    /// Reach of a plug in its mated pose and its socket.
+    pub fn new(plug: &[Triangle], socket: &[Triangle]) -> Self {
+        let [tip, _] = extent(plug.iter().flatten(), 2);
+        let low = plug.iter().flatten().filter(|p| p.z < tip + SEARCHED);
+        let low: Vec<_> = low.collect();
+        let about = [0, 1].map(|axis| span(low.iter().map(|p| p[axis])));
+        let about = about.map(|[low, high]| [low - SEARCH, high + SEARCH]);
+        Reach { socket: Envelope::new(socket, 1.0), plug: Envelope::new(plug, -1.0), tip, about }
+    }
+
+    /// Returns whether the socket can touch a face of the plug.
+    pub fn of_plug(&self, face: &Triangle, normal: &Vector3<f64>) -> bool {
+        let [low, _] = extent(face, 2);
+        let near = low < self.tip + SEARCHED || low < self.socket.over(face) + ABOVE;
+        normal.z < AWAY && near
+    }
+
+    /// Returns whether the plug can touch a face of the socket.
+    pub fn of_socket(&self, face: &Triangle, normal: &Vector3<f64>) -> bool {
+        let [_, high] = extent(face, 2);
+        let searched = (0..2).all(|axis| {
+            let ([low, high], [from, to]) = (extent(face, axis), self.about[axis]);
+            low < to && high > from
+        });
+        let near = -high < self.plug.over(face) + ABOVE;
+        normal.z > -AWAY && (near || (high > -SEARCHED && searched))
+    }
+}

@@ -1,0 +1,211 @@
+//! Convex slabs from the skin of a body: each flat face, cut into convex polygons and extruded into the material. Cavities and
+//! slits stay open, and no closed surface is needed, only normals that point outward.
+
+mod facets;
+mod polygons;
+
+use super::Triangle;
+use super::merge::solid_of;
+use facets::Facets;
+use input::units::MM;
+use insertion::task::Solid;
+use insertion::task::geometry::hull;
+use nalgebra::{Point3, Vector3};
+use parry::bounding_volume::{Aabb, BoundingVolume};
+use parry::partitioning::{Bvh, BvhBuildStrategy};
+use rapier3d_f64::parry;
+
+/// Largest thickness of a slab, m: more than the gap at which contacts are foreseen, so that a body that comes along a
+/// face towards its edge meets the side of the slab, not its edge.
+const THICK: f64 = 0.25 * MM;
+/// Least thickness, m.
+const THIN: f64 = 4e-3 * MM;
+/// Distance from the sides of a polygon within which what is behind it does not count, m.
+const BESIDE: f64 = 5e-3 * MM;
+/// Depth below which a face that is met is the polygon's own, m.
+const BEHIND: f64 = 5e-3 * MM;
+/// Tolerance of a convex body, m.
+const CONVEX: f64 = 2e-3 * MM;
+/// Most corners of a convex body that is one part.
+const MOST_CORNERS: usize = 400;
+/// Corners of a cut hull from which on those inside it are dropped.
+const MANY: usize = 32;
+
+/// Returns convex solids whose outer surface is that of the triangles, m, as far as `reached` accepts them.
+pub fn skin(triangles: &[Triangle], reached: impl Fn(&Triangle, &Vector3<f64>) -> bool) -> Vec<Solid> {
+    let facets = Facets::new(triangles);
+    let reached: Vec<bool> = (0..facets.faces.len())
+        .map(|face| reached(&facets.corners(face), &facets.normals[face]))
+        .collect();
+    let mut whole = vec![false; facets.faces.len()];
+    let mut solids = Vec::new();
+    for shell in facets.shells() {
+        if let Some(solid) = convex_body(&facets, &shell) {
+            shell.iter().for_each(|&face| whole[face] = true);
+            solids.extend(shell.iter().any(|&face| reached[face]).then_some(solid));
+        }
+    }
+    let (flats, of) = facets.flats();
+    let walls = Walls::new(&facets, &of);
+    for flat in &flats {
+        let normal = facets.normals[flat[0]];
+        let kept: Vec<usize> =
+            flat.iter().copied().filter(|&face| reached[face] && !whole[face]).collect();
+        if normal == Vector3::zeros() || kept.is_empty() {
+            continue;
+        }
+        for polygon in polygons::polygons(&facets, &kept, &normal) {
+            solids.extend(walls.slab(flat, &polygon, &normal));
+        }
+    }
+    solids
+}
+
+/// Returns the hull of a closed shell that is its own hull.
+fn convex_body(facets: &Facets, shell: &[usize]) -> Option<Solid> {
+    if shell.iter().any(|&face| facets.across[face].contains(&None)) {
+        return None;
+    }
+    let mut corners: Vec<usize> = shell.iter().flat_map(|&face| facets.faces[face]).collect();
+    corners.sort_unstable();
+    corners.dedup();
+    let flat = |&face: &usize| {
+        let (normal, origin) = (facets.normals[face], facets.corners(face)[0]);
+        corners.iter().all(|&corner| (facets.points[corner] - origin).dot(&normal) < CONVEX)
+    };
+    if corners.len() > MOST_CORNERS || !shell.iter().all(flat) {
+        return None;
+    }
+    solid_of(&corners.iter().map(|&corner| facets.points[corner]).collect::<Vec<_>>())
+}
+
+/// Faces in the order of space.
+struct Walls<'a> {
+    facets: &'a Facets,
+    /// Number of the flat face of each triangle.
+    of: &'a [usize],
+    tree: Bvh,
+}
+
+impl<'a> Walls<'a> {
+    fn new(facets: &'a Facets, of: &'a [usize]) -> Self {
+        let boxes: Vec<_> =
+            (0..facets.faces.len()).map(|face| around(&facets.corners(face))).collect();
+        Walls { facets, of, tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) }
+    }
+
+    /// Returns a polygon of a flat face extruded into the material; `None` if it holds no volume.
+    fn slab(&self, flat: &[usize], polygon: &[usize], normal: &Vector3<f64>) -> Option<Solid> {
+        let corners: Vec<Point3<f64>> = polygon.iter().map(|&i| self.facets.points[i]).collect();
+        let sharp = self.sharp(flat, polygon, normal);
+        let thick = self.thickness(&corners, normal, &sharp);
+        let mut points = corners.clone();
+        points.extend(corners.iter().map(|p| p - normal * thick));
+        for &(_, origin, side) in &sharp {
+            points = below(points, &origin, &side);
+        }
+        solid_of(&points)
+    }
+
+    /// Planes of the faces that meet a polygon at less than a right angle: their flat face, a point and the normal.
+    fn sharp(
+        &self,
+        flat: &[usize],
+        polygon: &[usize],
+        normal: &Vector3<f64>,
+    ) -> Vec<(usize, Point3<f64>, Vector3<f64>)> {
+        let mut found: Vec<(usize, Point3<f64>, Vector3<f64>)> = Vec::new();
+        for &face in flat {
+            for i in 0..3 {
+                let ends = [self.facets.faces[face][i], self.facets.faces[face][(i + 1) % 3]];
+                let on = |end: &usize| polygon.contains(end);
+                let Some(other) = self.facets.across[face][i].filter(|_| ends.iter().all(on)) else {
+                    continue;
+                };
+                let side = self.facets.normals[other];
+                let (flat, origin) = (self.of[other], self.facets.points[ends[0]]);
+                let convex = |p: Point3<f64>| (p - origin).dot(normal) < CONVEX;
+                if side.dot(normal) < -1e-6
+                    && self.facets.corners(other).into_iter().all(convex)
+                    && found.iter().all(|(known, ..)| *known != flat)
+                {
+                    found.push((flat, origin, side));
+                }
+            }
+        }
+        found
+    }
+
+    /// Returns half of the wall behind a polygon, m, at most [`THICK`].
+    fn thickness(
+        &self,
+        corners: &[Point3<f64>],
+        normal: &Vector3<f64>,
+        sharp: &[(usize, Point3<f64>, Vector3<f64>)],
+    ) -> f64 {
+        let count = corners.len();
+        let side = |i: usize| {
+            let along = corners[(i + 1) % count] - corners[i];
+            let outward = along.cross(normal).normalize();
+            (corners[i] - outward * BESIDE, outward)
+        };
+        let mut planes: Vec<_> = (0..count)
+            .filter(|&i| (corners[(i + 1) % count] - corners[i]).norm() > BESIDE)
+            .map(side)
+            .collect();
+        planes.push((corners[0] - normal * BEHIND, *normal));
+        planes.push((corners[0] - normal * (2.0 * THICK), -normal));
+        let back: Vec<_> = corners.iter().map(|p| p - normal * (2.0 * THICK)).collect();
+        let boxed = around(&corners.iter().chain(&back).copied().collect::<Vec<_>>());
+        let mut least = 2.0 * THICK;
+        for face in self.tree.intersect_aabb(&boxed) {
+            let face = face as usize;
+            if self.facets.normals[face].dot(normal) > -0.02
+                || sharp.iter().any(|(flat, ..)| *flat == self.of[face])
+            {
+                continue;
+            }
+            let mut piece = self.facets.corners(face).to_vec();
+            for (origin, outward) in &planes {
+                piece = cut(piece, origin, outward);
+            }
+            let depth = piece.iter().map(|p| (corners[0] - p).dot(normal));
+            least = depth.fold(least, f64::min);
+        }
+        (least / 2.0).max(THIN)
+    }
+}
+
+/// Box about points in millimetres, for which parry's tolerances are made.
+fn around(points: &[Point3<f64>]) -> Aabb {
+    let points = points.iter().map(|p| (p.coords / MM).into());
+    Aabb::from_points(points).loosened(1e-3)
+}
+
+/// Returns the polygon below a plane.
+fn cut(polygon: Vec<Point3<f64>>, origin: &Point3<f64>, normal: &Vector3<f64>) -> Vec<Point3<f64>> {
+    let above = |p: &Point3<f64>| (p - origin).dot(normal);
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for i in 0..polygon.len() {
+        let (p, q) = (polygon[i], polygon[(i + 1) % polygon.len()]);
+        let (a, b) = (above(&p), above(&q));
+        kept.extend((a <= 0.0).then_some(p));
+        kept.extend(((a > 0.0) != (b > 0.0)).then(|| p + (q - p) * (a / (a - b))));
+    }
+    kept
+}
+
+/// Returns corners of the part of a hull below a plane.
+fn below(points: Vec<Point3<f64>>, origin: &Point3<f64>, normal: &Vector3<f64>) -> Vec<Point3<f64>> {
+    let above = |p: &Point3<f64>| (p - origin).dot(normal);
+    let (beyond, mut kept): (Vec<_>, Vec<_>) = points.into_iter().partition(|p| above(p) > 0.0);
+    let crossing = |p: &Point3<f64>, q: &Point3<f64>| {
+        let (a, b) = (above(p), above(q));
+        p + (q - p) * (a / (a - b))
+    };
+    let crossings: Vec<_> =
+        kept.iter().flat_map(|p| beyond.iter().map(move |q| crossing(p, q))).collect();
+    kept.extend(crossings);
+    // Without those inside, repeated cuts do not multiply corners.
+    if kept.len() < MANY { kept } else { hull(&kept).map_or(kept, |(corners, _)| corners) }
+}

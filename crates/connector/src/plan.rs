@@ -13,7 +13,7 @@ use input::shipped::TASKS;
 use input::units::{DEG, MM};
 use insertion::finger::Pad;
 use insertion::task::{
-    Ending, Part, Phase, Sensed, Solid, Stage, StartRule, Strategy, Success, Task,
+    Ending, Mated, Part, Phase, Sensed, Solid, Stage, StartRule, Strategy, Success, Task,
 };
 
 /// Distance of the TCP below the shoulder, m, as in the shipped tasks.
@@ -34,6 +34,10 @@ const ACROSS: [f64; 2] = [0.8 * MM, 0.45 * MM];
 const ROUND_ACROSS: f64 = 0.5 * MM;
 /// Share of a round opening's half that the tip's lowest point starts beyond its middle.
 const ROUND_AHEAD: f64 = 0.75;
+/// Way to either side of a plug that is swept over its seat upright, m: the margin that a strategy is to have.
+const SWEEP: f64 = 1.0 * MM;
+/// Command beyond the touch during the sweep, m.
+const SWEPT_PRELOAD: f64 = 0.15 * MM;
 /// Command of the push beyond the seat, m, and its speed, m/s.
 const PUSH: [f64; 2] = [4.0 * MM, 100.0 * MM];
 /// Tilt that counts as upright beyond what the play allows, degrees.
@@ -85,7 +89,11 @@ fn planned(mut task: Task, plug: &ConvexBody, socket: &ConvexBody, seat: &Seat) 
     let cover = held.cover[0].min(held.cover[1]);
     task.grip.tcp_z = round_mm(task.grip.shoulder_z - BELOW_SHOULDER.min(0.8 * cover));
     task.grip.slip_limit = round_mm((Pad::PAPER.height / 2.0).min(0.9 * cover));
-    let play = Seating::new(&task, plug, socket).play(WITHIN * seat.depth, seat.at, 1);
+    let play = match task.success.mated {
+        // The opening is the plug with its play, whatever springs were left out.
+        Some(_) => width(task.opening[1]) - width(section(plug, seat.depth)[1]),
+        None => Seating::new(&task, plug, socket).play(WITHIN * seat.depth, seat.at, 1),
+    };
     success(&mut task, plug, seat, play);
     let height = |part: &&Part| extent(part.solid.corners(), 2)[0];
     let lowest = plug.parts.iter().min_by(|a, b| height(a).total_cmp(&height(b)));
@@ -93,8 +101,30 @@ fn planned(mut task: Task, plug: &ConvexBody, socket: &ConvexBody, seat: &Seat) 
         Some(Solid::Cylinder { .. }) => &Family::Peg,
         _ => &Family::Key,
     };
-    task.strategy = family.strategy(&task, plug, seat.depth);
+    task.strategy = match task.success.mated {
+        Some(mated) => straight(&task, &mated),
+        None => family.strategy(&task, plug, seat.depth),
+    };
     task
+}
+
+/// Strategy that sets the plug down upright over its seat, sweeps it along y until it drops in, and pushes. Drawn
+/// connectors have a lead-in, and pins and tongues that a tilted plug would meet first.
+fn straight(task: &Task, mated: &Mated) -> Strategy {
+    let [x, y, z] = mated.tip;
+    let start = [x, y, task.grip.tcp_z + AIR[0]].map(round_mm);
+    let push = start[2] - AIR[0] - SWEPT_PRELOAD - (task.grip.tcp_z + z - PUSH[0]);
+    use {Ending::*, Stage::*};
+    let touch = Touch { preload: SWEPT_PRELOAD, sensed: Sensed::FIRST };
+    let phases = vec![
+        phase("approach", Approach, [0.0, 0.0, AIR[1] - AIR[0]], 150.0, Tolerance(0.1 * MM)),
+        phase("touch", Search, [0.0, 0.0, -TOUCH], 20.0, touch),
+        phase("back", Search, [0.0, SWEEP, 0.0], 40.0, Duration(0.01)),
+        phase("front", Search, [0.0, -2.0 * SWEEP, 0.0], 40.0, Duration(0.01)),
+        phase("middle", Search, [0.0, SWEEP, 0.0], 40.0, Duration(0.01)),
+        phase("assembly", Assembly, [0.0, 0.0, -push], PUSH[1] / MM, Duration(0.03)),
+    ];
+    Strategy { tilt: 0.0, start, rule: StartRule::Given, phases }
 }
 
 /// Connectors that a search is known to suit.
@@ -280,13 +310,6 @@ fn phases(task: &Task, search: &Moves, seat: f64) -> Vec<Phase> {
         *search;
     let searched = task.strategy.start[2] - AIR[0] - preload - down;
     let push = searched - (task.grip.tcp_z - seat - press);
-    let phase = |name: &str, stage, by: [f64; 3], speed: f64, ending| Phase {
-        name: name.to_owned(),
-        stage,
-        displacement: by.map(round_mm),
-        speed: speed * MM,
-        ending,
-    };
     use {Ending::*, Stage::*};
     let touch = Touch { preload, sensed: Sensed::FIRST };
     vec![
@@ -297,6 +320,12 @@ fn phases(task: &Task, search: &Moves, seat: f64) -> Vec<Phase> {
         phase("side", Search, [aside, -side, 0.0], 100.0, Duration(0.03)),
         phase("assembly", Assembly, [0.0, 0.0, -push], fast / MM, Duration(0.03)),
     ]
+}
+
+/// Phase of a displacement, m, at a speed, mm/s.
+fn phase(name: &str, stage: Stage, by: [f64; 3], speed: f64, ending: Ending) -> Phase {
+    let displacement = by.map(round_mm);
+    Phase { name: name.to_owned(), stage, displacement, speed: speed * MM, ending }
 }
 
 /// Length rounded to 0.01 mm, as in files.

@@ -6,9 +6,9 @@ use input::units::MM;
 use nalgebra::Vector3;
 
 /// Side of a cell of the height maps, m.
-const CELL: f64 = 0.25 * MM;
-/// Way aside of tilt, play and misfit within which a face counts as reached, m.
-const ASIDE: f64 = 1.0 * MM;
+const CELL: f64 = 0.12 * MM;
+/// Way in front of a face, of tilt, play and misfit, within which the other body must pass, m.
+const ASIDE: f64 = 0.6 * MM;
 /// Allowance in height, m.
 const ABOVE: f64 = 0.6 * MM;
 /// Height of the plug's tip and of the socket's rim that meet in the search, m.
@@ -19,7 +19,7 @@ const SEARCH: f64 = 4.0 * MM;
 /// not come from behind.
 const AWAY: f64 = 0.35;
 /// Most cells of a map along one side.
-const MOST_CELLS: f64 = 1200.0;
+const MOST_CELLS: f64 = 2000.0;
 
 /// Heights of the highest triangles over the cells of a grid.
 struct Envelope {
@@ -35,8 +35,8 @@ impl Envelope {
         let ranges = [0, 1].map(|axis| extent(triangles.iter().flatten(), axis));
         let longest = ranges.iter().map(|[low, high]| high - low).fold(0.0, f64::max);
         let cell = CELL.max(longest / MOST_CELLS);
-        let low = ranges.map(|[low, _]| low - ASIDE - cell);
-        let size = [0, 1].map(|i| ((ranges[i][1] + ASIDE - low[i]) / cell) as usize + 2);
+        let low = ranges.map(|[low, _]| low - cell);
+        let size = [0, 1].map(|i| ((ranges[i][1] - low[i]) / cell) as usize + 2);
         let heights = vec![f64::NEG_INFINITY; size[0] * size[1]];
         let mut map = Envelope { low, cell, size, heights };
         for triangle in triangles {
@@ -52,7 +52,6 @@ impl Envelope {
                 }
             }
         }
-        map.widen();
         map
     }
 
@@ -64,25 +63,15 @@ impl Envelope {
         self.place(y, 1) * self.size[0] + self.place(x, 0)
     }
 
-    /// Replaces each height by the largest within [`ASIDE`].
-    fn widen(&mut self) {
-        let reach = (ASIDE / self.cell).ceil() as usize + 1;
-        let [wide, high] = self.size;
-        let largest = |from: &[f64], at: usize, count: usize, stride: usize, first: usize| {
-            let range = at.saturating_sub(reach)..(at + reach + 1).min(count);
-            range.map(|i| from[first + i * stride]).fold(f64::NEG_INFINITY, f64::max)
+    /// Returns the largest height over the box of a triangle and of what lies in front of it.
+    fn over(&self, triangle: &Triangle, normal: &Vector3<f64>) -> f64 {
+        let range = |axis: usize| {
+            let ([low, high], ahead) = (extent(triangle, axis), normal[axis] * ASIDE);
+            [low + ahead.min(0.0) - self.cell, high + ahead.max(0.0) + self.cell]
         };
-        let along = |i: usize| largest(&self.heights, i % wide, wide, 1, i - i % wide);
-        let rows: Vec<f64> = (0..wide * high).map(along).collect();
-        let across = |i: usize| largest(&rows, i / wide, high, wide, i % wide);
-        self.heights = (0..wide * high).map(across).collect();
-    }
-
-    /// Returns the largest height over the box of a triangle.
-    fn over(&self, triangle: &Triangle) -> f64 {
-        let [x, y] = [0, 1].map(|axis| extent(triangle, axis).map(|v| self.place(v, axis)));
+        let [x, y] = [0, 1].map(|axis| range(axis).map(|v| self.place(v, axis)));
         let beside = (0..2).any(|axis| {
-            let [low, high] = extent(triangle, axis);
+            let [low, high] = range(axis);
             let most = self.low[axis] + self.size[axis] as f64 * self.cell;
             high < self.low[axis] || low > most
         });
@@ -116,7 +105,7 @@ impl Reach {
     /// Returns whether the socket can touch a face of the plug.
     pub fn of_plug(&self, face: &Triangle, normal: &Vector3<f64>) -> bool {
         let [low, _] = extent(face, 2);
-        let near = low < self.tip + SEARCHED || low < self.socket.over(face) + ABOVE;
+        let near = low < self.tip + SEARCHED || low < self.socket.over(face, normal) + ABOVE;
         normal.z < AWAY && near
     }
 
@@ -127,7 +116,7 @@ impl Reach {
             let ([low, high], [from, to]) = (extent(face, axis), self.about[axis]);
             low < to && high > from
         });
-        let near = -high < self.plug.over(face) + ABOVE;
+        let near = -high < self.plug.over(face, normal) + ABOVE;
         normal.z > -AWAY && (near || (high > -SEARCHED && searched))
     }
 }

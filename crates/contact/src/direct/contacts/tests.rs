@@ -19,7 +19,7 @@ fn cubes(pose: Pose) -> (Detector, Vec<MovingBody>) {
 
 fn found((detector, bodies): &mut (Detector, Vec<MovingBody>)) -> Vec<Touch> {
     let mut found = Vec::new();
-    detector.detect(bodies, &mut found);
+    detector.detect(bodies, 5e-4, &mut found);
     found.sort_by(|a, b| a.gap.total_cmp(&b.gap));
     found
 }

@@ -5,6 +5,7 @@ pub mod driven;
 pub mod files;
 pub mod film;
 pub mod finger;
+pub mod mated;
 pub mod measured;
 pub mod printed;
 pub mod repeat;

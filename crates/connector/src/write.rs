@@ -2,6 +2,7 @@
 
 use super::hold;
 use input::units::{DEG, GRAM, MM};
+use insertion::task::parts_file::PartsFile;
 use insertion::task::{
     Ending, Hold, Limits, Mated, PadTorsion, Part, Phase, Sensed, Solid, Stage, StartRule, Task,
 };
@@ -12,6 +13,16 @@ use std::fmt::Write;
 pub struct Notes {
     pub head: Vec<String>,
     pub mass: String,
+    /// File of the parts, if they lie beside the task.
+    pub parts: Option<PartsFile>,
+}
+
+/// Text of the parts of a task, to lie beside it.
+pub fn parts_file(task: &Task) -> String {
+    let mut out = String::new();
+    parts(&mut out, "plug", &task.plug.parts);
+    parts(&mut out, "socket", &task.socket);
+    out
 }
 
 pub fn task(task: &Task, notes: &Notes) -> String {
@@ -35,14 +46,19 @@ pub fn task(task: &Task, notes: &Notes) -> String {
         notes.mass,
         round(task.plug.mass / GRAM, 100.0),
     );
-    parts(&mut out, "plug", &task.plug.parts);
+    let inline = notes.parts.is_none();
+    if inline {
+        parts(&mut out, "plug", &task.plug.parts);
+    }
     let [x, y] = task.opening.map(pair);
     let _ = write!(
         out,
         "[socket]\n# From, to of the opening on the top, between the walls below.\n\
          opening_x_mm = {x}\nopening_y_mm = {y}\n\n"
     );
-    parts(&mut out, "socket", &task.socket);
+    if inline {
+        parts(&mut out, "socket", &task.socket);
+    }
     grip(&mut out, task);
     strategy(&mut out, task);
     let _ = write!(
@@ -59,6 +75,13 @@ pub fn task(task: &Task, notes: &Notes) -> String {
              tip_mm = {}\nlateral_mm = {}\n",
             list(tip.iter().map(|&v| mm(v))),
             mm(*lateral)
+        );
+    }
+    if let Some(PartsFile { file, sha256 }) = &notes.parts {
+        let _ = write!(
+            out,
+            "\n[parts]\n# Convex parts of plug and socket.\nfile = {}\nsha256 = \"{sha256}\"\n",
+            text(file)
         );
     }
     let Limits { force, speed } = task.limits;

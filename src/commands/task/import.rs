@@ -4,19 +4,23 @@ use crate::command;
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout::wrapped;
+use crate::setup::mated::{Given, LeftOut, MatedTask, mated};
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{Tried, begun, brief, chosen};
-use connector::draft::DENSITY;
+use connector::draft::{DENSITY, Size};
 use connector::mesh::import::{
     ALLOWED, Along, COARSEST, Imported, Jaws, MOST_PARTS, Request as Meshes, Unit, import,
 };
+use connector::mesh::mated::Interference;
 use connector::mesh::place::{Placed, placed, value};
 use connector::mesh::{Body, Triangle, pick, read};
 use connector::tune::Tuned;
 use connector::write::{self, Notes};
 use input::shipped::Source;
 use input::units::MM;
+use insertion::task::Task;
+use insertion::task::parts_file::{PartsFile, joined, sha256};
 use insertion::trial::engine::EngineKind;
 use serde::{Serialize, Serializer};
 use std::fmt;
@@ -26,6 +30,8 @@ use study::write_file;
 const FINEST: u32 = 1000;
 /// Voxels unless said otherwise.
 const RESOLUTION: u32 = 64;
+/// Most parts that are written into the task file.
+const MOST_INLINE: usize = 40;
 /// Largest mesh file, bytes.
 const LARGEST_FILE: u64 = 200 << 20;
 
@@ -72,9 +78,16 @@ pub struct Request {
     #[arg(long, value_name = "N", default_value_t = RESOLUTION,
           value_parser = clap::value_parser!(u32).range(i64::from(COARSEST)..=i64::from(FINEST)))]
     pub resolution: u32,
-    /// File to write
+    /// Handle on a plug that has no place to hold, width between the jaws x height x length in mm
+    /// [default: 10x12x20 where one is needed]
+    #[arg(long, value_name = "WxHxL")]
+    pub body: Option<Size>,
+    /// Depth to be reached in a through hole, mm [default: that over which plug and socket engage]
+    #[arg(long, value_name = "MM")]
+    pub depth_mm: Option<f64>,
+    /// File to write [default: the plug's name with .toml]
     #[arg(long, value_name = "FILE")]
-    pub out: PathBuf,
+    pub out: Option<PathBuf>,
     /// Contact engine for the nominal start
     #[arg(long, value_enum, default_value_t)]
     pub engine: EngineKind,
@@ -95,6 +108,8 @@ pub struct ImportedTask {
     pub said: Vec<(&'static str, String)>,
     /// Whether the normals of plug and of socket pointed inward.
     pub inward: [bool; 2],
+    /// What was left out of the shapes, because the mated pair overlaps there.
+    pub left_out: Vec<Interference>,
     /// The strategies that were tried; none if the file has problems.
     pub tuned: Option<Tuned>,
     /// Check of the written file, with its nominal start.
@@ -110,6 +125,7 @@ struct Found {
     along: Along,
     said: Vec<(&'static str, String)>,
     inward: [bool; 2],
+    left_out: Vec<Interference>,
 }
 
 impl command::Request for Request {
@@ -117,24 +133,31 @@ impl command::Request for Request {
 
     fn run(&self, context: &Context<'_>) -> Result<ImportedTask, Failure> {
         let stop = context.stop;
-        let out = &self.out;
+        let out = &self.out();
         if out.exists() {
             let file = out.display();
             return Err(Failure::usage(format!("{file} exists; name another file with --out")));
         }
-        let mut found = self.found(&|what| context.note(what))?;
+        let mut found = self.found(context)?;
         not_stopped(stop)?;
         let (task, tuned) = begun(found.imported.task, self.engine, stop)?;
         found.imported.task = task;
-        let written = TaskFile::parse(Source {
-            file: out.display().to_string(),
-            text: write::task(&found.imported.task, &self.notes(&found)),
-        })?;
-        write_file(out, &written.source.text)?;
+        let written = self.write(out, &found)?;
         let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine, stop)?;
-        let Found { imported, unit, along, said, inward } = found;
+        let Found { imported, unit, along, said, inward, left_out } = found;
         let (out, resolution) = (out.clone(), self.resolution);
-        Ok(ImportedTask { imported, unit, along, said, inward, tuned, checked, out, resolution })
+        Ok(ImportedTask {
+            imported,
+            unit,
+            along,
+            said,
+            inward,
+            left_out,
+            tuned,
+            checked,
+            out,
+            resolution,
+        })
     }
 }
 
@@ -145,12 +168,107 @@ impl Request {
         <[String; 2]>::try_from(self.names.clone()).unwrap_or_else(|_| paths())
     }
 
-    fn found(&self, say: &dyn Fn(&str)) -> Result<Found, Failure> {
+    /// Returns the file to write.
+    fn out(&self) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| {
+            let stem = self.plug.file_stem().unwrap_or_default();
+            PathBuf::from(stem).with_extension("toml")
+        })
+    }
+
+    /// Writes the task; many parts lie in a file of their own beside it.
+    fn write(&self, out: &Path, found: &Found) -> Result<TaskFile, Failure> {
+        let (task, mut notes) = (&found.imported.task, self.notes(found));
+        let file = out.display().to_string();
+        if task.plug.parts.len() + task.socket.len() <= MOST_INLINE {
+            let written = TaskFile::parse(Source { file, text: write::task(task, &notes) })?;
+            write_file(out, &written.source.text)?;
+            return Ok(written);
+        }
+        let (beside, parts) = (out.with_extension("parts.toml"), write::parts_file(task));
+        let name = beside.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        notes.parts = Some(PartsFile { file: name, sha256: sha256(&parts) });
+        let text = write::task(task, &notes);
+        let written = TaskFile::parse(Source { file, text: joined(&text, &parts) })?;
+        write_file(&beside, &parts)?;
+        let whole = write_file(out, &text);
+        if whole.is_err() {
+            // Parts without their task are of no use.
+            let _ = std::fs::remove_file(&beside);
+        }
+        whole?;
+        Ok(written)
+    }
+
+    /// Returns the task of shapes that are cut exactly about one opening; of others that of their skins in the mated
+    /// pose.
+    fn found(&self, context: &Context<'_>) -> Result<Found, Failure> {
         let like = self.like.as_deref().map(read_task).transpose()?;
         let files = self.called();
-        let [plug, socket] = self.bodies([&files[0], &files[1]])?;
+        let bodies = self.bodies([&files[0], &files[1]])?;
+        let exact = match self.body.is_none() && self.depth_mm.is_none() {
+            true => self.exact(&bodies, like.as_ref(), &|what| context.note(what)).map(Some),
+            false => Ok(None),
+        };
+        match exact {
+            Ok(Some(found)) if found.imported.exact == [true; 2] => Ok(found),
+            Err(error) if error.exit_code() != 2 => Err(error),
+            other => {
+                not_stopped(context.stop)?;
+                let mated = self.mated(&bodies, like.as_ref(), context);
+                // What fits nowhere is told as by the drawing.
+                mated.or_else(|error| other.and(Err(error)))
+            }
+        }
+    }
+
+    fn name(&self) -> String {
+        self.out().file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+    }
+
+    fn mated(
+        &self,
+        [plug, socket]: &[Vec<Triangle>; 2],
+        like: Option<&TaskFile>,
+        context: &Context<'_>,
+    ) -> Result<Found, Failure> {
+        let files = self.called();
+        let name = self.name();
+        let given = Given {
+            name: &name,
+            unit: self.unit,
+            along: self.insert_along,
+            jaws: self.jaws,
+            like: like.map(|like| &like.task),
+            handle: self.body.map(|size| [size.height, size.width, size.length]),
+            depth: self.depth_mm.map(|depth| depth * MM),
+        };
+        let found = mated([&files[0], &files[1]], [plug, socket], &given, context)?;
+        let MatedTask { made, unit, along, jaws, inward, play, said } = found;
+        let grip = made.task.grip;
+        let seat = made.task.success.mated.map_or(0.0, |mated| -mated.tip[2]);
+        let body = [grip.faces_y[1] - grip.faces_y[0], made.held, grip.shoulder_z - seat];
+        let imported = Imported {
+            task: Task { description: described(&files), ..made.task },
+            exact: [true; 2],
+            jaws,
+            play,
+            chamfer: [0.0; 3],
+            body,
+            intrusion: None,
+        };
+        Ok(Found { imported, unit, along, said, inward, left_out: made.interference })
+    }
+
+    fn exact(
+        &self,
+        [plug, socket]: &[Vec<Triangle>; 2],
+        like: Option<&TaskFile>,
+        say: &dyn Fn(&str),
+    ) -> Result<Found, Failure> {
+        let files = self.called();
         let named = [&*files[0], &*files[1]];
-        let placed = placed([&plug, &socket], named, self.unit, self.insert_along, say);
+        let placed = placed([plug, socket], named, self.unit, self.insert_along, say);
         let Placed { meshes: [plug, socket], unit, along, why_unit, why_along } =
             placed.map_err(Failure::input)?;
         if let Some(jaws) = self.jaws.filter(|jaws| !along.across().contains(jaws)) {
@@ -171,14 +289,13 @@ impl Request {
             said.extend((corners > 0).then_some((what, why)));
         }
         let inward = [&plug, &socket].map(|mesh| mesh.surface.was_inward);
-        let stem = self.out.file_stem();
-        let name = stem.map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        let name = self.name();
         let request = Meshes {
             name: &name,
             along,
             jaws: self.jaws,
             resolution: self.resolution,
-            like: like.as_ref().map(|like| &like.task),
+            like: like.map(|like| &like.task),
             say,
         };
         let imported = import(plug, socket, &request).map_err(Failure::input)?;
@@ -190,7 +307,7 @@ impl Request {
             );
             said.push(("jaws along", why));
         }
-        Ok(Found { imported, unit, along, said, inward })
+        Ok(Found { imported, unit, along, said, inward, left_out: Vec::new() })
     }
 
     fn socket(&self) -> &PathBuf {
@@ -241,8 +358,17 @@ impl Request {
             value(*along),
             value(imported.jaws),
         );
-        Notes { head: vec![head.replace(['\n', '\r'], " ")], mass }
+        Notes { head: vec![head.replace(['\n', '\r'], " ")], mass, parts: None }
     }
+}
+
+/// One-line description of a task from these files.
+fn described(files: &[String; 2]) -> String {
+    let name = |file: &String| {
+        let name = Path::new(file).file_name();
+        name.map_or(file.clone(), |name| name.to_string_lossy().into_owned())
+    };
+    format!("from {} and {}", name(&files[0]), name(&files[1]))
 }
 
 fn bodies(path: &Path, file: &str) -> Result<Vec<Body>, Failure> {
@@ -278,6 +404,7 @@ struct Fields<'a> {
     resolution_needed: Option<u32>,
     plug_was_inward: bool,
     socket_was_inward: bool,
+    left_out: Vec<LeftOut>,
     warning: Option<String>,
     out: String,
     tuned: Option<Tried<'a>>,
@@ -287,8 +414,18 @@ struct Fields<'a> {
 impl ImportedTask {
     /// Returns the keys of `--json`, and the text.
     fn told(&self) -> (Fields<'_>, String) {
-        let ImportedTask { imported, unit, along, said, inward, tuned, checked, out, resolution } =
-            self;
+        let ImportedTask {
+            imported,
+            unit,
+            along,
+            said,
+            inward,
+            left_out,
+            tuned,
+            checked,
+            out,
+            resolution,
+        } = self;
         let [plug, socket] = imported.parts();
         let (depth, at, of) = match imported.intrusion {
             Some((depth, at, of)) => (depth / MM, at.coords / MM, of),
@@ -328,6 +465,7 @@ impl ImportedTask {
             resolution_needed: None,
             plug_was_inward: inward[0],
             socket_was_inward: inward[1],
+            left_out: left_out.iter().map(LeftOut::from).collect(),
             warning: warning.clone(),
             out: out.display().to_string(),
             tuned: tuned.as_ref().and_then(chosen),

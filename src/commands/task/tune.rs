@@ -18,6 +18,7 @@ use input::units::{DEG, MM, N_PER_MM};
 use insertion::evaluation::Window;
 use insertion::finger::Finger;
 use insertion::robot::Robot;
+use insertion::task::parts_file::without_parts;
 use insertion::task::{Strategy, Task};
 use insertion::trial::Conditions;
 use insertion::trial::engine::EngineKind;
@@ -152,7 +153,10 @@ impl Request {
             write_file(svg, &picture::both(&file.task, &after.task))?;
         }
         if let (Some(target), false) = (target, self.dry_run) {
-            write_file(target, &after.source.text)?;
+            // Parts beside the file stay there; elsewhere the task has them with it.
+            let beside = target.parent() == Path::new(&file.source.file).parent();
+            let text = &after.source.text;
+            write_file(target, if beside { without_parts(text) } else { text })?;
         }
         Ok(windows)
     }

@@ -16,7 +16,7 @@ mod surface;
 use super::plan::PlanError;
 use input::{Place, Placed};
 pub use read::{Body, Triangle, pick, read};
-pub use surface::Surface;
+pub use surface::{SIZES, Surface};
 
 /// Names of the files of plug and socket, for messages.
 pub type Files<'a> = [&'a str; 2];

@@ -153,18 +153,10 @@ impl Detector {
                 let candidate = &mut list.candidates[candidate];
                 let (first, second) =
                     (&self.solids[candidate.pair.first], &self.solids[candidate.pair.second]);
-                if first.apart(second, prediction) || first.separated(second, prediction)
-                {
+                if first.apart(second, prediction) || first.separated(second, prediction) {
                     continue;
                 }
-                candidate.find(
-                    geoms,
-                    [first, second],
-                    bodies,
-                    &self.solids,
-                    prediction,
-                    found,
-                );
+                candidate.find(geoms, [first, second], bodies, &self.solids, prediction, found);
             }
         }
         patches::join(found);

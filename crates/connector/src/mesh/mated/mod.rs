@@ -6,7 +6,7 @@ mod reach;
 
 use super::Triangle;
 use super::skin::skin;
-use crate::body::{ConvexBody, clipped, extent, span, width};
+use crate::body::{clipped, extent, span, width};
 use crate::{draft, plan};
 pub use grip::Grasp;
 use input::units::MM;
@@ -57,6 +57,8 @@ pub struct Made {
     pub task: Task,
     /// Direction along which the jaws close.
     pub jaws: Vector3<f64>,
+    /// Size of the body in x between the pads, m.
+    pub held: f64,
     /// Whether the plug is held by a handle that its drawing lacks.
     pub handle: bool,
     /// What was left out.
@@ -73,7 +75,8 @@ struct Placed {
 
 impl Placed {
     fn new(pair: &Pair, jaws: Vector3<f64>) -> Self {
-        let turn = Matrix3::from_rows(&[jaws.cross(&pair.out), jaws, pair.out].map(|v| v.transpose()));
+        let turn =
+            Matrix3::from_rows(&[jaws.cross(&pair.out), jaws, pair.out].map(|v| v.transpose()));
         let turned = |triangles: &[Triangle], by: Vector3<f64>| -> Vec<Triangle> {
             triangles.iter().map(|t| t.map(|p| Point3::from(turn * p.coords + by))).collect()
         };
@@ -125,7 +128,8 @@ pub fn task(pair: &Pair, request: &Request) -> Made {
     task.success = Success { mated: Some(mated), ..Success::default() };
     (task.grip.shoulder_z, task.grip.faces_y) = (grasp.shoulder, grasp.faces);
     let task = plan::mated(task);
-    Made { task, jaws: placed.jaws, handle, interference }
+    let held = width(extent(grasp.part.solid.corners(), 0));
+    Made { task, jaws: placed.jaws, held, handle, interference }
 }
 
 /// Parts of plug and socket where the other one can touch them.
@@ -181,16 +185,4 @@ fn volume(triangles: &[Triangle]) -> f64 {
 
 fn grasp_volume(grasp: &Grasp) -> f64 {
     insertion::task::geometry::volume(&grasp.part.solid)
-}
-
-/// Returns the play of the parts about the mated pose at a depth, m, in x and y.
-pub fn play(task: &Task, depth: f64) -> [f64; 2] {
-    let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
-    let seating = crate::seat::Seating::new(task, &plug, &socket);
-    [0, 1].map(|axis| seating.play(depth, [0.0, 0.0], axis))
-}
-
-/// Widths of an opening, m.
-pub fn widths(opening: [[f64; 2]; 2]) -> [f64; 2] {
-    opening.map(width)
 }

@@ -44,8 +44,12 @@ pub fn cut(plug: &mut Vec<Part>, socket: &mut Vec<Part>, depth: f64) -> Vec<Inte
     let shift = [Vector3::new(0.0, 0.0, -depth), Vector3::zeros()];
     let mut gone = Vec::new();
     for (body, parts) in [plug, socket].into_iter().enumerate() {
-        let left: Vec<(f64, Part)> =
-            parts.iter().cloned().enumerate().filter_map(|(i, part)| (out[body][i] > 0.0).then(|| (out[body][i], part))).collect();
+        let left: Vec<(f64, Part)> = parts
+            .iter()
+            .cloned()
+            .enumerate()
+            .filter_map(|(i, part)| (out[body][i] > 0.0).then(|| (out[body][i], part)))
+            .collect();
         let mut number = 0;
         parts.retain(|_| {
             number += 1;

@@ -1,7 +1,7 @@
 //! Triangles with their neighbours, and the flat faces that they form.
 
-use crate::mesh::surface::weld;
 use crate::mesh::Triangle;
+use crate::mesh::surface::weld;
 use input::units::MM;
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;

@@ -32,7 +32,10 @@ const MOST_CORNERS: usize = 400;
 const MANY: usize = 32;
 
 /// Returns convex solids whose outer surface is that of the triangles, m, as far as `reached` accepts them.
-pub fn skin(triangles: &[Triangle], reached: impl Fn(&Triangle, &Vector3<f64>) -> bool) -> Vec<Solid> {
+pub fn skin(
+    triangles: &[Triangle],
+    reached: impl Fn(&Triangle, &Vector3<f64>) -> bool,
+) -> Vec<Solid> {
     let facets = Facets::new(triangles);
     let reached: Vec<bool> = (0..facets.faces.len())
         .map(|face| reached(&facets.corners(face), &facets.normals[face]))
@@ -119,7 +122,8 @@ impl<'a> Walls<'a> {
             for i in 0..3 {
                 let ends = [self.facets.faces[face][i], self.facets.faces[face][(i + 1) % 3]];
                 let on = |end: &usize| polygon.contains(end);
-                let Some(other) = self.facets.across[face][i].filter(|_| ends.iter().all(on)) else {
+                let Some(other) = self.facets.across[face][i].filter(|_| ends.iter().all(on))
+                else {
                     continue;
                 };
                 let side = self.facets.normals[other];
@@ -196,7 +200,11 @@ fn cut(polygon: Vec<Point3<f64>>, origin: &Point3<f64>, normal: &Vector3<f64>) -
 }
 
 /// Returns corners of the part of a hull below a plane.
-fn below(points: Vec<Point3<f64>>, origin: &Point3<f64>, normal: &Vector3<f64>) -> Vec<Point3<f64>> {
+fn below(
+    points: Vec<Point3<f64>>,
+    origin: &Point3<f64>,
+    normal: &Vector3<f64>,
+) -> Vec<Point3<f64>> {
     let above = |p: &Point3<f64>| (p - origin).dot(normal);
     let (beyond, mut kept): (Vec<_>, Vec<_>) = points.into_iter().partition(|p| above(p) > 0.0);
     let crossing = |p: &Point3<f64>, q: &Point3<f64>| {

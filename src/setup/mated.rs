@@ -1,0 +1,258 @@
+//! Task of a plug and a socket in frames of their own, by their mated pose.
+
+use crate::context::{Context, not_stopped};
+use crate::failure::Failure;
+use connector::body::{extent, width};
+use connector::mating::{Found, Mate, Watch, mates};
+use connector::mesh::import::{Along, Jaws, Mesh, Unit, few_faces};
+use connector::mesh::mated::{HANDLE, Interference, Made, Pair, Request, task};
+use connector::mesh::place::value;
+use connector::mesh::{Files, SIZES, Surface, Triangle};
+use input::units::MM;
+use insertion::task::Task;
+use nalgebra::Vector3;
+use serde::Serialize;
+use std::sync::atomic::Ordering;
+
+/// What the user decides of a mated pair.
+pub struct Given<'a> {
+    /// Name of the task.
+    pub name: &'a str,
+    /// Unit of the files.
+    pub unit: Option<Unit>,
+    /// Direction of insertion in the file of the socket.
+    pub along: Option<Along>,
+    /// Axis of that file along which the jaws close.
+    pub jaws: Option<Jaws>,
+    /// Task whose friction and grasp force are taken.
+    pub like: Option<&'a Task>,
+    /// Handle on the plug: size in x, between the jaws, length, m.
+    pub handle: Option<[f64; 3]>,
+    /// Depth to be reached in a through hole, m.
+    pub depth: Option<f64>,
+}
+
+/// Task of a mated pair.
+pub struct MatedTask {
+    /// Task and what was left out.
+    pub made: Made,
+    /// Unit of the files.
+    pub unit: Unit,
+    /// Direction of insertion in the file of the socket.
+    pub along: Along,
+    /// Axis of that file along which the jaws close.
+    pub jaws: Jaws,
+    /// Whether the normals of plug and of socket pointed inward.
+    pub inward: [bool; 2],
+    /// Play in x and in y, m.
+    pub play: [f64; 2],
+    /// Findings: the subject and a sentence.
+    pub said: Vec<(&'static str, String)>,
+}
+
+/// Fields of `--json` about what was left out of a body.
+#[derive(Serialize)]
+pub struct LeftOut {
+    body: &'static str,
+    parts: usize,
+    depth_mm: f64,
+    from_mm: [f64; 3],
+    to_mm: [f64; 3],
+}
+
+impl From<&Interference> for LeftOut {
+    fn from(of: &Interference) -> Self {
+        let [from_mm, to_mm] = of.bounds.map(|p| [p.x, p.y, p.z].map(|v| v / MM));
+        let body = ["plug", "socket"][of.body];
+        LeftOut { body, parts: of.parts, depth_mm: of.depth / MM, from_mm, to_mm }
+    }
+}
+
+/// Returns the task of a plug and a socket, whose mated pose is found from their shapes.
+///
+/// # Errors
+/// If no unit fits, or if the plug goes into the socket nowhere.
+pub fn mated(
+    files: Files,
+    triangles: [&[Triangle]; 2],
+    given: &Given,
+    context: &Context<'_>,
+) -> Result<MatedTask, Failure> {
+    let (unit, why) = unit(files, triangles, given.unit)?;
+    let mut said: Vec<(&str, String)> = why.map(|why| ("unit", why)).into_iter().collect();
+    let (plug, plug_inward) = few(files[0], triangles[0], unit, context);
+    let (socket, socket_inward) = few(files[1], triangles[1], unit, context);
+    context.note("looking for the mated pose");
+    let mate = mate(files, [&plug, &socket], given, context, &mut said)?;
+    let moved: Vec<Triangle> = plug.iter().map(|t| t.map(|p| mate.pose * p)).collect();
+    let out = mate.out.into_inner();
+    let across = mate.across.map(|way| way.into_inner());
+    let chosen = |way: &&Vector3<f64>| given.jaws.is_none_or(|jaws| axis(jaws) == way.iamax());
+    let jaws: Vec<Vector3<f64>> = across.iter().filter(chosen).copied().collect();
+    if jaws.is_empty() {
+        let [a, b] = across.map(|way| value(jaws_of(&way)));
+        let problem =
+            format!("--jaws: the plug goes in along {}; give {a} or {b}", value(along_of(&-out)));
+        return Err(Failure::usage(problem));
+    }
+    let depth = given.depth.unwrap_or(mate.engaged_m);
+    let raised: Vec<Triangle> =
+        moved.iter().map(|t| t.map(|p| p + out * (mate.engaged_m - depth))).collect();
+    let pair = Pair {
+        plug: &raised,
+        socket: &socket,
+        out,
+        jaws: &jaws,
+        engaged: depth,
+        play: [0, 1].map(|i| (across[i], mate.play_m[i])),
+    };
+    let made = task(&pair, &Request { name: given.name, like: given.like, handle: given.handle });
+    said.extend(found(&mate, &made, given));
+    let play = [1, 0].map(|i| {
+        let along = |way: &Vector3<f64>| (way.dot(&made.jaws).abs() > 0.7) == (i == 0);
+        across.iter().position(along).map_or(0.0, |at| mate.play_m[at])
+    });
+    let (along, jaws) = (along_of(&-out), jaws_of(&made.jaws));
+    Ok(MatedTask { made, unit, along, jaws, inward: [plug_inward, socket_inward], play, said })
+}
+
+/// Sentences about the mate and the grip.
+fn found(mate: &Mate, made: &Made, given: &Given) -> Vec<(&'static str, String)> {
+    let depth = mate.engaged_m / MM;
+    let mut said = vec![("mate", format!("the plug engages over {depth:.2} mm"))];
+    if mate.through {
+        let depth = given.depth.unwrap_or(mate.engaged_m) / MM;
+        said.push(("through", format!("nothing stops the plug: {depth:.2} mm are to be reached")));
+    }
+    if made.handle {
+        let [x, y, z] = given.handle.unwrap_or(HANDLE).map(|side| side / MM);
+        let why = format!(
+            "a block of {x:.1} x {y:.1} x {z:.1} mm stands on the plug, which has no two faces for the pads under a \
+             top for their roofs; --body gives its size"
+        );
+        said.push(("handle", why));
+    }
+    for left in made.interference.iter().map(LeftOut::from) {
+        let round = |p: [f64; 3]| p.map(|v| (v * 100.0).round() / 100.0);
+        let why = format!(
+            "{} parts of the {} overlap by up to {:.3} mm, from {:?} to {:?} mm: left out",
+            left.parts,
+            left.body,
+            left.depth_mm,
+            round(left.from_mm),
+            round(left.to_mm)
+        );
+        said.push(("overlap", why));
+    }
+    said
+}
+
+/// The mate in the given direction, or the best one.
+fn mate(
+    files: Files,
+    [plug, socket]: [&[Triangle]; 2],
+    given: &Given,
+    context: &Context<'_>,
+    said: &mut Vec<(&'static str, String)>,
+) -> Result<Mate, Failure> {
+    let stopped = || context.stop.load(Ordering::SeqCst);
+    let watch = Watch { progress: &|_| {}, stopped: &stopped };
+    let found = mates(plug, socket, &watch);
+    not_stopped(context.stop)?;
+    let found = found.map_err(|error| Failure::in_file(files.join(", "), error))?;
+    let mut all = match found {
+        Found::One(mate) => vec![mate],
+        Found::Symmetric(mate, count) => {
+            said.push(("symmetry", format!("the first of {count} equal poses is taken")));
+            vec![mate]
+        }
+        Found::Ambiguous(all) => all,
+    };
+    if let Some(along) = given.along {
+        all.retain(|mate| along_of(&-mate.out.into_inner()) == along);
+    }
+    if let [_, _, ..] = all[..] {
+        let others = all.iter().map(|mate| {
+            let (along, depth) = (value(along_of(&-mate.out.into_inner())), mate.engaged_m / MM);
+            format!("along {along}, {depth:.2} mm deep")
+        });
+        let list = others.collect::<Vec<_>>().join("; ");
+        said.push(("poses", format!("the first of these is taken: {list}")));
+    }
+    all.into_iter().next().ok_or_else(|| {
+        let along = given.along.map(value).unwrap_or_default();
+        Failure::in_file(files.join(", "), format!("the plug does not go in along {along}"))
+    })
+}
+
+/// The unit in which both have the size of a connector, and why; millimetres if several do.
+fn unit(
+    files: Files,
+    triangles: [&[Triangle]; 2],
+    given: Option<Unit>,
+) -> Result<(Unit, Option<String>), Failure> {
+    if let Some(unit) = given {
+        return Ok((unit, None));
+    }
+    let longest = triangles
+        .map(|of| (0..3).map(|axis| width(extent(of.iter().flatten(), axis))).fold(0.0, f64::max));
+    let fits = |unit: &Unit| {
+        longest.iter().all(|side| (SIZES[0]..=SIZES[1]).contains(&(side * unit.metres())))
+    };
+    let [plug, socket] = longest;
+    let Some(unit) = [Unit::Mm, Unit::M, Unit::In].into_iter().find(fits) else {
+        let problem = format!(
+            "the plug is {plug:.4} long and the socket {socket:.4}: connectors are 3 to 300 mm, and these are not in \
+             mm, in or m"
+        );
+        return Err(Failure::in_file(files.join(", "), problem));
+    };
+    let [plug, socket] = longest.map(|side| side * unit.metres() / MM);
+    let why = format!("{}: plug and socket are {plug:.1} and {socket:.1} mm long", value(unit));
+    Ok((unit, Some(why)))
+}
+
+/// Triangles of a mesh, m, reduced if they are many and closed, that look outward; and whether they looked inward.
+fn few(
+    file: &str,
+    triangles: &[Triangle],
+    unit: Unit,
+    context: &Context<'_>,
+) -> (Vec<Triangle>, bool) {
+    let closed = Surface::new(triangles, unit.metres(), file)
+        .and_then(|surface| few_faces(Mesh { file: file.to_owned(), surface }));
+    if let Ok((Mesh { surface, .. }, why)) = closed {
+        why.iter().for_each(|why| context.note(why));
+        let corners = |face: &[usize; 3]| face.map(|corner| surface.points[corner]);
+        return (surface.faces.iter().map(corners).collect(), surface.was_inward);
+    }
+    let scaled = |triangle: &Triangle| triangle.map(|p| p * unit.metres());
+    let mut triangles: Vec<Triangle> = triangles.iter().map(scaled).collect();
+    let volume = |[a, b, c]: &Triangle| a.coords.dot(&b.coords.cross(&c.coords));
+    let inward = triangles.iter().map(volume).sum::<f64>() < 0.0;
+    if inward {
+        triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    }
+    (triangles, inward)
+}
+
+fn axis(jaws: Jaws) -> usize {
+    match jaws {
+        Jaws::X => 0,
+        Jaws::Y => 1,
+        Jaws::Z => 2,
+    }
+}
+
+fn jaws_of(way: &Vector3<f64>) -> Jaws {
+    [Jaws::X, Jaws::Y, Jaws::Z][way.iamax()]
+}
+
+fn along_of(way: &Vector3<f64>) -> Along {
+    let axes = [
+        [Along::PlusX, Along::MinusX],
+        [Along::PlusY, Along::MinusY],
+        [Along::PlusZ, Along::MinusZ],
+    ];
+    axes[way.iamax()][usize::from(way[way.iamax()] < 0.0)]
+}

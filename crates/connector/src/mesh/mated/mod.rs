@@ -5,7 +5,7 @@ mod overlap;
 mod reach;
 
 use super::Triangle;
-use super::skin::skin;
+use super::skin::{WRITTEN, skin};
 use crate::body::{clipped, extent, span, width};
 use crate::{draft, plan};
 pub use grip::Grasp;
@@ -100,6 +100,9 @@ impl Placed {
 
 /// Returns the task of a pair in its mated pose.
 pub fn task(pair: &Pair, request: &Request) -> Made {
+    // On the grid of files, so that corners stay on it.
+    let engaged = (pair.engaged / WRITTEN).round() * WRITTEN;
+    let pair = &Pair { engaged, ..*pair };
     let first = pair.jaws.first().copied().unwrap_or_else(Vector3::y);
     let high = |placed: &Placed| extent(placed.socket.iter().flatten(), 2)[1].max(0.0);
     let held = |jaws: &Vector3<f64>| {

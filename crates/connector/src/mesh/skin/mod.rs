@@ -19,7 +19,9 @@ use rapier3d_f64::parry;
 /// face towards its edge meets the side of the slab, not its edge.
 const THICK: f64 = 0.25 * MM;
 /// Least thickness, m.
-const THIN: f64 = 4e-3 * MM;
+const THIN: f64 = 10e-3 * MM;
+/// Resolution of lengths in files, m.
+pub const WRITTEN: f64 = 1e-4 * MM;
 /// Distance from the sides of a polygon within which what is behind it does not count, m.
 const BESIDE: f64 = 5e-3 * MM;
 /// Depth below which a face that is met is the polygon's own, m.
@@ -107,7 +109,8 @@ impl<'a> Walls<'a> {
         for &(_, origin, side) in &sharp {
             points = below(points, &origin, &side);
         }
-        solid_of(&points)
+        let written: Vec<_> = points.iter().map(|p| Point3::from(p.coords.map(rounded))).collect();
+        solid_of(&written)
     }
 
     /// Planes of the faces that meet a polygon at less than a right angle: their flat face, a point and the normal.
@@ -184,6 +187,11 @@ impl<'a> Walls<'a> {
 fn around(points: &[Point3<f64>]) -> Aabb {
     let points = points.iter().map(|p| (p.coords / MM).into());
     Aabb::from_points(points).loosened(1e-3)
+}
+
+/// Length as files have it.
+fn rounded(length: f64) -> f64 {
+    (length / WRITTEN).round() * WRITTEN
 }
 
 /// Returns the polygon below a plane.

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use connector::body::{extent, width};
 use connector::mating::{Found, Mate, Watch, mates};
 use connector::mesh::import::{Along, Jaws, Mesh, Unit, few_faces};
-use connector::mesh::mated::{HANDLE, Interference, Made, Pair, Request, task};
+use connector::mesh::mated::{HANDLE, Interference, Made, Pair, Request, TOLERANCE, task};
 use connector::mesh::place::value;
 use connector::mesh::{Files, SIZES, Surface, Triangle};
 use input::units::MM;
@@ -107,6 +107,19 @@ pub fn mated(
         play: [0, 1].map(|i| (across[i], mate.play_m[i])),
     };
     let made = task(&pair, &Request { name: given.name, like: given.like, handle: given.handle });
+    if let Some((body, off)) = made.deviation {
+        let [x, y, z] = [off.place.x, off.place.y, off.place.z].map(|v| v / MM);
+        let how = match off.out {
+            Some(far) => format!("stand {:.3} mm out of the drawing", far / MM),
+            None => "lack a face of the drawing".to_owned(),
+        };
+        let problem = format!(
+            "the convex parts {how} at [{x:.2}, {y:.2}, {z:.2}] mm (of the task, plug mated), more than the \
+             {} mm allowed: look there for faces that cross one another or are turned inside out",
+            TOLERANCE / MM
+        );
+        return Err(Failure::in_file(files[body], problem));
+    }
     said.extend(found(&mate, &made, given));
     let play = [1, 0].map(|i| {
         let along = |way: &Vector3<f64>| (way.dot(&made.jaws).abs() > 0.7) == (i == 0);

@@ -143,6 +143,17 @@ impl<'a> ConvexBody<'a> {
         self.shapes.iter().enumerate().filter(move |(_, part)| close(part)).map(|(i, _)| i)
     }
 
+    /// Returns whether a part is within a distance, m, of a point.
+    pub fn reaches(&self, point: &Point3<f64>, within: f64) -> bool {
+        let (centre, reach) = ((point.coords * MILLIMETRES).into(), within * MILLIMETRES);
+        let boxed = Aabb::from_half_extents(centre, Vector3::repeat(reach).into());
+        self.tree.intersect_aabb(&boxed).any(|i| {
+            let part = &self.shapes[i as usize];
+            let pose = shapes::pose(&part.pose, MILLIMETRES);
+            part.shape.distance_to_point(&pose, centre, true) <= reach
+        })
+    }
+
     /// Parts outside the latch, which the fingers do not press, with their indices.
     pub fn stiff(&self) -> impl Iterator<Item = (usize, &Part)> {
         self.parts.iter().enumerate().filter(|(i, _)| !self.yielding.contains(i))

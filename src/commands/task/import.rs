@@ -9,9 +9,7 @@ use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{Tried, begun, brief, chosen};
 use connector::draft::{DENSITY, Size};
-use connector::mesh::import::{
-    ALLOWED, Along, COARSEST, Imported, Jaws, MOST_PARTS, Request as Meshes, Unit, import,
-};
+use connector::mesh::import::{ALLOWED, Along, Imported, Jaws, Request as Meshes, Unit, import};
 use connector::mesh::mated::Interference;
 use connector::mesh::place::{Placed, placed, value};
 use connector::mesh::{Body, Triangle, pick, read};
@@ -27,7 +25,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use study::write_file;
 
-const FINEST: u32 = 1000;
+const RESOLUTIONS: [u32; 2] = [8, 1000];
 /// Voxels unless said otherwise.
 const RESOLUTION: u32 = 64;
 /// Most parts that are written into the task file.
@@ -37,11 +35,12 @@ const LARGEST_FILE: u64 = 200 << 20;
 
 /// Create a task from meshes of a plug and its socket (STL or OBJ)
 ///
-/// Shapes that can be cut into convex pieces, such as extruded outlines, are imported exactly; others are
-/// approximated by convex hulls (VHACD), and their intrusion into the clearance is measured.
-/// The plug's tip is aligned with the middle of the socket's largest opening. Unit, direction and axis of the
-/// jaws are derived from the shapes and printed, unless they are given. Grip and strategy are derived from the
-/// shapes, or taken from another task with --like.
+/// Shapes about one opening that can be cut into convex pieces, such as extruded outlines, are cut; the plug's tip is
+/// aligned with the middle of the opening. Of others the mated pose is found, whatever the frames of the files,
+/// and the faces that the two can touch become thin convex parts in a file beside the task; faces that overlap in the
+/// mated pose, such as unloaded contact springs, are listed and left out.
+/// Unit, direction and axis of the jaws are derived from the shapes and printed, unless they are given. Grip and
+/// strategy are derived from the shapes, or, about one opening, taken from another task with --like.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 4,
@@ -74,9 +73,9 @@ pub struct Request {
     /// Task for all but the shapes: grip, friction, strategy, success
     #[arg(long, value_name = "T")]
     pub like: Option<String>,
-    /// Voxels along the longest side of an approximated mesh
+    /// Voxels along the longest side of an approximated mesh; without effect, since meshes are exact within 0.02 mm
     #[arg(long, value_name = "N", default_value_t = RESOLUTION,
-          value_parser = clap::value_parser!(u32).range(i64::from(COARSEST)..=i64::from(FINEST)))]
+          value_parser = clap::value_parser!(u32).range(i64::from(RESOLUTIONS[0])..=i64::from(RESOLUTIONS[1])))]
     pub resolution: u32,
     /// Handle on a plug that has no place to hold, width between the jaws x height x length in mm
     /// [default: 10x12x20 where one is needed]
@@ -290,14 +289,8 @@ impl Request {
         }
         let inward = [&plug, &socket].map(|mesh| mesh.surface.was_inward);
         let name = self.name();
-        let request = Meshes {
-            name: &name,
-            along,
-            jaws: self.jaws,
-            resolution: self.resolution,
-            like: like.map(|like| &like.task),
-            say,
-        };
+        let request =
+            Meshes { name: &name, along, jaws: self.jaws, like: like.map(|like| &like.task), say };
         let imported = import(plug, socket, &request).map_err(Failure::input)?;
         if self.jaws.is_none() {
             let why = format!(
@@ -434,11 +427,9 @@ impl ImportedTask {
         let clearance_mm = imported.clearance() / MM;
         let [play, chamfer, body] = [&imported.play[..], &imported.chamfer, &imported.body]
             .map(|lengths| lengths.iter().map(|v| v / MM).collect::<Vec<_>>());
-        let exact = imported.exact[usize::from(of == "socket")];
         let warning = (depth > ALLOWED * clearance_mm).then(|| {
-            let remedy = if exact { String::new() } else { bridged() };
             format!(
-                "parts reach {depth:.3} mm into the clearance of {clearance_mm:.3} mm, more than a tenth{remedy}"
+                "parts reach {depth:.3} mm into the clearance of {clearance_mm:.3} mm, more than a tenth"
             )
         });
         let fields = Fields {
@@ -535,14 +526,4 @@ fn chamfered(chamfer: &[f64]) -> String {
         }
         _ => "no chamfer at the opening".to_owned(),
     }
-}
-
-/// Remedy where hulls reach into the clearance. Two voxels across a tenth of it would be more than
-/// there is time for, and hulls bridge what is hollow by more than that (docs/guide/tasks.md).
-fn bridged() -> String {
-    format!(
-        ": hulls bridge what is hollow, and no --resolution mends that; export the mesh with fewer flats \
-         (what makes up to {MOST_PARTS} convex pieces is cut exactly), begin with `optimize task new --round`, \
-         or write the parts about it by hand (docs/guide/tasks.md)"
-    )
 }

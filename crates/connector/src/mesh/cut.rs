@@ -18,6 +18,8 @@ const MOST_PIECES: usize = 600;
 const MOST_STRIPS: usize = 24;
 /// Least narrowing of a chamfer, both sides together, over its depth.
 const SLANTED: f64 = 0.3;
+/// Share of the largest hole's size from which on another is as well an opening.
+const ALIKE: f64 = 0.2;
 /// Largest area of a straight turn, m2.
 const STRAIGHT: f64 = 1e-4 * MM * MM;
 
@@ -72,7 +74,7 @@ pub struct Mouth {
     pub depth: f64,
 }
 
-/// Returns the largest hole in the surface's highest layer, its box taken `below` the top, m.
+/// Returns the only large hole in the surface's highest layer, its box taken `below` the top, m.
 pub fn mouth(surface: &Surface, below: f64) -> Option<Mouth> {
     let heights = levels(surface.points.iter().map(|p| p.z));
     let &[low, top] = heights.last_chunk::<2>()?;
@@ -82,7 +84,12 @@ pub fn mouth(surface: &Surface, below: f64) -> Option<Mouth> {
         layer.into_iter().filter(|outline| area(outline, 0.5) < 0.0).collect::<Vec<_>>()
     };
     let large = |hole: &Outline| size(hole, 0.5).iter().product::<f64>();
-    let first = holes(&[low, top]).into_iter().max_by(|a, b| large(a).total_cmp(&large(b)))?;
+    let all = holes(&[low, top]);
+    let first = all.iter().max_by(|a, b| large(a).total_cmp(&large(b)))?.clone();
+    // Of several openings the largest need not be that of the plug's end.
+    if all.iter().filter(|hole| large(hole) > ALIKE * large(&first)).count() > 1 {
+        return None;
+    }
     let opening = bounds(&first, (1.0 - below / (top - low)).max(0.0));
     let middle = opening.map(|[low, high]| (low + high) / 2.0);
     let about = |hole: &Outline| {

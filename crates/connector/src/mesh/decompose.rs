@@ -1,18 +1,16 @@
-//! Decomposition of a surface into convex solids: an exact cut, else VHACD.
+//! Exact decomposition of a surface into convex solids.
 
 use super::surface::Surface;
 use super::{cut, merge};
-use crate::body::longest_side;
 use input::units::MM;
 use insertion::task::{Part, Solid, geometry};
-use nalgebra::{Point3, Vector3};
+use nalgebra::Point3;
 use parry::math::Vector;
 use parry::query::PointQuery;
 use parry::shape::{TriMesh, TriMeshFlags};
-use parry::transformation::vhacd::{VHACD, VHACDParameters};
 use rapier3d_f64::parry;
 
-/// Most parts a task may have: exact ones cost a trial less than wrong hulls.
+/// Most parts of an exact cut.
 pub const MOST_PARTS: usize = 200;
 /// Largest relative volume error of an exact cut.
 const ALIKE: f64 = 1e-4;
@@ -20,51 +18,14 @@ const ALIKE: f64 = 1e-4;
 const SHARED: f64 = 0.01;
 /// Largest intrusion of an exact cut, m.
 const NEAR: f64 = 2e-3 * MM;
-/// Most parts of an approximation while it is cut.
-const MOST_HULLS: u32 = 1024;
-/// Most voxels times those along the longest side: half a minute of processor time.
-const MOST_WORK: f64 = 2e8;
-/// Coarsest resolution, voxels along the longest side.
-pub const COARSEST: u32 = 8;
-/// Largest concavity of a part, a tenth of VHACD's default, since the rest fills the clearance.
-const CONCAVITY: f64 = 0.001;
-
-/// Advice on a mesh that is not cut exactly.
-const OTHERWISE: &str = "export the mesh with fewer flats (a circle of 32 is exact), begin with \
-                         `optimize task new --round`, or write its parts by hand (docs/guide/tasks.md)";
-
-/// Convex solids of a surface, m, and whether they equal it: if no exact cut is found, it is
-/// approximated with `resolution` voxels along the longest side. `say` gets progress messages.
-pub fn decompose(
-    surface: &Surface,
-    resolution: u32,
-    say: &dyn Fn(&str),
-) -> Result<(Vec<Solid>, bool), String> {
-    say(&format!("cutting {} faces into convex pieces", surface.faces.len()));
-    if let Some(solids) = exact(surface) {
-        return Ok((solids, true));
-    }
-    if let Some(solids) = by_shells(surface) {
-        return Ok((solids, true));
-    }
-    let most = |finest: &u32| voxels(surface, *finest) * f64::from(*finest) <= MOST_WORK;
-    if !most(&resolution) {
-        let finest = (COARSEST..resolution).rev().find(most).unwrap_or(COARSEST);
-        return Err(format!(
-            "is no solid of flat sides that up to {MOST_PARTS} convex pieces make, and approximating it \
-             with --resolution {resolution} would take minutes: give --resolution {finest} or less, \
-             {OTHERWISE}"
-        ));
-    }
-    let thousands = voxels(surface, resolution) / 1e3;
-    say(&format!("approximating {thousands:.0} thousand voxels by convex hulls"));
-    let solids = approximate(surface, resolution);
-    match solids.len() {
-        parts if parts > MOST_PARTS => {
-            Err(format!("comes to {parts} convex hulls; a task may have {MOST_PARTS}: {OTHERWISE}"))
-        }
-        _ => Ok((solids, false)),
-    }
+/// Convex solids that equal a surface, m.
+///
+/// # Errors
+/// If it is not made of few of them.
+pub fn decompose(surface: &Surface) -> Result<Vec<Solid>, String> {
+    exact(surface).or_else(|| by_shells(surface)).ok_or_else(|| {
+        format!("is no solid of flat sides that up to {MOST_PARTS} convex pieces make")
+    })
 }
 
 /// Returns the exact cut of fewest parts; of equals the first, across z.
@@ -82,12 +43,6 @@ fn by_shells(surface: &Surface) -> Option<Vec<Solid>> {
     let cut = |shell: &Surface| (shell.volume() > 0.0).then(|| exact(shell)).flatten();
     let solids: Option<Vec<_>> = shells.iter().map(cut).collect();
     solids.map(|solids| solids.concat()).filter(|solids| solids.len() <= MOST_PARTS)
-}
-
-/// Approximate number of voxels in a surface and on it.
-fn voxels(surface: &Surface, resolution: u32) -> f64 {
-    let side = longest_side(&surface.points) / f64::from(resolution);
-    surface.volume() / side.powi(3) + surface.area() / side.powi(2)
 }
 
 /// Exact cut across z, x or y: after 0, 1 or 2 cyclic turns of the axes.
@@ -114,28 +69,6 @@ fn is_whole(surface: &Surface, solids: &[Solid]) -> bool {
         let parts: Vec<_> = solids.iter().map(part).collect();
         intrusion(surface, &parts, |_| true).is_some_and(|(depth, _)| depth < NEAR)
     }
-}
-
-/// Approximate convex decomposition (VHACD, Mamou 2016): hulls of the surface in sets of voxels.
-fn approximate(surface: &Surface, resolution: u32) -> Vec<Solid> {
-    let (points, faces) = surface.in_millimetres();
-    let parameters = VHACDParameters {
-        resolution,
-        concavity: CONCAVITY,
-        max_convex_hulls: MOST_HULLS,
-        convex_hull_approximation: false,
-        ..VHACDParameters::default()
-    };
-    let parts = VHACD::decompose(&parameters, &points, &faces, true);
-    let hulls = parts.compute_exact_convex_hulls(&points, &faces);
-    let corners = hulls.into_iter().map(|(corners, _)| -> Vec<_> {
-        corners.into_iter().map(|v| Point3::from(Vector3::from(v) * MM)).collect()
-    });
-    let solid = |points: Vec<_>| {
-        let (points, _) = geometry::hull(&points)?;
-        Some(Solid::Hull { points })
-    };
-    corners.filter_map(solid).collect()
 }
 
 /// Spacing of the sample points on parts, m.

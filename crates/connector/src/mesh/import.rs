@@ -3,7 +3,6 @@
 use super::axes::value;
 pub use super::axes::{Along, Jaws, Unit};
 use super::cut::Mouth;
-pub use super::decompose::{COARSEST, MOST_PARTS};
 use super::decompose::{decompose, intrusion};
 use super::reduce::{MANY_FACES, TOLERANCE, reduced};
 use super::surface::Surface;
@@ -51,8 +50,6 @@ pub struct Request<'a> {
     pub along: Along,
     /// Axis along which the jaws close; otherwise the first across which the plug is held.
     pub jaws: Option<Jaws>,
-    /// Voxels along the longest side, where a mesh is approximated.
-    pub resolution: u32,
     /// Task whose keys are taken, all but the shapes.
     pub like: Option<&'a Task>,
     /// Callback for progress messages.
@@ -114,7 +111,6 @@ struct Standing {
     jaws: Jaws,
     surface: Surface,
     parts: Vec<Part>,
-    exact: bool,
 }
 
 impl Standing {
@@ -136,7 +132,7 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
     let (plug, grasp) = grasped(&plug, middles[0], request)?;
     let turned = socket.surface.moved(&along.turn(plug.jaws), Vector3::zeros());
     let (socket_surface, mouth) = open(turned, middles[1], &socket.file, along)?;
-    let (socket_parts, socket_exact) = convex(&socket_surface, &socket.file, "socket", request)?;
+    let socket_parts = convex(&socket_surface, &socket.file, "socket", request)?;
     let mut task = draft::blank(request.name, like);
     task.description = description;
     task.plug.mass = draft::DENSITY * plug.surface.volume();
@@ -175,7 +171,7 @@ pub fn import(plug: Mesh, socket: Mesh, request: &Request) -> Result<Imported, M
         [width(task.grip.faces_y), width(extent(between, 0)), task.grip.shoulder_z - seat.depth];
     let intrusion = intrude(&task, [&plug.surface, &socket_surface]);
     Ok(Imported {
-        exact: [plug.exact, socket_exact],
+        exact: [true; 2],
         jaws: plug.jaws,
         play,
         chamfer: [x, y, mouth.depth],
@@ -196,17 +192,13 @@ fn grasped(
     for jaws in request.jaws.map_or(request.along.across().to_vec(), |jaws| vec![jaws]) {
         let turned = plug.surface.clone().moved(&request.along.turn(jaws), Vector3::zeros());
         let surface = stand(turned, middle);
-        let (parts, exact) = convex(&surface, &plug.file, "plug", request)?;
-        let way = Standing { jaws, surface, parts, exact };
+        let parts = convex(&surface, &plug.file, "plug", request)?;
+        let way = Standing { jaws, surface, parts };
         let taken = request.like.map(|like| (like.grip.shoulder_z, like.grip.faces_y));
         if let Some(grasp) = taken.or_else(|| way.grasp(true)) {
             return Ok((way, grasp));
         }
         found.push(way);
-        // Hulls take seconds, and their faces are no better from the side.
-        if !exact {
-            break;
-        }
     }
     let any = found.into_iter().find_map(|way| way.grasp(false).map(|grasp| (way, grasp)));
     any.ok_or_else(|| MeshError::File(plug.file.clone(), NO_GRIP.to_owned()))
@@ -217,12 +209,12 @@ fn convex(
     file: &str,
     body: &str,
     request: &Request,
-) -> Result<(Vec<Part>, bool), MeshError> {
-    let say = |what: &str| (request.say)(&format!("{body}: {what}"));
-    let found = decompose(surface, request.resolution, &say);
-    let (solids, exact) = found.map_err(|fault| MeshError::File(file.to_owned(), fault))?;
+) -> Result<Vec<Part>, MeshError> {
+    let faces = surface.faces.len();
+    (request.say)(&format!("{body}: cutting {faces} faces into convex pieces"));
+    let solids = decompose(surface).map_err(|fault| MeshError::File(file.to_owned(), fault))?;
     let part = |(i, solid)| Part { name: format!("{body} {i}"), solid, friction: None };
-    Ok(((1..).zip(solids).map(part).collect(), exact))
+    Ok((1..).zip(solids).map(part).collect())
 }
 
 fn file_name(path: &str) -> String {

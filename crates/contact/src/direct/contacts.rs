@@ -11,7 +11,7 @@ use super::body::MovingBody;
 use crate::scene::{Friction, Geom, GeomPair, Pose, Scene, Shape};
 use crate::shapes;
 use nalgebra::{Matrix3, Point3, Vector3};
-use near::{NearList, tree};
+use near::{NearList, NearPair, tree};
 use parry::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
 use parry::shape::{Cuboid, SharedShape, SupportMap};
 use rapier3d_f64::parry;
@@ -140,8 +140,9 @@ impl Detector {
         found.clear();
         for list in &mut self.lists {
             let [first, second] = list.bodies.map(|body| bodies[body].pose);
-            list.renew(&first.inv_mul(&second), &self.solids, self.prediction);
-            let prediction = match list.pairs() > MANY_PAIRS {
+            let (relative, many) = (first.inv_mul(&second), list.pairs() > MANY_PAIRS);
+            list.renew(&relative, &self.solids, self.prediction);
+            let prediction = match many {
                 true => self.prediction.min(NEAR + step_s * list.speed(bodies)),
                 false => self.prediction,
             };
@@ -149,14 +150,25 @@ impl Detector {
                 let solid = &mut self.solids[solid];
                 solid.enclose(&bodies[solid.body].pose);
             }
-            for &(geoms, candidate) in &list.near {
-                let candidate = &mut list.candidates[candidate];
-                let (first, second) =
-                    (&self.solids[candidate.pair.first], &self.solids[candidate.pair.second]);
+            if many {
+                list.choose(&relative, &self.solids, prediction);
+            }
+            for &NearPair { number, candidate, solids } in
+                if many { &list.close } else { &list.near }
+            {
+                let [first, second] = solids.map(|solid| &self.solids[solid]);
                 if first.apart(second, prediction) || first.separated(second, prediction) {
                     continue;
                 }
-                candidate.find(geoms, [first, second], bodies, &self.solids, prediction, found);
+                let pair = [first, second];
+                list.candidates[candidate].find(
+                    number,
+                    pair,
+                    bodies,
+                    &self.solids,
+                    prediction,
+                    found,
+                );
             }
         }
         patches::join(found);

@@ -3,6 +3,7 @@
 mod grip;
 mod overlap;
 mod reach;
+pub mod verify;
 
 use super::Triangle;
 use super::skin::{WRITTEN, skin};
@@ -13,7 +14,10 @@ use input::units::MM;
 use insertion::task::{Mated, Part, Solid, Success, Task};
 use nalgebra::{Matrix3, Point3, Vector3};
 pub use overlap::Interference;
+use rayon::prelude::*;
 use reach::Reach;
+pub use verify::{Deviation, TOLERANCE};
+use verify::Drawn;
 
 /// Handle that is put on a plug without a place to hold: width in x, between the jaws, and length, m.
 pub const HANDLE: [f64; 3] = [12.0 * MM, 10.0 * MM, 20.0 * MM];
@@ -63,6 +67,8 @@ pub struct Made {
     pub handle: bool,
     /// What was left out.
     pub interference: Vec<Interference>,
+    /// Worst place at which the parts of a body (0 plug, 1 socket) are not as drawn, task frame, plug mated, if any.
+    pub deviation: Option<(usize, Deviation)>,
 }
 
 /// Pair in the task's axes: the plug in its own frame, the socket in that of the task.
@@ -118,7 +124,7 @@ pub fn task(pair: &Pair, request: &Request) -> Made {
         let grasp = grip::handle(&placed.plug, size, pair.engaged + high(&placed));
         (placed, grasp)
     });
-    let (mut plug, mut socket) = skins(&placed, pair.engaged);
+    let (mut plug, mut socket, deviation) = skins(&placed, pair.engaged);
     let interference = overlap::cut(&mut plug, &mut socket, pair.engaged);
     plug.push(grasp.part.clone());
     let mut task = draft::blank(request.name, request.like);
@@ -132,24 +138,42 @@ pub fn task(pair: &Pair, request: &Request) -> Made {
     (task.grip.shoulder_z, task.grip.faces_y) = (grasp.shoulder, grasp.faces);
     let task = plan::mated(task);
     let held = width(extent(grasp.part.solid.corners(), 0));
-    Made { task, jaws: placed.jaws, held, handle, interference }
+    Made { task, jaws: placed.jaws, held, handle, interference, deviation }
 }
 
-/// Parts of plug and socket where the other one can touch them.
-fn skins(placed: &Placed, depth: f64) -> (Vec<Part>, Vec<Part>) {
+/// Parts of plug and socket where the other one can touch them, and the worst place at which they are not as drawn.
+fn skins(placed: &Placed, depth: f64) -> (Vec<Part>, Vec<Part>, Option<(usize, Deviation)>) {
     let mated: Vec<Triangle> =
         placed.plug.iter().map(|t| t.map(|p| p - Vector3::z() * depth)).collect();
     let reach = Reach::new(&mated, &placed.socket);
-    let (plug, socket) = rayon::join(
-        || skin(&mated, |face, normal| reach.of_plug(face, normal)),
-        || skin(&placed.socket, |face, normal| reach.of_socket(face, normal)),
+    let ((plug, off), (socket, its)) = rayon::join(
+        || checked("plug", &mated, |face, normal| reach.of_plug(face, normal)),
+        || checked("socket", &placed.socket, |face, normal| reach.of_socket(face, normal)),
     );
-    let named = |name: &str, solids: Vec<Solid>| -> Vec<Part> {
-        let part = |(i, solid)| Part { name: format!("{name} {i}"), solid, friction: None };
-        (1..).zip(solids).map(part).collect()
-    };
-    let raised = plug.into_iter().map(|solid| raised(solid, depth)).collect();
-    (named("plug", raised), named("socket", socket))
+    let worst = off.map(|off| (0, off)).or(its.map(|off| (1, off)));
+    let up = |part: Part| Part { solid: raised(part.solid, depth), ..part };
+    (plug.into_iter().map(up).collect(), socket, worst)
+}
+
+/// Parts of the faces that are reached, and the worst place at which they are not as drawn.
+fn checked(
+    name: &str,
+    triangles: &[Triangle],
+    reached: impl Fn(&Triangle, &Vector3<f64>) -> bool,
+) -> (Vec<Part>, Option<Deviation>) {
+    let drawn = Drawn::new(triangles);
+    let solids = skin(triangles, &reached);
+    let trimmed: Vec<Solid> =
+        solids.into_par_iter().filter_map(|solid| drawn.trimmed(solid)).collect();
+    let part = |(i, solid)| Part { name: format!("{name} {i}"), solid, friction: None };
+    let parts: Vec<Part> = (1..).zip(trimmed).map(part).collect();
+    let normal = |[a, b, c]: &Triangle| (b - a).cross(&(c - a)).try_normalize(0.0);
+    let kept = triangles.iter().filter(|t| normal(t).is_some_and(|normal| reached(t, &normal)));
+    let kept: Vec<Triangle> = kept.copied().collect();
+    let found = drawn.deviations(&kept, &parts);
+    let far = |off: &Deviation| off.out.unwrap_or(0.0);
+    let worst = found.into_iter().max_by(|a, b| far(a).total_cmp(&far(b)));
+    (parts, worst)
 }
 
 fn raised(solid: Solid, by: f64) -> Solid {

@@ -225,3 +225,67 @@ fn below(
     // Without those inside, repeated cuts do not multiply corners.
     if kept.len() < MANY { kept } else { hull(&kept).map_or(kept, |(corners, _)| corners) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::ConvexBody;
+    use crate::mesh::mated::verify::Drawn;
+    use insertion::task::{Part, geometry};
+
+    /// Triangles of an outline, mm, from z = 0 to 5, whose caps are these quadrangles of its corners.
+    fn extruded(outline: &[[f64; 2]], quads: &[[usize; 4]]) -> Vec<Triangle> {
+        let at = |i: usize, z: f64| {
+            let [x, y] = outline[i % outline.len()];
+            Point3::new(x, y, z) * MM
+        };
+        let quad = |[a, b, c, d]: [Point3<f64>; 4]| [[a, b, c], [a, c, d]];
+        let side = |i: usize| quad([at(i, 0.0), at(i + 1, 0.0), at(i + 1, 5.0), at(i, 5.0)]);
+        let caps = quads.iter().flat_map(|q| {
+            let [low, high] = [0.0, 5.0].map(|z| q.map(|i| at(i, z)));
+            [quad([low[3], low[2], low[1], low[0]]), quad(high)].concat()
+        });
+        (0..outline.len()).flat_map(side).chain(caps).collect()
+    }
+
+    fn parts(triangles: &[Triangle]) -> Vec<Part> {
+        let part = |solid| Part { name: String::new(), solid, friction: None };
+        skin(triangles, |_, _| true).into_iter().map(part).collect()
+    }
+
+    #[test]
+    fn a_convex_body_is_one_part() {
+        let outline = [[0.0, 0.0], [4.0, 0.0], [5.0, 2.0], [0.0, 3.0]];
+        let found = parts(&extruded(&outline, &[[0, 1, 2, 3]]));
+        assert_eq!(found.len(), 1);
+        assert!((geometry::volume(&found[0].solid) / (11.5 * 5.0 * MM.powi(3)) - 1.0).abs() < 1e-6);
+    }
+
+    /// A channel of 0.2 mm sheet with a sharp lip stays open, and half of the sheet lies behind each face.
+    #[test]
+    fn a_channel_of_sheet_stays_open() {
+        let outline = [
+            [0.0, 0.0],
+            [4.0, 0.0],
+            [4.0, 3.2],
+            [3.8, 3.0],
+            [3.8, 0.2],
+            [0.2, 0.2],
+            [0.2, 3.0],
+            [0.0, 3.0],
+        ];
+        let drawn = extruded(&outline, &[[0, 1, 4, 5], [1, 2, 3, 4], [0, 5, 6, 7]]);
+        let whole = parts(&drawn);
+        assert!((10..40).contains(&whole.len()), "{}", whole.len());
+        assert_eq!(Drawn::new(&drawn).deviations(&drawn, &whole), []);
+        let body = ConvexBody::new(&whole);
+        assert!(body.part_at(&(Point3::new(2.0, 0.25, 2.5) * MM)).is_none());
+        assert!(body.part_at(&(Point3::new(2.0, 0.15, 2.5) * MM)).is_some());
+        // Without a lid, normals alone tell where the material is.
+        let open: Vec<Triangle> =
+            drawn.iter().filter(|t| t.iter().any(|p| p.z < 4.9 * MM)).copied().collect();
+        let open = parts(&open);
+        let open = ConvexBody::new(&open).part_at(&(Point3::new(2.0, 0.25, 2.5) * MM));
+        assert!(open.is_none());
+    }
+}

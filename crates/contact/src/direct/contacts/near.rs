@@ -15,13 +15,29 @@ use std::sync::Arc;
 /// Way that two bodies may move against one another before their list is made anew, m.
 const MARGIN: f64 = 0.5e-3;
 
+/// ... and before those of many pairs that are looked at in a step are chosen from the list, m.
+const CLOSE: f64 = 0.12e-3;
+
+/// Pair of shapes that may touch.
+#[derive(Clone, Copy)]
+pub(super) struct NearPair {
+    /// Number, counted through all pairs of the scene.
+    pub number: usize,
+    /// Index in `candidates`.
+    pub candidate: usize,
+    /// Shapes of the first and the second body.
+    pub solids: [usize; 2],
+}
+
 /// Pairs of shapes of two bodies.
 #[derive(Clone)]
 pub(super) struct NearList {
     /// Indices of the bodies.
     pub bodies: [usize; 2],
-    /// Number of each pair that may touch, counted through all pairs of the scene, and its index in `candidates`.
-    pub near: Vec<(usize, usize)>,
+    /// Pairs that may touch.
+    pub near: Vec<NearPair>,
+    /// Those of them that are nearer still, of many pairs.
+    pub close: Vec<NearPair>,
     /// Shapes of these pairs.
     pub solids: Vec<usize>,
     /// All pairs that were near once: they keep their points.
@@ -39,6 +55,10 @@ pub(super) struct NearList {
     index: BTreeMap<usize, usize>,
     /// Pose of the second body in the frame of the first when the list was made.
     made_at: Option<Pose>,
+    /// ... and when those nearer still were chosen.
+    chosen_at: Option<Pose>,
+    /// Gap up to which they were chosen, m.
+    chosen_for: f64,
 }
 
 /// Returns the hierarchy of the boxes of a body's shapes in its frame.
@@ -70,10 +90,13 @@ impl NearList {
         NearList {
             reach: solids[second.clone()].iter().map(far).fold(0.0, f64::max),
             near: Vec::new(),
+            close: Vec::new(),
             solids: Vec::new(),
             candidates: Vec::new(),
             index: BTreeMap::new(),
             made_at: None,
+            chosen_at: None,
+            chosen_for: 0.0,
             bodies,
             number,
             friction,
@@ -101,16 +124,10 @@ impl NearList {
 
     /// Makes the list anew if the bodies have moved; `relative` is the second one's pose in the first's frame.
     pub fn renew(&mut self, relative: &Pose, solids: &[Solid], prediction: f64) {
-        let near = self.made_at.as_ref().is_some_and(|before| {
-            let moved = (relative.translation.vector - before.translation.vector).norm();
-            // Half the angle, if it is small; of a quaternion that changed its sign about 2.
-            let turned = relative.rotation.coords - before.rotation.coords;
-            moved + 2.0 * turned.norm() * self.reach < MARGIN
-        });
-        if near {
+        if self.within(self.made_at.as_ref(), relative, MARGIN) {
             return;
         }
-        self.made_at = Some(*relative);
+        (self.made_at, self.chosen_at) = (Some(*relative), None);
         let mut found: Vec<(usize, [usize; 2])> = Vec::new();
         for second in self.second.clone() {
             let frame = relative * solids[second].frame;
@@ -142,7 +159,38 @@ impl NearList {
                 }));
                 candidates.len() - 1
             });
-            self.near.push((key, at));
+            self.near.push(NearPair { number: key, candidate: at, solids: [first, second] });
         }
+    }
+
+    /// Chooses the pairs that may touch in the next steps; the shapes are enclosed where they are.
+    pub fn choose(&mut self, relative: &Pose, solids: &[Solid], prediction: f64) {
+        if prediction <= self.chosen_for && self.within(self.chosen_at.as_ref(), relative, CLOSE) {
+            return;
+        }
+        // Speeds change: not for every larger one anew.
+        (self.chosen_at, self.chosen_for) = (Some(*relative), 1.5 * prediction);
+        let first = self.solids.first().copied().unwrap_or(0);
+        let count = self.solids.last().map_or(0, |last| last + 1 - first);
+        let mut dense = vec![[Vector3::zeros(); 2]; count];
+        // Close together in memory: a shape has much else.
+        self.solids.iter().for_each(|&i| dense[i - first] = [solids[i].low, solids[i].high]);
+        let margin = Vector3::repeat(self.chosen_for + CLOSE);
+        self.close.clear();
+        self.close.extend(self.near.iter().filter(|pair| {
+            let [[low, high], [from, to]] = pair.solids.map(|i| dense[i - first]);
+            let gap = (low - to).sup(&(from - high));
+            gap.x <= margin.x && gap.y <= margin.y && gap.z <= margin.z
+        }));
+    }
+
+    /// Returns whether no point of the second body has moved by `way`, m, against the first since a pose.
+    fn within(&self, before: Option<&Pose>, relative: &Pose, way: f64) -> bool {
+        before.is_some_and(|before| {
+            let moved = (relative.translation.vector - before.translation.vector).norm();
+            // Half the angle, if it is small; of a quaternion that changed its sign about 2.
+            let turned = relative.rotation.coords - before.rotation.coords;
+            moved + 2.0 * turned.norm() * self.reach < way
+        })
     }
 }

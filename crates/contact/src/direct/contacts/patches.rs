@@ -28,10 +28,17 @@ pub(super) fn join(touches: &mut Vec<Touch>) {
         return;
     }
     let mut patches: Vec<Vec<Touch>> = Vec::new();
+    // Close together in memory: most patches differ in their normals.
+    let mut normals: Vec<Vector3<f64>> = Vec::new();
     for manifold in manifolds {
-        match patches.iter_mut().find(|patch| share_plane(patch, manifold)) {
-            Some(patch) => patch.extend(manifold),
-            None => patches.push(manifold.to_vec()),
+        let normal = manifold[0].normal;
+        let near = (0..normals.len()).filter(|&i| normals[i].dot(&normal) > ALIKE);
+        match { near }.find(|&i| share_plane(&patches[i], manifold)) {
+            Some(i) => patches[i].extend(manifold),
+            None => {
+                normals.push(normal);
+                patches.push(manifold.to_vec());
+            }
         }
     }
     touches.clear();

@@ -1,0 +1,145 @@
+//! Check of convex parts against the drawn surface that they stand for, by signed samples both ways.
+
+use crate::body::ConvexBody;
+use crate::mesh::Triangle;
+use crate::mesh::merge::solid_of;
+use input::units::MM;
+use insertion::task::{Part, Solid, geometry};
+use nalgebra::Point3;
+use parry::math::Vector;
+use parry::query::PointQuery;
+use parry::shape::TriMesh;
+use rapier3d_f64::parry;
+use rayon::prelude::*;
+
+/// Largest distance between parts and drawing, m.
+pub const TOLERANCE: f64 = 0.02 * MM;
+/// Share of a triangle's sides by which samples keep off its corners, where neighbours meet.
+const INSIDE: f64 = 0.1;
+/// Spacing of samples, m.
+const SPACING: f64 = 0.5 * MM;
+/// Most samples along the side of a triangle.
+const MOST_SAMPLES: usize = 12;
+
+/// Place where parts and drawing differ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Deviation {
+    /// Place, m.
+    pub place: Point3<f64>,
+    /// Distance by which a part stands out of the drawn body, m; `None` where the drawn surface lacks a part.
+    pub out: Option<f64>,
+}
+
+/// Drawn body that parts are compared with.
+pub struct Drawn<'a> {
+    triangles: &'a [Triangle],
+    mesh: Option<TriMesh>,
+}
+
+impl<'a> Drawn<'a> {
+    /// Body of triangles that look outward, m.
+    pub fn new(triangles: &'a [Triangle]) -> Self {
+        let points = triangles.iter().flatten().map(|p| (p.coords / MM).into()).collect();
+        let faces = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        Drawn { triangles, mesh: TriMesh::new(points, faces).ok() }
+    }
+
+    /// Returns by how much a place lies outside of the body, m, if by more than the tolerance.
+    fn outside(&self, place: &Point3<f64>) -> Option<f64> {
+        let point: Vector = (place.coords / MM).into();
+        let near = self.mesh.as_ref()?.project_local_point(point, false);
+        let distance = (near.point - point).length() * MM;
+        (distance > TOLERANCE && winding(self.triangles, place) < 0.5).then_some(distance)
+    }
+
+    /// Returns a slab without the corners that stand out of the body: behind a narrow edge the material may end askew.
+    pub fn trimmed(&self, solid: Solid) -> Option<Solid> {
+        let corners = solid.corners();
+        let kept: Vec<_> =
+            corners.iter().copied().filter(|place| self.outside(place).is_none()).collect();
+        if kept.len() == corners.len() { Some(solid) } else { solid_of(&kept) }
+    }
+
+    /// Returns the places of the faces that were to be kept where no part is near, and those of parts outside the body.
+    pub fn deviations(&self, kept: &[Triangle], parts: &[Part]) -> Vec<Deviation> {
+        let body = ConvexBody::new(parts);
+        let lacks = |triangle: &Triangle| -> Vec<Deviation> {
+            let bare = samples(triangle).into_iter().filter(|p| !body.reaches(p, TOLERANCE));
+            bare.map(|place| Deviation { place, out: None }).collect()
+        };
+        let out = |part: &Part| -> Vec<Deviation> {
+            let hull = geometry::hull(&part.solid.corners());
+            let Some((corners, faces)) = hull else { return Vec::new() };
+            let middles = faces.iter().map(|face| {
+                let [a, b, c] = face.map(|corner| corners[corner].coords);
+                Point3::from((a + b + c) / 3.0)
+            });
+            let off = |place: Point3<f64>| {
+                self.outside(&place).map(|out| Deviation { place, out: Some(out) })
+            };
+            corners.iter().copied().chain(middles).filter_map(off).collect()
+        };
+        let mut found: Vec<Deviation> = kept.par_iter().flat_map_iter(lacks).collect();
+        found.par_extend(parts.par_iter().flat_map_iter(out));
+        found
+    }
+}
+
+/// Points inside a triangle.
+fn samples([a, b, c]: &Triangle) -> Vec<Point3<f64>> {
+    let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
+    let steps = ((longest / SPACING).ceil() as usize).clamp(1, MOST_SAMPLES);
+    let mut found = Vec::new();
+    for i in 0..=steps {
+        for j in 0..=steps - i {
+            let inside = |k: usize| INSIDE / 3.0 + (1.0 - INSIDE) * k as f64 / steps as f64;
+            found.push(a + (b - a) * inside(i) + (c - a) * inside(j));
+        }
+    }
+    found
+}
+
+/// Generalized winding number of oriented triangles about a point (Jacobson et al. 2013): 1 inside, 0 outside.
+fn winding(triangles: &[Triangle], place: &Point3<f64>) -> f64 {
+    let angle = |triangle: &Triangle| {
+        let [a, b, c] = triangle.map(|p| p - place);
+        let [la, lb, lc] = [a.norm(), b.norm(), c.norm()];
+        let volume = a.dot(&b.cross(&c));
+        let sum = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
+        libm::atan2(volume, sum)
+    };
+    triangles.iter().map(angle).sum::<f64>() / std::f64::consts::TAU
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    fn cube() -> Vec<Triangle> {
+        let solid = Solid::Box { min: Vector3::zeros(), max: Vector3::repeat(4.0 * MM) };
+        let (corners, faces) = geometry::hull(&solid.corners()).unwrap();
+        faces.iter().map(|face| face.map(|corner| corners[corner])).collect()
+    }
+
+    fn part(min_mm: [f64; 3], max_mm: [f64; 3]) -> Part {
+        let [min, max] = [min_mm, max_mm].map(|p| Vector3::from(p) * MM);
+        Part { name: String::new(), solid: Solid::Box { min, max }, friction: None }
+    }
+
+    #[test]
+    fn a_part_that_stands_out_and_a_bare_face_are_found() {
+        let drawn = cube();
+        let whole = part([0.0; 3], [4.0; 3]);
+        assert_eq!(Drawn::new(&drawn).deviations(&drawn, &[whole]), []);
+        let long = part([0.0; 3], [4.0, 4.0, 4.05]);
+        let out = Drawn::new(&drawn).deviations(&drawn, &[long]);
+        assert!(
+            out.iter().any(|d| d.out.is_some_and(|far| (far - 0.05 * MM).abs() < 1e-9)),
+            "{out:?}"
+        );
+        let short = part([0.0; 3], [4.0, 4.0, 3.95]);
+        let bare = Drawn::new(&drawn).deviations(&drawn, &[short]);
+        assert!(!bare.is_empty() && bare.iter().all(|d| d.out.is_none() && d.place.z > 3.9 * MM));
+    }
+}

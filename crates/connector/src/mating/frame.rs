@@ -35,15 +35,11 @@ impl Parts {
 }
 
 impl Part {
-    fn new(triangles: &[Triangle], name: &'static str) -> Result<Self, MatingError> {
+    /// The part in axes of its own.
+    pub fn new(triangles: &[Triangle], name: &'static str) -> Result<Self, MatingError> {
         let directions = directions(triangles);
         let own = axes(&directions).ok_or(MatingError::Empty(name))?;
         Ok(Part { own, triangles: turned(triangles, &own) })
-    }
-
-    /// The part in given axes.
-    pub fn along(triangles: &[Triangle], own: Rotation3<f64>) -> Self {
-        Part { own, triangles: turned(triangles, &own) }
     }
 }
 

@@ -81,7 +81,8 @@ impl Sides {
                     break;
                 }
             }
-            sums[strip.side] += f64::from((high.min(faced) - low).max(0.0)) * self.step[1 - strip.side / 2];
+            sums[strip.side] +=
+                f64::from((high.min(faced) - low).max(0.0)) * self.step[1 - strip.side / 2];
         }
         sums
     }

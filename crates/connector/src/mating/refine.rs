@@ -98,9 +98,8 @@ fn lowest(socket: &Map, plug: &Map, about: [i32; 2], radius: i32) -> (Vec<[i32; 
 
 /// Shift nearest to the mean of shifts.
 fn middle(shifts: &[[i32; 2]]) -> [i32; 2] {
-    let mean = [0, 1].map(|a| {
-        shifts.iter().map(|shift| f64::from(shift[a])).sum::<f64>() / shifts.len() as f64
-    });
+    let mean = [0, 1]
+        .map(|a| shifts.iter().map(|shift| f64::from(shift[a])).sum::<f64>() / shifts.len() as f64);
     let off = |shift: &[i32; 2]| {
         (f64::from(shift[0]) - mean[0]).powi(2) + (f64::from(shift[1]) - mean[1]).powi(2)
     };
@@ -112,7 +111,8 @@ fn middle(shifts: &[[i32; 2]]) -> [i32; 2] {
 fn climb(socket: &Map, plug: &Map, shift: [i32; 2], z: f64, reach: i32) -> f64 {
     let mut least = f64::INFINITY;
     for [dx, dy] in [[1, 0], [-1, 0], [0, 1], [0, -1]] {
-        let path = (1..=reach).map(|r| rest(socket, plug, [shift[0] + r * dx, shift[1] + r * dy], NOWHERE));
+        let path = (1..=reach)
+            .map(|r| rest(socket, plug, [shift[0] + r * dx, shift[1] + r * dy], NOWHERE));
         least = least.min(f64::from(path.fold(-NOWHERE, f32::max)) - z);
     }
     least.max(0.0)
@@ -137,11 +137,6 @@ pub fn refined(
         }
     }
     watch.check(0.7)?;
-    if std::env::var("D").is_ok() {
-        for p in &kept {
-            eprintln!("rough {p:?}");
-        }
-    }
     let mut fine: Vec<Pose> =
         kept.par_iter().filter_map(|pose| Fine::new(scene, pose, room).best(pose)).collect();
     fine.sort_by(|a, b| b.value().total_cmp(&a.value()));
@@ -273,9 +268,6 @@ impl Fine {
             let [walls, jam] = self.contact().areas(shift, z as f32);
             let at = shift.map(|v| f64::from(v) * self.step);
             let next = Pose { shift: at, z, through, walls, jam, ..*pose };
-            if std::env::var("D").is_ok() {
-                eprintln!("out {} turn {} shift {:?} e {:.3} z {:.3} walls {:.2} jam {:.2} value {:.2} step {:.4}", next.out, next.turn, next.shift.map(|v| v*1e3), overlap*1e3, z*1e3, walls*1e6, jam*1e6, next.value()*1e6, self.step*1e3);
-            }
             if best.as_ref().is_none_or(|best| next.value() > best.value()) {
                 about = shift;
                 best = Some(next);
@@ -331,9 +323,8 @@ impl Fine {
         let mut cells: BTreeSet<[i32; 2]> = cells.into_iter().collect();
         let mut width = if cells.is_empty() { 0.0 } else { TOLERANCE };
         while !cells.is_empty() {
-            let inner = |[x, y]: &[i32; 2]| {
-                SIDES.iter().all(|[dx, dy]| cells.contains(&[x + dx, y + dy]))
-            };
+            let inner =
+                |[x, y]: &[i32; 2]| SIDES.iter().all(|[dx, dy]| cells.contains(&[x + dx, y + dy]));
             cells = cells.iter().copied().filter(inner).collect();
             width += 2.0 * self.step;
         }

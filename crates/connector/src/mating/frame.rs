@@ -8,8 +8,8 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 const PARALLEL: f64 = 0.999_96;
 /// Most directions from which axes are made.
 const MOST_DIRECTIONS: usize = 12;
-/// Share of the best axes' area with which the axes of the file are kept.
-const KEPT: f64 = 0.9;
+/// Share of the best axes' area with which the axes of the file are kept: round parts have many as good.
+const KEPT: f64 = 0.6;
 
 /// Triangles of a part in axes of its own, along which its walls run.
 pub struct Part {

@@ -1,12 +1,38 @@
 //! Direction in which the plug of an assembly leaves.
 
-use super::{Mate, MatingError};
+use super::frame::{Part, Parts, outs, turned, turns};
+use super::refine::{Pose, settled_areas};
+use super::search::Scene;
+use super::{Mate, MatingError, ROOMS, precise};
 use crate::mesh::Triangle;
 
-/// Finds the direction in which the plug of an assembly can be withdrawn; both in the frame of the assembly, m.
+/// Finds the direction in which the plug of an assembly can be withdrawn; both in the frame of the
+/// assembly, m. Of several the one with the most facing walls beyond what interferes is taken, and of
+/// equal ones that in which the plug stands out further.
 ///
 /// # Errors
-/// If a part is empty or the plug is blocked.
-pub fn assembled(_plug: &[Triangle], _socket: &[Triangle]) -> Result<Mate, MatingError> {
-    Err(MatingError::Blocked)
+/// If a part is empty, or the plug is blocked or loose in every direction.
+pub fn assembled(plug: &[Triangle], socket: &[Triangle]) -> Result<Mate, MatingError> {
+    let socket = Part::new(socket, "socket")?;
+    let own = socket.own;
+    if plug.is_empty() {
+        return Err(MatingError::Empty("plug"));
+    }
+    let parts = Parts { plug: Part { own, triangles: turned(plug, &own) }, socket };
+    let scene = Scene::new(&parts);
+    let mut poses: Vec<(Pose, f64)> = Vec::new();
+    for (out, turn) in outs().iter().enumerate() {
+        // The plug turns with the socket.
+        let same = |other: &nalgebra::Rotation3<f64>| (other.matrix() - turn.matrix()).amax() < 0.5;
+        let Some(turn) = turns().iter().position(same) else { continue };
+        let pose = Pose { out, turn, ..Pose::default() };
+        poses.push(settled_areas(&scene, pose, ROOMS[0]));
+    }
+    let value = |(pose, out): &(Pose, f64)| pose.value() * (1.0 + ASIDE * out.signum());
+    let best = poses.into_iter().max_by(|a, b| value(a).total_cmp(&value(b)));
+    let (pose, _) = best.filter(|(pose, _)| pose.value() > 0.0).ok_or(MatingError::Blocked)?;
+    Ok(precise::mate(&parts, &scene, &pose, ROOMS[0]))
 }
+
+/// Preference for the direction in which the plug stands out, as a share of the engagement.
+const ASIDE: f64 = 0.01;

@@ -2,14 +2,8 @@
 
 use super::map::{Map, NOWHERE};
 
-/// Height of a level, m; most levels looked through, and taken.
-const BIN: f32 = 0.02e-3;
-const MOST_BINS: usize = 2000;
-const MOST_LEVELS: usize = 8;
-/// A level is taken if one in so many cells touches there.
-const MANY: usize = 100;
-/// A plug is stopped where one in so many cells touches.
-const STOPPED: usize = 6;
+/// Width of a ledge all round that stops a plug, m: it costs as much as a square plug's walls gain.
+const LEDGE: f64 = 0.125e-3;
 
 /// Area of the plug's walls that look along +x, -x, +y and -y and face a wall of the socket, m2.
 pub type Walls = [f64; 4];
@@ -87,7 +81,8 @@ impl Sides {
                     break;
                 }
             }
-            sums[strip.side] += f64::from((high.min(faced) - low).max(0.0)) * self.step[1 - strip.side / 2];
+            sums[strip.side] +=
+                f64::from((high.min(faced) - low).max(0.0)) * self.step[1 - strip.side / 2];
         }
         sums
     }
@@ -106,49 +101,12 @@ pub struct Contact<'a> {
 }
 
 impl Contact<'_> {
-    /// Facing walls on the weaker sides, and half the side walls of what both parts fill, m2.
+    /// Facing walls on the weaker sides, and what both parts fill as an area, m2.
     pub fn areas(&self, shift: [i32; 2], z: f32) -> [f64; 2] {
         let walls = score(&self.sides.facing(self.socket, (shift, z), self.limits));
-        let mut jam = 0.0;
-        self.each(shift, |cell, rest| {
-            if rest <= z {
-                return;
-            }
-            for (side, [dx, dy]) in SIDES.into_iter().enumerate() {
-                let beside = self.rest([cell[0] + dx, cell[1] + dy], shift).max(z);
-                jam += f64::from((rest - beside).max(0.0)) * self.plug.step[1 - side / 2] / 2.0;
-            }
-        });
-        [walls, jam]
-    }
-
-    /// Heights below `z` at which much of the plug would touch, until most of it has.
-    pub fn levels(&self, shift: [i32; 2], z: f32) -> Vec<f32> {
-        let mut bins: Vec<(usize, f32)> = vec![(0, -NOWHERE); MOST_BINS];
-        let (mut above, mut all) = (0, 0);
-        self.each(shift, |_, rest| {
-            if rest < -NOWHERE / 2.0 {
-                return;
-            }
-            all += 1;
-            let bin = (z - rest) / BIN;
-            if bin < 1.0 {
-                above += 1;
-            } else if let Some(bin) = bins.get_mut(bin as usize) {
-                *bin = (bin.0 + 1, bin.1.max(rest));
-            }
-        });
-        let mut found = Vec::new();
-        for (count, top) in bins {
-            if count * MANY > all {
-                found.push(top);
-            }
-            above += count;
-            if above * STOPPED > all || found.len() == MOST_LEVELS {
-                break;
-            }
-        }
-        found
+        let mut volume = 0.0;
+        self.each(shift, |_, rest| volume += f64::from((rest - z).max(0.0)));
+        [walls, volume * self.plug.step[0] * self.plug.step[1] / LEDGE]
     }
 
     /// Cells of the plug that the socket fills, too.

@@ -8,8 +8,8 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 const PARALLEL: f64 = 0.999_96;
 /// Most directions from which axes are made.
 const MOST_DIRECTIONS: usize = 12;
-/// Share of the best axes' area with which the axes of the file are kept.
-const KEPT: f64 = 0.9;
+/// Share of the best axes' area with which the axes of the file are kept: round parts have many as good.
+const KEPT: f64 = 0.6;
 
 /// Triangles of a part in axes of its own, along which its walls run.
 pub struct Part {
@@ -35,15 +35,11 @@ impl Parts {
 }
 
 impl Part {
-    fn new(triangles: &[Triangle], name: &'static str) -> Result<Self, MatingError> {
+    /// The part in axes of its own.
+    pub fn new(triangles: &[Triangle], name: &'static str) -> Result<Self, MatingError> {
         let directions = directions(triangles);
         let own = axes(&directions).ok_or(MatingError::Empty(name))?;
         Ok(Part { own, triangles: turned(triangles, &own) })
-    }
-
-    /// The part in given axes.
-    pub fn along(triangles: &[Triangle], own: Rotation3<f64>) -> Self {
-        Part { own, triangles: turned(triangles, &own) }
     }
 }
 

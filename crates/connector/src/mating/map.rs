@@ -104,7 +104,8 @@ impl Map {
             for (p, q) in [(a, b), (b, c), (c, a)] {
                 let (p, q) = if p.y <= q.y { (p, q) } else { (q, p) };
                 if p.y <= y && y <= q.y {
-                    let x = if q.y > p.y { p.x + (q.x - p.x) * (y - p.y) / (q.y - p.y) } else { p.x };
+                    let x =
+                        if q.y > p.y { p.x + (q.x - p.x) * (y - p.y) / (q.y - p.y) } else { p.x };
                     left = left.min(x).min(if q.y > p.y { x } else { q.x });
                     right = right.max(x).max(if q.y > p.y { x } else { q.x });
                 }
@@ -131,8 +132,13 @@ impl Map {
     /// Height of a cell by its index; empty outside.
     pub fn at(&self, x: i32, y: i32) -> f32 {
         let [i, j] = [x - self.first[0], y - self.first[1]];
-        let inside = i >= 0 && j >= 0 && (i as usize) < self.count[0] && (j as usize) < self.count[1];
-        if inside { self.heights[j as usize * self.count[0] + i as usize] } else { self.envelope.empty() }
+        let inside =
+            i >= 0 && j >= 0 && (i as usize) < self.count[0] && (j as usize) < self.count[1];
+        if inside {
+            self.heights[j as usize * self.count[0] + i as usize]
+        } else {
+            self.envelope.empty()
+        }
     }
 
     /// The map without a margin of material: each cell takes the innermost height within a radius.
@@ -150,7 +156,12 @@ impl Map {
         self.filtered([back; 2], [on; 2], Envelope::inner)
     }
 
-    fn filtered(&self, back: [usize; 2], on: [usize; 2], take: fn(Envelope, f32, f32) -> f32) -> Map {
+    fn filtered(
+        &self,
+        back: [usize; 2],
+        on: [usize; 2],
+        take: fn(Envelope, f32, f32) -> f32,
+    ) -> Map {
         let [nx, ny] = self.count;
         let mut map = self.clone();
         if nx == 0 || ny == 0 || (back == [0; 2] && on == [0; 2]) {
@@ -196,7 +207,8 @@ impl Map {
             for y in first[1] * factor..(first[1] + count[1] as i32) * factor {
                 for x in first[0] * factor..(first[0] + count[0] as i32) * factor {
                     let row = (y.div_euclid(factor) - first[1]) as usize;
-                    let cell = &mut heights[row * count[0] + (x.div_euclid(factor) - first[0]) as usize];
+                    let cell =
+                        &mut heights[row * count[0] + (x.div_euclid(factor) - first[0]) as usize];
                     let z = self.at(x, y);
                     *cell = if cell.is_nan() { z } else { take(self.envelope, *cell, z) };
                 }
@@ -227,7 +239,8 @@ pub fn rest(socket: &Map, plug: &Map, shift: [i32; 2], enough: f32) -> f32 {
             let plug_row = row as usize * pnx;
             let socket_row = (row + oy) as usize * snx;
             let p = &plug.heights[plug_row + fromx as usize..plug_row + tox as usize];
-            let s = &socket.heights[socket_row + (fromx + ox) as usize..socket_row + (tox + ox) as usize];
+            let s = &socket.heights
+                [socket_row + (fromx + ox) as usize..socket_row + (tox + ox) as usize];
             highest = row_rest(s, p, highest);
         }
         if highest >= enough {

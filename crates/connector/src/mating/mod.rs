@@ -13,9 +13,11 @@ mod refine;
 mod search;
 mod select;
 mod symmetry;
+#[cfg(test)]
+mod tests;
 
-pub use assembled::assembled;
 use crate::mesh::Triangle;
+pub use assembled::assembled;
 use input::units::MM;
 use nalgebra::{Isometry3, Unit, Vector3};
 
@@ -102,11 +104,7 @@ impl Watch<'_> {
 ///
 /// # Errors
 /// If a part is empty, nothing fits, or the caller stops.
-pub fn mates(
-    plug: &[Triangle],
-    socket: &[Triangle],
-    watch: &Watch,
-) -> Result<Found, MatingError> {
+pub fn mates(plug: &[Triangle], socket: &[Triangle], watch: &Watch) -> Result<Found, MatingError> {
     let parts = frame::Parts::new(plug, socket)?;
     watch.check(0.0)?;
     let scene = search::Scene::new(&parts);

@@ -87,7 +87,9 @@ impl Bench<'_> {
         };
         let most = (most / CELL) as i32;
         // The pose on the maps may touch by a cell or two.
-        let Some(first) = (0..=most / 8).flat_map(|k| [k, -k]).find(|k| free(*k)) else { return 0.0 };
+        let Some(first) = (0..=most / 8).flat_map(|k| [k, -k]).find(|k| free(*k)) else {
+            return 0.0;
+        };
         let high = (first..first + most).take_while(|k| free(*k)).last().unwrap_or(first);
         let low = (first - most..=first).rev().take_while(|k| free(*k)).last().unwrap_or(first);
         self.shift[axis] += f64::from(low + high) / 2.0 * CELL;

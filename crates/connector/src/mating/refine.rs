@@ -12,7 +12,8 @@ use std::collections::BTreeSet;
 /// Distance within which two walls face one another, as a share of the play.
 const REACH: f64 = 0.6;
 /// Interference tried, m.
-const OVERLAPS: [f64; 9] = [0.0, 0.02e-3, 0.05e-3, 0.1e-3, 0.15e-3, 0.2e-3, 0.3e-3, 0.4e-3, 0.5e-3];
+const OVERLAPS: [f64; 10] =
+    [0.0, 0.02e-3, 0.05e-3, 0.1e-3, 0.15e-3, 0.2e-3, 0.3e-3, 0.5e-3, 0.8e-3, 1.25e-3];
 /// Interference of faces that touch, m.
 pub const TOLERANCE: f64 = 0.02 * MM;
 /// Difference of heights of one seat, m.
@@ -27,7 +28,7 @@ const MOST: usize = 24;
 const SHARE: f64 = 0.4;
 
 /// Pose on the maps, refined.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Pose {
     /// Number of the direction out of the socket.
     pub out: usize,
@@ -43,7 +44,7 @@ pub struct Pose {
     pub overlap: f64,
     /// Area of facing walls on the weaker sides, m2.
     pub walls: f64,
-    /// Area of interfering walls, m2.
+    /// What both parts fill, as an area, m2.
     pub jam: f64,
     /// Climb out of the seat towards the lowest side, m.
     pub depth: f64,
@@ -52,7 +53,7 @@ pub struct Pose {
 impl Pose {
     /// Engagement, less for interference.
     pub fn value(&self) -> f64 {
-        self.walls - self.jam / 2.0
+        self.walls - self.jam
     }
 
     fn near(&self, other: &Pose, room: f64) -> bool {
@@ -97,9 +98,8 @@ fn lowest(socket: &Map, plug: &Map, about: [i32; 2], radius: i32) -> (Vec<[i32; 
 
 /// Shift nearest to the mean of shifts.
 fn middle(shifts: &[[i32; 2]]) -> [i32; 2] {
-    let mean = [0, 1].map(|a| {
-        shifts.iter().map(|shift| f64::from(shift[a])).sum::<f64>() / shifts.len() as f64
-    });
+    let mean = [0, 1]
+        .map(|a| shifts.iter().map(|shift| f64::from(shift[a])).sum::<f64>() / shifts.len() as f64);
     let off = |shift: &[i32; 2]| {
         (f64::from(shift[0]) - mean[0]).powi(2) + (f64::from(shift[1]) - mean[1]).powi(2)
     };
@@ -111,7 +111,8 @@ fn middle(shifts: &[[i32; 2]]) -> [i32; 2] {
 fn climb(socket: &Map, plug: &Map, shift: [i32; 2], z: f64, reach: i32) -> f64 {
     let mut least = f64::INFINITY;
     for [dx, dy] in [[1, 0], [-1, 0], [0, 1], [0, -1]] {
-        let path = (1..=reach).map(|r| rest(socket, plug, [shift[0] + r * dx, shift[1] + r * dy], NOWHERE));
+        let path = (1..=reach)
+            .map(|r| rest(socket, plug, [shift[0] + r * dx, shift[1] + r * dy], NOWHERE));
         least = least.min(f64::from(path.fold(-NOWHERE, f32::max)) - z);
     }
     least.max(0.0)
@@ -127,20 +128,15 @@ pub fn refined(
     watch.check(0.6)?;
     let rough = Rough::new(scene, room);
     let mut poses: Vec<Pose> = seats.par_iter().filter_map(|seat| rough.pose(seat)).collect();
-    poses.sort_by(|a, b| b.value().total_cmp(&a.value()));
+    poses.sort_by(|a, b| b.walls.total_cmp(&a.walls));
     let mut kept: Vec<Pose> = Vec::new();
     for pose in poses {
-        let good = kept.first().is_none_or(|best| pose.value() > SHARE * best.value());
+        let good = kept.first().is_none_or(|best| pose.walls > SHARE * best.walls);
         if good && kept.len() < MOST && !kept.iter().any(|other| other.near(&pose, room)) {
             kept.push(pose);
         }
     }
     watch.check(0.7)?;
-    if std::env::var("D").is_ok() {
-        for p in &kept {
-            eprintln!("rough {p:?}");
-        }
-    }
     let mut fine: Vec<Pose> =
         kept.par_iter().filter_map(|pose| Fine::new(scene, pose, room).best(pose)).collect();
     fine.sort_by(|a, b| b.value().total_cmp(&a.value()));
@@ -148,20 +144,32 @@ pub fn refined(
     Ok(fine)
 }
 
+/// Areas of a given pose, and how far the middle of the plug lies outside that of the socket, m.
+pub fn settled_areas(scene: &Scene, pose: Pose, room: f64) -> (Pose, f64) {
+    let fine = Fine::new(scene, &pose, room);
+    let [socket, plug] = fine.heights;
+    let at = pose.shift.map(|v| (v / fine.step).round() as i32);
+    let [walls, jam] = fine.contact().areas(at, pose.z as f32 + LEVEL);
+    let lowest = f64::from(rest(&fine.upper, &fine.tight, at, NOWHERE));
+    let through = seated(lowest.min(pose.z) as f32, socket, plug).1;
+    let outside = pose.z + (plug[0] + plug[1] - socket[0] - socket[1]) / 2.0;
+    (fine.measured(Pose { walls, jam, through, ..pose }), outside)
+}
+
 /// Maps for the first look at a seat.
 struct Rough<'a> {
     scene: &'a Scene,
-    upper: Vec<[Map; 2]>,
-    lower: Vec<[Map; 2]>,
+    upper: Vec<[Map; 3]>,
+    lower: Vec<[Map; 3]>,
     sides: Vec<Sides>,
     room: f64,
 }
 
 impl<'a> Rough<'a> {
     fn new(scene: &'a Scene, room: f64) -> Self {
-        let radius = ((0.1 * MM / scene.step).round() as usize).max(2);
-        let eroded = |maps: &Vec<Map>| -> Vec<[Map; 2]> {
-            maps.par_iter().map(|map| [1, radius].map(|r| map.eroded([r; 2]))).collect()
+        let radii = [0.0, 0.1 * MM, 0.2 * MM].map(|r| ((r / scene.step).round() as usize).max(1));
+        let eroded = |maps: &Vec<Map>| -> Vec<[Map; 3]> {
+            maps.par_iter().map(|map| radii.map(|r| map.eroded([r; 2]))).collect()
         };
         let sides = scene.lower.par_iter().map(Sides::new).collect();
         Rough { scene, upper: eroded(&scene.upper), lower: eroded(&scene.lower), sides, room }
@@ -177,28 +185,25 @@ impl<'a> Rough<'a> {
             limits: [REACH * self.room, step],
         };
         let mut found: Vec<Pose> = Vec::new();
-        for level in [0, 1] {
+        for level in [0, 1, 2] {
             let (s, p) = (&self.upper[seat.out][level], &self.lower[seat.turn][level]);
             let (shifts, z) = lowest(s, p, seat.shift, FINE as i32 / 2 + 1);
             let shift = middle(&shifts);
             let (z, through) = seated(z, heights(socket), heights(plug));
-            let below = if through { Vec::new() } else { contact.levels(shift, z as f32) };
-            for z in [z].into_iter().chain(below.into_iter().map(f64::from)) {
-                let [walls, jam] = contact.areas(shift, z as f32);
-                found.push(Pose {
-                    out: seat.out,
-                    turn: seat.turn,
-                    shift: shift.map(|s| f64::from(s) * step),
-                    z,
-                    through,
-                    overlap: 0.0,
-                    walls,
-                    jam,
-                    depth: seat.depth,
-                });
-            }
+            let [walls, jam] = contact.areas(shift, z as f32);
+            found.push(Pose {
+                out: seat.out,
+                turn: seat.turn,
+                shift: shift.map(|s| f64::from(s) * step),
+                z,
+                through,
+                overlap: 0.0,
+                walls,
+                jam,
+                depth: seat.depth,
+            });
         }
-        found.into_iter().max_by(|a, b| a.value().total_cmp(&b.value()))
+        found.into_iter().max_by(|a, b| a.walls.total_cmp(&b.walls))
     }
 }
 
@@ -260,29 +265,26 @@ impl Fine {
             let p = self.lower.eroded([cells - cells / 2; 2]);
             let Some((shift, z)) = self.settled([&s, &p], about) else { continue };
             let (z, through) = seated(z, self.heights[0], self.heights[1]);
-            let contact = self.contact();
-            let below = if through { Vec::new() } else { contact.levels(shift, z as f32) };
-            for z in [z].into_iter().chain(below.into_iter().map(f64::from)) {
-                let [walls, jam] = contact.areas(shift, z as f32);
-                let at = shift.map(|v| f64::from(v) * self.step);
-                let next = Pose { shift: at, z, through, walls, jam, ..*pose };
-                if std::env::var("D").is_ok() {
-                    eprintln!("out {} turn {} shift {:?} e {:.3} z {:.3} walls {:.2} jam {:.2} value {:.2} step {:.4}", next.out, next.turn, next.shift.map(|v| v*1e3), overlap*1e3, z*1e3, walls*1e6, jam*1e6, next.value()*1e6, self.step*1e3);
-                }
-                if best.as_ref().is_none_or(|best| next.value() > best.value()) {
-                    about = shift;
-                    best = Some(next);
-                }
+            let [walls, jam] = self.contact().areas(shift, z as f32);
+            let at = shift.map(|v| f64::from(v) * self.step);
+            let next = Pose { shift: at, z, through, walls, jam, ..*pose };
+            if best.as_ref().is_none_or(|best| next.value() > best.value()) {
+                about = shift;
+                best = Some(next);
             }
         }
-        let best = best?;
+        best.map(|best| self.measured(best))
+    }
+
+    /// The pose with its interference and the climb out of it.
+    fn measured(&self, best: Pose) -> Pose {
         let shift = best.shift.map(|v| (v / self.step).round() as i32);
         let overlap = self.interference(shift, best.z);
         let side = ((self.room + 2.0 * overlap) / self.step).ceil() as i32;
         let free = (overlap / self.step).ceil() as usize;
         let (s, p) = (self.upper.eroded([free / 2; 2]), self.tight.eroded([free - free / 2; 2]));
         let depth = climb(&s, &p, shift, best.z, side);
-        Some(Pose { depth, overlap, ..best })
+        Pose { depth, overlap, ..best }
     }
 
     /// Lowest shift near a shift with the most facing walls, and its height.
@@ -321,9 +323,8 @@ impl Fine {
         let mut cells: BTreeSet<[i32; 2]> = cells.into_iter().collect();
         let mut width = if cells.is_empty() { 0.0 } else { TOLERANCE };
         while !cells.is_empty() {
-            let inner = |[x, y]: &[i32; 2]| {
-                SIDES.iter().all(|[dx, dy]| cells.contains(&[x + dx, y + dy]))
-            };
+            let inner =
+                |[x, y]: &[i32; 2]| SIDES.iter().all(|[dx, dy]| cells.contains(&[x + dx, y + dy]));
             cells = cells.iter().copied().filter(inner).collect();
             width += 2.0 * self.step;
         }

@@ -54,7 +54,8 @@ impl Scene {
     pub fn new(parts: &Parts) -> Self {
         let sockets: Vec<_> =
             outs().iter().map(|turn| turned(&parts.socket.triangles, turn)).collect();
-        let plugs: Vec<_> = turns().iter().map(|turn| turned(&parts.plug.triangles, turn)).collect();
+        let plugs: Vec<_> =
+            turns().iter().map(|turn| turned(&parts.plug.triangles, turn)).collect();
         let step = cell(&sockets, &plugs) / FINE as f64;
         let (upper, lower) =
             (maps(&sockets, Envelope::Upper, step), maps(&plugs, Envelope::Lower, step));
@@ -67,7 +68,9 @@ fn cell(sockets: &[Vec<Triangle>], plugs: &[Vec<Triangle>]) -> f64 {
     let sizes = |part: &Vec<Triangle>| bounds(part).map(|[low, high]| high - low);
     let (sockets, plugs): (Vec<_>, Vec<_>) =
         (sockets.iter().map(sizes).collect(), plugs.iter().map(sizes).collect());
-    let pair = |s: &[f64; 3], p: &[f64; 3]| p[0].min(s[0]) * p[1].min(s[1]) * (s[0] + p[0]) * (s[1] + p[1]);
+    let pair = |s: &[f64; 3], p: &[f64; 3]| {
+        p[0].min(s[0]) * p[1].min(s[1]) * (s[0] + p[0]) * (s[1] + p[1])
+    };
     let work: f64 = sockets.iter().flat_map(|s| plugs.iter().map(move |p| pair(s, p))).sum();
     // Two bounds, with and without interference.
     (4.0 * work / EFFORT).sqrt().sqrt().max(LEAST_CELL)
@@ -160,7 +163,9 @@ fn enclosed(
     passed: f32,
     room: f64,
 ) -> Vec<Seat> {
-    let extremes = |map: &Map, take: fn(f32, f32) -> f32| map.heights.iter().copied().fold(map.envelope.empty(), take);
+    let extremes = |map: &Map, take: fn(f32, f32) -> f32| {
+        map.heights.iter().copied().fold(map.envelope.empty(), take)
+    };
     let highest = extremes(&socket.outer, f32::max) - extremes(&plug.outer, f32::min);
     let range = [passed, highest - LEAST as f32];
     let rests = Rests::new(socket, plug, range);

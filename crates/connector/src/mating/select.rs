@@ -42,5 +42,7 @@ pub fn select(
         let mate = mate(best);
         return Some(if count > 1 { Found::Symmetric(mate, count) } else { Found::One(mate) });
     }
-    Some(Found::Ambiguous([*best].into_iter().chain(others.into_iter().copied()).map(mate).collect()))
+    Some(Found::Ambiguous(
+        [*best].into_iter().chain(others.into_iter().copied()).map(mate).collect(),
+    ))
 }

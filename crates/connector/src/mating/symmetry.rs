@@ -19,10 +19,8 @@ pub fn pairs(scene: &Scene) -> Vec<([usize; 2], usize)> {
     let (turns, count) = (turns(), turns().len());
     let step = 2.0 * scene.step;
     let plugs = maps(&scene.plugs, Envelope::Lower, step);
-    let sockets: Vec<_> = turns
-        .iter()
-        .map(|turn| turned(&scene.sockets[0], &(turn * outs()[0].inverse())))
-        .collect();
+    let sockets: Vec<_> =
+        turns.iter().map(|turn| turned(&scene.sockets[0], &(turn * outs()[0].inverse()))).collect();
     let sockets = maps(&sockets, Envelope::Upper, step);
     let number = |turn: Rotation3<f64>| {
         turns.iter().position(|other| (other.matrix() - turn.matrix()).amax() < MM).unwrap_or(0)
@@ -77,6 +75,7 @@ fn alike(maps: &[Map]) -> Vec<(usize, usize)> {
     };
     let all = (0..maps.len()).flat_map(|a| (0..maps.len()).map(move |b| (a, b)));
     let all: Vec<_> = all.filter(|(a, b)| a != b && near(&maps[*a], &maps[*b])).collect();
-    let same = |(a, b): &(usize, usize)| within(&maps[*a], &ranges[*b]) && within(&maps[*b], &ranges[*a]);
+    let same =
+        |(a, b): &(usize, usize)| within(&maps[*a], &ranges[*b]) && within(&maps[*b], &ranges[*a]);
     all.into_par_iter().filter(same).collect()
 }

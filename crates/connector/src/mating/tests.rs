@@ -1,0 +1,266 @@
+//! Shapes with a known mate, in frames turned and shifted at random.
+
+use super::frame::turns;
+use super::*;
+use nalgebra::{Point3, Translation3, UnitQuaternion};
+
+/// Position and play known within, m.
+const CLOSE: f64 = 0.02e-3;
+
+type Mesh = Vec<Triangle>;
+
+fn mm(x: f64, y: f64, z: f64) -> Point3<f64> {
+    Point3::new(x * MM, y * MM, z * MM)
+}
+
+/// Solid between two closed lines of as many corners, mm: the outer and the inner one.
+fn ring(outer: &[[f64; 2]], inner: &[[f64; 2]], [low, high]: [f64; 2]) -> Mesh {
+    let mut mesh = Vec::new();
+    for i in 0..outer.len() {
+        let j = (i + 1) % outer.len();
+        let at = |p: [f64; 2], z: f64| mm(p[0], p[1], z);
+        let mut quad = |[a, b, c, d]: [Point3<f64>; 4]| mesh.extend([[a, b, c], [a, c, d]]);
+        let ([oi, oj], [ii, ij]) = ([outer[i], outer[j]], [inner[i], inner[j]]);
+        quad([at(oi, low), at(oj, low), at(oj, high), at(oi, high)]);
+        quad([at(ij, low), at(ii, low), at(ii, high), at(ij, high)]);
+        quad([at(oi, high), at(oj, high), at(ij, high), at(ii, high)]);
+        quad([at(oj, low), at(oi, low), at(ii, low), at(ij, low)]);
+    }
+    mesh
+}
+
+/// Solid of a line that is seen whole from its middle, mm.
+fn solid(line: &[[f64; 2]], range: [f64; 2]) -> Mesh {
+    let middle = [0, 1].map(|a| line.iter().map(|p| p[a]).sum::<f64>() / line.len() as f64);
+    ring(line, &vec![middle; line.len()], range)
+}
+
+fn rectangle([x, y]: [f64; 2], [a, b]: [f64; 2]) -> Vec<[f64; 2]> {
+    let (a, b) = (a / 2.0, b / 2.0);
+    vec![[x - a, y - b], [x + a, y - b], [x + a, y + b], [x - a, y + b]]
+}
+
+fn block(at: [f64; 2], size: [f64; 2], range: [f64; 2]) -> Mesh {
+    solid(&rectangle(at, size), range)
+}
+
+/// Mesh in another frame, and the pose of that frame in its own.
+fn hidden(mesh: &Mesh, number: usize) -> (Mesh, Isometry3<f64>) {
+    let turn = UnitQuaternion::from_rotation_matrix(&turns()[number % 24]);
+    let shift = [number as f64 * 1.37, 3.1 - number as f64, 0.77].map(|v| v * MM);
+    let pose = Isometry3::from_parts(Translation3::from(shift), turn);
+    (mesh.iter().map(|t| t.map(|p| pose * p)).collect(), pose)
+}
+
+/// Mate of parts that are drawn mated, each in a frame of its own, in the frame drawn; and how many
+/// are equal.
+fn found(plug: &Mesh, socket: &Mesh, number: usize) -> (Mate, usize) {
+    let ((plug, p), (socket, s)) = (hidden(plug, number), hidden(socket, 3 * number + 1));
+    let (mate, count) = match mates(&plug, &socket, &Watch::NONE).expect("mates") {
+        Found::One(mate) => (mate, 1),
+        Found::Symmetric(mate, count) => (mate, count),
+        Found::Ambiguous(all) => panic!("ambiguous: {all:#?}"),
+    };
+    let back = s.inverse();
+    let out = Unit::new_normalize(back * mate.out.into_inner());
+    let across = mate.across.map(|axis| Unit::new_normalize(back * axis.into_inner()));
+    (Mate { pose: back * mate.pose * p, out, across, ..mate }, count)
+}
+
+/// Asserts that the mate leaves a point of the plug, mm, where it was drawn, and its play, mm.
+fn close(mate: &Mate, at: [f64; 3], play: [f64; 2]) {
+    let point = mm(at[0], at[1], at[2]);
+    let off = (mate.pose * point - point).norm();
+    assert!(off < CLOSE, "off by {off}: {mate:?}");
+    assert!((mate.out.z - 1.0).abs() < 1e-6, "{mate:?}");
+    for (axis, measured) in mate.across.iter().zip(mate.play_m) {
+        let expected = MM * if axis.x.abs() > 0.5 { play[0] } else { play[1] };
+        assert!((measured - expected).abs() < CLOSE, "{expected} {mate:?}");
+    }
+}
+
+fn peg(size: [f64; 2]) -> Mesh {
+    [block([0.0; 2], size, [0.0, 6.0]), block([0.0; 2], [size[0] + 2.0, size[1] + 1.5], [4.0, 9.0])]
+        .concat()
+}
+
+fn hole(outer: [f64; 2], inner: [f64; 2], depth: f64) -> Mesh {
+    let walls = ring(&rectangle([0.0; 2], outer), &rectangle([0.0; 2], inner), [4.0 - depth, 4.0]);
+    [walls, block([0.0; 2], outer, [-3.0, 4.0 - depth])].concat()
+}
+
+#[test]
+fn peg_rests_in_its_hole() {
+    let (mate, count) = found(&peg([3.0, 2.0]), &hole([6.0, 5.0], [3.1, 2.16], 4.0), 5);
+    close(&mate, [0.0, 0.0, 2.0], [0.1, 0.16]);
+    assert_eq!(count, 2);
+    assert!((mate.engaged_m - 4.0 * MM).abs() < CLOSE, "{mate:?}");
+    assert!(!mate.through && mate.overlap_m == 0.0, "{mate:?}");
+}
+
+#[test]
+fn plug_goes_round_a_post() {
+    let socket =
+        [block([0.0; 2], [8.0, 7.0], [-2.0, 0.0]), block([0.0; 2], [3.0, 2.0], [0.0, 5.0])];
+    let plug =
+        ring(&rectangle([0.0; 2], [5.0, 4.2]), &rectangle([0.0; 2], [3.12, 2.08]), [0.0, 4.0]);
+    let plug = [plug, block([0.0; 2], [5.0, 4.2], [5.5, 8.0])].concat();
+    let (mate, _) = found(&plug, &socket.concat(), 7);
+    close(&mate, [0.0, 0.0, 1.0], [0.12, 0.08]);
+}
+
+#[test]
+fn key_leaves_no_yaw_and_a_through_hole_no_stop() {
+    let socket =
+        ring(&rectangle([0.0; 2], [7.0, 6.0]), &rectangle([0.0; 2], [3.1, 2.1]), [0.0, 4.0]);
+    let (mate, _) = found(&block([0.0; 2], [3.0, 2.0], [0.0, 12.0]), &socket, 2);
+    assert!(mate.through, "{mate:?}");
+    // Either side is as good.
+    assert!((mate.out.z.abs() - 1.0).abs() < 1e-6);
+    assert!((mate.engaged_m - 4.0 * MM).abs() < CLOSE, "{mate:?}");
+    assert!(mate.yaw_rad > 0.02 && mate.yaw_rad < 0.1, "{mate:?}");
+}
+
+#[test]
+fn header_mates_by_its_shroud_and_not_a_pitch_beside_it() {
+    let places = || (0..5).flat_map(|i| [-1.27, 1.27].map(|y| [2.54 * f64::from(i) - 5.08, y]));
+    let mut socket =
+        ring(&rectangle([0.0; 2], [16.0, 9.0]), &rectangle([0.0; 2], [13.2, 5.6]), [0.0, 8.0]);
+    socket.extend(block([0.0; 2], [16.0, 9.0], [-2.0, 0.0]));
+    places().for_each(|at| socket.extend(block(at, [0.64; 2], [0.0, 6.0])));
+    // The housing is a grid of bars about its holes.
+    let mut plug = block([0.0; 2], [13.0, 5.4], [7.5, 14.0]);
+    let xs: Vec<f64> = (0..5).map(|i| 2.54 * f64::from(i) - 5.08).collect();
+    for pair in [vec![-6.9], xs.clone(), vec![6.9]].concat().windows(2) {
+        let [low, high] = [(pair[0] + 0.4).max(-6.5), (pair[1] - 0.4).min(6.5)];
+        plug.extend(block([(low + high) / 2.0, 0.0], [high - low, 5.4], [0.0, 7.5]));
+    }
+    for x in xs {
+        for (y, width) in [(-2.185, 1.03), (0.0, 1.74), (2.185, 1.03)] {
+            plug.extend(block([x, y], [0.8, width], [0.0, 7.5]));
+        }
+    }
+    let (mate, count) = found(&plug, &socket, 4);
+    close(&mate, [0.0, 0.0, 0.0], [0.16, 0.16]);
+    assert_eq!(count, 2);
+}
+
+#[test]
+fn stamped_shell_with_seam_and_windows_mates_round_a_tongue() {
+    // Shell of 0.3 mm sheet with a seam below and two windows above, about a tongue.
+    let mut socket = block([0.0; 2], [9.6, 3.6], [-1.0, 0.0]);
+    socket.extend(block([0.0; 2], [6.6, 0.7], [0.0, 4.4]));
+    for x in [-4.65, 4.65] {
+        socket.extend(block([x, 0.0], [0.3, 3.2], [0.0, 5.0]));
+    }
+    for x in [-2.3, 2.3] {
+        socket.extend(block([x, -1.45], [4.4, 0.3], [0.0, 5.0]));
+    }
+    socket.extend(block([0.0, 1.45], [9.0, 0.3], [0.0, 2.0]));
+    socket.extend(block([0.0, 1.45], [9.0, 0.3], [3.5, 5.0]));
+    for x in [-4.2, 0.0, 4.2] {
+        socket.extend(block([x, 1.45], [0.6, 0.3], [2.0, 3.5]));
+    }
+    let mut plug =
+        ring(&rectangle([0.0; 2], [8.9, 2.5]), &rectangle([0.0; 2], [6.9, 0.9]), [0.0, 5.0]);
+    plug.extend(block([0.0; 2], [8.9, 2.5], [5.0, 9.0]));
+    let (mate, count) = found(&plug, &socket, 9);
+    close(&mate, [0.0, 0.0, 0.0], [0.1, 0.1]);
+    assert_eq!(count, 2);
+}
+
+fn spline(grow: f64) -> Vec<[f64; 2]> {
+    let corner = |i: i32| {
+        let angle = std::f64::consts::TAU * f64::from(i) / 24.0;
+        let radius = if i % 4 < 2 { 3.0 } else { 2.3 } + grow;
+        [radius * libm::cos(angle), radius * libm::sin(angle)]
+    };
+    (0..24).map(corner).collect()
+}
+
+#[test]
+fn spline_mates_in_its_teeth() {
+    let outer: Vec<_> =
+        spline(0.0).iter().map(|p| p.map(|v| 5.0 * v / libm::hypot(p[0], p[1]))).collect();
+    let socket = [ring(&outer, &spline(0.06), [0.0, 4.0]), solid(&outer, [-2.0, 0.0])].concat();
+    let plug = [solid(&spline(0.0), [0.0, 5.0]), block([0.0; 2], [8.0, 9.0], [5.0, 9.0])].concat();
+    let (mate, _) = found(&plug, &socket, 6);
+    let off = (mate.pose * mm(0.0, 0.0, 0.0) - mm(0.0, 0.0, 0.0)).norm();
+    assert!(off < CLOSE && mate.yaw_rad < 0.2, "{off} {mate:?}");
+}
+
+#[test]
+fn interfering_springs_are_measured_and_do_not_count_as_play() {
+    let mut socket = hole([7.0, 6.0], [4.1, 3.1], 4.0);
+    for x in [-1.0, 1.0] {
+        socket.extend(block([x, 1.45], [0.4, 0.4], [1.0, 2.0]));
+    }
+    let (mate, _) = found(&peg([4.0, 3.0]), &socket, 8);
+    close(&mate, [0.0, 0.0, 2.0], [0.1, 0.1]);
+    assert!((mate.overlap_m - 0.25 * MM).abs() < 0.1 * MM, "{mate:?}");
+}
+
+#[test]
+fn assembled_plug_leaves_upward() {
+    let mate = assembled(&peg([3.0, 2.0]), &hole([6.0, 5.0], [3.1, 2.1], 4.0)).expect("leaves");
+    assert!((mate.out.z - 1.0).abs() < 1e-6, "{mate:?}");
+    close(&mate, [0.0, 0.0, 1.0], [0.1, 0.1]);
+}
+
+#[test]
+fn parts_that_do_not_fit_are_refused() {
+    let refused = mates(
+        &block([0.0; 2], [5.0, 4.0], [0.0, 6.0]),
+        &block([0.0; 2], [6.0; 2], [0.0, 3.0]),
+        &Watch::NONE,
+    );
+    assert!(matches!(refused, Err(MatingError::NoFit { .. })), "{refused:?}");
+    assert_eq!(mates(&[], &peg([2.0; 2]), &Watch::NONE), Err(MatingError::Empty("plug")));
+    let stop = Watch { stopped: &|| true, ..Watch::NONE };
+    let stopped = mates(&peg([2.0; 2]), &hole([5.0; 2], [2.1; 2], 4.0), &stop);
+    assert_eq!(stopped, Err(MatingError::Stopped));
+}
+
+#[test]
+fn random_sockets_of_one_to_three_holes() {
+    let mut seed = 7_u64;
+    let mut random = |low: f64, high: f64| {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        low + (high - low) * (seed >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let mut missed = Vec::new();
+    for number in 0..6 {
+        let clearance = [random(0.05, 0.3), random(0.05, 0.3)];
+        let (width, depth) = (random(2.0, 3.0), random(1.5, 3.0));
+        let (mut plug, mut socket) = (Vec::new(), Vec::new());
+        let count = 1 + number % 3;
+        for i in 0..count {
+            // Prongs of different size, so that there is one order.
+            let (x, size) = (4.5 * i as f64, [1.4 + 0.5 * i as f64, width]);
+            plug.extend(block([x, 0.0], size, [-depth, 0.0]));
+            let inner = rectangle([x, 0.0], [size[0] + clearance[0], size[1] + clearance[1]]);
+            socket.extend(ring(&rectangle([x, 0.0], [4.5, 5.0]), &inner, [-depth, 0.0]));
+        }
+        let middle = 2.25 * (count - 1) as f64;
+        plug.extend(block([middle, 0.0], [4.5 * count as f64 + 1.0, 5.5], [0.0, 3.0]));
+        socket.extend(block([middle, 0.0], [4.5 * count as f64, 5.0], [-depth - 1.0, -depth]));
+        let ((moved, p), (other, s)) = (hidden(&plug, number), hidden(&socket, 5 * number + 2));
+        let mate = match mates(&moved, &other, &Watch::NONE) {
+            Ok(Found::One(mate) | Found::Symmetric(mate, _)) => mate,
+            other => {
+                missed.push(format!("{number}: {other:?}"));
+                continue;
+            }
+        };
+        let off =
+            (s.inverse() * mate.pose * p * mm(middle, 0.0, 0.0) - mm(middle, 0.0, 0.0)).norm();
+        let wrong = mate.across.iter().zip(mate.play_m).any(|(axis, play)| {
+            let along = s.inverse() * axis.into_inner();
+            (play - MM * clearance[usize::from(along.x.abs() < 0.5)]).abs() > CLOSE
+        });
+        if off > CLOSE || wrong {
+            missed.push(format!("{number}: off {off} clearance {clearance:?} {mate:?}"));
+        }
+    }
+    assert!(missed.is_empty(), "{} missed: {missed:#?}", missed.len());
+}

@@ -37,7 +37,7 @@ pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
             @if stuck { (nominal(answer, beside)) }
             @else if let Some((_, tasks)) = answer.shown() { (films(answer, &tasks, beside)) }
             div {
-                (bar::section(answer, &beside.robots).unwrap_or_default())
+                (bar::section(answer, &beside.analyses.robots).unwrap_or_default())
                 (drawn(answer).unwrap_or_default())
                 (files(answer, beside).unwrap_or_default())
             }

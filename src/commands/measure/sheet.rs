@@ -91,7 +91,7 @@ fn ended(
     let finger = FingerRequest { infill, set, ..FingerRequest::default() };
     let setup = SetupRequest { tasks, ..SetupRequest::default() };
     let trial = trial::Request { setup, finger, offset_mm, ..trial::Request::default() };
-    let done = trial.run(context)?;
+    let done = trial.run(context)?.value;
     let Specimen { task, finger, .. } = done.chosen.specimen;
     let svg = picture::ended(&task, &finger.pad, &done.trial);
     Ok(Picture { outcome: done.trial.outcome, svg, task: task.name })

@@ -9,7 +9,7 @@ pub use page::html;
 use crate::answer::words::number;
 use crate::text_table;
 use calibration::identify::check::Remark;
-use calibration::identify::formulas::{self, Flange};
+use calibration::identify::formulas::{Flange, Friction, Slide};
 use calibration::identify::misfit::{Misfit, misfits};
 use calibration::identify::question::{Compared, IdentifyDone};
 use calibration::identify::unknown::{From, Unknown};
@@ -53,13 +53,7 @@ struct Probe<'a> {
     log: &'a str,
     friction: Option<f64>,
     friction_sd: Option<f64>,
-    slides: Vec<Slide>,
-}
-
-#[derive(Serialize)]
-struct Slide {
-    tangential_over_normal: f64,
-    rising: bool,
+    slides: &'a [Slide],
 }
 
 #[derive(Serialize)]
@@ -99,15 +93,11 @@ impl<'a> Output<'a> {
             explained: flange.explained,
         };
         let axes = AXES.into_iter().zip(&found.flange);
-        let slide = |slide: &formulas::Slide| Slide {
-            tangential_over_normal: slide.ratio,
-            rising: slide.rising,
-        };
-        let probe = |(file, friction): &'a (String, formulas::Friction)| Probe {
+        let probe = |(file, friction): &'a (String, Friction)| Probe {
             log: file,
             friction: friction.coefficient.map(|one| one.mean),
             friction_sd: friction.coefficient.map(|one| one.sd),
-            slides: friction.slides.iter().map(slide).collect(),
+            slides: &friction.slides,
         };
         let attempt = |one: &'a Compared| Attempt {
             log: &one.logged.file,

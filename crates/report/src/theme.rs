@@ -1,9 +1,8 @@
-//! Colours: fixed in SVG files, variables in the page, so that both light and
-//! dark readers see them.
+//! Colours: fixed in SVG files, variables in the page, which may be light or dark.
 
 use plotters::style::RGBColor;
 
-/// A colour by the name of its CSS variable, for light and for dark pages.
+/// Colour for light and for dark pages, with the name of its CSS variable.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Colour {
     name: &'static str,
@@ -37,7 +36,7 @@ colours! {
 }
 
 impl Colour {
-    /// For drawing; in a file this is what is seen.
+    /// Returns the colour of plots in files.
     pub fn rgb(self) -> RGBColor {
         RGBColor(self.light.0, self.light.1, self.light.2)
     }
@@ -48,25 +47,25 @@ impl Colour {
         self.name
     }
 
-    /// As the drawing library writes it, and as CSS takes it.
+    /// Returns it as `#RRGGBB`, as the drawing library writes it.
     pub fn hex(self) -> String {
         format!("#{:02X}{:02X}{:02X}", self.light.0, self.light.1, self.light.2)
     }
 }
 
-/// The variables, light or dark, as the body of a CSS rule.
+/// Returns the variables, light or dark, as the body of a CSS rule.
 pub(super) fn variables(dark: bool) -> String {
     let value = |c: &Colour| if dark { c.dark.to_owned() } else { c.hex() };
     ALL.iter().map(|c| format!("--{}:{};", c.name, value(c))).collect()
 }
 
-/// Makes a drawn SVG fit for the page: colours become variables, and the size that of its place.
+/// Converts a drawn SVG for the page: with variables as colours, and without a size.
 pub(super) fn inline(svg: &str) -> String {
     let variable = |svg: String, colour: &Colour| {
         svg.replace(&colour.hex(), &format!("var(--{})", colour.name))
     };
     let svg = ALL.iter().fold(svg.to_owned(), variable);
     let view_box = svg.find("viewBox").unwrap_or(0);
-    // The namespace is implied in HTML, and would look like an address.
+    // HTML implies the namespace.
     format!("<svg {}", svg[view_box..].replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1))
 }

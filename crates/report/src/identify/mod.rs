@@ -12,7 +12,7 @@ use calibration::identify::check::Remark;
 use calibration::identify::formulas::{Flange, Friction, Slide};
 use calibration::identify::misfit::{Misfit, misfits};
 use calibration::identify::question::{Compared, IdentifyDone};
-use calibration::identify::unknown::{From, Unknown};
+use calibration::identify::unknown::{Unknown, ValueOrigin};
 use input::units::{MM, N_PER_MM};
 use insertion::surrogate::Estimate;
 use parameters::{Path, Transform};
@@ -65,7 +65,7 @@ struct Identification<'a> {
     prior_high: f64,
     value: f64,
     sd: Option<f64>,
-    from: From,
+    from: ValueOrigin,
     source: &'a str,
     expected_share_of_prior_sd: Option<f64>,
     share_of_prior_sd: Option<f64>,
@@ -121,7 +121,7 @@ impl<'a> Output<'a> {
     }
 }
 
-impl<'a> std::convert::From<&'a Unknown> for Identification<'a> {
+impl<'a> From<&'a Unknown> for Identification<'a> {
     fn from(Unknown { prior, posterior, left, from, advice }: &'a Unknown) -> Self {
         Identification {
             name: &posterior.name,
@@ -183,12 +183,12 @@ pub fn text(done: &IdentifyDone) -> String {
 }
 
 /// Returns the origin of a value in words.
-fn origin(from: From) -> &'static str {
+fn origin(from: ValueOrigin) -> &'static str {
     match from {
-        From::Formula => "formula",
-        From::Fit => "fit",
-        From::Prior => "not identifiable",
-        From::Files => "not fitted",
+        ValueOrigin::Formula => "formula",
+        ValueOrigin::Fit => "fit",
+        ValueOrigin::Prior => "not identifiable",
+        ValueOrigin::Files => "not fitted",
     }
 }
 

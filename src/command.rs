@@ -8,6 +8,8 @@ use clap::{Arg, ArgAction, ArgMatches, Args};
 use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt;
+use std::path::PathBuf;
+use study::write_file;
 
 /// Input of a command: its fields are the options, its doc comments their help.
 pub trait Request: Args {
@@ -56,6 +58,21 @@ pub struct Output<T> {
     /// SVG or page that shows it, if there is one.
     #[serde(skip)]
     pub picture: Option<String>,
+}
+
+impl<T> Output<T> {
+    /// Returns a value with its picture, which is also written to `file`, if that is given.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn drawn(
+        (value, text): (T, String),
+        picture: String,
+        file: Option<&PathBuf>,
+    ) -> Result<Self, Failure> {
+        file.map_or(Ok(()), |file| write_file(file, &picture))?;
+        Ok(Output { value, text, picture: Some(picture) })
+    }
 }
 
 impl<T> fmt::Display for Output<T> {

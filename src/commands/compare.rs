@@ -33,13 +33,10 @@ impl command::Request for Request {
         let load = |dir: &PathBuf| Ok((dir.display().to_string(), StudyRecord::load(dir)?));
         let studies = self.dirs.iter().map(load).collect::<Result<Vec<_>, Failure>>()?;
         let comparison = compare(&studies).map_err(Failure::usage)?;
-        let picture = svg(&comparison)?;
-        if let Some(file) = &self.svg {
-            write_file(file, &picture)?;
-        }
         if let Some(file) = &self.html {
             write_file(file, &page(&comparison)?)?;
         }
-        Ok(Output { text: text(&comparison), value: comparison, picture: Some(picture) })
+        let (text, picture) = (text(&comparison), svg(&comparison)?);
+        Output::drawn((comparison, text), picture, self.svg.as_ref())
     }
 }

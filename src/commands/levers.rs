@@ -15,7 +15,6 @@ use report::levers as shown;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
-use study::write_file;
 
 /// Compare the infill with other ways to widen the window: tilt, strokes, grip, friction, robot
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -56,13 +55,9 @@ impl command::Request for Request {
         let given = chosen.given.then_some(chosen.specimen.stiffness);
         let finger = (&chosen.design, given);
         let levers = levers(&setup, setup.only_task()?, finger, None, context.stop)?;
-        let svg = shown::svg(&levers)?;
-        if let Some(path) = &self.svg {
-            write_file(path, &svg)?;
-        }
-        let text = layout::wrapped(&shown::text(&levers));
+        let (svg, text) = (shown::svg(&levers)?, layout::wrapped(&shown::text(&levers)));
         let value = Found { sentence: levers.sentence(), levers };
-        Ok(Output { value, text, picture: Some(svg) })
+        Output::drawn((value, text), svg, self.svg.as_ref())
     }
 }
 

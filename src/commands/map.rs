@@ -15,7 +15,6 @@ use insertion::trial::Grasp;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
-use study::write_file;
 
 /// Trace the capture map of one finger
 ///
@@ -65,12 +64,9 @@ impl command::Request for Request {
         let finger = (&chosen.specimen, &chosen.design);
         let map = map_of(&setup, finger, taught, self.axes, stop)?;
         let svg = report::map::svg(&map)?;
-        if let Some(file) = &self.svg {
-            write_file(file, &svg)?;
-        }
         let value = Mapped { chosen, map };
         let text = layout::wrapped(&value.text()) + &layout::wrote(&self.svg);
-        Ok(Output { value, text, picture: Some(svg) })
+        Output::drawn((value, text), svg, self.svg.as_ref())
     }
 }
 

@@ -14,7 +14,6 @@ use report::sensitivity::{self as shown, Factor, Found};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
-use study::write_file;
 
 const SAMPLES: RangeInclusive<u32> = 4..=10_000;
 
@@ -55,11 +54,8 @@ impl command::Request for Request {
     fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
         let _busy = context.busy("simulating the sample");
         let found = self.found(context.stop)?;
-        let svg = shown::svg(&found)?;
-        if let Some(path) = &self.svg {
-            write_file(path, &svg)?;
-        }
-        Ok(Output { text: shown::text(&found), value: found, picture: Some(svg) })
+        let (text, svg) = (shown::text(&found), shown::svg(&found)?);
+        Output::drawn((found, text), svg, self.svg.as_ref())
     }
 }
 

@@ -8,6 +8,8 @@ use clap::{Arg, ArgAction, ArgMatches, Args};
 use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt;
+use std::path::PathBuf;
+use study::write_file;
 
 /// Input of a command: its fields are the options, its doc comments their help.
 pub trait Request: Args {
@@ -44,18 +46,55 @@ pub trait Response: Serialize + fmt::Display {
     }
 }
 
-/// Result that is only a text.
+/// Value for `--json` and its text for a terminal.
 #[derive(Debug, Default, Serialize)]
 #[serde(transparent)]
-pub struct Text(pub String);
+pub struct Output<T> {
+    /// The value.
+    pub value: T,
+    /// Its text.
+    #[serde(skip)]
+    pub text: String,
+    /// SVG or page that shows it, if there is one.
+    #[serde(skip)]
+    pub picture: Option<String>,
+}
 
-impl fmt::Display for Text {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
+impl<T> Output<T> {
+    /// Returns a value with its picture, which is also written to `file`, if that is given.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn drawn(
+        (value, text): (T, String),
+        picture: String,
+        file: Option<&PathBuf>,
+    ) -> Result<Self, Failure> {
+        file.map_or(Ok(()), |file| write_file(file, &picture))?;
+        Ok(Output { value, text, picture: Some(picture) })
     }
 }
 
-impl Response for Text {}
+impl<T> fmt::Display for Output<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+impl<T: Serialize> Response for Output<T> {
+    fn picture(&self) -> Result<Option<String>, Failure> {
+        Ok(self.picture.clone())
+    }
+}
+
+/// Result that is only a text.
+pub type Text = Output<String>;
+
+impl From<String> for Text {
+    fn from(text: String) -> Self {
+        Output { value: text.clone(), text, picture: None }
+    }
+}
 
 /// Result of a command for other programs.
 #[derive(Debug)]
@@ -71,9 +110,12 @@ pub struct Called {
 pub struct Command {
     /// Words that select it: `["task", "new"]`.
     pub path: &'static [&'static str],
-    augment: fn(clap::Command) -> clap::Command,
-    print: fn(&ArgMatches, Program) -> Result<(), Failure>,
-    call: fn(&ArgMatches, &Context<'_>) -> Result<Called, Failure>,
+    /// Adds its options to a command of clap.
+    pub augment: fn(clap::Command) -> clap::Command,
+    /// Runs it and prints its result; fails if the request does, or by [`Response::verdict`].
+    pub print: fn(&ArgMatches, Program) -> Result<(), Failure>,
+    /// Runs it for another program.
+    pub call: fn(&ArgMatches, &Context<'_>) -> Result<Called, Failure>,
 }
 
 const JSON: &str = "json";
@@ -85,30 +127,9 @@ impl Command {
         Command { path, augment: augment::<R>, print: print::<R>, call: call::<R> }
     }
 
-    /// Adds the options of this command to a command of clap.
-    pub fn augment(&self, command: clap::Command) -> clap::Command {
-        (self.augment)(command)
-    }
-
     /// Returns the command line of this command alone.
     pub fn clap(&self) -> clap::Command {
-        self.augment(clap::Command::new(self.path.last().copied().unwrap_or_default()))
-    }
-
-    /// Runs the command of this program and prints its result.
-    ///
-    /// # Errors
-    /// If the request fails, or the result says so ([`Response::verdict`]).
-    pub fn print(&self, matches: &ArgMatches, program: Program) -> Result<(), Failure> {
-        (self.print)(matches, program)
-    }
-
-    /// Runs the command for another program.
-    ///
-    /// # Errors
-    /// If the request fails.
-    pub fn call(&self, matches: &ArgMatches, context: &Context<'_>) -> Result<Called, Failure> {
-        (self.call)(matches, context)
+        (self.augment)(clap::Command::new(self.path.last().copied().unwrap_or_default()))
     }
 }
 

@@ -1,5 +1,4 @@
-//! `--executor WHERE`: hands the command to the installed Python package, which knows the
-//! executors, and runs the study with the same library.
+//! `--executor WHERE`: passes the command to the installed Python package, which has the executors.
 
 use crate::failure::Failure;
 use std::ffi::OsString;
@@ -7,17 +6,17 @@ use std::process::{ChildStdin, Command, ExitCode, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use study::SOURCES;
 
-/// Names another interpreter than `python3`.
+/// Environment variable for another interpreter than `python3`.
 const PYTHON: &str = "FINGER_OPT_PYTHON";
-/// Tells the package which sources the program was built from.
+/// Environment variable with the hash of the program's sources, for the package.
 const SOURCES_KEY: &str = "FINGER_OPT_SOURCES";
-/// Keeps interpreters, and those that they start, from importing what lies in the current folder.
+/// Environment variable that excludes the current folder from imports, also of child processes.
 const SAFE_PATH: (&str, &str) = ("PYTHONSAFEPATH", "1");
-/// For Python 3.10, which does not know that.
+/// The same for Python 3.10, which ignores the variable.
 const SAFE: &str = "import sys; sys.path[:] = filter(None, sys.path); ";
 
-/// Runs the command of these words, the program's name left out, by the Python package, which
-/// says itself what fails; gives its exit code.
+/// Runs a command, without the program's name, by the Python package, which reports its own errors; returns its
+/// exit code.
 pub fn run(executor: &str, words: &[OsString]) -> Result<ExitCode, Failure> {
     let python = std::env::var_os(PYTHON).unwrap_or_else(|| "python3".into());
     let missing = |said: &str| {
@@ -39,8 +38,8 @@ pub fn run(executor: &str, words: &[OsString]) -> Result<ExitCode, Failure> {
         let said = String::from_utf8_lossy(&found.stderr);
         return Err(missing(said.lines().last().unwrap_or("nothing")));
     }
-    // The package ends the study when its input ends, which is also when this process is killed.
-    // Watched before it starts: a signal may come as soon as it runs.
+    // The package ends the study at the end of its input, also if this process is killed. The handler is set
+    // first, since a signal may come as soon as the package runs.
     let input = Arc::new(Mutex::new(Input { stopped: false, pipe: None }));
     let watched = Arc::clone(&input);
     let stop = move || *locked(&watched) = Input { stopped: true, pipe: None };

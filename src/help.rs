@@ -28,63 +28,21 @@ const FEW: [(&str, &str); 6] = [
     ("-h, --help", "Print this help; `--help` lists all options of a study"),
     ("-V, --version", "Print version"),
 ];
-/// Headings of options in help texts.
-const HEADINGS: [(&str, &[&str]); 5] = [
+/// Headings of options in help texts, with their options.
+const HEADINGS: [(&str, &str); 5] = [
     (
         "Task, robot and finger",
-        &[
-            "task",
-            "space",
-            "robot",
-            "cell",
-            "stiffness-data",
-            "engine",
-            "finger-model",
-            "finger",
-            "start",
-            "density",
-            "direction",
-            "stiffness-compliance",
-            "stiffness-assembly",
-            "set",
-        ],
+        "task space robot cell stiffness-data engine finger-model finger start density direction \
+         stiffness-compliance stiffness-assembly set",
     ),
     (
         "Search",
-        &[
-            "budget",
-            "polish",
-            "indifference-mm",
-            "optimizer",
-            "objective",
-            "constraint",
-            "uncertainty",
-            "aggregate",
-            "weights",
-            "seed",
-            "batch",
-            "async",
-        ],
+        "budget polish indifference-mm optimizer objective constraint uncertainty aggregate weights seed \
+         batch async",
     ),
-    ("Bench", &["measurements", "priors", "simulations", "samples", "runs", "frame"]),
-    (
-        "Run",
-        &[
-            "threads",
-            "cache",
-            "no-cache",
-            "no-confirm",
-            "no-levers",
-            "no-map",
-            "accept-changed",
-            "executor",
-            NO_CONFIG,
-        ],
-    ),
-    (
-        "Output",
-        &["out", "verbose", "json", "quiet", "svg", "html", "record", "plot", "log", "report"],
-    ),
+    ("Bench", "measurements priors simulations samples runs frame"),
+    ("Run", "threads cache no-cache no-confirm no-levers no-map accept-changed executor no-config"),
+    ("Output", "out verbose json quiet svg html record plot log report"),
 ];
 
 /// Returns the styles of help and usage errors.
@@ -92,11 +50,12 @@ pub fn styles() -> Styles {
     Styles::styled().header(TITLE).usage(TITLE).literal(WORD).placeholder(PLACE)
 }
 
-/// Sets the headings of a command's options, in the order of the headings, and adds what all commands have.
+/// Sets the headings of the options of a command with many.
 pub fn with_headings(command: Command) -> Command {
     let group = |arg: &Arg| {
         let long = arg.get_long().unwrap_or_default();
-        HEADINGS.iter().find(|(_, options)| options.contains(&long)).map(|(title, _)| *title)
+        let lists = |options: &str| options.split(' ').any(|option| option == long);
+        HEADINGS.iter().find(|(_, options)| lists(options)).map(|(title, _)| *title)
     };
     let several = command.get_arguments().filter(|arg| !arg.is_hide_set()).count() > 8;
     match several {

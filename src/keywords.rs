@@ -26,7 +26,7 @@ pub fn call(
     let mut program = command.clap().no_binary_name(true);
     program.build();
     let words = words(&program, keywords)?;
-    command.call(&program.try_get_matches_from(words).map_err(Failure::of_clap)?, context)
+    (command.call)(&program.try_get_matches_from(words).map_err(Failure::of_clap)?, context)
 }
 
 /// Reads a request from keywords, as [`call`] does.

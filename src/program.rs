@@ -58,7 +58,7 @@ pub fn program() -> clap::Command {
         .subcommand_negates_reqs(true)
         .arg_required_else_help(true)
         .args_conflicts_with_subcommands(true);
-    let root = help::with_headings(STUDY.augment(root).arg(help::no_config()));
+    let root = help::with_headings((STUDY.augment)(root).arg(help::no_config()));
     let root = described(root, ABOUT, "Example: optimize --task usb --budget 200");
     let mut groups = GROUPS.map(|(order, name, about, example)| {
         let group = clap::Command::new(name)
@@ -128,7 +128,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
                 let words: Vec<OsString> = words.iter().skip(1).cloned().chain(set).collect();
                 executor::run(executor, &words)
             }
-            None => command.print(matches, self::program).map(|()| ExitCode::SUCCESS),
+            None => (command.print)(matches, self::program).map(|()| ExitCode::SUCCESS),
         }
     });
     done.unwrap_or_else(|failure| {

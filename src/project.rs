@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use clap::Command;
-use input::files::{LARGEST_INPUT, read_named};
+use input::files::{LARGEST_INPUT, read_text};
 use input::shipped::MEASUREMENTS;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -72,7 +72,7 @@ impl Project {
     fn read(folder: &Path) -> Result<Self, Failure> {
         let path = folder.join(PROJECT_FILE);
         let file = path.display().to_string();
-        let text = read_named(&path, LARGEST_INPUT)
+        let text = read_text(&path, LARGEST_INPUT)
             .map_err(|error| Failure::in_file(&file, format!("cannot read it: {error}")))?;
         let table: toml::Table = input::read(&text, &file).map_err(Failure::input)?;
         if let Some(key) = OF_STUDY.iter().find(|key| table.contains_key(**key)) {

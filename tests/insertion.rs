@@ -61,6 +61,20 @@ fn trial(rig: &EngineRig, finger: &Finger, offset_mm: f64) -> Trial {
     rig.grasp(finger).trial(offset_mm * MM)
 }
 
+/// Whole steps through the impacts on the rim hold the key in the grasp; it then turns on the rim and jams.
+#[test]
+fn a_round_key_that_meets_the_rim_at_speed_inserts_whatever_the_step() {
+    for step_s in [5e-4, 6.25e-5] {
+        let engine = Box::new(Direct { step_s, ..Direct::default() });
+        let task = task("ket8").rounded(0.3 * MM);
+        let rig = EngineRig::new(task, &robot("servo"), engine).unwrap();
+        for offset_mm in [1.6, 1.9, 2.2] {
+            let end = trial(&rig, &finger(1.67, 25.0), offset_mm).outcome;
+            assert_eq!(end, Outcome::Inserted, "{offset_mm} mm, {step_s} s");
+        }
+    }
+}
+
 #[test]
 fn all_measured_fingers_insert_at_each_nominal_start() {
     let measured = stiffness::parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap();

@@ -4,8 +4,8 @@ mod common;
 
 use ::study::StudyRecord;
 use ask_tell::{Grid, Optimizer, OptimizerKind, build};
+use common::Studies;
 use common::memory::{self, Memory};
-use common::{Studies, sealed};
 use finger_opt::command::parse;
 use finger_opt::commands::study;
 use finger_opt::studies::ask_tell::{AskTellStudy, Order, perform};
@@ -216,32 +216,4 @@ fn a_bound_is_said_and_shown_as_one() {
         bounds += usize::from(!cell("raced_draws").is_empty());
     }
     assert_eq!(bounds, raced(&studies, "s"));
-}
-
-#[test]
-fn a_study_from_before_there_were_races_goes_on_without() {
-    let studies = Studies::new();
-    let asked = ["--objective", "success-rate", "--uncertainty", &errors(&studies)];
-    studies.study("s", 8, &asked).succeeds();
-    let config = studies.read("s/study.toml");
-    studies.file("s/study.toml", config.replacen("race = true\n", "", 1));
-    studies.resume("s").fails(2, &["race"]);
-    fs::remove_file(studies.dir("s/journal.jsonl")).unwrap();
-    // Resumed, or asked for by the same command.
-    studies.resume("s").succeeds();
-    studies.study("s", 24, &asked).succeeds();
-    assert_eq!((raced(&studies, "s"), studies.journal("s").lines().count()), (0, 26));
-    // Nor did they say which draws failed.
-    let journal = studies.read("s/journal.jsonl");
-    let without = |line: &str| match line.split_once(",\"success_failed_draws\":[") {
-        Some((before, rest)) => format!("{before}{}\n", rest.split_once(']').unwrap().1),
-        None => format!("{line}\n"),
-    };
-    let old = sealed(&journal.lines().map(without).collect::<String>());
-    assert!(old.len() < journal.len());
-    studies.file("s/journal.jsonl", old);
-    assert_eq!(studies.resume("s").succeeds(), studies.study("s", 24, &asked).succeeds());
-    let wrong = studies.read("s/study.toml").replacen("\"success-rate\"", "\"robust-range\"", 1);
-    studies.file("s/study.toml", wrong.replacen("seed = 0", "race = true\nseed = 0", 1));
-    studies.resume("s").fails(2, &["study.toml", "race: needs"]);
 }

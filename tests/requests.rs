@@ -133,7 +133,7 @@ fn levers_begin_at_the_taught_window_and_keep_to_what_can_be() {
         let set = set.iter().map(|&(key, value)| (key.to_owned(), value)).collect();
         let finger = FingerRequest { set, ..middle() };
         let request = levers::Request { setup: usb(), finger, svg: None };
-        request.run(&silent()).ok().unwrap().levers
+        request.run(&silent()).ok().unwrap().value.levers
     };
     let named = |found: &Levers, name: &str| {
         found.levers.iter().find(|lever| lever.name == name).unwrap().clone()

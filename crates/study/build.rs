@@ -1,10 +1,10 @@
-//! Names the sources that decide numbers: results that other sources computed are not the program's own.
+//! Hashes the sources that determine results; results of other sources are not used.
 
 use sha2::{Digest, Sha256};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Sources that decide the evaluation of a design.
+/// Sources that determine the evaluation of a design.
 const SIMULATION: [&str; 11] = [
     "Cargo.lock",
     "crates/ask-tell/src/normal.rs",
@@ -18,9 +18,9 @@ const SIMULATION: [&str; 11] = [
     "crates/parameters",
     "data",
 ];
-/// Further sources that decide the course and the recommendation of a study.
+/// Further sources that determine the search and the recommendation of a study.
 const STUDY: [&str; 3] = ["crates/ask-tell", "crates/calibration", "crates/study"];
-/// The workspace, in which these paths lie.
+/// The workspace, to which these paths are relative.
 const WORKSPACE: &str = "../..";
 
 fn main() -> io::Result<()> {

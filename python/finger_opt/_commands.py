@@ -869,6 +869,8 @@ def tune_task(
     robot: RobotName | StrPath = "servo",
     engine: Engine = "direct",
     seed: int = 0,
+    max_force_n: float | None = None,
+    max_speed_mm_per_s: float | None = None,
     out: StrPath | None = None,
     dry_run: bool = False,
     svg: StrPath | None = None,
@@ -884,6 +886,9 @@ def tune_task(
         robot: see `optimize robots`, or the path of a robot file.
         engine: Contact engine.
         seed: Seed of the search.
+        max_force_n: Largest force between plug and socket, N [default: limits.force_n of the task, or the
+            robot's stop force].
+        max_speed_mm_per_s: Largest speed of a phase, mm/s [default: limits.speed_mm_per_s of the task].
         out: Write this new file instead of FILE.
         dry_run: Write no task file.
         svg: Draw the search before and after.
@@ -894,5 +899,6 @@ def tune_task(
         Interrupted: Ctrl-C.
     """
     return called("task tune", {
-        "file": task, "robot": robot, "engine": engine, "seed": seed, "out": out, "dry_run": dry_run, "svg": svg,
+        "file": task, "robot": robot, "engine": engine, "seed": seed, "max_force_n": max_force_n,
+        "max_speed_mm_per_s": max_speed_mm_per_s, "out": out, "dry_run": dry_run, "svg": svg,
     }, Tuned)

@@ -11,17 +11,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
-/// How often a long call looks for Ctrl-C.
+/// Interval at which a long call checks for Ctrl-C.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// Runs `work`, which may use the threads that all share, without the interpreter's lock.
+/// Runs `work`, which may use the shared threads, without the interpreter's lock.
 pub fn released<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     not_forked()?;
     Ok(py.allow_threads(work))
 }
 
-/// The same for what takes long: Ctrl-C sets the flag that `work` is given, and is raised when
-/// `work` has ended.
+/// Runs long `work` without the interpreter's lock: Ctrl-C sets its flag and is raised once it has ended.
 pub fn interruptible<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(&AtomicBool) -> T + Send,
@@ -31,8 +30,8 @@ pub fn interruptible<T: Send>(
     watched(py, &stop, || work(&stop))
 }
 
-/// Runs `work`, which shares no threads, without the interpreter's lock. Ctrl-C sets `stop`, and is
-/// raised when `work` has ended.
+/// Runs `work`, which does not use the shared threads, without the interpreter's lock. Ctrl-C sets `stop` and is
+/// raised once `work` has ended.
 pub fn watched<T: Send>(
     py: Python<'_>,
     stop: &AtomicBool,
@@ -66,7 +65,7 @@ pub fn read(keywords: &str) -> PyResult<Map<String, Value>> {
     serde_json::from_str(keywords).map_err(|error| InputError::new_err(error.to_string()))
 }
 
-/// Runs a command by its name, `task new`, with its options as an object of JSON; gives its result as JSON, and
+/// Runs a command by its name, `task new`, with its options as a JSON object; returns its result as JSON, and
 /// a picture or a page of it, if there is one.
 #[pyfunction]
 pub fn call(py: Python<'_>, command: &str, keywords: &str) -> PyResult<(String, Option<String>)> {

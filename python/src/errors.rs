@@ -52,13 +52,13 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     Ok(())
 }
 
-/// The process that has the threads which all simulations share; 0 before there are any.
+/// Process of the threads that all simulations share; 0 before they exist.
 static PROCESS: AtomicU32 = AtomicU32::new(0);
 
-/// Whether the threads of the library are those of this process.
+/// Checks that the threads of the library belong to this process.
 ///
 /// # Errors
-/// If they were left behind by a fork: this process would wait for them for ever.
+/// After a fork, which does not copy threads: this process would wait for them forever.
 pub fn not_forked() -> PyResult<()> {
     let own = std::process::id();
     match PROCESS.compare_exchange(0, own, Ordering::SeqCst, Ordering::SeqCst) {
@@ -70,7 +70,7 @@ pub fn not_forked() -> PyResult<()> {
     }
 }
 
-/// The exception of a failure.
+/// Returns the exception of a failure.
 pub fn raise(failure: Failure) -> PyErr {
     let (text, place) = (failure.to_string(), failure.place());
     placed(
@@ -84,7 +84,7 @@ pub fn raise(failure: Failure) -> PyErr {
     )
 }
 
-/// An exception that says where.
+/// Returns an exception with a place.
 pub fn placed(place: Place, error: PyErr) -> PyErr {
     let Place { file, line, key } = place;
     let set = Python::with_gil(|py| {
@@ -93,7 +93,7 @@ pub fn placed(place: Place, error: PyErr) -> PyErr {
         line.map_or(Ok(()), |line| value.setattr("line", line))?;
         key.map_or(Ok(()), |key| value.setattr("key", key))
     });
-    // Its text says the same.
+    // The text includes the place as well.
     set.map_or_else(|other| other, |()| error)
 }
 

@@ -1,4 +1,4 @@
-//! A trial that Python drives.
+//! Trial driven from Python.
 
 use crate::call::{interruptible, read};
 use crate::errors::{InputError, placed, raise};
@@ -10,11 +10,11 @@ use insertion::trial::State;
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// A grasped part in front of its socket.
+/// Grasped part in front of its socket.
 #[pyclass(frozen)]
 pub struct Insertion(Mutex<driven::Insertion>);
 
-/// The numbers of a state in the order of its fields, how it ended, and the failure class.
+/// Numbers of a state in the order of its fields, the outcome, and the failure class.
 type Stand = (Vec<f64>, Option<&'static str>, Option<u8>);
 
 impl Insertion {
@@ -25,7 +25,7 @@ impl Insertion {
 
 #[pymethods]
 impl Insertion {
-    /// Of the task and the finger of an evaluation.
+    /// Returns an insertion with the task and the finger of an evaluation.
     #[new]
     fn new(py: Python<'_>, keywords: &str) -> PyResult<Self> {
         let keywords = read(keywords)?;
@@ -36,13 +36,13 @@ impl Insertion {
         Ok(Insertion(Mutex::new(made.map_err(raise)?)))
     }
 
-    /// Begins anew.
+    /// Restarts with the start shifted along y, mm.
     fn start(&self, py: Python<'_>, offset_mm: f64) -> PyResult<Stand> {
         finite("offset_mm", &[offset_mm])?;
         Ok(stand(&py.allow_threads(|| self.open().start(offset_mm))))
     }
 
-    /// A control step.
+    /// Runs a control step.
     fn step(&self, py: Python<'_>, velocity_mm_per_s: [f64; 3]) -> PyResult<Stand> {
         finite("velocity", &velocity_mm_per_s)?;
         Ok(stand(&py.allow_threads(|| self.open().step(velocity_mm_per_s))))

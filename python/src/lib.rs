@@ -1,5 +1,4 @@
-//! `finger_opt._native`: what the Python package calls. Keywords and results are JSON; the package in
-//! `finger_opt/` gives both their Python shape.
+//! `finger_opt._native`: native functions of the Python package in `finger_opt/`. Keywords and results are JSON.
 #![forbid(unsafe_code)]
 
 mod call;
@@ -16,14 +15,14 @@ use pyo3::prelude::*;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-/// Runs `optimize` with these arguments, the program's name first; gives the exit code.
+/// Runs `optimize` with these arguments, the program's name first; returns the exit code.
 #[pyfunction]
 fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     let code = py.allow_threads(|| program::main(arguments));
     u8::from(code != ExitCode::SUCCESS) * if code == ExitCode::from(2) { 2 } else { 1 }
 }
 
-/// The commands of `optimize` with their options, as JSON.
+/// Returns the commands of `optimize` with their options as JSON.
 #[pyfunction]
 fn commands() -> String {
     serde_json::json!(manual::commands(program::program())).to_string()

@@ -1,4 +1,4 @@
-//! Studies: read from their folders, and run by whoever measures.
+//! Studies: records, and studies whose designs Python measures.
 
 use crate::call::{interruptible, read, released, watched};
 use crate::errors::{InputError, Refused, StudyError, raise};
@@ -23,7 +23,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Ends what a run still performs in this process.
+/// Cancellation of the work in this process.
 #[pyclass(frozen)]
 pub struct Stop(pub AtomicBool);
 
@@ -39,7 +39,7 @@ impl Stop {
     }
 }
 
-/// The unit of work: bytes in, bytes out; ends early once `stop` is set.
+/// Performs a unit of work, bytes in, bytes out; ends early once `stop` is set.
 #[pyfunction]
 pub fn perform<'py>(
     py: Python<'py>,
@@ -49,7 +49,7 @@ pub fn perform<'py>(
 ) -> PyResult<Bound<'py, PyBytes>> {
     let work = work.to_vec();
     let done = watched(py, &stop.0, || ask_tell::perform(&work, worker, &stop.0))?;
-    // Ended by `stop`: nobody pressed Ctrl-C here.
+    // Cancelled by `stop`, not by Ctrl-C.
     let failed = |failure| match failure {
         Failure::Interrupted(_) => StudyError::new_err(failure.to_string()),
         failure => raise(failure),
@@ -57,13 +57,13 @@ pub fn perform<'py>(
     Ok(PyBytes::new(py, &done.map_err(failed)?))
 }
 
-/// SHA-256 of the sources of this build.
+/// Returns the SHA-256 of the sources of this build.
 #[pyfunction]
 pub fn source_sha256() -> &'static str {
     SOURCES
 }
 
-/// A study that is asked for, and what is shown of it.
+/// Request of a study, and the form of its output.
 #[pyclass(frozen)]
 pub struct Asked {
     study: AnyStudy,
@@ -72,7 +72,7 @@ pub struct Asked {
     shown: Shown,
 }
 
-/// How the result of a study is printed.
+/// Form of the output of a study.
 #[derive(Clone, Copy, Default)]
 struct Shown {
     json: bool,
@@ -101,7 +101,7 @@ impl Asked {
         Ok(Asked::of(AnyStudy::Resumed(resume::Request { dir: folder, run, verbose: false })))
     }
 
-    /// The study of these words of the command line.
+    /// Parses words of the command line.
     #[staticmethod]
     fn in_words(words: Vec<OsString>) -> PyResult<Self> {
         let has = |flag: &str| words.iter().any(|word| word == flag);
@@ -117,24 +117,24 @@ impl Asked {
         Ok(Asked { study, executor, quiet, shown })
     }
 
-    /// Where it is measured.
+    /// Executor.
     #[getter]
     fn executor(&self) -> Option<&str> {
         self.executor.as_deref()
     }
 
-    /// Whether no progress is shown.
+    /// Whether progress is hidden.
     #[getter]
     fn quiet(&self) -> bool {
         self.quiet
     }
 
-    /// Its folder, with all checked that is asked for.
+    /// Checks the request and returns the folder.
     fn folder(&self, py: Python<'_>) -> PyResult<PathBuf> {
         released(py, || self.study.folder())?.map_err(raise)
     }
 
-    /// Begins it or goes on with it.
+    /// Starts or continues the study.
     fn open(&self, py: Python<'_>, workers: Option<u64>) -> PyResult<Guided> {
         let open = || {
             let open = self.study.open(workers)?;
@@ -146,7 +146,7 @@ impl Asked {
     }
 }
 
-/// A study as its folder holds it now.
+/// Record of a study in its folder.
 #[pyclass(frozen)]
 pub struct Recorded {
     folder: PathBuf,
@@ -162,12 +162,12 @@ impl Recorded {
         Ok(Recorded { folder, record })
     }
 
-    /// Configuration asked for, as `study.toml` has it, as JSON.
+    /// Returns the configuration of `study.toml` as JSON.
     fn config(&self) -> String {
         json!(self.record.config).to_string()
     }
 
-    /// How many evaluations its journal holds.
+    /// Returns the number of evaluations in its journal.
     fn length(&self) -> usize {
         self.record.evaluations.len()
     }
@@ -184,26 +184,26 @@ impl Recorded {
         recommended::advice(&Answer::of(&self.record), &self.folder).to_string()
     }
 
-    /// The text of `evaluations.csv`.
+    /// Returns the text of `evaluations.csv`.
     fn table(&self) -> PyResult<String> {
         evaluations_csv(&self.folder, &self.record).map_err(|error| raise(error.into()))
     }
 
-    /// The answer as a piece of HTML.
+    /// Returns the answer as an HTML fragment.
     fn card(&self) -> String {
         report::card(&Answer::of(&self.record), &self.folder)
     }
 }
 
-/// A study that is open and whose measuring the caller does.
+/// Open study whose designs the caller measures.
 #[pyclass(frozen)]
 pub struct Guided {
     open: Mutex<Option<AskTellStudy>>,
-    /// Whether its result is printed as JSON.
+    /// Form of its output.
     shown: Shown,
 }
 
-/// Work to be measured (none: wait for a result), and how the study ended, if it did.
+/// Work to be measured, empty if a result is pending, and the ending, if there is one.
 type Next<'py> = (Vec<(u64, Bound<'py, PyBytes>)>, Option<String>);
 
 impl Guided {
@@ -211,7 +211,7 @@ impl Guided {
         self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Does something with the study, without the interpreter's lock.
+    /// Calls `what` with the study, without the interpreter's lock.
     fn with<T: Send>(
         &self,
         py: Python<'_>,
@@ -262,7 +262,7 @@ impl Guided {
         self.with(py, |study| study.threads())
     }
 
-    /// Output of the command at the end, and why it fails all the same, if so.
+    /// Returns the output of the command, and the reason for which the study has no result, if there is one.
     fn finish(&self, py: Python<'_>, ending: &str) -> PyResult<(String, Option<String>)> {
         let ending = serde_json::from_value(json!(ending));
         let ending = ending.map_err(|error| InputError::new_err(format!("ending: {error}")))?;
@@ -282,7 +282,7 @@ impl Guided {
         Ok((text, unusable))
     }
 
-    /// Lets other processes open the study.
+    /// Closes the study, so that other processes can open it.
     fn close(&self, py: Python<'_>) {
         py.allow_threads(|| *self.study() = None);
     }

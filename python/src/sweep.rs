@@ -1,4 +1,4 @@
-//! Windows of many fingers, as columns.
+//! Windows of many fingers as columns.
 
 use crate::call::{read, released, watched};
 use crate::errors::{InputError, not_forked, raise};
@@ -15,10 +15,10 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
-/// The columns that are no numbers.
+/// Columns of text.
 const WORDS: [&str; 6] = ["task", "robot", "cell", "finger_model", "rcc_from", "nominal"];
 
-/// How windows are measured.
+/// Settings of the measurement.
 #[derive(clap::Args)]
 struct Windows {
     #[command(flatten)]
@@ -29,11 +29,11 @@ struct Windows {
     run: RunRequest,
 }
 
-/// Measures fingers on a task, as many at a time as it is given.
+/// Evaluator of many fingers on a task.
 #[pyclass(frozen)]
 pub struct Sweep(sweep::Sweep);
 
-/// Numbers, little-endian float64 with NaN for none, and words, by their columns.
+/// Columns of numbers (little-endian float64, NaN for missing ones) and of text.
 type Columns<'py> = (Bound<'py, PyDict>, BTreeMap<&'static str, Vec<Option<String>>>);
 
 #[pymethods]
@@ -48,14 +48,14 @@ impl Sweep {
         Ok(Sweep(sweep.map_err(raise)?))
     }
 
-    /// How many windows were in the cache.
+    /// Number of windows that were in the cache.
     #[getter]
     fn known(&self) -> u64 {
         self.0.known()
     }
 
-    /// The windows of fingers, each of a row of these columns: `density`, `direction`, numbers of task
-    /// and finger by their keys. Ends early once `stop` is set.
+    /// Measures the fingers of the rows of these columns: `density`, `direction`, numbers of task and finger by their
+    /// keys. Ends early once `stop` is set.
     #[pyo3(signature = (columns, stop=None))]
     fn measure<'py>(
         &self,
@@ -79,7 +79,7 @@ impl Sweep {
         for name in names.into_iter().filter(|name| !WORDS.contains(&name.as_str())) {
             let number = |row: &BTreeMap<String, Value>| match row.get(name) {
                 Some(Value::Bool(flag)) => f64::from(u8::from(*flag)),
-                // A simulation that diverged, as in a capture map.
+                // Diverged, as in a capture map.
                 Some(Value::String(_)) => -1.0,
                 value => value.and_then(Value::as_f64).unwrap_or(f64::NAN),
             };
@@ -92,7 +92,7 @@ impl Sweep {
     }
 }
 
-/// The fingers of the rows.
+/// Returns the fingers of the rows.
 fn fingers(columns: &BTreeMap<String, Vec<f64>>) -> PyResult<Vec<FingerRequest>> {
     let rows = columns.values().next().map_or(0, Vec::len);
     let mut fingers = vec![FingerRequest::default(); rows];
@@ -114,7 +114,7 @@ fn fingers(columns: &BTreeMap<String, Vec<f64>>) -> PyResult<Vec<FingerRequest>>
     Ok(fingers)
 }
 
-/// The fields of an object, those of objects within by their own names; of a list numbered from 1.
+/// Returns the fields of an object; nested objects are merged, and the items of lists are numbered from 1.
 fn flat(fields: Value) -> BTreeMap<String, Value> {
     let mut found = BTreeMap::new();
     let Value::Object(fields) = fields else { return found };

@@ -1,6 +1,6 @@
 //! `optimize calibrate`: predicts every finger on the bench.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::progress::cost;
@@ -10,8 +10,7 @@ use calibration::bench::Settings;
 use calibration::calibrate::Calibration;
 use calibration::subject::Subject;
 use calibration::table::{self, CalibrationOutput};
-use serde::{Serialize, Serializer};
-use std::fmt;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use study::write_file;
 
@@ -37,21 +36,12 @@ pub struct Request {
     pub out: Option<PathBuf>,
 }
 
-/// Predictions for every finger of the tasks.
-pub struct Calibrated {
-    /// The tasks' fingers, in order.
-    subjects: Vec<Subject>,
-    /// Predictions for them.
-    found: Calibration,
-    /// Folder of the tables.
-    out: Option<PathBuf>,
-}
-
 impl command::Request for Request {
-    type Response = Calibrated;
+    /// Predictions for every finger of the tasks: [`CalibrationOutput`].
+    type Response = Output<Value>;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Calibrated, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
         let simulations = self.bench.setup.tasks.len().max(1) * self.how.simulations();
         context.begin(simulations as f64 * cost::SIMULATION);
         let source = measured::file(&self.bench.measurements)?;
@@ -60,40 +50,25 @@ impl command::Request for Request {
         let done = |[done, of]: [usize; 2]| context.part(&folds(done, of));
         let found = Calibration::new(layout, &subjects, &Settings { done: &done, ..settings });
         context.check()?;
-        let calibrated = Calibrated { subjects, found, out: self.out.clone() };
-        self.out.as_deref().map_or(Ok(()), |out| calibrated.write(out))?;
-        Ok(calibrated)
-    }
-}
-
-impl Calibrated {
-    fn write(&self, out: &Path) -> Result<(), Failure> {
-        let Calibrated { subjects, found, .. } = self;
-        for (subject, result) in subjects.iter().zip(&found.tasks) {
-            let name = format!("predictions_{}.csv", subject.task);
-            write_file(&out.join(name), &table::predictions_csv(subject, result))?;
-        }
-        write_file(&out.join("leave_one_out.csv"), &table::left_out_csv(found, subjects))?;
-        Ok(write_file(&out.join("parameters.csv"), &table::parameters_csv(found))?)
-    }
-}
-
-impl Serialize for Calibrated {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        CalibrationOutput::new(&self.found, &self.subjects).serialize(serializer)
-    }
-}
-
-impl command::Response for Calibrated {}
-
-impl fmt::Display for Calibrated {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Calibrated { subjects, found, out } = self;
         let tasks = subjects.iter().zip(&found.tasks);
         let mut text: Vec<String> =
             tasks.map(|(subject, result)| report::calibrate::text(subject, result)).collect();
-        text.push(report::calibrate::parameters_text(found));
-        text.extend(out.iter().map(|out| format!("tables are in {}\n", out.display())));
-        f.write_str(&text.join("\n"))
+        text.push(report::calibrate::parameters_text(&found));
+        if let Some(out) = &self.out {
+            write(out, &subjects, &found)?;
+            text.push(format!("tables are in {}\n", out.display()));
+        }
+        let value = json!(CalibrationOutput::new(&found, &subjects));
+        Ok(Output { value, text: text.join("\n"), picture: None })
     }
+}
+
+/// Writes the tables into a folder.
+fn write(out: &Path, subjects: &[Subject], found: &Calibration) -> Result<(), Failure> {
+    for (subject, result) in subjects.iter().zip(&found.tasks) {
+        let name = format!("predictions_{}.csv", subject.task);
+        write_file(&out.join(name), &table::predictions_csv(subject, result))?;
+    }
+    write_file(&out.join("leave_one_out.csv"), &table::left_out_csv(found, subjects))?;
+    Ok(write_file(&out.join("parameters.csv"), &table::parameters_csv(found))?)
 }

@@ -1,12 +1,9 @@
 //! `optimize compare`: studies of the same problem side by side.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
-use report::compare::{Comparison, TOLERANCE_MM, compare, page, svg};
-use report::text_table;
-use serde::Serialize;
-use std::fmt;
+use report::compare::{Comparison, compare, page, svg, text};
 use std::path::PathBuf;
 use study::{StudyRecord, write_file};
 
@@ -28,52 +25,18 @@ pub struct Request {
     pub html: Option<PathBuf>,
 }
 
-/// Studies side by side.
-#[derive(Serialize)]
-#[serde(transparent)]
-pub struct Compared(Comparison);
-
 impl command::Request for Request {
-    type Response = Compared;
+    /// Studies side by side.
+    type Response = Output<Comparison>;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Compared, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
         let load = |dir: &PathBuf| Ok((dir.display().to_string(), StudyRecord::load(dir)?));
         let studies = self.dirs.iter().map(load).collect::<Result<Vec<_>, Failure>>()?;
         let comparison = compare(&studies).map_err(Failure::usage)?;
-        if let Some(file) = &self.svg {
-            write_file(file, &svg(&comparison)?)?;
-        }
         if let Some(file) = &self.html {
             write_file(file, &page(&comparison)?)?;
         }
-        Ok(Compared(comparison))
-    }
-}
-
-impl command::Response for Compared {
-    fn picture(&self) -> Result<Option<String>, Failure> {
-        Ok(Some(svg(&self.0)?))
-    }
-}
-
-impl fmt::Display for Compared {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Compared(comparison) = self;
-        let best = comparison.best_known_mm;
-        let rows = comparison.groups.iter().map(|group| {
-            let number = |n: Option<f64>| n.map_or("-".to_owned(), |n| format!("{n:.1}"));
-            let [low, median, high] = group.evaluations_to_target.all().map(number);
-            let (batch, studies) = (group.batch.to_string(), group.studies.to_string());
-            [group.optimizer.clone(), batch, studies, group.reached.to_string(), low, median, high]
-        });
-        let head = ["optimizer", "batch", "studies", "reached", "25 %", "median", "75 %"];
-        write!(
-            f,
-            "{}, {}: best known {best:.1} mm\nevaluations to {:.1} mm ({TOLERANCE_MM} mm below the best known)\n\n{}",
-            comparison.task,
-            comparison.objective,
-            comparison.target_mm,
-            text_table(1, head, rows)
-        )
+        let (text, picture) = (text(&comparison), svg(&comparison)?);
+        Output::drawn((comparison, text), picture, self.svg.as_ref())
     }
 }

@@ -20,6 +20,6 @@ impl command::Request for Request {
     fn run(&self, context: &Context<'_>) -> Result<Text, Failure> {
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut context.program()?, "optimize", &mut script);
-        Ok(Text(String::from_utf8_lossy(&script).into_owned()))
+        Ok(String::from_utf8_lossy(&script).into_owned().into())
     }
 }

@@ -1,13 +1,12 @@
 //! `optimize config`: prints the settings that hold in this folder.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout::lines;
 use crate::project::{PROJECT_FILE, Project, Settings};
 use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE};
 use serde::Serialize;
-use std::fmt;
 
 /// Print the settings of finger-opt.toml in this folder or above
 ///
@@ -27,23 +26,21 @@ pub struct Held {
 }
 
 impl command::Request for Request {
-    type Response = Held;
+    type Response = Output<Held>;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Held, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
         let found = Project::current()?;
         let (file, settings) = found.map(|found| (found.file, found.settings)).unzip();
-        Ok(Held { file, settings: settings.unwrap_or_default() })
+        let value = Held { file, settings: settings.unwrap_or_default() };
+        Ok(Output { text: value.text(), value, picture: None })
     }
 }
 
-impl command::Response for Held {}
-
-impl fmt::Display for Held {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Held {
+    fn text(&self) -> String {
         let Settings { task, robot, cell, measurements, space, threads } = self.settings.clone();
         let none = format!("no {PROJECT_FILE} in this folder or above");
-        let file = self.file.clone();
-        let from = file.clone().unwrap_or_default();
+        let from = self.file.as_deref().unwrap_or_default();
         let threads = threads.map(|count| count.to_string());
         let held = [
             ("task", task, "none"),
@@ -55,12 +52,12 @@ impl fmt::Display for Held {
         ];
         let held = held.into_iter().map(|(key, set, default)| {
             let (value, origin) = match &set {
-                Some(value) => (value.as_str(), from.as_str()),
+                Some(value) => (value.as_str(), from),
                 None => (default, "default"),
             };
             (key.to_owned(), format!("{value:<24} ({origin})"))
         });
-        let first = ("file".to_owned(), file.unwrap_or(none));
-        f.write_str(&lines(std::iter::once(first).chain(held)))
+        let first = ("file".to_owned(), self.file.clone().unwrap_or(none));
+        lines(std::iter::once(first).chain(held))
     }
 }

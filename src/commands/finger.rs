@@ -1,6 +1,6 @@
 //! `optimize finger`: computes the stiffness of a finger from its ribs.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::setup::files::DEFAULT_FINGER;
@@ -17,10 +17,8 @@ use insertion::surrogate::Prediction;
 use nalgebra::Matrix3;
 use report::answer::lines;
 use report::text_table;
-use serde::{Serialize, Serializer};
-use std::fmt;
+use serde::Serialize;
 use std::path::PathBuf;
-use study::write_file;
 
 /// Largest drawn force on the pad, N, since displacements are linear.
 const LARGEST_LOAD_N: f64 = 1000.0;
@@ -70,19 +68,34 @@ fn load(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
-/// Geometry of a finger, its computed stiffness, and the prediction of the stiffness model.
+/// Finger with its computed stiffness, and the prediction of the stiffness model.
+#[derive(Serialize)]
 pub struct Ribs {
-    geometry: Geometry,
-    computed: FingerStiffness,
+    finger: String,
+    infill_density_percent: f64,
+    infill_direction_deg: f64,
+    phase_mm: f64,
+    area_mm2: f64,
+    mass_g: f64,
     /// `None` if the stiffness model does not cover this infill, or if `set` changes the shape.
-    measured: Option<Prediction>,
-    load_n: [f64; 2],
+    measured_model: Option<Prediction>,
+    pad: Planar,
+    pad_and_roof: Planar,
+    across: Across,
+}
+
+/// Stiffness out of the plane.
+#[derive(Serialize)]
+struct Across {
+    depth_n_per_mm: f64,
+    about_y_nm_per_rad: f64,
+    about_z_nm_per_rad: f64,
 }
 
 impl command::Request for Request {
-    type Response = Ribs;
+    type Response = Output<Ribs>;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Ribs, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
         if let Some((key, _)) = self.set.iter().find(|(key, _)| !is_shape(key)) {
             return Err(Failure::usage(format!(
                 "--set {key}: must be a number of the finger file, for example finger.skin.thickness_mm"
@@ -97,76 +110,14 @@ impl command::Request for Request {
         let computed = mechanics::compute(&geometry).map_err(Failure::input)?;
         let mut design = Design::infill(density, direction);
         design.0.extend(set.0);
-        let measured = measured_model(&file.finger, &design)?;
-        let ribs = Ribs { geometry, computed, measured, load_n: self.load_n };
-        if let Some(file) = &self.svg {
-            write_file(file, &ribs.svg()?)?;
-        }
-        Ok(ribs)
+        let ribs = Ribs::new(&geometry, &computed, measured_model(&file.finger, &design)?);
+        let svg = picture::svg(&geometry, self.load_n).map_err(Failure::input)?;
+        let text = ribs.text(&geometry);
+        Output::drawn((ribs, text), svg, self.svg.as_ref())
     }
 }
 
-impl Ribs {
-    fn svg(&self) -> Result<String, Failure> {
-        picture::svg(&self.geometry, self.load_n).map_err(Failure::input)
-    }
-
-    /// Position of the first rib, mm.
-    fn phase_mm(&self) -> f64 {
-        self.geometry.design.phase_mm.unwrap_or(self.geometry.finger.ribs.phase / MM)
-    }
-}
-
-impl command::Response for Ribs {
-    fn picture(&self) -> Result<Option<String>, Failure> {
-        self.svg().map(Some)
-    }
-}
-
-impl Serialize for Ribs {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Across {
-            depth_n_per_mm: f64,
-            about_y_nm_per_rad: f64,
-            about_z_nm_per_rad: f64,
-        }
-        #[derive(Serialize)]
-        struct Fields<'a> {
-            finger: &'a str,
-            infill_density_percent: f64,
-            infill_direction_deg: f64,
-            phase_mm: f64,
-            area_mm2: f64,
-            mass_g: f64,
-            measured_model: &'a Option<Prediction>,
-            pad: Planar,
-            pad_and_roof: Planar,
-            across: Across,
-        }
-        let Ribs { geometry, computed, measured, .. } = self;
-        let (design, cross) = (&geometry.design, &computed.cross);
-        let fields = Fields {
-            finger: &geometry.finger.name,
-            infill_density_percent: design.density_percent,
-            infill_direction_deg: design.direction_deg,
-            phase_mm: self.phase_mm(),
-            area_mm2: geometry.area() / (MM * MM),
-            mass_g: geometry.mass() / GRAM,
-            measured_model: measured,
-            pad: (&computed.pad).into(),
-            pad_and_roof: (&computed.pad_and_roof).into(),
-            across: Across {
-                depth_n_per_mm: cross.in_depth / N_PER_MM,
-                about_y_nm_per_rad: cross.about_y,
-                about_z_nm_per_rad: cross.about_z,
-            },
-        };
-        fields.serialize(serializer)
-    }
-}
-
-/// In-plane stiffness of a finger, as in the output of `--json`.
+/// In-plane stiffness of a finger.
 #[derive(Serialize)]
 struct Planar {
     compliance_n_per_mm: f64,
@@ -193,39 +144,54 @@ impl From<&PlanarStiffness> for Planar {
     }
 }
 
-impl fmt::Display for Ribs {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Ribs { geometry, computed, measured, .. } = self;
-        let (finger, design) = (&geometry.finger, &geometry.design);
-        let phase_mm = self.phase_mm();
-        let (area_mm2, mass_g) = (geometry.area() / (MM * MM), geometry.mass() / GRAM);
-        let (depth, cross) = (computed.cross.in_depth / N_PER_MM, &computed.cross);
-        let model = measured.as_ref().map(|prediction| lines::stiffness(prediction)[0].1.clone());
+impl Ribs {
+    fn new(geometry: &Geometry, computed: &FingerStiffness, model: Option<Prediction>) -> Self {
+        let (design, cross) = (&geometry.design, &computed.cross);
+        Ribs {
+            finger: geometry.finger.name.clone(),
+            infill_density_percent: design.density_percent,
+            infill_direction_deg: design.direction_deg,
+            phase_mm: design.phase_mm.unwrap_or(geometry.finger.ribs.phase / MM),
+            area_mm2: geometry.area() / (MM * MM),
+            mass_g: geometry.mass() / GRAM,
+            measured_model: model,
+            pad: (&computed.pad).into(),
+            pad_and_roof: (&computed.pad_and_roof).into(),
+            across: Across {
+                depth_n_per_mm: cross.in_depth / N_PER_MM,
+                about_y_nm_per_rad: cross.about_y,
+                about_z_nm_per_rad: cross.about_z,
+            },
+        }
+    }
+
+    fn text(&self, geometry: &Geometry) -> String {
+        let Ribs { finger, infill_density_percent, infill_direction_deg, phase_mm, .. } = self;
+        let material = &geometry.finger.material;
+        let model = self.measured_model.as_ref();
+        let model = model.map(|prediction| lines::stiffness(prediction)[0].1.clone());
         let model = model.unwrap_or_else(|| "not covered by the measured model".to_owned());
-        let rows = [("pad", &computed.pad), ("pad and roof", &computed.pad_and_roof)]
-            .map(|(name, found)| planar_row(name, found));
-        write!(
-            f,
-            "finger        {}, {} %, {}°, first rib at {phase_mm} mm\n\
+        let rows = [self.pad.row("pad"), self.pad_and_roof.row("pad and roof")];
+        let Across { depth_n_per_mm, about_y_nm_per_rad, about_z_nm_per_rad } = self.across;
+        format!(
+            "finger        {finger}, {infill_density_percent} %, {infill_direction_deg}°, first rib at {phase_mm} mm\n\
              material      {}, {} GPa ({})\n\
-             area, mass    {area_mm2:.1} mm2, {mass_g:.2} g\n\
+             area, mass    {:.1} mm2, {:.2} g\n\
              stiffness     {model}\n\n\
              from the ribs\n{}\n\
-             across        {depth:.1} N/mm in x, {:.2} Nm/rad about y, {:.2} about z\n",
-            finger.name,
-            design.density_percent,
-            design.direction_deg,
-            finger.material.name,
-            finger.material.modulus / 1e9,
-            finger.material.source,
+             across        {depth_n_per_mm:.1} N/mm in x, {about_y_nm_per_rad:.2} Nm/rad about y, \
+             {about_z_nm_per_rad:.2} about z\n",
+            material.name,
+            material.modulus / 1e9,
+            material.source,
+            self.area_mm2,
+            self.mass_g,
             text_table(1, PLANAR, rows),
-            cross.about_y,
-            cross.about_z,
         )
     }
 }
 
-/// Column headings for [`planar_row`].
+/// Column headings for [`Planar::row`].
 const PLANAR: [&str; 7] = [
     "contact\nat",
     "compliance\nN/mm",
@@ -236,16 +202,18 @@ const PLANAR: [&str; 7] = [
     "coupling\ny-z",
 ];
 
-fn planar_row(name: &str, found: &PlanarStiffness) -> [String; 7] {
-    [
-        name.to_owned(),
-        format!("{:.2}", found.in_compliance() / N_PER_MM),
-        format!("{:.1}", found.in_assembly() / N_PER_MM),
-        format!("{:.2}", found.tilting()),
-        format!("{:.1}", found.centre_below_pad() / MM),
-        format!("{:.1}", found.centre_in_front() / MM),
-        format!("{:.2}", found.coupling_yz()),
-    ]
+impl Planar {
+    fn row(&self, name: &str) -> [String; 7] {
+        [
+            name.to_owned(),
+            format!("{:.2}", self.compliance_n_per_mm),
+            format!("{:.1}", self.assembly_n_per_mm),
+            format!("{:.2}", self.tilting_nm_per_rad),
+            format!("{:.1}", self.centre_below_pad_mm),
+            format!("{:.1}", self.centre_from_pad_mm),
+            format!("{:.2}", self.coupling_yz),
+        ]
+    }
 }
 
 /// Converts N/m, N/rad and N m/rad to N/mm, N and N mm.

@@ -81,7 +81,7 @@ impl command::Request for Request {
         setup.evaluator.check_paths(&priors, &source.file).map_err(Failure::input)?;
         let frame = self.frame.as_deref().map(|path| -> Result<Frame, Failure> {
             let file = path.to_string_lossy();
-            let text = files::read_named(path, LARGEST_INPUT);
+            let text = files::read_text(path, LARGEST_INPUT);
             let text = text.map_err(|error| Failure::in_file(&file, error))?;
             Frame::parse(&text, &file).map_err(Failure::input)
         });

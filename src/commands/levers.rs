@@ -1,6 +1,6 @@
 //! `optimize levers`: one-at-a-time sensitivity of the range.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout;
@@ -13,10 +13,8 @@ use insertion::space::Design;
 use insertion::surrogate::Prediction;
 use report::levers as shown;
 use serde::Serialize;
-use std::fmt;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
-use study::write_file;
 
 /// Compare the infill with other ways to widen the window: tilt, strokes, grip, friction, robot
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -46,33 +44,20 @@ pub struct Found {
 }
 
 impl command::Request for Request {
-    type Response = Found;
+    type Response = Output<Found>;
     const PROGRESS: bool = true;
 
     /// Measures the levers, and the softest and the stiffest infill of the space for comparison.
-    fn run(&self, context: &Context<'_>) -> Result<Found, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
         let _busy = context.busy("measuring the levers");
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
         let given = chosen.given.then_some(chosen.specimen.stiffness);
         let finger = (&chosen.design, given);
         let levers = levers(&setup, setup.only_task()?, finger, None, context.stop)?;
-        if let Some(path) = &self.svg {
-            write_file(path, &shown::svg(&levers)?)?;
-        }
-        Ok(Found { sentence: levers.sentence(), levers })
-    }
-}
-
-impl command::Response for Found {
-    fn picture(&self) -> Result<Option<String>, Failure> {
-        Ok(Some(shown::svg(&self.levers)?))
-    }
-}
-
-impl fmt::Display for Found {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&layout::wrapped(&shown::text(&self.levers)))
+        let (svg, text) = (shown::svg(&levers)?, layout::wrapped(&shown::text(&levers)));
+        let value = Found { sentence: levers.sentence(), levers };
+        Output::drawn((value, text), svg, self.svg.as_ref())
     }
 }
 

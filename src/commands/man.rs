@@ -34,17 +34,17 @@ impl command::Request for Request {
         let program = context.program()?;
         match self.format {
             Format::Man => {}
-            Format::Markdown => return Ok(Text(manual::reference(program))),
+            Format::Markdown => return Ok(manual::reference(program).into()),
             Format::Json => {
                 let commands = serde_json::to_string(&manual::commands(program));
                 let commands = commands.map_err(|error| Failure::Run(error.into()))?;
-                return Ok(Text(commands + "\n"));
+                return Ok((commands + "\n").into());
             }
         }
         let mut page = Vec::new();
         clap_mangen::Man::new(program)
             .render(&mut page)
             .map_err(|error| Failure::running(format!("cannot write the manual page: {error}")))?;
-        Ok(Text(String::from_utf8_lossy(&page).into_owned()))
+        Ok(String::from_utf8_lossy(&page).into_owned().into())
     }
 }

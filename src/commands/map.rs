@@ -1,6 +1,6 @@
 //! `optimize map`: how insertions end over two errors of the start.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout;
@@ -13,10 +13,8 @@ use insertion::evaluation::evaluator::Specimen;
 use insertion::space::Design;
 use insertion::trial::Grasp;
 use serde::Serialize;
-use std::fmt;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
-use study::write_file;
 
 /// Trace the capture map of one finger
 ///
@@ -51,16 +49,13 @@ pub struct Mapped {
     /// Its map.
     #[serde(flatten)]
     pub map: CaptureMap,
-    #[serde(skip)]
-    written: Option<PathBuf>,
 }
 
 impl command::Request for Request {
-    type Response = Mapped;
-
+    type Response = Output<Mapped>;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Mapped, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
         let stop = context.stop;
         let _busy = context.busy("tracing the map");
         let setup = self.setup.setup()?;
@@ -68,10 +63,10 @@ impl command::Request for Request {
         let taught = setup.evaluator.taught(&chosen.specimen, stop).map_err(Failure::input)?;
         let finger = (&chosen.specimen, &chosen.design);
         let map = map_of(&setup, finger, taught, self.axes, stop)?;
-        if let Some(file) = &self.svg {
-            write_file(file, &report::map::svg(&map)?)?;
-        }
-        Ok(Mapped { chosen, map, written: self.svg.clone() })
+        let svg = report::map::svg(&map)?;
+        let value = Mapped { chosen, map };
+        let text = layout::wrapped(&value.text()) + &layout::wrote(&self.svg);
+        Output::drawn((value, text), svg, self.svg.as_ref())
     }
 }
 
@@ -94,15 +89,9 @@ pub(crate) fn map_of(
     Ok(map)
 }
 
-impl command::Response for Mapped {
-    fn picture(&self) -> Result<Option<String>, Failure> {
-        Ok(Some(report::map::svg(&self.map)?))
-    }
-}
-
-impl fmt::Display for Mapped {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Mapped { chosen, map, .. } = self;
+impl Mapped {
+    fn text(&self) -> String {
+        let Mapped { chosen, map } = self;
         let [first, second] = &map.axes;
         let mut lines = vec![(
             "area".to_owned(),
@@ -132,7 +121,6 @@ impl fmt::Display for Mapped {
             "trials".to_owned(),
             format!("{} for {places} places, every {steps}{coarser}", map.trials),
         ));
-        let text = format!("task          {}\n{}{}", map.task, chosen.text(), layout::lines(lines));
-        write!(f, "{}{}", layout::wrapped(&text), layout::wrote(&self.written))
+        format!("task          {}\n{}{}", map.task, chosen.text(), layout::lines(lines))
     }
 }

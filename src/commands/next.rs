@@ -1,6 +1,6 @@
 //! `optimize next`: the finger to print next.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::progress::cost;
@@ -8,14 +8,12 @@ use crate::setup::bench::{BenchRequest, HowCalibrated, Prepared};
 use crate::setup::measured;
 use ask_tell::stream::stream;
 use calibration::bench::sampled;
-use calibration::next::{Advice, advise};
-use calibration::subject::Subject;
+use calibration::next::advise;
 use input::shipped::Source;
 use insertion::space::Design;
 use insertion::stiffness::designs;
 use report::answer::words::design;
-use serde::{Serialize, Serializer};
-use std::fmt;
+use serde::Serialize;
 
 /// Fingers that may be printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -61,23 +59,34 @@ fn print_cost(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Recommended fingers, and those that they were chosen from.
+/// Recommended fingers.
+#[derive(Serialize)]
 pub struct Advised {
-    /// The task's fingers.
-    pub subject: Subject,
-    /// Fingers to print.
-    pub advice: Advice,
-    /// File of measurements.
-    measurements: String,
-    missing: bool,
-    print_cost_mm: f64,
+    task: String,
+    measured: usize,
+    measurements_missing: bool,
+    best_known_mm: Option<f64>,
+    next: Vec<Print>,
+    stop: bool,
+}
+
+/// Finger to print.
+#[derive(Serialize)]
+struct Print {
+    #[serde(flatten)]
+    design: Design,
+    expected_mm: f64,
+    low_mm: f64,
+    high_mm: f64,
+    expected_gain_mm: f64,
+    reason: String,
 }
 
 impl command::Request for Request {
-    type Response = Advised;
+    type Response = Output<Advised>;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Advised, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
         context.begin(self.how.simulations() as f64 * cost::SIMULATION);
         if self.bench.setup.tasks.len() > 1 {
             return Err(Failure::usage("give a single --task"));
@@ -96,7 +105,7 @@ impl command::Request for Request {
             false => measured::file(file)?,
         };
         let prepared = self.how.prepare((&self.bench, &source), &published, context)?;
-        let Prepared { mut subjects, layout, settings } = prepared;
+        let Prepared { subjects, layout, settings } = prepared;
         let benches = layout.benches(&subjects);
         let one = subjects.first().zip(benches.first());
         let (subject, bench) = one.ok_or_else(|| Failure::usage("give one --task"))?;
@@ -111,74 +120,41 @@ impl command::Request for Request {
         let (count, cost_mm) = (usize::from(self.count), self.print_cost_mm);
         let advice = advise(bench, &posterior, &among, count, cost_mm, &mut random);
         context.check()?;
-        let (subject, measurements) = (subjects.swap_remove(0), file.clone());
-        Ok(Advised { subject, advice, measurements, missing, print_cost_mm: cost_mm })
-    }
-}
-
-impl Serialize for Advised {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        /// Finger to print.
-        #[derive(Serialize)]
-        struct Print<'a> {
-            #[serde(flatten)]
-            design: &'a Design,
-            expected_mm: f64,
-            low_mm: f64,
-            high_mm: f64,
-            expected_gain_mm: f64,
-            reason: &'a str,
-        }
-        #[derive(Serialize)]
-        struct Fields<'a> {
-            task: &'a str,
-            measured: usize,
-            measurements_missing: bool,
-            best_known_mm: Option<f64>,
-            next: Vec<Print<'a>>,
-            stop: bool,
-        }
-        let Advised { subject, advice, missing, .. } = self;
-        let next = advice.next.iter().map(|print| Print {
-            design: &subject.designs[print.finger],
+        let print = |print: calibration::next::Print| Print {
+            design: subject.designs[print.finger].clone(),
             expected_mm: print.expected_mm,
             low_mm: print.low_mm,
             high_mm: print.high_mm,
             expected_gain_mm: print.expected_gain_mm,
-            reason: &print.reason,
-        });
-        let fields = Fields {
-            task: &subject.task,
+            reason: print.reason,
+        };
+        let value = Advised {
+            task: subject.task.clone(),
             measured: subject.measured().len(),
-            measurements_missing: *missing,
+            measurements_missing: missing,
             best_known_mm: advice.best_known_mm,
-            next: next.collect(),
+            next: advice.next.into_iter().map(print).collect(),
             stop: advice.stop,
         };
-        fields.serialize(serializer)
+        Ok(Output { text: value.text(file, cost_mm), value, picture: None })
     }
 }
 
-impl command::Response for Advised {}
-
-impl fmt::Display for Advised {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Advised { subject, advice, measurements, missing, print_cost_mm } = self;
-        let measured = subject.measured().len();
-        let file = missing.then(|| format!(" ({measurements} does not exist)"));
-        let mut lines = vec![match advice.best_known_mm {
+impl Advised {
+    fn text(&self, measurements: &str, print_cost_mm: f64) -> String {
+        let Advised { task, measured, measurements_missing, .. } = self;
+        let file = measurements_missing.then(|| format!(" ({measurements} does not exist)"));
+        let mut lines = vec![match self.best_known_mm {
             Some(best) => format!(
-                "{}: {measured} fingers measured, the best of them expected at {best:.1} mm",
-                subject.task
+                "{task}: {measured} fingers measured, the best of them expected at {best:.1} mm"
             ),
             None => format!(
-                "{}: nothing measured yet{}; by simulation alone",
-                subject.task,
+                "{task}: nothing measured yet{}; by simulation alone",
                 file.unwrap_or_default()
             ),
         }];
-        for (i, print) in advice.next.iter().enumerate() {
-            lines.push(format!("{}. {}", i + 1, design(&subject.designs[print.finger])));
+        for (i, print) in self.next.iter().enumerate() {
+            lines.push(format!("{}. {}", i + 1, design(&print.design)));
             lines.push(format!(
                 "   expected {:.1} mm (80 %: {:.1} to {:.1}): {}",
                 print.expected_mm, print.low_mm, print.high_mm, print.reason
@@ -188,9 +164,9 @@ impl fmt::Display for Advised {
                 print.expected_gain_mm
             ));
         }
-        if advice.stop {
+        if self.stop {
             lines.push(format!("stop: no finger is expected to gain more than {print_cost_mm} mm"));
         }
-        writeln!(f, "{}", lines.join("\n"))
+        lines.join("\n") + "\n"
     }
 }

@@ -1,11 +1,10 @@
 //! `optimize report`: writes the tables and plots of a study again.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::studies::report::{PAGE, rewrite};
 use serde::Serialize;
-use std::fmt;
 use std::path::PathBuf;
 
 /// Write the tables and plots of a study again
@@ -25,21 +24,14 @@ pub struct Written {
 }
 
 impl command::Request for Request {
-    type Response = Written;
+    type Response = Output<Written>;
 
-    fn run(&self, context: &Context<'_>) -> Result<Written, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
         let record = rewrite(&self.dir)?;
         let warnings = record.remarks();
         warnings.iter().for_each(|warning| context.note(&format!("warning: {warning}")));
         let (page, evaluations) = (self.dir.join(PAGE), record.evaluations.len());
-        Ok(Written { page, evaluations, warnings })
-    }
-}
-
-impl command::Response for Written {}
-
-impl fmt::Display for Written {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "wrote the report of {} evaluations: {}", self.evaluations, self.page.display())
+        let text = format!("wrote the report of {evaluations} evaluations: {}\n", page.display());
+        Ok(Output { value: Written { page, evaluations, warnings }, text, picture: None })
     }
 }

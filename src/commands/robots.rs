@@ -1,12 +1,11 @@
 //! `optimize robots`: lists robots and their cells.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout::{lines, wrapped};
 use crate::setup::robots::{ForCell, robots};
 use serde::Serialize;
-use std::fmt;
 
 /// List the shipped robots with the cells that they represent, and an example of a robot file
 #[derive(Debug, clap::Args)]
@@ -21,27 +20,19 @@ pub struct Listed {
 }
 
 impl command::Request for Request {
-    type Response = Listed;
+    type Response = Output<Listed>;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Listed, Failure> {
-        Ok(Listed { robots: robots()?, own_file: include_str!("robot.toml") })
-    }
-}
-
-impl command::Response for Listed {}
-
-impl fmt::Display for Listed {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let list: String = self.robots.iter().map(text).collect();
-        writeln!(
-            f,
+    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+        let (robots, own_file) = (robots()?, include_str!("robot.toml"));
+        let list: String = robots.iter().map(text).collect();
+        let text = format!(
             "--robot       your cell\n{}\n\
-             Your own: save this as mine.toml, enter your numbers, and use --robot mine.toml\n\n{}\n\
+             Your own: save this as mine.toml, enter your numbers, and use --robot mine.toml\n\n{own_file}\n\
              kind = \"servo\" has no lag. An arm of six [[joint]] trails its command by\n\
-             damping_nms_per_rad / stiffness_nm_per_rad, see robots/ur5e_position.toml.",
+             damping_nms_per_rad / stiffness_nm_per_rad, see robots/ur5e_position.toml.\n",
             wrapped(&list),
-            self.own_file
-        )
+        );
+        Ok(Output { value: Listed { robots, own_file }, text, picture: None })
     }
 }
 

@@ -1,6 +1,6 @@
 //! `optimize sensitivity`: Sobol indices of the inputs.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
 use crate::failure::{Failure, wide};
 use crate::setup::request::SetupRequest;
@@ -11,12 +11,9 @@ use insertion::evaluation::template::Impossible;
 use parameters::plan::saltelli::Sample;
 use rayon::prelude::*;
 use report::sensitivity::{self as shown, Factor, Found};
-use serde::Serialize;
-use std::fmt;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
-use study::write_file;
 
 const SAMPLES: RangeInclusive<u32> = 4..=10_000;
 
@@ -48,24 +45,17 @@ pub struct Request {
     pub svg: Option<PathBuf>,
 }
 
-/// Shares of the objective's variance.
-#[derive(Serialize)]
-#[serde(transparent)]
-pub struct Ranked(Found);
-
 impl command::Request for Request {
-    type Response = Ranked;
-
-    /// Simulates the sample and ranks the inputs.
+    /// Shares of the objective's variance.
+    type Response = Output<Found>;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Ranked, Failure> {
+    /// Simulates the sample and ranks the inputs.
+    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
         let _busy = context.busy("simulating the sample");
         let found = self.found(context.stop)?;
-        if let Some(path) = &self.svg {
-            write_file(path, &shown::svg(&found)?)?;
-        }
-        Ok(Ranked(found))
+        let (text, svg) = (shown::text(&found), shown::svg(&found)?);
+        Output::drawn((found, text), svg, self.svg.as_ref())
     }
 }
 
@@ -116,17 +106,5 @@ impl Request {
             nominal_start_fails: values.iter().filter(|value| **value == Some(0.0)).count(),
             factors: Factor::sorted(&factors, &indices),
         })
-    }
-}
-
-impl command::Response for Ranked {
-    fn picture(&self) -> Result<Option<String>, Failure> {
-        Ok(Some(shown::svg(&self.0)?))
-    }
-}
-
-impl fmt::Display for Ranked {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&shown::text(&self.0))
     }
 }

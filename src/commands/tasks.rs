@@ -1,11 +1,10 @@
 //! `optimize tasks`: lists shipped files.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use input::shipped::{SPACES, Shipped, TASKS, UNCERTAINTIES};
 use serde::Serialize;
-use std::fmt;
 
 /// List tasks, spaces and uncertainties
 #[derive(Debug, clap::Args)]
@@ -27,11 +26,22 @@ struct File {
 }
 
 impl command::Request for Request {
-    type Response = Listed;
+    type Response = Output<Listed>;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Listed, Failure> {
-        let (tasks, spaces) = (described(TASKS)?, described(SPACES)?);
-        Ok(Listed { tasks, spaces, uncertainties: described(UNCERTAINTIES)? })
+    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+        let mut text = String::new();
+        let mut listed = |kind, files| {
+            let files = described(files)?;
+            let line = |File { name, description }: &File| format!("  {name:<10} {description}\n");
+            text += &format!("{kind}\n{}", files.iter().map(line).collect::<String>());
+            Ok::<_, Failure>(files)
+        };
+        let value = Listed {
+            tasks: listed("tasks", TASKS)?,
+            spaces: listed("spaces", SPACES)?,
+            uncertainties: listed("uncertainties", UNCERTAINTIES)?,
+        };
+        Ok(Output { value, text, picture: None })
     }
 }
 
@@ -42,19 +52,4 @@ fn described(files: &[Shipped]) -> Result<Vec<File>, Failure> {
         Ok(File { name: file.name, description: description.unwrap_or_default().to_owned() })
     };
     files.iter().map(described).collect()
-}
-
-impl command::Response for Listed {}
-
-impl fmt::Display for Listed {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let kinds = ["tasks", "spaces", "uncertainties"];
-        for (kind, files) in kinds.iter().zip([&self.tasks, &self.spaces, &self.uncertainties]) {
-            writeln!(f, "{kind}")?;
-            for File { name, description } in files {
-                writeln!(f, "  {name:<10} {description}")?;
-            }
-        }
-        Ok(())
-    }
 }

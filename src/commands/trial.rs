@@ -1,6 +1,6 @@
 //! `optimize trial`: simulates one insertion.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout;
@@ -20,7 +20,6 @@ use report::answer::words::number;
 use report::text_table;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
-use std::fmt;
 use std::path::PathBuf;
 use study::write_file;
 
@@ -107,15 +106,12 @@ pub struct Done {
     /// Page that plays it, with `--record`.
     #[serde(rename = "film", skip_serializing_if = "Option::is_none")]
     pub page: Option<String>,
-    /// Files that were written.
-    #[serde(skip)]
-    pub written: Vec<PathBuf>,
 }
 
 impl command::Request for Request {
-    type Response = Done;
+    type Response = Output<Done>;
 
-    fn run(&self, context: &Context<'_>) -> Result<Done, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
         let (stop, offset_mm) = (context.stop, self.offset_mm);
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
@@ -160,9 +156,22 @@ impl command::Request for Request {
             }
             counts
         });
-        let written = self.svg.iter().chain(&self.log).chain(self.film.files()).cloned().collect();
+        let written = layout::wrote(self.svg.iter().chain(&self.log).chain(self.film.files()));
         let series = self.every_s.map(|_| Series::of(&samples));
-        Ok(Done { chosen, offset_mm, trial, taught, repeats, series, page, written })
+        let value = Done { chosen, offset_mm, trial, taught, repeats, series, page };
+        Ok(Output { text: value.text() + &written, value, picture: None })
+    }
+}
+
+impl Done {
+    fn text(&self) -> String {
+        // `repeats       18 inserted, 2 failed: jammed`.
+        let repeats = self.repeats.as_ref().map_or(String::new(), |counts| {
+            let counts = counts.iter().map(|(outcome, count)| format!("{count} {outcome}"));
+            format!("repeats       {}\n", counts.collect::<Vec<_>>().join(", "))
+        });
+        let start = layout::lines(lines::taught(self.taught));
+        format!("{}{start}{}{repeats}", self.chosen.text(), text(&self.trial))
     }
 }
 
@@ -234,22 +243,6 @@ fn whole<S: Serializer>(trial: &Trial, serializer: S) -> Result<S::Ok, S::Error>
 
 fn taught_mm<S: Serializer>(taught: &Option<OffsetStep>, serializer: S) -> Result<S::Ok, S::Error> {
     taught.map(grid_mm).serialize(serializer)
-}
-
-impl command::Response for Done {}
-
-impl fmt::Display for Done {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // `repeats       18 inserted, 2 failed: jammed`.
-        let repeats = self.repeats.as_ref().map_or(String::new(), |counts| {
-            let counts = counts.iter().map(|(outcome, count)| format!("{count} {outcome}"));
-            format!("repeats       {}\n", counts.collect::<Vec<_>>().join(", "))
-        });
-        let start = layout::lines(lines::taught(self.taught));
-        let wrote = layout::wrote(&self.written);
-        let chosen = self.chosen.text();
-        write!(f, "{chosen}{start}{}{repeats}{wrote}", text(&self.trial))
-    }
 }
 
 fn text(trial: &Trial) -> String {

@@ -63,15 +63,11 @@ impl FilmRequest {
     }
 }
 
+/// Parses the name of a file into which a trial can be recorded.
 fn recordable(text: &str) -> Result<PathBuf, String> {
     let file = PathBuf::from(text);
-    filmable(&file).map(|()| file)
-}
-
-/// Checks that a trial can be recorded into a file of this name.
-fn filmable(file: &Path) -> Result<(), String> {
-    match extension(file).as_deref() {
-        Some("html" | "csv") => Ok(()),
+    match extension(&file).as_deref() {
+        Some("html" | "csv") => Ok(file),
         _ => Err("the name must end with .html or .csv".into()),
     }
 }
@@ -91,8 +87,8 @@ pub(crate) fn film<'a>(
 
 /// Returns a shifted start as text.
 pub(crate) fn shifted(offset_mm: f64) -> String {
-    if offset_mm == 0.0 {
-        return "nominal start".to_owned();
+    match offset_mm == 0.0 {
+        true => "nominal start".to_owned(),
+        false => format!("start shifted by {offset_mm:+.1} mm"),
     }
-    format!("start shifted by {offset_mm:+.1} mm")
 }

@@ -7,7 +7,7 @@ use super::task::read_task;
 use crate::failure::Failure;
 use calibration::experiments::{self, Experiment};
 use calibration::subject::whole;
-use input::files::{LARGEST_INPUT, read_named};
+use input::files::{LARGEST_INPUT, read_text};
 use input::shipped::{MEASUREMENTS, Source, TASKS};
 use insertion::evaluation::cell::Priors;
 use insertion::evaluation::template::Template;
@@ -39,7 +39,7 @@ pub fn read(name: &str, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
 /// Reads a measurement file by its path or its shipped name.
 pub fn file(name: &str) -> Result<Source, Failure> {
     if Path::new(name).is_file() {
-        let text = read_named(Path::new(name), LARGEST_INPUT);
+        let text = read_text(Path::new(name), LARGEST_INPUT);
         let unreadable = |error| Failure::in_file(name, format!("cannot read it: {error}"));
         return Ok(Source { file: name.to_owned(), text: text.map_err(unreadable)? });
     }

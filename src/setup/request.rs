@@ -3,7 +3,7 @@
 use super::Setup;
 use super::files::{DEFAULT_FINGER, Fingers, find, stiffness_data};
 use crate::failure::Failure;
-use input::files::{LARGEST_INPUT, read_named};
+use input::files::{LARGEST_INPUT, read_text};
 use input::shipped::{FINGERS, ROBOTS, SPACES, Source, TASKS, resolve};
 use insertion::evaluation::cell::Priors;
 use insertion::finger::file::is_shape;
@@ -219,7 +219,7 @@ impl FingerModelRequest {
 
 /// Reads the file of a cell.
 fn cell(path: &str) -> Result<(Source, Priors), Failure> {
-    let text = read_named(Path::new(path), LARGEST_INPUT)
+    let text = read_text(Path::new(path), LARGEST_INPUT)
         .map_err(|error| Failure::in_file(path, format!("cannot read the cell: {error}")))?;
     let source = Source { file: path.to_owned(), text };
     let cell = super::cell(&source)?;

@@ -10,14 +10,13 @@ use connector::check::{Problem, problems};
 use connector::nominal;
 use connector::tune::{Stage, Tuned};
 use input::Place;
-use input::shipped::{SPACES, STIFFNESS, Source};
+use input::shipped::{SPACES, Source};
 use input::units::N_PER_MM;
 use insertion::finger::Finger;
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::space::Space;
-use insertion::stiffness;
-use insertion::stiffness::three;
+use insertion::stiffness::{designs, three};
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
 use insertion::trial::{Grasp, Recording, Trial};
@@ -135,8 +134,7 @@ pub(crate) fn nominal_start(
     engine: EngineKind,
     stop: &AtomicBool,
 ) -> Result<(Finger, Trial), Failure> {
-    let finger = medium()?;
-    let shaped = finger.shaped(&task.finger, 0.0);
+    let (finger, shaped) = medium(task)?;
     let rig = engine.rig(task, robot, &shaped, 1.0).map_err(Failure::input)?;
     let trial = rig.hold(Grasp { stop, ..Grasp::of(&shaped) }).trial(0.0);
     not_stopped(stop)?;
@@ -150,7 +148,7 @@ pub(crate) fn nominal_recording(
     robot: &Robot,
     stop: &AtomicBool,
 ) -> Result<(Finger, Recording), Failure> {
-    let shaped = medium()?.shaped(&task.finger, 0.0);
+    let (_, shaped) = medium(task)?;
     let rig = EngineKind::default().rig(task, robot, &shaped, 1.0).map_err(Failure::input)?;
     let recording = rig.record(Grasp { stop, ..Grasp::of(&shaped) }, 0.0);
     not_stopped(stop)?;
@@ -158,14 +156,13 @@ pub(crate) fn nominal_recording(
     Ok((shaped, recording))
 }
 
-/// Returns the shipped measured finger of medium compliance stiffness.
-fn medium() -> Result<Finger, Failure> {
-    let nothing = || Failure::running("no measured fingers are shipped");
-    let [file] = STIFFNESS else { return Err(nothing()) };
-    let designs = stiffness::parse(file.text, file.file).map_err(Failure::input)?;
-    let three = three(designs);
+/// Returns the shipped measured finger of medium compliance stiffness, and the same shaped for a task.
+fn medium(task: &Task) -> Result<(Finger, Finger), Failure> {
+    let three = three(designs());
     let middle = three.get(1).or(three.first());
-    middle.map(|design| Finger::new(design.compliance, design.assembly)).ok_or_else(nothing)
+    let middle = middle.ok_or_else(|| Failure::running("no measured fingers are shipped"))?;
+    let finger = Finger::new(middle.compliance, middle.assembly);
+    Ok((finger, finger.shaped(&task.finger, 0.0)))
 }
 
 impl Serialize for TaskCheck {

@@ -10,10 +10,11 @@ use crate::failure::Failure;
 use crate::setup::Setup;
 use crate::setup::files::robot;
 use crate::setup::robots::felt;
+use ::report::PostAnalysis;
 use ::report::answer::command::own_task;
 use ::report::answer::{Answer, UnderRobot};
 use analysis::levers::Levers;
-use analysis::map::{Axes, CaptureMap};
+use analysis::map::Axes;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::evaluation::robustness::Plan;
@@ -34,24 +35,7 @@ const MAPPED: [Axes; 2] = [Axes::YX, Axes::YYaw];
 /// Stiffness along y below which a robot counts as compliant: above `servo`, below `ur5e_position`.
 const COMPLIANT_N_PER_MM: f64 = 20.0;
 
-/// Analyses of the recommended finger.
-#[derive(Debug, Clone, Default)]
-pub struct PostAnalysis {
-    /// One-at-a-time sensitivity analysis.
-    pub levers: Option<Levers>,
-    /// Outcomes over two errors of the start.
-    pub maps: Vec<CaptureMap>,
-    /// Windows under the study's robot and under a different one, for a task of the user.
-    pub robots: Vec<UnderRobot>,
-}
-
-/// Provenance and design of an analysis; with others it is not valid.
-struct Subject {
-    provenance: Provenance,
-    design: Design,
-}
-
-/// Contents of a file.
+/// Contents of a file: an analysis, valid for this provenance and design.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Stored<T> {
@@ -60,13 +44,16 @@ struct Stored<T> {
     found: T,
 }
 
+/// Provenance and design of the analyses.
+type Subject = Stored<()>;
+
 impl Subject {
     /// Returns the recommended finger of a study of one task and objective.
     fn of(answer: &Answer) -> Option<Self> {
         let record = answer.record;
         let one = !record.config.several_tasks() && record.config.objective.single().is_some();
         let design = answer.verdict.finger().filter(|_| one)?.clone();
-        Some(Subject { provenance: record.segments.last()?.provenance.clone(), design })
+        Some(Stored { provenance: record.segments.last()?.provenance.clone(), design, found: () })
     }
 
     fn read<T: DeserializeOwned>(&self, dir: &Path, file: &str) -> Option<T> {
@@ -80,18 +67,16 @@ impl Subject {
     }
 }
 
-impl PostAnalysis {
-    /// Reads the analyses in a study's folder.
-    pub(crate) fn read(dir: &Path, answer: &Answer) -> Self {
-        let Some(subject) = Subject::of(answer) else { return PostAnalysis::default() };
-        let levers: Option<Levers> = subject.read(dir, LEVERS);
-        PostAnalysis {
-            // The span of the infill is that of all evaluations so far.
-            levers: levers
-                .map(|found| Levers { infill: answer.spread_mm.unwrap_or(found.infill), ..found }),
-            maps: subject.read(dir, MAPS).unwrap_or_default(),
-            robots: subject.read(dir, ROBOTS).unwrap_or_default(),
-        }
+/// Reads the analyses in a study's folder.
+pub(crate) fn read(dir: &Path, answer: &Answer) -> PostAnalysis {
+    let Some(subject) = Subject::of(answer) else { return PostAnalysis::default() };
+    let levers: Option<Levers> = subject.read(dir, LEVERS);
+    PostAnalysis {
+        // The span of the infill is that of all evaluations so far.
+        levers: levers
+            .map(|found| Levers { infill: answer.spread_mm.unwrap_or(found.infill), ..found }),
+        maps: subject.read(dir, MAPS).unwrap_or_default(),
+        robots: subject.read(dir, ROBOTS).unwrap_or_default(),
     }
 }
 
@@ -102,7 +87,7 @@ impl Ended {
     /// If the finger cannot be simulated or a file cannot be written; if `stop` is set meanwhile.
     pub fn analyse(&self, answer: &Answer, stop: &AtomicBool) -> Result<PostAnalysis, Failure> {
         let (dir, record) = (&self.dir, answer.record);
-        let mut found = PostAnalysis::read(dir, answer);
+        let mut found = read(dir, answer);
         let Some(subject) = Subject::of(answer) else { return Ok(found) };
         let levers_missing = found.levers.is_none() && !self.run.no_levers;
         let maps_missing = found.maps.is_empty() && !self.run.no_map;

@@ -1,12 +1,12 @@
 //! Runs of studies to their end, and their output.
 
-use super::analysis::PostAnalysis;
 use super::open::OpenStudy;
 use super::summary::summary;
 use super::text;
 use crate::command;
 use crate::context::Context;
 use crate::failure::Failure;
+use report::PostAnalysis;
 use report::answer::Answer;
 use serde::Serialize;
 use serde_json::Value;

@@ -1,7 +1,6 @@
 //! Tables, plots and page of a study.
 
-use super::analysis::PostAnalysis;
-use super::unusable;
+use super::{analysis, unusable};
 use crate::failure::Failure;
 use crate::setup::surrogate_of;
 use input::files::{self, LARGEST_OWN};
@@ -36,28 +35,21 @@ pub(crate) fn write(dir: &Path, answer: &Answer, model: &Model) -> Result<(), Fa
     if let Some(front) = report::front_svg(record, FILE)? {
         write_own_file(&dir.join("front.svg"), &front)?;
     }
-    write_own_file(&dir.join(PAGE), &report::page(answer, model, &beside(dir, answer)?)?)?;
+    write_own_file(&dir.join(PAGE), &report::page(answer, model, &beside(dir, answer))?)?;
     Ok(())
 }
 
 /// Reads the files that the page shows or links.
-fn beside(dir: &Path, answer: &Answer) -> Result<Beside, Failure> {
-    let read = |name: &str| files::read_own(&dir.join(name), LARGEST_OWN).ok();
+fn beside(dir: &Path, answer: &Answer) -> Beside {
+    let read = |name: &str| files::read_text(&dir.join(name), LARGEST_OWN).ok();
     let names = printer::FILES.iter().map(|(name, _)| *name);
     let mut beside = Beside {
         dir: dir.to_owned(),
+        films: Vec::new(),
         files: names.filter(|name| dir.join(name).exists()).collect(),
         nominal: read(unusable::PICTURE),
-        ..Beside::default()
+        analyses: analysis::read(dir, answer),
     };
-    let analyses = PostAnalysis::read(dir, answer);
-    beside.robots = analyses.robots;
-    if let Some(found) = &analyses.levers {
-        beside.levers = Some((found.sentence(), report::levers::svg(found)?));
-    }
-    for map in &analyses.maps {
-        beside.maps.push((map.caption(), report::map::svg(map)?));
-    }
     // The film shown first comes first: a page has no room for the films of many tasks.
     let shown = report::preferred(answer);
     let (first, others): (Vec<_>, Vec<_>) =
@@ -69,5 +61,5 @@ fn beside(dir: &Path, answer: &Answer) -> Result<Beside, Failure> {
             beside.add(task, end, &page);
         }
     }
-    Ok(beside)
+    beside
 }

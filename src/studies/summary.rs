@@ -1,9 +1,9 @@
 //! JSON output of a study.
 
-use super::analysis::PostAnalysis;
 use super::open::Ended;
 use super::recommended::{advice, recommendation, values};
 use insertion::evaluation::objective::{Aggregate, Constraint, Objectives};
+use report::PostAnalysis;
 use report::answer::{Answer, UnderRobot};
 use serde::Serialize;
 use serde_json::{Value, json};

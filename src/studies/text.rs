@@ -1,9 +1,9 @@
 //! Text output of a study.
 
-use super::analysis::PostAnalysis;
 use super::open::Ended;
 use super::report::PAGE;
 use crate::layout;
+use report::PostAnalysis;
 use report::answer::lines;
 use report::answer::words::{evaluated, volume_unit};
 use report::answer::{Answer, Front, command, expectation};

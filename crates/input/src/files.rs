@@ -1,8 +1,6 @@
 //! Files: reading up to a limit, atomic writing; and escaping of texts for terminals.
 //!
-//! A path from the user may be anything that opens: a link, a pipe, a device. The program's own
-//! files, in a study's folder or in the cache, are plain: no link to one is followed, and nothing
-//! that could block is opened.
+//! A path from the user may be anything that opens: a link, a pipe, a device.
 
 use std::fmt::Write as _;
 use std::fs::{self, File, Metadata, OpenOptions, Permissions};
@@ -11,70 +9,27 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// Most bytes of an input file: a thousand times the longest shipped one.
+/// Largest size of an input file, bytes: a thousand times that of the longest shipped one.
 pub const LARGEST_INPUT: u64 = 4 << 20;
-/// Most bytes of a file that the program has written itself, but for journals.
+/// Largest size of a file that the program has written, except for journals, bytes.
 pub const LARGEST_OWN: u64 = 64 << 20;
-/// Most bytes of a journal: over a million evaluations.
+/// Largest size of a journal, bytes: over a million evaluations.
 pub const LARGEST_JOURNAL: u64 = 2 << 30;
 
-/// Begin and end of a temporary file's name; process and number stand between.
+/// Prefix and suffix of a temporary file's name, around process and number.
 const TEMPORARY: [&str; 2] = [".optimize-", ".new"];
-/// A temporary file of this age was left by a process that was killed.
+/// Age at which a temporary file is taken to be left by a killed process.
 const ABANDONED: Duration = Duration::from_secs(3600);
 
-/// Returns the text of a file that the user has named.
+/// Returns the text of a file.
 ///
 /// # Errors
-/// If it cannot be read, is no UTF-8 or is longer than `limit` bytes.
-pub fn read_named(path: &Path, limit: u64) -> io::Result<String> {
+/// If it cannot be read, is not UTF-8 or is longer than `limit` bytes.
+pub fn read_text(path: &Path, limit: u64) -> io::Result<String> {
     text(read_up_to(File::open(path)?, limit)?)
 }
 
-/// Returns the text of a file that the program keeps for itself.
-///
-/// # Errors
-/// The same, and if it is no plain file.
-pub fn read_own(path: &Path, limit: u64) -> io::Result<String> {
-    text(bytes_own(path, limit)?)
-}
-
-/// Returns the bytes of a file that the program keeps for itself.
-///
-/// # Errors
-/// If it cannot be read, is no plain file or is longer than `limit` bytes.
-pub fn bytes_own(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
-    read_up_to(open_own(path, OpenOptions::new().read(true))?, limit)
-}
-
-/// Opens a file that the program keeps for itself: a plain one, and no link to one.
-///
-/// # Errors
-/// If it cannot be opened so.
-pub fn open_own(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
-    let linked = || fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink());
-    let wrong = |what: &str| Err(io::Error::other(format!("it is {what}, not a plain file")));
-    match careful(options).open(path) {
-        Ok(file) if file.metadata()?.is_file() => Ok(file),
-        Ok(_) => wrong("a folder, a pipe or a device"),
-        Err(_) if linked() => wrong("a link"),
-        Err(error) => Err(error),
-    }
-}
-
-/// Sets flags to neither follow links nor block on pipes.
-#[cfg(unix)]
-fn careful(options: &mut OpenOptions) -> &mut OpenOptions {
-    use std::os::unix::fs::OpenOptionsExt;
-    options.custom_flags(libc::O_NOFOLLOW | libc::O_NONBLOCK)
-}
-
-#[cfg(not(unix))]
-fn careful(options: &mut OpenOptions) -> &mut OpenOptions {
-    options
-}
-
-/// Returns the bytes of what is open already.
+/// Returns the bytes of an open file.
 ///
 /// # Errors
 /// If it cannot be read, or is longer than `limit` bytes.
@@ -93,8 +48,8 @@ fn text(bytes: Vec<u8>) -> io::Result<String> {
     String::from_utf8(bytes).map_err(|_| io::Error::new(io::ErrorKind::InvalidData, problem))
 }
 
-/// Writes a file that the user has named: a plain file, which keeps its mode, or one that is not there
-/// yet, whole or not at all; a device, a pipe or what a link leads to in place.
+/// Writes a file that the user has named. A plain file keeps its mode and is written atomically; a device, a
+/// pipe or the target of a link is written in place.
 ///
 /// # Errors
 /// If it cannot be written, or is read-only.
@@ -115,7 +70,7 @@ fn read_only() -> io::Error {
     io::Error::new(io::ErrorKind::PermissionDenied, "it is read-only")
 }
 
-/// Writes a whole file or, if that fails or the process dies, none of it. A link is replaced.
+/// Writes a file atomically, also if the process is killed. A link is replaced.
 ///
 /// # Errors
 /// If it cannot be written.
@@ -127,7 +82,7 @@ fn write_whole(path: &Path, content: &[u8], mode: Option<Permissions>) -> io::Re
     let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty());
     let (temporary, mut file) = temporary(folder.unwrap_or(Path::new(".")))?;
     let written = (|| {
-        // Before there is anything to read in it.
+        // Before it has any content.
         mode.map_or(Ok(()), |mode| file.set_permissions(mode))?;
         file.write_all(content)?;
         file.sync_all()?;
@@ -139,8 +94,8 @@ fn write_whole(path: &Path, content: &[u8], mode: Option<Permissions>) -> io::Re
     written
 }
 
-/// A text file of the user's that lines are added to, by one process at a time. It stays the file it
-/// is, with its mode and all its names.
+/// Text file of the user to which lines are added, locked against other processes. It is not replaced, so that
+/// it keeps its mode and its links.
 #[derive(Debug)]
 pub struct Table {
     file: File,
@@ -150,10 +105,10 @@ pub struct Table {
 }
 
 impl Table {
-    /// Opens the file, which need not exist, and waits until no other process adds to it.
+    /// Opens the file, which need not exist, and waits for its lock.
     ///
     /// # Errors
-    /// If it cannot be read and written, is no UTF-8 or is longer than `limit` bytes.
+    /// If it cannot be read and written, is not UTF-8 or is longer than `limit` bytes.
     pub fn open(path: &Path, limit: u64) -> io::Result<Self> {
         loop {
             let made = !path.try_exists()?;
@@ -166,7 +121,7 @@ impl Table {
                 return Err(read_only());
             }
             file.lock()?;
-            // Who had it before may have removed or replaced it.
+            // The previous owner of the lock may have removed or replaced the file.
             if fs::metadata(path).is_ok_and(|now| is_open_file(&now, &file).unwrap_or(false)) {
                 let text = text(read_up_to(&file, limit)?)?;
                 return Ok(Table { file, path: path.to_owned(), text, made });
@@ -179,11 +134,10 @@ impl Table {
         &self.text
     }
 
-    /// Writes a new text in place of the old one: only what is new, if it begins with that. When
-    /// this returns it survives a power failure.
+    /// Replaces the text, by appending if possible; it then survives a power failure.
     ///
     /// # Errors
-    /// If it cannot be written; the file is then as it was.
+    /// If it cannot be written; the file is then unchanged.
     pub fn replace(&mut self, new: &str) -> io::Result<()> {
         let appends = new.starts_with(&self.text);
         let kept = if appends { self.text.len() } else { 0 };
@@ -196,8 +150,8 @@ impl Table {
         written.map(|()| new.clone_into(&mut self.text))
     }
 
-    /// Returns a copy, for the case that the process dies while the file is written anew, or that it
-    /// cannot be written back; nobody's file is written over.
+    /// Makes a copy for the case that the process is killed while the file is rewritten. An existing file is
+    /// not overwritten.
     fn copied(&self) -> io::Result<PathBuf> {
         let mut name = self.path.file_name().unwrap_or_default().to_owned();
         name.push(".before");
@@ -227,7 +181,7 @@ impl Table {
 }
 
 impl Drop for Table {
-    /// A file to which nothing was added is not left behind.
+    /// Removes a new file to which nothing was added.
     fn drop(&mut self) {
         if self.made && self.text.is_empty() {
             let _ = fs::remove_file(&self.path);
@@ -235,7 +189,7 @@ impl Drop for Table {
     }
 }
 
-/// Returns a new file under a name that no other thread, process or machine writes to.
+/// Creates a file under a name that no other thread, process or machine uses.
 fn temporary(folder: &Path) -> io::Result<(PathBuf, File)> {
     static WRITES: AtomicU64 = AtomicU64::new(0);
     let [begin, end] = TEMPORARY;
@@ -243,14 +197,14 @@ fn temporary(folder: &Path) -> io::Result<(PathBuf, File)> {
         let write = WRITES.fetch_add(1, Ordering::Relaxed);
         let path = folder.join(format!("{begin}{}-{write}{end}", std::process::id()));
         match OpenOptions::new().write(true).create_new(true).open(&path) {
-            // Another machine's process of the same number, or one that was killed.
+            // Left by a killed process, or used by a process with the same number on another machine.
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             opened => return Ok((path, opened?)),
         }
     }
 }
 
-/// Removes what killed processes have left in a folder of the program's own.
+/// Removes the temporary files that killed processes have left in a folder.
 pub fn remove_abandoned(folder: &Path) {
     let [begin, end] = TEMPORARY;
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -258,16 +212,16 @@ pub fn remove_abandoned(folder: &Path) {
         let ours = name.to_str().is_some_and(|name| name.starts_with(begin) && name.ends_with(end));
         let age = || entry.metadata().ok()?.modified().ok()?.elapsed().ok();
         if ours && age().is_some_and(|age| age > ABANDONED) {
-            // What cannot be removed does no harm.
+            // A file that cannot be removed does no harm.
             let _ = fs::remove_file(entry.path());
         }
     }
 }
 
-/// Returns whether `found`, not followed if it is a link, is the file that is open.
+/// Returns whether the metadata are those of an open file.
 ///
 /// # Errors
-/// If the system does not say.
+/// If the system does not provide them.
 pub fn is_open_file(found: &Metadata, open: &File) -> io::Result<bool> {
     let open = open.metadata()?;
     #[cfg(unix)]
@@ -279,8 +233,8 @@ pub fn is_open_file(found: &Metadata, open: &File) -> io::Result<bool> {
     Ok(found.is_file() == open.is_file())
 }
 
-/// Returns the text with control characters, which move a terminal's cursor or worse, and those that
-/// turn the direction of writing as `\u001b`: the escapes of JSON, so that JSON stays what it is.
+/// Escapes control characters, which terminals obey, and those that change the direction of writing as
+/// `\u001b`, so that JSON stays valid.
 pub fn visible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
@@ -315,13 +269,11 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("file");
         fs::write(&path, "12345").unwrap();
-        assert_eq!(read_own(&path, 5).unwrap(), "12345");
-        for read in [read_own, read_named] {
-            assert!(read(&path, 4).unwrap_err().to_string().contains("longer than 4 bytes"));
-        }
+        assert_eq!(read_text(&path, 5).unwrap(), "12345");
+        assert!(read_text(&path, 4).unwrap_err().to_string().contains("longer than 4 bytes"));
         // Sparse: nothing of it is on the disk.
         File::options().write(true).open(&path).unwrap().set_len(1 << 40).unwrap();
-        assert!(read_named(&path, LARGEST_INPUT).is_err());
+        assert!(read_text(&path, LARGEST_INPUT).is_err());
     }
 
     #[test]

@@ -1,5 +1,5 @@
-//! Input files: reading up to a limit, checks, errors and units. Inside, every quantity is in SI units; millimetres, newtons per millimetre and
-//! degrees appear only in names that say so ([`units`]).
+//! Input files: reading up to a limit, checks, errors and units. Inside, every quantity is in SI units;
+//! millimetres, newtons per millimetre and degrees appear only in names with these units ([`units`]).
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -18,33 +18,22 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use toml::Spanned;
 use toml::de::DeTable;
 
-/// Error of an input file: not TOML of its shape, or a value that cannot be used.
+/// Error of an input file: invalid TOML, an unknown or missing key, or an invalid value.
 #[derive(Debug, Clone, thiserror::Error, PartialEq)]
-pub enum InputError {
-    /// Not TOML, an unknown key or a missing field; the text names the line.
-    #[error("{file}: {message}")]
-    Syntax {
-        /// The file as given.
-        file: String,
-        /// The line, if the parser knows it.
-        line: Option<usize>,
-        /// The parser's message, with line and column.
-        message: String,
-    },
-    /// A field with a value that cannot be used.
-    #[error("{file}: {key}: {problem}")]
-    Value {
-        /// The file as given.
-        file: String,
-        /// Path of the field in the file.
-        key: String,
-        /// The problem, and what would be right.
-        problem: String,
-    },
+#[error("{file}: {}{problem}", key.as_ref().map_or(String::new(), |key| format!("{key}: ")))]
+pub struct InputError {
+    /// The file as given.
+    pub file: String,
+    /// Line of a syntax error, if it is known; the problem includes it.
+    pub line: Option<usize>,
+    /// Path of an invalid field in the file; `None` for a syntax error.
+    pub key: Option<String>,
+    /// The problem, and what is accepted.
+    pub problem: String,
 }
 
-/// Largest size of any number in a file: beyond it the unit is wrong, and sums and products
-/// would leave what floating point holds.
+/// Largest absolute value of a number in a file; beyond it the unit is wrong, and sums and products
+/// could overflow.
 const LARGEST: f64 = 1e9;
 /// Smallest number where one must be above 0.
 const SMALLEST: f64 = 1e-9;
@@ -53,27 +42,23 @@ const LONGEST_MM: f64 = 1000.0;
 
 impl Placed for InputError {
     fn place(&self) -> Place {
-        match self {
-            InputError::Syntax { file, line, .. } => {
-                Place { line: *line, ..Place::file(file.clone()) }
-            }
-            InputError::Value { file, key, .. } => Place::file(file.clone()).key(key),
-        }
+        let place = Place { line: self.line, ..Place::file(self.file.clone()) };
+        place.key(self.key.as_deref().unwrap_or_default())
     }
 }
 
-/// Returns the error of a file that is not TOML, or not of the shape asked for; `text` is where it was
-/// read.
+/// Returns the error of a file with invalid TOML or an unexpected structure; `text` is that of the file.
 pub fn syntax(file: &str, text: &str, error: &toml::de::Error) -> InputError {
     let before = error.span().and_then(|span| text.get(..span.start));
-    InputError::Syntax {
+    InputError {
         file: file.to_owned(),
         line: before.map(|before| 1 + before.matches('\n').count()),
-        message: error.to_string().trim_end().to_owned() + &suggestion(error.message()),
+        key: None,
+        problem: error.to_string().trim_end().to_owned() + &suggestion(error.message()),
     }
 }
 
-/// Returns the accepted word nearest to the one that serde refuses, as a question; else nothing.
+/// Returns a question with the accepted word nearest to an unknown one; empty if there is none.
 fn suggestion(message: &str) -> String {
     let mut words = message.split('`').skip(1).step_by(2);
     let (Some(given), accepted) = (words.next(), words.collect::<Vec<_>>()) else {
@@ -83,7 +68,7 @@ fn suggestion(message: &str) -> String {
     near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default()
 }
 
-/// A TOML text that was parsed once, from which typed values are read.
+/// Parsed TOML text from which typed values are read.
 #[derive(Debug, Clone)]
 pub struct Document<'a> {
     text: &'a str,
@@ -91,10 +76,10 @@ pub struct Document<'a> {
     tree: Spanned<DeTable<'a>>,
 }
 
-/// Number of texts that were parsed.
+/// Number of parsed texts.
 static PARSED: AtomicU64 = AtomicU64::new(0);
 
-/// Returns how many TOML texts were parsed since the process began.
+/// Returns the number of TOML texts parsed by this process.
 pub fn parsed() -> u64 {
     PARSED.load(Ordering::Relaxed)
 }
@@ -126,7 +111,7 @@ impl<'a> Document<'a> {
     /// Reads a value of the whole document.
     ///
     /// # Errors
-    /// If the document is not of this shape, has a control character or a bad name.
+    /// If the structure differs, or the document has a control character or an invalid name.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, InputError> {
         let value = self.of()?;
         match bad_text(&self.of()?) {
@@ -146,13 +131,13 @@ impl<'a> Document<'a> {
 /// Reads TOML; `file` is named in errors.
 ///
 /// # Errors
-/// If the text is not TOML of this shape, or has a control character.
+/// If the text is not TOML of this structure, or has a control character.
 pub fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, InputError> {
     Document::parse(text, file)?.read()
 }
 
-/// Returns the key and the problem of a text with a control character, which would reach terminals and
-/// pages, or of a `name` that is empty or has several lines.
+/// Returns key and problem of a text with a control character, which would reach terminals and pages, or of
+/// a `name` that is empty or has several lines.
 pub fn bad_text(table: &toml::Table) -> Option<(String, &'static str)> {
     const CONTROL: &str = "has a control character, such as \\u001b";
     fn problem(key: &str, value: &toml::Value) -> Option<&'static str> {
@@ -177,8 +162,8 @@ pub fn bad_text(table: &toml::Table) -> Option<(String, &'static str)> {
     })
 }
 
-/// Line of CSV, from 1, in which a quoted cell runs over the end of the line: the reader would take the
-/// lines below for a part of it. Lines that begin with `#` are comments.
+/// Returns the first line of a CSV text, counted from 1, with an unclosed quoted cell, which would include the
+/// lines below. Lines that begin with `#` are comments.
 pub fn unclosed_quote(text: &str) -> Option<usize> {
     let runs_over = |line: &str| {
         // A quotation mark opens a cell only at its beginning; twice, it stands for itself.
@@ -195,17 +180,17 @@ pub fn unclosed_quote(text: &str) -> Option<usize> {
     text.lines().position(|line| !line.starts_with('#') && runs_over(line)).map(|at| at + 1)
 }
 
-/// Problem of a line that [`unclosed_quote`] finds.
+/// Error message for [`unclosed_quote`].
 pub const UNCLOSED: &str = "a quoted cell runs over the end of the line; close its quotation mark \
                             there (a mark within a quoted cell is written twice)";
 
-/// Returns a number as messages show it: never hundreds of digits.
+/// Formats a number for messages, very large and very small ones with an exponent.
 pub fn shown(value: f64) -> String {
     let plain = value == 0.0 || (1e-6..1e12).contains(&value.abs()) || !value.is_finite();
     if plain { value.to_string() } else { format!("{value:e}") }
 }
 
-/// Checks the values of one file.
+/// Checks of the values of a file.
 #[derive(Debug, Clone, Copy)]
 pub struct Check<'a> {
     /// The file as given.
@@ -213,19 +198,16 @@ pub struct Check<'a> {
 }
 
 impl Check<'_> {
-    /// Refuses a field.
+    /// Returns an error about a field.
     ///
     /// # Errors
-    /// Always: with this problem of the field.
+    /// Always.
     pub fn fail<T>(&self, key: &str, problem: impl Into<String>) -> Result<T, InputError> {
-        Err(InputError::Value {
-            file: self.file.to_owned(),
-            key: key.to_owned(),
-            problem: problem.into(),
-        })
+        let (file, key) = (self.file.to_owned(), Some(key.to_owned()));
+        Err(InputError { file, line: None, key, problem: problem.into() })
     }
 
-    /// Returns the value if it fits; `must` is the requirement in words.
+    /// Checks a condition of a value; `must` is the requirement in words.
     pub fn require(
         &self,
         key: &str,
@@ -240,10 +222,10 @@ impl Check<'_> {
         }
     }
 
-    /// Returns the values, if each passes a check of one value, such as [`Check::finite`].
+    /// Checks each value by a check of one value, such as [`Check::finite`].
     ///
     /// # Errors
-    /// Error of the first value that fails the check.
+    /// The error of the first invalid value.
     pub fn each<const N: usize>(
         &self,
         key: &str,
@@ -254,38 +236,38 @@ impl Check<'_> {
         Ok(values)
     }
 
-    /// Returns the value, if it is finite and not beyond 1e9.
+    /// Checks that a value lies in -1e9 .. 1e9.
     ///
     /// # Errors
-    /// If it is not.
+    /// If it does not.
     pub fn finite(&self, key: &str, value: f64) -> Result<f64, InputError> {
         // Written so that a NaN is outside.
         let fits = value.abs() <= LARGEST;
         self.require(key, value, fits, "be a finite number of size 1e9 or less")
     }
 
-    /// Returns the value, if it is above 0: from 1e-9 to 1e9.
+    /// Checks that a value lies in 1e-9 .. 1e9.
     ///
     /// # Errors
-    /// If it is not.
+    /// If it does not.
     pub fn positive(&self, key: &str, value: f64) -> Result<f64, InputError> {
         let fits = (SMALLEST..=LARGEST).contains(&value);
         self.require(key, value, fits, "be a finite number above 0, 1e-9 to 1e9")
     }
 
-    /// Returns the value, if it is not below 0 and not beyond 1e9.
+    /// Checks that a value lies in 0 .. 1e9.
     ///
     /// # Errors
-    /// If it is not.
+    /// If it does not.
     pub fn not_negative(&self, key: &str, value: f64) -> Result<f64, InputError> {
         let fits = (0.0..=LARGEST).contains(&value);
         self.require(key, value, fits, "be a finite number, 0 or above, 1e9 at most")
     }
 
-    /// Returns the value, if it can be a coordinate or a difference of two, mm.
+    /// Checks that a coordinate or a difference of two, mm, is at most 1 m.
     ///
     /// # Errors
-    /// If it is not finite, or longer than 1 m.
+    /// If it is longer or not finite.
     pub fn distance(&self, key: &str, mm: f64) -> Result<f64, InputError> {
         let fits = self.finite(key, mm)?.abs() <= LONGEST_MM;
         self.require(key, mm, fits, &format!("lie in -{LONGEST_MM} .. {LONGEST_MM} (mm)"))

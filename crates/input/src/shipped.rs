@@ -104,7 +104,7 @@ pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, Sh
         return Ok(Source { file: found.file.to_owned(), text: found.text.to_owned() });
     }
     if name.contains(['/', '\\']) || Path::new(name).extension().is_some() {
-        return match files::read_named(Path::new(name), LARGEST_INPUT) {
+        return match files::read_text(Path::new(name), LARGEST_INPUT) {
             Ok(text) => Ok(Source { file: name.to_owned(), text }),
             Err(error) => {
                 let text = format!("{name}: cannot read the {kind}: {error}");

@@ -2,9 +2,11 @@
 
 use super::replay;
 use crate::answer::UnderRobot;
+use analysis::levers::Levers;
+use analysis::map::CaptureMap;
 use std::path::PathBuf;
 
-/// Largest total size of embedded films, bytes; others are linked.
+/// Largest total size of embedded films, bytes; further ones are linked.
 const FILMS: usize = 600_000;
 
 /// Files beside the page in the folder of a study.
@@ -18,12 +20,19 @@ pub struct Beside {
     pub files: Vec<&'static str>,
     /// SVG of the nominal start of the design that is nearest to inserting, if nothing inserts.
     pub nominal: Option<String>,
-    /// Levers: a sentence and an SVG.
-    pub levers: Option<(String, String)>,
-    /// The window on two robots.
+    /// Analyses of the recommended finger.
+    pub analyses: PostAnalysis,
+}
+
+/// Analyses of the recommended finger.
+#[derive(Debug, Clone, Default)]
+pub struct PostAnalysis {
+    /// One-at-a-time sensitivity analysis.
+    pub levers: Option<Levers>,
+    /// Outcomes over two errors of the start.
+    pub maps: Vec<CaptureMap>,
+    /// Windows under the study's robot and under a different one, for a task of the user.
     pub robots: Vec<UnderRobot>,
-    /// Capture maps over two errors of the start: captions and SVGs.
-    pub maps: Vec<(String, String)>,
 }
 
 /// A film at an end of a window.
@@ -38,7 +47,7 @@ pub struct Film {
 }
 
 impl Beside {
-    /// Adds a film from its page, embedded as long as there is room for it.
+    /// Adds a film from its page, embedded unless the total size would be too large.
     pub fn add(&mut self, task: usize, end: &'static str, page: &str) {
         let held: usize = self.films.iter().flat_map(|film| &film.data).map(String::len).sum();
         let data = replay::data(page).filter(|data| held + data.len() <= FILMS);

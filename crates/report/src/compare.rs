@@ -1,12 +1,12 @@
 //! Studies of the same problem beside each other: optimizers against evaluations.
 
-use super::ReportError;
 use super::chart::{Area, Drawn, around, axes, legend, message, sheet};
 use super::convergence::best_so_far;
 use super::elements::{document, figure, table};
 use super::marks::{line, stairs};
 use super::page::PLOT;
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE, RED};
+use super::{ReportError, text_table};
 use ask_tell::statistics::{interpolated_quantile, sorted};
 use insertion::evaluation::objective::{Aggregate, Constraint};
 use maud::html;
@@ -15,13 +15,12 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use study::{StudyConfig, StudyRecord};
 
-/// How far below the best known value a study may be to have reached it, mm.
-pub const TOLERANCE_MM: f64 = 0.1;
-/// Values are multiples of 0.1 mm but for rounding.
+/// Distance below the best known value at which a study has reached it, mm.
+const TOLERANCE_MM: f64 = 0.1;
+/// Rounding error of values, which are multiples of 0.1 mm.
 const ROUNDING_MM: f64 = 1e-9;
 
-/// Quartiles of studies; `None` where one is not known: a value that was not there yet, an
-/// evaluation that never came.
+/// Quartiles over studies; `None` where a study has no value yet or never reached the target.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Quartiles {
     /// Lower quartile.
@@ -33,7 +32,7 @@ pub struct Quartiles {
 }
 
 impl Quartiles {
-    /// By linear interpolation between the sorted values; `None` where that meets an infinity.
+    /// Interpolates linearly between the sorted values; `None` next to an infinite one.
     fn of(values: Vec<f64>) -> Self {
         let values = sorted(values);
         let quantile =
@@ -41,7 +40,7 @@ impl Quartiles {
         Quartiles { q25: quantile(0.25), median: quantile(0.5), q75: quantile(0.75) }
     }
 
-    /// Lower quartile, median and upper quartile.
+    /// Returns lower quartile, median and upper quartile.
     pub fn all(&self) -> [Option<f64>; 3] {
         [self.q25, self.median, self.q75]
     }
@@ -52,7 +51,7 @@ impl Quartiles {
 pub struct OptimizerGroup {
     /// Name of the optimizer, with its polish.
     pub optimizer: String,
-    /// Designs it proposes at a time.
+    /// Designs proposed at a time.
     pub batch: u64,
     /// Number of studies.
     pub studies: usize,
@@ -69,15 +68,15 @@ pub struct OptimizerGroup {
 /// Studies side by side; serialized it is what `optimize compare --json` prints.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
-    /// Their task.
+    /// Task of the studies.
     pub task: String,
-    /// Their objective.
+    /// Objective of the studies.
     pub objective: String,
-    /// The best value of them all, mm.
+    /// Best value of all studies, mm.
     pub best_known_mm: f64,
-    /// The value whose evaluations are counted: [`TOLERANCE_MM`] below the best, mm.
+    /// Target up to which evaluations are counted: 0.1 mm below the best, mm.
     pub target_mm: f64,
-    /// By optimizer and batch.
+    /// Studies by optimizer and batch.
     #[serde(rename = "optimizers")]
     pub groups: Vec<OptimizerGroup>,
 }
@@ -85,7 +84,7 @@ pub struct Comparison {
 /// Compares studies, each with a name for messages.
 ///
 /// # Errors
-/// If they measure different things, or one is given twice, or none has a value.
+/// If their problems differ, a study is given twice, or none has a value.
 pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, String> {
     let (first, _) = studies.split_first().ok_or("give at least one study to compare")?;
     studies.iter().try_for_each(|study| alike(first, study))?;
@@ -166,14 +165,14 @@ fn alike(
     }
 }
 
-/// Number of evaluations until a value of at least `target`, mm.
+/// Returns the number of evaluations until a value of at least `target`, mm.
 fn reached(record: &StudyRecord, target: f64) -> Option<u64> {
     let values = record.evaluations.iter().map(|r| r.feasible()?.first().copied());
     let place = values.into_iter().position(|v| v.is_some_and(|v| v >= target - ROUNDING_MM));
     place.map(|index| index as u64 + 1)
 }
 
-/// Best so far after each evaluation; minus infinity before the first value.
+/// Returns the best so far after each evaluation; minus infinity before the first value.
 fn curve(record: &StudyRecord) -> Vec<f64> {
     let known = best_so_far(record);
     let none = record.evaluations.len() - known.len();
@@ -181,10 +180,37 @@ fn curve(record: &StudyRecord) -> Vec<f64> {
     std::iter::repeat_n(f64::NEG_INFINITY, none).chain(values).collect()
 }
 
-/// The comparison as a page that opens offline: who gets there first, the table, and the courses.
+const HEAD: [&str; 7] = ["optimizer", "batch", "studies", "reached", "25 %", "median", "75 %"];
+
+impl OptimizerGroup {
+    /// Returns the cells below [`HEAD`]; `none` stands for an unknown quartile.
+    fn row(&self, none: &str) -> [String; 7] {
+        let [low, median, high] =
+            self.evaluations_to_target.all().map(|evaluations| number(evaluations, none));
+        let counts = [self.batch, self.studies as u64, self.reached as u64];
+        let [batch, studies, reached] = counts.map(|count| count.to_string());
+        [self.optimizer.clone(), batch, studies, reached, low, median, high]
+    }
+}
+
+fn number(number: Option<f64>, none: &str) -> String {
+    number.map_or(none.to_owned(), |number| format!("{number:.1}"))
+}
+
+/// Returns the comparison as text for a terminal.
+pub fn text(comparison: &Comparison) -> String {
+    let Comparison { task, objective, best_known_mm, target_mm, groups } = comparison;
+    let table = text_table(1, HEAD, groups.iter().map(|group| group.row("-")));
+    format!(
+        "{task}, {objective}: best known {best_known_mm:.1} mm\n\
+         evaluations to {target_mm:.1} mm ({TOLERANCE_MM} mm below the best known)\n\n{table}"
+    )
+}
+
+/// Returns the comparison as a page that opens offline: the fastest optimizer, the table, and the
+/// best values so far.
 pub fn page(comparison: &Comparison) -> Result<String, ReportError> {
     let Comparison { task, objective, best_known_mm, target_mm, groups } = comparison;
-    let number = |n: Option<f64>| n.map_or("–".to_owned(), |n| format!("{n:.1}"));
     let late =
         |group: &&OptimizerGroup| group.evaluations_to_target.median.unwrap_or(f64::INFINITY);
     let mut groups: Vec<&OptimizerGroup> = groups.iter().collect();
@@ -192,20 +218,14 @@ pub fn page(comparison: &Comparison) -> Result<String, ReportError> {
     let finding = groups.first().filter(|first| late(first).is_finite()).map_or(
         format!("No optimizer reaches {target_mm:.1} mm in half of its studies"),
         |first| {
-            let median = number(first.evaluations_to_target.median);
+            let median = number(first.evaluations_to_target.median, "–");
             format!(
                 "{} reaches {target_mm:.1} mm first: after {median} evaluations",
                 first.optimizer
             )
         },
     );
-    let row = |group: &&OptimizerGroup| {
-        let (batch, studies) = (group.batch.to_string(), group.studies.to_string());
-        let mut row = vec![group.optimizer.clone(), batch, studies, group.reached.to_string()];
-        row.extend(group.evaluations_to_target.all().map(number));
-        row
-    };
-    let head = ["optimizer", "batch", "studies", "reached", "25 %", "median", "75 %"];
+    let rows: Vec<_> = groups.iter().map(|group| group.row("–").to_vec()).collect();
     let course = sheet("the comparison", PLOT, |area| draw(area, comparison, ""))?;
     let caption = "Best so far: the median as a line, the quartiles as a band.";
     let body = html! {
@@ -218,7 +238,7 @@ pub fn page(comparison: &Comparison) -> Result<String, ReportError> {
                     " (TOLERANCE_MM) " mm below it."
                 }
             }
-            section { h2 { "Evaluations" } (table(&head, &groups.iter().map(row).collect::<Vec<_>>())) }
+            section { h2 { "Evaluations" } (table(&HEAD, &rows)) }
             section { h2 { "Course" } (figure(&course, "best so far by optimizer", caption)) }
         }
     };
@@ -227,7 +247,7 @@ pub fn page(comparison: &Comparison) -> Result<String, ReportError> {
 
 const COLOURS: [Colour; 6] = [BLUE, ORANGE, GREEN, RED, MUTED, INK];
 
-/// `compare.svg`: best so far of each optimizer, the median as a line and the quartiles as a band.
+/// Plots the best so far of each optimizer: the median as a line and the quartiles as a band.
 pub fn svg(comparison: &Comparison) -> Result<String, ReportError> {
     let title = format!("{}: best so far, median and quartiles over seeds", comparison.task);
     sheet("the comparison", (880, 480), |area| draw(area, comparison, &title))
@@ -264,7 +284,7 @@ fn draw(area: &Area<'_>, comparison: &Comparison, title: &str) -> Drawn {
     legend(&mut chart, SeriesLabelPosition::LowerRight)
 }
 
-/// One of the quartiles as stairs, from the first evaluation on at which it is known.
+/// Returns one of the quartiles as stairs, from the first evaluation at which it is known.
 fn quartile(group: &OptimizerGroup, which: usize) -> Vec<(f64, f64)> {
     let numbered = (1..).zip(&group.best_so_far_mm);
     stairs(numbered.filter_map(|(n, quartiles)| Some((f64::from(n), quartiles.all()[which]?))))

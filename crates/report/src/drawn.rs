@@ -31,7 +31,7 @@ pub(super) fn drawn<'a>(
     all.iter().zip(taken).filter(wanted).map(|(one, _)| one).collect()
 }
 
-/// Note for a reader of the pictures; nothing where all are drawn.
+/// Returns a note on the selection; `None` if all evaluations are shown.
 pub(super) fn note(record: &StudyRecord) -> Option<String> {
     let all = record.evaluations.len();
     (all > PLOTTED).then(|| {
@@ -44,7 +44,7 @@ pub(super) fn note(record: &StudyRecord) -> Option<String> {
     })
 }
 
-/// Thins a long line to the points at which its value changes; a short one is kept whole.
+/// Reduces a long line to the points at which its value changes.
 pub(super) fn turning(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     if points.len() <= PLOTTED {
         return points;

@@ -3,7 +3,7 @@
 use super::theme::{inline, variables};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-/// A page that fetches nothing.
+/// Returns a page without external resources.
 pub(super) fn document(title: &str, body: Markup) -> String {
     let (light, dark) = (variables(false), variables(true));
     let style = format!(
@@ -13,7 +13,7 @@ pub(super) fn document(title: &str, body: Markup) -> String {
     styled(title, &style, body)
 }
 
-/// The same in a style of its own.
+/// Returns a page without external resources in a given style.
 pub(super) fn styled(title: &str, style: &str, body: Markup) -> String {
     let policy =
         "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
@@ -33,7 +33,7 @@ pub(super) fn styled(title: &str, style: &str, body: Markup) -> String {
     page.into_string()
 }
 
-/// An SVG from a file as the address of a picture, which runs no script.
+/// Returns an SVG from a file as the address of an image, in which scripts do not run.
 pub(super) fn inert(svg: &str) -> String {
     let marks = [('%', "%25"), ('#', "%23"), ('<', "%3C"), ('>', "%3E"), ('"', "%22")];
     let svg = marks.iter().fold(svg.to_owned(), |svg, (mark, code)| svg.replace(*mark, code));
@@ -46,7 +46,7 @@ pub(super) fn definitions(pairs: &[(String, String)]) -> Markup {
     }
 }
 
-/// A table, which scrolls sideways where it is wider than the page.
+/// Returns a table, which scrolls horizontally if it is wider than the page.
 pub(super) fn table(head: &[&str], rows: &[Vec<String>]) -> Markup {
     html! {
         div.wide {
@@ -58,7 +58,7 @@ pub(super) fn table(head: &[&str], rows: &[Vec<String>]) -> Markup {
     }
 }
 
-/// A table whose rows a phone shows below each other, each cell with its heading.
+/// Returns a table whose cells are stacked with their headings on a phone.
 pub(super) fn stacked(head: &[&str], rows: &[Vec<Markup>]) -> Markup {
     html! {
         table.stacked {
@@ -72,7 +72,7 @@ pub(super) fn stacked(head: &[&str], rows: &[Vec<Markup>]) -> Markup {
     }
 }
 
-/// A drawn plot; a reader that cannot see it gets `label`.
+/// Returns a plot with its label for screen readers.
 pub(super) fn figure(svg: &str, label: &str, caption: &str) -> Markup {
     html! {
         figure {

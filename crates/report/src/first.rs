@@ -37,7 +37,7 @@ pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
             @if stuck { (nominal(answer, beside)) }
             @else if let Some((_, tasks)) = answer.shown() { (films(answer, &tasks, beside)) }
             div {
-                (bar::section(answer, &beside.robots).unwrap_or_default())
+                (bar::section(answer, &beside.analyses.robots).unwrap_or_default())
                 (drawn(answer).unwrap_or_default())
                 (files(answer, beside).unwrap_or_default())
             }
@@ -105,15 +105,15 @@ fn nominal(answer: &Answer, beside: &Beside) -> Markup {
     }
 }
 
-/// The end of the window that is shown first: a jam or a miss says more than a lost plug.
+/// Returns the end of the window that is shown first: a jam or a miss is more informative than a lost plug.
 pub fn preferred(answer: &Answer) -> &'static str {
-    let telling = |end: Option<Outcome>| {
-        let telling = [FailureClass::PlugMissed, FailureClass::Jammed].map(Outcome::Failed);
-        end.is_some_and(|end| telling.contains(&end))
+    let informative = |end: Option<Outcome>| {
+        let informative = [FailureClass::PlugMissed, FailureClass::Jammed].map(Outcome::Failed);
+        end.is_some_and(|end| informative.contains(&end))
     };
     let [negative, positive] = ENDS.map(|(end, _)| end);
     let window = answer.shown().and_then(|(_, tasks)| Some(&tasks.first()?.window));
-    let below = window.is_some_and(|w| telling(w.end_negative) && !telling(w.end_positive));
+    let below = window.is_some_and(|w| informative(w.end_negative) && !informative(w.end_positive));
     if below { negative } else { positive }
 }
 

@@ -82,7 +82,7 @@ const TEXT: u32 = 15;
 /// span first; the infill in another colour, negligible levers in grey.
 ///
 /// # Errors
-/// If the drawing library refuses.
+/// If the drawing library fails.
 pub fn svg(levers: &Levers) -> Result<String, ReportError> {
     let bars = bars(levers);
     let height = HEAD_AND_FOOT + ROW * bars.len() as u32;

@@ -26,8 +26,8 @@ const SIZE: (u32, u32) = (440, 360);
 const ROW: i32 = 22;
 const LEFT: i32 = 14;
 
-/// Every outcome as a map has it: its number (0 inserted, 1 to 4 the failure class, -1 diverged), its words, and
-/// its colour on a light page, `#RRGGBB`.
+/// Returns every outcome with its number in a map (0 inserted, 1 to 4 the failure class, -1 diverged), its label,
+/// and its colour on a light page, `#RRGGBB`.
 pub fn outcomes() -> [(i8, &'static str, String); 6] {
     COLOURS.map(|(outcome, colour)| {
         let number = match outcome {
@@ -42,7 +42,7 @@ pub fn outcomes() -> [(i8, &'static str, String); 6] {
 /// Draws the outcome at each place, with a dot where it was simulated.
 ///
 /// # Errors
-/// If the drawing library refuses.
+/// If the drawing library fails.
 pub fn svg(map: &CaptureMap) -> Result<String, ReportError> {
     let head = head(map);
     let rows = head[1].last().map_or(0, |entry| entry.at.1 + 1);
@@ -54,14 +54,14 @@ pub fn svg(map: &CaptureMap) -> Result<String, ReportError> {
     })
 }
 
-/// A text of title or legend, the colour that it explains, and its place: pixels from the left, and row.
+/// Text of title or legend with its colour and its position: pixels from the left, and row.
 struct Entry {
     text: String,
     colour: Option<Colour>,
     at: (i32, i32),
 }
 
-/// Places texts in rows from `first` on, each after so many pixels; no row is wider than the map.
+/// Places texts in rows from `first` on, each after `before` pixels; no row is wider than the map.
 fn placed(
     texts: impl IntoIterator<Item = (String, Option<Colour>)>,
     before: i32,
@@ -126,7 +126,7 @@ fn draw(area: &Area<'_>, map: &CaptureMap) -> Drawn {
     for (at, row) in map.outcomes.iter().enumerate() {
         let y = second.value(at);
         let mut from = 0;
-        // What ends alike side by side is one rectangle.
+        // Neighbours with equal outcomes are one rectangle.
         for stretch in row.chunk_by(|a, b| a == b) {
             let to = from + stretch.len();
             let outcome = stretch.first().map(|mark| mark.0);

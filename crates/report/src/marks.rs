@@ -4,7 +4,7 @@ use super::chart::{Chart, Drawn, message};
 use super::theme::{Colour, MUTED};
 use plotters::prelude::*;
 
-/// How a point is marked: a circle or a cross of a size in pixels, and its style.
+/// Mark of a point: a circle or a cross of a size in pixels, and its style.
 #[derive(Clone, Copy)]
 pub(super) struct PointMark {
     cross: bool,
@@ -13,7 +13,7 @@ pub(super) struct PointMark {
 }
 
 impl PointMark {
-    /// A filled circle through which others can be seen.
+    /// Returns a translucent disc.
     pub fn dot(colour: Colour, size: i32) -> Self {
         PointMark { cross: false, size, style: colour.rgb().mix(0.55).filled() }
     }
@@ -38,7 +38,7 @@ impl PointMark {
     }
 }
 
-/// Marks points; `label` is for the legend, empty for none.
+/// Draws marked points; `label` is for the legend, empty for none.
 pub(super) fn points<'a, 'b: 'a>(
     chart: &mut Chart<'a, 'b>,
     points: impl IntoIterator<Item = (f64, f64)>,
@@ -56,7 +56,7 @@ pub(super) fn points<'a, 'b: 'a>(
     Ok(())
 }
 
-/// A line through points; `label` is for the legend, empty for none.
+/// Draws a line through points; `label` is for the legend, empty for none.
 pub(super) fn line(
     chart: &mut Chart<'_, '_>,
     points: Vec<(f64, f64)>,
@@ -90,7 +90,7 @@ pub(super) fn bar(
     chart.draw_series([bar]).map(|_| ()).map_err(message)
 }
 
-/// Writes words at a point, moved by pixels.
+/// Writes words at a point, shifted by pixels.
 pub(super) fn label(
     chart: &mut Chart<'_, '_>,
     at: (f64, f64),
@@ -102,7 +102,7 @@ pub(super) fn label(
     chart.draw_series([words]).map(|_| ()).map_err(message)
 }
 
-/// The corners of stairs that rise (or fall) at each point.
+/// Returns the corners of a step function through points.
 pub(super) fn stairs(points: impl IntoIterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
     let mut stairs: Vec<(f64, f64)> = Vec::new();
     for (x, y) in points {

@@ -1,9 +1,12 @@
 //! `report.html`: a self-contained page with a small inline script.
 
-use super::beside::Beside;
+use super::beside::{Beside, PostAnalysis};
 use super::elements::{definitions, document, figure};
-use super::{ReportError, bench, convergence, explore, first, front, provenance, set, shape};
+use super::{
+    ReportError, bench, convergence, explore, first, front, levers, map, provenance, set, shape,
+};
 use crate::answer::{Answer, command, expectation, lines};
+use analysis::map::CaptureMap;
 use insertion::surrogate::Model;
 use maud::{Markup, html};
 use std::path::Path;
@@ -59,19 +62,26 @@ fn sections(answer: &Answer, model: &Model, beside: &Beside) -> Result<Vec<Secti
         None => "Ties",
         Some(_) => "Ties by simulation alone",
     };
+    let PostAnalysis { levers, maps, .. } = &beside.analyses;
     // This drawing scrolls on a phone instead of being scaled down, so that text stays legible.
-    let drawn = |(caption, svg): &(String, String)| {
-        html! { div.moved { (figure(svg, caption, caption)) } }
-    };
-    let maps = (!beside.maps.is_empty()).then(|| {
-        html! { div.views.maps { @for (caption, svg) in &beside.maps { (figure(svg, caption, caption)) } } }
+    let levers = levers.as_ref().map(|levers| {
+        let caption = levers.sentence();
+        let figure = figure(&levers::svg(levers)?, &caption, &caption);
+        Ok::<_, ReportError>(html! { div.moved { (figure) } })
     });
+    let map = |map: &CaptureMap| {
+        let caption = map.caption();
+        Ok::<_, ReportError>(figure(&map::svg(map)?, &caption, &caption))
+    };
+    let maps = maps.iter().map(map).collect::<Result<Vec<_>, _>>()?;
+    let maps =
+        (!maps.is_empty()).then(|| html! { div.views.maps { @for figure in maps { (figure) } } });
     let sections = [
         section("bench", "Predicted for the bench", bench::section(record)),
         section("set", set_title, set::section(answer)),
         section("front", "Pareto front", front::section(answer, PLOT)?),
         section("shape", "Beyond the infill", shape::section(record)),
-        section("levers", "Sensitivity of the window", beside.levers.as_ref().map(drawn)),
+        section("levers", "Sensitivity of the window", levers.transpose()?),
         section("maps", "Capture maps", maps),
         section("explore-views", "All designs", explore::section(answer, &beside.dir)),
         section("convergence", "Convergence", Some(convergence::section(record, PLOT)?)),

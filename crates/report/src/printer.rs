@@ -8,9 +8,9 @@ use study::StudyRecord;
 
 /// Surface of the recommended finger, in the folder of its study.
 pub const SURFACE: &str = "finger.stl";
-/// The same with its unit of length.
+/// Surface with its unit of length.
 pub const THREE_MF: &str = "finger.3mf";
-/// Outline and solid base with the settings of PrusaSlicer.
+/// Outline and solid base with settings of PrusaSlicer.
 pub const PROJECT: &str = "finger-prusaslicer.3mf";
 /// Sheet for printing it and checking the print.
 pub const SHEET: &str = "finger-sheet.html";
@@ -30,7 +30,7 @@ pub(super) fn finger_file(record: &StudyRecord) -> Option<FingerFile> {
     })
 }
 
-/// The recommended finger; `None` if there is none or it cannot be printed.
+/// Returns the recommended finger; `None` if there is none or it cannot be printed.
 pub fn recommended(answer: &Answer) -> Option<Geometry> {
     let design = answer.verdict.finger()?;
     let finger = finger_file(answer.record)?.with(design).ok()?;

@@ -13,7 +13,6 @@ use input::files::{self, LARGEST_OWN};
 use insertion::evaluation::Evaluation;
 use insertion::robot::Robot;
 use insertion::trial::engine::EngineRecord;
-use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -28,13 +27,6 @@ pub struct Cache {
     context: String,
     found: AtomicU64,
     problem: Mutex<Option<io::Error>>,
-}
-
-#[derive(Serialize, Deserialize)]
-struct Entry {
-    /// SHA-256 of everything that determines the evaluation; detects renamed files.
-    key: String,
-    measured: Evaluation,
 }
 
 impl Cache {
@@ -57,10 +49,9 @@ impl Cache {
 
     /// Returns the evaluation with this key, if there is an undamaged one.
     pub fn get(&self, key: &str) -> Option<Evaluation> {
-        let text = files::read_own(&self.path(key), LARGEST_OWN).ok()?;
+        let text = files::read_text(&self.path(key), LARGEST_OWN).ok()?;
         let (content, _) = unseal(text.strip_suffix('\n')?).ok()?;
-        let entry: Entry = serde_json::from_str(&content).ok()?;
-        let found = (entry.key == key).then_some(entry.measured)?;
+        let found = serde_json::from_str(&content).ok()?;
         self.found.fetch_add(1, Ordering::Relaxed);
         Some(found)
     }
@@ -69,9 +60,8 @@ impl Cache {
     pub fn put(&self, key: &str, evaluation: &Evaluation) {
         let write = || {
             let path = self.path(key);
-            let entry = Entry { key: key.to_owned(), measured: evaluation.clone() };
             fs::create_dir_all(path.parent().unwrap_or(&self.dir))?;
-            files::write_own(&path, seal(&entry, None)?.as_bytes())
+            files::write_own(&path, seal(evaluation, None)?.as_bytes())
         };
         if let Err(error) = write()
             && let Ok(mut problem) = self.problem.lock()
@@ -123,7 +113,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn what_is_put_is_found_by_its_own_inputs_only() {
+    fn an_evaluation_is_found_by_its_own_inputs_only() {
         let dir = tempfile::tempdir().unwrap();
         let cache = cache(dir.path());
         let (a, b) = (cache.key(&0.1), cache.key(&(0.1 + f64::EPSILON)));
@@ -144,7 +134,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn a_torn_or_damaged_file_is_as_good_as_none_and_is_written_again() {
+    fn a_torn_or_damaged_file_counts_as_missing_and_is_written_again() {
         let dir = tempfile::tempdir().unwrap();
         let cache = cache(dir.path());
         let (key, found) = (cache.key(&1), sound());
@@ -161,11 +151,6 @@ pub(super) mod tests {
             fs::write(file, &damaged).unwrap();
             assert_eq!(cache.get(&key), None, "byte {at}");
         }
-        // Another evaluation's file under this name.
-        let other = cache.key(&2);
-        cache.put(&other, &Evaluation { trials: found.trials + 1, ..sound() });
-        fs::copy(cache.path(&other), file).unwrap();
-        assert_eq!(cache.get(&key), None);
         cache.put(&key, &found);
         assert_eq!(cache.get(&key), Some(found));
     }
@@ -191,7 +176,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn a_folder_that_cannot_be_written_is_told_and_harms_nothing() {
+    fn a_folder_that_cannot_be_written_is_reported_and_harms_nothing() {
         let dir = tempfile::tempdir().unwrap();
         let file = dir.path().join("file");
         fs::write(&file, "").unwrap();

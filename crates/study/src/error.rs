@@ -58,7 +58,7 @@ pub enum StudyError {
         /// The design.
         design: String,
         /// Setting that cannot be simulated.
-        source: Impossible,
+        source: Box<Impossible>,
     },
 }
 
@@ -83,7 +83,7 @@ impl StudyError {
 
     /// Returns the error for a design that cannot be simulated.
     pub fn impossible(index: u64, design: &Design, source: Impossible) -> StudyError {
-        StudyError::Impossible { index, design: design.to_string(), source }
+        StudyError::Impossible { index, design: design.to_string(), source: Box::new(source) }
     }
 
     /// Returns a function for `map_err` that adds `action` and `path` to an error of the file system.

@@ -337,7 +337,7 @@ fn journal_file(dir: &Path) -> Result<Box<dyn Store>, StudyError> {
 /// If there is none or it is invalid.
 pub fn read_config(dir: &Path) -> Result<StudyConfig, StudyError> {
     let path = dir.join(CONFIG_FILE);
-    let text = match files::read_own(&path, LARGEST_OWN) {
+    let text = match files::read_text(&path, LARGEST_OWN) {
         Ok(text) => text,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             return Err(StudyError::file(dir, "not a study: it has no study.toml"));
@@ -359,7 +359,7 @@ fn read_inputs(dir: &Path, segments: &[Segment]) -> Result<Inputs, StudyError> {
     let mut inputs = Inputs::new();
     for (role, hash) in expected {
         let path = input_path(dir, number, role);
-        let text = files::read_own(&path, LARGEST_INPUT).map_err(StudyError::io("read", &path))?;
+        let text = files::read_text(&path, LARGEST_INPUT).map_err(StudyError::io("read", &path))?;
         if sha256_hex(text.as_bytes()) != *hash {
             let problem = format!("was changed: its SHA-256 is not the {hash} of the study");
             return Err(StudyError::file(&path, problem));
@@ -409,7 +409,7 @@ pub fn write_file(path: &Path, content: &(impl AsRef<[u8]> + ?Sized)) -> Result<
 /// Reads an analysis from a file in a study's folder; returns `None` if it is missing or damaged, since it
 /// can be repeated.
 pub fn read_analysis<T: DeserializeOwned>(dir: &Path, file: &str) -> Option<T> {
-    serde_json::from_str(&files::read_own(&dir.join(file), LARGEST_OWN).ok()?).ok()
+    serde_json::from_str(&files::read_text(&dir.join(file), LARGEST_OWN).ok()?).ok()
 }
 
 /// Writes an analysis to a file in a study's folder.
@@ -447,7 +447,7 @@ fn lock(dir: &Path) -> Result<File, StudyError> {
     let path = dir.join(LOCK_FILE);
     let mut options = OpenOptions::new();
     options.read(true).write(true).create(true).truncate(false);
-    let mut file = files::open_own(&path, &mut options).map_err(StudyError::io("open", &path))?;
+    let mut file = options.open(&path).map_err(StudyError::io("open", &path))?;
     match file.try_lock() {
         Ok(()) => {}
         Err(TryLockError::WouldBlock) => {

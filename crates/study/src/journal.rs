@@ -11,6 +11,7 @@ use super::record::Recorded;
 use super::store::Store;
 use super::{header, line};
 use input::files::{self, LARGEST_JOURNAL};
+use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -111,7 +112,8 @@ impl Journal {
 
 /// Reads a journal without writing to it; a torn last line is ignored.
 pub fn read(path: &Path, config: &StudyConfig) -> Result<Contents, StudyError> {
-    let bytes = files::bytes_own(path, LARGEST_JOURNAL).map_err(StudyError::io("read", path))?;
+    let bytes = File::open(path).and_then(|file| files::read_up_to(file, LARGEST_JOURNAL));
+    let bytes = bytes.map_err(StudyError::io("read", path))?;
     parse(&bytes, path, config)
 }
 

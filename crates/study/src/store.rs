@@ -1,7 +1,7 @@
 //! Storage of a journal: a file, or a replacement for tests that fails.
 
 use input::files::{self, LARGEST_JOURNAL};
-use std::fs::{self, File, OpenOptions, TryLockError};
+use std::fs::{self, File, TryLockError};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -44,8 +44,7 @@ impl FileStore {
     /// # Errors
     /// [`io::ErrorKind::WouldBlock`] if another process has locked it.
     pub fn open(path: &Path) -> io::Result<Self> {
-        let mut options = OpenOptions::new();
-        let file = files::open_own(path, options.read(true).append(true).create(true))?;
+        let file = File::options().read(true).append(true).create(true).open(path)?;
         // On other systems a lock would block readers.
         if cfg!(unix) {
             match file.try_lock() {

@@ -1,6 +1,6 @@
 //! `optimize export finger`: exports a finger for printing.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::setup::printed::PrintRequest;
@@ -11,7 +11,6 @@ use finray::export::{self, profile, sheet, slicer};
 use finray::geometry::Geometry;
 use finray::mechanics;
 use serde::Serialize;
-use std::fmt;
 use std::path::{Path, PathBuf};
 use study::write_file;
 
@@ -72,12 +71,13 @@ pub struct Written {
 }
 
 impl command::Request for Request {
-    type Response = Written;
+    type Response = Output<Written>;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Written, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
         let geometry = self.finger.geometry()?;
         let (out, title) = (&self.out, export::title(&geometry));
         let format = self.format()?;
+        let mut beside = Vec::new();
         match format {
             Format::Stl => {
                 write_file(out, &closed(Prism::finger(&geometry), &geometry)?.stl(&title))?
@@ -99,11 +99,20 @@ impl command::Request for Request {
             Format::Cura | Format::Prusaslicer => {
                 let cura = format == Format::Cura;
                 let text = if cura { slicer::cura } else { slicer::prusaslicer };
-                let beside = settings(out, &geometry, &text(&geometry))?;
-                return Ok(Written { out: out.clone(), title, beside });
+                beside = settings(out, &geometry, &text(&geometry))?;
             }
         }
-        Ok(Written { out: out.clone(), title, beside: Vec::new() })
+        let text = match &beside[..] {
+            [outline, base] => format!(
+                "wrote settings for {title}: {}\nslice with them: {}\n\
+                 load as a modifier with 100 % infill: {}\n",
+                out.display(),
+                outline.display(),
+                base.display()
+            ),
+            _ => format!("wrote {title}: {}\n", out.display()),
+        };
+        Ok(Output { value: Written { out: out.clone(), title, beside }, text, picture: None })
     }
 }
 
@@ -151,23 +160,6 @@ impl Format {
 /// Returns the ending of a file's name, in lower case.
 fn ending(file: &Path) -> String {
     file.extension().unwrap_or_default().to_string_lossy().to_lowercase()
-}
-
-impl command::Response for Written {}
-
-impl fmt::Display for Written {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Written { out, title, beside } = self;
-        let out = out.display();
-        let [outline, base] = &beside[..] else { return writeln!(f, "wrote {title}: {out}") };
-        let (outline, base) = (outline.display(), base.display());
-        writeln!(
-            f,
-            "wrote settings for {title}: {out}\n\
-             slice with them: {outline}\n\
-             load as a modifier with 100 % infill: {base}"
-        )
-    }
 }
 
 fn closed(

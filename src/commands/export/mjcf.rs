@@ -1,6 +1,6 @@
 //! `optimize export mjcf`: writes the scene of a trial as MJCF.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::setup::finger::FingerRequest;
@@ -9,7 +9,6 @@ use contact::mjcf::{self, MjcfSettings};
 use insertion::evaluation::evaluator::Specimen;
 use insertion::trial::cell;
 use serde::Serialize;
-use std::fmt;
 use std::path::PathBuf;
 use study::write_file;
 
@@ -43,12 +42,13 @@ pub struct Written {
 }
 
 impl command::Request for Request {
-    type Response = Written;
+    type Response = Output<Written>;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Written, Failure> {
-        let (task, text) = self.scene()?;
-        write_file(&self.out, &text)?;
-        Ok(Written { out: self.out.clone(), task })
+    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+        let (task, scene) = self.scene()?;
+        write_file(&self.out, &scene)?;
+        let text = format!("wrote {}: the scene of {task}, for MuJoCo\n", self.out.display());
+        Ok(Output { value: Written { out: self.out.clone(), task }, text, picture: None })
     }
 }
 
@@ -67,13 +67,5 @@ impl Request {
         let text = mjcf::write(&scene, &task.name, &MjcfSettings::default())
             .map_err(|error| Failure::usage(format!("{error}; {instead}")))?;
         Ok((task.name, text))
-    }
-}
-
-impl command::Response for Written {}
-
-impl fmt::Display for Written {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "wrote {}: the scene of {}, for MuJoCo", self.out.display(), self.task)
     }
 }

@@ -1,6 +1,6 @@
 //! `optimize measure add`: adds a line to a measurement file.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::commands::measure::check::counted;
 use crate::context::Context;
 use crate::failure::Failure;
@@ -12,7 +12,6 @@ use calibration::experiments::{
 use input::files::{LARGEST_INPUT, Table};
 use input::shipped::{MEASUREMENTS, TASKS};
 use serde::Serialize;
-use std::fmt;
 use std::io::{self, BufRead};
 use std::path::Path;
 
@@ -96,23 +95,17 @@ pub struct Added {
 }
 
 impl command::Request for Request {
-    type Response = Added;
+    type Response = Output<Added>;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Added, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
         let (file, mut cells) = (&self.file, self.cells());
         not_shipped(file)?;
         if cells.is_empty() {
             cells = asked(&mut io::stdin().lock())?;
         }
-        Ok(Added { file: file.clone(), lines: added(file, cells, self.dry_run)?.len() })
-    }
-}
-
-impl command::Response for Added {}
-
-impl fmt::Display for Added {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}: {}", self.file, counted(self.lines))
+        let lines = added(file, cells, self.dry_run)?.len();
+        let text = format!("{file}: {}\n", counted(lines));
+        Ok(Output { value: Added { file: file.clone(), lines }, text, picture: None })
     }
 }
 

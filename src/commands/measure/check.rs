@@ -1,6 +1,6 @@
 //! `optimize measure check`: checks a measurement file.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::setup::measured;
@@ -10,7 +10,6 @@ use insertion::outcome::FailureClass;
 use insertion::space::Design;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::fmt;
 
 /// Check a measurement file: implausible units, windows without the start, duplicate lines, unknown tasks
 #[derive(Debug, clap::Args)]
@@ -88,9 +87,9 @@ impl From<&Experiment> for Row {
 }
 
 impl command::Request for Request {
-    type Response = Checked;
+    type Response = Output<Checked>;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Checked, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
         let own = self.task.iter().map(|name| Ok(read_task(name)?.task.name));
         let own = own.collect::<Result<Vec<_>, Failure>>()?;
         let own: Vec<&str> = own.iter().map(String::as_str).collect();
@@ -107,24 +106,18 @@ impl command::Request for Request {
                 None => (),
             }
         }
-        let tasks = tasks.into_values().collect();
-        let rows = self.rows.then(|| found.iter().map(Row::from).collect());
-        Ok(Checked { file: self.file.clone(), lines: found.len(), tasks, rows })
-    }
-}
-
-impl command::Response for Checked {}
-
-impl fmt::Display for Checked {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for OfTask { task, lines, ranges, bounds, .. } in &self.tasks {
+        let tasks: Vec<OfTask> = tasks.into_values().collect();
+        let line = |OfTask { task, lines, ranges, bounds, .. }: &OfTask| {
             let rest = lines - ranges - bounds;
-            writeln!(
-                f,
-                "{task:<8} {ranges:>3} ranges, {bounds:>3} lower bounds, {rest:>3} not measurable"
-            )?;
-        }
-        writeln!(f, "{}: {}, no problems found", self.file, counted(self.lines))
+            format!(
+                "{task:<8} {ranges:>3} ranges, {bounds:>3} lower bounds, {rest:>3} not measurable\n"
+            )
+        };
+        let (file, lines) = (self.file.clone(), found.len());
+        let text = tasks.iter().map(line).collect::<String>()
+            + &format!("{file}: {}, no problems found\n", counted(lines));
+        let rows = self.rows.then(|| found.iter().map(Row::from).collect());
+        Ok(Output { value: Checked { file, lines, tasks, rows }, text, picture: None })
     }
 }
 

@@ -1,6 +1,6 @@
 //! `optimize measure sheet`: sheet for measuring windows by hand.
 
-use crate::command::{self, Request as _};
+use crate::command::{self, Output, Request as _};
 use crate::commands::trial;
 use crate::context::Context;
 use crate::failure::Failure;
@@ -12,7 +12,6 @@ use insertion::outcome::Outcome;
 use insertion::trial::picture;
 use report::sheet::{self, Picture};
 use serde::Serialize;
-use std::fmt;
 use std::path::PathBuf;
 use study::write_file;
 
@@ -62,10 +61,10 @@ pub struct Written {
 }
 
 impl command::Request for Request {
-    type Response = Written;
+    type Response = Output<Written>;
 
     /// Simulates insertions of the fingers and writes the sheet.
-    fn run(&self, context: &Context<'_>) -> Result<Written, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
         let task = read_task(&self.task)?.task;
         let shifts = (1..=FARTHEST_MM).flat_map(|mm| [f64::from(mm), -f64::from(mm)]);
         let outward = shifts.filter_map(|shift| Some((self.fingers.first()?, shift)));
@@ -77,15 +76,8 @@ impl command::Request for Request {
         pictures.sort_by_key(|picture| picture.outcome.failure());
         pictures.dedup_by_key(|picture| picture.outcome);
         write_file(&self.out, &sheet::page(&task, &self.task, &self.fingers, &pictures))?;
-        Ok(Written { out: self.out.clone() })
-    }
-}
-
-impl command::Response for Written {}
-
-impl fmt::Display for Written {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "wrote {}", self.out.display())
+        let text = format!("wrote {}\n", self.out.display());
+        Ok(Output { value: Written { out: self.out.clone() }, text, picture: None })
     }
 }
 
@@ -99,7 +91,7 @@ fn ended(
     let finger = FingerRequest { infill, set, ..FingerRequest::default() };
     let setup = SetupRequest { tasks, ..SetupRequest::default() };
     let trial = trial::Request { setup, finger, offset_mm, ..trial::Request::default() };
-    let done = trial.run(context)?;
+    let done = trial.run(context)?.value;
     let Specimen { task, finger, .. } = done.chosen.specimen;
     let svg = picture::ended(&task, &finger.pad, &done.trial);
     Ok(Picture { outcome: done.trial.outcome, svg, task: task.name })

@@ -32,12 +32,12 @@ impl command::Request for Request {
 
     fn run(&self, context: &Context<'_>) -> Result<Text, Failure> {
         let source = TaskSource::Named(self.name.clone()).read()?;
-        let Some(file) = &self.html else { return Ok(Text(source.text)) };
+        let Some(file) = &self.html else { return Ok(source.text.into()) };
         let TaskFile { task, .. } = TaskFile::parse(source)?;
         let (finger, recording) = nominal_recording(&task, &robot(DEFAULT_ROBOT)?, context.stop)?;
         let label = format!("nominal start with {DEFAULT_ROBOT}");
         let film = Film { label: &label, task: &task, pad: &finger.pad, recording: &recording };
         write_file(file, &replay::page(&format!("{}: {}", task.name, task.description), &[film]))?;
-        Ok(Text(wrote([file])))
+        Ok(wrote([file]).into())
     }
 }

@@ -10,7 +10,7 @@ use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
 use crate::setup::task::TaskFile;
 use crate::setup::tune::{Tried, bench, outcome, ranges, tried};
 use connector::check::problems;
-use connector::tune::{Effort, MOST_WINDOWS, Robustness, Stage, Stopped, Tuned, tune};
+use connector::tune::{Bench, Effort, MOST_WINDOWS, Robustness, Stage, Stopped, Tuned, tune};
 use connector::{picture, rewrite};
 use input::Place;
 use input::shipped::Source;
@@ -19,7 +19,7 @@ use insertion::evaluation::Window;
 use insertion::finger::Finger;
 use insertion::robot::Robot;
 use insertion::task::parts_file::without_parts;
-use insertion::task::{Strategy, Task};
+use insertion::task::{Limits, Strategy, Task};
 use insertion::trial::Conditions;
 use insertion::trial::engine::EngineKind;
 use serde::{Serialize, Serializer};
@@ -48,6 +48,12 @@ pub struct Request {
     /// Seed of the search
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
+    /// Largest force between plug and socket, N [default: limits.force_n of the task, or the robot's stop force]
+    #[arg(long, value_name = "N", value_parser = positive)]
+    pub max_force_n: Option<f64>,
+    /// Largest speed of a phase, mm/s [default: limits.speed_mm_per_s of the task]
+    #[arg(long, value_name = "MM/S", value_parser = positive)]
+    pub max_speed_mm_per_s: Option<f64>,
     /// Write this new file instead of FILE
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
@@ -57,6 +63,20 @@ pub struct Request {
     /// Draw the search before and after
     #[arg(long, value_name = "FILE.svg")]
     pub svg: Option<PathBuf>,
+}
+
+/// Windows of the fingers on the tuned task.
+pub struct After {
+    /// The windows.
+    pub windows: Vec<Window>,
+    /// Largest force of their insertions, N.
+    pub force_n: f64,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let value = text.parse().unwrap_or(f64::NAN);
+    let accepted = value > 0.0 && f64::is_finite(value);
+    if accepted { Ok(value) } else { Err("give a number above 0".to_owned()) }
 }
 
 /// Result of tuning a task.
@@ -69,8 +89,10 @@ pub struct Done {
     pub tuned: Tuned,
     /// The soft, the medium and the stiff finger.
     pub fingers: [Finger; 3],
+    /// Limits of force and speed.
+    pub limits: Limits,
     /// Their windows on the tuned task; `None` if no strategy inserts.
-    pub after: Option<Vec<Window>>,
+    pub after: Option<After>,
     /// The file that was written, if one was.
     pub written: Option<PathBuf>,
 }
@@ -91,7 +113,7 @@ impl command::Request for Request {
             return Err(Failure::task(Place::file(file).key(key).fault(problem)));
         }
         let robot = robot(&self.robot)?;
-        let bench = bench(&file.task, &robot, self.engine, stop)?;
+        let bench = self.bench(&file.task, &robot, stop)?;
         let said = |what: &str, cost: usize, done, of| {
             context.part(&Part { what: what.to_owned(), done, of, cost: cost as f64 });
         };
@@ -99,12 +121,13 @@ impl command::Request for Request {
             Effort { last: Stage::Search, until_enough: false, seed: self.seed, tell: &said };
         let tuned = tune(&bench, &effort).map_err(Failure::input)?;
         not_stopped(stop)?;
-        let fingers = bench.fingers;
+        let Bench { fingers, limits, .. } = bench;
         let mut done = Done {
             file: self.file.clone(),
             task: file.task.clone(),
             tuned,
             fingers,
+            limits,
             after: None,
             written: None,
         };
@@ -117,6 +140,20 @@ impl command::Request for Request {
 }
 
 impl Request {
+    /// Returns the bench of a task, with the limits given on the command line.
+    fn bench<'a>(
+        &self,
+        task: &'a Task,
+        robot: &'a Robot,
+        stop: &'a AtomicBool,
+    ) -> Result<Bench<'a>, Failure> {
+        let mut bench = bench(task, robot, self.engine, stop)?;
+        let given =
+            Limits { force: self.max_force_n, speed: self.max_speed_mm_per_s.map(|v| v * MM) };
+        bench.limits = given.or(bench.limits);
+        Ok(bench)
+    }
+
     /// Returns the file to write; a shipped task cannot be overwritten.
     fn target(&self) -> Result<Option<&Path>, Failure> {
         match &self.out {
@@ -141,14 +178,15 @@ impl Request {
         done: &Done,
         robot: &Robot,
         (target, stop): (Option<&Path>, &AtomicBool),
-    ) -> Result<Vec<Window>, Failure> {
+    ) -> Result<After, Failure> {
         let strategy = &done.tuned.best().tried.strategy;
         let after = TaskFile::parse(rewritten(&file.source, &file.task, strategy)?)?;
-        let bench = bench(&after.task, robot, self.engine, stop)?;
+        let bench = self.bench(&after.task, robot, stop)?;
         let found = bench.windows(&after.task.strategy, &bench.fingers, Conditions::NOMINAL);
         not_stopped(stop)?;
-        let windows =
-            found.map_err(Failure::input)?.into_iter().map(|(window, _)| window).collect();
+        let found = found.map_err(Failure::input)?;
+        let force_n = found.iter().map(|found| found.force_n).fold(0.0, f64::max);
+        let windows = found.into_iter().map(|found| found.window).collect();
         if let Some(svg) = &self.svg {
             write_file(svg, &picture::both(&file.task, &after.task))?;
         }
@@ -158,7 +196,7 @@ impl Request {
             let text = &after.source.text;
             write_file(target, if beside { without_parts(text) } else { text })?;
         }
-        Ok(windows)
+        Ok(After { windows, force_n })
     }
 }
 
@@ -172,6 +210,8 @@ fn rewritten(source: &Source, task: &Task, strategy: &Strategy) -> Result<Source
 struct State<'a> {
     start_mm: [f64; 3],
     tilt_deg: f64,
+    push_speed_mm_per_s: f64,
+    largest_force_n: f64,
     fingers: Vec<OfFinger<'a>>,
 }
 
@@ -185,7 +225,7 @@ struct OfFinger<'a> {
 }
 
 impl<'a> State<'a> {
-    fn new(strategy: &Strategy, windows: &[Window], fingers: &[Finger]) -> Self {
+    fn new(strategy: &Strategy, windows: &[Window], force_n: f64, fingers: &[Finger]) -> Self {
         let of = |(finger, window): (&Finger, &Window)| OfFinger {
             compliance_n_per_mm: finger.compliance / N_PER_MM,
             assembly_n_per_mm: finger.assembly / N_PER_MM,
@@ -196,9 +236,16 @@ impl<'a> State<'a> {
         State {
             start_mm: strategy.start.map(|at| (at / MM * 1e4).round() / 1e4),
             tilt_deg: (strategy.tilt / DEG * 100.0).round() / 100.0,
+            push_speed_mm_per_s: push_speed_mm_per_s(strategy),
+            largest_force_n: force_n,
             fingers: fingers.iter().zip(windows).map(of).collect(),
         }
     }
+}
+
+/// Returns the speed of the last phase, mm/s.
+fn push_speed_mm_per_s(strategy: &Strategy) -> f64 {
+    strategy.phases.last().map_or(0.0, |push| (push.speed / MM * 10.0).round() / 10.0)
 }
 
 impl Serialize for Done {
@@ -209,10 +256,16 @@ impl Serialize for Done {
             what: &'a str,
         }
         #[derive(Serialize)]
+        struct LimitsInForce {
+            force_n: Option<f64>,
+            speed_mm_per_s: Option<f64>,
+        }
+        #[derive(Serialize)]
         struct Fields<'a> {
             schema_version: u32,
             task: &'a str,
             inserts: bool,
+            limits: LimitsInForce,
             windows: usize,
             before: State<'a>,
             after: Option<State<'a>>,
@@ -222,15 +275,21 @@ impl Serialize for Done {
             nearest: Option<Stopped>,
             out: Option<String>,
         }
-        let Done { task, tuned, fingers, after, written, .. } = self;
+        let Done { task, tuned, fingers, limits, after, written, .. } = self;
+        let speed_mm_per_s = limits.speed.map(|speed| speed / MM);
+        let limits = LimitsInForce { force_n: limits.force, speed_mm_per_s };
         let best = tuned.best();
-        let state = |after: &Vec<Window>| State::new(&best.tried.strategy, after, fingers);
+        let state = |after: &After| {
+            State::new(&best.tried.strategy, &after.windows, after.force_n, fingers)
+        };
+        let first = &tuned.steps[0].tried;
         let fields = Fields {
             schema_version: 1,
             task: &task.name,
             inserts: after.is_some(),
+            limits,
             windows: tuned.windows,
-            before: State::new(&task.strategy, &tuned.steps[0].tried.windows, fingers),
+            before: State::new(&task.strategy, &first.windows, first.force_n, fingers),
             after: after.as_ref().map(state),
             by: By { stage: best.stage, what: &best.what },
             steps: tuned.steps.iter().map(Tried::from).collect(),
@@ -246,11 +305,16 @@ impl command::Response for Done {
     fn verdict(&self) -> Result<(), Failure> {
         match self.after {
             Some(_) => Ok(()),
-            None => Err(Failure::running(format!(
-                "{}: no strategy inserts; tried: {}",
-                self.file,
-                tried(&self.tuned)
-            ))),
+            None => {
+                let within = self.tuned.least_force_n().zip(self.limits.force);
+                let within = within.map_or(String::new(), |(least, limit)| {
+                    format!(" with at most {limit:.0} N (at least {least:.0} N; see --max-force-n)")
+                });
+                let (file, tried) = (&self.file, tried(&self.tuned));
+                Err(Failure::running(format!(
+                    "{file}: no strategy inserts{within}; tried: {tried}"
+                )))
+            }
         }
     }
 }
@@ -280,7 +344,8 @@ fn text(done: &Done) -> String {
         })),
         Some(after) => {
             let best = tuned.best();
-            all.push(line("chosen", format!("{}: {}", best.what, ranges(after))));
+            all.push(line("chosen", format!("{}: {}", best.what, ranges(&after.windows))));
+            all.push(line("push", change(done, after.force_n)));
             all.extend(tuned.kept.iter().enumerate().map(|(i, kept)| {
                 let name = if i == 0 { "other fingers" } else { "" };
                 let change = if i == 0 { String::new() } else { format!(", {}", kept.change) };
@@ -292,6 +357,18 @@ fn text(done: &Done) -> String {
     }
     all.push(line("windows", format!("{} measured", tuned.windows)));
     lines(all)
+}
+
+/// Returns speed and largest force of the push before and after.
+fn change(Done { task, tuned, limits, .. }: &Done, after_n: f64) -> String {
+    let [old, new] = [&task.strategy, &tuned.best().tried.strategy].map(push_speed_mm_per_s);
+    let before = match tuned.steps[0].tried.force_n {
+        0.0 => "none".to_owned(),
+        force_n => format!("{force_n:.0}"),
+    };
+    let limit = limits.force.map_or(String::new(), |limit| format!(" (limit {limit:.0} N)"));
+    let limited = limits.speed.map_or(String::new(), |v| format!(" (limit {:.0} mm/s)", v / MM));
+    format!("{old:.0} -> {new:.0} mm/s{limited}, largest force {before} -> {after_n:.0} N{limit}")
 }
 
 /// Returns a line for each stage with its best strategy; for the families stage one per family.

@@ -1,4 +1,4 @@
-//! Faults of a log, as sentences for its author, before anything is fitted to it.
+//! Checks of a log before the fit; the remarks are sentences for its author.
 
 use super::axes::{cause, motion};
 use super::log::{Ended, Log, Moment, Run};
@@ -10,39 +10,39 @@ use insertion::outcome::FailureClass;
 use insertion::task::Task;
 use nalgebra::Vector3;
 
-/// Slowest recording, Hz: a search stroke of 60 ms is then six moments.
+/// Lowest sampling rate, Hz: six samples in a search stroke of 60 ms.
 const SLOWEST_HZ: f64 = 100.0;
-/// A gap so many times the median is a step of the clock.
+/// Gap that counts as a step of the clock, in medians.
 const STEP: f64 = 5.0;
-/// So many moments alike at the largest force, N, beyond the bias are a saturated sensor.
+/// Number of equal samples at the largest force, and that force beyond the bias, N, of a saturated sensor.
 const SATURATED: (usize, f64) = (10, 10.0);
-/// Bias, N, and its slope, N/s, that are worth a word.
+/// Bias, N, and its slope, N/s, from which on there is a remark.
 const DRIFT: (f64, f64) = (5.0, 7.0);
-/// Farthest first position from the task's start, m.
+/// Largest distance of the first position from the task's start, m.
 const ASTRAY: f64 = 30.0 * MM;
 /// Largest difference of the tilt from the task's, rad.
 const TILTED: f64 = 2.0 * DEG;
-/// A pose within the first, m, while the target moves by the second, stands still.
+/// Largest motion of a pose that stands still, and least motion of its target, m.
 const STILL: (f64, f64) = (1e-6, 1e-3);
-/// Time after a touch over which its force is averaged, s: a soft robot swings at first.
+/// Interval after a touch over which its force is averaged, s: a soft robot oscillates at first.
 const TOUCH_S: [f64; 2] = [0.02, 0.5];
-/// Least force of a contact, N.
+/// Smallest force of a contact, N.
 const LEAST_N: f64 = 1.0;
-/// Ratio of the measured to the simulated forces beyond which they are in another unit: fingers and their friction
-/// differ by less.
+/// Ratio of measured to simulated forces beyond which the unit is taken to be wrong: fingers and their friction vary
+/// by less.
 const SCALED: f64 = 3.0;
 
-/// Something about a log that a person should know.
+/// Remark on a log.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Remark {
     /// The log's file as given.
     #[serde(rename = "log")]
     pub file: String,
-    /// First and last line that it is about; all, if there are none.
+    /// First and last line concerned; `None` for the whole log.
     pub lines: Option<[usize; 2]>,
     /// A sentence without file and lines.
     pub text: String,
-    /// Whether what is read from the log would be wrong.
+    /// Whether results from this log would be wrong.
     pub serious: bool,
 }
 
@@ -58,14 +58,14 @@ impl std::fmt::Display for Remark {
     }
 }
 
-/// Faults of one log.
+/// Remarks on one log.
 pub(super) struct Remarks<'a> {
     pub(super) log: &'a Log,
     found: Vec<Remark>,
 }
 
 impl Remarks<'_> {
-    /// Says something of the moments between two indices.
+    /// Adds a remark on the moments between two indices.
     pub(super) fn say(
         &mut self,
         serious: bool,
@@ -78,7 +78,7 @@ impl Remarks<'_> {
     }
 }
 
-/// Returns the faults of a log of a run of `task`; none if there are none.
+/// Returns the remarks on the log of a run of a task.
 pub fn remarks(run: &Run, task: &Task) -> Vec<Remark> {
     let mut remarks = Remarks { log: &run.log, found: Vec::new() };
     clock(&mut remarks);
@@ -92,8 +92,8 @@ pub fn remarks(run: &Run, task: &Task) -> Vec<Remark> {
     remarks.found
 }
 
-/// Returns a remark on forces in another unit: `ratio` is that of the measured ones to those with which the
-/// fingers push along the measured path; `file` has the runs.
+/// Returns a remark on forces in another unit; `ratio` is that of measured forces to those of the fingers along the
+/// measured path, `file` has the runs.
 pub(super) fn force_scale(file: &str, ratio: f64) -> Option<Remark> {
     let factor = ratio.max(1.0 / ratio);
     let [size, times] = if ratio < 1.0 { ["small", "less"] } else { ["large", "more"] };
@@ -104,7 +104,7 @@ pub(super) fn force_scale(file: &str, ratio: f64) -> Option<Remark> {
     (factor > SCALED).then(|| Remark { file: file.to_owned(), lines: None, text, serious: true })
 }
 
-/// Sampling rate and steps of the clock.
+/// Checks sampling rate and steps of the clock.
 fn clock(remarks: &mut Remarks<'_>) {
     let (log, median) = (remarks.log, median_gap(remarks.log));
     let gap = |i: &usize| log.moments[i + 1].time_s - log.moments[*i].time_s;
@@ -129,7 +129,7 @@ fn clock(remarks: &mut Remarks<'_>) {
     }
 }
 
-/// First position and tilt against the task, targets, and a pose that stands still.
+/// Checks first position and tilt against the task, targets, and whether the pose stands still.
 fn pose(remarks: &mut Remarks<'_>, run: &Run, task: &Task) {
     let (log, first) = (remarks.log, remarks.log.moments[0]);
     let start = Vector3::from(task.strategy.start) + Vector3::y() * run.offset;
@@ -171,7 +171,7 @@ fn pose(remarks: &mut Remarks<'_>, run: &Run, task: &Task) {
     }
 }
 
-/// Ends of the first stretch in which the pose stands still and the target moves.
+/// Returns both ends of the first interval in which the pose stands still while the target moves.
 fn standstill(moments: &[Moment]) -> Option<[usize; 2]> {
     let mut from = 0;
     for (at, now) in moments.iter().enumerate() {
@@ -186,7 +186,7 @@ fn standstill(moments: &[Moment]) -> Option<[usize; 2]> {
     None
 }
 
-/// Whether and how it touches: index of the touch, if its direction is right.
+/// Checks the touch; returns its index if the direction of its force is right.
 fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
     let log = remarks.log;
     let push = |from: usize| {
@@ -222,7 +222,7 @@ fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
     None
 }
 
-/// Bias and drift in the air, and saturation.
+/// Checks bias and drift in the air, and saturation.
 fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
     let log = remarks.log;
     let quiet = air(log, touched);
@@ -267,7 +267,7 @@ fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
     }
 }
 
-/// Slope of the force over time by least squares, N/s, and its deviation by the noise.
+/// Returns the slope of the force over time by least squares, N/s, and its standard deviation.
 fn slope(
     moments: &[Moment],
     bias: Vector3<f64>,
@@ -280,7 +280,7 @@ fn slope(
     (sum / spread, noise / spread.sqrt())
 }
 
-/// Phases that the outcome asks for.
+/// Checks that the log has the phases of its outcome.
 fn phases(remarks: &mut Remarks<'_>, run: &Run, task: &Task, touched: usize) {
     let log = remarks.log;
     let depth = |moment: &Moment| task.grip.tcp_z * libm::cos(moment.tilt) - moment.position.z;
@@ -303,7 +303,7 @@ fn phases(remarks: &mut Remarks<'_>, run: &Run, task: &Task, touched: usize) {
     }
 }
 
-/// A vector's numbers with so many decimals.
+/// Formats a vector.
 fn shown(vector: Vector3<f64>, decimals: usize) -> String {
     let numbers: Vec<String> = vector.iter().map(|v| format!("{:.decimals$}", v + 0.0)).collect();
     numbers.join(", ")

@@ -1,4 +1,4 @@
-//! A log, or a simulated attempt, at even times: what formulas and fits compare.
+//! Curves of a log or a simulated attempt at regular times.
 
 use super::log::{Log, Moment, Target};
 use input::units::{DEG, MM};
@@ -7,7 +7,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 /// Time between two points, s: 500 Hz.
 pub const STEP_S: f64 = 2e-3;
-/// A target that slows down by this share of its highest speed at once has been stopped.
+/// Sudden reduction of the target's speed, as a share of its maximum, that counts as a stop.
 const STOPPED: f64 = 0.25;
 
 /// Curves of one attempt, SI units, task frame.
@@ -17,14 +17,14 @@ pub struct Curves {
     pub tcp: Vec<Vector3<f64>>,
     /// Commanded position of the TCP, if it was recorded.
     pub target: Option<Vec<Vector3<f64>>>,
-    /// Force on the tool, less what the sensor shows in the air.
+    /// Force on the tool, without the bias in the air.
     pub force: Vec<Vector3<f64>>,
     /// Tilt of the TCP.
     pub tilt: Vec<f64>,
 }
 
 impl Curves {
-    /// Of a log, from its first moment on; the force is what it shows less `bias`.
+    /// Returns the curves of a log; `bias` is subtracted from the force.
     pub fn of_log(log: &Log, bias: Vector3<f64>) -> Self {
         let moments = &log.moments;
         let (first, last) = (moments[0].time_s, moments[moments.len() - 1].time_s);
@@ -48,7 +48,7 @@ impl Curves {
         }
     }
 
-    /// Of samples `STEP_S` apart, as a sensor shows them that carries a tool of this mass, kg.
+    /// Returns the curves of samples `STEP_S` apart, as measured by a sensor with a tool of this mass, kg.
     pub fn of_samples(samples: &[Sample], tool_mass: f64) -> Self {
         let vectors = |of: fn(&Sample) -> [f64; 3], unit: f64| {
             samples.iter().map(|sample| Vector3::from(of(sample)) * unit).collect::<Vec<_>>()
@@ -64,8 +64,7 @@ impl Curves {
         }
     }
 
-    /// Commanded pose, or the measured pose of the TCP where that was not recorded; with the log's first
-    /// tilt unless the commanded one is recorded.
+    /// Returns the commanded path, or the measured one if that was not recorded, with the first tilt.
     pub fn path(&self) -> Option<Path> {
         let commanded = self.target.as_ref().unwrap_or(&self.tcp);
         let tilt = self.tilt.first().copied().unwrap_or(0.0);
@@ -75,7 +74,7 @@ impl Curves {
         Path::new(commanded.iter().enumerate().map(place))
     }
 
-    /// The same along the axes of the tilted tool: those of the springs of a soft flange.
+    /// Returns the curves along the axes of the tilted tool, which are those of the springs of a soft flange.
     pub fn in_tool(&self) -> Self {
         let tilt = self.tilt.first().copied().unwrap_or(0.0);
         let turn = UnitQuaternion::from_scaled_axis(-tilt * Vector3::x());
@@ -88,7 +87,7 @@ impl Curves {
         }
     }
 
-    /// Where the target was stopped because a touch was felt: its place among the points.
+    /// Returns the index at which the target was stopped by a detected touch.
     pub fn stopped(&self) -> Option<usize> {
         let target = self.target.as_ref()?;
         let speeds: Vec<f64> =

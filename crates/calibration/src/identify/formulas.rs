@@ -4,6 +4,7 @@ use super::curves::{Curves, STEP_S, accelerations, rates, smoothed};
 use ask_tell::statistics::{Moments, mean};
 use insertion::surrogate::Estimate;
 use nalgebra::{DMatrix, DVector, Vector3};
+use serde::Serialize;
 use std::ops::Range;
 
 /// Points to either side that are averaged before anything is differentiated: 10 ms.
@@ -150,13 +151,15 @@ fn estimate(values: &[f64], floor: f64) -> Option<Estimate> {
 }
 
 /// One slide of a probe.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Slide {
-    /// Whether it goes along y, or back.
+    /// Whether it goes along y rather than back.
+    #[serde(skip)]
     pub forth: bool,
-    /// Tangential force over normal force where it slides.
+    /// Tangential force over normal force while sliding.
+    #[serde(rename = "tangential_over_normal")]
     pub ratio: f64,
-    /// Whether the ratio went on rising: then the part turned in the grasp, and slid little or not at all.
+    /// Whether the ratio kept rising: then the part turned in the grasp and slid little or not at all.
     pub rising: bool,
 }
 

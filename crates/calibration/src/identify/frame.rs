@@ -1,4 +1,4 @@
-//! `frame.toml`: where the task's frame is in the robot's base, and what the recorded force means.
+//! `frame.toml`: pose of the task's frame in the robot's base, and convention of the recorded force.
 
 use super::log::Target;
 use input::units::MM;
@@ -9,9 +9,9 @@ use std::f64::consts::{PI, TAU};
 
 /// Standard gravity, m/s^2.
 const GRAVITY: f64 = 9.80665;
-/// A frame nearer to the base's axes than this, mm, is one in metres.
+/// Distance from the base, mm, below which the unit is taken to be metres.
 const NEAREST_MM: f64 = 10.0;
-/// Turn of the TCP from upright that is not about x, rad, from which on its tilt says nothing.
+/// Rotation of the TCP from upright about y and z, rad, from which on its tilt is not defined.
 const ASKEW: f64 = 0.5;
 
 #[derive(Deserialize)]
@@ -45,11 +45,11 @@ pub struct Frame {
     base: Isometry3<f64>,
     /// Orientation of the upright TCP in the task's frame.
     upright: UnitQuaternion<f64>,
-    /// 1 if the recorded force is that on the tool, -1 if that of the tool.
+    /// 1 if the recorded force acts on the tool, -1 if it is exerted by the tool.
     sign: f64,
-    /// Mass of what hangs on the sensor, kg.
+    /// Mass below the force sensor, kg.
     pub tool_mass: f64,
-    /// Its centre, from the TCP, m.
+    /// Its centre of mass relative to the TCP, m.
     pub tool_centre: Vector3<f64>,
     /// Whether the recorded force is without the tool's weight.
     compensated: bool,
@@ -59,7 +59,7 @@ impl Frame {
     /// Reads and checks a frame; `file` is named in errors.
     ///
     /// # Errors
-    /// If it is no TOML of this shape, a value cannot be used or looks like one in another unit.
+    /// If the text cannot be parsed, or a value is invalid or looks like one in another unit.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         let (raw, check): (Raw, _) = (read(text, file)?, Check { file });
         let turn = |key: &str, turn: [f64; 3]| {
@@ -99,7 +99,7 @@ impl Frame {
         })
     }
 
-    /// A pose in the base (m; axis-angle, rad) as one in the task's frame.
+    /// Converts a pose in the base (m; axis-angle, rad) to the task's frame.
     ///
     /// # Errors
     /// The accepted rotation, if the TCP is turned from upright by more than a tilt about x.
@@ -119,12 +119,12 @@ impl Frame {
         Ok(Target { position, tilt: turned.x })
     }
 
-    /// A recorded force in the base as the force on the tool in the task's frame, N.
+    /// Converts a recorded force in the base to the force on the tool in the task's frame, N.
     pub(super) fn force_of_base(&self, force: Vector3<f64>) -> Vector3<f64> {
         self.force(self.base.rotation.inverse() * force)
     }
 
-    /// A recorded force in the task's frame as that on the tool, N.
+    /// Converts a recorded force in the task's frame to the force on the tool, N.
     pub(super) fn force(&self, force: Vector3<f64>) -> Vector3<f64> {
         let weight =
             self.base.rotation.inverse() * Vector3::new(0.0, 0.0, -self.tool_mass * GRAVITY);

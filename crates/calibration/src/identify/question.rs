@@ -1,4 +1,4 @@
-//! From the logs of attempts to the numbers of their cell.
+//! Identification of the numbers of a cell from logs of attempts.
 
 use super::axes::{slides, springs};
 use super::check::{self, Remark};
@@ -9,7 +9,9 @@ use super::log::{Ended, Run};
 use super::replay::{Logged, Replay};
 use super::smoother::{Datum, Predicted, Settings, Smoothed, smooth};
 use super::touch::bias;
-use super::unknown::{From, Unknown, advice, fit, not_fitted, told, untold, values, with};
+use super::unknown::{
+    Unknown, ValueOrigin, advice, fit, identified, not_fitted, unidentified, values, with,
+};
 use ask_tell::statistics::{Moments, mean, median};
 use input::units::MM;
 use insertion::evaluation::cell::Priors;
@@ -22,22 +24,22 @@ use parameters::numbers::{FLANGE, FRICTION, Kind};
 use parameters::{Parameter, Scale, Transform};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Ten members to each unknown; four rounds; neighbours over 0.1 s err together.
+/// Ten members per unknown, four rounds; errors are correlated over 0.1 s.
 pub const SETTINGS: Settings = Settings { members: 10, rounds: 4, alike: 10.0, seed: 0 };
-/// Most attempts of a finger that are replayed: more of them tell little more.
+/// Largest number of replayed attempts of a finger; more give little information.
 const EACH: usize = 5;
-/// Least standard deviation of a preload, mm: a touch is felt some ms late.
+/// Smallest standard deviation of a preload, mm: a touch is detected some ms late.
 const PRELOAD_MM: f64 = 0.02;
 const STRATEGY: &str = "task.strategy.";
 
 /// Logs, unknowns and settings of an identification.
 pub struct Question<'a> {
-    /// Knows the fingers; its robot is the start, of which the logs may tell more.
+    /// Evaluator of the fingers, with the initial robot.
     pub evaluator: &'a Evaluator,
     pub template: &'a Template,
     pub priors: &'a Priors,
     pub runs: &'a [Run],
-    /// Mass that the force sensor carries, kg.
+    /// Mass below the force sensor, kg.
     pub tool_mass: f64,
     pub seed: u64,
     pub stop: &'a AtomicBool,
@@ -46,7 +48,7 @@ pub struct Question<'a> {
 /// An attempt, measured and simulated.
 pub struct Compared {
     pub logged: Logged,
-    /// Under the numbers of the files, and under what was identified.
+    /// Simulation with the numbers of the files, and with the identified ones.
     pub before: (Curves, Outcome),
     pub after: (Curves, Outcome),
 }
@@ -54,10 +56,10 @@ pub struct Compared {
 /// Result of an identification.
 pub struct Identified {
     pub robot: Robot,
-    /// The robot's axes x, y and z as far as the logs tell them.
+    /// Axes x, y and z of the robot, as far as they are identified.
     pub flange: [Option<Flange>; 3],
     pub preload: Option<Estimate>,
-    /// Of each probe, by its file.
+    /// Friction of each probe, by its file.
     pub probes: Vec<(String, Friction)>,
     pub unknowns: Vec<Unknown>,
     pub smoothed: Smoothed,
@@ -65,14 +67,15 @@ pub struct Identified {
 }
 
 impl Identified {
-    /// Returns whether the logs tell anything of the cell.
+    /// Returns whether any number of the cell was identified.
     pub fn is_informative(&self) -> bool {
-        let told = |one: &Unknown| matches!(one.from, From::Formula | From::Fit);
-        self.unknowns.iter().any(told) || self.flange.iter().any(Option::is_some)
+        let identified =
+            |one: &Unknown| matches!(one.from, ValueOrigin::Formula | ValueOrigin::Fit);
+        self.unknowns.iter().any(identified) || self.flange.iter().any(Option::is_some)
     }
 }
 
-/// The logs of one cell, what was noticed in them, and what they say.
+/// Identified cell, with remarks on the logs.
 pub struct IdentifyDone {
     /// Name of the task.
     pub task: String,
@@ -85,7 +88,7 @@ pub struct IdentifyDone {
 }
 
 impl Question<'_> {
-    /// Returns what is wrong with the logs, one by one and together; `file` has the runs.
+    /// Returns remarks on the logs, individually and together; `file` has the runs.
     ///
     /// # Errors
     /// If a log's finger cannot be simulated.
@@ -96,7 +99,7 @@ impl Question<'_> {
         let attempts = self.attempts();
         let wrong =
             |one: &Logged| found.iter().any(|remark| remark.serious && remark.file == one.file);
-        // Motion and force of a log that is wrong by itself tell nothing together.
+        // Faulty logs are not compared with the others.
         if !attempts.iter().any(wrong) {
             let curves: Vec<Curves> = attempts.iter().map(|one| one.curves.clone()).collect();
             found.extend(springs(file, &curves));
@@ -110,8 +113,8 @@ impl Question<'_> {
         chosen(self.runs.iter().filter_map(Logged::new).collect())
     }
 
-    /// Returns the measured forces over those with which the fingers push along the measured path, median over
-    /// the attempts: nothing of the robot is in it, whose stiffness would make up for a unit.
+    /// Returns the ratio of measured forces to those of the fingers along the measured path, median over the
+    /// attempts. It does not depend on the stiffness of the robot, which could compensate for a wrong unit.
     fn force_scale(&self, attempts: &[Logged]) -> Result<Option<f64>, Impossible> {
         let own = &self.evaluator.robot;
         let rigid = Robot { drive: Drive::Ideal, stop_force: f64::MAX, ..own.clone() };
@@ -138,10 +141,10 @@ impl Question<'_> {
         }
     }
 
-    /// Reads what formulas tell, and fits the rest.
+    /// Identifies numbers by formulas and fits the others.
     ///
     /// # Errors
-    /// If a prior sets what cannot be.
+    /// If a value of a prior is invalid.
     pub fn answer(&self) -> Result<Identified, Impossible> {
         let attempts = self.attempts();
         let curves: Vec<Curves> = attempts.iter().map(|one| one.curves.clone()).collect();
@@ -154,8 +157,8 @@ impl Question<'_> {
             let known = self.known(&prior, flange_sd, preload, &probes, &attempts);
             let read = prior.path.starts_with(STRATEGY) || prior.path == FLANGE;
             match (known, read) {
-                (Some(known), true) => rest.push(told(prior, known, From::Formula)),
-                (None, true) => rest.push(untold(prior, None)),
+                (Some(known), true) => rest.push(identified(prior, known, ValueOrigin::Formula)),
+                (None, true) => rest.push(unidentified(prior, None)),
                 _ if not_fitted(&prior) => rest.push(self.assumed(prior)),
                 (known, false) => fitted.push((prior, known)),
             }
@@ -174,7 +177,7 @@ impl Question<'_> {
         Ok(Identified { robot, flange, preload, probes, unknowns, smoothed, compared })
     }
 
-    /// A row that is not fitted, at the number of the files, with the deviation of its prior.
+    /// Returns an unknown that is not fitted: the number of the files with the deviation of its prior.
     fn assumed(&self, prior: Parameter) -> Unknown {
         let own = match prior.path.kind() {
             Kind::File => self.evaluator.number(self.template, &prior.path),
@@ -190,7 +193,7 @@ impl Question<'_> {
         let source = "not fitted: as in the files, with the width of its prior".to_owned();
         let posterior = Parameter { value: Some(value), sd: Some(sd), source, ..prior.clone() };
         let advice = Some(advice(&prior));
-        Unknown { prior, posterior, left: None, from: From::Files, advice }
+        Unknown { prior, posterior, left: None, from: ValueOrigin::Files, advice }
     }
 
     fn probes(&self) -> Vec<(String, Friction)> {
@@ -202,7 +205,7 @@ impl Question<'_> {
         probes.filter_map(friction).collect()
     }
 
-    /// The rows of the prior that the task has; of a friction as values.
+    /// Returns the priors that apply to the task, as values instead of factors and shifts.
     fn rows(&self) -> Vec<Parameter> {
         let Question { evaluator, template, .. } = self;
         let of_file = |row: &Parameter| row.path.kind() == Kind::File;
@@ -217,7 +220,7 @@ impl Question<'_> {
             let value = row.value.map(|value| row.applied(own, value));
             let factor = if row.transform == Transform::Factor { own.abs() } else { 1.0 };
             Parameter {
-                // The opening has no width of its own that could be set.
+                // The width of the opening is not a number of the task file.
                 transform: if added { Transform::Shift } else { Transform::Value },
                 // A stroke towards -y is a factor on a negative number.
                 low: low.min(high),
@@ -232,7 +235,7 @@ impl Question<'_> {
         self.priors.of(&template.task.name).filter(has).map(as_value).collect()
     }
 
-    /// A row as formulas tell it, if they do.
+    /// Returns a row identified by a formula, if there is one.
     fn known(
         &self,
         prior: &Parameter,
@@ -294,7 +297,7 @@ impl Question<'_> {
         let data: Vec<Datum> = attempts.iter().flat_map(Logged::data).collect();
         let predict = |z: &[f64]| -> Result<Predicted, Impossible> {
             if self.stop.load(Ordering::SeqCst) {
-                // Whoever has set it does not look at what comes of this.
+                // The result is not used after cancellation.
                 return Ok(vec![None; data.len()]);
             }
             let replayed = replay.curves(attempts, &values(rows, z))?;
@@ -322,7 +325,7 @@ impl Question<'_> {
     }
 }
 
-/// At most [`EACH`] attempts of each finger, from starts that are spread evenly; fingers together.
+/// Returns at most [`EACH`] attempts of each finger with evenly spread starts, grouped by finger.
 fn chosen(mut all: Vec<Logged>) -> Vec<Logged> {
     let key = |one: &Logged| one.design.labelled();
     all.sort_by(|a, b| key(a).cmp(&key(b)).then(a.offset.total_cmp(&b.offset)));

@@ -26,7 +26,7 @@ const SLOWEST_S: f64 = 0.5;
 /// If it cannot be read, is longer than [`LARGEST_LOG`], or [`parse`] refuses it.
 pub fn read(path: &Path, frame: Option<&Frame>) -> Result<Log, Fault> {
     let file = path.display().to_string();
-    let text = files::read_named(path, LARGEST_LOG)
+    let text = files::read_text(path, LARGEST_LOG)
         .map_err(|error| Place::file(&file).fault(format!("cannot be read: {error}")))?;
     parse(&text, &file, frame)
 }

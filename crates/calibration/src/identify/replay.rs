@@ -1,4 +1,4 @@
-//! The logged attempts in the simulator, along their commanded paths, and what of both is compared.
+//! Simulation of logged attempts along their commanded paths, and the data that are compared.
 
 use super::curves::{Curves, STEP_S};
 use super::log::{Ended, Log, Moment, Run};
@@ -16,17 +16,18 @@ use parameters::Parameter;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
-/// Air before the touch that is replayed, s.
+/// Replayed time before the touch, s.
 const AIR_S: f64 = 0.5;
-/// Points that make one datum: 10 ms.
+/// Points per datum: 10 ms.
 const POINTS: usize = 5;
-/// Error of a force that the model does not know: drift of the sensor, N, and share of the force.
+/// Model error of a force: drift of the sensor, N, and share of the force.
 const FORCE_N: f64 = 0.5;
 const FORCE_SHARE: f64 = 0.1;
-/// Error of a pose, m (repeatability of a small arm), and share of how far it is off its target.
+/// Model error of a pose: repeatability of a small arm, m, and share of the distance from its target.
 const POSE: f64 = 0.03 * MM;
 const POSE_SHARE: f64 = 0.1;
-/// Contact is lost below and had above, N, for so many data: 30 ms.
+/// Forces below which there is no contact and above which there is, N, and the number of data for which they
+/// differ in an event: 30 ms.
 const LOST_N: f64 = 1.5;
 const HAD_N: f64 = 4.0;
 const EVENT: usize = 3;
@@ -38,7 +39,7 @@ pub enum Phase {
     Push,
 }
 
-/// A logged attempt, ready to be replayed.
+/// Logged attempt, prepared for replay.
 #[derive(Debug, Clone)]
 pub struct Logged {
     pub file: String,
@@ -47,19 +48,19 @@ pub struct Logged {
     pub ended: Ended,
     pub curves: Curves,
     path: Path,
-    /// First point that is compared: the touch.
+    /// Index of the touch, the first compared point.
     pub touch: usize,
-    /// Point at which the push begins.
+    /// Index of the beginning of the push.
     pub push: usize,
 }
 
 impl Logged {
-    /// `None` of an attempt that touches nothing, or of a probe.
+    /// Returns the attempt of a run; `None` for one that touches nothing, or for a probe.
     pub fn new(run: &Run) -> Option<Self> {
         let touched = touch(&run.log).filter(|_| run.ended != Ended::Probe)?;
         let touched_s = run.log.moments[touched].time_s;
         let before = |moment: &Moment| moment.time_s < touched_s - AIR_S;
-        // A minute in the air would be simulated, and tells nothing.
+        // Motion in the air gives no information.
         let from = run.log.moments.partition_point(before);
         let log = Log::new(&run.log.file, run.log.moments[from..].to_vec()).ok()?;
         let curves = Curves::of_log(&log, bias(&run.log));
@@ -77,26 +78,26 @@ impl Logged {
         })
     }
 
-    /// The same attempt with the measured path of the TCP as the commanded one.
+    /// Returns the attempt with the measured path of the TCP as the commanded one.
     pub fn along_measured(&self) -> Option<Self> {
         let curves = Curves { target: None, ..self.curves.clone() };
         Some(Logged { path: curves.path()?, curves, ..self.clone() })
     }
 
-    /// The points of each datum.
+    /// Returns the points of each datum.
     fn bins(&self) -> impl Iterator<Item = Range<usize>> + '_ {
         let bins = (self.curves.tcp.len() - self.touch.min(self.curves.tcp.len())) / POINTS;
         (0..bins).map(|i| self.touch + i * POINTS..self.touch + (i + 1) * POINTS)
     }
 
-    /// The phase of each datum.
+    /// Returns the phase of each datum.
     pub fn phases(&self) -> impl Iterator<Item = Phase> + '_ {
         let phase =
             |bin: Range<usize>| if bin.start < self.push { Phase::Search } else { Phase::Push };
         self.bins().flat_map(move |bin| std::iter::repeat_n(phase(bin), self.each()))
     }
 
-    /// Numbers of each datum: three of the force, and three of how far the TCP is off its target.
+    /// Returns the numbers per datum: three of the force, and three of the distance from the target.
     pub fn each(&self) -> usize {
         if self.curves.target.is_some() { 6 } else { 3 }
     }
@@ -117,7 +118,7 @@ impl Logged {
         self.bins().flat_map(datum).collect()
     }
 
-    /// The same of a replay, up to the first contact that is made or lost in one of the two alone.
+    /// Returns the simulated data, up to the first contact that is made or lost in only one of the two.
     pub fn predicted(&self, replayed: &Curves) -> Predicted {
         let off = off(replayed);
         let (mut apart, mut over) = (0, false);
@@ -140,7 +141,7 @@ impl Logged {
     }
 }
 
-/// How far the TCP is off its target, if that is known.
+/// Returns the distance of the TCP from its target, if that is known.
 fn off(curves: &Curves) -> Option<Vec<Vector3<f64>>> {
     let target = curves.target.as_ref()?;
     Some(curves.tcp.iter().zip(target).map(|(tcp, target)| tcp - target).collect())
@@ -150,19 +151,19 @@ fn mean(points: &[Vector3<f64>], bin: &Range<usize>) -> Vector3<f64> {
     points[bin.clone()].iter().sum::<Vector3<f64>>() / bin.len() as f64
 }
 
-/// Where attempts are replayed.
+/// Simulator of attempts.
 #[derive(Clone, Copy)]
 pub struct Replay<'a> {
     pub evaluator: &'a Evaluator,
     pub robot: &'a Robot,
     pub template: &'a Template,
-    /// Mass that the sensor carries, kg.
+    /// Mass below the force sensor, kg.
     pub tool_mass: f64,
     pub stop: &'a AtomicBool,
 }
 
 impl Replay<'_> {
-    /// Curves of attempts under these values, and how they ended; each finger is grasped once.
+    /// Returns curves and outcomes of attempts with these values; each finger is grasped once.
     pub fn curves(
         &self,
         attempts: &[Logged],

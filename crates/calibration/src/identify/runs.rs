@@ -62,7 +62,7 @@ fn ended(text: &str) -> Result<Ended, String> {
 /// If the table cannot be read or used, has no attempt, or a log cannot be used.
 pub fn read(path: &Path, frame: Option<&Frame>) -> Result<Vec<Run>, Problems> {
     let file = path.display().to_string();
-    let text = files::read_named(path, LARGEST_INPUT)
+    let text = files::read_text(path, LARGEST_INPUT)
         .map_err(|error| Place::file(&file).fault(format!("cannot be read: {error}")))?;
     let why = "a line says of a log which finger it is of, where it started and how it ended";
     let table = rows(&text, &file, &Columns { all: &COLUMNS, needed: 5, why }, row)?;

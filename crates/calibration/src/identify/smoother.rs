@@ -1,9 +1,9 @@
 //! An ensemble smoother with multiple data assimilation: ES-MDA (Emerick and Reynolds 2013,
 //! doi:10.1016/j.cageo.2012.03.011), for few unknowns and many, partly missing, data.
 //!
-//! With ten members to each unknown, the covariance of unknowns and data is that of a linear regression of
-//! the data on the unknowns; what the line leaves over counts as an error of the data. So members that
-//! happen to fit do not make the spread collapse.
+//! With ten members per unknown, the covariance of unknowns and data is that of a linear regression of the data on
+//! the unknowns; its residuals count as errors of the data, so that the spread does not collapse onto members that
+//! fit by chance.
 
 use ask_tell::normal::StandardNormal;
 use ask_tell::statistics::Moments;
@@ -18,7 +18,7 @@ pub type Coordinates = Vec<f64>;
 /// Predictions of the data by a member, in their order; `None` where they cannot be compared.
 pub type Predicted = Vec<Option<f64>>;
 
-/// A number that was measured, and the standard deviation of its error, model and sensor together.
+/// Measured number with the standard deviation of its error, including that of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Datum {
     pub value: f64,
@@ -27,37 +27,37 @@ pub struct Datum {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Members to each unknown.
+    /// Members per unknown.
     pub members: usize,
-    /// Times that the data are assimilated, each time with their variance so often.
+    /// Number of assimilations; the variances of the data are multiplied by it.
     pub rounds: usize,
-    /// Data whose errors are one: neighbours on a curve err together.
+    /// Number of neighbouring data with a common error.
     pub alike: f64,
     pub seed: u64,
 }
 
-/// Unknowns before and after.
+/// Result of the smoother.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Smoothed {
     /// Members after the last round.
     pub members: Vec<Coordinates>,
-    /// Standard deviations that the data were expected to leave, from the first members alone.
+    /// Expected standard deviations of the posterior, from the first members.
     pub expected_sd: Vec<f64>,
-    /// Root mean square of (measured less predicted) / sd, of the members' mean, before each round and at last.
+    /// Root mean square of (measured - predicted) / sd for the members' mean, before each round and after the last.
     pub misfit: Vec<f64>,
-    /// Share of the data that at least a quarter of the last members can be compared with.
+    /// Share of the data that at least a quarter of the last members predict.
     pub compared: f64,
 }
 
-/// Residuals count at most so many standard deviations, of the datum and among the members together: one event
-/// at another time is no ten, but what all members are far from has to draw them.
+/// Largest residual, in combined standard deviations of the datum and of the members, so that an event at another
+/// time does not dominate.
 const CLIPPED: f64 = 3.0;
-/// A coordinate stays within so many standard deviations of the prior.
+/// Largest coordinate, in standard deviations of the prior.
 const FARTHEST: f64 = 3.0;
-/// Members, as a share, that have to be comparable for a datum to count.
+/// Smallest share of the members that predict a datum that counts.
 const ENOUGH: f64 = 0.25;
 
-/// Draws members, and assimilates the data; `predict` is asked in parallel, and ends the whole if it fails.
+/// Draws members and assimilates the data; `predict` is called in parallel.
 pub fn smooth<E: Send>(
     unknowns: usize,
     data: &[Datum],
@@ -69,7 +69,7 @@ pub fn smooth<E: Send>(
     let mut members: Vec<Coordinates> = (0..count)
         .map(|_| (0..unknowns).map(|_| random.sample(StandardNormal)).collect())
         .collect();
-    // One member, if there is nothing to fit: it shows how far off the model is.
+    // A single member for the misfit, if there is nothing to fit.
     let rounds = if unknowns == 0 { 0 } else { settings.rounds };
     if unknowns == 0 {
         members = vec![Vec::new()];
@@ -95,10 +95,10 @@ pub fn smooth<E: Send>(
     Ok(Smoothed { members, expected_sd, misfit, compared })
 }
 
-/// The data that count, and what each member predicts of them: the mean of the others where it is silent.
+/// Data that count, and the prediction of each member; missing ones are the mean of the others.
 struct Known {
     data: Vec<Datum>,
-    /// A row for each datum, a column for each member.
+    /// One row per datum, one column per member.
     predicted: DMatrix<f64>,
 }
 
@@ -125,11 +125,11 @@ impl Known {
     }
 }
 
-/// The data as a linear function of the unknowns, over the members.
+/// Linear regression of the data on the unknowns over the members.
 struct Linear {
-    /// A row for each datum, a column for each unknown.
+    /// One row per datum, one column per unknown.
     slopes: DMatrix<f64>,
-    /// Variance of each datum: its own, and what the line leaves over.
+    /// Variance of each datum with that of the residuals.
     variances: DVector<f64>,
     /// Inverse of the members' covariance.
     precision: DMatrix<f64>,
@@ -140,7 +140,7 @@ impl Linear {
         let (count, unknowns) = (members.len(), members[0].len());
         let z = centred(DMatrix::from_fn(unknowns, count, |i, j| members[j][i]));
         let d = centred(known.predicted.clone());
-        // A hair of a ridge: members that have come together would leave nothing to divide by.
+        // A small ridge, in case all members are equal.
         let gram =
             &z * z.transpose() + DMatrix::identity(unknowns, unknowns) * (1e-9 * count as f64);
         let inverse =
@@ -154,7 +154,7 @@ impl Linear {
         Linear { slopes, variances, precision: inverse * count as f64 }
     }
 
-    /// Slopes over the variances.
+    /// Returns the slopes divided by the variances.
     fn weighed(&self, factor: f64) -> DMatrix<f64> {
         let mut weighed = self.slopes.transpose();
         for (mut column, variance) in weighed.column_iter_mut().zip(self.variances.iter()) {

@@ -1,4 +1,4 @@
-//! A number of the cell before and after the logs were read.
+//! Unknown numbers of the cell: prior and posterior.
 
 use super::smoother::Smoothed;
 use ask_tell::statistics::{Moments, normal_cdf};
@@ -7,43 +7,44 @@ use parameters::{Parameter, Scale};
 
 /// Factor on the deviations that the smoother leaves, from the coverage on synthetic cells.
 const INFLATION: f64 = 1.4;
-/// An unknown that keeps so much of its prior's deviation is left at it.
-const UNTOLD: f64 = 0.8;
+/// Share of the prior's deviation from which on an unknown keeps its prior.
+const UNIDENTIFIED: f64 = 0.8;
 
 /// Source of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum From {
+pub enum ValueOrigin {
     /// Read from the logs by a formula.
     Formula,
     /// Fitted to the curves of the logs.
     Fit,
-    /// These logs cannot tell it.
+    /// Prior, since the logs do not identify it.
     Prior,
-    /// Not fitted: as in the files.
+    /// That of the files, not fitted.
     Files,
 }
 
-/// A number of the cell before and after.
+/// Number of the cell.
 #[derive(Debug, Clone)]
 pub struct Unknown {
-    /// The prior's row.
+    /// Prior.
     pub prior: Parameter,
-    /// The same, with what the logs say.
+    /// Posterior.
     pub posterior: Parameter,
-    /// The prior's deviation that the logs were expected to leave, and did leave, as shares of it.
+    /// Expected and actual standard deviation of the posterior, as shares of the prior's.
     pub left: Option<[f64; 2]>,
-    pub from: From,
-    /// The attempt that would tell it, if these do not.
+    /// Source of the posterior.
+    pub from: ValueOrigin,
+    /// Measurement that would identify it, if the logs do not.
     pub advice: Option<&'static str>,
 }
 
-/// The values of rows at these standard normal coordinates.
+/// Returns the values of rows at these standard normal coordinates.
 pub(super) fn values<'a>(rows: &[&'a Parameter], z: &[f64]) -> Vec<(&'a Parameter, f64)> {
     rows.iter().zip(z).map(|(row, &z)| (*row, row.at(normal_cdf(z)))).collect()
 }
 
-/// A row with a value, within its bounds, which give way to a measurement.
+/// Returns a row with a measured value; its bounds are widened to include it.
 pub(super) fn with(row: &Parameter, value: f64, sd: f64, source: &str) -> Parameter {
     Parameter {
         value: Some(value),
@@ -55,16 +56,24 @@ pub(super) fn with(row: &Parameter, value: f64, sd: f64, source: &str) -> Parame
     }
 }
 
-pub(super) fn told(prior: Parameter, posterior: Parameter, from: From) -> Unknown {
+/// Returns an unknown with a posterior.
+pub(super) fn identified(prior: Parameter, posterior: Parameter, from: ValueOrigin) -> Unknown {
     Unknown { prior, posterior, left: None, from, advice: None }
 }
 
-pub(super) fn untold(prior: Parameter, left: Option<[f64; 2]>) -> Unknown {
+/// Returns an unknown that keeps its prior, with advice.
+pub(super) fn unidentified(prior: Parameter, left: Option<[f64; 2]>) -> Unknown {
     let advice = advice(&prior);
-    Unknown { posterior: prior.clone(), prior, left, from: From::Prior, advice: Some(advice) }
+    Unknown {
+        posterior: prior.clone(),
+        prior,
+        left,
+        from: ValueOrigin::Prior,
+        advice: Some(advice),
+    }
 }
 
-/// An unknown after the fit.
+/// Returns an unknown after the fit.
 pub(super) fn fit(
     prior: &Parameter,
     known: Option<&Parameter>,
@@ -76,11 +85,11 @@ pub(super) fn fit(
     let (mean, sd) = (own.mean, own.sample_deviation());
     let left = Some([smoothed.expected_sd[i], INFLATION * sd]);
     if let Some(known) = known {
-        // What was measured by itself is not bent to make up for what the model lacks elsewhere.
-        return Unknown { left, ..told(prior.clone(), known.clone(), From::Formula) };
+        // A value measured directly is not changed to compensate for errors of the model.
+        return Unknown { left, ..identified(prior.clone(), known.clone(), ValueOrigin::Formula) };
     }
-    if sd > UNTOLD {
-        return untold(prior.clone(), left);
+    if sd > UNIDENTIFIED {
+        return unidentified(prior.clone(), left);
     }
     let row = prior;
     let at = |z: &f64| row.at(normal_cdf(mean + INFLATION * (z - mean)));
@@ -95,16 +104,16 @@ pub(super) fn fit(
         source: "curves of the attempts".to_owned(),
         ..row.clone()
     };
-    Unknown { left, ..told(prior.clone(), posterior, From::Fit) }
+    Unknown { left, ..identified(prior.clone(), posterior, ValueOrigin::Fit) }
 }
 
-/// Returns whether the curves would have to give way to a number: other numbers' errors end in these, which
-/// a weight on the finger and the grip tell better.
+/// Returns whether a number is excluded from the fit, since it would absorb the errors of other numbers; a weight
+/// on the finger and the grip measure it better.
 pub(super) fn not_fitted(row: &Parameter) -> bool {
     row.path == PAD_FRICTION || row.path == STIFFNESS
 }
 
-/// Returns the attempt that would tell a number.
+/// Returns the measurement that would identify a number.
 pub(super) fn advice(row: &Parameter) -> &'static str {
     let path = &row.path;
     match path.kind() {

@@ -33,18 +33,16 @@ impl Problem {
 
 impl From<&InputError> for Problem {
     fn from(error: &InputError) -> Self {
-        match error {
-            InputError::Value { key, problem, .. } => {
-                let whole = (&**problem, "see docs/guide/tasks.md");
-                let (problem, remedy) = problem.split_once("; ").unwrap_or(whole);
-                Problem::new(key, problem, remedy)
-            }
-            InputError::Syntax { message, .. } => {
-                // The parser names an unknown or missing key in backticks.
-                let key = message.split('`').nth(1).unwrap_or("the file");
-                Problem::new(key, message, "see docs/guide/tasks.md, or `optimize task show usb`")
-            }
-        }
+        let problem = &*error.problem;
+        let Some(key) = &error.key else {
+            // The parser names an unknown or missing key in backticks.
+            let key = problem.split('`').nth(1).unwrap_or("the file");
+            let remedy = "see docs/guide/tasks.md, or `optimize task show usb`";
+            return Problem::new(key, problem, remedy);
+        };
+        let whole = (problem, "see docs/guide/tasks.md");
+        let (problem, remedy) = problem.split_once("; ").unwrap_or(whole);
+        Problem::new(key, problem, remedy)
     }
 }
 

@@ -1,12 +1,13 @@
 //! Windows of a few measured fingers from one start.
 
+use input::units::MM;
 use insertion::evaluation::tolerance::{self, Search, offset};
 use insertion::evaluation::{Window, taught::teach};
 use insertion::finger::Finger;
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::stiffness::designs;
-use insertion::task::{StartRule, Strategy, Task};
+use insertion::task::{Limits, StartRule, Strategy, Task};
 use insertion::trial::engine::EngineKind;
 use insertion::trial::run::RigError;
 use insertion::trial::{Conditions, Grasp, Trial};
@@ -15,6 +16,9 @@ use std::sync::atomic::AtomicBool;
 
 /// Least window to either side of the start that counts as enough, mm.
 pub const ENOUGH_MM: f64 = 0.5;
+
+/// Share of the limit of force at which a slower push aims.
+const SLOWER: f64 = 0.9;
 
 /// Setup in which strategies for a task are tried.
 pub struct Bench<'a> {
@@ -28,8 +32,20 @@ pub struct Bench<'a> {
     pub fingers: [Finger; 3],
     /// Three others, between them.
     pub others: [Finger; 3],
+    /// Largest force between plug and socket, and largest speed of a phase, of a recommended strategy.
+    pub limits: Limits,
     /// Set to stop; results are then invalid.
     pub stop: &'a AtomicBool,
+}
+
+/// Window of a finger.
+pub struct Measured {
+    /// The window.
+    pub window: Window,
+    /// How clearly its nominal start fails, below 0; 0 if it inserts.
+    pub margin: f64,
+    /// Largest force of its insertions, N.
+    pub force_n: f64,
 }
 
 /// Result of a strategy.
@@ -40,7 +56,10 @@ pub struct Tried {
     /// Windows of the soft, the medium and the stiff finger; of none where the medium one
     /// inserts from no start.
     pub windows: Vec<Window>,
-    /// Smallest of their ranges, mm, if all insert; otherwise the smallest margin, below 0.
+    /// Largest force of their insertions, N.
+    pub force_n: f64,
+    /// Smallest of their ranges, mm, if all insert within the limit of force; otherwise below 0: the smallest
+    /// margin, or the excess of force as a share of the limit.
     pub score: f64,
     /// Trial of the medium finger with the largest margin, if all starts fail.
     pub nearest: Option<Box<Trial>>,
@@ -61,7 +80,8 @@ pub fn fingers() -> Option<[Finger; 6]> {
 }
 
 impl<'a> Bench<'a> {
-    /// Returns the bench of a task; `None` if no measured fingers are shipped.
+    /// Returns the bench of a task with its limits of force and speed, and with the robot's stop force unless the
+    /// task limits the force; `None` if no measured fingers are shipped.
     pub fn new(
         task: &'a Task,
         robot: &'a Robot,
@@ -70,22 +90,26 @@ impl<'a> Bench<'a> {
     ) -> Option<Self> {
         let [soft, medium, stiff, others @ ..] =
             fingers()?.map(|finger| finger.shaped(&task.finger, 0.0));
-        Some(Bench { task, robot, engine, fingers: [soft, medium, stiff], others, stop })
+        let fingers = [soft, medium, stiff];
+        let force = task.limits.force.or(Some(robot.stop_force));
+        let limits = Limits { force, ..task.limits };
+        Some(Bench { task, robot, engine, fingers, others, limits, stop })
     }
 
-    /// Returns the window of a finger and how clearly its nominal start fails, 0 if it inserts.
+    /// Returns the window of a finger.
     fn window(
         &self,
         strategy: &Strategy,
         finger: &Finger,
         conditions: Conditions,
-    ) -> Result<(Window, f64), RigError> {
+    ) -> Result<Measured, RigError> {
         let task = Task { strategy: strategy.clone(), ..self.task.clone() };
         let rig = self.engine.rig(&task, self.robot, finger, 1.0)?;
         let grasp = Grasp { finger: *finger, conditions, stop: self.stop };
         let found = tolerance::evaluate_in(&*rig, grasp, Search::Strides);
         let inserts = found.window.nominal == Outcome::Inserted;
-        Ok((found.window, if inserts { 0.0 } else { found.end_shares[0].min(0.0) }))
+        let margin = if inserts { 0.0 } else { found.end_shares[0].min(0.0) };
+        Ok(Measured { window: found.window, margin, force_n: found.peak_force_n })
     }
 
     /// Returns the windows of fingers under some conditions, from the strategy's own start.
@@ -94,19 +118,21 @@ impl<'a> Bench<'a> {
         strategy: &Strategy,
         fingers: &[Finger],
         conditions: Conditions,
-    ) -> Result<Vec<(Window, f64)>, RigError> {
+    ) -> Result<Vec<Measured>, RigError> {
         fingers.par_iter().map(|finger| self.window(strategy, finger, conditions)).collect()
     }
 
     /// Returns the strategy from its own start.
     pub fn given(&self, strategy: &Strategy) -> Result<Tried, RigError> {
         let found = self.windows(strategy, &self.fingers, Conditions::NOMINAL)?;
-        Ok(Tried::of(strategy.clone(), found))
+        Ok(self.tried(strategy.clone(), found))
     }
 
     /// Returns the strategy with its start moved to the middle of the medium finger's window.
     pub fn taught(&self, strategy: &Strategy) -> Result<Tried, RigError> {
         let mut strategy = Strategy { rule: StartRule::Given, ..strategy.clone() };
+        let most = self.limits.speed.unwrap_or(f64::INFINITY);
+        strategy.phases.iter_mut().for_each(|phase| phase.speed = phase.speed.min(most));
         let task = Task { strategy: strategy.clone(), ..self.task.clone() };
         let [soft, medium, stiff] = self.fingers;
         let rig = self.engine.rig(&task, self.robot, &medium, 1.0)?;
@@ -115,32 +141,56 @@ impl<'a> Bench<'a> {
                 strategy.start[1] += offset(taught.by);
                 let others = self.windows(&strategy, &[soft, stiff], Conditions::NOMINAL)?;
                 let mut found = others;
-                found.insert(1, (taught.window, 0.0));
-                Ok(Tried::of(strategy, found))
+                let (window, force_n) = (taught.window, taught.peak_force_n);
+                found.insert(1, Measured { window, margin: 0.0, force_n });
+                Ok(self.tried(strategy, found))
             }
             Err(nearest) => {
                 strategy.start[1] += offset(nearest.by);
                 // Below whatever inserts with the medium finger.
                 let score = nearest.trial.margin.min(0.0) - 1.0;
                 let nearest = Some(Box::new(nearest.trial));
-                Ok(Tried { strategy, windows: Vec::new(), score, nearest, cost: 1 })
+                Ok(Tried { strategy, windows: Vec::new(), force_n: 0.0, score, nearest, cost: 1 })
             }
         }
+    }
+
+    /// Returns a strategy and, if its force is above the limit, the same with a slower push: the force grows about
+    /// with the speed.
+    pub fn with_slower_push(&self, what: String, tried: Tried) -> Vec<(String, Tried)> {
+        let limit = self.limits.force.unwrap_or(f64::INFINITY);
+        let mut all = vec![(what, tried)];
+        let (what, tried) = &all[0];
+        let mut strategy = tried.strategy.clone();
+        let Some(push) = strategy.phases.last_mut().filter(|_| tried.force_n > limit) else {
+            return all;
+        };
+        push.speed = (push.speed * SLOWER * limit / tried.force_n / MM).floor() * MM;
+        let what = format!("{what}, push slowed to {:.0} mm/s", push.speed / MM);
+        if push.speed > 0.0 {
+            all.extend(self.taught(&strategy).ok().map(|tried| (what, tried)));
+        }
+        all
+    }
+
+    fn tried(&self, strategy: Strategy, found: Vec<Measured>) -> Tried {
+        let worst = found.iter().map(|found| found.margin).fold(0.0, f64::min);
+        let force_n = found.iter().map(|found| found.force_n).fold(0.0, f64::max);
+        let inserts = found.iter().all(|found| found.window.nominal == Outcome::Inserted);
+        let windows: Vec<_> = found.into_iter().map(|found| found.window).collect();
+        let least = windows.iter().map(Window::range_mm).fold(f64::INFINITY, f64::min);
+        let score = match self.limits.force {
+            // A nominal start that fails by nothing is no success.
+            _ if !inserts => worst - f64::EPSILON,
+            Some(limit) if force_n > limit => 1.0 - force_n / limit,
+            _ => least,
+        };
+        Tried { strategy, cost: windows.len(), windows, force_n, score, nearest: None }
     }
 }
 
 impl Tried {
-    fn of(strategy: Strategy, found: Vec<(Window, f64)>) -> Self {
-        let worst = found.iter().map(|(_, margin)| *margin).fold(0.0, f64::min);
-        let inserts = found.iter().all(|(window, _)| window.nominal == Outcome::Inserted);
-        let windows: Vec<_> = found.into_iter().map(|(window, _)| window).collect();
-        let least = windows.iter().map(Window::range_mm).fold(f64::INFINITY, f64::min);
-        // A nominal start that fails by nothing is no success.
-        let score = if inserts { least } else { worst - f64::EPSILON };
-        Tried { strategy, cost: windows.len(), windows, score, nearest: None }
-    }
-
-    /// Returns whether all three fingers insert.
+    /// Returns whether all three fingers insert within the limit of force.
     pub fn inserts(&self) -> bool {
         self.score >= 0.0
     }

@@ -99,7 +99,8 @@ pub fn turned(task: &Task, knobs: &[Knob], unit: &[f64]) -> (Strategy, String) {
                 said.push(format!("{} {:.2} mm", phases[i].name, longest * factor / MM));
             }
             Sets::Push(i) => {
-                phases[i].speed = knob.at(phases[i].speed / MM, share, 1.0) * MM;
+                let most = task.limits.speed.unwrap_or(f64::INFINITY);
+                phases[i].speed = (knob.at(phases[i].speed / MM, share, 1.0) * MM).min(most);
                 said.push(format!("push {:.0} mm/s", phases[i].speed / MM));
             }
         }

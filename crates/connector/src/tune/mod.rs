@@ -3,7 +3,7 @@
 mod bench;
 mod knobs;
 
-pub use bench::{Bench, ENOUGH_MM, Tried};
+pub use bench::{Bench, ENOUGH_MM, Measured, Tried};
 
 use crate::body::ConvexBody;
 use crate::plan::Family;
@@ -13,6 +13,7 @@ use input::units::{DEG, MM};
 use insertion::evaluation::INDIFFERENCE_MM;
 use insertion::evaluation::template::Impossible;
 use insertion::finger::Finger;
+use insertion::outcome::Outcome;
 use insertion::task::{Strategy, Task};
 use insertion::trial::Conditions;
 use rayon::prelude::*;
@@ -125,7 +126,9 @@ pub fn tune(bench: &Bench, effort: &Effort) -> Result<Tuned, Impossible> {
                 let tried = bench.taught(own)?;
                 let by = (tried.strategy.start[1] - own.start[1]) / MM;
                 let what = format!("start taught, {by:+.1} mm in y");
-                tuned.add(Step::new(stage, what, tried), effort);
+                for (what, tried) in bench.with_slower_push(what, tried) {
+                    tuned.add(Step::new(stage, what, tried), effort);
+                }
             }
             Stage::Families => tuned.families(bench, effort),
             Stage::Search => tuned.search(bench, effort)?,
@@ -143,9 +146,16 @@ impl Tuned {
         &self.steps[self.best]
     }
 
-    /// Returns whether the recommended strategy inserts with all three fingers.
+    /// Returns whether the recommended strategy inserts with all three fingers within the limit of force.
     pub fn inserts(&self) -> bool {
         self.best().tried.inserts()
+    }
+
+    /// Returns the least force of the strategies that insert with all three fingers, N.
+    pub fn least_force_n(&self) -> Option<f64> {
+        let inserts = |tried: &&Tried| tried.windows.iter().all(|w| w.nominal == Outcome::Inserted);
+        let tried = self.steps.iter().map(|step| &step.tried).filter(inserts);
+        tried.map(|tried| tried.force_n).filter(|force| *force > 0.0).min_by(f64::total_cmp)
     }
 
     /// A step of a later stage must be better by what matters; of the same stage, or of two that fail, at
@@ -168,18 +178,21 @@ impl Tuned {
 
     fn families(&mut self, bench: &Bench, effort: &Effort) {
         let families: Vec<_> = Family::all().collect();
-        let tried: Vec<_> = families
+        let tried: Vec<Option<Vec<_>>> = families
             .par_iter()
-            .map(|family| Some((family.name(), bench.taught(&family.of(bench.task)?).ok()?)))
+            .map(|family| {
+                let tried = bench.taught(&family.of(bench.task)?).ok()?;
+                Some(bench.with_slower_push(family.name(), tried))
+            })
             .collect();
-        for (what, tried) in tried.into_iter().flatten() {
+        for (what, tried) in tried.into_iter().flatten().flatten() {
             self.add(Step::new(Stage::Families, what, tried), effort);
         }
     }
 
     fn search(&mut self, bench: &Bench, effort: &Effort) -> Result<(), InputError> {
         let from = self.best().tried.strategy.clone();
-        let task = Task { strategy: from, ..bench.task.clone() };
+        let task = Task { strategy: from, limits: bench.limits, ..bench.task.clone() };
         let knobs = knobs::knobs(&task.strategy)?;
         let grid = Grid::new(knobs::levels(&knobs));
         let mut optimizer = ask_tell::build(OptimizerKind::Gp, grid.clone(), effort.seed);
@@ -276,7 +289,7 @@ impl Tuned {
         ];
         let under = |(change, conditions): &(String, Conditions)| {
             let windows = bench.windows(strategy, fingers, *conditions)?;
-            let ranges = windows.iter().map(|(window, _)| window.range_mm());
+            let ranges = windows.iter().map(|found| found.window.range_mm());
             let least_range_mm = ranges.fold(f64::INFINITY, f64::min);
             Ok(Robustness { change: change.clone(), least_range_mm })
         };

@@ -102,6 +102,7 @@ pub(super) struct Detector {
     /// Pairs of bodies, in the order of the scene.
     lists: Vec<NearList>,
     prediction: f64,
+    round: bool,
 }
 
 impl Detector {
@@ -132,7 +133,13 @@ impl Detector {
             list
         };
         let lists = scene.contacts.iter().enumerate().map(list).collect();
-        Detector { lists, solids, prediction }
+        let round = solids.iter().any(|solid| solid.round.is_some());
+        Detector { lists, solids, prediction, round }
+    }
+
+    /// Returns whether a shape has round edges.
+    pub fn has_round_shapes(&self) -> bool {
+        self.round
     }
 
     /// Finds the contacts at the bodies' poses.

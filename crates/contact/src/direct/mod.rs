@@ -12,6 +12,7 @@ mod body;
 mod cone;
 mod contacts;
 mod dense;
+mod impact;
 mod joints;
 mod patch;
 mod solver;

@@ -18,22 +18,24 @@ const TRIES: usize = 5;
 /// Scene in motion; a clone continues with the same bits.
 #[derive(Clone)]
 pub(super) struct DirectWorld {
-    settings: Direct,
+    pub settings: Direct,
     gravity: Vector3<f64>,
     pub bodies: Vec<MovingBody>,
     joints: Vec<SprungJoint>,
     /// Pairs of bodies that may touch.
-    pairs: Vec<ContactPair>,
+    pub pairs: Vec<ContactPair>,
     /// Forces of the pairs over the last step.
-    forces: Vec<ContactForce>,
-    detector: Detector,
+    pub forces: Vec<ContactForce>,
+    pub detector: Detector,
     system: Blocks,
     /// Right-hand side, then solution, by place.
     values: Vec<Vector6>,
     /// Force at the centre of mass and moment applied to each body, N, N m.
     pushes: Vec<Vector6>,
     solver: Solver,
-    touches: Vec<Touch>,
+    pub touches: Vec<Touch>,
+    /// Steps that are still to be divided.
+    pub divided: usize,
     contacts: Vec<Contact>,
     /// Whether a friction has patches.
     patched: bool,
@@ -64,15 +66,15 @@ impl DirectWorld {
             pushes: vec![Vector6::zeros(); scene.bodies.len()],
             solver: Solver::new(size - eliminated),
             touches: Vec::new(),
+            divided: 0,
             contacts: Vec::new(),
             bodies,
         }
     }
 
-    /// Finds the contacts and sets them up for the solver.
-    fn find_contacts(&mut self) {
+    /// Sets up the detected contacts for the solver.
+    fn set_contacts(&mut self) {
         let step = self.settings.step_s;
-        self.detector.detect(&self.bodies, step, &mut self.touches);
         self.contacts.clear();
         // Force at the end of the step: k gap + c rate; `share` is that of the gap at its start.
         let spring = self.settings.contact_stiffness * step;
@@ -172,7 +174,8 @@ impl DirectWorld {
         }
     }
 
-    fn try_step(&mut self) -> Option<()> {
+    /// Takes a step with the detected contacts.
+    pub(super) fn try_step(&mut self) -> Option<()> {
         let step = self.settings.step_s;
         for body in &mut self.bodies {
             body.steer(step);
@@ -185,7 +188,7 @@ impl DirectWorld {
         for joint in &mut self.joints {
             joint.locate(&self.bodies);
         }
-        self.find_contacts();
+        self.set_contacts();
         for _ in 0..TRIES {
             self.solve()?;
             for body in &mut self.bodies {
@@ -230,7 +233,9 @@ fn places(scene: &Scene) -> (Vec<usize>, usize, usize) {
 
 impl World for DirectWorld {
     fn step(&mut self) -> Result<(), Diverged> {
-        self.try_step().ok_or(Diverged)
+        self.detector.detect(&self.bodies, self.settings.step_s, &mut self.touches);
+        let done = if self.is_divided() { self.divided_step() } else { self.try_step() };
+        done.ok_or(Diverged)
     }
 
     fn step_s(&self) -> f64 {

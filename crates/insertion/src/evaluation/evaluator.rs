@@ -27,7 +27,7 @@ use parameters::{Parameter, numbers};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// Stiffness model, tasks, robot and engine: all that decides the evaluation of a design.
+/// Stiffness model, tasks, robot and engine: everything that determines the evaluation of a design.
 ///
 /// ```
 /// use finray::printed::PrintedFinger;
@@ -52,47 +52,47 @@ use std::sync::atomic::AtomicBool;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Evaluator {
-    /// Predicts a finger's stiffness from its infill.
+    /// Stiffness model of the infill.
     pub surrogate: Arc<Model>,
-    /// Makes a finger of a stiffness and a design.
+    /// Source of the fingers.
     pub fingers: FingerSource,
-    /// The tasks, whose numbers a design may set; at least one.
+    /// Tasks with the numbers that a design may set; at least one.
     pub templates: Vec<Template>,
     /// Robot that carries the fingers.
     pub robot: Robot,
     /// Contact engine.
     pub engine: EngineKind,
-    /// Cell whose numbers apply where a design sets none, if it is known; `robot` is its robot.
+    /// Cell, if it is known, for the numbers that a design does not set; `robot` is its robot.
     pub cell: Option<Priors>,
 }
 
 /// Task and finger of a design, ready for simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Specimen {
-    /// The task, with the numbers that the design sets.
+    /// Task with the numbers of the design.
     pub task: Task,
     /// Design.
     pub design: Design,
-    /// Finger that the design gives.
+    /// Finger of the design.
     pub finger: Finger,
     /// Source of the finger's remote centre.
     pub centre: CentreFrom,
-    /// The stiffness that the finger was given, with its error.
+    /// Stiffness of the finger, with its error.
     pub stiffness: Prediction,
 }
 
 /// Evaluation of one design on all tasks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
-    /// Stiffness predicted for it.
+    /// Predicted stiffness.
     pub stiffness: Prediction,
     /// Evaluation on each task, in their order.
     pub tasks: Vec<Evaluation>,
-    /// For each task whether it was known from before; empty where nothing could be.
+    /// For each task whether it was in the cache; empty without a cache.
     pub cached: Vec<bool>,
 }
 
-/// Evaluates designs, several at a time.
+/// Evaluator of designs on several threads.
 pub trait Evaluate: Sync {
     /// Evaluates a design; equal designs give equal results.
     fn evaluate(&self, design: &Design) -> Result<Measured, Impossible>;
@@ -104,7 +104,7 @@ pub trait Evaluate: Sync {
 }
 
 impl Evaluator {
-    /// Returns the stiffness predicted for a design, which must name the infill.
+    /// Returns the predicted stiffness of a design with an infill.
     pub fn predict(&self, design: &Design) -> Result<Prediction, Impossible> {
         let value = |key| design.get(key).unwrap_or(f64::NAN);
         let plain = self.surrogate.predict(value(DENSITY_KEY), value(DIRECTION_KEY))?;
@@ -118,7 +118,7 @@ impl Evaluator {
         }
     }
 
-    /// Returns a design of this stiffness on one of the tasks, in the cell if that is known.
+    /// Returns the specimen of a design with this stiffness on one of the tasks.
     pub fn specimen(
         &self,
         template: &Template,
@@ -128,7 +128,7 @@ impl Evaluator {
         self.specimen_under(template, design, stiffness, &self.rows(Some(template)))
     }
 
-    /// The same where these rows of a cell have these values, unless the design sets the number.
+    /// Returns the specimen with these values of rows of a cell, unless the design sets the number.
     pub(super) fn specimen_under(
         &self,
         template: &Template,
@@ -154,8 +154,8 @@ impl Evaluator {
         Ok(specimen)
     }
 
-    /// By how much the start of a specimen is moved, in grid steps; `None` if its task has no
-    /// taught start, 0 if no start inserts. Ends early, with a worthless result, once `stop` is set.
+    /// Returns the shift of a specimen's taught start, grid steps; `None` if its task has no taught start, 0 if
+    /// no start inserts. The result is invalid once `stop` is set.
     pub fn taught(
         &self,
         specimen: &Specimen,
@@ -168,8 +168,7 @@ impl Evaluator {
         Ok(Some(teach(&*rig, &specimen.finger, stop).map_or(0, |taught| taught.by)))
     }
 
-    /// Returns where trials of a specimen are run, from its taught start, at `step_factor` times the
-    /// step.
+    /// Returns the rig of a specimen at its taught start, with `step_factor` times the time step.
     pub fn rig(
         &self,
         specimen: &Specimen,
@@ -193,7 +192,7 @@ impl Evaluator {
         })
     }
 
-    /// Measures a specimen's window and what the plan adds; worthless once `stop` is set.
+    /// Measures a specimen by a plan. The result is invalid once `stop` is set.
     pub fn measure(
         &self,
         specimen: &Specimen,
@@ -219,7 +218,7 @@ impl Evaluator {
         Ok(Evaluation { taught, ..evaluation })
     }
 
-    /// As [`measure`](Self::measure); if the nominal start fails, once more with a taught start.
+    /// Measures a specimen, with a taught start if the nominal start fails.
     pub fn measure_or_teach(
         &self,
         specimen: &Specimen,
@@ -236,8 +235,8 @@ impl Evaluator {
         self.measure(&taught, search, plan, stop)
     }
 
-    /// Returns the firm part of the window that was measured of a specimen, from the start taught then,
-    /// by [`firm::REPEATS`] repeats that this seed names; worthless once `stop` is set.
+    /// Measures the firm part of a specimen's window by [`firm::REPEATS`] repeats. The result is invalid once
+    /// `stop` is set.
     pub fn firm(
         &self,
         specimen: &Specimen,
@@ -255,7 +254,7 @@ impl Evaluator {
         Ok(firm::measure(&repeats, &measured.window))
     }
 
-    /// Measures a design on every task by `measure`, which may know the answer already.
+    /// Measures a design on every task by `measure`.
     pub fn evaluate_by(
         &self,
         design: &Design,

@@ -5,7 +5,7 @@
 //! middle does not insert, because the window has a gap, the first start is used.
 
 use super::tolerance::{self, OFFSET_LIMIT_STEPS, Search, offset};
-use super::{OffsetStep, Window};
+use super::{Evaluation, OffsetStep, Window};
 use crate::finger::Finger;
 use crate::outcome::Outcome;
 use crate::trial::{Grasp, Grasped, Recording, Rig, Sample, Trial};
@@ -24,6 +24,8 @@ pub struct Taught {
     pub by: OffsetStep,
     /// The window about it.
     pub window: Window,
+    /// Largest force of its insertions, N.
+    pub peak_force_n: f64,
 }
 
 /// Start with the largest margin if all starts fail.
@@ -43,18 +45,19 @@ pub fn teach(rig: &dyn Rig, finger: &Finger, stop: &AtomicBool) -> Result<Taught
     let grasp = Grasp { stop, ..Grasp::of(finger) };
     let grasped = rig.hold(grasp);
     let found = first(&*grasped)?;
-    let mut window =
-        tolerance::evaluate_in(&Moved { rig, by: found }, grasp, Search::Strides).window;
+    let moved = Moved { rig, by: found };
+    let Evaluation { mut window, peak_force_n, .. } =
+        tolerance::evaluate_in(&moved, grasp, Search::Strides);
     let both = window.negative_steps + window.positive_steps;
     // Towards zero.
     let middle = both.clamp(-OFFSET_LIMIT_STEPS, OFFSET_LIMIT_STEPS) / 2;
     let by = found + middle;
     if grasped.trial(offset(by)).outcome != Outcome::Inserted {
-        return Ok(Taught { by: found, window });
+        return Ok(Taught { by: found, window, peak_force_n });
     }
     window.negative_steps -= middle;
     window.positive_steps -= middle;
-    Ok(Taught { by, window })
+    Ok(Taught { by, window, peak_force_n })
 }
 
 /// Returns the first start that inserts, outward from the task's own.
@@ -118,7 +121,7 @@ mod tests {
         let fake = FakeRig::default();
         for (away, taught) in [(0, -9), (30, -39), (-50, 41)] {
             let moved = Moved { rig: &fake as &dyn Rig, by: away };
-            let Taught { by: found, window: said } = teach(&moved, &finger, &NEVER).unwrap();
+            let Taught { by: found, window: said, .. } = teach(&moved, &finger, &NEVER).unwrap();
             assert!((found - taught).abs() <= 1, "{away}: {found}");
             let middled = Moved { rig: &moved as &dyn Rig, by: found };
             let window = tolerance::evaluate(&middled, &finger, Search::Walk).window;

@@ -248,6 +248,14 @@ pub struct Limits {
     pub speed: Option<f64>,
 }
 
+impl Limits {
+    /// Returns these limits, and the others where there are none.
+    pub fn or(self, others: Limits) -> Limits {
+        let Limits { force, speed } = others;
+        Limits { force: self.force.or(force), speed: self.speed.or(speed) }
+    }
+}
+
 /// Criterion of an insertion.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -1,6 +1,6 @@
 //! Parts of a task in a file of their own beside it: many of them would hide the rest of the task.
 
-use input::files::{LARGEST_INPUT, read_named};
+use input::files::{LARGEST_INPUT, read_text};
 use input::shipped::Source;
 use input::{Check, InputError};
 use serde::Deserialize;
@@ -45,7 +45,7 @@ pub fn with_parts(source: Source) -> Result<Source, InputError> {
     let Some(named) = named else { return Ok(source) };
     let check = Check { file: &source.file };
     let beside = Path::new(&source.file).parent().unwrap_or(Path::new("")).join(&named.file);
-    let parts = match read_named(&beside, LARGEST_INPUT) {
+    let parts = match read_text(&beside, LARGEST_INPUT) {
         Ok(text) => text,
         Err(error) => {
             return check.fail("parts.file", format!("cannot read {}: {error}", named.file));

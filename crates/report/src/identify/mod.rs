@@ -9,10 +9,10 @@ pub use page::html;
 use crate::answer::words::number;
 use crate::text_table;
 use calibration::identify::check::Remark;
-use calibration::identify::formulas::{self, Flange};
+use calibration::identify::formulas::{Flange, Friction, Slide};
 use calibration::identify::misfit::{Misfit, misfits};
 use calibration::identify::question::{Compared, IdentifyDone};
-use calibration::identify::unknown::{From, Unknown};
+use calibration::identify::unknown::{Unknown, ValueOrigin};
 use input::units::{MM, N_PER_MM};
 use insertion::surrogate::Estimate;
 use parameters::{Path, Transform};
@@ -53,13 +53,7 @@ struct Probe<'a> {
     log: &'a str,
     friction: Option<f64>,
     friction_sd: Option<f64>,
-    slides: Vec<Slide>,
-}
-
-#[derive(Serialize)]
-struct Slide {
-    tangential_over_normal: f64,
-    rising: bool,
+    slides: &'a [Slide],
 }
 
 #[derive(Serialize)]
@@ -71,7 +65,7 @@ struct Identification<'a> {
     prior_high: f64,
     value: f64,
     sd: Option<f64>,
-    from: From,
+    from: ValueOrigin,
     source: &'a str,
     expected_share_of_prior_sd: Option<f64>,
     share_of_prior_sd: Option<f64>,
@@ -99,15 +93,11 @@ impl<'a> Output<'a> {
             explained: flange.explained,
         };
         let axes = AXES.into_iter().zip(&found.flange);
-        let slide = |slide: &formulas::Slide| Slide {
-            tangential_over_normal: slide.ratio,
-            rising: slide.rising,
-        };
-        let probe = |(file, friction): &'a (String, formulas::Friction)| Probe {
+        let probe = |(file, friction): &'a (String, Friction)| Probe {
             log: file,
             friction: friction.coefficient.map(|one| one.mean),
             friction_sd: friction.coefficient.map(|one| one.sd),
-            slides: friction.slides.iter().map(slide).collect(),
+            slides: &friction.slides,
         };
         let attempt = |one: &'a Compared| Attempt {
             log: &one.logged.file,
@@ -131,7 +121,7 @@ impl<'a> Output<'a> {
     }
 }
 
-impl<'a> std::convert::From<&'a Unknown> for Identification<'a> {
+impl<'a> From<&'a Unknown> for Identification<'a> {
     fn from(Unknown { prior, posterior, left, from, advice }: &'a Unknown) -> Self {
         Identification {
             name: &posterior.name,
@@ -193,12 +183,12 @@ pub fn text(done: &IdentifyDone) -> String {
 }
 
 /// Returns the origin of a value in words.
-fn origin(from: From) -> &'static str {
+fn origin(from: ValueOrigin) -> &'static str {
     match from {
-        From::Formula => "formula",
-        From::Fit => "fit",
-        From::Prior => "not identifiable",
-        From::Files => "not fitted",
+        ValueOrigin::Formula => "formula",
+        ValueOrigin::Fit => "fit",
+        ValueOrigin::Prior => "not identifiable",
+        ValueOrigin::Files => "not fitted",
     }
 }
 

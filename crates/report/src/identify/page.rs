@@ -12,7 +12,7 @@ use calibration::identify::formulas::{Flange, Friction};
 use calibration::identify::log::Ended;
 use calibration::identify::misfit::misfits;
 use calibration::identify::question::{Compared, Identified, IdentifyDone};
-use calibration::identify::unknown::{From, Unknown};
+use calibration::identify::unknown::{Unknown, ValueOrigin};
 use input::units::MM;
 use insertion::outcome::Outcome;
 use maud::{Markup, PreEscaped, html};
@@ -75,10 +75,11 @@ fn headline(IdentifyDone { task, found, .. }: &IdentifyDone) -> String {
         |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let attempts = counted(found.compared.len(), "attempt");
     let probes = counted(found.probes.len(), "probe");
-    let of =
-        |origins: &[From]| found.unknowns.iter().filter(|one| origins.contains(&one.from)).count();
-    let identified = of(&[From::Formula, From::Fit]);
-    let fixed = match of(&[From::Files]) {
+    let of = |origins: &[ValueOrigin]| {
+        found.unknowns.iter().filter(|one| origins.contains(&one.from)).count()
+    };
+    let identified = of(&[ValueOrigin::Formula, ValueOrigin::Fit]);
+    let fixed = match of(&[ValueOrigin::Files]) {
         0 => String::new(),
         count => format!(" ({count} more were not fitted)"),
     };
@@ -88,7 +89,7 @@ fn headline(IdentifyDone { task, found, .. }: &IdentifyDone) -> String {
         }
         _ => String::new(),
     };
-    let all = identified + of(&[From::Prior]);
+    let all = identified + of(&[ValueOrigin::Prior]);
     format!(
         "{attempts} and {probes} on {task} identify {identified} of {all} numbers of the cell{fixed}{misfit}"
     )
@@ -96,25 +97,26 @@ fn headline(IdentifyDone { task, found, .. }: &IdentifyDone) -> String {
 
 /// Returns the names of the numbers by the origin of their values, and the share of the data that was compared.
 fn by_origin(found: &Identified) -> Vec<(String, String)> {
-    let named = |from: From| {
+    let named = |from: ValueOrigin| {
         let of = found.unknowns.iter().filter(|one| one.from == from);
         let names: Vec<&str> = of.map(|one| one.posterior.name.as_str()).collect();
         (!names.is_empty()).then(|| (origin(from).to_owned(), names.join(", ")))
     };
     let share = format!("{:.0} % of the data", 100.0 * found.smoothed.compared);
-    let all = [From::Formula, From::Fit, From::Prior, From::Files].map(named);
+    let all =
+        [ValueOrigin::Formula, ValueOrigin::Fit, ValueOrigin::Prior, ValueOrigin::Files].map(named);
     all.into_iter().flatten().chain([("compared".to_owned(), share)]).collect()
 }
 
 /// Returns a row of the table of numbers.
 fn unknown(one: &Unknown) -> Vec<Markup> {
     let Unknown { prior, posterior, left, from, advice } = one;
-    let identified = *from != From::Prior;
+    let identified = *from != ValueOrigin::Prior;
     let source = posterior.source.strip_prefix(origin(*from)).unwrap_or(&posterior.source);
     let source = source.trim_start_matches([':', ' ']);
     let (share, expected) = match (left, from) {
         // The fit started from the formula's value, so its own share is not of the prior.
-        (_, From::Formula) => (deviation(posterior) / deviation(prior), None),
+        (_, ValueOrigin::Formula) => (deviation(posterior) / deviation(prior), None),
         (Some([expected, left]), _) => (*left, Some(*expected)),
         (None, _) => (1.0, None),
     };

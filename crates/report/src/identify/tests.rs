@@ -7,7 +7,7 @@ use calibration::identify::log::{Ended, Run};
 use calibration::identify::question::{Compared, Identified, IdentifyDone};
 use calibration::identify::replay::Logged;
 use calibration::identify::smoother::Smoothed;
-use calibration::identify::unknown::{From, Unknown};
+use calibration::identify::unknown::{Unknown, ValueOrigin};
 use input::shipped::{PRIORS, ROBOTS};
 use insertion::evaluation::cell::Priors;
 use insertion::outcome::Outcome;
@@ -37,7 +37,7 @@ fn done() -> IdentifyDone {
         prior: prior.clone(),
         posterior: prior.clone(),
         left: Some([0.3, 0.25]),
-        from: if i == 0 { From::Fit } else { From::Prior },
+        from: if i == 0 { ValueOrigin::Fit } else { ValueOrigin::Prior },
         advice: (i > 0).then_some("a probe"),
     };
     let slide = |forth: bool| Slide { forth, ratio: 0.2, rising: !forth };

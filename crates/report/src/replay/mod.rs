@@ -1,4 +1,4 @@
-//! Recorded trials for looking at: a page that plays them, a table, a curve.
+//! Recorded trials as a page that plays them, a table and a curve.
 
 mod curve;
 mod film;
@@ -15,12 +15,12 @@ use insertion::task::Task;
 use insertion::trial::Recording;
 use maud::{PreEscaped, html};
 
-/// A recorded trial of a task, and what it is called.
+/// Recorded trial of a task.
 #[derive(Debug, Clone, Copy)]
 pub struct Film<'a> {
-    /// For readers: `start shifted by +1.5 mm`.
+    /// Label: `start shifted by +1.5 mm`.
     pub label: &'a str,
-    /// The task that was tried.
+    /// Task of the trial.
     pub task: &'a Task,
     /// Pad and roof of the fingers.
     pub pad: &'a Pad,
@@ -28,17 +28,17 @@ pub struct Film<'a> {
     pub recording: &'a Recording,
 }
 
-/// The ends of a window: what they are called, and the step outward.
+/// Ends of a window: name and step outward.
 pub const ENDS: [(&str, OffsetStep); 2] = [("negative", -1), ("positive", 1)];
 
-/// Where a study keeps the pair at an end of its recommended design's window, by the place of the
-/// task; below its folder.
+/// Returns the path, in the folder of a study, of the pair of trials at an end of the recommended window; `task` is
+/// the index of the task.
 pub fn pair_file(task: usize, end: &str) -> String {
     format!("replay/{}-{end}.html", task + 1)
 }
 
-/// A page that plays films side by side. It opens offline: its script is our own, for nothing
-/// that draws in WebGL is as small (three.js has 700 kB, this 18).
+/// Returns a page that plays films side by side, offline. Its script needs no library (three.js has 700 kB, this
+/// 18).
 pub fn page(title: &str, films: &[Film]) -> String {
     let data: Vec<_> = films.iter().map(film::Data::new).collect();
     around(title, &embedded(&data))
@@ -46,13 +46,13 @@ pub fn page(title: &str, films: &[Film]) -> String {
 
 const DATA: &str = "<script type=\"application/json\" id=\"films\">";
 
-/// The recordings of a page of films, as they stand in it; `None` of another page.
+/// Returns the recordings of a page of films as JSON; `None` for another page.
 pub fn data(page: &str) -> Option<&str> {
     let (_, rest) = page.split_once(DATA)?;
     rest.split('<').next()
 }
 
-/// The page without films, to put the data of one in behind [`DATA`].
+/// Returns the page without films, for data to be inserted after [`DATA`].
 pub(super) fn viewer() -> String {
     around("film", "")
 }

@@ -8,7 +8,7 @@ use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::taught::{Moved, Taught, teach};
 use insertion::evaluation::template::Template;
 use insertion::evaluation::tolerance::{self, Search};
-use insertion::evaluation::{OffsetStep, grid_mm};
+use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::space::Design;
@@ -137,7 +137,7 @@ impl FingerWindows {
 }
 
 fn starts_mm(taught: &Taught) -> [f64; 3] {
-    let Taught { by, window } = taught;
+    let Taught { by, window, .. } = taught;
     [*by, by + window.negative_steps, by + window.positive_steps].map(grid_mm)
 }
 
@@ -163,9 +163,10 @@ pub fn window(
     let rig = engine.rig(task, robot, finger, 1.0).map_err(Failure::input)?;
     if let Some(by) = near {
         let moved = Moved { rig: &*rig, by };
-        let window = tolerance::evaluate(&moved, finger, Search::Strides).window;
+        let found = tolerance::evaluate(&moved, finger, Search::Strides);
+        let Evaluation { window, peak_force_n, .. } = found;
         if window.nominal == Outcome::Inserted {
-            return Ok(Some(Taught { by, window }));
+            return Ok(Some(Taught { by, window, peak_force_n }));
         }
     }
     Ok(teach(&*rig, finger, &NEVER).ok())

@@ -1,6 +1,7 @@
 //! Ends of a line or face of contact of a round shape. parry clips the faces of the cores, whatever
 //! the normal: of two edges that touch along a line it often finds one point, somewhere on it.
 
+use super::patches::NARROW;
 use super::{MILLIMETRES, Solid};
 use parry::math as pm;
 use parry::query::details::contact_support_map_support_map_with_params;
@@ -50,6 +51,10 @@ pub(super) fn add_ends(
         let unknown = PackedFeatureId::UNKNOWN;
         let distance = (p2 - p1).dot(normal);
         let p2 = relative.inverse_transform_point(p2);
+        if manifold.points.iter().any(|point| (point.local_p1 - p1).length() < NARROW * MILLIMETRES)
+        {
+            continue;
+        }
         manifold.points.push(TrackedContact::new(p1, p2, unknown, unknown, distance));
     }
 }

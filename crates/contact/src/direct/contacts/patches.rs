@@ -18,7 +18,7 @@ const FLAT: f64 = 5e-6;
 const EQUAL: f64 = 2e-6;
 /// Points nearer to one another, or to the line between two others, are one, m: a rounded edge and
 /// the face that ends at it touch a wall side by side.
-const NARROW: f64 = 0.1e-3;
+pub(super) const NARROW: f64 = 0.1e-3;
 
 /// Joins the manifolds of each patch and keeps their extreme points.
 pub(super) fn join(touches: &mut Vec<Touch>) {

@@ -23,7 +23,7 @@ pub(in crate::evaluation) fn change(parameter: &Parameter, value: f64, specimen:
         Kind::Finger => {
             if let Some((number, unit)) = finger.number(&parameter.path) {
                 let own = *number / unit;
-                // A neutral value keeps the number bit for bit.
+                // A neutral value does not change the number in any bit.
                 if parameter.transform == Transform::Value || value != parameter.neutral(own) {
                     *number = parameter.applied(own, value) * unit;
                 }
@@ -35,7 +35,7 @@ pub(in crate::evaluation) fn change(parameter: &Parameter, value: f64, specimen:
         }
         Kind::Added => {
             let size = parameter.applied(0.0, value) * MM;
-            // Without an edge to cut a sharp box stays a box.
+            // A size of 0 leaves the shape unchanged.
             if size != 0.0 {
                 *task = if parameter.path == CLEARANCE {
                     Conditions { clearance: size, ..Conditions::NOMINAL }.task(task)
@@ -51,8 +51,8 @@ pub(in crate::evaluation) fn change(parameter: &Parameter, value: f64, specimen:
 }
 
 impl Robot {
-    /// Returns the numbers that a path sets, which go in proportion, and the SI value of its unit; none
-    /// if the robot has no such number.
+    /// Returns the numbers that a path sets in proportion, and the SI value of its unit; none if the robot has no
+    /// such number.
     fn numbers(&mut self, path: &Path) -> (Vec<&mut f64>, f64) {
         let unit = if path == FLANGE { N_PER_MM } else { 1.0 };
         let numbers = match (path.as_str(), &mut self.drive) {
@@ -75,12 +75,12 @@ impl Robot {
         numbers.first().map(|number| **number / unit)
     }
 
-    /// Returns whether it has what a parameter sets of a robot.
+    /// Returns whether the robot has the number of a parameter, or the parameter is not of a robot.
     pub fn fits(&self, parameter: &Parameter) -> bool {
         parameter.path.kind() != Kind::Robot || self.number(&parameter.path).is_some()
     }
 
-    /// Sets what a parameter sets of a robot to this value of the parameter.
+    /// Applies a value of a parameter to the robot.
     pub fn change(&mut self, parameter: &Parameter, value: f64) {
         let (numbers, unit) = self.numbers(&parameter.path);
         let Some(own) = numbers.first().map(|number| **number / unit) else { return };
@@ -93,15 +93,14 @@ impl Robot {
 }
 
 impl Evaluator {
-    /// Returns the number of that key as the cell has it, else as in the task file, or in the finger
-    /// file of computed fingers; in the unit of the key.
+    /// Returns the number of a key, in its unit: that of the cell, the task file or the file of computed fingers.
     pub fn number(&self, template: &Template, key: &str) -> Option<f64> {
         let (none, rows) = (Design::default(), self.rows(Some(template)));
         let set = self.completed(Some(template), &none, &rows);
         set.get(key).or_else(|| self.in_file(Some(template), key))
     }
 
-    /// Returns whether the files have what a parameter sets: the task, the finger or the robot.
+    /// Returns whether task, finger or robot have the number of a parameter.
     pub fn has(&self, template: &Template, parameter: &Parameter) -> bool {
         match parameter.path.kind() {
             Kind::File => self.number(template, &parameter.path).is_some(),
@@ -109,11 +108,10 @@ impl Evaluator {
         }
     }
 
-    /// Checks that the task of a cell's rows, if it is one of the evaluator's, has what they set; `file`
-    /// is named in errors.
+    /// Checks that the task of a cell's rows, if the evaluator has it, has their paths; `file` is named in errors.
     ///
     /// # Errors
-    /// The first row whose path its task does not have, with the nearest that it has.
+    /// The first row with an unknown path, and the nearest known one.
     pub fn check_paths(&self, cell: &Priors, file: &str) -> Result<(), InputError> {
         let own = |template: &&Template| cell.task.as_ref() == Some(&template.task.name);
         for template in self.templates.iter().filter(own) {
@@ -130,10 +128,10 @@ impl Evaluator {
         Ok(())
     }
 
-    /// Checks that each task can have the numbers of the evaluator's own cell; `file` is named in errors.
+    /// Checks the values of the evaluator's cell on each task; `file` is named in errors.
     ///
     /// # Errors
-    /// The first row that sets a number to what cannot be, or as of [`Evaluator::check_paths`].
+    /// The first row with an invalid value, or as of [`Evaluator::check_paths`].
     pub fn check_cell(&self, file: &str) -> Result<(), InputError> {
         let Some(cell) = &self.cell else { return Ok(()) };
         self.check_paths(cell, file)?;
@@ -151,7 +149,7 @@ impl Evaluator {
         Ok(())
     }
 
-    /// Without a template that of a finger file alone.
+    /// Returns the number of a key in the task file, if a template is given, or in the finger file.
     fn in_file(&self, template: Option<&Template>, key: &str) -> Option<f64> {
         template.and_then(|template| template.numbers.number(key)).or_else(|| match &self.fingers {
             FingerSource::Paper => None,
@@ -159,7 +157,7 @@ impl Evaluator {
         })
     }
 
-    /// Returns the rows of its cell that apply to a task, or all, with their values.
+    /// Returns the rows of the cell that apply to a task, by default the first, with their values.
     pub(in crate::evaluation) fn rows<'a>(
         &'a self,
         of: Option<&'a Template>,
@@ -169,7 +167,7 @@ impl Evaluator {
         cell.of(task).map(|row| (row, row.middle())).collect()
     }
 
-    /// Returns a design, and the numbers that these rows set and it does not.
+    /// Returns a design completed by the numbers of these rows that it does not set.
     pub(in crate::evaluation) fn completed(
         &self,
         template: Option<&Template>,
@@ -188,11 +186,11 @@ impl Evaluator {
         set
     }
 
-    /// Returns a design under these values of parameters, on top of the cell's, and the robot; its
+    /// Returns specimen and robot of a design with these values of parameters in addition to those of the cell. The
     /// stiffness is predicted unless given.
     ///
     /// # Errors
-    /// If a value sets something to what cannot be.
+    /// If a value is invalid.
     pub fn under(
         &self,
         template: &Template,
@@ -218,8 +216,8 @@ impl Evaluator {
         Ok((specimen, robot))
     }
 
-    /// Returns a specimen in another cell, whose rows have these values, and its robot; rows of its own
-    /// cell that the other lacks stay.
+    /// Returns the specimen and the robot of another cell with these values of its rows; rows of the own cell that
+    /// the other lacks remain.
     pub(in crate::evaluation) fn drawn(
         &self,
         specimen: &Specimen,

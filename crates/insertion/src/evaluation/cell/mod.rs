@@ -14,14 +14,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Priors {
-    /// Name of the bounds, or of the cell.
+    /// Name of the priors or of the cell.
     pub name: String,
-    /// One line on it.
+    /// Description in one line.
     pub description: String,
-    /// Task whose rows those with `shared = false` are; `None`: each task has its own.
+    /// Task of the rows with `shared = false`; `None` if each task has its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub task: Option<String>,
-    /// Robot file of the cell, whole; checked by [`Priors::checked`], read by [`Priors::robot`].
+    /// Contents of the cell's robot file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robot: Option<toml::Table>,
     /// Parameters.
@@ -30,18 +30,18 @@ pub struct Priors {
 }
 
 impl Priors {
-    /// Reads and checks such a file; `file` is named in errors.
+    /// Reads and checks a file; `file` is named in errors.
     ///
     /// # Errors
-    /// If the text is not such a file, or as of [`Priors::checked`].
+    /// If the text cannot be parsed, or as of [`Priors::checked`].
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         read::<Priors>(text, file)?.checked(file)
     }
 
-    /// The same, if every row and the robot can be used; `file` is named in errors.
+    /// Checks every row and the robot; `file` is named in errors.
     ///
     /// # Errors
-    /// If one cannot: with its name and what would be right.
+    /// The first that is invalid, by name, and what is accepted.
     pub fn checked(self, file: &str) -> Result<Self, InputError> {
         let (all, check) = (&self.parameters, Check { file });
         for (i, parameter) in all.iter().enumerate() {
@@ -64,33 +64,33 @@ impl Priors {
         Ok(self)
     }
 
-    /// Returns its robot as its table has it, if it holds one; `file` is named in errors.
+    /// Returns its robot, if there is one; `file` is named in errors.
     ///
     /// # Errors
-    /// If the table is no robot file.
+    /// If the table is not a robot file.
     pub fn robot(&self, file: &str) -> Result<Option<Robot>, InputError> {
         let robot = |text: String| Robot::parse(&text, &format!("{file}: [robot]"));
         self.robot_text().map(robot).transpose()
     }
 
-    /// Returns the text of its robot's file, if it holds one.
+    /// Returns the text of its robot file, if there is one.
     pub fn robot_text(&self) -> Option<String> {
         self.robot.as_ref().map(toml::Table::to_string)
     }
 
-    /// Returns its rows that apply to a task.
+    /// Returns the rows that apply to a task.
     pub fn of<'a>(&'a self, task: &'a str) -> impl Iterator<Item = &'a Parameter> {
         let own = self.task.as_ref().is_none_or(|own| own == task);
         self.parameters.iter().filter(move |row| row.shared || own)
     }
 
-    /// Returns its parameters that were identified on another task and do not apply to this one.
+    /// Returns the rows that were identified on another task and do not apply to this one.
     pub fn not_of<'a>(&'a self, task: &'a str) -> impl Iterator<Item = &'a Parameter> {
         let own = self.task.as_ref().is_none_or(|own| own == task);
         self.parameters.iter().filter(move |row| !row.shared && !own)
     }
 
-    /// Returns the sentence that names the parameters which do not apply to a task; none if all do.
+    /// Returns a sentence that names the rows that do not apply to a task; `None` if all do.
     pub fn remark(&self, task: &str) -> Option<String> {
         let names: Vec<_> = self.not_of(task).map(|row| row.path.as_str()).collect();
         let own = self.task.as_ref().filter(|_| !names.is_empty())?;

@@ -34,14 +34,14 @@ impl Measure {
         Measure::Slip,
     ];
 
-    /// Name on the command line and in study files.
+    /// Returns its name on the command line and in study files.
     pub fn name(self) -> &'static str {
         let names =
             ["range", "centred-range", "success-rate", "robust-range", "peak-force", "slip"];
         names[self as usize]
     }
 
-    /// Unit for text and axes; empty for a share.
+    /// Returns its unit for text and axes; empty for a share.
     pub fn unit(self) -> &'static str {
         match self {
             Measure::SuccessRate => "",
@@ -50,7 +50,7 @@ impl Measure {
         }
     }
 
-    /// Unit as the end of a key: `mm`, `n` or `share`.
+    /// Returns its unit as the suffix of a key: `mm`, `n` or `share`.
     pub fn key(self) -> &'static str {
         match self {
             Measure::SuccessRate => "share",
@@ -69,8 +69,8 @@ impl Measure {
         matches!(self, Measure::SuccessRate | Measure::RobustRange)
     }
 
-    /// Returns the standard deviation of what its steps round off, in its unit: ranges have steps of 0.1 mm,
-    /// success rates of one of so many trials, forces and slips none.
+    /// Returns the standard deviation of its rounding, in its unit: ranges have steps of 0.1 mm, success rates of
+    /// one trial, forces and slips none.
     pub fn rounding(self, trials: u32) -> f64 {
         match self {
             Measure::PeakForce | Measure::Slip => 0.0,
@@ -79,9 +79,9 @@ impl Measure {
         }
     }
 
-    /// Returns its value in its unit, `None` if the measure was not taken or the nominal start diverges.
-    /// A nominal start that fails leaves a range of 0, and neither force nor slip. A window that a
-    /// divergence ends counts as far as it was seen to insert. A raced success rate is its upper bound.
+    /// Returns its value in its unit; `None` if it was not measured or the nominal start diverges. If the nominal
+    /// start fails, the range is 0 and there is neither force nor slip. A window that ends by divergence counts up
+    /// to there. A raced success rate is its upper bound.
     pub fn value(self, evaluation: &Evaluation) -> Option<f64> {
         let value = match self {
             Measure::SuccessRate => evaluation.success.as_ref()?.at_most(),
@@ -116,7 +116,7 @@ impl Measure {
         }
     }
 
-    /// Name and unit, for an axis or a heading: `peak-force (N)`.
+    /// Returns name and unit, for an axis or a heading: `peak-force (N)`.
     pub fn label(self) -> String {
         match self {
             Measure::SuccessRate => "success-rate (0 to 1)".to_owned(),

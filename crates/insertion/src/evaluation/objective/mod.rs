@@ -15,7 +15,7 @@ use std::cmp::Ordering;
 use std::fmt;
 use std::str::FromStr;
 
-/// Study files keep these as they are written on the command line.
+/// Conversions for types that study files store as on the command line.
 macro_rules! kept_as_text {
     ($($kept:ty),*) => {$(
         impl From<$kept> for String {
@@ -54,7 +54,7 @@ impl Objectives {
         &self.0
     }
 
-    /// Returns the first one: what plots show.
+    /// Returns the first one, which plots show.
     pub fn first(&self) -> Measure {
         self.0[0]
     }
@@ -75,7 +75,7 @@ impl Objectives {
         }
     }
 
-    /// Values with their names and units: `range 4.7 mm, peak-force 5.0 N`.
+    /// Formats values with names and units: `range 4.7 mm, peak-force 5.0 N`.
     pub fn show(&self, values: &[f64]) -> String {
         let shown = self.0.iter().zip(values);
         let words: Vec<String> =
@@ -127,7 +127,7 @@ pub struct Score {
 }
 
 impl Goals {
-    /// One objective without constraints, on one task.
+    /// Returns a single objective without constraints.
     pub fn of(measure: Measure) -> Self {
         Goals {
             objectives: Objectives::of(measure),
@@ -151,7 +151,7 @@ impl Goals {
         self.objectives.measures().iter().copied().chain(constrained)
     }
 
-    /// Objectives and violations of a design; `None` if a measure has no value on one of the tasks.
+    /// Returns objectives and violations of a design; `None` if a measure has no value on one of the tasks.
     pub fn score(&self, tasks: &[&Evaluation]) -> Option<Score> {
         let of = |measure: Measure| -> Option<Vec<f64>> {
             tasks.iter().map(|evaluation| measure.value(evaluation)).collect()
@@ -165,13 +165,13 @@ impl Goals {
         })
     }
 
-    /// Returns the values with their signs turned so that larger is better.
+    /// Returns the values with the sign for which larger is better.
     pub fn gains(&self, values: &[f64]) -> Vec<f64> {
         let measures = self.objectives.measures();
         measures.iter().zip(values).map(|(measure, value)| measure.sense() * value).collect()
     }
 
-    /// Orders by the first objective, equals by the next and so on; greater is better.
+    /// Compares by the first objective, then the next and so on; greater is better.
     pub fn order(&self, a: &[f64], b: &[f64]) -> Ordering {
         let (a, b) = (self.gains(a), self.gains(b));
         let differing = a.iter().zip(&b).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne());
@@ -180,18 +180,18 @@ impl Goals {
 }
 
 impl Score {
-    /// Returns whether all constraints are kept.
+    /// Returns whether all constraints are satisfied.
     pub fn feasible(&self) -> bool {
         self.violations.iter().all(|&violation| violation <= 0.0)
     }
 }
 
-// Windows are measured on a grid of 0.1 mm, so many designs have the same range, and all whose nominal
-// start fails have none. Optimizers are told where within the last grid step the outcome turns, too;
-// the study's values stay on the grid.
+// Windows are measured on a grid of 0.1 mm, so many designs have equal ranges, and all whose nominal start fails
+// have none. Optimizers therefore get values interpolated within the last grid step; those of the study stay
+// on the grid.
 impl Goals {
-    /// Values for an optimizer of a design evaluated on each task: as of
-    /// [`score`](Goals::score), larger being better, with the slope. `None` if there is no score.
+    /// Returns the values for an optimizer: those of [`score`](Goals::score) with the sign for which larger is
+    /// better, interpolated within the grid step. `None` if there is no score.
     pub fn told(&self, tasks: &[&Evaluation]) -> Option<Vec<f64>> {
         let of = |&measure: &Measure| {
             let values: Option<Vec<f64>> = tasks
@@ -204,9 +204,9 @@ impl Goals {
     }
 }
 
-/// Less than one grid step, so that of two different ranges the larger stays the larger:
-/// at each end half of the step's share that still inserts; below 0, by how clearly the
-/// nominal start fails, where it does. 0 for what is not taken on the grid.
+/// Returns the correction within the grid step, mm, less than one step, so that the order of different ranges
+/// does not change: at each end half of the share that still inserts; for a failing nominal start its negative
+/// margin; 0 for measures that are not on the grid.
 fn slope(measure: Measure, evaluation: &Evaluation) -> f64 {
     if !matches!(measure, Measure::Range | Measure::CentredRange) {
         return 0.0;

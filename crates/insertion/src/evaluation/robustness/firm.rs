@@ -1,7 +1,7 @@
 //! Firm window: offsets that insert also under small variations of friction, start and step.
 //!
-//! Each end is followed inward from the window's own, 0.1 mm at a time, to the first offset at
-//! which all repeats insert. What lies between the two ends is not tried again.
+//! From each end of the window the search goes inward in steps of 0.1 mm to the first offset at which all
+//! repeats insert. Offsets between the two ends are not repeated.
 
 use super::repeat::Repeats;
 use crate::evaluation::{OffsetStep, Window, grid_mm};
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 /// Repeats at each end.
 pub const REPEATS: u32 = 6;
 
-/// The outermost offsets at which all repeats insert, in grid steps.
+/// Outermost offsets at which all repeats insert, in grid steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FirmWindow {
     /// Outermost step at the negative end.
@@ -22,14 +22,14 @@ pub struct FirmWindow {
 /// Result of the repeats at both ends of a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Firm {
-    /// The firm window; `None` if nowhere from an end to the nominal start all repeats insert.
+    /// Firm window; `None` if there is no offset on one side at which all repeats insert.
     pub window: Option<FirmWindow>,
     /// Trials of all repeats.
     pub trials: u32,
 }
 
 impl Firm {
-    /// Nothing inserts, and nothing was tried.
+    /// Result without a trial, for a window whose nominal start fails.
     pub const NONE: Firm = Firm { window: None, trials: 0 };
 
     /// Returns the firm range, mm; 0 without a firm window.
@@ -44,7 +44,7 @@ impl Firm {
         self.window.map(|window| [window.negative_steps, window.positive_steps].map(grid_mm))
     }
 
-    /// Returns the firm part of a window: what was found there, less wide.
+    /// Returns a window with the ends of the firm window.
     pub fn of(&self, window: &Window) -> Window {
         let firm = self.window.unwrap_or(FirmWindow { negative_steps: 0, positive_steps: 0 });
         let FirmWindow { negative_steps, positive_steps } = firm;
@@ -52,7 +52,7 @@ impl Firm {
     }
 }
 
-/// Follows both ends of a window whose nominal start inserts inward.
+/// Searches inward from both ends of a window whose nominal start inserts.
 pub fn measure(repeats: &Repeats, window: &Window) -> Firm {
     let ((negative, below), (positive, above)) = rayon::join(
         || end(repeats, -window.negative_steps, -1),
@@ -65,8 +65,8 @@ pub fn measure(repeats: &Repeats, window: &Window) -> Firm {
     Firm { window: found, trials: below + above }
 }
 
-/// Returns the outermost of the steps `from` to 0 at which all repeats insert, and the trials run. The
-/// repeat that failed last is asked first: it is the likeliest to fail again, and one is enough.
+/// Returns the outermost of the steps `from` to 0 at which all repeats insert, and the number of trials. The
+/// repeat that failed last comes first, since it is the likeliest to fail again.
 fn end(repeats: &Repeats, from: OffsetStep, sign: OffsetStep) -> (Option<OffsetStep>, u32) {
     let (count, mut doubtful, mut trials) = (repeats.count(), 0, 0);
     for step in (0..=from).rev() {

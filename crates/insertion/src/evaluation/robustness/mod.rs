@@ -18,14 +18,14 @@ use ask_tell::statistics::{mean, sorted};
 use race::Race;
 use rayon::prelude::*;
 
-/// Measures of a design beside its window, with the draws that all designs of a study share.
+/// Plan of the measurements in addition to the window, with the draws that all designs of a study share.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plan {
     success: Option<(Vec<Draw>, SuccessSettings)>,
     robust: Option<(Vec<Draw>, RobustSettings)>,
     /// Race for the success rate, if there is one.
     race: Option<Race>,
-    /// Cell of which each draw is another, with the values of its rows in each.
+    /// Cell whose rows are drawn, with their values in each draw.
     cells: Option<(Priors, Vec<Vec<f64>>)>,
 }
 
@@ -35,10 +35,10 @@ pub type Drawn = (Box<dyn Rig>, Finger);
 type Insertion<'a> = (&'a dyn Rig, Grasp<'a>, f64);
 
 impl Plan {
-    /// Nothing beside the window.
+    /// The window only.
     pub const WINDOW: Plan = Plan { success: None, robust: None, race: None, cells: None };
 
-    /// Success rates, robust ranges or both; `seed` names the streams that errors are drawn from.
+    /// Returns the plan for success rates, robust ranges or both; `seed` identifies the random streams.
     pub fn new(uncertainty: &Uncertainty, seed: u64, success: bool, robust: bool) -> Self {
         let draws = |count| draws(&uncertainty.errors, seed, count);
         let (rate, range) = (uncertainty.success, uncertainty.robust);
@@ -55,19 +55,19 @@ impl Plan {
         }
     }
 
-    /// Returns the cell of which each draw is another, and the values of its rows in each.
+    /// Returns the cell whose rows are drawn, and their values in each draw.
     pub(super) fn cells(&self) -> Option<(&Priors, &[Vec<f64>])> {
         self.cells.as_ref().map(|(cell, values)| (cell, &values[..]))
     }
 
-    /// The same in this race.
+    /// Returns the plan in a race.
     pub fn against(&self, race: Option<&Race>) -> Plan {
         Plan { race: race.cloned(), ..self.clone() }
     }
 }
 
-/// Measures a grasp by fingers of this predicted stiffness: its window, and what the plan adds; draws
-/// for which `cells` has none are tried in `rig`.
+/// Measures a grasp by fingers of this predicted stiffness by a plan; draws without an entry of `cells` use
+/// `rig`.
 pub fn evaluate(
     rig: &dyn Rig,
     grasp: Grasp,
@@ -107,7 +107,7 @@ fn success_rate(
     })
 }
 
-/// Measures the window of each grasp. The offset is left out: the window spans the offsets.
+/// Measures the window of each grasp. Drawn offsets are ignored, since a window spans the offsets.
 fn robust_range(drawn: &[Insertion], settings: &RobustSettings) -> RobustRange {
     let window = |&(rig, grasp, _): &Insertion| {
         let found = tolerance::evaluate_in(rig, grasp, settings.search);

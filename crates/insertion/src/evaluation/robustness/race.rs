@@ -16,14 +16,14 @@ pub struct Race {
     /// Success rate to be reached, 0 to 1. With several tasks it holds on each of them: the worst
     /// counts.
     pub bar_share: f64,
-    /// How many draws there are.
+    /// Number of draws.
     pub draws: u32,
-    /// The draws that come first, by number from 0; the others follow in their order.
+    /// First draws, by number from 0; the others follow in their order.
     pub first: Vec<u32>,
 }
 
 impl Race {
-    /// Returns all of so many draws in the order in which they are met.
+    /// Returns the order of this number of draws.
     pub fn order(&self, draws: u32) -> Vec<u32> {
         let mut place = vec![usize::MAX; draws as usize];
         for (at, &draw) in self.first.iter().enumerate() {
@@ -37,14 +37,14 @@ impl Race {
         order
     }
 
-    /// Returns whether what is left cannot make up for what has failed.
+    /// Returns whether the bar is out of reach even if all remaining draws insert.
     pub fn is_lost_by(&self, success: &SuccessRate) -> bool {
         success.at_most().is_some_and(|rate| rate < self.bar_share)
     }
 }
 
-/// Returns the outcomes of so many draws, in the order of the race up to the first one with which it is
-/// lost. How many are tried at a time changes nothing: what comes after that one is not counted.
+/// Counts the outcomes of the draws in the order of the race, up to the one with which it is lost. The number
+/// of threads changes nothing, since later draws are not counted.
 pub fn run(
     draws: u32,
     confidence: f64,

@@ -17,18 +17,18 @@ pub const START: f64 = 0.02 * MM;
 const PURPOSE: &str = "repeat";
 /// Largest distance from an end at which its band is followed, in grid steps.
 const REACH: OffsetStep = 20;
-/// Distance of the offsets looked at between the bands, in grid steps.
+/// Spacing of the offsets tried between the bands, in grid steps.
 const INSIDE_STRIDE: OffsetStep = 5;
 
-/// One finger grasped again and again under slightly different conditions.
+/// Repeated grasps of a finger under slightly different conditions.
 pub struct Repeats<'a> {
     runs: Vec<(Box<dyn Grasped + 'a>, f64)>,
     stop: &'a AtomicBool,
 }
 
 impl<'a> Repeats<'a> {
-    /// Grasps `count` times: friction within 10 %, start within 0.02 mm, both uniform; the
-    /// rigs by turns, the first with the production step, the second with half of it.
+    /// Grasps `count` times with friction within 10 % and start within 0.02 mm, both uniform, in the two rigs
+    /// alternately: the first has the production time step, the second half of it.
     pub fn new(rigs: [&'a dyn Rig; 2], grasp: Grasp<'a>, seed: u64, count: u32) -> Self {
         let run = |index: u32| {
             let mut random = stream(seed, u64::from(index), PURPOSE);
@@ -44,10 +44,10 @@ impl<'a> Repeats<'a> {
         Repeats { runs: (0..count).into_par_iter().map(run).collect(), stop: grasp.stop }
     }
 
-    /// Outcome of each run with the start shifted by `offset` metres beside its own change.
+    /// Returns the outcome of each run with the start shifted by an additional `offset`, m.
     pub fn outcomes(&self, offset: f64) -> Vec<Outcome> {
         let trial = |(grasped, shift): &(Box<dyn Grasped + 'a>, f64)| {
-            // Even a trial that ends at once begins with a copy of its world.
+            // Even a cancelled trial copies its world first.
             match self.stop.load(Ordering::Relaxed) {
                 true => Outcome::Diverged,
                 false => grasped.trial(offset + shift).outcome,
@@ -67,8 +67,8 @@ impl<'a> Repeats<'a> {
         self.runs.get(run).map(trial) == Some(Outcome::Inserted)
     }
 
-    /// Returns whether every repeat walks to an end within so many grid steps of this one; `sign` is its
-    /// direction, -1 or 1. Only the end's neighbourhood is tried.
+    /// Returns whether every repeat ends within `allowed` grid steps of this end; `sign` is its direction, -1 or 1.
+    /// Only the end's neighbourhood is tried.
     pub fn end_within(&self, allowed: OffsetStep, sign: OffsetStep, end: OffsetStep) -> bool {
         let (inner, outer) = ((end - allowed).max(0), end + allowed + 1);
         let ends = |run: usize| {
@@ -88,12 +88,12 @@ impl<'a> Repeats<'a> {
         outcomes.iter().filter(|&&outcome| outcome == Outcome::Inserted).count()
     }
 
-    /// Returns where the outcome near one end hangs on such changes; `sign` is its direction, -1 or 1.
+    /// Returns the band near one end in which the outcome depends on the changes; `sign` is its direction, -1 or 1.
     fn band(&self, window: &Window, sign: OffsetStep) -> Band {
         let end = if sign < 0 { -window.negative_steps } else { window.positive_steps };
         let inserted = |step: OffsetStep| self.inserted(sign * step);
         let inward = (0..=REACH.min(end)).map(|away| end - away);
-        // Beyond the end some may insert again, where none did nearer by.
+        // Beyond a gap some may insert again.
         let outward = (1..=REACH).rev().map(|away| end + away);
         let mut still = outward.skip_while(|&step| inserted(step) == 0);
         let last = still.next().unwrap_or(end);
@@ -103,7 +103,7 @@ impl<'a> Repeats<'a> {
         }
     }
 
-    /// Both bands of a window, and the offsets tried between them.
+    /// Returns both bands of a window, and the offsets tried between them.
     pub fn bands(&self, window: &Window) -> Bands {
         let [negative, positive] = [-1, 1].map(|sign| self.band(window, sign));
         let inside = negative.surely_inserts.zip(positive.surely_inserts);
@@ -120,7 +120,7 @@ impl<'a> Repeats<'a> {
     }
 }
 
-/// Offsets near one end whose outcome small changes decide; grid steps outward.
+/// Offsets near one end whose outcome depends on small changes; grid steps outward.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
     /// The outermost offset at which all repeats insert.
@@ -130,7 +130,7 @@ pub struct Band {
 }
 
 impl Band {
-    /// Width less the 0.1 mm that the grid leaves open, mm; `None` if above 2 mm to one side.
+    /// Returns the width minus the 0.1 mm of the grid, mm; `None` if above 2 mm on one side.
     pub fn width_mm(&self) -> Option<f64> {
         Some(grid_mm(self.surely_fails? - self.surely_inserts? - 1))
     }
@@ -145,7 +145,7 @@ pub struct Bands {
     pub positive: Band,
     /// Offsets tried between the two, every 0.5 mm.
     pub looked_at_inside: usize,
-    /// Those of them at which not all repeats insert, mm.
+    /// Offsets among them at which not all repeats insert, mm.
     pub unsure_inside: Vec<f64>,
 }
 

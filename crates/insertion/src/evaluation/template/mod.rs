@@ -23,7 +23,7 @@ use input::{Document, InputError, Place, Placed};
 use parameters::Path;
 use parameters::numbers::{self, Kind, paths};
 
-/// Task file whose numbers a design may set.
+/// Task file with the numbers that a design may set.
 #[derive(Debug, Clone)]
 pub struct Template {
     /// Numbers of the file, by their keys.
@@ -41,7 +41,7 @@ pub enum Impossible {
     /// A finger that cannot be printed, or not with this stiffness.
     #[error(transparent)]
     Finger(#[from] FingerError),
-    /// A task that the robot or the engine cannot do.
+    /// A task that the robot or the engine does not support.
     #[error(transparent)]
     Rig(#[from] RigError),
 }
@@ -71,11 +71,10 @@ impl Template {
         Ok(Template { numbers: NumberFile::read("task", &document)?, task })
     }
 
-    /// Returns the task, and the finger of this stiffness at its pad, with the values that the design
-    /// gives; what it does not name stays as in the task file and as `fingers` makes it.
+    /// Returns the task with the values of a design, and its finger with this stiffness at the pad.
     ///
     /// # Errors
-    /// If the design sets what does not exist, or to what cannot be, or its finger cannot be made.
+    /// If a key does not exist, a value is invalid, or the finger cannot be built.
     pub fn apply(
         &self,
         design: &Design,

@@ -1,4 +1,4 @@
-//! Whether every finger of a space can be printed, and has springs, asked before one is simulated.
+//! Checks that every finger of a space can be printed and has springs, before the first one is simulated.
 
 use super::space::{each_corner, each_extreme};
 use super::{Impossible, is_infill};
@@ -10,12 +10,12 @@ use crate::space::{Design, Space, Variable};
 use finray::geometry::Geometry;
 use input::{Check, InputError};
 
-/// Checks that a space read from `file` has none but printable fingers, by every combination of
-/// extreme values of infill and finger. Thickness and gaps rise or fall with each number alone, so
-/// what lies between is printable, too.
+/// Checks that every finger of a space read from `file` can be printed, by every combination of extreme values
+/// of infill and finger. Thickness and gaps are monotonic in each number, so the fingers between are printable,
+/// too.
 ///
 /// # Errors
-/// If a key sets nothing in the finger file, or a combination cannot be printed.
+/// If the finger file lacks a key, or a combination cannot be printed.
 pub fn check(space: &Space, file: &str, finger: &FingerFile) -> Result<(), InputError> {
     let check = Check { file };
     let shape = |p: &&Variable| is_shape(&p.key);
@@ -29,13 +29,12 @@ pub fn check(space: &Space, file: &str, finger: &FingerFile) -> Result<(), Input
     })
 }
 
-/// Returns a space read from `file` that sets a computed finger's remote centre or tilting stiffness may
-/// ask for what no springs give: a centre so far away that turning about it alone is softer than
-/// measured. The more so the farther and the softer, so the extreme values are tried, of the infill,
-/// too.
+/// Checks that a space read from `file` that sets the remote centre or tilting stiffness of computed fingers has
+/// springs for each. A centre may be so far away that turning about it alone is softer than measured, the more
+/// so the farther and the softer; so the extreme values are tried, also of the infill.
 ///
 /// # Errors
-/// The first combination that has no springs.
+/// The first combination without springs.
 pub fn check_springs(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), InputError> {
     let sets = |key: &str| [RCC_KEY, TILTING_KEY].contains(&key);
     let computed = matches!(evaluator.fingers, FingerSource::Computed(_));

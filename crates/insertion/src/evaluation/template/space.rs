@@ -1,4 +1,4 @@
-//! Whether every design of a space can be simulated, asked before the first one is.
+//! Checks that every design of a space can be simulated, before the first one is.
 
 use super::{Impossible, Template, is_infill};
 use crate::finger::computed::AtPad;
@@ -22,7 +22,7 @@ pub(super) fn each_extreme<'a>(
         for value in variable.extremes() {
             match possible(&Design::default().with(&variable.key, value)) {
                 Ok(()) => (),
-                Err(Impossible::Value(InputError::Value { key, problem, .. }))
+                Err(Impossible::Value(InputError { key: Some(key), problem, .. }))
                     if variable.key == key =>
                 {
                     return check.fail(&key, problem);
@@ -36,8 +36,7 @@ pub(super) fn each_extreme<'a>(
     Ok(())
 }
 
-/// Checks combinations of extreme values, as [`corners`] has them; a failure is one of `key`, in these
-/// words.
+/// Checks the combinations of extreme values ([`corners`]); an error is about `key` and contains `words`.
 ///
 /// # Errors
 /// The first combination that is impossible.
@@ -56,14 +55,14 @@ pub(super) fn each_corner<'a>(
     Ok(())
 }
 
-/// Whether robot and engine can do a task.
+/// Check that robot and engine support a task.
 pub type Fits<'a> = dyn Fn(&Task) -> Result<(), RigError> + 'a;
 
 const COMBINATIONS: usize = 4096;
 
 impl Template {
-    /// Checks a space read from `file`: it must have the infill, every other key must set
-    /// something, and no combination of extremes may be impossible; `fits` asks robot and engine.
+    /// Checks a space read from `file`: it must have the infill, every other key must exist, and no combination
+    /// of extremes may be impossible; `fits` checks robot and engine.
     ///
     /// The checks of a task bound single numbers and differences of two, so a space whose
     /// corners pass has no impossible design; moves may not be zero, so the level nearest to
@@ -86,7 +85,7 @@ impl Template {
     }
 
     fn possible(&self, design: &Design, fits: &Fits<'_>) -> Result<(), Impossible> {
-        // Any stiffness: it takes no part in the checks.
+        // The checks do not depend on the stiffness.
         let mut design = design.clone();
         design.0.entry(DIRECTION_KEY.to_owned()).or_insert(0.0);
         let at_pad = AtPad { compliance: 1.0, assembly: 1.0 };

@@ -171,7 +171,6 @@ fn mesh_import(bencher: Bencher) {
         name: "square",
         along: Along::MinusZ,
         jaws: None,
-        resolution: 64,
         like: Some(&like),
         say: &|_| (),
     };

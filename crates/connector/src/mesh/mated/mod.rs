@@ -16,8 +16,8 @@ use nalgebra::{Matrix3, Point3, Vector3};
 pub use overlap::Interference;
 use rayon::prelude::*;
 use reach::Reach;
-pub use verify::{Deviation, TOLERANCE};
 use verify::Drawn;
+pub use verify::{Deviation, TOLERANCE};
 
 /// Handle that is put on a plug without a place to hold: width in x, between the jaws, and length, m.
 pub const HANDLE: [f64; 3] = [12.0 * MM, 10.0 * MM, 20.0 * MM];
@@ -132,7 +132,7 @@ pub fn task(pair: &Pair, request: &Request) -> Made {
     (task.plug.parts, task.socket) = (plug, socket);
     let play = placed.play.map(|play| play.max(LEAST_PLAY));
     task.opening = opening(&placed.plug, pair.engaged, play);
-    let lateral = play[0].hypot(play[1]) / 2.0 + ASIDE;
+    let lateral = libm::hypot(play[0], play[1]) / 2.0 + ASIDE;
     let mated = Mated { tip: [0.0, 0.0, -pair.engaged], lateral };
     task.success = Success { mated: Some(mated), ..Success::default() };
     (task.grip.shoulder_z, task.grip.faces_y) = (grasp.shoulder, grasp.faces);

@@ -5,7 +5,7 @@ use crate::mesh::Triangle;
 use crate::mesh::merge::solid_of;
 use input::units::MM;
 use insertion::task::{Part, Solid, geometry};
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use parry::math::Vector;
 use parry::query::PointQuery;
 use parry::shape::TriMesh;
@@ -52,12 +52,40 @@ impl<'a> Drawn<'a> {
         (distance > TOLERANCE && winding(self.triangles, place) < 0.5).then_some(distance)
     }
 
-    /// Returns a slab without the corners that stand out of the body: behind a narrow edge the material may end askew.
+    /// Returns a slab whose corners do not stand out of the body: behind a narrow edge the material may end askew. They
+    /// move to the surface; a slab with a face that still stands out keeps only the others.
     pub fn trimmed(&self, solid: Solid) -> Option<Solid> {
         let corners = solid.corners();
-        let kept: Vec<_> =
-            corners.iter().copied().filter(|place| self.outside(place).is_none()).collect();
-        if kept.len() == corners.len() { Some(solid) } else { solid_of(&kept) }
+        let moved: Vec<_> = corners.iter().map(|place| self.inside(place)).collect();
+        let solid = if moved == corners { solid } else { solid_of(&moved)? };
+        if self.stands_out(&solid).is_none() {
+            return Some(solid);
+        }
+        let kept = corners.into_iter().zip(&moved).filter(|(old, new)| old == *new);
+        let solid = solid_of(&kept.map(|(old, _)| old).collect::<Vec<_>>())?;
+        self.stands_out(&solid).is_none().then_some(solid)
+    }
+
+    /// Returns a place, or the nearest one of the surface if it is outside of the body.
+    fn inside(&self, place: &Point3<f64>) -> Point3<f64> {
+        let Some(mesh) = self.mesh.as_ref().filter(|_| self.outside(place).is_some()) else {
+            return *place;
+        };
+        let near = mesh.project_local_point((place.coords / MM).into(), false);
+        Point3::from(Vector3::from(near.point) * MM)
+    }
+
+    /// Returns a corner or the middle of a face of a convex part that is outside of the body.
+    fn stands_out(&self, solid: &Solid) -> Option<Deviation> {
+        let (corners, faces) = geometry::hull(&solid.corners())?;
+        let middles = faces.iter().map(|face| {
+            let [a, b, c] = face.map(|corner| corners[corner].coords);
+            Point3::from((a + b + c) / 3.0)
+        });
+        let off = |place: Point3<f64>| {
+            self.outside(&place).map(|out| Deviation { place, out: Some(out) })
+        };
+        corners.iter().copied().chain(middles).find_map(off)
     }
 
     /// Returns the places of the faces that were to be kept where no part is near, and those of parts outside the body.
@@ -67,20 +95,9 @@ impl<'a> Drawn<'a> {
             let bare = samples(triangle).into_iter().filter(|p| !body.reaches(p, TOLERANCE));
             bare.map(|place| Deviation { place, out: None }).collect()
         };
-        let out = |part: &Part| -> Vec<Deviation> {
-            let hull = geometry::hull(&part.solid.corners());
-            let Some((corners, faces)) = hull else { return Vec::new() };
-            let middles = faces.iter().map(|face| {
-                let [a, b, c] = face.map(|corner| corners[corner].coords);
-                Point3::from((a + b + c) / 3.0)
-            });
-            let off = |place: Point3<f64>| {
-                self.outside(&place).map(|out| Deviation { place, out: Some(out) })
-            };
-            corners.iter().copied().chain(middles).filter_map(off).collect()
-        };
         let mut found: Vec<Deviation> = kept.par_iter().flat_map_iter(lacks).collect();
-        found.par_extend(parts.par_iter().flat_map_iter(out));
+        let out = |part: &Part| self.stands_out(&part.solid);
+        found.par_extend(parts.par_iter().filter_map(out));
         found
     }
 }
@@ -114,7 +131,6 @@ fn winding(triangles: &[Triangle], place: &Point3<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Vector3;
 
     fn cube() -> Vec<Triangle> {
         let solid = Solid::Box { min: Vector3::zeros(), max: Vector3::repeat(4.0 * MM) };

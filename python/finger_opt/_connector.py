@@ -102,7 +102,17 @@ class Strategy(Result):
 
     start_mm: tuple[float, float, float]
     tilt_deg: float
+    push_speed_mm_per_s: float
+    largest_force_n: float
     fingers: tuple[TunedFinger, ...]
+
+
+@dataclass(frozen=True, repr=False)
+class TuneLimits(Result):
+    """What a search keeps to, or None: force between plug and socket and speed of a phase."""
+
+    force_n: float | None
+    speed_mm_per_s: float | None
 
 
 @dataclass(frozen=True, repr=False)
@@ -139,6 +149,7 @@ class Tuned(Result):
     schema_version: int
     task: str
     inserts: bool
+    limits: TuneLimits
     windows: int
     before: Strategy
     after: Strategy | None

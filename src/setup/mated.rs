@@ -68,6 +68,20 @@ impl From<&Interference> for LeftOut {
     }
 }
 
+/// Why there is no task of a pair.
+pub enum NoTask {
+    /// The plug goes into the socket nowhere.
+    NoMate(Failure),
+    /// Anything else.
+    Other(Failure),
+}
+
+impl From<Failure> for NoTask {
+    fn from(failure: Failure) -> Self {
+        NoTask::Other(failure)
+    }
+}
+
 /// Returns the task of a plug and a socket, whose mated pose is found from their shapes.
 ///
 /// # Errors
@@ -77,7 +91,7 @@ pub fn mated(
     triangles: [&[Triangle]; 2],
     given: &Given,
     context: &Context<'_>,
-) -> Result<MatedTask, Failure> {
+) -> Result<MatedTask, NoTask> {
     let (unit, why) = unit(files, triangles, given.unit)?;
     let mut said: Vec<(&str, String)> = why.map(|why| ("unit", why)).into_iter().collect();
     let (plug, plug_inward) = few(files[0], triangles[0], unit, context);
@@ -93,7 +107,7 @@ pub fn mated(
         let [a, b] = across.map(|way| value(jaws_of(&way)));
         let problem =
             format!("--jaws: the plug goes in along {}; give {a} or {b}", value(along_of(&-out)));
-        return Err(Failure::usage(problem));
+        return Err(Failure::usage(problem).into());
     }
     let depth = given.depth.unwrap_or(mate.engaged_m);
     let raised: Vec<Triangle> =
@@ -118,7 +132,7 @@ pub fn mated(
              {} mm allowed: look there for faces that cross one another or are turned inside out",
             TOLERANCE / MM
         );
-        return Err(Failure::in_file(files[body], problem));
+        return Err(Failure::in_file(files[body], problem).into());
     }
     said.extend(found(&mate, &made, given));
     let play = [1, 0].map(|i| {
@@ -167,12 +181,13 @@ fn mate(
     given: &Given,
     context: &Context<'_>,
     said: &mut Vec<(&'static str, String)>,
-) -> Result<Mate, Failure> {
+) -> Result<Mate, NoTask> {
     let stopped = || context.stop.load(Ordering::SeqCst);
     let watch = Watch { progress: &|_| {}, stopped: &stopped };
     let found = mates(plug, socket, &watch);
     not_stopped(context.stop)?;
-    let found = found.map_err(|error| Failure::in_file(files.join(", "), error))?;
+    let nowhere = |why: String| NoTask::NoMate(Failure::in_file(files.join(", "), why));
+    let found = found.map_err(|error| nowhere(error.to_string()))?;
     let mut all = match found {
         Found::One(mate) => vec![mate],
         Found::Symmetric(mate, count) => {
@@ -194,7 +209,7 @@ fn mate(
     }
     all.into_iter().next().ok_or_else(|| {
         let along = given.along.map(value).unwrap_or_default();
-        Failure::in_file(files.join(", "), format!("the plug does not go in along {along}"))
+        nowhere(format!("the plug does not go in along {along}"))
     })
 }
 

@@ -4,7 +4,7 @@ use crate::command;
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout::wrapped;
-use crate::setup::mated::{Given, LeftOut, MatedTask, mated};
+use crate::setup::mated::{Given, LeftOut, MatedTask, NoTask, mated};
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{Tried, begun, brief, chosen};
@@ -214,9 +214,12 @@ impl Request {
             Err(error) if error.exit_code() != 2 => Err(error),
             other => {
                 not_stopped(context.stop)?;
-                let mated = self.mated(&bodies, like.as_ref(), context);
-                // What fits nowhere is told as by the drawing.
-                mated.or_else(|error| other.and(Err(error)))
+                match self.mated(&bodies, like.as_ref(), context) {
+                    Ok(found) => Ok(found),
+                    // What fits nowhere is told as by the drawing.
+                    Err(NoTask::NoMate(error)) => other.and(Err(error)),
+                    Err(NoTask::Other(error)) => Err(error),
+                }
             }
         }
     }
@@ -230,7 +233,7 @@ impl Request {
         [plug, socket]: &[Vec<Triangle>; 2],
         like: Option<&TaskFile>,
         context: &Context<'_>,
-    ) -> Result<Found, Failure> {
+    ) -> Result<Found, NoTask> {
         let files = self.called();
         let name = self.name();
         let given = Given {

@@ -55,32 +55,19 @@ impl Sides {
         Sides { strips, step: plug.step }
     }
 
-    /// Walls of the plug shifted by whole cells, at a height, with a socket's wall within `reach` of
-    /// them that does not go deeper into the plug than `tolerance`, m.
-    pub fn facing(
-        &self,
-        socket: &Map,
-        (shift, z): ([i32; 2], f32),
-        [reach, tolerance]: [f64; 2],
-    ) -> Walls {
+    /// Walls of the plug shifted by whole cells, at a height, that face one of the socket.
+    pub fn facing(&self, socket: &Faces, shift: [i32; 2], z: f32) -> Walls {
         let mut sums = [0.0; 4];
         for strip in &self.strips {
             let [dx, dy] = SIDES[strip.side];
-            let step = self.step[strip.side / 2];
-            let (reach, into) = ((reach / step).ceil() as i32, (tolerance / step).ceil() as i32);
             let [x, y] = [strip.cell[0] + shift[0], strip.cell[1] + shift[1]];
             let (low, high) = (strip.low + z, strip.high + z);
             // The socket goes through the wall: a spring or a latch, no guide.
-            if socket.at(x - (into + 1) * dx, y - (into + 1) * dy) > low + tolerance as f32 {
+            let into = socket.into[strip.side / 2] + 1;
+            if socket.map.at(x - into * dx, y - into * dy) > low + socket.tolerance {
                 continue;
             }
-            let mut faced = -NOWHERE;
-            for k in -into..=reach {
-                faced = faced.max(socket.at(x + k * dx, y + k * dy));
-                if faced >= high {
-                    break;
-                }
-            }
+            let faced = socket.highest[strip.side].at(x, y);
             sums[strip.side] +=
                 f64::from((high.min(faced) - low).max(0.0)) * self.step[1 - strip.side / 2];
         }
@@ -88,48 +75,73 @@ impl Sides {
     }
 }
 
+/// Walls of a socket as seen from the sides of a plug.
+pub struct Faces<'a> {
+    /// Upper envelope of the socket.
+    map: &'a Map,
+    /// Highest place within reach of each side.
+    highest: [Map; 4],
+    /// Depth of harmless interference in cells along x and y.
+    into: [i32; 2],
+    /// The same depth, m.
+    tolerance: f32,
+}
+
+impl<'a> Faces<'a> {
+    /// Walls within `reach` that do not go deeper into the plug than `tolerance`, m.
+    pub fn new(map: &'a Map, [reach, tolerance]: [f64; 2]) -> Self {
+        let cells = |length: f64| map.step.map(|step| (length / step).ceil() as i32);
+        let (reach, into) = (cells(reach), cells(tolerance));
+        let highest = [0, 1, 2, 3].map(|side| {
+            let axis = side / 2;
+            let range = match side % 2 {
+                0 => [-into[axis], reach[axis]],
+                _ => [-reach[axis], into[axis]],
+            };
+            map.highest(axis, range)
+        });
+        Faces { map, highest, into, tolerance: tolerance as f32 }
+    }
+}
+
 /// Socket and plug in contact.
 pub struct Contact<'a> {
-    /// Upper envelope of the socket.
-    pub socket: &'a Map,
+    /// Walls of the socket.
+    pub socket: &'a Faces<'a>,
     /// Lower envelope of the plug, without the tolerance.
     pub plug: &'a Map,
     /// Side walls of the plug.
     pub sides: &'a Sides,
-    /// Distance within which walls face one another, and depth of harmless interference, m.
-    pub limits: [f64; 2],
 }
 
 impl Contact<'_> {
     /// Facing walls on the weaker sides, and what both parts fill as an area, m2.
     pub fn areas(&self, shift: [i32; 2], z: f32) -> [f64; 2] {
-        let walls = score(&self.sides.facing(self.socket, (shift, z), self.limits));
+        let walls = score(&self.sides.facing(self.socket, shift, z));
         let mut volume = 0.0;
-        self.each(shift, |_, rest| volume += f64::from((rest - z).max(0.0)));
+        let add = |_, rest: f32| volume += f64::from((rest - z).max(0.0));
+        each(self.socket.map, self.plug, shift, add);
         [walls, volume * self.plug.step[0] * self.plug.step[1] / LEDGE]
     }
+}
 
-    /// Cells of the plug that the socket fills, too.
-    pub fn shared(&self, shift: [i32; 2], z: f32) -> Vec<[i32; 2]> {
-        let mut cells = Vec::new();
-        self.each(shift, |cell, rest| {
-            if rest > z {
-                cells.push(cell);
-            }
-        });
-        cells
-    }
+/// Cells of a shifted plug at a height that the socket fills, too.
+pub fn shared(socket: &Map, plug: &Map, shift: [i32; 2], z: f32) -> Vec<[i32; 2]> {
+    let mut cells = Vec::new();
+    each(socket, plug, shift, |cell, rest| {
+        if rest > z {
+            cells.push(cell);
+        }
+    });
+    cells
+}
 
-    fn rest(&self, [x, y]: [i32; 2], shift: [i32; 2]) -> f32 {
-        self.socket.at(x + shift[0], y + shift[1]) - self.plug.at(x, y)
-    }
-
-    fn each(&self, shift: [i32; 2], mut see: impl FnMut([i32; 2], f32)) {
-        let [nx, ny] = self.plug.count.map(|count| count as i32);
-        for y in self.plug.first[1]..self.plug.first[1] + ny {
-            for x in self.plug.first[0]..self.plug.first[0] + nx {
-                see([x, y], self.rest([x, y], shift));
-            }
+/// Shows each cell of a shifted plug with the height at which it would rest on the socket.
+fn each(socket: &Map, plug: &Map, shift: [i32; 2], mut see: impl FnMut([i32; 2], f32)) {
+    let [nx, ny] = plug.count.map(|count| count as i32);
+    for y in plug.first[1]..plug.first[1] + ny {
+        for x in plug.first[0]..plug.first[0] + nx {
+            see([x, y], socket.at(x + shift[0], y + shift[1]) - plug.at(x, y));
         }
     }
 }

@@ -156,6 +156,38 @@ impl Map {
         self.filtered([back; 2], [on; 2], Envelope::inner)
     }
 
+    /// Each cell the highest of those from `low` to `high` cells beside it along an axis.
+    pub fn highest(&self, axis: usize, [low, high]: [i32; 2]) -> Map {
+        let wide = usize::try_from(high - low + 1).unwrap_or(1);
+        let (mut map, mut done) = (self.clone(), 1);
+        while done < wide {
+            let by = done.min(wide - done);
+            map = map.higher(axis, by);
+            done += by;
+        }
+        map.first[axis] -= low;
+        map
+    }
+
+    /// Each cell the higher of itself and the one `by` cells after it along an axis.
+    fn higher(&self, axis: usize, by: usize) -> Map {
+        let mut map = Map { heights: Vec::new(), ..*self };
+        map.first[axis] -= by as i32;
+        map.count[axis] += by;
+        map.heights = vec![-NOWHERE; map.count[0] * map.count[1]];
+        let (nx, shift) = (map.count[0], if axis == 0 { by } else { by * map.count[0] });
+        if self.count[0] == 0 {
+            return map;
+        }
+        for (row, heights) in self.heights.chunks(self.count[0]).enumerate() {
+            for start in [row * nx, row * nx + shift] {
+                let cells = map.heights[start..].iter_mut().zip(heights);
+                cells.for_each(|(cell, height)| *cell = cell.max(*height));
+            }
+        }
+        map
+    }
+
     fn filtered(
         &self,
         back: [usize; 2],

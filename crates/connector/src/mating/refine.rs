@@ -1,6 +1,6 @@
 //! Refinement of rough seats: shift, height, interference and engagement.
 
-use super::engagement::{Contact, SIDES, Sides, score};
+use super::engagement::{Contact, Faces, SIDES, Sides, score, shared};
 use super::map::{Envelope, Map, NOWHERE, Window, bounds, rest};
 use super::search::{FINE, Scene, Seat};
 use super::{MatingError, Watch};
@@ -149,7 +149,7 @@ pub fn settled_areas(scene: &Scene, pose: Pose, room: f64) -> (Pose, f64) {
     let fine = Fine::new(scene, &pose, room);
     let [socket, plug] = fine.heights;
     let at = pose.shift.map(|v| (v / fine.step).round() as i32);
-    let [walls, jam] = fine.contact().areas(at, pose.z as f32 + LEVEL);
+    let [walls, jam] = fine.contact(&fine.faces()).areas(at, pose.z as f32 + LEVEL);
     let lowest = f64::from(rest(&fine.upper, &fine.tight, at, NOWHERE));
     let through = seated(lowest.min(pose.z) as f32, socket, plug).1;
     let outside = pose.z + (plug[0] + plug[1] - socket[0] - socket[1]) / 2.0;
@@ -162,7 +162,7 @@ struct Rough<'a> {
     upper: Vec<[Map; 3]>,
     lower: Vec<[Map; 3]>,
     sides: Vec<Sides>,
-    room: f64,
+    faces: Vec<Faces<'a>>,
 }
 
 impl<'a> Rough<'a> {
@@ -172,17 +172,18 @@ impl<'a> Rough<'a> {
             maps.par_iter().map(|map| radii.map(|r| map.eroded([r; 2]))).collect()
         };
         let sides = scene.lower.par_iter().map(Sides::new).collect();
-        Rough { scene, upper: eroded(&scene.upper), lower: eroded(&scene.lower), sides, room }
+        let limits = [REACH * room, scene.step];
+        let faces = scene.upper.par_iter().map(|map| Faces::new(map, limits)).collect();
+        Rough { scene, upper: eroded(&scene.upper), lower: eroded(&scene.lower), sides, faces }
     }
 
     fn pose(&self, seat: &Seat) -> Option<Pose> {
         let step = self.scene.step;
         let (socket, plug) = (&self.scene.sockets[seat.out], &self.scene.plugs[seat.turn]);
         let contact = Contact {
-            socket: &self.scene.upper[seat.out],
+            socket: &self.faces[seat.out],
             plug: &self.lower[seat.turn][0],
             sides: &self.sides[seat.turn],
-            limits: [REACH * self.room, step],
         };
         let mut found: Vec<Pose> = Vec::new();
         for level in [0, 1, 2] {
@@ -243,17 +244,17 @@ impl Fine {
         Fine { step, upper, lower, tight, sides, heights, window, radius, room }
     }
 
-    fn contact(&self) -> Contact<'_> {
-        Contact {
-            socket: &self.upper,
-            plug: &self.tight,
-            sides: &self.sides,
-            limits: [REACH * self.room, TOLERANCE],
-        }
+    fn contact<'a>(&'a self, socket: &'a Faces<'a>) -> Contact<'a> {
+        Contact { socket, plug: &self.tight, sides: &self.sides }
+    }
+
+    fn faces(&self) -> Faces<'_> {
+        Faces::new(&self.upper, [REACH * self.room, TOLERANCE])
     }
 
     /// Seat with as much interference as makes it best.
     fn best(&self, pose: &Pose) -> Option<Pose> {
+        let faces = self.faces();
         let mut about = pose.shift.map(|v| (v / self.step).round() as i32);
         let (mut best, mut last): (Option<Pose>, _) = (None, None);
         for overlap in OVERLAPS {
@@ -263,9 +264,9 @@ impl Fine {
             }
             let s = self.upper.eroded([cells / 2; 2]);
             let p = self.lower.eroded([cells - cells / 2; 2]);
-            let Some((shift, z)) = self.settled([&s, &p], about) else { continue };
+            let Some((shift, z)) = self.settled([&s, &p], &faces, about) else { continue };
             let (z, through) = seated(z, self.heights[0], self.heights[1]);
-            let [walls, jam] = self.contact().areas(shift, z as f32);
+            let [walls, jam] = self.contact(&faces).areas(shift, z as f32);
             let at = shift.map(|v| f64::from(v) * self.step);
             let next = Pose { shift: at, z, through, walls, jam, ..*pose };
             if best.as_ref().is_none_or(|best| next.value() > best.value()) {
@@ -288,15 +289,17 @@ impl Fine {
     }
 
     /// Lowest shift near a shift with the most facing walls, and its height.
-    fn settled(&self, [socket, plug]: [&Map; 2], mut about: [i32; 2]) -> Option<([i32; 2], f32)> {
+    fn settled(
+        &self,
+        [socket, plug]: [&Map; 2],
+        faces: &Faces,
+        mut about: [i32; 2],
+    ) -> Option<([i32; 2], f32)> {
         let mut found = None;
         for _ in 0..MOST_MOVES {
             let (level, z) = lowest(socket, plug, about, self.radius);
             let (seat, _) = seated(z, self.heights[0], self.heights[1]);
-            let limits = [REACH * self.room, TOLERANCE];
-            let engaged = |shift: &[i32; 2]| {
-                score(&self.sides.facing(&self.upper, (*shift, seat as f32), limits))
-            };
+            let engaged = |shift: &[i32; 2]| score(&self.sides.facing(faces, *shift, seat as f32));
             let scores: Vec<_> = level.iter().map(engaged).collect();
             let most = scores.iter().copied().fold(0.0, f64::max);
             let good = level.iter().zip(&scores).filter(|(_, score)| **score >= 0.99 * most);
@@ -314,12 +317,12 @@ impl Fine {
     /// Cells of the plug that the socket fills, too, at a pose.
     pub fn shared(&self, pose: &Pose) -> Vec<[i32; 2]> {
         let shift = pose.shift.map(|v| (v / self.step).round() as i32);
-        self.contact().shared(shift, pose.z as f32 + LEVEL)
+        shared(&self.upper, &self.tight, shift, pose.z as f32 + LEVEL)
     }
 
     /// Width of what both parts fill, m.
     fn interference(&self, shift: [i32; 2], z: f64) -> f64 {
-        let cells = self.contact().shared(shift, z as f32 + LEVEL);
+        let cells = shared(&self.upper, &self.tight, shift, z as f32 + LEVEL);
         let mut cells: BTreeSet<[i32; 2]> = cells.into_iter().collect();
         let mut width = if cells.is_empty() { 0.0 } else { TOLERANCE };
         while !cells.is_empty() {

@@ -14,7 +14,6 @@ use input::units::MM;
 use insertion::task::{Mated, Part, Solid, Success, Task};
 use nalgebra::{Matrix3, Point3, Vector3};
 pub use overlap::Interference;
-use rayon::prelude::*;
 use reach::Reach;
 use verify::Drawn;
 pub use verify::{Deviation, TOLERANCE};
@@ -162,11 +161,9 @@ fn checked(
     reached: impl Fn(&Triangle, &Vector3<f64>) -> bool,
 ) -> (Vec<Part>, Option<Deviation>) {
     let drawn = Drawn::new(triangles);
-    let solids = skin(triangles, &reached);
-    let trimmed: Vec<Solid> =
-        solids.into_par_iter().filter_map(|solid| drawn.trimmed(solid)).collect();
+    let solids = skin(triangles, &reached, |solid| drawn.trimmed(solid));
     let part = |(i, solid)| Part { name: format!("{name} {i}"), solid, friction: None };
-    let parts: Vec<Part> = (1..).zip(trimmed).map(part).collect();
+    let parts: Vec<Part> = (1..).zip(solids).map(part).collect();
     let normal = |[a, b, c]: &Triangle| (b - a).cross(&(c - a)).try_normalize(0.0);
     let kept = triangles.iter().filter(|t| normal(t).is_some_and(|normal| reached(t, &normal)));
     let kept: Vec<Triangle> = kept.copied().collect();

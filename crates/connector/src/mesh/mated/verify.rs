@@ -52,17 +52,12 @@ impl<'a> Drawn<'a> {
         (distance > TOLERANCE && winding(self.triangles, place) < 0.5).then_some(distance)
     }
 
-    /// Returns a slab whose corners do not stand out of the body: behind a narrow edge the material may end askew. They
-    /// move to the surface; a slab with a face that still stands out keeps only the others.
+    /// Returns a slab whose corners outside of the body are moved to its surface, unless faces still stand out: behind a
+    /// narrow edge the material may end askew.
     pub fn trimmed(&self, solid: Solid) -> Option<Solid> {
         let corners = solid.corners();
         let moved: Vec<_> = corners.iter().map(|place| self.inside(place)).collect();
         let solid = if moved == corners { solid } else { solid_of(&moved)? };
-        if self.stands_out(&solid).is_none() {
-            return Some(solid);
-        }
-        let kept = corners.into_iter().zip(&moved).filter(|(old, new)| old == *new);
-        let solid = solid_of(&kept.map(|(old, _)| old).collect::<Vec<_>>())?;
         self.stands_out(&solid).is_none().then_some(solid)
     }
 

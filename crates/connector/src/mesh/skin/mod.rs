@@ -30,13 +30,17 @@ const BEHIND: f64 = 5e-3 * MM;
 const CONVEX: f64 = 2e-3 * MM;
 /// Most corners of a convex body that is one part.
 const MOST_CORNERS: usize = 400;
+/// Cosine between the normals of a film's two sides, which do not cut one another.
+const FILM: f64 = 0.9999;
 /// Corners of a cut hull from which on those inside it are dropped.
 const MANY: usize = 32;
 
-/// Returns convex solids whose outer surface is that of the triangles, m, as far as `reached` accepts them.
+/// Returns convex solids whose outer surface is that of the triangles, m, as far as `reached` accepts them; a slab that
+/// `fitted` refuses is made thinner.
 pub fn skin(
     triangles: &[Triangle],
     reached: impl Fn(&Triangle, &Vector3<f64>) -> bool,
+    fitted: impl Fn(Solid) -> Option<Solid>,
 ) -> Vec<Solid> {
     let facets = Facets::new(triangles);
     let reached: Vec<bool> = (0..facets.faces.len())
@@ -60,7 +64,7 @@ pub fn skin(
             continue;
         }
         for polygon in polygons::polygons(&facets, &kept, &normal) {
-            solids.extend(walls.slab(flat, &polygon, &normal));
+            solids.extend(walls.slab(flat, &polygon, &normal, &fitted));
         }
     }
     solids
@@ -100,17 +104,20 @@ impl<'a> Walls<'a> {
     }
 
     /// Returns a polygon of a flat face extruded into the material; `None` if it holds no volume.
-    fn slab(&self, flat: &[usize], polygon: &[usize], normal: &Vector3<f64>) -> Option<Solid> {
+    fn slab(
+        &self,
+        flat: &[usize],
+        polygon: &[usize],
+        normal: &Vector3<f64>,
+        fitted: impl Fn(Solid) -> Option<Solid>,
+    ) -> Option<Solid> {
         let corners: Vec<Point3<f64>> = polygon.iter().map(|&i| self.facets.points[i]).collect();
         let sharp = self.sharp(flat, polygon, normal);
+        let half = |thick: &f64| (*thick > THIN).then(|| (thick / 2.0).max(THIN));
         let thick = self.thickness(&corners, normal, &sharp);
-        let mut points = corners.clone();
-        points.extend(corners.iter().map(|p| p - normal * thick));
-        for &(_, origin, side) in &sharp {
-            points = below(points, &origin, &side);
-        }
-        let written: Vec<_> = points.iter().map(|p| Point3::from(p.coords.map(rounded))).collect();
-        solid_of(&written)
+        std::iter::successors(Some(thick), half)
+            .filter_map(|thick| extruded(&corners, &(normal * thick), &sharp))
+            .find_map(fitted)
     }
 
     /// Planes of the faces that meet a polygon at less than a right angle: their flat face, a point and the normal.
@@ -132,7 +139,7 @@ impl<'a> Walls<'a> {
                 let side = self.facets.normals[other];
                 let (flat, origin) = (self.of[other], self.facets.points[ends[0]]);
                 let convex = |p: Point3<f64>| (p - origin).dot(normal) < CONVEX;
-                if side.dot(normal) < -1e-6
+                if (-FILM..-1e-6).contains(&side.dot(normal))
                     && self.facets.corners(other).into_iter().all(convex)
                     && found.iter().all(|(known, ..)| *known != flat)
                 {
@@ -181,6 +188,21 @@ impl<'a> Walls<'a> {
         }
         (least / 2.0).max(THIN)
     }
+}
+
+/// Solid of a polygon and the same polygon deeper, below the planes of faces at sharp edges.
+fn extruded(
+    corners: &[Point3<f64>],
+    deeper: &Vector3<f64>,
+    sharp: &[(usize, Point3<f64>, Vector3<f64>)],
+) -> Option<Solid> {
+    let mut points = corners.to_vec();
+    points.extend(corners.iter().map(|p| p - deeper));
+    for (_, origin, side) in sharp {
+        points = below(points, origin, side);
+    }
+    let written: Vec<_> = points.iter().map(|p| Point3::from(p.coords.map(rounded))).collect();
+    solid_of(&written)
 }
 
 /// Box about points in millimetres, for which parry's tolerances are made.
@@ -250,7 +272,7 @@ mod tests {
 
     fn parts(triangles: &[Triangle]) -> Vec<Part> {
         let part = |solid| Part { name: String::new(), solid, friction: None };
-        skin(triangles, |_, _| true).into_iter().map(part).collect()
+        skin(triangles, |_, _| true, Some).into_iter().map(part).collect()
     }
 
     #[test]

@@ -50,7 +50,7 @@ pub fn reduced(surface: Surface) -> Surface {
         if versions != [from, to].map(|corner| mesh.version[corner]) {
             continue;
         }
-        mesh.collapse(from, to);
+        mesh.collapse(from, to, cost as f64 * 1e-12);
         left -= 2;
         for corner in mesh.neighbours(to).into_iter().chain([to]) {
             mesh.version[corner] += 1;
@@ -79,10 +79,17 @@ impl Collapsing {
         if near.len() != faces {
             return;
         }
-        let best = near.iter().filter_map(|&to| Some((self.cost(from, to, &near)?, to)));
-        if let Some((cost, to)) = best.min_by(|a, b| a.0.total_cmp(&b.0))
-            && cost <= TOLERANCE
-        {
+        let place = self.points[from];
+        let change = |&to: &usize| {
+            let change = self.change(from, to, &near)?;
+            let distance = Facet::distance(&change.new, &place);
+            (self.error[from] + distance <= TOLERANCE).then_some((distance, to, change))
+        };
+        let mut changes: Vec<_> = near.iter().filter_map(change).collect();
+        changes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut costs =
+            changes.into_iter().filter_map(|(_, to, of)| Some((self.cost(from, to, of)?, to)));
+        if let Some((cost, to)) = costs.next() {
             let versions = [from, to].map(|corner| self.version[corner]);
             queue.push(Reverse(((cost * 1e12) as u64, [from, to], versions)));
         }
@@ -93,32 +100,43 @@ impl Collapsing {
         self.about[few].iter().any(|&face| self.faces[face].contains(&other))
     }
 
-    /// Returns how far the corner that goes is then from the surface, and those that went before it;
-    /// `None` if a face would turn over or the surface would touch itself.
-    fn cost(&self, from: usize, to: usize, near: &BTreeSet<usize>) -> Option<f64> {
+    /// Returns the faces about a corner before and after it goes; `None` if a face would turn over or the surface would
+    /// touch itself.
+    fn change(&self, from: usize, to: usize, near: &BTreeSet<usize>) -> Option<Change> {
         if near.iter().filter(|&&other| other != to && self.meet(other, to)).count() != 2 {
             return None;
         }
-        let mut distance = f64::INFINITY;
+        let mut change = Change { old: Vec::new(), new: Vec::new() };
         for &face in &self.about[from] {
             let corners = self.faces[face];
-            if corners.contains(&to) {
-                continue;
+            let old = Facet::new(corners.map(|corner| self.points[corner]), self.points[from]);
+            if !corners.contains(&to) {
+                let moved = corners.map(|corner| if corner == from { to } else { corner });
+                let new = Facet::new(moved.map(|corner| self.points[corner]), self.points[to]);
+                if new.normal.dot(&old.normal) < LEAST_COSINE {
+                    return None;
+                }
+                change.new.push(new);
             }
-            let before = corners.map(|corner| self.points[corner]);
-            let after = corners.map(|corner| self.points[if corner == from { to } else { corner }]);
-            let [old, new] = [&before, &after].map(normal);
-            if new.dot(&old) < LEAST_COSINE * new.norm() * old.norm() || new.norm() == 0.0 {
-                return None;
-            }
-            distance = distance.min(away(&self.points[from], &after));
+            change.old.push(old);
         }
-        Some(self.error[from] + distance)
+        Some(change)
     }
 
-    fn collapse(&mut self, from: usize, to: usize) {
-        let near = self.neighbours(from);
-        let error = self.cost(from, to, &near).unwrap_or(0.0);
+    /// Returns how far both surfaces are then apart where one lies over the other, m; `None` beyond the [`TOLERANCE`].
+    fn cost(&self, from: usize, to: usize, mut change: Change) -> Option<f64> {
+        let within = |distance: f64| (self.error[from] + distance <= TOLERANCE).then_some(distance);
+        // A corner of an edge is near one of the faces even where another one fills a hollow.
+        let gone = within(Facet::farthest(&change.old, &change.new))?;
+        let about = self.about[to].iter().map(|&face| self.faces[face]);
+        let facet =
+            |face: [usize; 3]| Facet::new(face.map(|corner| self.points[corner]), self.points[to]);
+        change.old.extend(about.map(facet));
+        let come = within(Facet::farthest(&change.new, &change.old))?;
+        Some(self.error[from] + gone.max(come))
+    }
+
+    fn collapse(&mut self, from: usize, to: usize, error: f64) {
         self.error[to] = self.error[to].max(error);
         for face in std::mem::take(&mut self.about[from]) {
             if self.faces[face].contains(&to) {
@@ -149,26 +167,58 @@ impl Collapsing {
     }
 }
 
-fn normal([a, b, c]: &[Point3<f64>; 3]) -> Vector3<f64> {
-    (b - a).cross(&(c - a))
+/// Faces about a corner before and after it goes.
+struct Change {
+    old: Vec<Facet>,
+    new: Vec<Facet>,
 }
 
-/// Distance of a point from a triangle (Ericson 2005, Real-time collision detection, 5.1.5), m.
-fn away(point: &Point3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> f64 {
-    let normal = (b - a).cross(&(c - a)).normalize();
-    let beyond = |from: &Point3<f64>, to: &Point3<f64>| {
-        (to - from).cross(&(point - from)).dot(&normal) < 0.0
-    };
-    let edge = |from: &Point3<f64>, to: &Point3<f64>| {
-        let along = to - from;
-        let share = ((point - from).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-        (point - (from + along * share)).norm()
-    };
-    let edges = [(a, b), (b, c), (c, a)];
-    if edges.iter().any(|(from, to)| beyond(from, to)) {
-        return edges.iter().map(|(from, to)| edge(from, to)).fold(f64::INFINITY, f64::min);
+/// Triangle with its unit normal, and samples: its middle and that of the edge which leaves a corner.
+struct Facet {
+    corners: [Point3<f64>; 3],
+    normal: Vector3<f64>,
+    samples: [Point3<f64>; 2],
+}
+
+impl Facet {
+    /// Facet whose first edge leaves `at`; a normal of zero without an area.
+    fn new(corners: [Point3<f64>; 3], at: Point3<f64>) -> Self {
+        let [a, b, c] = &corners;
+        let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
+        let first = corners.iter().position(|corner| *corner == at).unwrap_or(0);
+        let half = nalgebra::center(&at, &corners[(first + 1) % 3]);
+        let middle = Point3::from((a.coords + b.coords + c.coords) / 3.0);
+        Facet { corners, normal, samples: [half, middle] }
     }
-    (point - a).dot(&normal).abs()
+
+    /// Distance of the sample of some facets that is farthest from others, m.
+    fn farthest(of: &[Facet], from: &[Facet]) -> f64 {
+        let samples = of.iter().flat_map(|facet| &facet.samples);
+        samples.map(|place| Facet::distance(from, place)).fold(0.0, f64::max)
+    }
+
+    /// Distance of a point from the nearest of some facets, m.
+    fn distance(facets: &[Facet], point: &Point3<f64>) -> f64 {
+        facets.iter().map(|facet| facet.away(point)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Distance of a point (Ericson 2005, Real-time collision detection, 5.1.5), m.
+    fn away(&self, point: &Point3<f64>) -> f64 {
+        let [a, b, c] = &self.corners;
+        let beyond = |from: &Point3<f64>, to: &Point3<f64>| {
+            (to - from).cross(&(point - from)).dot(&self.normal) < 0.0
+        };
+        let edge = |from: &Point3<f64>, to: &Point3<f64>| {
+            let along = to - from;
+            let share = ((point - from).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+            (point - (from + along * share)).norm()
+        };
+        let edges = [(a, b), (b, c), (c, a)];
+        if edges.iter().any(|(from, to)| beyond(from, to)) {
+            return edges.iter().map(|(from, to)| edge(from, to)).fold(f64::INFINITY, f64::min);
+        }
+        (point - a).dot(&self.normal).abs()
+    }
 }
 
 #[cfg(test)]

@@ -16,10 +16,18 @@ class Named(Result):
 
 
 @dataclass(frozen=True, repr=False)
+class TaskListed(Named):
+    """A task, with its clearance where the plug seats."""
+
+    clearance_x_mm: float
+    clearance_y_mm: float
+
+
+@dataclass(frozen=True, repr=False)
 class Tasks(Result):
     """Tasks, search spaces and sets of errors that are shipped."""
 
-    tasks: tuple[Named, ...]
+    tasks: tuple[TaskListed, ...]
     spaces: tuple[Named, ...]
     uncertainties: tuple[Named, ...]
 

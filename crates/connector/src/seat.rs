@@ -21,6 +21,14 @@ const GRID: i32 = 8;
 /// Refinements of that grid about its best place.
 const REFINEMENTS: i32 = 4;
 
+/// Returns the clearance in x and in y of the upright plug where it seats, m.
+pub fn clearance(task: &Task) -> [f64; 2] {
+    let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
+    let seating = Seating::new(task, &plug, &socket);
+    let seat = seating.deepest();
+    [0, 1].map(|axis| seating.play(task.success.depth.min(seat.depth), seat.at, axis))
+}
+
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seat {
     /// Depth of the tip below the socket's top, m; 0 if it does not enter.

@@ -26,12 +26,18 @@ macro_rules! shipped {
     };
 }
 
-/// Connector insertion tasks.
+/// Connector insertion tasks of the paper.
 pub const TASKS: &[Shipped] = shipped! {
     "ket8": "tasks/ket8.toml",
     "ket12": "tasks/ket12.toml",
     "rj45": "tasks/rj45.toml",
     "usb": "tasks/usb.toml",
+};
+
+/// Connectors of the same kinds with the mechanisms and the clearances of those that are sold.
+pub const SOLD: &[Shipped] = shipped! {
+    "rj45_latch": "tasks/rj45_latch.toml",
+    "usb_a": "tasks/usb_a.toml",
 };
 
 /// Search spaces of finger and strategy.

@@ -2,7 +2,7 @@
 
 use contact::mjcf::*;
 use contact::scene::*;
-use input::shipped::{ROBOTS, Shipped, TASKS};
+use input::shipped::{ROBOTS, SOLD, Shipped, TASKS};
 use input::units::N_PER_MM;
 use insertion::finger::Finger;
 use insertion::robot::Robot;
@@ -194,12 +194,7 @@ fn geoms_of_one_name_are_told_apart() {
 /// it should be. The latch of the connector as sold hangs on a plug of a few grams.
 #[test]
 fn every_contact_is_as_stiff_as_it_should_be() {
-    let file = |name, text| Shipped { name, file: name, text };
-    let sold = [
-        file("rj45_latch", include_str!("../../../tasks/rj45_latch.toml")),
-        file("usb_a", include_str!("../../../tasks/usb_a.toml")),
-    ];
-    for task in TASKS.iter().chain(&sold) {
+    for task in TASKS.iter().chain(SOLD) {
         let text = model(&of(task, "servo"));
         let document = Document::parse(&text).unwrap();
         for pair in all(&document, "pair") {

@@ -10,7 +10,7 @@ use calibration::experiments::{
     COLUMNS, Experiment, NOT_MEASURABLE, appended, own_task, own_tasks, parse,
 };
 use input::files::{LARGEST_INPUT, Table};
-use input::shipped::{MEASUREMENTS, TASKS};
+use input::shipped::{MEASUREMENTS, SOLD, TASKS};
 use serde::Serialize;
 use std::io::{self, BufRead};
 use std::path::Path;
@@ -125,7 +125,7 @@ fn added(
     let mut own = None;
     if let Some((_, name)) = cells.iter_mut().find(|(column, _)| *column == "task") {
         let TaskFile { source, task } = read_task(name)?;
-        let shipped = TASKS.iter().any(|shipped| shipped.text == source.text);
+        let shipped = [TASKS, SOLD].concat().iter().any(|shipped| shipped.text == source.text);
         // Relative to the folder of the measurements, if it is inside, else absolute.
         let folder = Path::new(file).parent().unwrap_or(Path::new(""));
         let path = Path::new(name).strip_prefix(folder).map(Path::to_owned);

@@ -115,7 +115,8 @@ fn imported(folder: &Studies, name: &str, [plug, socket]: [Vec<Block>; 2]) -> Ra
 fn outcome(folder: &Studies, name: &str, offset_mm: &str) -> String {
     let task = folder.word(&format!("{name}.toml"));
     let more = ["--stiffness-compliance", "3", "--stiffness-assembly", "30", "--json"];
-    let ran = optimize(&[&["trial", "--task", &*task, "--offset-mm", offset_mm], &more[..]].concat());
+    let ran =
+        optimize(&[&["trial", "--task", &*task, "--offset-mm", offset_mm], &more[..]].concat());
     ran.json()["outcome"].as_str().unwrap().to_owned()
 }
 

@@ -134,7 +134,8 @@ pub fn mated(
         );
         return Err(Failure::in_file(files[body], problem).into());
     }
-    said.extend(found(&mate, &made, given));
+    let long = width(extent(raised.iter().flatten(), out.iamax()));
+    said.extend(found(&mate, long, &made, given));
     let play = [1, 0].map(|i| {
         let along = |way: &Vector3<f64>| (way.dot(&made.jaws).abs() > 0.7) == (i == 0);
         across.iter().position(along).map_or(0.0, |at| mate.play_m[at])
@@ -143,10 +144,11 @@ pub fn mated(
     Ok(MatedTask { made, unit, along, jaws, inward: [plug_inward, socket_inward], play, said })
 }
 
-/// Sentences about the mate and the grip.
-fn found(mate: &Mate, made: &Made, given: &Given) -> Vec<(&'static str, String)> {
+/// Sentences about the mate of a plug of this length along the axis, m, and the grip.
+fn found(mate: &Mate, long: f64, made: &Made, given: &Given) -> Vec<(&'static str, String)> {
     let depth = mate.engaged_m / MM;
-    let mut said = vec![("mate", format!("the plug engages over {depth:.2} mm"))];
+    let long = long / MM;
+    let mut said = vec![("mate", format!("{depth:.2} mm of the plug's {long:.1} mm engage"))];
     if mate.through {
         let depth = given.depth.unwrap_or(mate.engaged_m) / MM;
         said.push(("through", format!("nothing stops the plug: {depth:.2} mm are to be reached")));

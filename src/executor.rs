@@ -1,24 +1,19 @@
 //! `--executor WHERE`: passes the command to the installed Python package, which has the executors.
 
 use crate::failure::Failure;
+use crate::python::{PYTHON, command, interpreter};
 use std::ffi::OsString;
-use std::process::{ChildStdin, Command, ExitCode, Stdio};
+use std::process::{ChildStdin, ExitCode, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use study::SOURCES;
 
-/// Environment variable for another interpreter than `python3`.
-const PYTHON: &str = "FINGER_OPT_PYTHON";
 /// Environment variable with the hash of the program's sources, for the package.
 const SOURCES_KEY: &str = "FINGER_OPT_SOURCES";
-/// Environment variable that excludes the current folder from imports, also of child processes.
-const SAFE_PATH: (&str, &str) = ("PYTHONSAFEPATH", "1");
-/// The same for Python 3.10, which ignores the variable.
-const SAFE: &str = "import sys; sys.path[:] = filter(None, sys.path); ";
 
 /// Runs a command, without the program's name, by the Python package, which reports its own errors; returns its
 /// exit code.
 pub fn run(executor: &str, words: &[OsString]) -> Result<ExitCode, Failure> {
-    let python = std::env::var_os(PYTHON).unwrap_or_else(|| "python3".into());
+    let python = interpreter();
     let missing = |said: &str| {
         Failure::running(format!(
             "--executor {executor} needs the Python package of finger-opt ({} says: {said}); in \
@@ -26,11 +21,6 @@ pub fn run(executor: &str, words: &[OsString]) -> Result<ExitCode, Failure> {
              interpreter",
             python.display()
         ))
-    };
-    let command = |code: &str| {
-        let mut command = Command::new(&python);
-        command.args(["-c", &format!("{SAFE}{code}")]).envs([SAFE_PATH]);
-        command
     };
     let found = command("import finger_opt").stdin(Stdio::null()).output();
     let found = found.map_err(|error| missing(&error.to_string()))?;

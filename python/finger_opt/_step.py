@@ -121,16 +121,22 @@ def listed(bodies: list[Body]) -> str:
     return ", ".join(named) + (f" and {more} more" if more else "")
 
 
+def obj(bodies: list[Body]) -> str:
+    """OBJ in mm with an object for each body, called as the body."""
+    lines: list[str] = []
+    count = 0
+    for body in bodies:
+        points, corners = np.unique(body.triangles.reshape(-1, 3), axis=0, return_inverse=True)
+        lines.append(f"o {' '.join(body.name.split())}\n")
+        lines.extend("v {:.6f} {:.6f} {:.6f}\n".format(*point) for point in points)
+        lines.extend("f {} {} {}\n".format(*face) for face in corners.reshape(-1, 3) + 1 + count)
+        count += len(points)
+    return "".join(lines)
+
+
 def write(bodies: list[Body], path: Path) -> Path:
-    """Writes an OBJ in mm with an object for each body, called as the body; gives its path."""
-    with open(path, "w", encoding="utf-8") as file:
-        count = 0
-        for body in bodies:
-            points, corners = np.unique(body.triangles.reshape(-1, 3), axis=0, return_inverse=True)
-            file.write(f"o {' '.join(body.name.split())}\n")
-            file.writelines("v {:.6f} {:.6f} {:.6f}\n".format(*point) for point in points)
-            file.writelines("f {} {} {}\n".format(*face) for face in corners.reshape(-1, 3) + 1 + count)
-            count += len(points)
+    """Writes bodies as OBJ; gives its path."""
+    path.write_text(obj(bodies), encoding="utf-8")
     return path
 
 

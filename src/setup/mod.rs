@@ -12,6 +12,7 @@ pub mod repeat;
 pub mod request;
 pub mod robots;
 pub mod run;
+pub mod step;
 pub mod task;
 pub mod tune;
 pub mod words;

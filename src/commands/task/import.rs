@@ -6,13 +6,14 @@ use crate::failure::Failure;
 use crate::layout::wrapped;
 use crate::setup::mated::{Given, LeftOut, MatedTask, NoTask, mated};
 use crate::setup::request::DEFAULT_ROBOT;
+use crate::setup::step;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{Tried, begun, brief, chosen};
 use connector::draft::{DENSITY, Size};
 use connector::mesh::import::{ALLOWED, Along, Imported, Jaws, Request as Meshes, Unit, import};
 use connector::mesh::mated::Interference;
 use connector::mesh::place::{Placed, placed, value};
-use connector::mesh::{Body, Triangle, pick, read};
+use connector::mesh::{Body, Triangle, is_step, pick, read};
 use connector::tune::Tuned;
 use connector::write::{self, Notes};
 use input::shipped::Source;
@@ -29,13 +30,13 @@ const RESOLUTIONS: [u32; 2] = [8, 1000];
 /// Voxels unless said otherwise.
 const RESOLUTION: u32 = 64;
 /// Most parts that are written into the task file.
-const MOST_INLINE: usize = 40;
+const MOST_INLINE: usize = 30;
 /// Largest mesh file, bytes.
 const LARGEST_FILE: u64 = 200 << 20;
 
-/// Create a task from meshes of a plug and its socket (STL or OBJ)
+/// Create a task from meshes of a plug and its socket (STL, OBJ or STEP)
 ///
-/// Shapes about one opening that can be cut into convex pieces, such as extruded outlines, are cut; the plug's tip is
+/// STEP needs the Python package with its extra `step`. Shapes about one opening that can be cut into convex pieces, such as extruded outlines, are cut; the plug's tip is
 /// aligned with the middle of the opening. Of others the mated pose is found, whatever the frames of the files,
 /// and the faces that the two can touch become thin convex parts in a file beside the task; faces that overlap in the
 /// mated pose, such as unloaded contact springs, are listed and left out.
@@ -204,9 +205,10 @@ impl Request {
     fn found(&self, context: &Context<'_>) -> Result<Found, Failure> {
         let like = self.like.as_deref().map(read_task).transpose()?;
         let files = self.called();
-        let bodies = self.bodies([&files[0], &files[1]])?;
+        let (bodies, unit) = self.bodies([&files[0], &files[1]])?;
+        let bodies = &bodies;
         let exact = match self.body.is_none() && self.depth_mm.is_none() {
-            true => self.exact(&bodies, like.as_ref(), &|what| context.note(what)).map(Some),
+            true => self.exact(bodies, unit, like.as_ref(), &|what| context.note(what)).map(Some),
             false => Ok(None),
         };
         match exact {
@@ -214,7 +216,7 @@ impl Request {
             Err(error) if error.exit_code() != 2 => Err(error),
             other => {
                 not_stopped(context.stop)?;
-                match self.mated(&bodies, like.as_ref(), context) {
+                match self.mated(bodies, unit, like.as_ref(), context) {
                     Ok(found) => Ok(found),
                     // What fits nowhere is told as by the drawing.
                     Err(NoTask::NoMate(error)) => other.and(Err(error)),
@@ -231,6 +233,7 @@ impl Request {
     fn mated(
         &self,
         [plug, socket]: &[Vec<Triangle>; 2],
+        unit: Option<Unit>,
         like: Option<&TaskFile>,
         context: &Context<'_>,
     ) -> Result<Found, NoTask> {
@@ -238,7 +241,7 @@ impl Request {
         let name = self.name();
         let given = Given {
             name: &name,
-            unit: self.unit,
+            unit,
             along: self.insert_along,
             jaws: self.jaws,
             like: like.map(|like| &like.task),
@@ -265,12 +268,13 @@ impl Request {
     fn exact(
         &self,
         [plug, socket]: &[Vec<Triangle>; 2],
+        unit: Option<Unit>,
         like: Option<&TaskFile>,
         say: &dyn Fn(&str),
     ) -> Result<Found, Failure> {
         let files = self.called();
         let named = [&*files[0], &*files[1]];
-        let placed = placed([plug, socket], named, self.unit, self.insert_along, say);
+        let placed = placed([plug, socket], named, unit, self.insert_along, say);
         let Placed { meshes: [plug, socket], unit, along, why_unit, why_along } =
             placed.map_err(Failure::input)?;
         if let Some(jaws) = self.jaws.filter(|jaws| !along.across().contains(jaws)) {
@@ -310,11 +314,19 @@ impl Request {
         self.socket.as_ref().unwrap_or(&self.plug)
     }
 
-    /// Triangles of plug and socket; of a file that has both, what one of them leaves is the other.
-    fn bodies(&self, files: [&str; 2]) -> Result<[Vec<Triangle>; 2], Failure> {
-        let plug = bodies(&self.plug, files[0])?;
+    /// Triangles of plug and socket, and their unit if it is known; of a file that has both, what one of them leaves is the
+    /// other.
+    fn bodies(&self, files: [&str; 2]) -> Result<([Vec<Triangle>; 2], Option<Unit>), Failure> {
+        let (plug, plug_step) = bodies(&self.plug, files[0])?;
         let both = self.socket.as_ref().is_none_or(|socket| *socket == self.plug);
-        let socket = if both { plug.clone() } else { bodies(self.socket(), files[1])? };
+        let (socket, socket_step) =
+            if both { (plug.clone(), plug_step) } else { bodies(self.socket(), files[1])? };
+        let unit = if plug_step || socket_step { Some(Unit::Mm) } else { self.unit };
+        if let Some(other) = self.unit.filter(|given| Some(*given) != unit) {
+            let problem =
+                format!("--unit {}: STEP names its unit, and is read in mm", value(other));
+            return Err(Failure::usage(problem));
+        }
         let pick = |of: &[Body], name: &Option<String>, file: &str| {
             let picked = name.as_ref().map(|name| pick(of, name, file));
             picked.transpose().map_err(Failure::input)
@@ -322,7 +334,7 @@ impl Request {
         let plug_body = pick(&plug, &self.plug_body, files[0])?;
         let socket_body = pick(&socket, &self.socket_body, files[1])?;
         let all = |bodies: Vec<Body>| bodies.into_iter().flat_map(|body| body.triangles).collect();
-        Ok(match (plug_body, socket_body) {
+        let triangles = match (plug_body, socket_body) {
             (Some([plug, _]), Some([socket, _])) => [plug, socket],
             (Some([plug, rest]), None) => [plug, if both { rest } else { all(socket) }],
             (None, Some([socket, rest])) => [if both { rest } else { all(plug) }, socket],
@@ -335,7 +347,8 @@ impl Request {
                 )));
             }
             (None, None) => [all(plug), all(socket)],
-        })
+        };
+        Ok((triangles, unit))
     }
 
     fn notes(&self, Found { imported, unit, along, .. }: &Found) -> Notes {
@@ -367,12 +380,16 @@ fn described(files: &[String; 2]) -> String {
     format!("from {} and {}", name(&files[0]), name(&files[1]))
 }
 
-fn bodies(path: &Path, file: &str) -> Result<Vec<Body>, Failure> {
+/// Bodies of a file, and whether it is STEP, which names its unit and is read in mm.
+fn bodies(path: &Path, file: &str) -> Result<(Vec<Body>, bool), Failure> {
     let unreadable =
         |error: std::io::Error| Failure::in_file(file, format!("cannot read the mesh: {error}"));
     let opened = std::fs::File::open(path).map_err(unreadable)?;
     let bytes = input::files::read_up_to(opened, LARGEST_FILE).map_err(unreadable)?;
-    read(&bytes, file).map_err(Failure::input)
+    if is_step(&bytes, file) {
+        return Ok((step::bodies(path, file)?, true));
+    }
+    Ok((read(&bytes, file).map_err(Failure::input)?, false))
 }
 
 #[derive(Serialize)]

@@ -23,17 +23,22 @@ const HEADER: usize = 84;
 const RECORD: usize = 50;
 
 /// Message for STEP files, which the Python package reads.
-const STEP: &str = "is a STEP file, which Python reads: `pip install 'finger_opt[step]'`, then \
-                    `fo.import_parts(...)` (docs/guide/python.md); or export STL";
+const STEP: &str =
+    "is a STEP file, which the Python package reads: pip install 'finger_opt[step]'; or export STL";
+
+/// Whether a file is STEP, by its content or its name.
+pub fn is_step(bytes: &[u8], file: &str) -> bool {
+    let named = Path::new(file).extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
+    bytes.trim_ascii_start().starts_with(b"ISO-10303-21")
+        || named.is_some_and(|named| ["step", "stp"].contains(&named.as_str()))
+}
 
 /// Bodies of a file; the content decides on the format, `file` is named in errors.
 ///
 /// # Errors
 /// If the bytes are neither STL nor OBJ, or name no finite triangles.
 pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Body>, MeshError> {
-    let named = Path::new(file).extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
-    let step = bytes.trim_ascii_start().starts_with(b"ISO-10303-21")
-        || named.is_some_and(|named| ["step", "stp"].contains(&named.as_str()));
+    let step = is_step(bytes, file);
     let fail = |problem: &str| {
         let neither = || format!("is neither an STL nor an OBJ file: {problem}");
         MeshError::File(file.to_owned(), if step { STEP.to_owned() } else { neither() })

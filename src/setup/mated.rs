@@ -14,6 +14,9 @@ use nalgebra::Vector3;
 use serde::Serialize;
 use std::sync::atomic::Ordering;
 
+/// Most places of overlap that are listed.
+const MOST_SHOWN: usize = 4;
+
 /// What the user decides of a mated pair.
 pub struct Given<'a> {
     /// Name of the task.
@@ -161,7 +164,10 @@ fn found(mate: &Mate, long: f64, made: &Made, given: &Given) -> Vec<(&'static st
         );
         said.push(("handle", why));
     }
-    for left in made.interference.iter().map(LeftOut::from) {
+    let mut left_out: Vec<LeftOut> = made.interference.iter().map(LeftOut::from).collect();
+    left_out.sort_by(|a, b| b.depth_mm.total_cmp(&a.depth_mm));
+    let more = left_out.split_off(left_out.len().min(MOST_SHOWN));
+    for left in left_out {
         let round = |p: [f64; 3]| p.map(|v| (v * 100.0).round() / 100.0);
         let why = format!(
             "{} parts of the {} overlap by up to {:.3} mm, from {:?} to {:?} mm: left out",
@@ -171,6 +177,11 @@ fn found(mate: &Mate, long: f64, made: &Made, given: &Given) -> Vec<(&'static st
             round(left.from_mm),
             round(left.to_mm)
         );
+        said.push(("overlap", why));
+    }
+    if !more.is_empty() {
+        let parts: usize = more.iter().map(|left| left.parts).sum();
+        let why = format!("{parts} parts in {} more places, less deep (--json)", more.len());
         said.push(("overlap", why));
     }
     said

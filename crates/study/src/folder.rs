@@ -67,8 +67,7 @@ pub struct Study {
     foreign: usize,
     pub(super) journal: Journal,
     dir: PathBuf,
-    // Dropping the file, or the end of the process, releases the lock.
-    _lock: File,
+    _lock: Lock,
 }
 
 /// Action for a study whose provenance differs from that of the program and its inputs.
@@ -152,7 +151,7 @@ impl Study {
         Study::open_locked(dir, lock(dir)?, store)
     }
 
-    fn open_locked(dir: &Path, lock: File, store: Box<dyn Store>) -> Result<Study, StudyError> {
+    fn open_locked(dir: &Path, lock: Lock, store: Box<dyn Store>) -> Result<Study, StudyError> {
         let config = read_config(dir)?;
         let (journal, contents) = Journal::open(store, &dir.join(JOURNAL_FILE), &config)?;
         // New file names then survive a power failure; not every system supports this.
@@ -442,8 +441,18 @@ fn plain(content: &[u8]) -> Cow<'_, [u8]> {
     }
 }
 
-/// Locks the folder. The system releases the lock when the process ends.
-fn lock(dir: &Path) -> Result<File, StudyError> {
+/// Locked file of a folder. The system releases the lock when the process ends.
+struct Lock(File);
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // A child process that is just starting has the file open, too: closing it here would leave it locked.
+        let _ = self.0.unlock();
+    }
+}
+
+/// Locks the folder.
+fn lock(dir: &Path) -> Result<Lock, StudyError> {
     let path = dir.join(LOCK_FILE);
     let mut options = OpenOptions::new();
     options.read(true).write(true).create(true).truncate(false);
@@ -465,5 +474,5 @@ fn lock(dir: &Path) -> Result<File, StudyError> {
         write!(file, "number {}", std::process::id())
     };
     sign(&mut file).map_err(StudyError::io("write", &path))?;
-    Ok(file)
+    Ok(Lock(file))
 }

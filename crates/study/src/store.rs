@@ -57,6 +57,13 @@ impl FileStore {
     }
 }
 
+impl Drop for FileStore {
+    fn drop(&mut self) {
+        // As for the folder's lock.
+        let _ = self.file.unlock();
+    }
+}
+
 impl Store for FileStore {
     fn read(&mut self) -> io::Result<Vec<u8>> {
         self.file.seek(SeekFrom::Start(0))?;

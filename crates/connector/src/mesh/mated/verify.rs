@@ -3,6 +3,7 @@
 use crate::body::ConvexBody;
 use crate::mesh::Triangle;
 use crate::mesh::merge::solid_of;
+use crate::mesh::skin::is_thick;
 use input::units::MM;
 use insertion::task::{Part, Solid, geometry};
 use nalgebra::{Point3, Vector3};
@@ -57,7 +58,7 @@ impl<'a> Drawn<'a> {
     pub fn trimmed(&self, solid: Solid) -> Option<Solid> {
         let corners = solid.corners();
         let moved: Vec<_> = corners.iter().map(|place| self.inside(place)).collect();
-        let solid = if moved == corners { solid } else { solid_of(&moved)? };
+        let solid = if moved == corners { solid } else { solid_of(&moved).filter(is_thick)? };
         self.stands_out(&solid).is_none().then_some(solid)
     }
 

@@ -6,6 +6,7 @@ mod polygons;
 
 use super::Triangle;
 use super::merge::solid_of;
+use crate::body::{extent, width};
 use facets::Facets;
 use input::units::MM;
 use insertion::task::Solid;
@@ -20,6 +21,8 @@ use rapier3d_f64::parry;
 const THICK: f64 = 0.25 * MM;
 /// Least thickness, m.
 const THIN: f64 = 10e-3 * MM;
+/// Least size of a solid along an axis, m.
+const LEAST_SIZE: f64 = 2e-3 * MM;
 /// Resolution of lengths in files, m.
 pub const WRITTEN: f64 = 1e-4 * MM;
 /// Distance from the sides of a polygon within which what is behind it does not count, m.
@@ -202,7 +205,12 @@ fn extruded(
         points = below(points, origin, side);
     }
     let written: Vec<_> = points.iter().map(|p| Point3::from(p.coords.map(rounded))).collect();
-    solid_of(&written)
+    solid_of(&written).filter(is_thick)
+}
+
+/// Whether a solid has a size along each axis that files can have.
+pub fn is_thick(solid: &Solid) -> bool {
+    (0..3).all(|axis| width(extent(solid.corners(), axis)) >= LEAST_SIZE)
 }
 
 /// Box about points in millimetres, for which parry's tolerances are made.

@@ -22,9 +22,10 @@ pub fn select(
     (pairs, room): (&[([usize; 2], usize)], f64),
 ) -> Option<Found> {
     let guided = |pose: &&Pose| {
-        let [x, y, _] = bounds(&scene.plugs[pose.turn]);
+        let [x, y, z] = bounds(&scene.plugs[pose.turn]);
         let size = ((x[1] - x[0]) * (y[1] - y[0])).sqrt();
-        pose.depth >= LEAST && pose.walls >= LEAST * GUIDED * size
+        // What sinks in wholly has fallen, and nobody could hold it.
+        (LEAST..z[1] - z[0]).contains(&pose.depth) && pose.walls >= LEAST * GUIDED * size
     };
     let poses: Vec<_> = poses.iter().filter(guided).collect();
     let best = poses.first()?;

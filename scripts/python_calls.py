@@ -61,7 +61,7 @@ if probe:
     "next": Call("next_print", "_calibration.Advice", ("measurements", "task"), types={"task": TASKS}),
     "identify": Call("identify", "_identify.Cell", ("task", "runs", "out")),
     "tasks": Call(
-        "tasks", "_lists.Tasks", example="[task.name for task in fo.tasks().tasks]\n['ket8', 'ket12', 'rj45', 'usb']"
+        "tasks", "_lists.Tasks", example="[task.name for task in fo.tasks().tasks]\n['ket8', 'ket12', 'rj45', 'usb', 'rj45_latch', 'usb_a']"
     ),
     "config": Call("config"),
     "robots": Call("robots", "_lists.Robots"),

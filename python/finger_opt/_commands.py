@@ -773,7 +773,7 @@ def tasks() -> Tasks:
 
     >>> import finger_opt as fo
     >>> [task.name for task in fo.tasks().tasks]
-    ['ket8', 'ket12', 'rj45', 'usb']
+    ['ket8', 'ket12', 'rj45', 'usb', 'rj45_latch', 'usb_a']
 
     Raises:
         InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.

@@ -9,7 +9,7 @@ from typing import Literal, Union
 #: A name of a file, or a path of any kind.
 StrPath = Union[str, os.PathLike[str]]
 #: Shipped tasks.
-TaskName = Literal["ket8", "ket12", "rj45", "usb"]
+TaskName = Literal["ket8", "ket12", "rj45", "usb", "rj45_latch", "usb_a"]
 #: Shipped search spaces.
 SpaceName = Literal["infill", "codesign", "finger"]
 #: Shipped robots.

@@ -386,7 +386,7 @@ fn bodies(path: &Path, file: &str) -> Result<(Vec<Body>, bool), Failure> {
         |error: std::io::Error| Failure::in_file(file, format!("cannot read the mesh: {error}"));
     let opened = std::fs::File::open(path).map_err(unreadable)?;
     let bytes = input::files::read_up_to(opened, LARGEST_FILE).map_err(unreadable)?;
-    if is_step(&bytes, file) {
+    if is_step(&bytes, &path.display().to_string()) {
         return Ok((step::bodies(path, file)?, true));
     }
     Ok((read(&bytes, file).map_err(Failure::input)?, false))

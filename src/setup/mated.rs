@@ -231,23 +231,25 @@ fn unit(
     files: Files,
     triangles: [&[Triangle]; 2],
     given: Option<Unit>,
-) -> Result<(Unit, Option<String>), Failure> {
-    if let Some(unit) = given {
-        return Ok((unit, None));
-    }
+) -> Result<(Unit, Option<String>), NoTask> {
     let longest = triangles
         .map(|of| (0..3).map(|axis| width(extent(of.iter().flatten(), axis))).fold(0.0, f64::max));
     let fits = |unit: &Unit| {
         longest.iter().all(|side| (SIZES[0]..=SIZES[1]).contains(&(side * unit.metres())))
     };
     let [plug, socket] = longest;
-    let Some(unit) = [Unit::Mm, Unit::M, Unit::In].into_iter().find(fits) else {
+    let units = given.map_or(vec![Unit::Mm, Unit::M, Unit::In], |unit| vec![unit]);
+    let Some(unit) = units.into_iter().find(fits) else {
         let problem = format!(
             "the plug is {plug:.4} long and the socket {socket:.4}: connectors are 3 to 300 mm, and these are not in \
-             mm, in or m"
+             {}",
+            given.map_or("mm, in or m".to_owned(), value)
         );
-        return Err(Failure::in_file(files.join(", "), problem));
+        return Err(NoTask::NoMate(Failure::in_file(files.join(", "), problem)));
     };
+    if given.is_some() {
+        return Ok((unit, None));
+    }
     let [plug, socket] = longest.map(|side| side * unit.metres() / MM);
     let why = format!("{}: plug and socket are {plug:.1} and {socket:.1} mm long", value(unit));
     Ok((unit, Some(why)))

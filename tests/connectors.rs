@@ -151,6 +151,15 @@ fn a_shell_with_a_seam_goes_about_its_tongue() {
 }
 
 #[test]
+fn a_depth_that_no_connector_has_is_refused() {
+    for depth in ["-1", "0", "1e12", "nan", "inf"] {
+        let words = ["task", "import", "--plug", "p.stl", "--socket", "s.stl"];
+        let ran = optimize(&[&words[..], &[&format!("--depth-mm={depth}")]].concat());
+        ran.fails(2, &["--depth-mm", "0.4 .. 300"]);
+    }
+}
+
+#[test]
 fn what_fits_nowhere_is_refused_and_nothing_is_written() {
     let folder = Studies::new();
     let wide = vec![block([-8.0, 8.0], [-9.0, 9.0], [0.0, 20.0])];

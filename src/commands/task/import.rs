@@ -23,6 +23,7 @@ use insertion::task::parts_file::{PartsFile, joined, sha256};
 use insertion::trial::engine::EngineKind;
 use serde::{Serialize, Serializer};
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use study::write_file;
 
@@ -31,6 +32,8 @@ const RESOLUTIONS: [u32; 2] = [8, 1000];
 const RESOLUTION: u32 = 64;
 /// Most parts that are written into the task file.
 const MOST_INLINE: usize = 30;
+/// Depths to be reached in a through hole, mm.
+const DEPTHS_MM: RangeInclusive<f64> = 0.4..=300.0;
 /// Largest mesh file, bytes.
 const LARGEST_FILE: u64 = 200 << 20;
 
@@ -98,33 +101,28 @@ pub struct Request {
 
 /// A task that was imported and written.
 pub struct ImportedTask {
-    /// The task, and how far it is from the meshes.
-    pub imported: Imported,
-    /// Unit of the files.
-    pub unit: Unit,
-    /// Direction of insertion in the files.
-    pub along: Along,
-    /// Findings and repairs: the subject and a sentence.
-    pub said: Vec<(&'static str, String)>,
-    /// Whether the normals of plug and of socket pointed inward.
-    pub inward: [bool; 2],
-    /// What was left out of the shapes, because the mated pair overlaps there.
-    pub left_out: Vec<Interference>,
+    found: Found,
     /// The strategies that were tried; none if the file has problems.
-    pub tuned: Option<Tuned>,
+    tuned: Option<Tuned>,
     /// Check of the written file, with its nominal start.
-    pub checked: TaskCheck,
+    checked: TaskCheck,
     out: PathBuf,
     resolution: u32,
 }
 
 /// Task before it is written.
 struct Found {
+    /// The task, and how far it is from the meshes.
     imported: Imported,
+    /// Unit of the files.
     unit: Unit,
+    /// Direction of insertion in the files.
     along: Along,
+    /// Findings and repairs: the subject and a sentence.
     said: Vec<(&'static str, String)>,
+    /// Whether the normals of plug and of socket pointed inward.
     inward: [bool; 2],
+    /// What was left out of the shapes, because the mated pair overlaps there.
     left_out: Vec<Interference>,
 }
 
@@ -134,6 +132,12 @@ impl command::Request for Request {
     fn run(&self, context: &Context<'_>) -> Result<ImportedTask, Failure> {
         let stop = context.stop;
         let out = &self.out();
+        if let Some(depth) = self.depth_mm.filter(|depth| !DEPTHS_MM.contains(depth)) {
+            let [low, high] = [DEPTHS_MM.start(), DEPTHS_MM.end()];
+            let problem =
+                format!("--depth-mm: is {depth} mm; it must be within {low} .. {high} mm");
+            return Err(Failure::usage(problem));
+        }
         if out.exists() {
             let file = out.display();
             return Err(Failure::usage(format!("{file} exists; name another file with --out")));
@@ -144,20 +148,8 @@ impl command::Request for Request {
         found.imported.task = task;
         let written = self.write(out, &found)?;
         let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine, stop)?;
-        let Found { imported, unit, along, said, inward, left_out } = found;
         let (out, resolution) = (out.clone(), self.resolution);
-        Ok(ImportedTask {
-            imported,
-            unit,
-            along,
-            said,
-            inward,
-            left_out,
-            tuned,
-            checked,
-            out,
-            resolution,
-        })
+        Ok(ImportedTask { found, tuned, checked, out, resolution })
     }
 }
 
@@ -427,18 +419,8 @@ struct Fields<'a> {
 impl ImportedTask {
     /// Returns the keys of `--json`, and the text.
     fn told(&self) -> (Fields<'_>, String) {
-        let ImportedTask {
-            imported,
-            unit,
-            along,
-            said,
-            inward,
-            left_out,
-            tuned,
-            checked,
-            out,
-            resolution,
-        } = self;
+        let ImportedTask { found, tuned, checked, out, resolution } = self;
+        let Found { imported, unit, along, said, inward, left_out } = found;
         let [plug, socket] = imported.parts();
         let (depth, at, of) = match imported.intrusion {
             Some((depth, at, of)) => (depth / MM, at.coords / MM, of),

@@ -10,9 +10,11 @@ use connector::mesh::place::value;
 use connector::mesh::{Files, SIZES, Surface, Triangle};
 use input::units::MM;
 use insertion::task::Task;
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 use serde::Serialize;
+use std::path::Path;
 use std::sync::atomic::Ordering;
+use study::write_file;
 
 /// Most places of overlap that are listed.
 const MOST_SHOWN: usize = 4;
@@ -35,6 +37,8 @@ pub struct Given<'a> {
     pub handle: Option<[f64; 3]>,
     /// Depth to be reached in a through hole, m.
     pub depth: Option<f64>,
+    /// File for the picture of a place at which the parts are not as drawn.
+    pub closeup: &'a Path,
 }
 
 /// Task of a mated pair.
@@ -99,13 +103,16 @@ pub fn mated(
 ) -> Result<MatedTask, NoTask> {
     let (unit, why) = unit(files, triangles, given.unit)?;
     let mut said: Vec<(&str, String)> = why.map(|why| ("unit", why)).into_iter().collect();
+    let scaled = |of: usize| -> Vec<Triangle> {
+        triangles[of].iter().map(|t| t.map(|p| p * unit.metres())).collect()
+    };
+    let drawn = [scaled(0), scaled(1)];
     let (plug, plug_inward) = few(files[0], triangles[0], unit, context);
     let (socket, socket_inward) = few(files[1], triangles[1], unit, context);
     if !given.assembled {
         context.note("looking for the mated pose");
     }
     let mate = mate(files, [&plug, &socket], given, context, &mut said)?;
-    let moved: Vec<Triangle> = plug.iter().map(|t| t.map(|p| mate.pose * p)).collect();
     let out = mate.out.into_inner();
     let across = mate.across.map(|way| way.into_inner());
     let chosen = |way: &&Vector3<f64>| given.jaws.is_none_or(|jaws| axis(jaws) == way.iamax());
@@ -117,30 +124,22 @@ pub fn mated(
         return Err(Failure::usage(problem).into());
     }
     let depth = given.depth.unwrap_or(mate.engaged_m);
-    let raised: Vec<Triangle> =
-        moved.iter().map(|t| t.map(|p| p + out * (mate.engaged_m - depth))).collect();
+    let above = out * (mate.engaged_m - depth);
+    let moved = |of: &[Triangle]| -> Vec<Triangle> {
+        of.iter().map(|t| t.map(|p| mate.pose * p + above)).collect()
+    };
+    let (raised, drawn_plug) = (moved(&plug), moved(&drawn[0]));
     let pair = Pair {
         plug: &raised,
         socket: &socket,
+        drawn: [&drawn_plug, &drawn[1]],
         out,
         jaws: &jaws,
         engaged: depth,
         play: [0, 1].map(|i| (across[i], mate.play_m[i])),
     };
     let made = task(&pair, &Request { name: given.name, like: given.like, handle: given.handle });
-    if let Some((body, off)) = made.deviation {
-        let [x, y, z] = [off.place.x, off.place.y, off.place.z].map(|v| v / MM);
-        let how = match off.out {
-            Some(far) => format!("stand {:.3} mm out of the drawing", far / MM),
-            None => "lack a face of the drawing".to_owned(),
-        };
-        let problem = format!(
-            "the convex parts {how} at [{x:.2}, {y:.2}, {z:.2}] mm (of the task, plug mated), more than the \
-             {} mm allowed: look there for faces that cross one another or are turned inside out",
-            TOLERANCE / MM
-        );
-        return Err(Failure::in_file(files[body], problem).into());
-    }
+    as_drawn(files, &made, given.closeup)?;
     let long = width(extent(raised.iter().flatten(), out.iamax()));
     said.extend(found(&mate, long, &made, given));
     let play = [1, 0].map(|i| {
@@ -149,6 +148,43 @@ pub fn mated(
     });
     let (along, jaws) = (along_of(&-out), jaws_of(&made.jaws));
     Ok(MatedTask { made, unit, along, jaws, inward: [plug_inward, socket_inward], play, said })
+}
+
+/// Returns an error with a picture of the place if the parts are not as drawn.
+fn as_drawn(files: Files, made: &Made, closeup: &Path) -> Result<(), Failure> {
+    let at = |place: Point3<f64>| {
+        let [x, y, z] = [place.x, place.y, place.z].map(|v| v / MM);
+        format!("at [{x:.2}, {y:.2}, {z:.2}] mm of the task")
+    };
+    let allowed = TOLERANCE / MM;
+    let (file, problem) = match (made.deviation, made.difference) {
+        (Some((body, off)), _) => {
+            let how = match off.out {
+                Some(far) => format!("stand {:.3} mm out of the drawing", far / MM),
+                None => "lack a face of the drawing".to_owned(),
+            };
+            let at = at(off.place);
+            (files[body].to_owned(), format!("the convex parts {how} {at}, plug mated"))
+        }
+        (None, Some(off)) => {
+            let [drawn, parts] = off.gaps.map(|gap| gap / MM);
+            let height = (off.pose.translation.z - made.mated_z()) / MM;
+            let problem = format!(
+                "the gap {} is {parts:.3} mm between the convex parts and {drawn:.3} mm as drawn, plug {height:.2} mm \
+                 above its seat",
+                at(off.place)
+            );
+            (files.join(", "), problem)
+        }
+        (None, None) => return Ok(()),
+    };
+    write_file(closeup, made.closeup.as_deref().unwrap_or_default())?;
+    let problem = format!(
+        "{problem}: more than the {allowed} mm allowed; look there for faces that cross one another or are turned inside \
+         out ({})",
+        closeup.display()
+    );
+    Err(Failure::in_file(file, problem))
 }
 
 /// Sentences about the mate of a plug of this length along the axis, m, and the grip.

@@ -6,7 +6,7 @@ use input::units::MM;
 use insertion::task::geometry::outline_by;
 use insertion::task::{Part, Plug};
 use nalgebra::{Point2, Point3, Vector3};
-use parry::bounding_volume::Aabb;
+use parry::bounding_volume::{Aabb, BoundingVolume};
 use parry::partitioning::{Bvh, BvhBuildStrategy};
 use parry::query;
 use parry::shape::SharedShape;
@@ -89,6 +89,27 @@ impl<'a> ConvexBody<'a> {
         self.near_pairs(own, other, at).filter_map(touching).collect()
     }
 
+    /// Returns the gap to another body in its own frame, m, if less than `wide`, 0 if they overlap, and its place; only
+    /// places that count.
+    pub fn gap(
+        &self,
+        own: &Pose,
+        other: &ConvexBody,
+        wide: f64,
+        counts: impl Fn(&Point3<f64>) -> bool,
+    ) -> Option<(f64, Point3<f64>)> {
+        let pairs = self.pairs_within(wide, own, other, &Pose::identity());
+        let gap = |[i, j]: [usize; 2]| {
+            let [a, b] = [&self.shapes[i], &other.shapes[j]];
+            let [here, there] = [own * a.pose, b.pose].map(|at| shapes::pose(&at, MILLIMETRES));
+            let found = query::contact(&here, &*a.shape, &there, &*b.shape, wide * MILLIMETRES);
+            let found = found.ok().flatten()?;
+            let place = Point3::from(Vector3::from(found.point1) * MM);
+            counts(&place).then_some((found.dist.max(0.0) * MM, place))
+        };
+        pairs.filter_map(gap).min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
     /// Pairs of parts of this and another body whose boxes meet, in order.
     fn near_pairs<'b>(
         &'b self,
@@ -96,9 +117,20 @@ impl<'a> ConvexBody<'a> {
         other: &'b ConvexBody,
         at: &Pose,
     ) -> impl Iterator<Item = [usize; 2]> + 'b {
+        self.pairs_within(0.0, own, other, at)
+    }
+
+    /// Pairs of parts whose boxes are within a distance, m, of one another, in order.
+    fn pairs_within<'b>(
+        &'b self,
+        distance: f64,
+        own: &Pose,
+        other: &'b ConvexBody,
+        at: &Pose,
+    ) -> impl Iterator<Item = [usize; 2]> + 'b {
         let relative = at.inv_mul(own);
         (0..self.shapes.len()).flat_map(move |i| {
-            let boxed = self.shapes[i].boxed(&relative);
+            let boxed = self.shapes[i].boxed(&relative).loosened(distance * MILLIMETRES);
             let near = other.tree.intersect_aabb(&boxed).map(|j| j as usize);
             let mut near: Vec<usize> = near.collect();
             near.sort_unstable();

@@ -259,12 +259,12 @@ impl Request {
             like: like.map(|like| &like.task),
             handle: self.body.map(|size| [size.height, size.width, size.length]),
             depth: self.depth_mm.map(|depth| depth * MM),
+            closeup: &self.out().with_extension("place.svg"),
         };
         let found = mated([&files[0], &files[1]], [plug, socket], &given, context)?;
         let MatedTask { made, unit, along, jaws, inward, play, said } = found;
         let grip = made.task.grip;
-        let seat = made.task.success.mated.map_or(0.0, |mated| -mated.tip[2]);
-        let body = [grip.faces_y[1] - grip.faces_y[0], made.held, grip.shoulder_z - seat];
+        let body = [grip.faces_y[1] - grip.faces_y[0], made.held, grip.shoulder_z + made.mated_z()];
         let imported = Imported {
             task: Task { description: described(&files), ..made.task },
             exact: [true; 2],

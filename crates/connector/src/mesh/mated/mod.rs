@@ -1,5 +1,7 @@
 //! Task from a plug and a socket whose mated pose is known: skins as convex parts, grip, search and success.
 
+mod closeup;
+pub mod gaps;
 mod grip;
 mod overlap;
 mod reach;
@@ -9,6 +11,7 @@ use super::Triangle;
 use super::skin::{WRITTEN, skin};
 use crate::body::{clipped, extent, span, width};
 use crate::{draft, plan};
+use contact::scene::Pose;
 pub use grip::Grasp;
 use input::units::MM;
 use insertion::task::{Mated, Part, Solid, Success, Task};
@@ -33,6 +36,8 @@ pub struct Pair<'a> {
     pub plug: &'a [Triangle],
     /// Socket in the same axes, m.
     pub socket: &'a [Triangle],
+    /// Plug and socket with all faces of their drawing.
+    pub drawn: [&'a [Triangle]; 2],
     /// Direction in which the plug leaves.
     pub out: Vector3<f64>,
     /// Directions across it along which the jaws may close, the preferred one first.
@@ -68,12 +73,24 @@ pub struct Made {
     pub interference: Vec<Interference>,
     /// Worst place at which the parts of a body (0 plug, 1 socket) are not as drawn, task frame, plug mated, if any.
     pub deviation: Option<(usize, Deviation)>,
+    /// Pose at which the gap between the parts is not as drawn, if any.
+    pub difference: Option<gaps::Difference>,
+    /// SVG of the place of either.
+    pub closeup: Option<String>,
+}
+
+impl Made {
+    /// Returns the height of the mated plug's tip, task frame, m.
+    pub fn mated_z(&self) -> f64 {
+        self.task.success.mated.map_or(0.0, |mated| mated.tip[2])
+    }
 }
 
 /// Pair in the task's axes: the plug in its own frame, the socket in that of the task.
 struct Placed {
     plug: Vec<Triangle>,
     socket: Vec<Triangle>,
+    drawn: [Vec<Triangle>; 2],
     jaws: Vector3<f64>,
     play: [f64; 2],
 }
@@ -94,9 +111,12 @@ impl Placed {
             let along = |(way, _): &&(Vector3<f64>, f64)| (turn * way)[axis].abs() > 0.7;
             pair.play.iter().find(along).map_or(0.0, |(_, play)| *play)
         });
+        let own = Vector3::new(-x, -y, -low);
+        let task = own - Vector3::z() * pair.engaged;
         Placed {
-            plug: turned(pair.plug, Vector3::new(-x, -y, -low)),
-            socket: turned(pair.socket, Vector3::new(-x, -y, -low - pair.engaged)),
+            plug: turned(pair.plug, own),
+            socket: turned(pair.socket, task),
+            drawn: [turned(pair.drawn[0], own), turned(pair.drawn[1], task)],
             jaws,
             play,
         }
@@ -125,6 +145,17 @@ pub fn task(pair: &Pair, request: &Request) -> Made {
     });
     let (mut plug, mut socket, deviation) = skins(&placed, pair.engaged);
     let interference = overlap::cut(&mut plug, &mut socket, pair.engaged);
+    let drawn = [&placed.drawn[0][..], &placed.drawn[1]];
+    let bodies =
+        gaps::Bodies { drawn, parts: [&plug, &socket], depth: pair.engaged, play: placed.play };
+    let difference = match deviation {
+        Some(_) => None,
+        None => gaps::difference(&bodies, &interference, gaps::POSES),
+    };
+    let mated = Pose::translation(0.0, 0.0, -pair.engaged);
+    let place = deviation.map(|(_, off)| (mated, off.place));
+    let place = place.or(difference.map(|off| (off.pose, off.place)));
+    let closeup = place.map(|(pose, place)| closeup::svg(drawn, bodies.parts, &pose, place));
     plug.push(grasp.part.clone());
     let mut task = draft::blank(request.name, request.like);
     task.plug.mass = draft::DENSITY * volume(&placed.plug).max(grasp_volume(&grasp));
@@ -137,7 +168,8 @@ pub fn task(pair: &Pair, request: &Request) -> Made {
     (task.grip.shoulder_z, task.grip.faces_y) = (grasp.shoulder, grasp.faces);
     let task = plan::mated(task);
     let held = width(extent(grasp.part.solid.corners(), 0));
-    Made { task, jaws: placed.jaws, held, handle, interference, deviation }
+    let jaws = placed.jaws;
+    Made { task, jaws, held, handle, interference, deviation, difference, closeup }
 }
 
 /// Parts of plug and socket where the other one can touch them, and the worst place at which they are not as drawn.

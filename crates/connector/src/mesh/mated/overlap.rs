@@ -29,6 +29,14 @@ pub struct Interference {
     pub bounds: [Point3<f64>; 2],
 }
 
+impl Interference {
+    /// Returns whether a place, task frame, plug mated, is within a distance of its bounds, m.
+    pub fn is_near(&self, place: &Point3<f64>, distance: f64) -> bool {
+        let [low, high] = self.bounds;
+        (0..3).all(|i| (low[i] - distance..=high[i] + distance).contains(&place[i]))
+    }
+}
+
 /// Leaves out what keeps the plug from its mated pose, `depth` below the top, m: of two parts that overlap the smaller one.
 pub fn cut(plug: &mut Vec<Part>, socket: &mut Vec<Part>, depth: f64) -> Vec<Interference> {
     let found = met(plug, socket, depth);

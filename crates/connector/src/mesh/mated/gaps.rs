@@ -1,0 +1,146 @@
+//! Check of the gap between plug and socket: by their convex parts and by the drawn faces, at poses about the mated one.
+
+use super::{Interference, TOLERANCE};
+use crate::body::ConvexBody;
+use crate::mesh::Triangle;
+use contact::scene::Pose;
+use input::units::MM;
+use insertion::task::Part;
+use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
+use parry::bounding_volume::{Aabb, BoundingVolume};
+use parry::partitioning::{Bvh, BvhBuildStrategy};
+use parry::query;
+use parry::shape;
+use rapier3d_f64::parry;
+use rayon::prelude::*;
+
+/// Poses that are compared.
+pub const POSES: u32 = 200;
+/// Gap beyond which gaps count as equal, m.
+const WIDE: f64 = 0.1 * MM;
+/// Way beyond the play by which poses differ, m.
+const BEYOND: f64 = 0.1 * MM;
+/// Heights above the seat, m: those of every other pose, and what the rest go beyond the depth.
+const HEIGHTS: [f64; 3] = [0.03 * MM, 1.0 * MM, 0.5 * MM];
+/// Least arm of a turn, m.
+const ARM: f64 = 2.0 * MM;
+/// Irrational steps of a sequence that fills six dimensions evenly (Roberts 2018).
+const STEPS: [f64; 6] =
+    [0.898_654_4, 0.807_579_7, 0.725_735_1, 0.652_185_1, 0.586_089_0, 0.526_691_4];
+
+/// Pose at which the gaps differ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Difference {
+    /// Pose of the plug in the task frame.
+    pub pose: Pose,
+    /// Place, task frame, m.
+    pub place: Point3<f64>,
+    /// Gap of the drawn faces and of the parts, m, at most 0.1 mm; 0 where they meet.
+    pub gaps: [f64; 2],
+}
+
+/// Plug, in its own frame, and socket by their drawn faces and by their parts.
+pub struct Bodies<'a> {
+    /// Faces of plug and socket, m.
+    pub drawn: [&'a [Triangle]; 2],
+    /// Parts of plug and socket.
+    pub parts: [&'a [Part]; 2],
+    /// Depth of the mated plug, m.
+    pub depth: f64,
+    /// Play in x and in y, m.
+    pub play: [f64; 2],
+}
+
+/// Returns the pose at which the gaps differ most, if by more than the tolerance; what was left out does not count.
+pub fn difference(of: &Bodies, left_out: &[Interference], poses: u32) -> Option<Difference> {
+    let [plug, socket] = of.drawn.map(Faces::new);
+    let parts = of.parts.map(ConvexBody::new);
+    let at = |number: u32| {
+        let pose = pose(number, of);
+        let beyond = |place: &Point3<f64>, distance: f64| {
+            let mated = pose.inverse_transform_point(place) - Vector3::z() * of.depth;
+            !left_out.iter().any(|of| of.is_near([&mated, place][of.body], distance))
+        };
+        let counts = |place: &Point3<f64>| beyond(place, BEYOND);
+        let (drawn, its) =
+            (plug.gap(&pose, &socket, counts), parts[0].gap(&pose, &parts[1], WIDE, counts));
+        let gaps = [drawn, its].map(|found| found.map_or(WIDE, |(gap, _)| gap.min(WIDE)));
+        let [place, other] = [drawn, its].map(|found| found.map(|(_, place)| place));
+        let place = if gaps[0] < gaps[1] { place.or(other) } else { other.or(place) }?;
+        // About what was left out a place of the one may count where that of the other does not.
+        let differs = (gaps[0] - gaps[1]).abs() > TOLERANCE && beyond(&place, 4.0 * BEYOND);
+        differs.then_some(Difference { pose, place, gaps })
+    };
+    let found = (0..poses).into_par_iter().filter_map(at).collect::<Vec<_>>();
+    let off = |of: &Difference| (of.gaps[0] - of.gaps[1]).abs();
+    found.into_iter().max_by(|a, b| off(a).total_cmp(&off(b)))
+}
+
+/// A pose about the mated one and the way to it.
+fn pose(number: u32, of: &Bodies) -> Pose {
+    let [x, y, high, about_x, about_y, about_z] =
+        STEPS.map(|step| (0.5 + f64::from(number + 1) * step).fract());
+    let side = |v: f64, axis: usize| (2.0 * v - 1.0) * (of.play[axis] / 2.0 + BEYOND);
+    let [least, near, above] = HEIGHTS;
+    let height = least + high * if number.is_multiple_of(2) { near } else { of.depth + above };
+    let arm = of.depth.max(ARM);
+    let turn = Vector3::new(side(about_x, 1), side(about_y, 0), side(about_z, 0)) / arm;
+    let shift = Translation3::new(side(x, 0), side(y, 1), height - of.depth);
+    Pose::from_parts(shift, UnitQuaternion::from_scaled_axis(turn))
+}
+
+/// Faces in millimetres, for which parry's tolerances are made, in the order of space.
+struct Faces {
+    faces: Vec<Triangle>,
+    tree: Bvh,
+}
+
+fn around(face: &Triangle) -> Aabb {
+    Aabb::from_points(face.map(|p| p.coords.into()))
+}
+
+impl Faces {
+    fn new(faces: &[Triangle]) -> Self {
+        let faces: Vec<Triangle> = faces.iter().map(|face| face.map(|p| p / MM)).collect();
+        let boxes: Vec<Aabb> = faces.iter().map(around).collect();
+        Faces { faces, tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) }
+    }
+
+    /// Returns the gap to other faces, these at a pose, m, and its place, if it is not wide; only places that count.
+    fn gap(
+        &self,
+        pose: &Pose,
+        other: &Faces,
+        counts: impl Fn(&Point3<f64>) -> bool,
+    ) -> Option<(f64, Point3<f64>)> {
+        let pose = Pose::from_parts((pose.translation.vector / MM).into(), pose.rotation);
+        let triangle = |[a, b, c]: &Triangle| {
+            shape::Triangle::new(a.coords.into(), b.coords.into(), c.coords.into())
+        };
+        let here = contact::shapes::pose(&Pose::identity(), 1.0);
+        let mut least: Option<(f64, Point3<f64>)> = None;
+        for face in &self.faces {
+            let face = face.map(|p| pose * p);
+            let near = |least: Option<(f64, _)>| least.map_or(WIDE / MM, |(gap, _)| gap);
+            for next in other.tree.intersect_aabb(&around(&face).loosened(near(least))) {
+                let next = &other.faces[next as usize];
+                let [own, its] = [&face, next].map(triangle);
+                let gap = query::distance(&here, &own, &here, &its);
+                let gap = gap.map_or(0.0, |found| found.distance);
+                if gap >= near(least) {
+                    continue;
+                }
+                let meet = query::contact(&here, &own, &here, &its, gap + TOLERANCE / MM);
+                let middle = face.iter().chain(next).map(|p| p.coords).sum::<Vector3<f64>>() / 6.0;
+                let place = meet.ok().flatten().map_or(middle, |meet| Vector3::from(meet.point1));
+                if counts(&Point3::from(place * MM)) {
+                    least = Some((gap, Point3::from(place * MM)));
+                }
+            }
+            if near(least) <= 0.0 {
+                break;
+            }
+        }
+        least.map(|(gap, place)| (gap * MM, place))
+    }
+}

@@ -55,6 +55,7 @@ fn done() -> IdentifyDone {
             compared: 0.9,
         },
         compared: (0..12).map(|_| attempt()).collect(),
+        aside: Some(attempt()),
     };
     let text = "the sensor is saturated".to_owned();
     let remark = Remark { file: FILE.to_owned(), lines: Some([3, 9]), text, serious: true };
@@ -70,6 +71,7 @@ fn the_page_has_every_number_and_curve_and_runs_no_name() {
     has("misfit 2.00 standard deviations before the fit, 0.50 after");
     has("&lt;b&gt;1.csv: lines 3 to 9: the sensor is saturated");
     has("not identifiable: a probe");
+    has("misfit of the force 0.50, of the fitted attempts 0.50.");
     has("0.200 (the part turned)");
     has("10 % infill at 0°, start +2.2 mm: inserted");
     done.found.unknowns.iter().for_each(|one| has(&one.posterior.name));

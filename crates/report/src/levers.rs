@@ -76,7 +76,7 @@ const ROW: u32 = 58;
 const HEAD_AND_FOOT: u32 = 110;
 const LEFT: u32 = 8;
 /// Font size in plot units: 12 pixels on a phone.
-const TEXT: u32 = 15;
+const TEXT: u32 = 18;
 
 /// Draws the ranges at both ends of each lever as bars from the range of the finger as it is, largest
 /// span first; the infill in another colour, negligible levers in grey.

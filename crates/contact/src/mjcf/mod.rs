@@ -9,6 +9,7 @@
 //! | joint | the child inside the parent, a slide or hinge for each axis that is not locked |
 //! | spring, servo | the joint's own stiffness and damping; a `position` actuator with its limit |
 //! | contacts of two bodies | a `pair` for each two of their geoms, and no others |
+//! | friction along an axis | a tendon, whose `frictionloss` has to be set in each step |
 //!
 //! Rotations are turned one after the other (about x, then y, then z), where the
 //! scene has a rotation vector: the same for one axis, and to first order for all.
@@ -157,8 +158,8 @@ const FAR: f64 = 10.0;
 /// Impedance of a friction that sticks: the largest that MuJoCo takes.
 const STICKING: f64 = 0.9999;
 
-/// Returns the tendon of a friction along an axis, for the whole of which `frictionloss` has to be set in each
-/// step, and the forces by depth from which; MJCF has no friction that varies.
+/// Returns the tendon of a friction along an axis and, as custom numbers, its largest force by depth: MJCF has no
+/// friction that varies, so `frictionloss` has to be set in each step.
 fn tendon(along: &AxialFriction, step_s: f64) -> [Element; 2] {
     let site = |name| Element::new("site").with("site", name);
     let spatial = Element::new("spatial")

@@ -3,9 +3,10 @@
 
     scripts/pairs.py FOLDER [--out RESULT.txt]
 
-FOLDER/NAME holds `plug.*` and `socket.*` (STL, OBJ, STEP). Each pair is imported by its file names alone, then tuned
-(`task tune`) if its windows are less than 0.3 mm wide to either side with the fingers of 10 %, 0 degrees, 20 %, 10
-degrees and 30 %, 0 degrees. STEP needs the Python package (FINGER_OPT_PYTHON names its interpreter).
+FOLDER/NAME holds `plug.*` and `socket.*`, or `assembly.*` with both mated (STL, OBJ, STEP). Each pair is imported by
+its file names alone, then tuned (`task tune`) if its windows are less than 0.3 mm wide to either side with the fingers
+of 10 %, 0 degrees, 20 %, 10 degrees and 30 %, 0 degrees. STEP needs the Python package (FINGER_OPT_PYTHON names its
+interpreter).
 """
 
 from __future__ import annotations
@@ -52,10 +53,12 @@ def wide(found: list[tuple[float, float]]) -> bool:
 
 def told(folder: Path, scratch: Path) -> str:
     """What came of a pair."""
-    plug, socket = (next(folder.glob(f"{part}.*")) for part in ("plug", "socket"))
+    files = [next(folder.glob(f"{part}.*"), None) for part in ("assembly", "plug", "socket")]
+    assembly, plug, socket = map(str, files)
+    words = [assembly] if files[0] else ["--plug", plug, "--socket", socket]
     task, began = scratch / f"pair{folder.name}.toml", time.monotonic()
-    found, error = run("task", "import", "--plug", str(plug), "--socket", str(socket), "--out", str(task))
-    lines = [f"{folder.name}  {plug.suffix[1:]}: "]
+    found, error = run("task", "import", *words, "--out", str(task))
+    lines = [f"{folder.name}  {Path(words[-1]).suffix[1:]}: "]
     if not found:
         return lines[0] + error
     mate = [why for why in found["found"] if why.startswith(("mate", "through", "handle", "symmetry", "poses"))]
@@ -80,7 +83,7 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--out", type=Path)
     given = parser.parse_args()
-    pairs = sorted(folder for folder in given.folder.iterdir() if list(folder.glob("plug.*")))
+    pairs = sorted(folder for folder in given.folder.iterdir() if [*folder.glob("plug.*"), *folder.glob("assembly.*")])
     with tempfile.TemporaryDirectory() as scratch:
         for folder in pairs:
             text = told(folder, Path(scratch))

@@ -82,15 +82,16 @@ class Imported(Result):
 
 @checked
 def import_parts(
-    plug: StrPath,
+    plug: StrPath | None = None,
     socket: StrPath | None = None,
     *,
+    assembly: StrPath | None = None,
     out: StrPath | None = None,
     unit: Literal["mm", "in", "m"] | None = None,
     insert_along: Along | None = None,
     jaws: Literal["x", "y", "z"] | None = None,
-    plug_body: str | None = None,
-    socket_body: str | None = None,
+    plug_body: str | Iterable[str] | None = None,
+    socket_body: str | Iterable[str] | None = None,
     leave_out: str | Iterable[str] = (),
     like: StrPath | None = None,
     resolution: int | None = None,
@@ -107,11 +108,12 @@ def import_parts(
     Args:
         plug: File of the plug, or of both.
         socket: File of the socket.
+        assembly: File of both in their mated pose, in place of ``plug`` and ``socket``; the plug is what can be withdrawn.
         out: Task file to write; the plug's name with ``.toml`` unless given.
         unit: Unit of the files; found from the shapes unless given.
         insert_along: Where the plug points in its file.
         jaws: Along what the jaws close.
-        plug_body: A body, a part or an assembly of the file; if it holds both, what it leaves is the socket.
+        plug_body: Bodies, parts or assemblies of the file; if it holds both, what they leave is the socket.
         socket_body: The same for the socket.
         leave_out: Bodies of a STEP file to leave out: pins, a thread.
         like: Task whose grip and moves are taken.
@@ -125,9 +127,11 @@ def import_parts(
         InputError: A file that cannot be used, or shapes of which no task can be made.
         Interrupted: Ctrl-C.
     """
-    files = [Path(file) for file in (plug, socket) if file is not None]
+    if (plug is None) == (assembly is None) or (socket is not None and assembly is not None):
+        raise InputError("plug: give plug and socket, or assembly")
+    files = [Path(file) for file in (assembly, plug, socket) if file is not None]
     steps = [file for file in files if _step.is_step(file)]
-    unneeded = [leave_out] if isinstance(leave_out, str) else list(leave_out)
+    unneeded, *names = ([given] if isinstance(given, str) else list(given or ()) for given in (leave_out, plug_body, socket_body))
     if unneeded and len(steps) < len(files):
         raise InputError("leave_out: goes with STEP files")
     if steps:
@@ -137,28 +141,34 @@ def import_parts(
     bodies = _without(unneeded, {file: _step.read(file, tolerance_mm) for file in steps})
     sides: list[list[Body] | Path] = [*files]
     if steps and len(files) == 1:
-        if plug_body is None and socket_body is None:
-            raise InputError(
-                f"plug_body: has to name the plug in {plug}, or give socket; it has {_step.listed(bodies[files[0]])}"
-            )
         both = bodies[files[0]]
-        sides = [_called(files[0], both, *names) for names in [(plug_body, socket_body), (socket_body, plug_body)]]
+        if any(names):
+            sides = [_called(files[0], both, *of) for of in (names, names[::-1])]
+        elif assembly is None:
+            raise InputError(f"plug_body: has to name the plug in {plug}, or give socket; it has {_step.listed(both)}")
+        else:
+            sides = [both]
     elif steps:
-        names = [plug_body, socket_body]
-        sides = [_called(file, bodies[file], name) if file in steps else file for file, name in zip(files, names)]
+        sides = [_called(file, bodies[file], of) if file in steps else file for file, of in zip(files, names)]
+    # Names of a STEP file have become those of bodies.
+    own = [[' '.join(body.name.split()) for body in side] if isinstance(side, list) else name for side, name in zip(sides, names)]
     settings: dict[str, Any] = {
-        "plug_body": None if files[0] in steps else plug_body,
-        "socket_body": None if files[-1] in steps else socket_body,
+        "plug_body": None if files[0] in steps else names[0],
+        "socket_body": None if files[-1] in steps else names[1],
         "unit": unit, "insert_along": insert_along, "jaws": jaws, "like": like, "engine": engine,
         "resolution": resolution, "body": body, "depth_mm": depth_mm,
         "names": (str(files[0]), str(files[-1])),
     }
     with tempfile.TemporaryDirectory() as folder:
+        if assembly is not None and len(sides) == 2:
+            settings |= {"plug_body": own[0], "socket_body": own[1]}
+            sides = [sum((side for side in sides if isinstance(side, list)), [])]
         meshes = [
             _step.write(side, Path(folder, f"{place}.obj")) if isinstance(side, list) else side
             for place, side in enumerate(sides)
         ]
-        settings |= {"plug": meshes[0], "socket": meshes[1] if len(meshes) > 1 else None, "out": out or Path(files[0].stem + ".toml")}
+        places = ("assembly",) if assembly is not None else ("plug", "socket")
+        settings |= {**dict(zip(places, meshes)), "out": out or Path(files[0].stem + ".toml")}
         return called("task import", settings, Imported)
 
 
@@ -174,10 +184,13 @@ def _without(unneeded: list[str], bodies: dict[Path, list[Body]]) -> dict[Path, 
     return left
 
 
-def _called(file: Path, bodies: list[Body], name: str | None, other: str | None = None) -> list[Body]:
-    """The bodies of that name; without a name all but those of the other name."""
-    found = [body for body in bodies if (name in body.names if name is not None else other not in body.names)]
+def _called(file: Path, bodies: list[Body], names: list[str], others: list[str] | None = None) -> list[Body]:
+    """The bodies of these names; without names all but those of the others."""
+    for name in names:
+        if not any(name in body.names for body in bodies):
+            raise InputError(f"{file}: has no body `{name}`; it has {_step.listed(bodies)}")
+    without = set(others or ())
+    found = [body for body in bodies if (not body.names.isdisjoint(names) if names else body.names.isdisjoint(without))]
     if not found:
-        wanted = f"nothing but `{other}`" if name is None else f"no body `{name}`"
-        raise InputError(f"{file}: has {wanted}; it has {_step.listed(bodies)}")
+        raise InputError(f"{file}: has nothing but `{'`, `'.join(without)}`; it has {_step.listed(bodies)}")
     return found

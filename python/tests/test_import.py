@@ -31,8 +31,8 @@ def parts(meshes):
 
 
 def imported(fake, folder, *files, **settings):
-    found = fo.import_parts(*files, out=folder / "mine.toml", **settings, **fake)
-    return found, fo.Task.from_toml(folder / "mine.toml")
+    found = fo.import_parts(*files, **{"out": folder / "mine.toml", **settings, **fake})
+    return found, found.task
 
 
 def shapes(task):
@@ -64,6 +64,21 @@ def test_step_gives_the_task_of_the_same_meshes(occ, parts, meshes, fake, tmp_pa
         assert same.clearance_mm == pytest.approx(found.clearance_mm, abs=1e-3)
         assert its_task.plug.mass_g == pytest.approx(task.plug.mass_g, rel=1e-3)
     assert "both.step" in (tmp_path / "one" / "mine.toml").read_text()
+
+
+def test_an_assembly_is_taken_apart(occ, parts, fake, tmp_path):
+    # 8 mm below the top of the socket.
+    mated = {"plug": (parts["plug"][0], (5, 0, -10)), "socket": parts["socket"]}
+    file = step_files.write(tmp_path / "mated.step", mated)
+    with pytest.raises(fo.InputError, match="give plug and socket, or assembly"):
+        fo.import_parts(file, assembly=file)
+    found, task = imported(fake, tmp_path, assembly=file)
+    assert found.insert_along == "-z"
+    assert any("`plug`" in why for why in found.found)
+    named, _ = imported(fake, tmp_path, assembly=file, plug_body=["plug"], out=tmp_path / "named.toml")
+    assert named.clearance_mm == found.clearance_mm
+    with pytest.raises(fo.InputError, match="no body `pulg`"):
+        imported(fake, tmp_path, assembly=file, plug_body="pulg")
 
 
 def test_what_names_no_plug_is_told_the_bodies(occ, parts, fake, tmp_path):

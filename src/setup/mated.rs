@@ -3,7 +3,7 @@
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use connector::body::{extent, width};
-use connector::mating::{Found, Mate, Watch, mates};
+use connector::mating::{Found, Mate, Watch, assembled, mates};
 use connector::mesh::import::{Along, Jaws, Mesh, Unit, few_faces};
 use connector::mesh::mated::{HANDLE, Interference, Made, Pair, Request, TOLERANCE, task};
 use connector::mesh::place::value;
@@ -23,6 +23,8 @@ pub struct Given<'a> {
     pub name: &'a str,
     /// Unit of the files.
     pub unit: Option<Unit>,
+    /// Whether the files have them in their mated pose.
+    pub assembled: bool,
     /// Direction of insertion in the file of the socket.
     pub along: Option<Along>,
     /// Axis of that file along which the jaws close.
@@ -99,7 +101,9 @@ pub fn mated(
     let mut said: Vec<(&str, String)> = why.map(|why| ("unit", why)).into_iter().collect();
     let (plug, plug_inward) = few(files[0], triangles[0], unit, context);
     let (socket, socket_inward) = few(files[1], triangles[1], unit, context);
-    context.note("looking for the mated pose");
+    if !given.assembled {
+        context.note("looking for the mated pose");
+    }
     let mate = mate(files, [&plug, &socket], given, context, &mut said)?;
     let moved: Vec<Triangle> = plug.iter().map(|t| t.map(|p| mate.pose * p)).collect();
     let out = mate.out.into_inner();
@@ -197,7 +201,10 @@ fn mate(
 ) -> Result<Mate, NoTask> {
     let stopped = || context.stop.load(Ordering::SeqCst);
     let watch = Watch { progress: &|_| {}, stopped: &stopped };
-    let found = mates(plug, socket, &watch);
+    let found = match given.assembled {
+        true => assembled(plug, socket).map(Found::One),
+        false => mates(plug, socket, &watch),
+    };
     not_stopped(context.stop)?;
     let nowhere = |why: String| NoTask::NoMate(Failure::in_file(files.join(", "), why));
     let found = found.map_err(|error| nowhere(error.to_string()))?;
@@ -227,7 +234,7 @@ fn mate(
 }
 
 /// The unit in which both have the size of a connector, and why; millimetres if several do.
-fn unit(
+pub fn unit(
     files: Files,
     triangles: [&[Triangle]; 2],
     given: Option<Unit>,

@@ -4,6 +4,7 @@ use crate::command;
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout::wrapped;
+use crate::setup::assembly::split;
 use crate::setup::mated::{Given, LeftOut, MatedTask, NoTask, mated};
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::step;
@@ -39,7 +40,8 @@ const LARGEST_FILE: u64 = 200 << 20;
 
 /// Create a task from meshes of a plug and its socket (STL, OBJ or STEP)
 ///
-/// STEP needs the Python package with its extra `step`. Shapes about one opening that can be cut into convex pieces, such as extruded outlines, are cut; the plug's tip is
+/// Give one file that holds both in their mated pose, or one of each with --plug and --socket, in any pose. STEP needs the
+/// Python package with its extra `step`. Shapes about one opening that can be cut into convex pieces, such as extruded outlines, are cut; the plug's tip is
 /// aligned with the middle of the opening. Of others the mated pose is found, whatever the frames of the files,
 /// and the faces that the two can touch become thin convex parts in a file beside the task; faces that overlap in the
 /// mated pose, such as unloaded contact springs, are listed and left out.
@@ -51,19 +53,22 @@ const LARGEST_FILE: u64 = 200 << 20;
     after_help = "Example: optimize task import --plug plug.stl --socket socket.stl --out mine.toml"
 )]
 pub struct Request {
+    /// Mesh of plug and socket in their mated pose; the plug is what can be withdrawn
+    #[arg(conflicts_with_all = ["plug", "socket"])]
+    pub assembly: Option<PathBuf>,
     /// Mesh of the plug, or of both
-    #[arg(long, value_name = "P.stl")]
-    pub plug: PathBuf,
+    #[arg(long, value_name = "P.stl", required_unless_present = "assembly")]
+    pub plug: Option<PathBuf>,
     /// Mesh of the socket [default: the rest of the plug's file without --plug-body]
     #[arg(long, value_name = "S.stl")]
     pub socket: Option<PathBuf>,
-    /// Body of the file that is the plug: `o` or `g` of an OBJ, `solid` of a text STL, or the number of
-    /// a shell, from 1 [default: all, or the rest without --socket-body]
+    /// Body of the file that belongs to the plug: `o` or `g` of an OBJ, `solid` of a text STL, or the number of
+    /// a shell, from 1; may be repeated [default: all, or the rest without --socket-body]
     #[arg(long, value_name = "NAME")]
-    pub plug_body: Option<String>,
-    /// Body of its file that is the socket
+    pub plug_body: Vec<String>,
+    /// Body of its file that belongs to the socket; may be repeated
     #[arg(long, value_name = "NAME")]
-    pub socket_body: Option<String>,
+    pub socket_body: Vec<String>,
     /// Unit of both files [default: the one with a plausible plug and clearance]
     #[arg(long, value_enum)]
     pub unit: Option<Unit>,
@@ -108,6 +113,15 @@ pub struct ImportedTask {
     checked: TaskCheck,
     out: PathBuf,
     resolution: u32,
+}
+
+/// Plug and socket as they were read.
+struct Read {
+    triangles: [Vec<Triangle>; 2],
+    /// Unit, if it is known.
+    unit: Option<Unit>,
+    /// Finding about the bodies of an assembly.
+    said: Option<(&'static str, String)>,
 }
 
 /// Task before it is written.
@@ -156,14 +170,14 @@ impl command::Request for Request {
 impl Request {
     /// Returns the names of plug and socket in messages.
     fn called(&self) -> [String; 2] {
-        let paths = || [&self.plug, self.socket()].map(|path| path.display().to_string());
+        let paths = || [self.plug(), self.socket()].map(|path| path.display().to_string());
         <[String; 2]>::try_from(self.names.clone()).unwrap_or_else(|_| paths())
     }
 
     /// Returns the file to write.
     fn out(&self) -> PathBuf {
         self.out.clone().unwrap_or_else(|| {
-            let stem = self.plug.file_stem().unwrap_or_default();
+            let stem = self.plug().file_stem().unwrap_or_default();
             PathBuf::from(stem).with_extension("toml")
         })
     }
@@ -197,9 +211,11 @@ impl Request {
     fn found(&self, context: &Context<'_>) -> Result<Found, Failure> {
         let like = self.like.as_deref().map(read_task).transpose()?;
         let files = self.called();
-        let (bodies, unit) = self.bodies([&files[0], &files[1]])?;
+        let Read { triangles: bodies, unit, said } = self.bodies([&files[0], &files[1]])?;
         let bodies = &bodies;
-        let exact = match self.body.is_none() && self.depth_mm.is_none() {
+        let about_opening =
+            self.assembly.is_none() && self.body.is_none() && self.depth_mm.is_none();
+        let exact = match about_opening {
             true => self.exact(bodies, unit, like.as_ref(), &|what| context.note(what)).map(Some),
             false => Ok(None),
         };
@@ -209,7 +225,10 @@ impl Request {
             other => {
                 not_stopped(context.stop)?;
                 match self.mated(bodies, unit, like.as_ref(), context) {
-                    Ok(found) => Ok(found),
+                    Ok(mut found) => {
+                        found.said.extend(said);
+                        Ok(found)
+                    }
                     // What fits nowhere is told as by the drawing.
                     Err(NoTask::NoMate(error)) => other.and(Err(error)),
                     Err(NoTask::Other(error)) => Err(error),
@@ -234,6 +253,7 @@ impl Request {
         let given = Given {
             name: &name,
             unit,
+            assembled: self.assembly.is_some(),
             along: self.insert_along,
             jaws: self.jaws,
             like: like.map(|like| &like.task),
@@ -302,15 +322,22 @@ impl Request {
         Ok(Found { imported, unit, along, said, inward, left_out: Vec::new() })
     }
 
-    fn socket(&self) -> &PathBuf {
-        self.socket.as_ref().unwrap_or(&self.plug)
+    /// Returns the file of the plug.
+    fn plug(&self) -> &Path {
+        // One of the two is required.
+        let given = self.assembly.as_ref().or(self.plug.as_ref());
+        given.map_or(Path::new(""), PathBuf::as_path)
+    }
+
+    fn socket(&self) -> &Path {
+        self.socket.as_ref().map_or(self.plug(), PathBuf::as_path)
     }
 
     /// Triangles of plug and socket, and their unit if it is known; of a file that has both, what one of them leaves is the
     /// other.
-    fn bodies(&self, files: [&str; 2]) -> Result<([Vec<Triangle>; 2], Option<Unit>), Failure> {
-        let (plug, plug_step) = bodies(&self.plug, files[0])?;
-        let both = self.socket.as_ref().is_none_or(|socket| *socket == self.plug);
+    fn bodies(&self, files: [&str; 2]) -> Result<Read, Failure> {
+        let (plug, plug_step) = bodies(self.plug(), files[0])?;
+        let both = self.socket() == self.plug();
         let (socket, socket_step) =
             if both { (plug.clone(), plug_step) } else { bodies(self.socket(), files[1])? };
         let unit = if plug_step || socket_step { Some(Unit::Mm) } else { self.unit };
@@ -319,8 +346,9 @@ impl Request {
                 format!("--unit {}: STEP names its unit, and is read in mm", value(other));
             return Err(Failure::usage(problem));
         }
-        let pick = |of: &[Body], name: &Option<String>, file: &str| {
-            let picked = name.as_ref().map(|name| pick(of, name, file));
+        let mut said = None;
+        let pick = |of: &[Body], names: &[String], file: &str| {
+            let picked = (!names.is_empty()).then(|| pick(of, names, file));
             picked.transpose().map_err(Failure::input)
         };
         let plug_body = pick(&plug, &self.plug_body, files[0])?;
@@ -330,6 +358,11 @@ impl Request {
             (Some([plug, _]), Some([socket, _])) => [plug, socket],
             (Some([plug, rest]), None) => [plug, if both { rest } else { all(socket) }],
             (None, Some([socket, rest])) => [if both { rest } else { all(plug) }, socket],
+            (None, None) if self.assembly.is_some() => {
+                let (parts, names) = split(files[0], plug, unit)?;
+                said = Some(("plug's bodies", format!("{names}; --plug-body names others")));
+                parts
+            }
             (None, None) if both => {
                 let names: Vec<_> = plug.iter().map(|body| format!("`{}`", body.name)).collect();
                 return Err(Failure::usage(format!(
@@ -340,7 +373,7 @@ impl Request {
             }
             (None, None) => [all(plug), all(socket)],
         };
-        Ok((triangles, unit))
+        Ok(Read { triangles, unit, said })
     }
 
     fn notes(&self, Found { imported, unit, along, left_out, .. }: &Found) -> Notes {
@@ -370,7 +403,10 @@ fn described(files: &[String; 2]) -> String {
         let name = Path::new(file).file_name();
         name.map_or(file.clone(), |name| name.to_string_lossy().into_owned())
     };
-    format!("from {} and {}", name(&files[0]), name(&files[1]))
+    match files[0] == files[1] {
+        true => format!("from {}", name(&files[0])),
+        false => format!("from {} and {}", name(&files[0]), name(&files[1])),
+    }
 }
 
 /// Bodies of a file, and whether it is STEP, which names its unit and is read in mm.

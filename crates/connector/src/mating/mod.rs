@@ -12,6 +12,7 @@ mod precise;
 mod refine;
 mod search;
 mod select;
+mod split;
 mod symmetry;
 #[cfg(test)]
 mod tests;
@@ -20,6 +21,7 @@ use crate::mesh::Triangle;
 pub use assembled::assembled;
 use input::units::MM;
 use nalgebra::{Isometry3, Unit, Vector3};
+pub use split::plugs;
 
 /// Largest total play of a plug in its seat, m: of connectors, and of toys and enlarged ones.
 const ROOMS: [f64; 2] = [0.5 * MM, 2.0 * MM];
@@ -74,8 +76,13 @@ pub enum MatingError {
         least_mm: f64,
     },
     /// The parts of an assembly are not mated, or block one another in every direction.
-    #[error("the plug cannot be withdrawn from its pose in the assembly along any axis")]
+    #[error(
+        "no body of the assembly can be withdrawn along an axis between walls on four sides: are the parts mated?"
+    )]
     Blocked,
+    /// Number of bodies in which no plug and socket can be told apart.
+    #[error("has {0} bodies; plug and socket are told apart in an assembly of 2 to {most}", most = split::MOST_BODIES)]
+    Bodies(usize),
     /// Stopped by the caller.
     #[error("stopped")]
     Stopped,

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use std::collections::BTreeSet;
 
 /// Distance within which two walls face one another, as a share of the play.
-const REACH: f64 = 0.6;
+pub const REACH: f64 = 0.6;
 /// Interference tried, m.
 const OVERLAPS: [f64; 10] =
     [0.0, 0.02e-3, 0.05e-3, 0.1e-3, 0.15e-3, 0.2e-3, 0.3e-3, 0.5e-3, 0.8e-3, 1.25e-3];

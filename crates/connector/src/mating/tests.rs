@@ -207,6 +207,35 @@ fn assembled_plug_leaves_upward() {
     close(&mate, [0.0, 0.0, 1.0], [0.1, 0.1]);
 }
 
+/// Five bodies of a plug, a label and three of a socket, in contact with one another within each and at the seat.
+#[test]
+fn bodies_of_a_plug_are_told_from_those_of_its_socket() {
+    let outline = |size: [f64; 2]| rectangle([0.0; 2], size);
+    let holed = |low: f64, high: f64| ring(&outline([3.0, 2.0]), &outline([1.0, 0.8]), [low, high]);
+    let socket = [
+        ring(&outline([6.0, 5.0]), &outline([3.1, 2.1]), [0.0, 4.0]),
+        block([0.0; 2], [6.0, 5.0], [-1.0, 0.0]),
+        block([0.0; 2], [9.0, 8.0], [-2.5, -1.0]),
+    ];
+    let plug = [
+        holed(0.0, 3.0),
+        holed(3.0, 6.0),
+        // A pin pressed into both.
+        block([0.0; 2], [1.0, 0.8], [0.5, 7.0]),
+        block([0.0; 2], [5.0, 4.0], [7.0, 10.0]),
+        block([0.0, 2.1], [2.0, 0.2], [7.5, 8.5]),
+    ];
+    for turn in [0, 7, 13] {
+        let bodies: Vec<Mesh> =
+            socket.iter().chain(&plug).map(|body| hidden(body, turn).0).collect();
+        assert_eq!(plugs(&bodies), Ok(vec![vec![3, 4, 5, 6, 7]]));
+    }
+    let apart =
+        [block([0.0; 2], [3.0, 2.0], [0.0, 4.0]), block([9.0, 0.0], [3.0, 2.0], [0.0, 4.0])];
+    assert_eq!(plugs(&apart), Err(MatingError::Blocked));
+    assert_eq!(plugs(&apart[..1]), Err(MatingError::Bodies(1)));
+}
+
 #[test]
 fn parts_that_do_not_fit_are_refused() {
     let refused = mates(

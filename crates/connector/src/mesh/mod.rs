@@ -15,7 +15,7 @@ mod surface;
 
 use super::plan::PlanError;
 use input::{Place, Placed};
-pub use read::{Body, Triangle, is_step, pick, read};
+pub use read::{Body, Triangle, is_step, pick, read, separate};
 pub use surface::{SIZES, Surface};
 
 /// Names of the files of plug and socket, for messages.

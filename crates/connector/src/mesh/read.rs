@@ -131,33 +131,44 @@ fn parsed(text: &str, stl: bool) -> Result<Vec<Body>, String> {
     Ok(bodies)
 }
 
-/// Triangles of the body of that name, or of the shell of that number, counted from 1; and all others.
+/// Triangles of the bodies of these names, or of the shells of these numbers, counted from 1; and all others.
 ///
 /// # Errors
-/// If the file has neither; the text names those that it has.
-pub fn pick(bodies: &[Body], name: &str, file: &str) -> Result<[Vec<Triangle>; 2], MeshError> {
-    let named = bodies.iter().position(|body| body.name == name);
-    let shells = || shells(bodies.iter().flat_map(|body| body.triangles.iter().copied()));
-    let (at, mut all) = match (named, name.parse::<usize>()) {
-        (Some(at), _) => (at, bodies.iter().map(|body| body.triangles.clone()).collect()),
-        (None, Ok(number)) => (number.wrapping_sub(1), shells()),
-        (None, Err(_)) => (usize::MAX, shells()),
+/// If the file lacks one of them; the text names those that it has.
+pub fn pick(
+    bodies: &[Body],
+    names: &[String],
+    file: &str,
+) -> Result<[Vec<Triangle>; 2], MeshError> {
+    let named = |name: &String| bodies.iter().position(|body| body.name == *name);
+    let of: Vec<Body> = match names.iter().all(|name| named(name).is_some()) {
+        true => bodies.to_vec(),
+        false => shells(bodies),
     };
-    if at >= all.len() {
-        let names: Vec<_> = bodies.iter().map(|body| format!("`{}`", body.name)).collect();
+    let mut picked = [Vec::new(), Vec::new()];
+    if let Some(name) = names.iter().find(|name| of.iter().all(|body| body.name != **name)) {
+        let known: Vec<_> = bodies.iter().map(|body| format!("`{}`", body.name)).collect();
         let problem = format!(
             "has no body `{name}`: it has {}, and {} shells, which are named by their number from 1",
-            names.join(", "),
-            all.len()
+            known.join(", "),
+            of.len()
         );
         return Err(MeshError::File(file.to_owned(), problem));
     }
-    Ok([all.remove(at), all.concat()])
+    for body in of {
+        picked[usize::from(!names.contains(&body.name))].extend(body.triangles);
+    }
+    Ok(picked)
 }
 
-/// Sets of triangles that share corners, in the order of the file.
-fn shells(triangles: impl Iterator<Item = Triangle>) -> Vec<Vec<Triangle>> {
-    let triangles: Vec<_> = triangles.collect();
+/// Bodies of a file, or, if it has but one, the shells of that.
+pub fn separate(bodies: Vec<Body>) -> Vec<Body> {
+    if bodies.len() > 1 { bodies } else { shells(&bodies) }
+}
+
+/// Sets of triangles that share corners, in the order of the file, called by their number from 1.
+fn shells(bodies: &[Body]) -> Vec<Body> {
+    let triangles: Vec<_> = bodies.iter().flat_map(|body| body.triangles.iter().copied()).collect();
     let mut at: BTreeMap<[u64; 3], usize> = BTreeMap::new();
     let mut parent: Vec<usize> = (0..triangles.len()).collect();
     fn root(parent: &mut [usize], mut i: usize) -> usize {
@@ -177,7 +188,8 @@ fn shells(triangles: impl Iterator<Item = Triangle>) -> Vec<Vec<Triangle>> {
     for (i, triangle) in triangles.into_iter().enumerate() {
         found.entry(root(&mut parent, i)).or_default().push(triangle);
     }
-    found.into_values().collect()
+    let named = |(number, triangles): (usize, _)| Body { name: number.to_string(), triangles };
+    (1..).zip(found.into_values()).map(named).collect()
 }
 
 /// Corner by its number, `7`, `7/1` or `7//3`, counted from 1, or from the end if negative.

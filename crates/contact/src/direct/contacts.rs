@@ -32,7 +32,7 @@ const ROLL: f64 = 2e-3;
 
 /// Pairs of shapes of two bodies from which on only those gaps are foreseen that may close in a step: of a drawn
 /// surface hundreds of facets lie within the prediction, and all are sought anew in each step.
-const MANY_PAIRS: usize = 50_000;
+const MANY_PAIRS: usize = 2_000;
 /// Least gap that is foreseen then, m.
 const NEAR: f64 = 20e-6;
 
@@ -79,7 +79,15 @@ struct Solid {
     /// Farthest point of the shape from the origin of parry's frame, m.
     reach: f64,
     /// Other shapes of the same body that may cover a part of this one.
-    neighbours: Arc<[usize]>,
+    neighbours: Arc<[Neighbour]>,
+}
+
+/// Shape of the same body, whose box is close together with those of others in memory.
+struct Neighbour {
+    solid: usize,
+    /// Box about it and all that it may cover, body frame, m.
+    low: Vector3<f64>,
+    high: Vector3<f64>,
 }
 
 /// Pair of shapes that may touch.
@@ -122,6 +130,12 @@ impl Detector {
             let mut near: Vec<_> = found.map(|leaf| range.start + leaf as usize).collect();
             near.retain(|&j| j != i && !own.apart(&solids[j], COVER));
             near.sort_unstable();
+            let margin = Vector3::repeat(4.0 * SEAM);
+            let neighbour = |solid: usize| {
+                let Solid { low, high, .. } = &solids[solid];
+                Neighbour { solid, low: low - margin, high: high + margin }
+            };
+            let near: Vec<Neighbour> = near.into_iter().map(neighbour).collect();
             solids[i].neighbours = near.into();
         }
         let mut from = 0;
@@ -250,7 +264,10 @@ impl Solid {
     /// Whether a neighbour covers a place on the surface, in parry's frame of the shape, m.
     fn covered(&self, place: &Vector3<f64>, outward: &Vector3<f64>, solids: &[Solid]) -> bool {
         let outside = self.pose * Point3::from(place + outward * COVER);
-        self.neighbours.iter().any(|&j| {
+        self.neighbours.iter().any(|&Neighbour { solid: j, low, high }| {
+            if (0..3).any(|i| outside[i] < low[i] || outside[i] > high[i]) {
+                return false;
+            }
             let boxed = solids[j].frame.inverse_transform_point(&outside).coords.abs();
             if (0..3).any(|i| boxed[i] > solids[j].half[i] + 2.0 * SEAM) {
                 return false;

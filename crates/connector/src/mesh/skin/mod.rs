@@ -225,7 +225,11 @@ fn rounded(length: f64) -> f64 {
 }
 
 /// Returns the polygon below a plane.
-fn cut(polygon: Vec<Point3<f64>>, origin: &Point3<f64>, normal: &Vector3<f64>) -> Vec<Point3<f64>> {
+pub fn cut(
+    polygon: Vec<Point3<f64>>,
+    origin: &Point3<f64>,
+    normal: &Vector3<f64>,
+) -> Vec<Point3<f64>> {
     let above = |p: &Point3<f64>| (p - origin).dot(normal);
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     for i in 0..polygon.len() {

@@ -23,13 +23,18 @@ pub(super) const NARROW: f64 = 0.1e-3;
 /// Joins the manifolds of each patch and keeps their extreme points.
 pub(super) fn join(touches: &mut Vec<Touch>) {
     let manifolds: Vec<_> = touches.chunk_by(|a, b| a.geoms == b.geoms).collect();
-    let alike = |(i, a): (usize, &&[Touch])| manifolds[i + 1..].iter().any(|b| alike(&a[0], &b[0]));
-    if !manifolds.iter().enumerate().any(alike) {
+    // Close together in memory: most patches differ in their normals.
+    let mut normals: Vec<Vector3<f64>> =
+        manifolds.iter().map(|touches| touches[0].normal).collect();
+    let alike = |i: usize, j: usize| {
+        normals[i].dot(&normals[j]) > ALIKE && alike(&manifolds[i][0], &manifolds[j][0])
+    };
+    let count = manifolds.len();
+    if !(0..count).any(|i| (i + 1..count).any(|j| alike(i, j))) {
         return;
     }
+    normals.clear();
     let mut patches: Vec<Vec<Touch>> = Vec::new();
-    // Close together in memory: most patches differ in their normals.
-    let mut normals: Vec<Vector3<f64>> = Vec::new();
     for manifold in manifolds {
         let normal = manifold[0].normal;
         let near = (0..normals.len()).filter(|&i| normals[i].dot(&normal) > ALIKE);

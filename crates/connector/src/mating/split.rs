@@ -1,0 +1,322 @@
+//! Which bodies of an assembly are the plug: those that leave together along an axis, past walls of the others that face
+//! them with clearance, and that touch the others least.
+
+use super::engagement::{SIDES, Walls, score};
+use super::frame::{Part, outs, turned};
+use super::map::{Envelope, Map, NOWHERE, bounds, rest};
+use super::refine::{REACH, TOLERANCE};
+use super::search::LEAST;
+use super::{MatingError, ROOMS};
+use crate::mesh::Triangle;
+use input::units::MM;
+use nalgebra::{Point3, Vector3};
+use parry::bounding_volume::{Aabb, BoundingVolume};
+use parry::partitioning::{Bvh, BvhBuildStrategy};
+use rapier3d_f64::parry;
+use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Least cell of the maps, m, and most cells along a side.
+const LEAST_CELL: f64 = 0.05 * MM;
+const MOST_CELLS: f64 = 400.0;
+/// Interference through which bodies may leave, m: springs are drawn unloaded.
+const INTERFERENCES: [f64; 3] = [0.0, 0.2 * MM, 0.6 * MM];
+/// Distance of faces that touch, m.
+const TOUCHING: f64 = 5e-3 * MM;
+/// Weight of contact across the axis, as of a seat, against that beside it, as of a press fit.
+const SEATED: f64 = 0.1;
+/// Share of the best value that is similar.
+const SIMILAR: f64 = 0.8;
+/// Share within which values are equal.
+const EQUAL: f64 = 0.97;
+/// Most neighbours that are tried at a time.
+const MOST_TRIED: usize = 6;
+/// Most bodies.
+pub const MOST_BODIES: usize = 100;
+
+/// Set of bodies.
+type Set = BTreeSet<usize>;
+
+/// Bodies that leave along an axis.
+struct Leaving {
+    bodies: Set,
+    value: f64,
+    plug: bool,
+}
+
+/// Returns the sets of bodies, m, in their mated pose, that may be the plug, the best first.
+///
+/// # Errors
+/// If there are fewer than two bodies or too many, or none can be withdrawn.
+pub fn plugs(bodies: &[Vec<Triangle>]) -> Result<Vec<Vec<usize>>, MatingError> {
+    if !(2..=MOST_BODIES).contains(&bodies.len()) {
+        return Err(MatingError::Bodies(bodies.len()));
+    }
+    let own = Part::new(&bodies.concat(), "assembly")?.own;
+    let bodies: Vec<_> = bodies.iter().map(|body| turned(body, &own)).collect();
+    let touching = contacts(&bodies);
+    let axes: Vec<Vec<Leaving>> = outs()
+        .par_iter()
+        .filter(|turn| (turn.inverse() * Vector3::z()).sum() > 0.5)
+        .map(|turn| {
+            let axis = (turn.inverse() * Vector3::z()).iamax();
+            let contact = touching.iter().map(|(pair, areas)| {
+                let beside: f64 = (0..3).filter(|i| *i != axis).map(|i| areas[i]).sum();
+                (*pair, beside + SEATED * areas[axis])
+            });
+            let turned: Vec<_> = bodies.iter().map(|body| turned(body, turn)).collect();
+            Axis::new(&turned, contact.collect()).leaving()
+        })
+        .collect();
+    let mut found: Vec<Leaving> = axes.into_iter().flatten().collect();
+    // Of equal ones that with the fewest bodies: loose ones stay where they are.
+    found.sort_by(|a, b| b.value.total_cmp(&a.value));
+    let Some(best) = found.first().map(|best| best.value) else { return Err(MatingError::Blocked) };
+    let equal = found.partition_point(|of| of.value >= EQUAL * best);
+    found[..equal].sort_by_key(|of| of.bodies.len());
+    let mut plugs: Vec<Vec<usize>> = Vec::new();
+    let mut known: Vec<Set> = Vec::new();
+    for Leaving { bodies: set, plug, .. } in
+        found.into_iter().filter(|of| of.value >= SIMILAR * best)
+    {
+        let nested = |other: &Set| set.is_subset(other) || set.is_superset(other);
+        if !known.iter().any(nested) {
+            plugs.push((0..bodies.len()).filter(|i| set.contains(i) == plug).collect());
+            known.push(set);
+        }
+    }
+    Ok(plugs)
+}
+
+/// Areas of the faces of each two bodies that touch, by the axis along which they look, m2.
+fn contacts(bodies: &[Vec<Triangle>]) -> BTreeMap<[usize; 2], [f64; 3]> {
+    let around = |points: &[Point3<f64>]| {
+        Aabb::from_points(points.iter().map(|p| (p.coords / MM).into())).loosened(TOUCHING / MM)
+    };
+    let boxes = |body: &Vec<Triangle>| body.iter().map(|t| around(t)).collect::<Vec<_>>();
+    let boxes: Vec<Vec<Aabb>> = bodies.iter().map(boxes).collect();
+    let whole: Vec<Aabb> = bodies.iter().map(|body| around(body.as_flattened())).collect();
+    let trees: Vec<Bvh> =
+        boxes.iter().map(|of| Bvh::from_leaves(BvhBuildStrategy::Binned, of)).collect();
+    let pairs = (0..bodies.len()).flat_map(|j| (0..j).map(move |i| [i, j]));
+    let near: Vec<[usize; 2]> = pairs.filter(|[i, j]| whole[*i].intersects(&whole[*j])).collect();
+    let areas = |&[i, j]: &[usize; 2]| {
+        let mut sums = [0.0; 3];
+        for (face, boxed) in bodies[i].iter().zip(&boxes[i]) {
+            for other in trees[j].intersect_aabb(boxed) {
+                let (axis, area) = common(face, &bodies[j][other as usize]);
+                sums[axis] += area;
+            }
+        }
+        ([i, j], sums)
+    };
+    let found: Vec<_> = near.par_iter().map(areas).collect();
+    found.into_iter().filter(|(_, areas)| areas.iter().any(|area| *area > 0.0)).collect()
+}
+
+/// Axis along which two triangles that touch look at one another, and the area of the smaller one's part in the other, m2.
+fn common(face: &Triangle, other: &Triangle) -> (usize, f64) {
+    let normals = [face, other].map(|[a, b, c]| (b - a).cross(&(c - a)));
+    let [Some(n), Some(m)] = normals.map(|normal| normal.try_normalize(f64::MIN_POSITIVE)) else {
+        return (0, 0.0);
+    };
+    let axis = n.iamax();
+    let apart = |p: &Point3<f64>| (p - other[0]).dot(&m).abs() > TOUCHING;
+    if n.dot(&m) > -0.99 || face.iter().any(apart) {
+        return (axis, 0.0);
+    }
+    // What of the face lies within the other one's sides.
+    let mut piece = face.to_vec();
+    for i in 0..3 {
+        let outward = (other[(i + 1) % 3] - other[i]).cross(&m);
+        piece = crate::mesh::skin::cut(piece, &other[i], &outward);
+    }
+    let fan = (1..piece.len().max(2) - 1)
+        .map(|i| (piece[i] - piece[0]).cross(&(piece[i + 1] - piece[0])).norm() / 2.0);
+    (axis, fan.sum())
+}
+
+/// Bodies seen along an axis.
+struct Axis {
+    step: f64,
+    upper: Vec<Map>,
+    lower: Vec<Map>,
+    bounds: Vec<[[f64; 2]; 3]>,
+    contact: BTreeMap<[usize; 2], f64>,
+    /// Walls of the first body that face the second.
+    walls: BTreeMap<[usize; 2], Walls>,
+}
+
+impl Axis {
+    fn new(bodies: &[Vec<Triangle>], contact: BTreeMap<[usize; 2], f64>) -> Self {
+        let bounds: Vec<_> = bodies.iter().map(|body| bounds(body)).collect();
+        let side = |axis: usize| {
+            let [low, high] = crate::body::span(bounds.iter().flat_map(|of| of[axis]));
+            high - low
+        };
+        let step = (side(0).max(side(1)) / MOST_CELLS).max(LEAST_CELL);
+        let maps = |envelope| -> Vec<Map> {
+            bodies.iter().map(|body| Map::new(body, envelope, [step; 2], None)).collect()
+        };
+        let (upper, lower) = (maps(Envelope::Upper), maps(Envelope::Lower));
+        Axis { step, upper, lower, bounds, contact, walls: BTreeMap::new() }
+    }
+
+    /// Sets of bodies that leave upward, with the least interference and the tightest fit with which any does.
+    fn leaving(&mut self) -> Vec<Leaving> {
+        for room in ROOMS {
+            self.face(REACH * room);
+            for interference in INTERFERENCES {
+                let found = self.leaving_through(interference);
+                if !found.is_empty() {
+                    return found;
+                }
+            }
+        }
+        Vec::new()
+    }
+
+    /// Measures the walls that face one another within a reach.
+    fn face(&mut self, reach: f64) {
+        let near = |i: usize, j: usize| {
+            (0..3).all(|axis| {
+                let ([a, b], [c, d]) = (self.bounds[i][axis], self.bounds[j][axis]);
+                a < d + reach && c < b + reach
+            })
+        };
+        let count = self.upper.len();
+        let pairs = (0..count).flat_map(|i| (0..count).map(move |j| [i, j]));
+        let pairs = pairs.filter(|[i, j]| i != j && near(*i, *j));
+        let maps = |i: usize| [&self.lower[i], &self.upper[i]];
+        self.walls = pairs.map(|[i, j]| ([i, j], walls(maps(i), maps(j), reach))).collect();
+    }
+
+    fn leaving_through(&self, interference: f64) -> Vec<Leaving> {
+        let count = self.upper.len();
+        let cells = (interference / self.step).ceil() as usize;
+        let upper: Vec<_> = self.upper.iter().map(|map| map.eroded([cells / 2; 2])).collect();
+        let lower: Vec<_> =
+            self.lower.iter().map(|map| map.eroded([cells - cells / 2; 2])).collect();
+        let meets =
+            |i: usize, j: usize| f64::from(rest(&upper[i], &lower[j], [0; 2], NOWHERE)) > TOLERANCE;
+        // Bodies above each one.
+        let above: Vec<Set> =
+            (0..count).map(|j| (0..count).filter(|&i| i != j && meets(i, j)).collect()).collect();
+        let below: Vec<Set> =
+            (0..count).map(|j| (0..count).filter(|i| above[*i].contains(&j)).collect()).collect();
+        let all: Set = (0..count).collect();
+        let ups = (0..count).map(|i| closure(Set::from([i]), &above));
+        let downs = (0..count).map(|i| &all - &closure(Set::from([i]), &below));
+        let starts: BTreeSet<Set> = ups.chain(downs).collect();
+        let mut ends: BTreeMap<Set, f64> = BTreeMap::new();
+        for start in starts {
+            let end = self.grown(start, &above);
+            ends.extend(end.filter(|(_, value)| *value > LEAST * LEAST));
+        }
+        let leaving =
+            |(bodies, value): (Set, f64)| Leaving { plug: self.is_inner(&bodies), bodies, value };
+        ends.into_iter().map(leaving).collect()
+    }
+
+    /// Adds bodies to a set as long as its value grows.
+    fn grown(&self, mut set: Set, above: &[Set]) -> Option<(Set, f64)> {
+        let count = self.upper.len();
+        let mut value = self.value(&set)?;
+        loop {
+            let share = |i: &usize| {
+                let own = |j: usize| self.contact.get(&[j.min(*i), j.max(*i)]).unwrap_or(&0.0);
+                let all: f64 = (0..count).map(own).sum();
+                set.iter().map(|j| own(*j)).sum::<f64>() / all.max(f64::MIN_POSITIVE)
+            };
+            let mut near: Vec<(f64, usize)> = (0..count)
+                .filter(|i| !set.contains(i))
+                .map(|i| (share(&i), i))
+                .filter(|(share, _)| *share > 0.0)
+                .collect();
+            near.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let next = near.into_iter().take(MOST_TRIED).filter_map(|(_, i)| {
+                let mut more = set.clone();
+                more.insert(i);
+                let more = closure(more, above);
+                Some((self.value(&more)?, more))
+            });
+            match next.max_by(|a, b| a.0.total_cmp(&b.0)) {
+                Some((better, more)) if better > value => (value, set) = (better, more),
+                _ => return Some((set, value)),
+            }
+        }
+    }
+
+    /// Area of facing walls of a set and the rest, less that where they touch, m2; `None` without a rest.
+    fn value(&self, set: &Set) -> Option<f64> {
+        let parted = |[i, j]: &[usize; 2]| set.contains(i) && !set.contains(j);
+        let mut walls = [0.0; 4];
+        for (_, areas) in self.walls.iter().filter(|(pair, _)| parted(pair)) {
+            (0..4).for_each(|side| walls[side] += areas[side]);
+        }
+        let touching =
+            self.contact.iter().filter(|([i, j], _)| parted(&[*i, *j]) || parted(&[*j, *i]));
+        let touching: f64 = touching.map(|(_, area)| area).sum();
+        (set.len() < self.upper.len()).then(|| score(&walls) - touching)
+    }
+
+    /// Whether a set is narrower than the rest at the heights that both have.
+    fn is_inner(&self, set: &Set) -> bool {
+        let heights = |of: bool| {
+            let own = self.bounds.iter().enumerate().filter(|(i, _)| set.contains(i) == of);
+            crate::body::span(own.flat_map(|(_, bounds)| bounds[2]))
+        };
+        let ([a, b], [c, d]) = (heights(true), heights(false));
+        let middle = (a.max(c) + b.min(d)) / 2.0;
+        let area = |of: bool| {
+            let at = |bounds: &&[[f64; 2]; 3]| bounds[2][0] < middle && middle < bounds[2][1];
+            let own = self.bounds.iter().enumerate().filter(|(i, _)| set.contains(i) == of);
+            let own: Vec<_> = own.map(|(_, bounds)| bounds).filter(at).collect();
+            let side = |axis: usize| {
+                let [low, high] = crate::body::span(own.iter().flat_map(|bounds| bounds[axis]));
+                high - low
+            };
+            side(0) * side(1)
+        };
+        area(true) <= area(false)
+    }
+}
+
+/// The set with all bodies that `above` names for one of it.
+fn closure(mut set: Set, above: &[Set]) -> Set {
+    let mut todo: Vec<usize> = set.iter().copied().collect();
+    while let Some(i) = todo.pop() {
+        todo.extend(above[i].iter().filter(|j| set.insert(**j)));
+    }
+    set
+}
+
+/// Area of the walls of a body, by their side, that face one of another within a reach, m2; both by their lower and upper
+/// envelope.
+fn walls([lower, upper]: [&Map; 2], other: [&Map; 2], reach: f64) -> Walls {
+    let reach = (reach / lower.step[0]).ceil() as i32;
+    let heights = |[lower, upper]: [&Map; 2], x: i32, y: i32| {
+        let low = lower.at(x, y);
+        (low < NOWHERE).then(|| [low, upper.at(x, y)])
+    };
+    let mut sums = [0.0; 4];
+    for y in lower.first[1]..lower.first[1] + lower.count[1] as i32 {
+        for x in lower.first[0]..lower.first[0] + lower.count[0] as i32 {
+            let Some([low, high]) = heights([lower, upper], x, y) else { continue };
+            for (side, [dx, dy]) in SIDES.into_iter().enumerate() {
+                // What the next cell does not cover.
+                let [low, high] = match heights([lower, upper], x + dx, y + dy) {
+                    Some([next, _]) if next > low => [low, next.min(high)],
+                    Some([_, next]) => [next.max(low), high],
+                    None => [low, high],
+                };
+                let faced = (1..=reach).filter_map(|r| heights(other, x + r * dx, y + r * dy));
+                let faced = faced.map(|[a, b]| f64::from(b.min(high) - a.max(low)));
+                if high > low {
+                    sums[side] += faced.fold(0.0, f64::max) * lower.step[1 - side / 2];
+                }
+            }
+        }
+    }
+    sums
+}

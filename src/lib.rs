@@ -43,7 +43,7 @@ pub mod manual;
 pub mod program;
 pub mod progress;
 pub mod project;
-mod python;
+pub mod python;
 pub mod setup;
 pub mod studies;
 pub mod terminal;

@@ -1,7 +1,10 @@
 //! The interpreter in which the Python package is installed.
 
+use input::{Fault, Place};
 use std::ffi::OsString;
-use std::process::Command;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::sync::OnceLock;
 
 /// Environment variable for another interpreter than `python3`.
 pub const PYTHON: &str = "FINGER_OPT_PYTHON";
@@ -10,9 +13,56 @@ const SAFE_PATH: (&str, &str) = ("PYTHONSAFEPATH", "1");
 /// The same for Python 3.10, which ignores the variable.
 const SAFE: &str = "import sys; sys.path[:] = filter(None, sys.path); ";
 
+/// Interpreter that this library is loaded in.
+pub static OWN: OnceLock<OsString> = OnceLock::new();
+
 /// Returns the interpreter.
 pub fn interpreter() -> OsString {
-    std::env::var_os(PYTHON).unwrap_or_else(|| "python3".into())
+    let own = || OWN.get().cloned().unwrap_or_else(|| "python3".into());
+    std::env::var_os(PYTHON).unwrap_or_else(own)
+}
+
+/// Format of files that the package reads by one of its extras.
+pub struct Format {
+    /// Noun phrase with its article: `a STEP file`.
+    pub name: &'static str,
+    /// Extra of the package.
+    pub extra: &'static str,
+    /// Code that prints what it reads from `sys.argv[1]`, or exits with what is wrong in one line.
+    pub reader: &'static str,
+    /// What the user can do without the package, after a semicolon.
+    pub otherwise: &'static str,
+}
+
+impl Format {
+    /// Returns what the reader prints of a file; `file` is named in errors.
+    ///
+    /// # Errors
+    /// If it cannot read the file, or the package or its extra is not installed.
+    pub fn read(&self, path: &Path, file: &str) -> Result<Vec<u8>, Fault> {
+        let Format { name, extra, reader, otherwise } = self;
+        let python = interpreter();
+        let fail = |said: &str| {
+            // Names the file itself, unless the package is missing.
+            let named = said.replace(&path.display().to_string(), file);
+            let problem = match named.strip_prefix(file) {
+                Some(problem) => problem.trim_start_matches(':').trim_start().to_owned(),
+                None => format!(
+                    "is {name}, which the Python package reads: pip install 'finger_opt[{extra}]' ({} says: \
+                     {named}; {PYTHON} names another interpreter); {otherwise}",
+                    python.display()
+                ),
+            };
+            Place::file(file).fault(problem)
+        };
+        let run = command(reader).arg(path).stdin(Stdio::null()).output();
+        let found = run.map_err(|error| fail(&error.to_string()))?;
+        if found.status.success() {
+            return Ok(found.stdout);
+        }
+        let said = String::from_utf8_lossy(&found.stderr);
+        Err(fail(said.lines().last().unwrap_or("nothing")))
+    }
 }
 
 /// Returns the command that runs some code.

@@ -388,8 +388,9 @@ fn a_file_may_hold_both() {
     let text =
         "o Pin\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no Box\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf 4 5 6";
     let bodies = read(text.as_bytes(), "both.obj").unwrap();
-    let at =
-        |name: &str| pick(&bodies, name, "both.obj").map(|[of, rest]| [of[0][0].x, rest[0][0].x]);
+    let at = |name: &str| {
+        pick(&bodies, &[name.to_owned()], "both.obj").map(|[of, rest]| [of[0][0].x, rest[0][0].x])
+    };
     assert_eq!((at("Box"), at("1")), (Ok([5.0, 0.0]), Ok([0.0, 5.0])));
     assert!(at("Lid").unwrap_err().to_string().contains("`Pin`, `Box`, and 2 shells"));
 }

@@ -149,7 +149,8 @@ fn measurements_and_logs_are_read() {
     let of = |name: &str| optimize_line(&format!("{name} {few} --measurements {bench}")).json();
     assert_eq!(of("calibrate")["tasks"][0]["leave_one_out"][0]["measured_mm"], 4.0);
     assert_eq!(of("next")["measured"], 1);
-    let runs = runs::read(&copy.dir("robot/runs.csv"), None).expect("a table of logs");
+    let runs = runs::read(&copy.dir("robot/runs.csv"), None, calibration::identify::read::text)
+        .expect("a table of logs");
     assert_eq!((runs.len(), runs[0].ended, runs[0].offset), (1, Ended::Inserted, 0.0));
     assert_eq!(runs[0].log.moments.len(), 363);
 }

@@ -94,6 +94,18 @@ class Misfit(Result):
 
 
 @dataclass(frozen=True, repr=False)
+class Validation(Result):
+    """An attempt that was not fitted: as it ended, as predicted, and the misfit of its force in standard deviations."""
+
+    log: str
+    offset_mm: float
+    outcome: Outcome
+    outcome_predicted: Outcome
+    misfit: float
+    misfit_fitted: float
+
+
+@dataclass(frozen=True, repr=False)
 class Cell(Result):
     """What logs say of the cell that they come from."""
 
@@ -109,6 +121,8 @@ class Cell(Result):
     compared_share: float
     phases: tuple[Misfit, ...]
     attempts: tuple[Replayed, ...]
+    #: ``None`` if all attempts were fitted: at most five of a finger are.
+    validation: Validation | None
     #: The page with the curves, measured and simulated.
     page: str = field(repr=False, metadata=PICTURE)
 

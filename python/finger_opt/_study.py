@@ -47,7 +47,7 @@ class Study(Asked):
 
     @classmethod
     def asked(cls, words: Mapping[str, Any]) -> Study:
-        """The study of these words, all checked; :meth:`run`, which knows the number of workers, makes its folder."""
+        """The study of these words, all checked, as is a folder of it; :meth:`run`, which knows the workers, makes one."""
         return cls(_native.Asked(keywords(words)))
 
     @classmethod
@@ -308,5 +308,27 @@ class Sensitivity(Result):
     factors: tuple[Factor, ...]
     svg: str = field(default="", repr=False, metadata=PICTURE)
 
+    def plot(self, ax: Drawing | None = None) -> Drawing:
+        """Draws the share of the variance of each factor, alone and with others; gives the axes."""
+        return _importances(self, ax)
+
     def _repr_html_(self) -> str:
         return self.svg
+
+
+def _importances(found: Sensitivity, ax: Drawing | None) -> Drawing:
+    """First-order and total Sobol indices with their intervals, the most important factor on top."""
+    axes = axes_of(ax, height=1.2 + 0.4 * len(found.factors))
+    rows = list(reversed(found.factors))
+    bars = [
+        ("with others", "#9cc3e6", 0.2, [(of.total, of.total_low, of.total_high) for of in rows]),
+        ("alone", BLUE, -0.2, [(of.first, of.first_low, of.first_high) for of in rows]),
+    ]
+    for label, fill, place, values in bars:
+        share, low, high = np.asarray(values, dtype=float).reshape(-1, 3).T
+        errors = np.maximum([share - low, high - share], 0.0)
+        axes.barh(np.arange(len(rows)) + place, share, height=0.4, xerr=errors, color=fill, label=label, ecolor="0.4")
+    axes.set_yticks(range(len(rows)), [text(of.name) for of in rows], fontsize=8)
+    axes.set(xlabel=f"share of the variance of {found.objective}", title=text(found.task))
+    axes.legend(loc="lower right")
+    return axes

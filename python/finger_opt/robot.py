@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, Protocol, TypeGuard, TypeVar
 
 from ._attempts import Attempt, Attempts, Tried, taken
+from ._bag import text
 from ._bench import Bench
 from ._call import checked, number, shown, wrong
 from ._ends import INTERVAL, Gap, Search, Side, Window
@@ -26,10 +27,11 @@ from ._run import named
 from ._runs import Runs
 from ._simulated import SimulatedRobot
 from ._task import Given
+from ._words import StrPath
 
 T = TypeVar("T")
 
-__all__ = ["Attempt", "Gap", "Measurement", "Probing", "Robot", "SimulatedRobot", "measure_window"]
+__all__ = ["Attempt", "Gap", "Measurement", "Probing", "Robot", "SimulatedRobot", "bag_to_csv", "measure_window"]
 
 #: How long an attempt may take unless the robot says otherwise (``timeout_s``), s.
 TIMEOUT_S = 120.0
@@ -147,6 +149,21 @@ def _checked(search: Search, attempts_max: int) -> Search:
         if not 1 <= count <= 10_000:
             raise InputError(f"{name}: is {count}; it is a number from 1 to 10000")
     return search
+
+
+def bag_to_csv(bag: StrPath, out: StrPath, **topics: str) -> None:
+    """Writes the log of a ROS 1 or ROS 2 recording as a table that ``identify`` reads, in the base's frame.
+
+    ``identify`` reads a recording itself; this names the topics where there are several: ``force`` (WrenchStamped),
+    ``pose`` and ``target`` (PoseStamped). Needs the extra ``ros``.
+    """
+    unknown = set(topics) - {"force", "pose", "target"}
+    if unknown:
+        raise TypeError(f"bag_to_csv() has no keyword {min(unknown)!r}; it has force, pose and target")
+    try:
+        Path(out).write_text(text(bag, topics), encoding="utf-8")
+    except ValueError as error:
+        raise InputError(f"{os.fspath(bag)}: {error}") from error
 
 
 class _Course:

@@ -10,7 +10,7 @@ mod sweep;
 mod task;
 
 use calibration::experiments::line::{LARGEST_FORCE_N, LARGEST_LENGTH_MM};
-use finger_opt::{manual, program};
+use finger_opt::{manual, program, python};
 use pyo3::prelude::*;
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -32,6 +32,9 @@ fn commands() -> String {
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    let executable: OsString = module.py().import("sys")?.getattr("executable")?.extract()?;
+    // What the library asks Python for is asked of this one; of a second load it is the same.
+    let _ = python::OWN.set(executable);
     module.add("LARGEST_FORCE_N", LARGEST_FORCE_N)?;
     module.add("LARGEST_LENGTH_MM", LARGEST_LENGTH_MM)?;
     errors::register(module)?;
@@ -43,6 +46,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(task::task, module)?)?;
     module.add_function(wrap_pyfunction!(task::task_fields, module)?)?;
     module.add_function(wrap_pyfunction!(task::task_text, module)?)?;
+    module.add_function(wrap_pyfunction!(task::drawn_cell, module)?)?;
     module.add_function(wrap_pyfunction!(study::perform, module)?)?;
     module.add_function(wrap_pyfunction!(study::source_sha256, module)?)?;
     module.add_class::<optimizer::Session>()?;

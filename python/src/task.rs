@@ -1,10 +1,14 @@
 //! Task and space files, and the words for outcomes.
 
 use crate::errors::{InputError, raise};
+use ask_tell::stream::stream;
 use finger_opt::setup::task::{TaskFile, read_space, read_task};
-use input::shipped::Source;
+use input::shipped::{PRIORS, ROBOTS, Source};
+use insertion::evaluation::cell::Priors;
 use insertion::space::Variable;
+use parameters::Parameter;
 use pyo3::prelude::*;
+use rand::RngExt;
 use serde_json::{Value, json};
 
 /// Every outcome as a map has it: number, words, colour.
@@ -44,4 +48,25 @@ pub fn task_text(file: &str, fields: &str) -> PyResult<String> {
     let fields: Value = serde_json::from_str(fields)
         .map_err(|error| InputError::new_err(format!("{file}: {error}")))?;
     Ok(TaskFile::of_fields(file, &fields).map_err(raise)?.source.text)
+}
+
+/// A cell whose numbers are drawn from the shipped priors: text of its file, and its rows as JSON.
+#[pyfunction]
+pub fn drawn_cell(seed: u64) -> PyResult<(String, String)> {
+    let wrong = |error: &dyn std::fmt::Display| InputError::new_err(error.to_string());
+    let shipped = &PRIORS[0];
+    let priors = Priors::parse(shipped.text, shipped.file).map_err(|error| wrong(&error))?;
+    let mut random = stream(seed, 0, "rehearsal");
+    let drawn = |mut row: Parameter| {
+        row.value = Some(row.at(random.random()));
+        row.sd = Some(0.0);
+        row
+    };
+    let parameters: Vec<Parameter> = priors.parameters.into_iter().map(drawn).collect();
+    let rows = json!(parameters).to_string();
+    // The priors are factors on the numbers of this robot.
+    let robot = ROBOTS.iter().find(|robot| robot.name == "servo");
+    let robot = robot.map(|robot| robot.text.parse()).transpose().map_err(|error| wrong(&error))?;
+    let cell = Priors { parameters, robot, ..priors };
+    Ok((toml::to_string(&cell).map_err(|error| wrong(&error))?, rows))
 }

@@ -23,6 +23,7 @@ FOUND = {
     "force": lambda fake: fo.trial("usb", 20, 10),
     "map": lambda fake: fo.capture_map("usb", 20, 10, **fake),
     "levers": lambda fake: fo.levers("usb", 20, 10, **fake),
+    "importances": lambda fake: fo.sensitivity("usb", samples=8, **fake),
     "stiffness": lambda fake: fo.stiffness(),
 }
 

@@ -132,7 +132,7 @@ def test_a_study_goes_on_and_a_loaded_one_too(create, expected, tmp_path):
     with pytest.raises(fo.InputError, match="not a study"):
         fo.load_study(tmp_path / "nothing")
     with pytest.raises(fo.InputError, match="seed: the study has 4"):
-        create("raised", seed=5).run()
+        create("raised", seed=5)
 
 
 def test_the_batch_is_the_number_of_workers_and_is_kept(create, tmp_path):

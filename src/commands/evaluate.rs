@@ -14,7 +14,7 @@ use insertion::evaluation::robustness::repeat::Bands;
 use insertion::evaluation::tolerance::Search;
 use insertion::outcome::Outcome;
 use report::answer::lines;
-use report::answer::words::{mm, number};
+use report::answer::words::{self, mm, number};
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -162,6 +162,8 @@ impl fmt::Display for Evaluated {
         );
         rest.push(("failures".to_owned(), failures));
         rest.push(("peak force".to_owned(), number(evaluation.peak_force_n, 1, "N")));
+        let mating = words::mating_force(chosen.specimen.task.largest_mating_force());
+        rest.push(("mating force".to_owned(), mating));
         rest.extend(lines::taught(evaluation.taught));
         rest.extend(lines::drawn(evaluation));
         rest.extend(self.by_ribs.iter().flat_map(lines::by_ribs));

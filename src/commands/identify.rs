@@ -5,6 +5,7 @@ use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout;
 use crate::setup::Setup;
+use crate::setup::bag::log_text;
 use crate::setup::bench::DEFAULT_PRIORS;
 use crate::setup::files::find;
 use crate::setup::request::SetupRequest;
@@ -86,7 +87,7 @@ impl command::Request for Request {
             Frame::parse(&text, &file).map_err(Failure::input)
         });
         let frame = frame.transpose()?;
-        let runs = runs::read(&self.runs, frame.as_ref()).map_err(Failure::input)?;
+        let runs = runs::read(&self.runs, frame.as_ref(), log_text).map_err(Failure::input)?;
         let question = Question {
             evaluator: &setup.evaluator,
             template,

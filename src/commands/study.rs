@@ -21,7 +21,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use study::{
     Confirmation, INDIFFERENCES_MM, IfChanged, LARGEST_BATCH, LARGEST_BUDGET, Study, StudyConfig,
-    read_config, study_name,
+    check_continues, read_config, study_name,
 };
 
 /// Range of seeds, limited by the integers of TOML.
@@ -126,17 +126,30 @@ impl command::Request for Request {
 impl Request {
     /// Starts or continues the study; without a batch that of a new study is `workers`.
     pub fn open(&self, workers: Option<u64>) -> Result<OpenStudy, Failure> {
+        let (setup, config, dir) = self.planned(workers)?;
+        let more = measured::more(&dir, &setup);
+        let if_changed = more.map_or(self.run.if_changed(), |_| IfChanged::NewSegment);
+        let study = Study::create_or_continue(&dir, &config, &setup.inputs, if_changed)?;
+        let open = OpenStudy::new(study, setup, self.run.clone())?;
+        Ok(OpenStudy { new_measurements: more.unwrap_or(0), ..open })
+    }
+
+    /// Returns what [`Request::look`] does, with the batch; without one that of a new study is `workers`.
+    fn planned(&self, workers: Option<u64>) -> Result<(Setup, StudyConfig, PathBuf), Failure> {
         let (setup, mut config, dir) = self.look()?;
         if self.batch.is_none() {
             // A study that goes on keeps its own.
             let kept = read_config(&dir).ok().map(|found| found.batch);
             config.batch = kept.or(workers).unwrap_or(DEFAULT_BATCH).clamp(1, LARGEST_BATCH);
         }
-        let more = measured::more(&dir, &setup);
-        let if_changed = more.map_or(self.run.if_changed(), |_| IfChanged::NewSegment);
-        let study = Study::create_or_continue(&dir, &config, &setup.inputs, if_changed)?;
-        let open = OpenStudy::new(study, setup, self.run.clone())?;
-        Ok(OpenStudy { new_measurements: more.unwrap_or(0), ..open })
+        Ok((setup, config, dir))
+    }
+
+    /// Returns the folder, which holds no study of another configuration; nothing is written.
+    pub(crate) fn folder(&self) -> Result<PathBuf, Failure> {
+        let (_, config, dir) = self.planned(None)?;
+        check_continues(&dir, &config)?;
+        Ok(dir)
     }
 
     /// Returns setup, configuration and folder of the study, checked, without writing anything.

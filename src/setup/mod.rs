@@ -1,6 +1,7 @@
 //! All that is needed to evaluate designs, and the options from which commands make it.
 
 pub mod assembly;
+pub mod bag;
 pub mod bench;
 pub mod driven;
 pub mod files;

@@ -20,6 +20,7 @@ use insertion::stiffness::{designs, three};
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
 use insertion::trial::{Grasp, Recording, Trial};
+use report::answer::words::mating_force;
 use serde::{Serialize, Serializer};
 use serde_json::json;
 use std::sync::atomic::AtomicBool;
@@ -194,9 +195,11 @@ impl TaskCheck {
             Some((finger, trial, explanation)) => text.push_str(&format!(
                 "geometry      no problems\n\
                  finger        compliance {} N/mm, assembly {} N/mm: the middle one of the measured\n\
+                 mating force  {}\n\
                  nominal       {}, peak force {:.1} N, slip {:.2} mm\n              {explanation}\n",
                 finger.compliance / N_PER_MM,
                 finger.assembly / N_PER_MM,
+                mating_force(self.task.as_ref().and_then(Task::largest_mating_force)),
                 trial.outcome.label(),
                 trial.peak_force_n,
                 trial.slip_mm,

@@ -43,10 +43,10 @@ impl AnyStudy {
     /// Checks the request without writing anything and returns the folder.
     ///
     /// # Errors
-    /// If the request is invalid.
+    /// If the request is invalid, or the folder holds a study of another configuration.
     pub fn folder(&self) -> Result<PathBuf, Failure> {
         match self {
-            AnyStudy::Asked(request) => Ok(request.look()?.2),
+            AnyStudy::Asked(request) => request.folder(),
             AnyStudy::Resumed(request) => Ok(request.dir.clone()),
         }
     }

@@ -15,6 +15,8 @@ pub struct Notes {
     pub mass: String,
     /// File of the parts, if they lie beside the task.
     pub parts: Option<PartsFile>,
+    /// Whether parts that overlap, as springs do, were left out.
+    pub left_out: bool,
 }
 
 /// Text of the parts of a task, to lie beside it.
@@ -92,6 +94,13 @@ pub fn task(task: &Task, notes: &Notes) -> String {
     if !limits.is_empty() {
         let _ = write!(out, "\n[limits]\n# Of the data sheet.\n{limits}");
     }
+    let _ = write!(
+        out,
+        "\n# Contact springs{}: no force unless given here, by the depth of the tip, as on the data sheet.\n\
+         # [mating_force]\n# depth_mm = [0.0, {}]\n# force_n = [0.0, 10.0]\n",
+        if notes.left_out { ", whose overlap was left out of the parts" } else { "" },
+        mm(task.success.depth)
+    );
     out
 }
 

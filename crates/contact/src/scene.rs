@@ -114,14 +114,19 @@ impl Friction {
     }
 }
 
+/// Returns 1 for the same two bodies, -1 for them in the other order.
+fn sign(pair: (BodyId, BodyId), bodies: (BodyId, BodyId)) -> Option<f64> {
+    match bodies {
+        ends if ends == pair => Some(1.0),
+        (second, first) if (first, second) == pair => Some(-1.0),
+        _ => None,
+    }
+}
+
 impl ContactPair {
     /// Returns 1 for the bodies of the pair, -1 for them in the other order.
     pub fn sign(&self, first: BodyId, second: BodyId) -> Option<f64> {
-        match (self.first, self.second) {
-            ends if ends == (first, second) => Some(1.0),
-            ends if ends == (second, first) => Some(-1.0),
-            _ => None,
-        }
+        sign((self.first, self.second), (first, second))
     }
 
     /// Returns whether a body is in the pair.
@@ -223,6 +228,45 @@ pub struct Joint {
     pub springs: Springs,
 }
 
+/// Coulomb friction along z of a fixed body's frame on the origin of another body's frame, as of springs
+/// that press on it from the sides: it opposes the velocity, and sticks as a contact of the engine does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AxialFriction {
+    /// Fixed body.
+    pub parent: BodyId,
+    /// Body on which it acts.
+    pub child: BodyId,
+    /// Intervals of x and y in the parent's frame in which it acts, m.
+    pub region: [[f64; 2]; 2],
+    /// Depth below the parent's origin, m, ascending, and largest force there, N.
+    pub force: Vec<[f64; 2]>,
+}
+
+impl AxialFriction {
+    /// Returns 1 for parent and child, -1 for them in the other order.
+    pub fn sign(&self, first: BodyId, second: BodyId) -> Option<f64> {
+        sign((self.parent, self.child), (first, second))
+    }
+
+    /// Returns the largest force at these poses of parent and child, N: linear between the depths, 0 above the
+    /// first, and the last one below the last.
+    pub fn largest(&self, parent: &Pose, child: &Pose) -> f64 {
+        let at = parent.inverse_transform_point(&child.translation.vector.into());
+        let inside =
+            |axis: usize| (self.region[axis][0]..=self.region[axis][1]).contains(&at[axis]);
+        let depth = -at.z;
+        let below = self.force.partition_point(|[from, _]| *from <= depth);
+        match (below.checked_sub(1).map(|i| self.force[i]), self.force.get(below)) {
+            _ if !(inside(0) && inside(1)) => 0.0,
+            (None, _) => 0.0,
+            (Some([_, last]), None) => last,
+            (Some([from, low]), Some([to, high])) => {
+                low + (high - low) * (depth - from) / (to - from)
+            }
+        }
+    }
+}
+
 /// Bodies, joints and contacts to simulate.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Scene {
@@ -232,6 +276,8 @@ pub struct Scene {
     pub joints: Vec<Joint>,
     /// Pairs of bodies that may touch; all others pass through one another.
     pub contacts: Vec<ContactPair>,
+    /// Friction along an axis, if any; its force is part of the contact of its two bodies.
+    pub axial_friction: Option<AxialFriction>,
     /// Gravity, m/s2.
     pub gravity: Vector3<f64>,
 }
@@ -343,5 +389,30 @@ mod tests {
         let expected = [(2, 4, 1.0), (2, 5, 0.02), (3, 4, 0.3), (3, 5, 0.02)];
         assert!(coefficients.eq(expected), "{found:?}");
         assert!(found.iter().all(|pair| pair.friction.torsion == Torsion::Radius(0.03)));
+    }
+
+    #[test]
+    fn axial_friction_is_that_of_the_depth_within_its_region_alone() {
+        let (parent, child) = (BodyId(0), BodyId(1));
+        let force = vec![[1e-3, 4.0], [2e-3, 12.0], [6e-3, 8.0]];
+        let friction = AxialFriction { parent, child, region: [[-1e-3, 1e-3]; 2], force };
+        let at =
+            |x: f64, z: f64| friction.largest(&Pose::identity(), &Pose::translation(x, 0.0, z));
+        for (x_mm, depth_mm, expected) in [
+            (0.0, -1.0, 0.0),
+            (0.0, 0.9, 0.0),
+            (0.0, 1.0, 4.0),
+            (0.0, 1.5, 8.0),
+            (0.9, 3.0, 11.0),
+            (1.1, 3.0, 0.0),
+            (0.0, 9.0, 8.0),
+        ] {
+            let found = at(x_mm * 1e-3, -depth_mm * 1e-3);
+            assert!((found - expected).abs() < 1e-9, "{x_mm} {depth_mm}: {found}");
+        }
+        assert_eq!(
+            [friction.sign(parent, child), friction.sign(child, parent)],
+            [Some(1.0), Some(-1.0)]
+        );
     }
 }

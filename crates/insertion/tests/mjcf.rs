@@ -203,3 +203,21 @@ fn every_contact_is_as_stiff_as_it_should_be() {
         }
     }
 }
+
+#[test]
+fn a_mating_force_is_a_tendon_with_its_forces_by_depth() {
+    let usb = TASKS.iter().find(|file| file.name == "usb").unwrap();
+    let table = "\n[mating_force]\ndepth_mm = [0, 2, 6]\nforce_n = [0, 12, 8]\n";
+    let text = model(&of(&Shipped { text: (usb.text.to_owned() + table).leak(), ..*usb }, "servo"));
+    let document = Document::parse(&text).unwrap();
+    let tendon = named(&document, "spatial", "mating force");
+    let on = |site: Node| named(&document, "site", site.attribute("site").unwrap()).parent();
+    let ends = tendon.children().filter(|node| node.has_tag_name("site"));
+    let bodies: Vec<_> = ends.filter_map(|site| on(site)?.attribute("name")).collect();
+    assert_eq!(bodies, ["socket", "plug"]);
+    let data =
+        |name: &str| numbers(named(&document, "numeric", &format!("mating force: {name}")), "data");
+    assert_eq!(data("depth of the tip"), [0.0, 2e-3, 6e-3]);
+    assert_eq!(data("frictionloss"), [0.0, 12.0, 8.0]);
+    assert!(!model(&of(usb, "servo")).contains("mating force"));
+}

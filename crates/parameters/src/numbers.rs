@@ -129,6 +129,8 @@ pub static NUMBERS: &[Number] = &[
     length("task.success.depth_mm"),
     file("task.success.tilt_deg", LEAST, 360.0),
     fixed("task.limits.force_n|speed_mm_per_s", LEAST, 1e6),
+    fixed("task.mating_force.depth_mm.*", 0.0, 1e3),
+    fixed("task.mating_force.force_n.*", 0.0, 1e5),
     distance("task.success.mated.tip_mm.*"),
     length("task.success.mated.lateral_mm"),
     // Connectors that are drafted from dimensions.

@@ -70,13 +70,13 @@ pub fn text(levers: &Levers) -> String {
     text + &format!("\n{} windows{left_out}\nsources\n{sources}", levers.windows)
 }
 
-/// Width of the diagram, height of a row, of head and foot, and width of the names, pixels.
-const WIDTH: u32 = 640;
-const ROW: u32 = 42;
+/// Width of the diagram, which a phone has, too; height of a row, of head and foot, and margin, pixels.
+const WIDTH: u32 = 440;
+const ROW: u32 = 58;
 const HEAD_AND_FOOT: u32 = 110;
-const LEFT: u32 = 220;
-/// Font size in plot units: 12 pixels when the diagram is shown at full width.
-const TEXT: u32 = 15;
+const LEFT: u32 = 8;
+/// Font size in plot units: 12 pixels on a phone.
+const TEXT: u32 = 18;
 
 /// Draws the ranges at both ends of each lever as bars from the range of the finger as it is, largest
 /// span first; the infill in another colour, negligible levers in grey.
@@ -94,7 +94,8 @@ fn draw(area: &Area<'_>, levers: &Levers, bars: &[Bar<'_>]) -> Drawn {
     let ends = bars.iter().flat_map(|bar| [bar.ends[0].0, bar.ends[1].0]);
     // Leaves room for the labels beside the bars.
     let range = around(ends.chain([base]), 0.22);
-    let (left, title) = (range.start, format!("{}: range with one number changed", levers.task));
+    let ([left, right], title) =
+        ([range.start, range.end], format!("{}: range with one number changed", levers.task));
     let now = format!("range (mm), now {base:.1}");
     let mut chart = rows(area, &title, (&now, range), bars.len(), LEFT)?;
     for (row, Bar { name, span_mm, ends, lever }) in bars.iter().enumerate() {
@@ -106,15 +107,22 @@ fn draw(area: &Area<'_>, levers: &Levers, bars: &[Bar<'_>]) -> Drawn {
         let y = -(row as f64);
         let now = lever.map(|lever| format!(", now at {}", lever.amount(lever.value)));
         let moves = format!("moves {span_mm:.1} mm{}", now.unwrap_or_default());
-        for (words, ink, down) in [(*name, ink, 0.32), (&moves, MUTED, 0.7)] {
-            let style = text_style(TEXT, ink, HPos::Left, VPos::Center);
-            label(&mut chart, (left, y - down), (8 - LEFT as i32, 0), words, &style)?;
+        for (words, ink, x, side) in
+            [(*name, ink, left, HPos::Left), (&moves, MUTED, right, HPos::Right)]
+        {
+            label(
+                &mut chart,
+                (x, y - 0.2),
+                (0, 0),
+                words,
+                &text_style(TEXT, ink, side, VPos::Center),
+            )?;
         }
-        for ((mm, words), top) in ends.iter().zip([y - 0.13, y - 0.51]) {
+        for ((mm, words), top) in ends.iter().zip([y - 0.37, y - 0.65]) {
             let (by, anchor) = if *mm < base { (-5, HPos::Right) } else { (5, HPos::Left) };
             let style = text_style(TEXT, ink, anchor, VPos::Center);
-            bar(&mut chart, [base, *mm], [top, top - 0.36], fill.rgb().mix(share).filled())?;
-            label(&mut chart, (*mm, top - 0.18), (by, 0), words, &style)?;
+            bar(&mut chart, [base, *mm], [top, top - 0.27], fill.rgb().mix(share).filled())?;
+            label(&mut chart, (*mm, top - 0.14), (by, 0), words, &style)?;
         }
     }
     dashed(&mut chart, [(base, 0.0), (base, -(bars.len() as f64))])

@@ -63,7 +63,6 @@ fn sections(answer: &Answer, model: &Model, beside: &Beside) -> Result<Vec<Secti
         Some(_) => "Ties by simulation alone",
     };
     let PostAnalysis { levers, maps, .. } = &beside.analyses;
-    // This drawing scrolls on a phone instead of being scaled down, so that text stays legible.
     let levers = levers.as_ref().map(|levers| {
         let caption = levers.sentence();
         let figure = figure(&levers::svg(levers)?, &caption, &caption);

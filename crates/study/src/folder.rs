@@ -95,16 +95,7 @@ impl Study {
         let lock = lock(dir)?;
         let file = dir.join(CONFIG_FILE);
         if file.try_exists().map_err(StudyError::io("look for", &file))? {
-            let found = read_config(dir)?;
-            if let Some(differences) = found.differences(config) {
-                return Err(StudyError::file(
-                    dir,
-                    format!(
-                        "holds a study of another configuration; give another --out, or the same \
-                         configuration (only the budget may be raised):\n{differences}"
-                    ),
-                ));
-            }
+            check_continues(dir, config)?;
             let mut study = Study::open_locked(dir, lock, journal_file(dir)?)?;
             let before = (study.config.budget, study.config.settles);
             // With early stopping the budget is only a limit.
@@ -328,6 +319,25 @@ fn journal_file(dir: &Path) -> Result<Box<dyn Store>, StudyError> {
         }
         Err(error) => Err(StudyError::io("open", &path)(error)),
     }
+}
+
+/// Checks that a study in a folder, if there is one, can be continued with a configuration.
+///
+/// # Errors
+/// If it has another one, which are compared, or cannot be read.
+pub fn check_continues(dir: &Path, config: &StudyConfig) -> Result<(), StudyError> {
+    let file = dir.join(CONFIG_FILE);
+    if !file.try_exists().map_err(StudyError::io("look for", &file))? {
+        return Ok(());
+    }
+    let Some(differences) = read_config(dir)?.differences(config) else { return Ok(()) };
+    Err(StudyError::file(
+        dir,
+        format!(
+            "holds a study of another configuration; give another --out, or the same configuration (only \
+             the budget may be raised):\n{differences}"
+        ),
+    ))
 }
 
 /// Reads the configuration of the study in `dir`.

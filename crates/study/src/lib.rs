@@ -37,7 +37,9 @@ pub use config::{
 };
 pub use confirmer::{ConfirmationLog, Confirmed, Confirmer};
 pub use error::StudyError;
-pub use folder::{CELL, FINGER, IfChanged, Inputs, Study, input_path, read_analysis, read_config};
+pub use folder::{
+    CELL, FINGER, IfChanged, Inputs, Study, check_continues, input_path, read_analysis, read_config,
+};
 pub use folder::{sha256, write_analysis, write_file, write_own_file};
 pub use limits::ForceLimits;
 pub use line::{decode, encode};

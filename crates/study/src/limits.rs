@@ -15,18 +15,25 @@ pub struct ForceLimits {
     pub connectors: Vec<Option<f64>>,
     /// Stop force of the robot, if its file is known.
     pub stop: Option<f64>,
+    /// Largest force of the contact springs of each connector, for those whose task file gives it.
+    pub mating: Vec<Option<f64>>,
 }
 
 impl ForceLimits {
     /// Reads the limits from the input files of a study; none from a file that cannot be read.
     pub(super) fn of(inputs: &Inputs, tasks: usize) -> Self {
-        let connector = |number: usize| {
+        let task = |number: usize| {
             let text = inputs.get(&format!("task_{number}"))?;
-            Task::parse(text, "").ok()?.limits.force
+            Task::parse(text, "").ok()
+        };
+        let tasks: Vec<Option<Task>> = (1..=tasks).map(task).collect();
+        let of = |force: fn(&Task) -> Option<f64>| -> Vec<Option<f64>> {
+            tasks.iter().map(|task| task.as_ref().and_then(force)).collect()
         };
         let robot = inputs.get("robot").and_then(|text| Robot::parse(text, "").ok());
         ForceLimits {
-            connectors: (1..=tasks).map(connector).collect(),
+            connectors: of(|task| task.limits.force),
+            mating: of(Task::largest_mating_force),
             stop: robot.map(|robot| robot.stop_force),
         }
     }

@@ -376,7 +376,7 @@ impl Request {
         Ok(Read { triangles, unit, said })
     }
 
-    fn notes(&self, Found { imported, unit, along, .. }: &Found) -> Notes {
+    fn notes(&self, Found { imported, unit, along, left_out, .. }: &Found) -> Notes {
         let files = self.called();
         let how = |exact: bool| if exact { "exact" } else { "approximated" };
         let [plug, socket] = imported.exact.map(how);
@@ -392,7 +392,8 @@ impl Request {
             value(*along),
             value(imported.jaws),
         );
-        Notes { head: vec![head.replace(['\n', '\r'], " ")], mass, parts: None }
+        let (head, left_out) = (vec![head.replace(['\n', '\r'], " ")], !left_out.is_empty());
+        Notes { head, mass, parts: None, left_out }
     }
 }
 

@@ -160,7 +160,7 @@ fn drafted(
     }
     let mass = format!("Assumed: {DENSITY} kg/m3. Weigh yours.");
     let (task, tuned) = begun(task, request.engine, stop)?;
-    Ok((write::task(&task, &Notes { head, mass, parts: None }), tuned))
+    Ok((write::task(&task, &Notes { head, mass, ..Notes::default() }), tuned))
 }
 
 fn dimensions(request: &Request) -> Result<(Dimensions, bool), Failure> {

@@ -16,6 +16,7 @@
 //! | T13 | a soft flange whose command sets off |
 //! | T14 | net force of a contact that sticks and that slides |
 //! | T15 | moment of a contact patch of friction against a turn |
+//! | T16 | friction along an axis, as of contact springs |
 //! | P1 .. P11 | planar insertion: force over depth, wedging, rounded edges; yaw in a hole (`slab`) |
 //! | F1 .. F4 | the computed stiffness of a printed finger |
 //!
@@ -28,6 +29,7 @@
 use contact::Engine;
 
 pub mod arm;
+mod axial;
 mod build;
 mod chamfer;
 mod edge;
@@ -119,7 +121,7 @@ pub fn run(make: Make<'_>) -> Vec<CheckRow> {
     rows
 }
 
-/// Returns the results of the checks of a contact engine, T1 to T15.
+/// Returns the results of the checks of a contact engine, T1 to T16.
 pub fn contact(make: Make<'_>) -> Vec<CheckRow> {
     let engine = make(1.0);
     let all = |checks: &[fn(&dyn Engine) -> Vec<CheckRow>]| -> Vec<CheckRow> {
@@ -127,6 +129,6 @@ pub fn contact(make: Make<'_>) -> Vec<CheckRow> {
     };
     let first =
         [spring::t1, incline::t2, peg::t3, jamming::t4, jamming::t5, chamfer::t6, spring::t7];
-    let last = [peg::t10, arm::t11, grasp::t12, arm::t13, incline::t14, grasp::t15];
+    let last = [peg::t10, arm::t11, grasp::t12, arm::t13, incline::t14, grasp::t15, axial::t16];
     [all(&first), edge::t8(make), all(&last)].concat()
 }

@@ -1,7 +1,11 @@
 //! How far simulated curves are off the measured ones, phase by phase.
 
-use super::question::Compared;
+use super::log::Ended;
+use super::question::{Compared, Identified};
 use super::replay::Phase;
+use ask_tell::statistics::mean;
+use input::units::MM;
+use insertion::outcome::Outcome;
 use serde::Serialize;
 
 const FORCES: [&str; 3] = ["fx", "fy", "fz"];
@@ -17,6 +21,54 @@ pub struct Misfit {
     pub before: f64,
     /// Under what was identified.
     pub after: f64,
+}
+
+/// Ratio of the misfit of what was kept aside to that of what was fitted, from which it is a warning.
+pub const WARNING: f64 = 1.5;
+
+/// Misfit of an attempt that was not fitted beside that of the fitted ones, with the identified numbers; root mean
+/// squares over all components of the force, in standard deviations.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Validation {
+    /// File of its log.
+    pub log: String,
+    /// Shift of its start, mm.
+    pub offset_mm: f64,
+    /// Outcome on the robot.
+    pub outcome: &'static str,
+    /// Outcome in the identified cell.
+    pub outcome_predicted: &'static str,
+    /// Of this attempt.
+    pub misfit: f64,
+    /// Of the fitted attempts.
+    pub misfit_fitted: f64,
+}
+
+impl Validation {
+    /// Compares the attempt that was kept aside, if there is one.
+    pub fn of(found: &Identified) -> Option<Self> {
+        let aside = found.aside.as_ref()?;
+        let after = |compared: &[Compared]| {
+            let squares = misfits(compared).into_iter().map(|one| one.after * one.after);
+            mean(squares).map_or(0.0, f64::sqrt)
+        };
+        Some(Validation {
+            log: aside.logged.file.clone(),
+            offset_mm: aside.logged.offset / MM,
+            outcome: match aside.logged.ended {
+                Ended::Failed(class) => Outcome::Failed(class).word(),
+                Ended::Inserted | Ended::Probe => Outcome::Inserted.word(),
+            },
+            outcome_predicted: aside.after.1.word(),
+            misfit: after(std::slice::from_ref(aside)),
+            misfit_fitted: after(&found.compared),
+        })
+    }
+
+    /// Whether the cell predicts worse than it explains.
+    pub fn is_doubtful(&self) -> bool {
+        self.misfit > WARNING * self.misfit_fitted
+    }
 }
 
 /// Of each phase and component of the force.

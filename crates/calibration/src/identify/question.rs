@@ -64,6 +64,8 @@ pub struct Identified {
     pub unknowns: Vec<Unknown>,
     pub smoothed: Smoothed,
     pub compared: Vec<Compared>,
+    /// Attempt that was not fitted, if there is one.
+    pub aside: Option<Compared>,
 }
 
 impl Identified {
@@ -111,6 +113,17 @@ impl Question<'_> {
 
     fn attempts(&self) -> Vec<Logged> {
         chosen(self.runs.iter().filter_map(Logged::new).collect())
+    }
+
+    /// Returns the attempt to validate by: of those that are not fitted the one farthest from any that is.
+    fn aside(&self, fitted: &[Logged]) -> Option<Logged> {
+        let apart = |one: &Logged| {
+            let alike = fitted.iter().filter(|other| other.design == one.design);
+            alike.map(|other| (other.offset - one.offset).abs()).fold(f64::INFINITY, f64::min)
+        };
+        let used = |one: &Logged| fitted.iter().any(|other| other.file == one.file);
+        let rest = self.runs.iter().filter_map(Logged::new).filter(|one| !used(one));
+        rest.max_by(|a, b| apart(a).total_cmp(&apart(b)))
     }
 
     /// Returns the ratio of measured forces to those of the fingers along the measured path, median over the
@@ -173,8 +186,10 @@ impl Question<'_> {
             .map(|(i, (prior, known))| fit(prior, known.as_ref(), &smoothed, i))
             .chain(rest)
             .collect();
+        let aside = self.aside(&attempts).into_iter().collect();
         let compared = self.compared(&replay, attempts, &unknowns)?;
-        Ok(Identified { robot, flange, preload, probes, unknowns, smoothed, compared })
+        let aside = self.compared(&replay, aside, &unknowns)?.pop();
+        Ok(Identified { robot, flange, preload, probes, unknowns, smoothed, compared, aside })
     }
 
     /// Returns an unknown that is not fitted: the number of the files with the deviation of its prior.

@@ -20,18 +20,17 @@ const NEAREST_MM: f64 = 1.0;
 /// Nothing is recorded so seldom, s.
 const SLOWEST_S: f64 = 0.5;
 
-/// Reads a log; one in the base's frame needs `frame`.
+/// Reads the text of a log.
 ///
 /// # Errors
-/// If it cannot be read, is longer than [`LARGEST_LOG`], or [`parse`] refuses it.
-pub fn read(path: &Path, frame: Option<&Frame>) -> Result<Log, Fault> {
-    let file = path.display().to_string();
-    let text = files::read_text(path, LARGEST_LOG)
-        .map_err(|error| Place::file(&file).fault(format!("cannot be read: {error}")))?;
-    parse(&text, &file, frame)
+/// If it cannot be read, or is longer than [`LARGEST_LOG`].
+pub fn text(path: &Path) -> Result<String, Fault> {
+    let cannot =
+        |error| Place::file(path.display().to_string()).fault(format!("cannot be read: {error}"));
+    files::read_text(path, LARGEST_LOG).map_err(cannot)
 }
 
-/// Reads and checks a log's text; `file` is named in errors. Lines that begin with `#` are none.
+/// Reads and checks a log's text; one in the base's frame needs `frame`; `file` is named in errors. Lines that begin with `#` are none.
 ///
 /// # Errors
 /// If it has no known header, a cell cannot be used or looks like one in another unit, or

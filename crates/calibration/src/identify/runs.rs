@@ -5,9 +5,9 @@ use super::log::{Ended, Log, Run};
 use super::read;
 use crate::experiments::line::{Cells, failure, length};
 use crate::experiments::{Columns, Problems, problem, rows};
-use input::Place;
 use input::files::{self, LARGEST_INPUT};
 use input::units::MM;
+use input::{Fault, Place};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use std::path::Path;
 
@@ -56,11 +56,15 @@ fn ended(text: &str) -> Result<Ended, String> {
 }
 
 /// Reads a table of runs and its logs, whose paths are from its folder; logs in the robot's base
-/// need `frame`.
+/// need `frame`; `text_of` reads the text of a log.
 ///
 /// # Errors
 /// If the table cannot be read or used, has no attempt, or a log cannot be used.
-pub fn read(path: &Path, frame: Option<&Frame>) -> Result<Vec<Run>, Problems> {
+pub fn read(
+    path: &Path,
+    frame: Option<&Frame>,
+    text_of: impl Fn(&Path) -> Result<String, Fault>,
+) -> Result<Vec<Run>, Problems> {
     let file = path.display().to_string();
     let text = files::read_text(path, LARGEST_INPUT)
         .map_err(|error| Place::file(&file).fault(format!("cannot be read: {error}")))?;
@@ -73,7 +77,8 @@ pub fn read(path: &Path, frame: Option<&Frame>) -> Result<Vec<Run>, Problems> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let (mut runs, mut moments) = (Vec::new(), 0);
     for Row { log, design, offset_mm, ended, line } in table {
-        let log: Log = read::read(&folder.join(log), frame)?;
+        let log = folder.join(log);
+        let log: Log = read::parse(&text_of(&log)?, &log.display().to_string(), frame)?;
         moments += log.moments.len();
         if moments > MOST {
             let words =

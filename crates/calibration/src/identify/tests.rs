@@ -198,7 +198,7 @@ fn a_table_of_runs_names_logs_beside_it() {
     let of = |lines: &str| {
         let head = "log,infill_density_percent,infill_direction_deg,offset_mm,outcome";
         std::fs::write(&path, format!("# usb\n{head}\n{lines}\n")).unwrap();
-        runs::read(&path, None).map_err(|error| error.to_string())
+        runs::read(&path, None, read::text).map_err(|error| error.to_string())
     };
     let found = of("a.csv,20,10,1.5,3\np.csv,20,10,,probe").unwrap();
     assert_eq!((found[0].offset, found[0].line, found[1].ended), (1.5 * MM, 3, Ended::Probe));

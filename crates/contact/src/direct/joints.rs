@@ -10,8 +10,11 @@
 
 use super::blocks::{Blocks, Vector6};
 use super::body::{Kind, MovingBody};
-use crate::scene::{Joint, Spring, Springs};
+use crate::scene::{AxialFriction, Joint, Pose, Spring, Springs};
 use nalgebra::{Matrix3, Matrix6, Vector3};
+
+/// Axis of a joint along which [`AxialFriction`] acts.
+const ALONG: usize = 2;
 
 /// Stiffness of a locked translation, N/m.
 const LOCKED: f64 = 1e9;
@@ -78,6 +81,35 @@ impl SprungJoint {
             by_child: Matrix6::zeros(),
             by_parent: Matrix6::zeros(),
         }
+    }
+
+    /// Creates a joint that leaves all axes free, for a friction along z.
+    pub fn free(friction: &AxialFriction) -> Self {
+        SprungJoint::new(&Joint {
+            name: String::new(),
+            parent: friction.parent,
+            child: friction.child,
+            in_parent: Pose::identity(),
+            in_child: Pose::identity(),
+            springs: Springs::Axes([Some(Spring::new(0.0, 0.0)); 6]),
+        })
+    }
+
+    /// Sets the largest friction along z, N, whose sticking is damped, N s/m.
+    pub fn rub(&mut self, limit: f64, damping: f64) {
+        let damper = Spring { limit, ..Spring::new(0.0, damping) };
+        self.set(ALONG, if limit > 0.0 { damper } else { Spring::new(0.0, 0.0) });
+    }
+
+    /// Returns the friction along z on the child at the bodies' velocities, world axes, N.
+    pub fn friction(&self, bodies: &[MovingBody]) -> Vector3<f64> {
+        let Springs::Axes(axes) = &self.joint.springs else { return Vector3::zeros() };
+        let Some(Spring { damping, limit, .. }) = axes[ALONG] else { return Vector3::zeros() };
+        let force = match self.saturated[ALONG] {
+            0.0 => -damping * self.rate(bodies)[ALONG],
+            sign => sign * limit,
+        };
+        bodies[self.joint.parent.0].pose.rotation * Vector3::z() * force
     }
 
     /// Replaces the spring of an axis, if any; a servo stays at its limit till the next step.
@@ -158,14 +190,19 @@ impl SprungJoint {
         }
     }
 
+    /// Returns the rates of the coordinates.
+    fn rate(&self, bodies: &[MovingBody]) -> Vector6 {
+        self.by_child * bodies[self.joint.child.0].velocity
+            + self.by_parent * bodies[self.joint.parent.0].velocity
+    }
+
     /// Sets the servos that are at their limits; whether the last solution assumed the same.
     pub fn update_limits(&mut self, bodies: &[MovingBody], step: f64) -> bool {
         let Springs::Axes(axes) = &self.joint.springs else { return true };
         if axes.iter().flatten().all(|spring| spring.limit.is_infinite()) {
             return true;
         }
-        let rate = self.by_child * bodies[self.joint.child.0].velocity
-            + self.by_parent * bodies[self.joint.parent.0].velocity;
+        let rate = self.rate(bodies);
         let before = self.saturated;
         for (i, spring) in axes.iter().flatten().enumerate() {
             let &Spring { stiffness, damping, target, limit } = spring;
@@ -173,7 +210,10 @@ impl SprungJoint {
             let force = -stiffness * (end - target) - damping * rate[i];
             // A margin, lest rounding flips it for ever.
             let beyond = force.abs() > limit * (1.0 + 1e-9);
-            self.saturated[i] = if beyond { force.signum() } else { 0.0 };
+            let sign = if beyond { force.signum() } else { 0.0 };
+            // A friction that would turn over sticks first, or it would never do so.
+            let turns = stiffness == 0.0 && sign == -before[i];
+            self.saturated[i] = if turns { 0.0 } else { sign };
         }
         self.saturated == before
     }

@@ -8,7 +8,9 @@ use super::contacts::{Detector, Touch};
 use super::joints::SprungJoint;
 use super::patch::Patch;
 use super::solver::{Contact, Solver, lever, moved_aside, relative};
-use crate::scene::{BodyId, ContactPair, Joint, JointId, Motion, Pose, Scene, Spring, Torsion};
+use crate::scene::{
+    AxialFriction, BodyId, ContactPair, Joint, JointId, Motion, Pose, Scene, Spring, Torsion,
+};
 use crate::{ContactForce, ContactPoint, Diverged, World};
 use nalgebra::{Vector3, Vector4};
 
@@ -21,7 +23,9 @@ pub(super) struct DirectWorld {
     pub settings: Direct,
     gravity: Vector3<f64>,
     pub bodies: Vec<MovingBody>,
+    /// Those of the scene, then that of the friction along an axis, if any.
     joints: Vec<SprungJoint>,
+    axial_friction: Option<AxialFriction>,
     /// Pairs of bodies that may touch.
     pub pairs: Vec<ContactPair>,
     /// Forces of the pairs over the last step.
@@ -52,10 +56,12 @@ impl DirectWorld {
         let ends = |joint: &Joint| Some((place(joint.parent)?, place(joint.child)?));
         let detector = Detector::new(scene, settings.prediction);
         let coupled: Vec<_> = scene.joints.iter().filter_map(ends).collect();
+        let rubbed = scene.axial_friction.as_ref().map(SprungJoint::free);
         DirectWorld {
             settings: *settings,
             gravity: scene.gravity,
-            joints: scene.joints.iter().map(SprungJoint::new).collect(),
+            joints: scene.joints.iter().map(SprungJoint::new).chain(rubbed).collect(),
+            axial_friction: scene.axial_friction.clone(),
             pairs: scene.contacts.clone(),
             forces: vec![ContactForce::default(); scene.contacts.len()],
             patched: scene.patched().is_some(),
@@ -172,6 +178,20 @@ impl DirectWorld {
             force.net += contact.impulse.xyz() * per_step;
             force.normal_sum += contact.impulse.dot(&contact.normal) * per_step;
         }
+        let (Some(along), Some(joint)) = (&self.axial_friction, self.joints.last()) else { return };
+        let net = joint.friction(&self.bodies);
+        for (pair, force) in self.pairs.iter().zip(&mut self.forces) {
+            force.net += net * along.sign(pair.first, pair.second).unwrap_or(0.0);
+        }
+    }
+
+    /// Sets the largest friction along an axis at the present poses.
+    fn rub(&mut self) {
+        let (Some(along), Some(joint)) = (&self.axial_friction, self.joints.last_mut()) else {
+            return;
+        };
+        let [parent, child] = [along.parent, along.child].map(|body| &self.bodies[body.0].pose);
+        joint.rub(along.largest(parent, child), self.settings.stick_damping);
     }
 
     /// Takes a step with the detected contacts.
@@ -188,6 +208,7 @@ impl DirectWorld {
         for joint in &mut self.joints {
             joint.locate(&self.bodies);
         }
+        self.rub();
         self.set_contacts();
         for _ in 0..TRIES {
             self.solve()?;

@@ -1,9 +1,11 @@
 //! Tree of bodies with their joints and geoms.
 
 use super::xml::Element;
-use super::{AXES, HEAVY, axis_name, driven_axis_name, geom_names, mesh_name};
+use super::{
+    ANCHOR, AXES, FAR, HEAVY, RUBBING, axis_name, driven_axis_name, geom_names, mesh_name,
+};
 use crate::scene::{
-    Body, BodyId, Geom, Inertia, Joint, Motion, Pose, Scene, Shape, Spring, Springs,
+    AxialFriction, Body, BodyId, Geom, Inertia, Joint, Motion, Pose, Scene, Shape, Spring, Springs,
 };
 use crate::shapes::extended;
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
@@ -51,12 +53,20 @@ fn inside(scene: &Scene, body: usize, names: &[Vec<String>]) -> Vec<Element> {
     let mut list: Vec<Element> = inertial(&scene.bodies[body].motion).into_iter().collect();
     let geoms = scene.bodies[body].geoms.iter().zip(&names[body]);
     list.extend(geoms.map(|(geom, name)| geom_element(scene, body, geom, name)));
+    list.extend(scene.axial_friction.iter().flat_map(|along| sites(along, BodyId(body))));
     for joint in scene.joints.iter().filter(|joint| joint.parent.0 == body) {
         let child = joint.child.0;
         let carried = element(&scene.bodies[child], &zero(joint));
         list.push(carried.holding(joints(joint)).holding(inside(scene, child, names)));
     }
     list
+}
+
+/// Returns the ends of the tendon that rubs along an axis which are on a body.
+fn sites(along: &AxialFriction, body: BodyId) -> impl Iterator<Item = Element> {
+    let ends = [(along.parent, ANCHOR, -FAR), (along.child, RUBBING, 0.0)];
+    let own = ends.into_iter().filter(move |(of, ..)| *of == body);
+    own.map(|(_, name, z)| Element::new("site").with("name", name).numbers("pos", [0.0, 0.0, z]))
 }
 
 /// Returns the frame of the child in the parent's where all coordinates are zero.

@@ -9,6 +9,7 @@
 //! | joint | the child inside the parent, a slide or hinge for each axis that is not locked |
 //! | spring, servo | the joint's own stiffness and damping; a `position` actuator with its limit |
 //! | contacts of two bodies | a `pair` for each two of their geoms, and no others |
+//! | friction along an axis | a tendon, whose `frictionloss` has to be set in each step |
 //!
 //! Rotations are turned one after the other (about x, then y, then z), where the
 //! scene has a rotation vector: the same for one axis, and to first order for all.
@@ -19,7 +20,7 @@ mod xml;
 
 use super::lacking;
 use crate::direct::Direct;
-use crate::scene::{Body, Joint, Motion, Scene, Spring, Springs};
+use crate::scene::{AxialFriction, Body, Joint, Motion, Scene, Spring, Springs};
 use xml::Element;
 
 /// Step and stiffness of the simulation in MuJoCo.
@@ -140,8 +141,42 @@ pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<Strin
         contact::pairs(scene, settings),
         actuators(scene),
     ]);
+    let model = match &scene.axial_friction {
+        Some(along) => model.holding(tendon(along, settings.step_s)),
+        None => model,
+    };
     let units = "<!-- Lengths in m, masses in kg, forces in N, angles in rad. -->\n";
     Ok(units.to_owned() + &model.text(0))
+}
+
+/// Name of the tendon that rubs along an axis, and of its site on the plug.
+pub(crate) const RUBBING: &str = "mating force";
+/// Name of the site at the other end of that tendon.
+const ANCHOR: &str = "anchor of the mating force";
+/// Distance of that site below the socket's origin, m: a tendon that is 1 mm askew pulls aside by 0.1 promille.
+const FAR: f64 = 10.0;
+/// Impedance of a friction that sticks: the largest that MuJoCo takes.
+const STICKING: f64 = 0.9999;
+
+/// Returns the tendon of a friction along an axis and, as custom numbers, its largest force by depth: MJCF has no
+/// friction that varies, so `frictionloss` has to be set in each step.
+fn tendon(along: &AxialFriction, step_s: f64) -> [Element; 2] {
+    let site = |name| Element::new("site").with("site", name);
+    let spatial = Element::new("spatial")
+        .with("name", RUBBING)
+        .numbers("rgba", [0.0; 4])
+        .with("frictionloss", 0)
+        // The stiffest that a step allows, as a point of contact sticks.
+        .numbers("solreffriction", [2.0 * step_s, 1.0])
+        .numbers("solimpfriction", [STICKING, STICKING, 1e-3])
+        .holding([site(ANCHOR), site(RUBBING)]);
+    let numeric = |name: &str, column: usize| {
+        let name = format!("{RUBBING}: {name}");
+        let values = along.force.iter().map(|row| row[column]);
+        Element::new("numeric").with("name", name).numbers("data", values)
+    };
+    let table = [numeric("depth of the tip", 0), numeric("frictionloss", 1)];
+    [Element::new("tendon").holding([spatial]), Element::new("custom").holding(table)]
 }
 
 /// Returns the actuators of the driven bodies and of the servos.

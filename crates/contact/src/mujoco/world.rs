@@ -1,8 +1,8 @@
 //! World of `mujoco`.
 
-use crate::mjcf::{HEAVY, axis_name, driven_axis_name, geom_names, servo};
+use crate::mjcf::{HEAVY, RUBBING, axis_name, driven_axis_name, geom_names, servo};
 use crate::scene::{
-    Body, BodyId, ContactPair, Joint, JointId, Motion, Pose, Scene, Spring, Springs,
+    AxialFriction, Body, BodyId, ContactPair, Joint, JointId, Motion, Pose, Scene, Spring, Springs,
 };
 use crate::{ContactForce, Diverged, World};
 use mujoco_rs::prelude::{MjData, MjModel, MjtObjBase};
@@ -24,6 +24,20 @@ pub(super) struct MujocoWorld {
     pairs: Vec<ContactPair>,
     /// Forces of the pairs over the last step.
     forces: Vec<ContactForce>,
+    axial_friction: Option<Rubbing>,
+}
+
+/// Friction along an axis, as a tendon.
+#[derive(Clone)]
+struct Rubbing {
+    along: AxialFriction,
+    tendon: usize,
+    /// First of the three places of the child's linear velocity.
+    velocity: usize,
+    /// By pair: 1 if its force acts on the child or on what hangs on it, -1 if so does its reaction.
+    signs: Vec<f64>,
+    /// Largest force now, N.
+    limit: f64,
 }
 
 /// Places of a body in MuJoCo's arrays.
@@ -84,10 +98,52 @@ impl MujocoWorld {
                 owners[id(&model, MjtObjBase::mjOBJ_GEOM, name)] = BodyId(body);
             }
         }
+        let axial_friction = scene.axial_friction.clone().map(|along| {
+            let child = id(&model, MjtObjBase::mjOBJ_BODY, &scene.bodies[along.child.0].name);
+            let tendon = id(&model, MjtObjBase::mjOBJ_TENDON, RUBBING);
+            let velocity = model.body_dofadr()[child] as usize;
+            let hangs = |joint: &Joint, body| joint.parent == along.child && joint.child == body;
+            let own = |body| body == along.child || scene.joints.iter().any(|j| hangs(j, body));
+            let sign = |body| f64::from(u8::from(own(body)));
+            let signs = scene.contacts.iter().map(|pair| sign(pair.second) - sign(pair.first));
+            Rubbing { tendon, velocity, signs: signs.collect(), limit: 0.0, along }
+        });
         let mut data = MjData::new(Arc::new(model));
         data.kinematics();
         let forces = vec![ContactForce::default(); scene.contacts.len()];
-        MujocoWorld { data, bodies, joints, owners, pairs: scene.contacts.clone(), forces }
+        let pairs = scene.contacts.clone();
+        MujocoWorld { data, bodies, joints, owners, pairs, forces, axial_friction }
+    }
+
+    /// Sets the largest friction along an axis at the present poses.
+    fn rub(&mut self) {
+        let Some(Rubbing { along, tendon, limit: old, .. }) = &self.axial_friction else { return };
+        let limit = along.largest(&self.pose(along.parent), &self.pose(along.child));
+        let (tendon, changes) = (*tendon, limit != *old);
+        if changes {
+            self.change(|model| model.tendon_frictionloss_mut()[tendon] = limit);
+        }
+        self.axial_friction.iter_mut().for_each(|rubbing| rubbing.limit = limit);
+    }
+
+    /// Adds the friction along an axis: what constrains the child beside its contacts and those of what hangs on it.
+    fn add_axial_friction(&mut self) {
+        let Some(Rubbing { along, velocity, signs, limit, .. }) = &self.axial_friction else {
+            return;
+        };
+        if *limit == 0.0 {
+            return;
+        }
+        let axis = self.pose(along.parent).rotation * Vector3::z();
+        let mut net =
+            Vector3::from_column_slice(&self.data.qfrc_constraint()[*velocity..velocity + 3]);
+        for (sign, force) in signs.iter().zip(&self.forces) {
+            net -= force.net * *sign;
+        }
+        let net = axis * net.dot(&axis);
+        for (pair, force) in self.pairs.iter().zip(&mut self.forces) {
+            force.net += net * along.sign(pair.first, pair.second).unwrap_or(0.0);
+        }
     }
 
     /// Pushes the driven bodies to their velocities. MuJoCo's coordinates are relative: a velocity
@@ -146,8 +202,10 @@ impl MujocoWorld {
 impl World for MujocoWorld {
     fn step(&mut self) -> Result<(), Diverged> {
         self.steer();
+        self.rub();
         self.data.step();
         self.add_forces();
+        self.add_axial_friction();
         self.arrive();
         // Poses of the end of the step, where MuJoCo's are of its start.
         self.data.kinematics();

@@ -1,7 +1,10 @@
 //! World of `rapier`.
 
 use super::Rapier;
-use crate::scene::{Body, BodyId, Joint, JointId, Motion, Pose, Scene, Spring, Springs};
+use crate::direct::Direct;
+use crate::scene::{
+    AxialFriction, Body, BodyId, Joint, JointId, Motion, Pose, Scene, Spring, Springs,
+};
 use crate::{ContactForce, Diverged, World, shapes};
 use nalgebra::{UnitQuaternion, Vector3};
 use rapier3d_f64::prelude as rp;
@@ -19,6 +22,7 @@ pub(super) struct RapierWorld {
     bodies: Vec<rp::RigidBodyHandle>,
     joints: Vec<rp::ImpulseJointHandle>,
     frictions: Arc<Frictions>,
+    axial_friction: Option<(AxialFriction, rp::ImpulseJointHandle)>,
 }
 
 /// Coefficient of friction of each two colliders, by the numbers in their user data.
@@ -52,12 +56,41 @@ impl RapierWorld {
             [[pair.first, pair.second], [pair.second, pair.first]].map(|ends| (ends, coefficient))
         });
         let frictions = Arc::new(Frictions(frictions.collect()));
-        RapierWorld { world, bodies, joints, frictions }
+        let axial_friction = scene.axial_friction.clone().map(|along| {
+            let free = rp::GenericJoint::new(rp::JointAxesMask::empty());
+            let (parent, child) = (bodies[along.parent.0], bodies[along.child.0]);
+            let joint = world.impulse_joints.insert(parent, child, free, true);
+            (along, joint)
+        });
+        RapierWorld { world, bodies, joints, frictions, axial_friction }
+    }
+
+    /// Sets the largest friction along an axis at the present poses.
+    fn rub(&mut self) {
+        let Some((along, joint)) = &self.axial_friction else { return };
+        let limit = along.largest(&self.pose(along.parent), &self.pose(along.child));
+        if let Some(joint) = self.world.impulse_joints.get_mut(*joint, true) {
+            let damper = Spring { limit, ..Spring::new(0.0, Direct::default().stick_damping) };
+            set_motor(&mut joint.data, rp::JointAxis::LinZ, &damper);
+        }
+    }
+
+    /// Returns the friction along an axis over the last substep on the second of two bodies, N.
+    fn axial_friction(&self, first: BodyId, second: BodyId) -> Option<Vector3<f64>> {
+        let (along, joint) = self.axial_friction.as_ref()?;
+        let sign = along.sign(first, second)?;
+        let motor = &self.world.impulse_joints.get(*joint)?.data.motors[2];
+        let parameters = &self.world.integration_parameters;
+        let substep = parameters.dt / parameters.num_solver_iterations as f64;
+        // On the first body.
+        let force = -sign * motor.impulse / substep / LENGTH;
+        Some(self.pose(along.parent).rotation * Vector3::z() * force)
     }
 }
 
 impl World for RapierWorld {
     fn step(&mut self) -> Result<(), Diverged> {
+        self.rub();
         self.world.step_with_events(&*self.frictions, &());
         // rapier freezes a body that left the finite numbers and reports it for one step only.
         if self.world.quarantine().is_empty() { Ok(()) } else { Err(Diverged) }
@@ -105,6 +138,7 @@ impl World for RapierWorld {
                 add_pair(&mut sum, pair, ends, &self.world.integration_parameters);
             }
         }
+        sum.net += self.axial_friction(first, second).unwrap_or_default();
         sum
     }
 
@@ -122,7 +156,8 @@ impl World for RapierWorld {
             ..rp::PhysicsWorld::new()
         };
         let (bodies, joints) = (self.bodies.clone(), self.joints.clone());
-        Box::new(RapierWorld { world, bodies, joints, frictions: self.frictions.clone() })
+        let (frictions, axial_friction) = (self.frictions.clone(), self.axial_friction.clone());
+        Box::new(RapierWorld { world, bodies, joints, frictions, axial_friction })
     }
 }
 

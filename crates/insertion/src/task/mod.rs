@@ -5,6 +5,7 @@ mod edges;
 pub mod finger;
 pub mod geometry;
 mod latch;
+mod mating_force;
 pub mod parts_file;
 mod raw;
 mod raw_part;
@@ -12,6 +13,7 @@ mod rounded;
 
 pub use geometry::{Part, Solid};
 pub use latch::Latch;
+pub use mating_force::MatingForce;
 pub use raw_part::MAX_PARTS;
 pub use rounded::Rounded;
 
@@ -55,6 +57,16 @@ pub struct Task {
     pub success: Success,
     /// Loads that the connector withstands; no trial depends on them.
     pub limits: Limits,
+    /// Force of contact springs, if it is given.
+    pub mating_force: Option<MatingForce>,
+}
+
+impl Task {
+    /// Returns the largest force of contact springs, N, if it is given.
+    pub fn largest_mating_force(&self) -> Option<f64> {
+        let force = self.mating_force.as_ref()?;
+        Some(force.iter().map(|[_, force]| *force).fold(0.0, f64::max))
+    }
 }
 
 /// The connector half that the fingers hold.

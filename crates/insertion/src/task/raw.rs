@@ -2,6 +2,7 @@
 
 use super::finger::{RawFinger, finger};
 use super::latch::{RawLatch, latch};
+use super::mating_force::{RawMatingForce, mating_force};
 use super::parts_file::PartsFile;
 use super::raw_part::{RawPart, interval, parts};
 use super::{
@@ -33,6 +34,7 @@ struct RawTask {
     success: Success,
     #[serde(default)]
     limits: Limits,
+    mating_force: Option<RawMatingForce>,
     parts: Option<PartsFile>,
 }
 
@@ -164,6 +166,7 @@ fn checked(raw: RawTask, file: &str) -> Result<Task, InputError> {
         strategy,
         success: raw.success,
         limits,
+        mating_force: raw.mating_force.map(|raw| mating_force(check, raw)).transpose()?,
     })
 }
 

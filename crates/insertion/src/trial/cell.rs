@@ -8,8 +8,8 @@ use crate::finger::{self, Finger};
 use crate::robot::{Flange, Mounted, Servo};
 use crate::task::{Latch, PadTorsion, Part, Task, geometry};
 use contact::scene::{
-    Body, BodyId, Friction, Geom, Inertia, Joint, JointId, Motion, Pose, Scene, Shape, Spring,
-    Springs, Torsion,
+    AxialFriction, Body, BodyId, Friction, Geom, Inertia, Joint, JointId, Motion, Pose, Scene,
+    Shape, Spring, Springs, Torsion,
 };
 use input::units::MM;
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
@@ -85,6 +85,12 @@ pub fn build(task: &Task, robot: &Mounted, finger: &Finger) -> WorkCell {
     if let Some(latch) = latch {
         scene.contact(latch, socket, hard);
     }
+    scene.axial_friction = task.mating_force.as_ref().map(|force| AxialFriction {
+        parent: socket,
+        child: plug,
+        region: task.opening,
+        force: force.clone(),
+    });
     let soft = pad_friction(task);
     for hand in &hands {
         scene.contact(hand.finger, plug, soft);

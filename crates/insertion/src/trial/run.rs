@@ -102,7 +102,7 @@ fn on_plate(task: &Task) -> Task {
     let half = Vector3::new(PLATE, PLATE, 0.0);
     let solid = Solid::Box { min: -half - Vector3::z() * PLATE, max: half };
     let plate = Part { name: "plate".to_owned(), solid, friction: None };
-    Task { socket: vec![plate], ..task.clone() }
+    Task { socket: vec![plate], mating_force: None, ..task.clone() }
 }
 
 impl Rig for EngineRig {

@@ -119,14 +119,18 @@ fn acceptable(answer: &Answer) -> f64 {
     each.fold(f64::INFINITY, f64::min).floor()
 }
 
-/// Returns tasks, optimizer and number of evaluations.
+/// Returns tasks, optimizer, number of evaluations, and the forces of contact springs in them.
 pub fn searched(answer: &Answer) -> String {
     let record = answer.record;
     let (task, method) = (record.config.task_name(), record.config.method());
-    match record.settled {
-        true => format!("{task} with {method}: settled {}", words::settled(record)),
-        false => format!("{task} with {method}: {} evaluations", record.evaluations.len()),
-    }
+    let evaluated = match record.settled {
+        true => format!("settled {}", words::settled(record)),
+        false => format!("{} evaluations", record.evaluations.len()),
+    };
+    let mut forces: Vec<_> =
+        record.limits.mating.iter().copied().map(words::mating_force).collect();
+    forces.dedup();
+    format!("{task} with {method}: {evaluated}; mating force {}", forces.join(", "))
 }
 
 /// Returns how many designs tie with the recommended one, and their parameters.

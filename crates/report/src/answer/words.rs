@@ -54,6 +54,11 @@ pub fn number(value: f64, decimals: usize, unit: &str) -> String {
     if value.len() > 15 { "none".to_owned() } else { format!("{value} {unit}") }
 }
 
+/// Returns the force of a connector's contact springs, `up to 12 N`, or that none is given.
+pub fn mating_force(largest: Option<f64>) -> String {
+    largest.map_or("none given".to_owned(), |largest| format!("up to {}", number(largest, 1, "N")))
+}
+
 /// Returns an outcome in words, a failure with its class: `jammed (class 3)`.
 pub fn outcome(outcome: Outcome) -> String {
     let class = outcome.failure().map_or(String::new(), |number| format!(" (class {number})"));

@@ -10,7 +10,7 @@ use crate::answer::words::number;
 use crate::text_table;
 use calibration::identify::check::Remark;
 use calibration::identify::formulas::{Flange, Friction, Slide};
-use calibration::identify::misfit::{Misfit, misfits};
+use calibration::identify::misfit::{Misfit, Validation, misfits};
 use calibration::identify::question::{Compared, IdentifyDone};
 use calibration::identify::unknown::{Unknown, ValueOrigin};
 use input::units::{MM, N_PER_MM};
@@ -36,6 +36,7 @@ pub struct Output<'a> {
     compared_share: f64,
     phases: Vec<Misfit>,
     attempts: Vec<Attempt<'a>>,
+    validation: Option<Validation>,
 }
 
 #[derive(Serialize)]
@@ -117,6 +118,7 @@ impl<'a> Output<'a> {
             compared_share: found.smoothed.compared,
             phases: misfits(&found.compared),
             attempts: found.compared.iter().map(attempt).collect(),
+            validation: Validation::of(found),
         }
     }
 }
@@ -176,6 +178,10 @@ pub fn text(done: &IdentifyDone) -> String {
             100.0 * found.smoothed.compared
         );
     }
+    if let Some(one) = Validation::of(found) {
+        let warning = if one.is_doubtful() { "warning: " } else { "" };
+        text += &format!("{warning}{}\n", validated(&one));
+    }
     for one in unmodelled(&found.compared) {
         text += &format!("warning: {one}\n");
     }
@@ -190,6 +196,16 @@ fn origin(from: ValueOrigin) -> &'static str {
         ValueOrigin::Prior => "not identifiable",
         ValueOrigin::Files => "not fitted",
     }
+}
+
+/// Returns a sentence on the attempt that was not fitted.
+fn validated(one: &Validation) -> String {
+    let Validation { log, offset_mm, outcome, outcome_predicted, misfit, misfit_fitted } = one;
+    let means = if one.is_doubtful() { "; do not trust predictions of this cell" } else { "" };
+    format!(
+        "An attempt that was not fitted ({log}, start {offset_mm:+.1} mm): {outcome}, predicted {outcome_predicted}; \
+         misfit of the force {misfit:.2}, of the fitted attempts {misfit_fitted:.2}{means}."
+    )
 }
 
 /// Returns a sentence on each phase and force component that the identified cell does not explain.

@@ -1,6 +1,6 @@
 //! `identify.html`: the identified cell and the curves that it was identified from.
 
-use super::{AXES, origin, short, unmodelled};
+use super::{AXES, origin, short, unmodelled, validated};
 use crate::answer::words::{design, number, outcome, stiffness};
 use crate::chart::{Area, Drawn, around, axes, message, sheet, words};
 use crate::elements::{definitions, document, stacked, table};
@@ -10,7 +10,7 @@ use crate::theme::{BLUE, INK, MUTED, ORANGE, inline};
 use calibration::identify::curves::{Curves, STEP_S};
 use calibration::identify::formulas::{Flange, Friction};
 use calibration::identify::log::Ended;
-use calibration::identify::misfit::misfits;
+use calibration::identify::misfit::{Validation, misfits};
 use calibration::identify::question::{Compared, Identified, IdentifyDone};
 use calibration::identify::unknown::{Unknown, ValueOrigin};
 use input::units::MM;
@@ -60,6 +60,9 @@ pub fn html(done: &IdentifyDone) -> String {
                     "Force on the tool in the task's frame, from 0.1 s before the first contact, which begins the search. "
                     "Misfit: root mean square of measured minus simulated force, in standard deviations, with the files' numbers → "
                     "with the identified ones, until the contacts of the two differ."
+                }
+                @if let Some(one) = Validation::of(found) {
+                    p.warn[one.is_doubtful()] { (validated(&one)) }
                 }
                 h3 { "All attempts" }
                 (misfit(&found.compared))

@@ -4,6 +4,7 @@ use calibration::identify::curves::Curves;
 use calibration::identify::fixtures::made;
 use calibration::identify::formulas::{Friction, Slide};
 use calibration::identify::log::{Ended, Run};
+use calibration::identify::misfit::Validation;
 use calibration::identify::question::{Compared, Identified, IdentifyDone};
 use calibration::identify::replay::Logged;
 use calibration::identify::smoother::Smoothed;
@@ -55,10 +56,26 @@ fn done() -> IdentifyDone {
             compared: 0.9,
         },
         compared: (0..12).map(|_| attempt()).collect(),
+        aside: Some(attempt()),
     };
     let text = "the sensor is saturated".to_owned();
     let remark = Remark { file: FILE.to_owned(), lines: Some([3, 9]), text, serious: true };
     IdentifyDone { task: "usb".to_owned(), remarks: vec![remark], found, cell }
+}
+
+#[test]
+fn a_cell_that_predicts_worse_than_it_explains_is_doubtful() {
+    let mut done = done();
+    let same = Validation::of(&done.found).unwrap();
+    assert!((same.misfit - same.misfit_fitted).abs() < 1e-9 && !same.is_doubtful());
+    let aside = attempt();
+    done.found.aside = Some(Compared { after: aside.before.clone(), ..aside });
+    let worse = Validation::of(&done.found).unwrap();
+    assert!(worse.is_doubtful(), "{worse:?}");
+    assert!(html(&done).contains("do not trust predictions of this cell"));
+    assert!(super::text(&done).contains("warning: An attempt that was not fitted"));
+    done.found.aside = None;
+    assert!(!html(&done).contains("not fitted ("));
 }
 
 #[test]
@@ -70,6 +87,9 @@ fn the_page_has_every_number_and_curve_and_runs_no_name() {
     has("misfit 2.00 standard deviations before the fit, 0.50 after");
     has("&lt;b&gt;1.csv: lines 3 to 9: the sensor is saturated");
     has("not identifiable: a probe");
+    has(
+        "not fitted (&lt;b&gt;1.csv, start +2.2 mm): inserted, predicted inserted; misfit of the force ",
+    );
     has("0.200 (the part turned)");
     has("10 % infill at 0°, start +2.2 mm: inserted");
     done.found.unknowns.iter().for_each(|one| has(&one.posterior.name));

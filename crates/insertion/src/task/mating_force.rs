@@ -1,0 +1,97 @@
+//! Mating force: friction of the connector's contact springs along the axis of insertion.
+
+use input::units::MM;
+use input::units::read::mm;
+use input::{Check, InputError, shown};
+use serde::Deserialize;
+
+/// Force of contact springs on the plug by its depth: depths of the tip, m, ascending, and force, N.
+///
+/// It is measured on a connector that is mated slowly, against the depth (EIA-364-13, "Mating and unmating force
+/// test procedure for electrical connectors"). Springs press on the plug's sides, so that most of it is friction: it
+/// opposes the axial velocity in either direction, and holds a plug at rest (Coulomb; Holm 1967, Electric
+/// Contacts). Centring by the springs, and a lower force of unmating, are not modelled.
+pub type MatingForce = Vec<[f64; 2]>;
+
+/// Table `[mating_force]` of a task file; SI units.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawMatingForce {
+    #[serde(rename = "depth_mm", deserialize_with = "mm")]
+    depth: Vec<f64>,
+    #[serde(rename = "force_n")]
+    force: Vec<f64>,
+}
+
+/// Checks that there is a force for each depth, and that the depths ascend.
+pub fn mating_force(check: Check<'_>, raw: RawMatingForce) -> Result<MatingForce, InputError> {
+    let RawMatingForce { depth, force } = raw;
+    if depth.is_empty() || depth.len() != force.len() {
+        let problem = format!(
+            "has {} values for {} depths; there must be one for each, and at least one",
+            force.len(),
+            depth.len()
+        );
+        return check.fail("mating_force.force_n", problem);
+    }
+    if let Some(pair) = depth.windows(2).find(|pair| pair[0] >= pair[1]) {
+        let [upper, lower] = [pair[0], pair[1]].map(|depth| shown(depth / MM));
+        let problem = format!("{lower} follows {upper}; depths must ascend");
+        return check.fail("mating_force.depth_mm", problem);
+    }
+    Ok(depth.into_iter().zip(force).map(|(depth, force)| [depth, force]).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::fixtures::{finger, rig, task, task_file};
+    use crate::outcome::{FailureClass, Outcome};
+    use crate::task::Task;
+    use crate::trial::{Grasp, Rig, Trial};
+    use input::InputError;
+    use input::units::MM;
+
+    fn parsed(table: &str) -> Result<Task, InputError> {
+        Task::parse(&format!("{}\n[mating_force]\n{table}\n", task_file("usb").text), "usb.toml")
+    }
+
+    /// Trial of usb with springs of a force, N, in a grasp that bears 1 mm of slip.
+    fn pushed(force: f64) -> Trial {
+        let mut task = task("usb");
+        task.mating_force = Some(vec![[0.0, 0.0], [MM, force]]);
+        task.grip.slip_limit = MM;
+        rig(task).hold(Grasp::of(&finger(2.2, 55.0))).trial(0.0)
+    }
+
+    #[test]
+    fn unknown_keys_unsorted_depths_and_missing_forces_are_refused() {
+        assert!(parsed("depth_mm = [0, 2, 6]\nforce_n = [0, 12, 8]").is_ok());
+        for (table, key, problem) in [
+            ("depth_mm = [0, 6, 2]\nforce_n = [0, 12, 8]", "depth_mm", "2 follows 6"),
+            ("depth_mm = [0, 2, 2]\nforce_n = [0, 12, 8]", "depth_mm", "2 follows 2"),
+            ("depth_mm = [0, 2]\nforce_n = [0, 12, 8]", "force_n", "3 values for 2 depths"),
+            ("depth_mm = []\nforce_n = []", "force_n", "0 values for 0 depths"),
+            ("depth_mm = [0, 2]\nforce_n = [0, -12]", "force_n", "-12"),
+            ("depth_mm = [0, 2]\nforce_n = [0, 12]\nside_n = 1", "side_n", "unknown"),
+        ] {
+            let error = parsed(table).unwrap_err().to_string();
+            assert!(error.contains(key) && error.contains(problem), "{table}: {error}");
+            assert!(error.contains("usb.toml"), "{error}");
+        }
+    }
+
+    #[test]
+    fn springs_beyond_the_friction_of_the_pads_push_the_plug_out_of_the_grasp() {
+        let [free, light, heavy] = [0.0, 10.0, 40.0].map(pushed);
+        assert_eq!([free.outcome, light.outcome], [Outcome::Inserted; 2]);
+        assert!(
+            light.peak_force_n > free.peak_force_n && light.depth_mm < free.depth_mm,
+            "{light:?}"
+        );
+        assert_eq!(
+            heavy.outcome,
+            Outcome::Failed(FailureClass::ContactLossInInsertion),
+            "{heavy:?}"
+        );
+    }
+}

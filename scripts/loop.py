@@ -1,0 +1,335 @@
+#!/usr/bin/env python3
+"""What the loop of study, print, measurement and identification gains in cells whose numbers nobody knows.
+
+Each cell is a robot in MuJoCo with numbers drawn by its seed (finger_opt.robot.SimulatedRobot). In each, six ways to
+choose a finger are followed as a lab would, and then the true windows of all named fingers and of twelve fixed ones
+are walked. Everything found is a line of FOLDER/CELL/found.jsonl; the same call goes on there.
+
+    scripts/loop.py FOLDER usb:1 ket8:1 ...        runs cells
+    scripts/loop.py FOLDER --table                 prints what was found
+
+Needs the Python package with the extra mujoco.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import finger_opt as fo
+from finger_opt._rehearsal import Rehearsal
+from finger_opt.robot import SimulatedRobot, measure_window
+
+MEDIUM = (20.0, 20.0)
+BUDGET = 200
+PRINTS = 4
+#: Strides and resolution of a true window, and how far it is looked for, mm.
+STRIDE_MM, FINE_MM, FARTHEST_MM = 0.5, 0.1, 12.0
+#: Numbers of the space codesign that a lab sets without another print.
+STRATEGY = ("task.strategy.tilt_deg", "task.strategy.phase.touch.preload_mm", "task.strategy.phase.side.move_mm.y",
+            "task.grip.force_n", "task.strategy.phase.assembly.speed_mm_per_s")
+
+
+def fixed() -> list[tuple[float, float]]:
+    """Twelve fingers of a Sobol set over 10 to 30 % and 0 to 40 degrees."""
+    return [(10.0 + round(20.0 * x), round(40.0 * y)) for x, y in sobol(12)]
+
+
+def sobol(count: int) -> Iterator[tuple[float, float]]:
+    """The first points of the two-dimensional Sobol sequence behind 0 (Bratley and Fox 1988)."""
+    first, second = [1 << (31 - i) for i in range(32)], [1 << 31]
+    for i in range(1, 32):
+        second.append(second[i - 1] ^ (second[i - 1] >> 1))
+    x = y = 0
+    for n in range(count):
+        bit = (~n & (n + 1)).bit_length() - 1
+        x, y = x ^ first[bit], y ^ second[bit]
+        yield x / 2**32, y / 2**32
+
+
+class Cell:
+    """A hidden cell, and what has been found in it."""
+
+    def __init__(self, root: Path, task: str, seed: int) -> None:
+        self.task, self.seed, self.path = task, seed, root / f"{task}-{seed}"
+        self.path.mkdir(parents=True, exist_ok=True)
+        self.file = self.path / "found.jsonl"
+        lines = self.file.read_text(encoding="utf-8").splitlines() if self.file.exists() else []
+        self.found: dict[str, Any] = {one["key"]: one for one in map(json.loads, lines)}
+
+    def once(self, key: str, find: Callable[[], Any]) -> Any:
+        """What was found under a key, or is now; with its processor time."""
+        if key not in self.found:
+            began = time.process_time()
+            value = find()
+            line = {"key": key, "value": value, "cpu_s": round(time.process_time() - began, 1)}
+            with self.file.open("a", encoding="utf-8") as file:
+                file.write(json.dumps(line) + "\n")
+            self.found[key] = line
+            print(f"{self.path.name} {key}: {value} ({line['cpu_s']} s)", flush=True)
+        return self.found[key]["value"]
+
+    # The lab.
+
+    def taught_mm(self, finger: list[float], strategy: dict[str, float]) -> float | None:
+        """The inserting start that is nearest to the task's own, by 1 mm: what somebody teaches."""
+        def find() -> float | None:
+            robot = self.truth(finger, strategy)
+            near = sorted(range(-8, 9), key=lambda at: (abs(at), -at))
+            return next((float(at) for at in near if robot.insert(at, None, exact=True).inserted), None)
+
+        return self.once(f"taught {finger} {strategy}", find)
+
+    def window_mm(self, finger: list[float], strategy: dict[str, float] | None = None) -> float:
+        """The width of the true window, walked from the taught start."""
+        strategy = strategy or {}
+        taught = self.taught_mm(finger, strategy)
+
+        def find() -> list[float]:
+            if taught is None:
+                return [0.0, 0.0]
+            robot = self.truth(finger, strategy)
+            return [end(lambda at: robot.insert(at, None, exact=True).inserted, taught, sign) for sign in (-1, 1)]
+
+        low, high = self.once(f"window {finger} {strategy}", find)
+        return round(high - low, 2)
+
+    def truth(self, finger: list[float], strategy: dict[str, float]) -> Rehearsal:
+        return Rehearsal(set_to(self.task, strategy), *finger, None, self.seed)
+
+    def measure(self, folder: Path, finger: list[float], probe: bool) -> int:
+        """Measures a finger into a folder as a lab does; returns the attempts."""
+        taught = self.taught_mm(finger, {})
+        bench = folder / "bench.csv"
+        folder.mkdir(exist_ok=True)
+
+        def find() -> int:
+            if taught is None:
+                note_nothing(bench, self.task, finger)
+                return 17
+            robot = SimulatedRobot(self.task, *finger, "mujoco", seed=self.seed, taught_mm=taught)
+            found = measure_window(robot, task=self.task, density=finger[0], direction=finger[1], out=bench, probe=probe)
+            return found.attempts
+
+        return self.once(f"measured {folder.name} {finger}", find)
+
+    # The ways.
+
+    def run(self, nominal: list[float]) -> None:
+        named = [list(MEDIUM), nominal]
+        for finger, strategy in self.by_identification():
+            self.window_mm(finger, strategy)
+            named.append(finger)
+        named += self.by_measurement()
+        for finger in [*named, *map(list, fixed())]:
+            self.window_mm(finger)
+
+    def by_measurement(self) -> list[list[float]]:
+        """Way c: prints by ``next`` with measured ranges only."""
+        folder, prints = self.path / "c", []
+        for i in range(PRINTS):
+            def ask() -> list[float] | None:
+                bench = folder / "bench.csv"
+                folder.mkdir(exist_ok=True)
+                advice = fo.next_print(bench, self.task, cache=self.path.parent / "cache")
+                return None if advice.stop or not advice.next else infill(advice.next[0].values)
+
+            finger = self.once(f"c print {i + 1}", ask)
+            if finger is None:
+                break
+            self.measure(folder, finger, probe=False)
+            prints.append(finger)
+        return prints
+
+    def by_identification(self) -> list[tuple[list[float], dict[str, float]]]:
+        """Ways d, e and f: two fingers' logs, a cell, a study, one finger more."""
+        folder = self.path / "d"
+        for finger in first_prints(self.path.parent, self.task):
+            self.measure(folder, finger, probe=True)
+        if not self.identified(folder, "cell"):
+            return []
+        d = self.once("d", lambda: self.study("cell", "infill"))
+        e = self.once("e", lambda: self.study("cell", str(strategy_space(self.path))))
+        self.measure(folder, infill(d), probe=False)
+        chosen = [(infill(d), {}), (infill(e), strategy(e))]
+        if self.identified(folder, "again"):
+            f = self.once("f", lambda: self.study("again", "infill"))
+            both = self.once("f with strategy", lambda: self.study("again", str(strategy_space(self.path))))
+            chosen += [(infill(f), {}), (infill(both), strategy(both))]
+        return chosen
+
+    def identified(self, folder: Path, name: str) -> bool:
+        def find() -> dict[str, float] | None:
+            try:
+                cell = fo.identify(self.task, folder / "runs.csv", self.path / f"{name}.toml")
+            except (fo.InputError, fo.StudyError) as error:
+                print(f"{self.path.name} {name}: {error}", file=sys.stderr)
+                return None
+            return {one.name: one.value for one in cell.unknowns}
+
+        return self.once(f"identified {name}", find) is not None
+
+    def study(self, cell: str, space: str) -> dict[str, float]:
+        study = fo.Study.create(self.task, budget=BUDGET, space=space, cell=self.path / f"{cell}.toml",
+                                out=self.path / f"study-{cell}-{Path(space).stem}", no_levers=True, no_map=True)
+        found = study.run(progress=False).answer.finger
+        return found or dict(zip(("infill_density_percent", "infill_direction_deg"), MEDIUM))
+
+
+def end(inserts: Callable[[float], bool], start: float, sign: int) -> float:
+    """The last start that inserts before two neighbouring ones fail, walked by strides, then bisected."""
+    last = at = start
+    while abs(at - start) < FARTHEST_MM and at - last <= STRIDE_MM and last - at <= STRIDE_MM:
+        at += sign * STRIDE_MM
+        if inserts(at):
+            last = at
+    low, high = 0, round(STRIDE_MM / FINE_MM)
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if inserts(last + sign * middle * FINE_MM) else (low, middle)
+    return round(last + sign * low * FINE_MM, 2)
+
+
+def infill(values: dict[str, float]) -> list[float]:
+    return [values["infill_density_percent"], values["infill_direction_deg"]]
+
+
+def strategy(values: dict[str, float]) -> dict[str, float]:
+    return {key: values[key] for key in STRATEGY if key in values}
+
+
+def set_to(name: str, strategy: dict[str, float]) -> fo.Task:
+    """The task with another strategy."""
+    task = fo.Task.from_toml(name)
+    for key, value in strategy.items():
+        *path, last = key.split(".")[1:]
+        outer, at = None, task
+        for part in path:
+            outer, at = at, at[part]
+        if last in ("x", "y", "z") and outer is not None:
+            # A vector is set whole.
+            move = list(at)
+            move["xyz".index(last)] = value
+            outer[path[-1]] = move
+        else:
+            at[last] = value
+    return task
+
+
+def strategy_space(folder: Path) -> Path:
+    """The shipped space codesign without the finger's remote centre, which no print sets by itself."""
+    from finger_opt import _native
+
+    rows = json.loads(_native.space("codesign"))
+    keys = ("infill_density_percent", "infill_direction_deg", *STRATEGY)
+    text = 'name = "strategy"\ndescription = "infill and what a lab sets on its robot"\n'
+    for row in rows:
+        if row["name"] in keys:
+            text += (f'\n[[parameter]]\nkey = "{row["name"]}"\nlow = {row["low"]}\nhigh = {row["high"]}\n'
+                     f'step = {row["step"]}\nsource = "codesign"\n')
+    path = folder / "strategy.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def note_nothing(bench: Path, task: str, finger: list[float]) -> None:
+    """Notes a finger that inserts from no start."""
+    subprocess.run([sys.executable, "-m", "finger_opt", "measure", "add", bench, "--task", task, "--density",
+                    f"{finger[0]:g}", "--direction", f"{finger[1]:g}", "--not-measurable"], check=True,
+                   stdout=subprocess.DEVNULL)
+
+
+def nominal_best(root: Path, task: str) -> list[float]:
+    """Way b: the best finger of a study in the shipped cell."""
+    def find() -> list[float]:
+        study = fo.Study.create(task, budget=BUDGET, out=root / f"nominal-{task}", no_levers=True, no_map=True)
+        return infill(study.run(progress=False).answer.finger or {})
+
+    return kept(root / f"nominal-{task}.json", find)
+
+
+def first_prints(root: Path, task: str) -> list[list[float]]:
+    """The two fingers that ``next`` prints before anything is measured: the same for every cell."""
+    def find() -> list[list[float]]:
+        advice = fo.next_print(root / "none.csv", task, count=2, cache=root / "cache")
+        return [infill(one.values) for one in advice.next]
+
+    return kept(root / f"first-{task}.json", find)
+
+
+def kept(file: Path, find: Callable[[], Any]) -> Any:
+    if not file.exists():
+        file.write_text(json.dumps(find()), encoding="utf-8")
+    return json.loads(file.read_text(encoding="utf-8"))
+
+
+def gains(folder: Path, cell: Path) -> dict[str, float] | None:
+    """The true width of each way's finger, mm; ``None`` for a cell that has not been run to its end."""
+    task, seed = cell.name.rsplit("-", 1)
+    found = Cell(folder, task, int(seed)).found
+    widths = {key.removeprefix("window "): round(one["value"][1] - one["value"][0], 2)
+              for key, one in found.items() if key.startswith("window ")}
+
+    def width(finger: list[float] | None, chosen: dict[str, float] | None = None) -> float | None:
+        return None if finger is None else widths.get(f"{finger} {chosen or {}}")
+
+    def value(key: str) -> Any:
+        return found.get(key, {}).get("value")
+
+    prints = [value(f"c print {i + 1}") for i in range(PRINTS)]
+    d, e, f, g = (value(key) for key in ("d", "e", "f", "f with strategy"))
+    said = {"a": width(list(MEDIUM)), "b": width(nominal_best(folder, task)),
+            "c": max((width(one) or 0.0 for one in prints if one), default=None)}
+    said |= {"d": width(infill(d)) if d else said["a"], "e": width(infill(e), strategy(e)) if e else said["a"]}
+    said |= {"f": width(infill(f)) if f else said["d"], "f+e": width(infill(g), strategy(g)) if g else said["e"]}
+    if len([one for one in fixed() if width(list(one)) is not None]) < 12 or None in said.values():
+        return None
+    return {**said, "best": max(widths.values()),
+            "best shipped": max(width for key, width in widths.items() if key.endswith("{}"))}
+
+
+def table(folder: Path) -> None:
+    """Prints the gain of each way over the medium finger with the shipped strategy, and its share of the possible."""
+    cells = {path.name: gains(folder, path) for path in sorted(folder.glob("*-[0-9]*")) if path.is_dir()}
+    done = {name: one for name, one in cells.items() if one}
+    ways = ("a", "b", "c", "d", "e", "f", "f+e", "best shipped", "best")
+    print("| cell | " + " | ".join(f"{way}, mm" for way in ways) + " |\n| --- |" + " --- |" * len(ways))
+    for name, one in done.items():
+        print(f"| {name} | " + " | ".join(f"{one[way]:.1f}" for way in ways) + " |")
+    for way in ways[1:]:
+        gain = [one[way] - one["a"] for one in done.values()]
+        best = "best" if "e" in way else "best shipped"
+        share = [100.0 * (one[way] - one["a"]) / (one[best] - one["a"]) for one in done.values() if one[best] > one["a"]]
+        if len(gain) > 1 and len(share) > 1:
+            low, middle, high = statistics.quantiles(gain, n=4)
+            print(f"{way}: {middle:+.1f} mm ({low:+.1f} to {high:+.1f}), {statistics.median(share):.0f} % of the possible; "
+                  f"worse than a by more than 0.3 mm in {sum(one < -0.3 for one in gain)} of {len(gain)} cells")
+    left = sorted(set(cells) - set(done))
+    if left:
+        print(f"not at their end: {', '.join(left)}")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("cells", nargs="*", metavar="TASK:SEED")
+    parser.add_argument("--table", action="store_true")
+    asked = parser.parse_args()
+    asked.folder = asked.folder.resolve()
+    asked.folder.mkdir(parents=True, exist_ok=True)
+    for cell in asked.cells:
+        task, seed = cell.rsplit(":", 1)
+        Cell(asked.folder, task, int(seed)).run(nominal_best(asked.folder, task))
+    if asked.table:
+        table(asked.folder)
+
+
+if __name__ == "__main__":
+    main()

@@ -2,9 +2,9 @@
 # Regenerates every figure under results/reference from the current sources, and records the hash
 # of these sources (scripts/stale.sh). Parts can be selected:
 #
-#     scripts/reference.sh                          all parts but the last four
+#     scripts/reference.sh                          all parts but the last five
 #     scripts/reference.sh validation               one part
-#     scripts/reference.sh landscapes settled identify peers   the parts omitted by default
+#     scripts/reference.sh landscapes settled identify peers prints   the parts omitted by default
 #
 # Landscapes are recorded functions for benchmarking optimizers, not figures of the current
 # model: if they change, all of results/reference/optimizers.md must be regenerated. Peers
@@ -282,6 +282,14 @@ identify() {
     record windows "$folder"/*
 }
 
+# Prints to the best finger on synthetic benches. Takes half an hour of processor time, most of it for simulations.
+prints() {
+    local folder="$reference/bench/prints"
+    "$programs/prints" --benches 1 64 --out "$folder/tuned" --cache "$work/cache"
+    "$programs/prints" --benches 65 128 --out "$folder/held-out" --cache "$work/cache"
+    record bench "$folder"/*/*.csv
+}
+
 # All runs of the tables of results/reference/optimizers.md but Rastrigin's, which a test of ask-tell repeats.
 peers() {
     local python=${PYTHON:-venv/bin/python} csv="$work/peers.csv" folder="$reference/optimizers"
@@ -302,8 +310,8 @@ peers() {
 }
 
 for part in ${*:-$parts}; do
-    case " $parts landscapes settled identify peers " in
+    case " $parts landscapes settled identify peers prints " in
         *" $part "*) echo "== $part" >&2; "$part" ;;
-        *) echo "unknown part $part; available: $parts landscapes settled identify peers" >&2; exit 2 ;;
+        *) echo "unknown part $part; available: $parts landscapes settled identify peers prints" >&2; exit 2 ;;
     esac
 done

@@ -234,6 +234,15 @@ class Print(Result):
 
 
 @dataclass(frozen=True, repr=False)
+class Choice(Result):
+    """The finger with the largest expected range, to be used if nothing more is printed."""
+
+    values: dict[str, float] = field(metadata=REST)
+    expected_mm: float
+    measured: bool
+
+
+@dataclass(frozen=True, repr=False)
 class Advice(Result):
     """Which fingers to print next; ``stop``: none is worth its print."""
 
@@ -242,4 +251,5 @@ class Advice(Result):
     measurements_missing: bool
     best_known_mm: float | None
     next: tuple[Print, ...]
+    choice: Choice | None
     stop: bool

@@ -587,8 +587,9 @@ def next_print(
 ) -> Advice:
     """Recommend the finger to print next, or to stop printing, as ``optimize next`` does.
 
-    It is the finger with the largest expected improvement of the best range on the bench, by simulation and
-    measurements; the file of measurements may be empty or missing.
+    It is the finger whose measurement is expected to improve the final choice most, by simulation and
+    measurements: because it may be the best, or because it decides between others. The file of measurements
+    may be empty or missing.
 
     Args:
         measurements: Bench measurements: published, or the path of a file.
@@ -605,7 +606,8 @@ def next_print(
         start: How the nominal start is chosen [default: as in the task file].
         count: Number of fingers to print at a time.
         among: Fingers that may be printed.
-        print_cost_mm: Smallest gain of range that is worth a print and its measurement, mm.
+        print_cost_mm: Smallest expected gain of the chosen finger's range that is worth a print and its
+            measurement, mm.
         priors: Priors of the parameters that were not measured: bench, or the path of a file.
         simulations: Simulations per task for the emulator of a bench prediction; one in eight measures its
             error [default: 200, or as in the study].

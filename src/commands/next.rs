@@ -26,8 +26,8 @@ pub enum Among {
 
 /// Recommend the finger to print next, or to stop printing.
 ///
-/// It is the finger with the largest expected improvement of the best range on the bench, by simulation and
-/// measurements; the file of measurements may be empty or missing.
+/// It is the finger whose measurement is expected to improve the final choice most, by simulation and measurements:
+/// because it may be the best, or because it decides between others. The file of measurements may be empty or missing.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 22,
@@ -44,7 +44,7 @@ pub struct Request {
     /// Fingers that may be printed
     #[arg(long, value_enum, default_value = "space")]
     pub among: Among,
-    /// Smallest gain of range that is worth a print and its measurement, mm
+    /// Smallest expected gain of the chosen finger's range that is worth a print and its measurement, mm
     #[arg(long, value_name = "MM", default_value_t = 0.1, value_parser = print_cost)]
     pub print_cost_mm: f64,
     /// Options of the computation.
@@ -67,7 +67,17 @@ pub struct Advised {
     measurements_missing: bool,
     best_known_mm: Option<f64>,
     next: Vec<Print>,
+    choice: Option<Choice>,
     stop: bool,
+}
+
+/// Finger with the largest expected range: the one to use if nothing more is printed.
+#[derive(Serialize)]
+struct Choice {
+    #[serde(flatten)]
+    design: Design,
+    expected_mm: f64,
+    measured: bool,
 }
 
 /// Finger to print.
@@ -128,12 +138,18 @@ impl command::Request for Request {
             expected_gain_mm: print.expected_gain_mm,
             reason: print.reason,
         };
+        let choice = |choice: calibration::next::Choice| Choice {
+            design: subject.designs[choice.finger].clone(),
+            expected_mm: choice.expected_mm,
+            measured: choice.measured,
+        };
         let value = Advised {
             task: subject.task.clone(),
             measured: subject.measured().len(),
             measurements_missing: missing,
             best_known_mm: advice.best_known_mm,
             next: advice.next.into_iter().map(print).collect(),
+            choice: advice.choice.map(choice),
             stop: advice.stop,
         };
         Ok(Output { text: value.text(file, cost_mm), value, picture: None })
@@ -160,12 +176,21 @@ impl Advised {
                 print.expected_mm, print.low_mm, print.high_mm, print.reason
             ));
             lines.push(format!(
-                "   expected improvement {:.2} mm, counting 0 where it turns out narrower",
+                "   expected improvement of the finger chosen afterwards: {:.2} mm",
                 print.expected_gain_mm
             ));
         }
         if self.stop {
-            lines.push(format!("stop: no finger is expected to gain more than {print_cost_mm} mm"));
+            let gain = format!("more than {print_cost_mm} mm");
+            lines
+                .push(format!("stop: no print is expected to improve the chosen finger by {gain}"));
+        }
+        if let Some(choice) = self.choice.as_ref().filter(|_| self.stop || *measured > 0) {
+            let known = if choice.measured { "measured" } else { "not measured" };
+            let (finger, mm) = (design(&choice.design), choice.expected_mm);
+            lines.push(format!(
+                "without a further print choose {finger}: expected {mm:.1} mm, {known}"
+            ));
         }
         lines.join("\n") + "\n"
     }

@@ -59,7 +59,8 @@ pub struct HowCalibrated {
     pub cache: CacheRequest,
 }
 
-pub(crate) struct Prepared<'a> {
+/// Fingers, simulations and measurements of a calibration.
+pub struct Prepared<'a> {
     /// Fingers of the tasks, in order.
     pub subjects: Vec<Subject>,
     /// Meaning of each coordinate.
@@ -87,7 +88,7 @@ impl HowCalibrated {
 
     /// Simulates the tasks and reads their measurements; `more` are fingers to predict besides those of the
     /// space.
-    pub(crate) fn prepare<'a>(
+    pub fn prepare<'a>(
         &self,
         (bench, measurements): (&BenchRequest, &Source),
         more: &[Design],

@@ -1,0 +1,226 @@
+//! Counts how many prints `optimize next` takes to the best of the eleven published fingers on synthetic benches
+//! with known ranges: linear in the stiffness, curved, or with a step; noise of 0.1 to 0.5 mm; every task.
+//!
+//! Writes two tables: `benches.csv` (a line for each bench) and `summary.csv` (means for each task and shape).
+
+use ask_tell::normal::StandardNormal;
+use ask_tell::statistics::mean;
+use ask_tell::stream::stream;
+use calibration::bench::{Observation, sampled};
+use calibration::next::advise;
+use calibration::predict::{Of, predict};
+use clap::Parser;
+use finger_opt::context::Context;
+use finger_opt::failure::Failure;
+use finger_opt::setup::bench::{BenchRequest, DEFAULT_PRIORS, HowCalibrated, Prepared};
+use finger_opt::setup::request::{SetupRequest, TaskSource};
+use finger_opt::setup::run::{CacheRequest, EffortRequest};
+use input::shipped::Source;
+use insertion::space::Design;
+use insertion::stiffness::designs;
+use insertion::trial::NEVER;
+use rand::RngExt;
+use rayon::prelude::*;
+use std::path::PathBuf;
+use study::write_file;
+
+const TASKS: [&str; 4] = ["usb", "ket8", "ket12", "rj45"];
+/// Shapes of the true ranges over the stiffness, in turn.
+const SHAPES: [&str; 4] = ["linear", "curved", "linear", "step"];
+const NOISES_MM: [f64; 4] = [0.1, 0.2, 0.3, 0.5];
+/// Prints after which the regret is taken.
+const FEW: usize = 3;
+const HEADER: &str =
+    "task,shape,bench,noise_mm,spread_mm,prints_to_best,regret_printed_mm,regret_named_mm\n";
+
+#[derive(Parser)]
+struct Arguments {
+    /// Numbers of the first and the last bench of each task
+    #[arg(long, required = true, num_args = 2, value_names = ["FIRST", "LAST"])]
+    benches: Vec<u64>,
+    /// Folder of the tables
+    #[arg(long)]
+    out: PathBuf,
+    /// Cache of the simulations
+    #[arg(long)]
+    cache: Option<PathBuf>,
+}
+
+/// Synthetic bench.
+struct Truth {
+    shape: &'static str,
+    noise_mm: f64,
+    /// True ranges of the published fingers.
+    ranges_mm: Vec<f64>,
+}
+
+/// Result on one bench.
+struct Found {
+    task: &'static str,
+    number: u64,
+    truth: Truth,
+    prints_to_best: usize,
+    /// What the best printed finger, and the finger of the largest expected range, have less than the best one
+    /// after `FEW` prints, mm.
+    regrets_mm: [f64; 2],
+}
+
+fn main() -> Result<(), Failure> {
+    let Arguments { benches, out, cache } = Arguments::parse();
+    let cache = CacheRequest { dir: cache, off: false };
+    let mut found: Vec<Found> = Vec::new();
+    for task in TASKS {
+        let prepared = prepared(task, &cache)?;
+        let one = |number: u64| replay(&prepared, task, number);
+        found.extend((benches[0]..=benches[1]).into_par_iter().map(one).collect::<Vec<_>>());
+        eprintln!("{task}");
+    }
+    write_file(
+        &out.join("benches.csv"),
+        &(HEADER.to_owned() + &found.iter().map(line).collect::<String>()),
+    )?;
+    write_file(&out.join("summary.csv"), &summary(&found))?;
+    Ok(())
+}
+
+fn published() -> Vec<Design> {
+    let infill = designs().into_iter();
+    infill.map(|design| Design::infill(design.density_percent, design.direction_deg)).collect()
+}
+
+/// Emulator and fingers of a task, with nothing measured.
+fn prepared(task: &str, cache: &CacheRequest) -> Result<Prepared<'static>, Failure> {
+    let tasks = vec![TaskSource::Named(task.to_owned())];
+    let bench = BenchRequest {
+        setup: SetupRequest { tasks, ..SetupRequest::default() },
+        measurements: String::new(),
+    };
+    let how = HowCalibrated {
+        priors: DEFAULT_PRIORS.to_owned(),
+        effort: EffortRequest::default(),
+        seed: 0,
+        cache: cache.clone(),
+    };
+    let nothing = Source { file: String::new(), text: String::new() };
+    how.prepare((&bench, &nothing), &published(), &Context::silent(&NEVER))
+}
+
+impl Truth {
+    fn new(task: &str, number: u64) -> Self {
+        let mut random = stream(number, 0, &format!("bench of {task}"));
+        // Of normal components, so that all directions are equally likely.
+        let [along, across] = [0, 1].map(|_| along([0, 1].map(|_| random.sample(StandardNormal))));
+        let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
+        let (level_mm, spread_mm) = (between(4.0, 8.0), between(1.5, 4.0));
+        let (middle, edge) = (between(0.2, 0.8), between(0.3, 0.7));
+        let at = number as usize - 1;
+        let (shape, noise_mm) = (SHAPES[at % 4], NOISES_MM[at / 4 % 4]);
+        let height = |(x, y): (&f64, &f64)| match shape {
+            "curved" => 0.2 * y - (x - middle).powi(2),
+            "step" => 0.5 * x + f64::from(u8::from(*y > edge)) * 0.5,
+            _ => *x,
+        };
+        let heights = unit(along.iter().zip(&across).map(height).collect());
+        // The ends of a window lie on a grid of 0.1 mm.
+        let range_mm = |height: &f64| tenths(level_mm + spread_mm * (height - 0.5));
+        let ranges_mm = heights.iter().map(range_mm).collect();
+        Truth { shape, noise_mm, ranges_mm }
+    }
+
+    fn best_mm(&self) -> f64 {
+        self.ranges_mm.iter().copied().fold(0.0, f64::max)
+    }
+}
+
+/// Places of the published fingers along a direction in the plane of both standardised stiffnesses, 0 to 1.
+fn along([x, y]: [f64; 2]) -> Vec<f64> {
+    let all = designs();
+    let compliance = unit(all.iter().map(|design| design.compliance).collect());
+    let assembly = unit(all.iter().map(|design| design.assembly).collect());
+    unit(compliance.iter().zip(&assembly).map(|(ky, kz)| x * ky + y * kz).collect())
+}
+
+/// Rounds to 0.1 mm.
+fn tenths(mm: f64) -> f64 {
+    (10.0 * mm).round() / 10.0
+}
+
+/// Moves and scales values to 0 to 1.
+fn unit(values: Vec<f64>) -> Vec<f64> {
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    values.iter().map(|value| (value - low) / (high - low)).collect()
+}
+
+/// Prints and measures what is advised until the best finger has been printed.
+fn replay(prepared: &Prepared<'_>, task: &'static str, number: u64) -> Found {
+    let truth = Truth::new(task, number);
+    let Prepared { subjects, layout, settings } = prepared;
+    let subject = &subjects[0];
+    let among: Vec<usize> =
+        published().iter().filter_map(|design| subject.finger(design)).collect();
+    let mut bench = layout.benches(subjects).remove(0);
+    let mut noise = stream(number, 1, &format!("bench of {task}"));
+    let mut printed: Vec<usize> = Vec::new();
+    let mut regrets_mm = [0.0; 2];
+    let mut prints_to_best = None;
+    while prints_to_best.is_none() || printed.len() <= FEW {
+        let mut random = stream(settings.seed, 0, "next");
+        let posterior =
+            sampled(std::slice::from_ref(&bench), layout.dimension(), settings, &mut random);
+        if printed.len() == FEW {
+            let best = printed.iter().map(|&at| truth.ranges_mm[at]).fold(0.0, f64::max);
+            let expected = predict(&bench, &posterior, &among, Of::Truth);
+            let named = (0..among.len())
+                .max_by(|&a, &b| expected[a].mean_mm.total_cmp(&expected[b].mean_mm))
+                .unwrap_or(0);
+            regrets_mm = [best, truth.ranges_mm[named]].map(|range| truth.best_mm() - range);
+            if prints_to_best.is_some() {
+                break;
+            }
+        }
+        let advice = advise(&bench, &posterior, &among, 1, 0.1, &mut random);
+        let Some(finger) = advice.next.first().map(|print| print.finger) else { break };
+        let at = among.iter().position(|&one| one == finger).unwrap_or(0);
+        printed.push(at);
+        let normal: f64 = noise.sample(StandardNormal);
+        let range_mm = tenths(truth.ranges_mm[at] + truth.noise_mm * normal).max(0.0);
+        bench.observations.push(Observation { finger, range_mm, at_least: false, repeats: 1 });
+        if truth.ranges_mm[at] == truth.best_mm() {
+            prints_to_best = prints_to_best.or(Some(printed.len()));
+        }
+    }
+    Found { task, number, truth, prints_to_best: prints_to_best.unwrap_or(0), regrets_mm }
+}
+
+fn line(found: &Found) -> String {
+    let Found { task, number, truth, prints_to_best, regrets_mm: [printed, named] } = found;
+    let Truth { shape, noise_mm, ranges_mm } = truth;
+    let spread_mm = truth.best_mm() - ranges_mm.iter().copied().fold(f64::INFINITY, f64::min);
+    format!(
+        "{task},{shape},{number},{noise_mm},{spread_mm:.2},{prints_to_best},{printed:.2},{named:.2}\n"
+    )
+}
+
+fn summary(found: &[Found]) -> String {
+    let mut text =
+        "task,shape,benches,prints_to_best,regret_printed_mm,regret_named_mm\n".to_owned();
+    for task in TASKS.into_iter().chain(["all"]) {
+        for shape in ["linear", "curved", "step"] {
+            let own = || {
+                found
+                    .iter()
+                    .filter(|one| (task == "all" || one.task == task) && one.truth.shape == shape)
+            };
+            let means = [
+                mean(own().map(|one| one.prints_to_best as f64)),
+                mean(own().map(|one| one.regrets_mm[0])),
+                mean(own().map(|one| one.regrets_mm[1])),
+            ];
+            let [prints, printed, named] = means.map(|mean| mean.unwrap_or(0.0));
+            text +=
+                &format!("{task},{shape},{},{prints:.2},{printed:.2},{named:.2}\n", own().count());
+        }
+    }
+    text
+}

@@ -2,13 +2,14 @@
 # Regenerates every figure under results/reference from the current sources, and records the hash
 # of these sources (scripts/stale.sh). Parts can be selected:
 #
-#     scripts/reference.sh                          all parts but the last five
+#     scripts/reference.sh                          all parts but the last six
 #     scripts/reference.sh validation               one part
-#     scripts/reference.sh landscapes settled identify peers prints   the parts omitted by default
+#     scripts/reference.sh landscapes settled identify peers prints loop   the parts omitted by default
 #
 # Landscapes are recorded functions for benchmarking optimizers, not figures of the current
 # model: if they change, all of results/reference/optimizers.md must be regenerated. Peers
-# needs the Python packages listed there, and takes hours.
+# needs the Python packages listed there, loop the Python package with the extra mujoco; both take hours, and loop
+# goes on where it was interrupted.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -290,6 +291,15 @@ prints() {
     record bench "$folder"/*/*.csv
 }
 
+# What the loop of study, print, measurement and identification gains in hidden cells.
+loop() {
+    local cells=() seed
+    for seed in 1 2 3 4 5 6 7 8; do cells+=("usb:$seed" "ket8:$seed"); done
+    python3 scripts/loop.py results/loop "${cells[@]}" rj45:1 rj45:2
+    python3 scripts/loop.py results/loop --table > "$reference/bench/loop.md"
+    record windows "$reference/bench/loop.md"
+}
+
 # All runs of the tables of results/reference/optimizers.md but Rastrigin's, which a test of ask-tell repeats.
 peers() {
     local python=${PYTHON:-venv/bin/python} csv="$work/peers.csv" folder="$reference/optimizers"
@@ -310,8 +320,8 @@ peers() {
 }
 
 for part in ${*:-$parts}; do
-    case " $parts landscapes settled identify peers prints " in
+    case " $parts landscapes settled identify peers prints loop " in
         *" $part "*) echo "== $part" >&2; "$part" ;;
-        *) echo "unknown part $part; available: $parts landscapes settled identify peers prints" >&2; exit 2 ;;
+        *) echo "unknown part $part; available: $parts landscapes settled identify peers prints loop" >&2; exit 2 ;;
     esac
 done

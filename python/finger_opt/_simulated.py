@@ -14,7 +14,10 @@ from ._call import checked, shown, wrong
 from ._commands import trial
 from ._rehearsal import Rehearsal
 from ._task import Given
-from ._words import Engine, StrPath
+from ._words import StrPath
+
+#: Engines of a simulated robot: those of a trial, and MuJoCo with a controller of its own.
+RobotEngine = Literal["direct", "rapier", "fake", "mujoco"]
 
 
 class SimulatedRobot:
@@ -41,7 +44,7 @@ class SimulatedRobot:
         task: Given,
         density: float,
         direction: float,
-        engine: Engine | Literal["mujoco"] = "direct",
+        engine: RobotEngine = "direct",
         cell: Mapping[str, Any] | StrPath | None = None,
         noise: float = 0.0,
         seed: int = 0,

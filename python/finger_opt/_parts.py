@@ -162,7 +162,7 @@ def import_parts(
     with tempfile.TemporaryDirectory() as folder:
         if assembly is not None and len(sides) == 2:
             settings |= {"plug_body": own[0], "socket_body": own[1]}
-            sides = [sum((side for side in sides if isinstance(side, list)), [])]
+            sides = [[body for side in sides if isinstance(side, list) for body in side]]
         meshes = [
             _step.write(side, Path(folder, f"{place}.obj")) if isinstance(side, list) else side
             for place, side in enumerate(sides)

@@ -325,9 +325,11 @@ def _importances(found: Sensitivity, ax: Drawing | None) -> Drawing:
         ("alone", BLUE, -0.2, [(of.first, of.first_low, of.first_high) for of in rows]),
     ]
     for label, fill, place, values in bars:
-        share, low, high = np.asarray(values, dtype=float).reshape(-1, 3).T
-        errors = np.maximum([share - low, high - share], 0.0)
-        axes.barh(np.arange(len(rows)) + place, share, height=0.4, xerr=errors, color=fill, label=label, ecolor="0.4")
+        share = [middle for middle, _, _ in values]
+        errors = [[max(middle - low, 0.0) for middle, low, _ in values],
+                  [max(high - middle, 0.0) for middle, _, high in values]]
+        places = [row + place for row in range(len(rows))]
+        axes.barh(places, share, height=0.4, xerr=errors, color=fill, label=label, ecolor="0.4")
     axes.set_yticks(range(len(rows)), [text(of.name) for of in rows], fontsize=8)
     axes.set(xlabel=f"share of the variance of {found.objective}", title=text(found.task))
     axes.legend(loc="lower right")

@@ -144,3 +144,81 @@ impl Faces {
         least.map(|(gap, place)| (gap * MM, place))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::mated::{Pair, Request, task};
+    use insertion::task::{Solid, geometry};
+
+    /// Faces of boxes of a least and a greatest corner, mm.
+    fn drawn(boxes: &[[[f64; 3]; 2]]) -> Vec<Triangle> {
+        let faces = |[min, max]: &[[f64; 3]; 2]| {
+            let [min, max] = [min, max].map(|corner| Vector3::from(*corner) * MM);
+            let solid = Solid::Box { min, max };
+            let (corners, faces) = geometry::hull(&solid.corners()).unwrap();
+            faces.into_iter().map(move |face| face.map(|corner| corners[corner]))
+        };
+        boxes.iter().flat_map(faces).collect()
+    }
+
+    /// A tube of 4 mm with a post in it, 5 mm deep, and the plug that goes between them.
+    fn pair() -> [Vec<Triangle>; 2] {
+        let bars = |outer: f64, inner: f64, z: [f64; 2]| {
+            let [a, b] = [outer, inner];
+            let bar = |x: [f64; 2], y: [f64; 2]| [[x[0], y[0], z[0]], [x[1], y[1], z[1]]];
+            [
+                bar([-a, a], [-a, -b]),
+                bar([-a, a], [b, a]),
+                bar([-a, -b], [-b, b]),
+                bar([b, a], [-b, b]),
+            ]
+        };
+        let floor = [[-5.0, -5.0, -7.0], [5.0, 5.0, -5.0]];
+        let post = [[-0.9, -0.9, -5.0], [0.9, 0.9, -0.5]];
+        let handle = [[-4.0, -4.0, 1.0], [4.0, 4.0, 20.0]];
+        let socket = [&bars(3.0, 2.0, [-5.0, 0.0])[..], &[floor, post]].concat();
+        [drawn(&[&bars(1.95, 1.0, [-5.0, 1.0])[..], &[handle]].concat()), drawn(&socket)]
+    }
+
+    #[test]
+    fn parts_and_drawing_agree_on_the_gap_at_1000_poses() {
+        let [plug, socket] = pair();
+        let play = [0, 1].map(|axis| (Vector3::ith(axis, 1.0), 0.1 * MM));
+        let jaws = [Vector3::y()];
+        let pair = Pair {
+            plug: &plug,
+            socket: &socket,
+            drawn: [&plug, &socket],
+            out: Vector3::z(),
+            jaws: &jaws,
+            engaged: 5.0 * MM,
+            play,
+        };
+        let request = Request { name: "tube", like: None, handle: None };
+        let made = task(&pair, &request);
+        assert_eq!((made.difference, made.closeup), (None, None));
+        let raised: Vec<Triangle> =
+            plug.iter().map(|face| face.map(|p| p + Vector3::z() * 5.0 * MM)).collect();
+        let (parts, play) = (&made.task.plug.parts, [0.1 * MM; 2]);
+        let bodies = Bodies {
+            drawn: [&raised, &socket],
+            // Without what the fingers hold.
+            parts: [&parts[..parts.len() - 1], &made.task.socket],
+            depth: 5.0 * MM,
+            play,
+        };
+        assert_eq!(difference(&bodies, &[], 1000), None);
+        // A wall that is 0.05 mm off, and one that is not there.
+        let moved: Vec<Triangle> = socket.iter().map(|face| face.map(|p| p * 1.025)).collect();
+        let wrong = task(&Pair { drawn: [&plug, &moved], ..pair }, &request);
+        let off = wrong.difference.unwrap();
+        assert!((off.gaps[0] - off.gaps[1]).abs() > 0.03 * MM, "{off:?}");
+        assert!(wrong.closeup.is_some_and(|svg| svg.starts_with("<svg")));
+        let far = |part: &&Part| part.solid.corners().iter().all(|p| p.x < 1.95 * MM);
+        let few: Vec<Part> = made.task.socket.iter().filter(far).cloned().collect();
+        let bare = Bodies { drawn: [&raised, &socket], parts: [bodies.parts[0], &few], ..bodies };
+        let off = difference(&bare, &[], POSES).unwrap();
+        assert!(off.gaps[0] + TOLERANCE < off.gaps[1], "{off:?}");
+    }
+}

@@ -437,6 +437,10 @@ class _Attempt:
         tilt = np.rad2deg(np.arccos(np.clip(data.xmat[self.plug][8], -1.0, 1.0)))
         opening = self.task.socket.opening_x_mm, self.task.socket.opening_y_mm
         inside = all(low - 0.1 <= at <= high + 0.1 for at, (low, high) in zip(tip, opening))
+        if "mated" in list(success):
+            # Deep beside the mated pose is not inserted.
+            beside = [float(at) - float(place) for at, place in zip(tip[:2], success.mated.tip_mm)]
+            inside = float(np.linalg.norm(beside)) <= float(success.mated.lateral_mm)
         depth = -float(tip[2])
         seated = inside and depth >= success.depth_mm and tilt <= success.tilt_deg
         gripped = not (self.loose_s > LOOSE_S).any()

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import finger_opt as fo
 from finger_opt.robot import SimulatedRobot
 
 pytest.importorskip("mujoco")
@@ -51,6 +52,14 @@ def test_far_from_the_opening_the_plug_misses_wherever_the_start_is_taught() -> 
     assert not missed.inserted and missed.failure == 2
     # Of the same errors.
     assert shifted == missed
+
+
+@pytest.mark.parametrize(("aside_mm", "inserted"), [(0.0, True), (2.54, False)])
+def test_a_plug_one_pitch_beside_its_mated_pose_is_not_inserted(aside_mm: float, inserted: bool) -> None:
+    task = fo.Task.from_toml("usb")
+    task.success.mated = {"tip_mm": [-1.4, aside_mm - 1.2, -12.5], "lateral_mm": 0.7}
+    found = SimulatedRobot(task, 20, 10, "mujoco", seed=5, taught_mm=3.0).insert(0.0)
+    assert found.depth_mm > 12.0 and found.inserted == inserted
 
 
 @pytest.mark.parametrize(("name", "value", "words"), [

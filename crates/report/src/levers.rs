@@ -71,12 +71,12 @@ pub fn text(levers: &Levers) -> String {
 }
 
 /// Width of the diagram, which a phone has, too; height of a row, of head and foot, and margin, pixels.
-const WIDTH: u32 = 440;
-const ROW: u32 = 58;
+const WIDTH: u32 = 356;
+const ROW: u32 = 50;
 const HEAD_AND_FOOT: u32 = 110;
 const LEFT: u32 = 8;
 /// Font size in plot units: 12 pixels on a phone.
-const TEXT: u32 = 18;
+const TEXT: u32 = 15;
 
 /// Draws the ranges at both ends of each lever as bars from the range of the finger as it is, largest
 /// span first; the infill in another colour, negligible levers in grey.

@@ -21,7 +21,7 @@ const COLOURS: [(Outcome, Colour); 6] = [
     (Outcome::Diverged, DIVERGED),
 ];
 /// Width, and height without title and legend, pixels: on a phone the text stays legible.
-const SIZE: (u32, u32) = (440, 360);
+const SIZE: (u32, u32) = (356, 300);
 /// Height of a row of the title and of the legend, pixels.
 const ROW: i32 = 22;
 const LEFT: i32 = 14;

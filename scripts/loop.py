@@ -28,7 +28,6 @@ from finger_opt._rehearsal import Rehearsal
 from finger_opt.robot import SimulatedRobot, measure_window
 
 MEDIUM = (20.0, 20.0)
-BUDGET = 200
 PRINTS = 4
 #: Strides and resolution of a true window, and how far it is looked for, mm.
 STRIDE_MM, FINE_MM, FARTHEST_MM = 0.5, 0.1, 12.0
@@ -177,7 +176,7 @@ class Cell:
         return self.once(f"identified {name}", find) is not None
 
     def study(self, cell: str, space: str) -> dict[str, float]:
-        study = fo.Study.create(self.task, budget=BUDGET, space=space, cell=self.path / f"{cell}.toml",
+        study = fo.Study.create(self.task, space=space, cell=self.path / f"{cell}.toml",
                                 out=self.path / f"study-{cell}-{Path(space).stem}", no_levers=True, no_map=True)
         found = study.run(progress=False).answer.finger
         return found or dict(zip(("infill_density_percent", "infill_direction_deg"), MEDIUM))
@@ -249,7 +248,7 @@ def note_nothing(bench: Path, task: str, finger: list[float]) -> None:
 def nominal_best(root: Path, task: str) -> list[float]:
     """Way b: the best finger of a study in the shipped cell."""
     def find() -> list[float]:
-        study = fo.Study.create(task, budget=BUDGET, out=root / f"nominal-{task}", no_levers=True, no_map=True)
+        study = fo.Study.create(task, out=root / f"nominal-{task}", no_levers=True, no_map=True)
         return infill(study.run(progress=False).answer.finger or {})
 
     return kept(root / f"nominal-{task}.json", find)

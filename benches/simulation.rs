@@ -1,7 +1,6 @@
 //! Time of what is simulated: `cargo bench --bench simulation`.
 
-use connector::mesh::Surface;
-use connector::mesh::import::{Along, Mesh, Request, import};
+use connector::mating::{Watch, mates};
 use contact::direct::Direct;
 use contact::scene::{Body, Friction, Geom, Inertia, Motion, Pose, Scene, Shape};
 use contact::{Engine, World};
@@ -155,7 +154,7 @@ fn squares(outline: &[[f64; 2]]) -> Vec<[Point3<f64>; 3]> {
 
 /// A square plug and the chamfered hole that it goes into.
 #[divan::bench(sample_count = 5, sample_size = 1)]
-fn mesh_import(bencher: Bencher) {
+fn mated_pose(bencher: Bencher) {
     let plug = [[0.0, 0.0], [3.9, 0.0], [3.9, 10.0], [6.0, 10.0], [6.0, 25.0], [0.0, 25.0]];
     let socket = [
         [0.0, -12.0],
@@ -166,19 +165,10 @@ fn mesh_import(bencher: Bencher) {
         [4.0, -10.0],
         [0.0, -10.0],
     ];
-    let (plug, socket, like) = (squares(&plug), squares(&socket), task("usb"));
-    let request = Request {
-        name: "square",
-        along: Along::MinusZ,
-        jaws: None,
-        like: Some(&like),
-        say: &|_| (),
+    let metres = |outline: &[[f64; 2]]| -> Vec<_> {
+        squares(outline).into_iter().map(|face| face.map(|p| p * MM)).collect()
     };
-    bencher.bench_local(|| {
-        let mesh = |triangles: &[[Point3<f64>; 3]], file: &str| Mesh {
-            file: file.to_owned(),
-            surface: Surface::new(triangles, MM, file).expect("a closed surface"),
-        };
-        import(mesh(&plug, "plug.stl"), mesh(&socket, "socket.stl"), &request).expect("a task")
-    });
+    let (plug, socket) = (metres(&plug), metres(&socket));
+    let watch = Watch { progress: &|_| {}, stopped: &|| false };
+    bencher.bench_local(|| mates(&plug, &socket, &watch).expect("a mated pose"));
 }

@@ -42,13 +42,6 @@ class Imported(Result):
     parts: int
     plug_parts: int
     socket_parts: int
-    #: Whether the convex parts are the shapes, not hulls about them.
-    plug_exact: bool
-    socket_exact: bool
-    #: How far the parts reach into the clearance.
-    largest_intrusion_mm: float
-    intrusion_of: str
-    intrusion_at_mm: tuple[float, float, float]
     unit: str
     insert_along: str
     jaws: str
@@ -57,18 +50,12 @@ class Imported(Result):
     clearance_mm: float
     clearance_x_mm: float
     clearance_y_mm: float
-    chamfer_x_mm: float
-    chamfer_y_mm: float
-    chamfer_depth_mm: float
     #: What the fingers hold: width, height, length.
     body_mm: tuple[float, float, float]
-    resolution: int
-    resolution_needed: int | None
     plug_was_inward: bool
     socket_was_inward: bool
     #: What overlaps in the mated pose and was left out of the shapes.
     left_out: tuple[LeftOut, ...]
-    warning: str | None
     #: The strategy that was found for it, if it needed one.
     tuned: Step | None
     #: What is wrong with it, and how its nominal start ends.
@@ -116,8 +103,8 @@ def import_parts(
         plug_body: Bodies, parts or assemblies of the file; if it holds both, what they leave is the socket.
         socket_body: The same for the socket.
         leave_out: Bodies of a STEP file to leave out: pins, a thread.
-        like: Task whose grip and moves are taken.
-        resolution: Without effect: meshes are exact within 0.02 mm.
+        like: Task whose grip force, friction, fingers, limits and strategy are taken.
+        resolution: Without effect: parts are exact within 0.02 mm.
         body: Handle on a plug that has no place to hold, width between the jaws x height x length, mm.
         depth_mm: Depth to be reached in a through hole.
         tolerance_mm: How far facets may be off the surface of a STEP file, mm.

@@ -1,10 +1,10 @@
 //! Plug and socket of one file that holds them in their mated pose.
 
 use crate::failure::Failure;
-use crate::setup::mated::{NoTask, unit};
+use crate::setup::mated::unit;
 use connector::body::{extent, width};
 use connector::mating::plugs;
-use connector::mesh::import::Unit;
+use connector::mesh::axes::Unit;
 use connector::mesh::{Body, Triangle, pick, separate};
 use input::units::MM;
 
@@ -21,8 +21,7 @@ pub type Split = ([Vec<Triangle>; 2], String);
 pub fn split(file: &str, bodies: Vec<Body>, given: Option<Unit>) -> Result<Split, Failure> {
     let bodies = separate(bodies);
     let whole: Vec<Triangle> = bodies.iter().flat_map(|body| body.triangles.clone()).collect();
-    let unit = unit([file, file], [&whole, &whole], given);
-    let (unit, _) = unit.map_err(|(NoTask::NoMate(error) | NoTask::Other(error))| error)?;
+    let (unit, _) = unit([file, file], [&whole, &whole], given)?;
     let metres = unit.metres();
     let scaled = |body: &Body| body.triangles.iter().map(|t| t.map(|p| p * metres)).collect();
     let found = plugs(&bodies.iter().map(scaled).collect::<Vec<Vec<Triangle>>>());

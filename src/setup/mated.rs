@@ -4,10 +4,9 @@ use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use connector::body::{extent, width};
 use connector::mating::{Found, Mate, Watch, assembled, mates};
-use connector::mesh::import::{Along, Jaws, Mesh, Unit, few_faces};
+use connector::mesh::axes::{Along, Jaws, Unit, value};
 use connector::mesh::mated::{HANDLE, Interference, Made, Pair, Request, TOLERANCE, task};
-use connector::mesh::place::value;
-use connector::mesh::{Files, SIZES, Surface, Triangle};
+use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
 use input::units::MM;
 use insertion::task::Task;
 use nalgebra::{Point3, Vector3};
@@ -77,20 +76,6 @@ impl From<&Interference> for LeftOut {
     }
 }
 
-/// Why there is no task of a pair.
-pub enum NoTask {
-    /// The plug goes into the socket nowhere.
-    NoMate(Failure),
-    /// Anything else.
-    Other(Failure),
-}
-
-impl From<Failure> for NoTask {
-    fn from(failure: Failure) -> Self {
-        NoTask::Other(failure)
-    }
-}
-
 /// Returns the task of a plug and a socket, whose mated pose is found from their shapes.
 ///
 /// # Errors
@@ -100,7 +85,7 @@ pub fn mated(
     triangles: [&[Triangle]; 2],
     given: &Given,
     context: &Context<'_>,
-) -> Result<MatedTask, NoTask> {
+) -> Result<MatedTask, Failure> {
     let (unit, why) = unit(files, triangles, given.unit)?;
     let mut said: Vec<(&str, String)> = why.map(|why| ("unit", why)).into_iter().collect();
     let scaled = |of: usize| -> Vec<Triangle> {
@@ -121,7 +106,7 @@ pub fn mated(
         let [a, b] = across.map(|way| value(jaws_of(&way)));
         let problem =
             format!("--jaws: the plug goes in along {}; give {a} or {b}", value(along_of(&-out)));
-        return Err(Failure::usage(problem).into());
+        return Err(Failure::usage(problem));
     }
     let depth = given.depth.unwrap_or(mate.engaged_m);
     let above = out * (mate.engaged_m - depth);
@@ -234,7 +219,7 @@ fn mate(
     given: &Given,
     context: &Context<'_>,
     said: &mut Vec<(&'static str, String)>,
-) -> Result<Mate, NoTask> {
+) -> Result<Mate, Failure> {
     let stopped = || context.stop.load(Ordering::SeqCst);
     let watch = Watch { progress: &|_| {}, stopped: &stopped };
     let found = match given.assembled {
@@ -242,7 +227,7 @@ fn mate(
         false => mates(plug, socket, &watch),
     };
     not_stopped(context.stop)?;
-    let nowhere = |why: String| NoTask::NoMate(Failure::in_file(files.join(", "), why));
+    let nowhere = |why: String| Failure::in_file(files.join(", "), why);
     let found = found.map_err(|error| nowhere(error.to_string()))?;
     let mut all = match found {
         Found::One(mate) => vec![mate],
@@ -274,7 +259,7 @@ pub fn unit(
     files: Files,
     triangles: [&[Triangle]; 2],
     given: Option<Unit>,
-) -> Result<(Unit, Option<String>), NoTask> {
+) -> Result<(Unit, Option<String>), Failure> {
     let longest = triangles
         .map(|of| (0..3).map(|axis| width(extent(of.iter().flatten(), axis))).fold(0.0, f64::max));
     let fits = |unit: &Unit| {
@@ -288,7 +273,7 @@ pub fn unit(
              {}",
             given.map_or("mm, in or m".to_owned(), value)
         );
-        return Err(NoTask::NoMate(Failure::in_file(files.join(", "), problem)));
+        return Err(Failure::in_file(files.join(", "), problem));
     };
     if given.is_some() {
         return Ok((unit, None));
@@ -305,12 +290,15 @@ fn few(
     unit: Unit,
     context: &Context<'_>,
 ) -> (Vec<Triangle>, bool) {
-    let closed = Surface::new(triangles, unit.metres(), file)
-        .and_then(|surface| few_faces(Mesh { file: file.to_owned(), surface }));
-    if let Ok((Mesh { surface, .. }, why)) = closed {
-        why.iter().for_each(|why| context.note(why));
-        let corners = |face: &[usize; 3]| face.map(|corner| surface.points[corner]);
-        return (surface.faces.iter().map(corners).collect(), surface.was_inward);
+    if let Some(surface) = Surface::new(triangles, unit.metres()) {
+        let (before, surface) = (surface.faces.len(), reduced(surface));
+        let after = surface.faces.len();
+        if after < before {
+            let tolerance = mesh::TOLERANCE / MM;
+            context
+                .note(&format!("{file}: {before} faces reduced to {after}, within {tolerance} mm"));
+        }
+        return (surface.triangles(), surface.was_inward);
     }
     let scaled = |triangle: &Triangle| triangle.map(|p| p * unit.metres());
     let mut triangles: Vec<Triangle> = triangles.iter().map(scaled).collect();

@@ -3,6 +3,7 @@
 pub mod assembly;
 pub mod bag;
 pub mod bench;
+pub mod bodies;
 pub mod driven;
 pub mod files;
 pub mod film;

@@ -60,7 +60,7 @@ impl Base {
 fn obj(pair: &str, body: &str) -> String {
     let name = format!("{}/examples/meshes/{pair}-{body}.stl", env!("CARGO_MANIFEST_DIR"));
     let bodies = read(&fs::read(&name).unwrap(), &name).unwrap();
-    let surface = Surface::new(&bodies[0].triangles, MM, &name).unwrap();
+    let surface = Surface::new(&bodies[0].triangles, MM).unwrap();
     let corner = |p: &Point3<f64>| format!("v {} {} {}\n", p.x / MM, p.y / MM, p.z / MM);
     let face = |[a, b, c]: &[usize; 3]| format!("f {} {} {}\n", a + 1, b + 1, c + 1);
     surface.points.iter().map(corner).chain(surface.faces.iter().map(face)).collect()
@@ -159,7 +159,7 @@ pub fn run_case(kind: &str, mutations: &[Mutation], number: u64, base: &Base) ->
             paths[changed] = file(&bodies[changed], "changed.obj")?;
             let [plug, socket] = paths;
             ended(&format!(
-                "task import --engine fake --json --resolution 32 --plug {plug} \
+                "task import --engine fake --json --plug {plug} \
                  --socket {socket} --out {folder}/task.toml"
             ))
         }
@@ -168,7 +168,7 @@ pub fn run_case(kind: &str, mutations: &[Mutation], number: u64, base: &Base) ->
             fs::write(&plug, lathe(3 + number % 400, 1 + number / 400 % 100))?;
             let socket = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/meshes/keyed-socket.stl");
             ended(&format!(
-                "task import --engine fake --json --unit mm --resolution 32 --plug {plug} \
+                "task import --engine fake --json --unit mm --plug {plug} \
                  --socket {socket} --out {folder}/task.toml"
             ))
         }

@@ -93,7 +93,7 @@ pub fn find(plug: &ConvexBody, least_cover: f64) -> Option<(f64, [f64; 2])> {
 }
 
 /// As [`find`], on flat faces only or on any.
-pub fn grasp(plug: &ConvexBody, least_cover: f64, flat: bool) -> Option<(f64, [f64; 2])> {
+fn grasp(plug: &ConvexBody, least_cover: f64, flat: bool) -> Option<(f64, [f64; 2])> {
     let mut tops: Vec<f64> =
         plug.stiff().map(|(_, part)| extent(part.solid.corners(), 2)[1]).collect();
     tops.sort_by(|a, b| b.total_cmp(a));

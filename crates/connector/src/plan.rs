@@ -76,7 +76,7 @@ pub fn complete(task: Task) -> Result<Task, PlanError> {
     Ok(planned(task, &plug, &socket, &seat))
 }
 
-/// Task with grasp point, strategy and success derived from shapes, opening, shoulder, faces and mated pose.
+/// Returns the task with grasp point, strategy and success derived from shapes, opening, shoulder, faces and mated pose.
 pub fn mated(task: Task) -> Task {
     let (plug_parts, socket_parts) = (task.plug.parts.clone(), task.socket.clone());
     let (plug, socket) = (ConvexBody::new(&plug_parts), ConvexBody::new(&socket_parts));
@@ -125,6 +125,23 @@ fn straight(task: &Task, mated: &Mated) -> Strategy {
         phase("assembly", Assembly, [0.0, 0.0, -push], PUSH[1] / MM, Duration(0.03)),
     ];
     Strategy { tilt: 0.0, start, rule: StartRule::Given, phases }
+}
+
+/// Returns whether the socket stands inside the mated plug, as pins, a post or a tongue do.
+pub fn has_core(task: &Task) -> bool {
+    let Some(mated) = &task.success.mated else { return false };
+    let middle = task.opening.map(|[low, high]| {
+        let quarter = (high - low) / 4.0;
+        [low + quarter, high - quarter]
+    });
+    task.socket.iter().any(|part| {
+        let corners = part.solid.corners();
+        let inside = |axis: usize| {
+            let [low, high] = extent(&corners, axis);
+            low < middle[axis][1] && middle[axis][0] < high
+        };
+        extent(&corners, 2)[1] > mated.tip[2] + LEAST_DEPTH && inside(0) && inside(1)
+    })
 }
 
 /// Connectors that a search is known to suit.

@@ -23,8 +23,8 @@ use input::units::MM;
 use nalgebra::{Isometry3, Unit, Vector3};
 pub use split::plugs;
 
-/// Largest total play of a plug in its seat, m: of connectors, and of toys and enlarged ones.
-const ROOMS: [f64; 2] = [0.5 * MM, 2.0 * MM];
+/// Largest total play of a plug in its seat, m: of connectors, of toys and enlarged ones, and of the paper's usb.
+const ROOMS: [f64; 3] = [0.5 * MM, 2.0 * MM, 4.0 * MM];
 
 /// Straight mate of a plug in its socket.
 #[derive(Debug, Clone, PartialEq)]

@@ -13,13 +13,11 @@ const MOST: usize = 4000;
 const ROUNDS: usize = 16;
 
 /// Joins corners of open edges that are near to one another, and splits open edges at corners near to
-/// them. Returns how many corners were moved and the farthest move, m.
-pub fn mend(points: &[Point3<f64>], faces: &mut Vec<[usize; 3]>) -> (usize, f64) {
-    let mut done = (0, 0.0_f64);
-    let mut tell = |far: f64| done = (done.0 + 1, done.1.max(far));
+/// them. Returns whether any edge was open.
+pub fn mend(points: &[Point3<f64>], faces: &mut Vec<[usize; 3]>) -> bool {
     let corners: BTreeSet<usize> = open(faces).into_keys().flatten().collect();
     if corners.is_empty() || corners.len() > MOST {
-        return done;
+        return false;
     }
     let mut kept: Vec<usize> = Vec::new();
     let mut joined = BTreeMap::new();
@@ -27,7 +25,6 @@ pub fn mend(points: &[Point3<f64>], faces: &mut Vec<[usize; 3]>) -> (usize, f64)
         let away = |&other: &usize| (points[corner] - points[other]).norm();
         match kept.iter().map(|other| (away(other), *other)).min_by(|a, b| a.0.total_cmp(&b.0)) {
             Some((far, other)) if far < GAP => {
-                tell(far);
                 joined.insert(corner, other);
             }
             _ => kept.push(corner),
@@ -44,9 +41,8 @@ pub fn mend(points: &[Point3<f64>], faces: &mut Vec<[usize; 3]>) -> (usize, f64)
         let mut changed = BTreeSet::new();
         for (edge, face) in open {
             let near = corners.iter().filter_map(|&c| Some((beside(points, edge, c)?, c)));
-            let Some((far, corner)) = near.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
+            let Some((_, corner)) = near.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
             if changed.insert(face) {
-                tell(far);
                 let whole = faces[face];
                 let with = |end: usize| whole.map(|at| if at == end { corner } else { at });
                 faces[face] = with(edge[0]);
@@ -58,7 +54,7 @@ pub fn mend(points: &[Point3<f64>], faces: &mut Vec<[usize; 3]>) -> (usize, f64)
             break;
         }
     }
-    done
+    true
 }
 
 /// Edges with an odd number of faces, each with its last face.

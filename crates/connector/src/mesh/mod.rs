@@ -1,21 +1,17 @@
-//! Plug and socket from triangle meshes: read, checked, cut into convex parts, measured.
+//! Plug and socket from triangle meshes: read, mated, covered with convex parts, checked.
 
-mod axes;
-mod cut;
-mod decompose;
-pub mod import;
+pub mod axes;
 pub mod mated;
 mod mend;
-mod merge;
-pub mod place;
 mod read;
 mod reduce;
 pub mod skin;
+mod solid;
 mod surface;
 
-use super::plan::PlanError;
 use input::{Place, Placed};
 pub use read::{Body, Triangle, is_step, pick, read, separate};
+pub use reduce::{TOLERANCE, reduced};
 pub use surface::{SIZES, Surface};
 
 /// Names of the files of plug and socket, for messages.
@@ -25,7 +21,6 @@ impl Placed for MeshError {
     fn place(&self) -> Place {
         match self {
             MeshError::File(file, _) => Place::file(file),
-            MeshError::Plan(_) => Place::default(),
         }
     }
 }
@@ -36,7 +31,4 @@ pub enum MeshError {
     /// File and its fault, with advice.
     #[error("{0}: {1}")]
     File(String, String),
-    /// No strategy can be derived for the shapes.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
 }

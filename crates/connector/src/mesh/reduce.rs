@@ -11,7 +11,7 @@ use std::collections::{BTreeSet, BinaryHeap};
 /// Largest distance of the surface from the corners of the file, m.
 pub const TOLERANCE: f64 = 0.01 * MM;
 /// Faces from which on a mesh is reduced.
-pub const MANY_FACES: usize = 2000;
+const MANY_FACES: usize = 2000;
 /// Error of a collapse on a flat side, pm: that of files with 32-bit numbers.
 const FLAT: u64 = 1_000_000;
 /// Most faces about a corner that goes: the pole of a fine dome has hundreds.
@@ -29,14 +29,17 @@ struct Collapsing {
     version: Vec<u32>,
 }
 
-/// Returns the surface with as few faces as keep to the [`TOLERANCE`].
+/// Returns the surface with as few faces as keep to the [`TOLERANCE`]; as it is if they are not many.
 pub fn reduced(surface: Surface) -> Surface {
+    if surface.faces.len() <= MANY_FACES {
+        return surface;
+    }
     let mut about = vec![Vec::new(); surface.points.len()];
     for (number, face) in surface.faces.iter().enumerate() {
         face.iter().for_each(|&corner| about[corner].push(number));
     }
     let count = surface.points.len();
-    let Surface { points, faces, was_inward, mended } = surface;
+    let Surface { points, faces, was_inward } = surface;
     let mut mesh =
         Collapsing { points, faces, about, error: vec![0.0; count], version: vec![0; count] };
     let mut queue = BinaryHeap::new();
@@ -60,7 +63,7 @@ pub fn reduced(surface: Surface) -> Surface {
         }
     }
     let (points, faces) = mesh.left();
-    Surface { points, faces, was_inward, mended }
+    Surface { points, faces, was_inward }
 }
 
 /// A collapse: its error, pm, the corner that goes and the one it goes to, and their versions.
@@ -247,14 +250,14 @@ mod tests {
     #[test]
     fn a_fine_sphere_keeps_its_size_with_few_faces() {
         let (radius, rings) = (5.0, 120);
-        let fine = Surface::new(&sphere(rings, radius), MM, "sphere.stl").unwrap();
+        let fine = Surface::new(&sphere(rings, radius), MM).unwrap();
         assert!(fine.faces.len() > 50_000);
         let volume = fine.volume();
         let coarse = reduced(fine);
         assert!(coarse.faces.len() < 7000, "{} faces", coarse.faces.len());
         // Closed as before, its corners on the sphere, its faces within the tolerance of it.
         let triangles = coarse.faces.iter().map(|face| face.map(|c| coarse.points[c] / MM));
-        let again = Surface::new(&triangles.collect::<Vec<_>>(), MM, "coarse.stl").unwrap();
+        let again = Surface::new(&triangles.collect::<Vec<_>>(), MM).unwrap();
         assert_eq!(again.faces.len(), coarse.faces.len());
         let middles = coarse.faces.iter().map(|face| {
             let [a, b, c] = face.map(|corner| coarse.points[corner].coords);
@@ -286,7 +289,7 @@ mod tests {
                 }
             }
         }
-        let fine = Surface::new(&triangles, MM, "box.stl").unwrap();
+        let fine = Surface::new(&triangles, MM).unwrap();
         let coarse = reduced(fine);
         assert_eq!((coarse.points.len(), coarse.faces.len()), (8, 12));
         assert!((coarse.volume() / (1e3 * MM * MM * MM) - 1.0).abs() < 1e-9);

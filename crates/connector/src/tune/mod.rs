@@ -6,7 +6,7 @@ mod knobs;
 pub use bench::{Bench, ENOUGH_MM, Measured, Tried};
 
 use crate::body::ConvexBody;
-use crate::plan::Family;
+use crate::plan::{Family, has_core};
 use ask_tell::{Grid, Observation, OptimizerKind};
 use input::InputError;
 use input::units::{DEG, MM};
@@ -129,6 +129,9 @@ pub fn tune(bench: &Bench, effort: &Effort) -> Result<Tuned, Impossible> {
                 for (what, tried) in bench.with_slower_push(what, tried) {
                     tuned.add(Step::new(stage, what, tried), effort);
                 }
+                if own.tilt == 0.0 && effort.until_enough && !has_core(bench.task) {
+                    tuned.tilted(bench, effort)?;
+                }
             }
             Stage::Families => tuned.families(bench, effort),
             Stage::Search => tuned.search(bench, effort)?,
@@ -174,6 +177,20 @@ impl Tuned {
         if last.score > best.score + margin || centred {
             self.best = self.steps.len() - 1;
         }
+    }
+
+    /// Tries a tilted tip beside an upright sweep: about one opening it finds the seat from farther away.
+    fn tilted(&mut self, bench: &Bench, effort: &Effort) -> Result<(), Impossible> {
+        let family = Family::Key;
+        let Some(strategy) = family.of(bench.task) else { return Ok(()) };
+        // What meets the rim before its seat is told by three trials.
+        if bench.given(&strategy)?.inserts() {
+            let tried = bench.taught(&strategy)?;
+            for (what, tried) in bench.with_slower_push(family.name(), tried) {
+                self.add(Step::new(Stage::Start, what, tried), effort);
+            }
+        }
+        Ok(())
     }
 
     fn families(&mut self, bench: &Bench, effort: &Effort) {

@@ -166,7 +166,11 @@ pub fn task(pair: &Pair, request: &Request) -> Made {
     let mated = Mated { tip: [0.0, 0.0, -pair.engaged], lateral };
     task.success = Success { mated: Some(mated), ..Success::default() };
     (task.grip.shoulder_z, task.grip.faces_y) = (grasp.shoulder, grasp.faces);
-    let task = plan::mated(task);
+    let mut task = plan::mated(task);
+    let like = request.like.map(|like| plan::Family::Like(Box::new(like.clone())));
+    if let Some(strategy) = like.and_then(|family| family.of(&task)) {
+        task.strategy = strategy;
+    }
     let held = width(extent(grasp.part.solid.corners(), 0));
     let jaws = placed.jaws;
     Made { task, jaws, held, handle, interference, deviation, difference, closeup }

@@ -2,8 +2,8 @@
 
 use crate::body::ConvexBody;
 use crate::mesh::Triangle;
-use crate::mesh::merge::solid_of;
 use crate::mesh::skin::is_thick;
+use crate::mesh::solid::solid_of;
 use input::units::MM;
 use insertion::task::{Part, Solid, geometry};
 use nalgebra::{Point3, Vector3};

@@ -5,7 +5,7 @@ mod facets;
 mod polygons;
 
 use super::Triangle;
-use super::merge::solid_of;
+use super::solid::solid_of;
 use crate::body::{extent, width};
 use facets::Facets;
 use input::units::MM;

@@ -1,81 +1,25 @@
-//! Merging of convex pieces into convex solids: boxes, prisms, hulls.
+//! Convex solids of points: boxes, prisms, hulls.
 
-use super::cut::{self, Piece};
 use crate::body::extent;
 use input::units::MM;
 use insertion::task::{Solid, geometry};
 use nalgebra::{Point3, Vector3};
 
-/// Largest relative difference of equal volumes.
-const ALIKE: f64 = 1e-6;
 /// Largest difference of equal coordinates, m.
 const NEAR: f64 = 1e-3 * MM;
 
-/// Convex hull of pieces, with its volume, m3, and bounds, m.
+/// Convex hull with its bounds, m.
 struct Convex {
     corners: Vec<Point3<f64>>,
-    volume: f64,
     low: Vector3<f64>,
     high: Vector3<f64>,
 }
 
-impl Convex {
-    fn new(piece: &[Point3<f64>]) -> Option<Self> {
-        let (corners, faces) = geometry::hull(piece)?;
-        let volume = geometry::surface_moments(&corners, &faces).0;
-        let [low, high] = [0, 1].map(|end| Vector3::from_fn(|axis, _| extent(&corners, axis)[end]));
-        Some(Convex { corners, volume, low, high })
-    }
-
-    fn touches(&self, other: &Convex) -> bool {
-        (0..3).all(|axis| {
-            self.low[axis] < other.high[axis] + NEAR && other.low[axis] < self.high[axis] + NEAR
-        })
-    }
-
-    /// Union of the two, if it is convex.
-    fn with(&self, other: &Convex) -> Option<Convex> {
-        let corners: Vec<_> = self.corners.iter().chain(&other.corners).copied().collect();
-        let both = Convex::new(&corners)?;
-        let sum = self.volume + other.volume;
-        ((both.volume - sum).abs() < ALIKE * sum).then_some(both)
-    }
-}
-
-/// Solids of the pieces, merged until no two have a convex union, from the lowest up.
-pub fn solids(pieces: &[Piece]) -> Vec<Solid> {
-    let mut convex: Vec<_> = pieces.iter().filter_map(|piece| Convex::new(piece)).collect();
-    loop {
-        let before = convex.len();
-        let mut i = 0;
-        while i < convex.len() {
-            let mut j = i + 1;
-            while j < convex.len() {
-                let pair = convex[i].touches(&convex[j]).then(|| convex[i].with(&convex[j]));
-                match pair.flatten() {
-                    Some(both) => {
-                        convex.swap_remove(j);
-                        convex[i] = both;
-                    }
-                    None => j += 1,
-                }
-            }
-            i += 1;
-        }
-        if convex.len() == before {
-            break;
-        }
-    }
-    // As hand-written files have them.
-    convex.sort_by(|Convex { low: a, .. }, Convex { low: b, .. }| {
-        a.z.total_cmp(&b.z).then(a.y.total_cmp(&b.y)).then(a.x.total_cmp(&b.x))
-    });
-    convex.iter().map(solid).collect()
-}
-
 /// Returns the hull of points as a box, a prism or a hull; `None` without volume.
 pub fn solid_of(points: &[Point3<f64>]) -> Option<Solid> {
-    Convex::new(points).as_ref().map(solid)
+    let (corners, _) = geometry::hull(points)?;
+    let [low, high] = [0, 1].map(|end| Vector3::from_fn(|axis, _| extent(&corners, axis)[end]));
+    Some(solid(&Convex { corners, low, high }))
 }
 
 fn solid(convex: &Convex) -> Solid {
@@ -123,7 +67,19 @@ fn outline(mut corners: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let middle = [0, 1].map(|i| corners.iter().map(|p| p[i]).sum::<f64>() / count);
     let angle = |p: &[f64; 2]| libm::atan2(p[1] - middle[1], p[0] - middle[0]);
     corners.sort_by(|p, q| angle(p).total_cmp(&angle(q)));
-    cut::without(corners, 3, |[p, q, r]| {
+    without(corners, 3, |[p, q, r]| {
         (q[0] - p[0]) * (r[1] - q[1]) - (q[1] - p[1]) * (r[0] - q[0]) < 1e-4 * MM * MM
     })
+}
+
+/// Returns a closed line of at least `least` corners, without those straight with their neighbours.
+fn without<T: Copy>(mut line: Vec<T>, least: usize, straight: impl Fn(&[T; 3]) -> bool) -> Vec<T> {
+    loop {
+        let count = line.len();
+        let three = |i: usize| [(i + count - 1) % count, i, (i + 1) % count].map(|i| line[i]);
+        match (0..count).find(|&i| count > least && straight(&three(i))) {
+            Some(i) => line.remove(i),
+            None => return line,
+        };
+    }
 }

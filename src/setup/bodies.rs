@@ -1,0 +1,93 @@
+//! Bodies of plug and socket in the files that a user names.
+
+use super::assembly::split;
+use super::step;
+use crate::failure::Failure;
+use connector::mesh::axes::{Unit, value};
+use connector::mesh::{Body, Files, Triangle, is_step, pick, read};
+use std::path::Path;
+
+/// Largest mesh file, bytes.
+const LARGEST_FILE: u64 = 200 << 20;
+
+/// Files of a plug and its socket, and their bodies as a user names them.
+pub struct Named<'a> {
+    /// File of the plug, or of both.
+    pub plug: &'a Path,
+    /// File of the socket.
+    pub socket: &'a Path,
+    /// Whether the file has both in their mated pose.
+    pub assembled: bool,
+    /// Bodies of the plug.
+    pub plug_body: &'a [String],
+    /// Bodies of the socket.
+    pub socket_body: &'a [String],
+    /// Unit of the files.
+    pub unit: Option<Unit>,
+}
+
+/// Plug and socket as they were read.
+pub struct Pair {
+    /// Triangles of plug and of socket, in the unit of the files.
+    pub triangles: [Vec<Triangle>; 2],
+    /// Unit, if it is known.
+    pub unit: Option<Unit>,
+    /// Finding about the bodies of an assembly.
+    pub said: Option<(&'static str, String)>,
+}
+
+/// Reads plug and socket; of a file that has both, what one of them leaves is the other.
+///
+/// # Errors
+/// If a file cannot be read, has no such body, or does not say which body is the plug.
+pub fn pair(files: Files, named: &Named) -> Result<Pair, Failure> {
+    let (plug, plug_step) = bodies(named.plug, files[0])?;
+    let both = named.socket == named.plug;
+    let (socket, socket_step) =
+        if both { (plug.clone(), plug_step) } else { bodies(named.socket, files[1])? };
+    let unit = if plug_step || socket_step { Some(Unit::Mm) } else { named.unit };
+    if let Some(other) = named.unit.filter(|given| Some(*given) != unit) {
+        let problem = format!("--unit {}: STEP names its unit, and is read in mm", value(other));
+        return Err(Failure::usage(problem));
+    }
+    let mut said = None;
+    let pick = |of: &[Body], names: &[String], file: &str| {
+        let picked = (!names.is_empty()).then(|| pick(of, names, file));
+        picked.transpose().map_err(Failure::input)
+    };
+    let plug_body = pick(&plug, named.plug_body, files[0])?;
+    let socket_body = pick(&socket, named.socket_body, files[1])?;
+    let all = |bodies: Vec<Body>| bodies.into_iter().flat_map(|body| body.triangles).collect();
+    let triangles = match (plug_body, socket_body) {
+        (Some([plug, _]), Some([socket, _])) => [plug, socket],
+        (Some([plug, rest]), None) => [plug, if both { rest } else { all(socket) }],
+        (None, Some([socket, rest])) => [if both { rest } else { all(plug) }, socket],
+        (None, None) if named.assembled => {
+            let (parts, names) = split(files[0], plug, unit)?;
+            said = Some(("plug's bodies", format!("{names}; --plug-body names others")));
+            parts
+        }
+        (None, None) if both => {
+            let names: Vec<_> = plug.iter().map(|body| format!("`{}`", body.name)).collect();
+            return Err(Failure::usage(format!(
+                "{} has the bodies {}: give --socket, or say which is the plug with --plug-body",
+                files[0],
+                names.join(", ")
+            )));
+        }
+        (None, None) => [all(plug), all(socket)],
+    };
+    Ok(Pair { triangles, unit, said })
+}
+
+/// Bodies of a file, and whether it is STEP, which names its unit and is read in mm.
+fn bodies(path: &Path, file: &str) -> Result<(Vec<Body>, bool), Failure> {
+    let unreadable =
+        |error: std::io::Error| Failure::in_file(file, format!("cannot read the mesh: {error}"));
+    let opened = std::fs::File::open(path).map_err(unreadable)?;
+    let bytes = input::files::read_up_to(opened, LARGEST_FILE).map_err(unreadable)?;
+    if is_step(&bytes, &path.display().to_string()) {
+        return Ok((step::bodies(path, file)?, true));
+    }
+    Ok((read(&bytes, file).map_err(Failure::input)?, false))
+}

@@ -50,6 +50,8 @@ const MISSING: (f64, f64) = (0.2 * MM, 0.02);
 const WITHIN: f64 = 0.9;
 /// Least depth of a plug that goes in, m.
 const LEAST_DEPTH: f64 = 1.0 * MM;
+/// Distance below the top at which the opening of a mated plug is measured, m.
+pub(crate) const BELOW_TOP: f64 = 0.1 * MM;
 
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum PlanError {
@@ -91,7 +93,7 @@ fn planned(mut task: Task, plug: &ConvexBody, socket: &ConvexBody, seat: &Seat) 
     task.grip.slip_limit = round_mm((Pad::PAPER.height / 2.0).min(0.9 * cover));
     let play = match task.success.mated {
         // The opening is the plug with its play, whatever springs were left out.
-        Some(_) => width(task.opening[1]) - width(section(plug, seat.depth)[1]),
+        Some(_) => width(task.opening[1]) - width(section(plug, seat.depth - BELOW_TOP)[1]),
         None => Seating::new(&task, plug, socket).play(WITHIN * seat.depth, seat.at, 1),
     };
     success(&mut task, plug, seat, play);

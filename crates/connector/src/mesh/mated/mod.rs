@@ -228,10 +228,11 @@ fn raised(solid: Solid, by: f64) -> Solid {
     }
 }
 
-/// Opening that leaves the plug its play, m: about all of the plug that goes below the top.
+/// Opening that leaves the plug its play, m: about all of the plug that goes below the top, without a shoulder that
+/// rests on it.
 fn opening(plug: &[Triangle], depth: f64, play: [f64; 2]) -> [[f64; 2]; 2] {
-    let below: Vec<Point3<f64>> =
-        plug.iter().flat_map(|face| clipped(face, 2, [f64::NEG_INFINITY, depth])).collect();
+    let below = [f64::NEG_INFINITY, depth - plan::BELOW_TOP];
+    let below: Vec<Point3<f64>> = plug.iter().flat_map(|face| clipped(face, 2, below)).collect();
     [0, 1].map(|axis| {
         let [low, high] = span(below.iter().map(|p| p[axis]));
         [low - play[axis] / 2.0, high + play[axis] / 2.0]

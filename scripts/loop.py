@@ -134,13 +134,7 @@ class Cell:
         """Way c: prints by ``next`` with measured ranges only."""
         folder, prints = self.path / "c", []
         for i in range(PRINTS):
-            def ask() -> list[float] | None:
-                bench = folder / "bench.csv"
-                folder.mkdir(exist_ok=True)
-                advice = fo.next_print(bench, self.task, cache=self.path.parent / "cache")
-                return None if advice.stop or not advice.next else infill(advice.next[0].values)
-
-            finger = self.once(f"c print {i + 1}", ask)
+            finger = self.advised(folder, f"c print {i + 1}")
             if finger is None:
                 break
             self.measure(folder, finger, probe=False)
@@ -150,9 +144,8 @@ class Cell:
     def by_identification(self) -> list[tuple[list[float], dict[str, float]]]:
         """Ways d, e and f: two fingers' logs, a cell, a study, one finger more."""
         folder = self.path / "d"
-        for finger in first_prints(self.path.parent, self.task):
-            self.measure(folder, finger, probe=True)
-        if not self.identified(folder, "cell"):
+        self.two_windows(folder)
+        if not (folder / "runs.csv").exists() or not self.identified(folder, "cell"):
             return []
         d = self.once("d", lambda: self.study("cell", "infill"))
         e = self.once("e", lambda: self.study("cell", str(strategy_space(self.path))))
@@ -163,6 +156,33 @@ class Cell:
             both = self.once("f with strategy", lambda: self.study("again", str(strategy_space(self.path))))
             chosen += [(infill(f), {}), (infill(both), strategy(both))]
         return chosen
+
+    def two_windows(self, folder: Path) -> None:
+        """Measures the first prints; of those that insert from no start, others by ``next``, four prints in all."""
+        left = first_prints(self.path.parent, self.task)
+        for printed in range(PRINTS):
+            if not left:
+                left = [self.advised(folder, f"d print {printed + 1}")]
+            if left[0] is None:
+                break
+            finger = left.pop(0)
+            self.measure(folder, finger, probe=True)
+            windows = sum(self.taught_mm(one, {}) is not None for one in self.measured(folder))
+            if windows >= 2:
+                break
+
+    def measured(self, folder: Path) -> list[list[float]]:
+        start = f"measured {folder.name} "
+        return [json.loads(key.removeprefix(start)) for key in self.found if key.startswith(start)]
+
+    def advised(self, folder: Path, key: str) -> list[float] | None:
+        """What ``next`` prints after the windows of a folder."""
+        def ask() -> list[float] | None:
+            folder.mkdir(exist_ok=True)
+            advice = fo.next_print(folder / "bench.csv", self.task, cache=self.path.parent / "cache")
+            return None if advice.stop or not advice.next else infill(advice.next[0].values)
+
+        return self.once(key, ask)
 
     def identified(self, folder: Path, name: str) -> bool:
         def find() -> dict[str, float] | None:

@@ -45,6 +45,15 @@ fn calibration_and_the_next_print_answer_in_the_agreed_form() {
     assert_eq!((next["next"].as_array().map(Vec::len), &next["stop"]), (Some(2), &false.into()));
     assert!(next["next"][0]["reason"].as_str().is_some_and(|reason| !reason.is_empty()));
     assert!(next["next"][0]["expected_gain_mm"].as_f64().is_some_and(|gain| gain > 0.0));
+    // A finger that was printed and inserts from no start is not printed again, nor chosen.
+    let finger = ["infill_density_percent", "infill_direction_deg"].map(|key| {
+        next["next"][0]["values"].get(key).or(next["next"][0].get(key)).unwrap().to_string()
+    });
+    let text = format!("{HEAD}ket8,{},{},not measurable\n", finger[0], finger[1]);
+    let more = format!("{} --count 11 --among published", folder.file("failed.csv", text));
+    let again = optimize_line(&format!("next {few} {more}")).json();
+    assert_eq!(again["not_measurable"].as_array().map(Vec::len), Some(1), "{again}");
+    assert_eq!((again["next"].as_array().map(Vec::len), &again["measured"]), (Some(10), &0.into()));
 }
 
 const HEAD: &str = "task,infill_density_percent,infill_direction_deg,range_mm\n";

@@ -8,7 +8,7 @@ use crate::setup::bench::{BenchRequest, HowCalibrated, Prepared};
 use crate::setup::measured;
 use ask_tell::stream::stream;
 use calibration::bench::sampled;
-use calibration::next::advise;
+use calibration::next::{Fingers, advise};
 use input::shipped::Source;
 use insertion::space::Design;
 use insertion::stiffness::designs;
@@ -64,6 +64,8 @@ fn print_cost(text: &str) -> Result<f64, String> {
 pub struct Advised {
     task: String,
     measured: usize,
+    /// Fingers that were printed and insert from no start.
+    not_measurable: Vec<Design>,
     measurements_missing: bool,
     best_known_mm: Option<f64>,
     next: Vec<Print>,
@@ -125,10 +127,12 @@ impl command::Request for Request {
                 published.iter().filter_map(|design| subject.finger(design)).collect()
             }
         };
+        let failed = subject.not_measurable();
+        let fingers = Fingers { among: &among, failed: &failed };
         let mut random = stream(settings.seed, 0, "next");
         let posterior = sampled(&benches, layout.dimension(), &settings, &mut random);
         let (count, cost_mm) = (usize::from(self.count), self.print_cost_mm);
-        let advice = advise(bench, &posterior, &among, count, cost_mm, &mut random);
+        let advice = advise(bench, &posterior, fingers, count, cost_mm, &mut random);
         context.check()?;
         let print = |print: calibration::next::Print| Print {
             design: subject.designs[print.finger].clone(),
@@ -145,7 +149,8 @@ impl command::Request for Request {
         };
         let value = Advised {
             task: subject.task.clone(),
-            measured: subject.measured().len(),
+            measured: subject.measured().len() - failed.len(),
+            not_measurable: failed.iter().map(|&number| subject.designs[number].clone()).collect(),
             measurements_missing: missing,
             best_known_mm: advice.best_known_mm,
             next: advice.next.into_iter().map(print).collect(),
@@ -169,6 +174,10 @@ impl Advised {
                 file.unwrap_or_default()
             ),
         }];
+        if !self.not_measurable.is_empty() {
+            let fingers = self.not_measurable.iter().map(design).collect::<Vec<_>>().join("; ");
+            lines.push(format!("printed, not measurable: {fingers}"));
+        }
         for (i, print) in self.next.iter().enumerate() {
             lines.push(format!("{}. {}", i + 1, design(&print.design)));
             lines.push(format!(

@@ -47,30 +47,44 @@ pub struct Advice {
 /// Joint draws per sample of the posterior.
 const DRAWS: usize = 4;
 
-/// Which of `among` to print, `count` at a time; a print must promise a gain of `cost_mm`.
+/// Fingers to choose from.
+#[derive(Debug, Clone, Copy)]
+pub struct Fingers<'a> {
+    /// Fingers that may be printed.
+    pub among: &'a [usize],
+    /// Fingers that were printed and insert from no start: a range of 0 mm, which no window was measured of.
+    pub failed: &'a BTreeSet<usize>,
+}
+
+/// Returns which fingers to print, `count` at a time; a print must promise a gain of `cost_mm`.
 pub fn advise(
     bench: &Bench<'_>,
     posterior: &[Vec<f64>],
-    among: &[usize],
+    Fingers { among, failed }: Fingers<'_>,
     count: usize,
     cost_mm: f64,
     random: &mut impl Rng,
 ) -> Advice {
     let measured: BTreeSet<usize> = bench.observations.iter().map(|one| one.finger).collect();
-    let new = among.iter().filter(|finger| !measured.contains(finger));
-    let all: Vec<usize> = measured.iter().chain(new).copied().collect();
+    let known: BTreeSet<usize> = measured.union(failed).copied().collect();
+    let new = among.iter().filter(|finger| !known.contains(finger));
+    let failed = failed.difference(&measured);
+    let all: Vec<usize> = measured.iter().chain(failed).chain(new).copied().collect();
     let drawn = draws(bench, posterior, &all, DRAWS, random);
     let noises = posterior.iter().map(|state| bench.hyperparameters(state).noise * bench.scale_mm);
     let mut ranges = Ranges::new(&drawn, mean(noises.map(|noise| noise * noise)).unwrap_or(0.0));
-    let mut printed: Vec<usize> = (0..measured.len()).collect();
+    (measured.len()..known.len()).for_each(|column| ranges.observe(column, 0.0));
+    let told = ranges.clone();
+    let mut printed: Vec<usize> = (0..known.len()).collect();
     let best = |columns: &[usize]| {
         let first = columns.iter().rev().copied();
-        first.max_by(|&a, &b| ranges.means[a].total_cmp(&ranges.means[b]))
+        first.max_by(|&a, &b| told.means[a].total_cmp(&told.means[b]))
     };
-    let best_known_mm = best(&printed).map(|column| ranges.means[column]);
-    let choice = best(&(0..all.len()).collect::<Vec<_>>()).map(|column| Choice {
+    let best_known_mm = best(&printed[..measured.len()]).map(|column| told.means[column]);
+    let insert = (0..measured.len()).chain(known.len()..all.len());
+    let choice = best(&insert.collect::<Vec<_>>()).map(|column| Choice {
         finger: all[column],
-        expected_mm: ranges.means[column],
+        expected_mm: told.means[column].max(0.0),
         measured: column < measured.len(),
     });
     let mut next: Vec<Print> = Vec::new();
@@ -80,10 +94,11 @@ pub fn advise(
         let first = gains.iter().rev().max_by(|a, b| a.value_mm.total_cmp(&b.value_mm));
         let Some(&Gain { column, choice_mm, .. }) = first else { break };
         stop &= !next.is_empty() || gains.iter().all(|gain| gain.choice_mm < cost_mm);
-        let values = sorted(drawn.iter().map(|draw| draw[column]));
-        let tail = |share: f64| quantile(&values, share).unwrap_or(0.0);
+        let departures = told.departures.iter().map(|draw| draw[column]);
+        let values = sorted(departures.map(|departure| told.means[column] + departure));
+        let tail = |share: f64| quantile(&values, share).unwrap_or(0.0).max(0.0);
         let (low_mm, high_mm) = (tail((1.0 - INTERVAL) / 2.0), tail((1.0 + INTERVAL) / 2.0));
-        let expected_mm = ranges.means[column];
+        let expected_mm = told.means[column].max(0.0);
         let tried: Vec<Place> = printed.iter().map(|&column| bench.places[all[column]]).collect();
         let reason = match choice {
             Some(widest) if tried.is_empty() && widest.finger != all[column] => {
@@ -100,6 +115,7 @@ pub fn advise(
 }
 
 /// Joint distribution of the fingers' true ranges, mm.
+#[derive(Clone)]
 struct Ranges {
     means: Vec<f64>,
     /// Departures from the means, a vector for each draw.
@@ -155,6 +171,15 @@ impl Ranges {
         };
         let left = (0..self.means.len()).into_par_iter().filter(|column| !printed.contains(column));
         left.map(gain).collect()
+    }
+
+    /// Conditions the ranges on a measurement, mm.
+    fn observe(&mut self, column: usize, measured_mm: f64) {
+        let sd = (self.variance(column) + self.noise2).sqrt().max(f64::MIN_POSITIVE);
+        let by = (measured_mm - self.means[column]) / sd;
+        let slopes = self.slopes(column);
+        self.means.iter_mut().zip(&slopes).for_each(|(mean, slope)| *mean += slope * by);
+        self.condition(column);
     }
 
     /// Conditions the ranges on a measurement that gives the expected value.
@@ -296,6 +321,13 @@ mod tests {
         assert!((ranges.variance(1) / variance - 0.25).abs() < 0.1, "{}", ranges.variance(1));
         let after = ranges.gains(&[0, 3]);
         assert!(value(&after, 1) < 0.5 * value(&gains, 1), "{}", value(&after, 1));
+        // A finger that inserts from no start pulls those down that vary with it, by their regression.
+        let mut ranges = Ranges::new(&drawn, 0.0);
+        let before = ranges.means.clone();
+        ranges.observe(1, 0.0);
+        let pulled = [1, 2].map(|column| ranges.means[column] - before[column]);
+        assert!((pulled[0] + before[1]).abs() < 1e-9 && (pulled[0] + pulled[1]).abs() < 1e-9);
+        assert_eq!(ranges.means[0], before[0]);
     }
 
     #[test]

@@ -77,6 +77,14 @@ impl Subject {
         self.experiments.iter().map(|(number, _)| *number).collect()
     }
 
+    /// Returns the fingers whose lines tell no range: they insert from no start.
+    pub fn not_measurable(&self) -> BTreeSet<usize> {
+        let told = |number: &usize| {
+            self.experiments.iter().any(|(of, line)| of == number && line.extent().is_some())
+        };
+        self.measured().into_iter().filter(|number| !told(number)).collect()
+    }
+
     /// Its bench, with the coordinates of its parameters and hyperparameters.
     pub fn bench(&self, parameters: Vec<usize>, first: usize) -> Bench<'_> {
         let observation = |&(finger, ref line): &(usize, Experiment)| {

@@ -7,7 +7,7 @@ use ask_tell::normal::StandardNormal;
 use ask_tell::statistics::mean;
 use ask_tell::stream::stream;
 use calibration::bench::{Observation, sampled};
-use calibration::next::advise;
+use calibration::next::{Fingers, advise};
 use calibration::predict::{Of, predict};
 use clap::Parser;
 use finger_opt::context::Context;
@@ -21,6 +21,7 @@ use insertion::stiffness::designs;
 use insertion::trial::NEVER;
 use rand::RngExt;
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use study::write_file;
 
@@ -179,7 +180,8 @@ fn replay(prepared: &Prepared<'_>, task: &'static str, number: u64) -> Found {
                 break;
             }
         }
-        let advice = advise(&bench, &posterior, &among, 1, 0.1, &mut random);
+        let fingers = Fingers { among: &among, failed: &BTreeSet::new() };
+        let advice = advise(&bench, &posterior, fingers, 1, 0.1, &mut random);
         let Some(finger) = advice.next.first().map(|print| print.finger) else { break };
         let at = among.iter().position(|&one| one == finger).unwrap_or(0);
         printed.push(at);

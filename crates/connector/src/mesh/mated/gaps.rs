@@ -69,6 +69,12 @@ pub fn difference(of: &Bodies, left_out: &[Interference], poses: u32) -> Option<
         let place = if gaps[0] < gaps[1] { place.or(other) } else { other.or(place) }?;
         // About what was left out a place of the one may count where that of the other does not.
         let differs = (gaps[0] - gaps[1]).abs() > TOLERANCE && beyond(&place, 4.0 * BEYOND);
+        // Where the drawn faces meet, parts that overlap may name a place far along them.
+        let both = || {
+            let own = pose.inverse_transform_point(&place);
+            parts[0].reaches(&own, TOLERANCE) && parts[1].reaches(&place, TOLERANCE)
+        };
+        let differs = differs && !(gaps[0] <= 0.0 && both());
         differs.then_some(Difference { pose, place, gaps })
     };
     let found = (0..poses).into_par_iter().filter_map(at).collect::<Vec<_>>();

@@ -249,7 +249,7 @@ class Advice(Result):
     task: str
     measured: int
     #: Fingers that were printed and insert from no start: not proposed again.
-    not_measurable: tuple[Design, ...]
+    not_measurable: tuple[dict[str, float], ...]
     measurements_missing: bool
     best_known_mm: float | None
     next: tuple[Print, ...]

@@ -377,12 +377,20 @@ fn a_loose_plug_finds_its_seat() {
     let [plug, socket] = ["plug", "socket"]
         .map(|body| format!("{}/examples/meshes/usb-{body}.stl", env!("CARGO_MANIFEST_DIR")));
     let out = studies.word("loose.toml");
-    let line = format!("task import --json --plug {plug} --socket {socket} --like usb --out {out}");
+    let slippery = shipped("usb").replace("plug_socket = 0.2", "plug_socket = 0.15");
+    let like = studies.file("slippery.toml", slippery);
+    let line =
+        format!("task import --json --plug {plug} --socket {socket} --like {like} --out {out}");
     let found: Value = serde_json::from_str(optimize_line(&line).succeeds()).unwrap();
     let said = found["found"].to_string();
     assert!(said.contains("mate 12.57 mm"), "{said}");
     assert!((number(&found, "clearance_mm") - 3.0).abs() < 0.1, "{found}");
-    assert!(studies.read("loose.toml").contains("As in usb."));
+    // Its mass is that of its own shape; friction is that of the other task.
+    let (made, usb) = (studies.read("loose.toml"), Task::parse(shipped("usb"), "usb").unwrap());
+    assert!(made.contains("Weigh yours."), "{made}");
+    let made = Task::parse(&made, "loose").unwrap();
+    assert_eq!(made.friction.plug_socket, 0.15);
+    assert_ne!(made.plug.mass, usb.plug.mass);
 }
 
 /// A surface with a hole, faces that look to both sides, or no volume is no solid; one that looks inward is turned.

@@ -220,10 +220,7 @@ impl Request {
 
     fn notes(&self, MatedTask { made, unit, along, jaws, .. }: &MatedTask) -> Notes {
         let [plug, socket] = self.called();
-        let mass = match &self.like {
-            Some(like) => format!("As in {like}."),
-            None => format!("Assumed: {DENSITY} kg/m3. Weigh yours."),
-        };
+        let mass = format!("Assumed: {DENSITY} kg/m3. Weigh yours.");
         let [unit, along, jaws] = [value(*unit), value(*along), value(*jaws)];
         let head = format!(
             "Imported from {plug} and {socket}, in {unit}, inserted along {along}, jaws along {jaws}."

@@ -239,8 +239,10 @@ class _Attempt:
         self.fingers = [number("BODY", f"finger {side}") for side in ("-y", "+y")]
         drive = [f"drive command {axis}" for axis in ("x", "y", "z", "rx")]
         self.drive = [number("ACTUATOR", name) for name in drive]
-        self.drive_q = [model.jnt_qposadr[number("JOINT", name)] for name in drive]
-        self.drive_v = [model.jnt_dofadr[number("JOINT", name)] for name in drive]
+        gain, damping, moved = (model.actuator_gainprm[self.drive[0], 0], -model.actuator_biasprm[self.drive[0], 2],
+                                model.body_mass[number("BODY", "command")])
+        #: What a drive of this gain, damping and mass is ahead of a place to be there, per speed and acceleration.
+        self.lead_s, self.lead_s2 = damping / gain, moved / gain
         slides = [f"slide {side} y" for side in ("-y", "+y")]
         self.jaws = [number("ACTUATOR", name) for name in slides]
         self.jaw_q = [model.jnt_qposadr[number("JOINT", name)] for name in slides]
@@ -249,6 +251,7 @@ class _Attempt:
         #: Commanded and played pose: place, m, and tilt, rad.
         self.target: Vector = np.array([*self.home, 0.0], dtype=np.float64)
         self.played: Vector = np.array(self.target, dtype=np.float64)
+        self.speed: Vector = np.zeros(4)
         self.force: Vector = np.zeros(3)
         self.peak_n = 0.0
         self.loose_s: Vector = np.zeros(2)
@@ -383,11 +386,12 @@ class _Attempt:
         played[:3] = np.clip(self.played[:3], self.target[:3] - half, self.target[:3] + half)
         played[3] = self.target[3]
         data = self.data
-        off: Vector = np.append(self.home, 0.0)
-        data.qpos[self.drive_q], data.qvel[self.drive_v] = self.played - off, (played - self.played) / TICK_S
-        data.ctrl[self.drive] = played - off
+        # Steered by forces: a drive whose place were set would not pull the flange's mass along.
+        speed = (played - self.played) / TICK_S
+        ahead = self.lead_s * speed + self.lead_s2 * (speed - self.speed) / TICK_S
+        data.ctrl[self.drive] = played - np.append(self.home, 0.0) + ahead
         self.mujoco.mj_step(self.model, data, round(TICK_S / STEP_S))
-        self.played = played
+        self.played, self.speed = played, speed
         pressed = self.read()
         if self.logging:
             place, force = self.tcp() + self.start, self.force

@@ -1,12 +1,14 @@
 """The robot in MuJoCo: hidden numbers, the physics of its probe, and its errors."""
 
 import dataclasses
+from copy import copy
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import finger_opt as fo
+from finger_opt._rehearsal import TICK_S, Rehearsal, _Attempt
 from finger_opt.robot import SimulatedRobot
 
 pytest.importorskip("mujoco")
@@ -52,6 +54,29 @@ def test_far_from_the_opening_the_plug_misses_wherever_the_start_is_taught() -> 
     assert not missed.inserted and missed.failure == 2
     # Of the same errors.
     assert shifted == missed
+
+
+def test_in_the_air_the_tool_follows_its_target_as_a_mass_on_a_damped_spring() -> None:
+    cell = Rehearsal("usb", 20, 10, {}, 5)
+    attempt = _Attempt(cell._mujoco, copy(cell._model), cell.task, dataclasses.replace(cell.unmodelled, backlash_mm=0.0))
+    attempt.grasp()
+    attempt.logging = True
+    attempt.move(attempt.target + np.array([0.0, -0.03, 0.03, 0.0]), 0.1)
+    attempt.rest(0.1)
+    log = np.array(attempt.rows) * 1e-3
+    mass = cell._model.body_subtreemass[attempt.flange] + cell._model.body_mass[attempt.plug]
+    for axis, stiffness in ((2, 10e3), (3, 20e3)):
+        damping, target = 2.0 * np.sqrt(stiffness * 2.0), log[:, axis + 7]
+        place, speed, followed = target[0], 0.0, []
+        for before, now in zip([target[0], *target], target):
+            for share in np.arange(1, 21) / 20:
+                behind, slower = before + share * (now - before) - place, (now - before) / TICK_S - speed
+                speed += TICK_S / 20 * (stiffness * behind + damping * slower) / mass
+                place += TICK_S / 20 * speed
+            followed.append(place)
+        lag = np.abs(target - followed).max()
+        assert lag > 1e-3
+        assert log[:, axis] == pytest.approx(followed, abs=0.1 * lag)
 
 
 @pytest.mark.parametrize(("aside_mm", "inserted"), [(0.0, True), (2.54, False)])

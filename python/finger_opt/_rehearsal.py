@@ -19,8 +19,8 @@ from ._commands import export_mjcf
 from ._native import InputError
 from ._task import Given, Task
 
-#: Physics step and period of the controller, s.
-STEP_S = 2e-4
+#: Physics step and period of the controller, s. The windows are those of a quarter of the step, as those of twice it are not.
+STEP_S = 5e-5
 TICK_S = 1e-3
 #: Time constant of the force sensor, s.
 SENSOR_S = 5e-3

@@ -5,7 +5,7 @@ use super::log::{Ended, Log, Moment, Run};
 use super::smoother::{Datum, Predicted};
 use super::touch::{bias, touch};
 use input::units::MM;
-use insertion::evaluation::evaluator::Evaluator;
+use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::template::{Impossible, Template};
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
@@ -159,6 +159,8 @@ pub struct Replay<'a> {
     pub template: &'a Template,
     /// Mass below the force sensor, kg.
     pub tool_mass: f64,
+    /// Factor on the time step of the engine.
+    pub step_factor: f64,
     pub stop: &'a AtomicBool,
 }
 
@@ -173,7 +175,8 @@ impl Replay<'_> {
         let mut all = Vec::with_capacity(attempts.len());
         for alike in attempts.chunk_by(|a, b| a.design == b.design) {
             let (specimen, _) = evaluator.under(template, (&alike[0].design, None), values)?;
-            let rig = evaluator.engine.rig(&specimen.task, self.robot, &specimen.finger, 1.0)?;
+            let Specimen { task, finger, .. } = &specimen;
+            let rig = evaluator.engine.rig(task, self.robot, finger, self.step_factor)?;
             let grasp = Grasp { stop: self.stop, ..Grasp::of(&specimen.finger) };
             let paths: Vec<&Path> = alike.iter().map(|logged| &logged.path).collect();
             let followed = rig.follow(grasp, Course::Paths(&paths), STEP_S);

@@ -15,7 +15,7 @@ use rapier3d_f64::parry;
 use rayon::prelude::*;
 
 /// Poses that are compared.
-pub const POSES: u32 = 200;
+pub const POSES: u32 = 1000;
 /// Gap beyond which gaps count as equal, m.
 const WIDE: f64 = 0.1 * MM;
 /// Way beyond the play by which poses differ, m.
@@ -51,7 +51,7 @@ pub struct Bodies<'a> {
     pub play: [f64; 2],
 }
 
-/// Returns the pose at which the gaps differ most, if by more than the tolerance; what was left out does not count.
+/// Returns the pose at which the gaps differ most, if they do; what was left out does not count.
 pub fn difference(of: &Bodies, left_out: &[Interference], poses: u32) -> Option<Difference> {
     let [plug, socket] = of.drawn.map(Faces::new);
     let parts = of.parts.map(ConvexBody::new);
@@ -68,7 +68,7 @@ pub fn difference(of: &Bodies, left_out: &[Interference], poses: u32) -> Option<
         let [place, other] = [drawn, its].map(|found| found.map(|(_, place)| place));
         let place = if gaps[0] < gaps[1] { place.or(other) } else { other.or(place) }?;
         // About what was left out a place of the one may count where that of the other does not.
-        let differs = (gaps[0] - gaps[1]).abs() > TOLERANCE && beyond(&place, 4.0 * BEYOND);
+        let differs = differ(gaps) && beyond(&place, 4.0 * BEYOND);
         // Where the drawn faces meet, parts that overlap may name a place far along them.
         let both = || {
             let own = pose.inverse_transform_point(&place);
@@ -80,6 +80,13 @@ pub fn difference(of: &Bodies, left_out: &[Interference], poses: u32) -> Option<
     let found = (0..poses).into_par_iter().filter_map(at).collect::<Vec<_>>();
     let off = |of: &Difference| (of.gaps[0] - of.gaps[1]).abs();
     found.into_iter().max_by(|a, b| off(a).total_cmp(&off(b)))
+}
+
+/// Returns whether gaps differ by more than two bodies can, each of which is within the tolerance, or only one is open
+/// by more than it.
+fn differ(gaps: [f64; 2]) -> bool {
+    let [low, high] = [gaps[0].min(gaps[1]), gaps[0].max(gaps[1])];
+    high - low > 2.0 * TOLERANCE || (low <= 0.0 && high > TOLERANCE)
 }
 
 /// A pose about the mated one and the way to it.

@@ -1,6 +1,7 @@
 //! Time of what is simulated: `cargo bench --bench simulation`.
 
 use connector::mating::{Watch, mates};
+use connector::mesh::mated::{self, Pair, Request};
 use contact::direct::Direct;
 use contact::scene::{Body, Friction, Geom, Inertia, Motion, Pose, Scene, Shape};
 use contact::{Engine, World};
@@ -35,31 +36,31 @@ fn task(name: &str) -> Task {
 }
 
 /// The finger of measured design 5 on a task, with the robot `servo`.
-fn rig(name: &str, engine: EngineKind) -> (Box<dyn Rig>, Finger) {
-    let (task, robot) = (task(name), shipped(ROBOTS, "servo"));
+fn rig(task: &Task, engine: EngineKind) -> (Box<dyn Rig>, Finger) {
+    let robot = shipped(ROBOTS, "servo");
     let robot = Robot::parse(robot.text, robot.file).expect("a robot");
     let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM).shaped(&task.finger, 0.0);
-    (engine.rig(&task, &robot, &finger, 1.0).expect("the engine has it all"), finger)
+    (engine.rig(task, &robot, &finger, 1.0).expect("the engine has it all"), finger)
 }
 
-fn trial(bencher: Bencher, name: &str, engine: EngineKind) {
-    let (rig, finger) = rig(name, engine);
+fn trial(bencher: Bencher, task: &Task, engine: EngineKind) {
+    let (rig, finger) = rig(task, engine);
     bencher.bench(|| rig.grasp(black_box(&finger)).trial(0.0));
 }
 
 #[divan::bench(args = TASK_NAMES, sample_count = 10, sample_size = 1)]
 fn trial_direct(bencher: Bencher, name: &str) {
-    trial(bencher, name, EngineKind::Direct);
+    trial(bencher, &task(name), EngineKind::Direct);
 }
 
 #[divan::bench(args = TASK_NAMES, sample_count = 3, sample_size = 1)]
 fn trial_rapier(bencher: Bencher, name: &str) {
-    trial(bencher, name, EngineKind::Rapier);
+    trial(bencher, &task(name), EngineKind::Rapier);
 }
 
 #[divan::bench(args = TASK_NAMES, sample_count = 5, sample_size = 1)]
 fn evaluation(bencher: Bencher, name: &str) {
-    let (rig, finger) = rig(name, EngineKind::Direct);
+    let (rig, finger) = rig(&task(name), EngineKind::Direct);
     bencher.bench(|| tolerance::evaluate(&*rig, black_box(&finger), Search::default()));
 }
 
@@ -171,4 +172,88 @@ fn mated_pose(bencher: Bencher) {
     let (plug, socket) = (metres(&plug), metres(&socket));
     let watch = Watch { progress: &|_| {}, stopped: &|| false };
     bencher.bench_local(|| mates(&plug, &socket, &watch).expect("a mated pose"));
+}
+
+/// Corners of a rectangle with round corners, mm, counter-clockwise.
+fn rounded([x, y]: [f64; 2], radius: f64) -> Vec<[f64; 2]> {
+    const EACH: u32 = 12;
+    let corner = |quarter: u32, i: u32| {
+        let angle = f64::from(quarter * EACH + i) * std::f64::consts::FRAC_PI_2 / f64::from(EACH);
+        let middle = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]][quarter as usize];
+        [
+            middle[0] * (x / 2.0 - radius) + radius * libm::cos(angle),
+            middle[1] * (y / 2.0 - radius) + radius * libm::sin(angle),
+        ]
+    };
+    (0..4).flat_map(|quarter| (0..=EACH).map(move |i| corner(quarter, i))).collect()
+}
+
+/// Triangles, m, between outlines at heights, mm; the first and the last are closed.
+fn between(outlines: &[(&[[f64; 2]], f64)]) -> Vec<[Point3<f64>; 3]> {
+    let point = |[x, y]: [f64; 2], z: f64| Point3::new(x, y, z) * MM;
+    let mut faces = Vec::new();
+    for pair in outlines.windows(2) {
+        let [(low, z), (high, top)] = [pair[0], pair[1]];
+        for i in 0..low.len() {
+            let j = (i + 1) % low.len();
+            let [a, b] = [point(low[i], z), point(low[j], z)];
+            let [c, d] = [point(high[i], top), point(high[j], top)];
+            faces.extend([[a, b, d], [a, d, c]]);
+        }
+    }
+    for (&(outline, z), turned) in
+        outlines.first().zip(Some(true)).into_iter().chain(outlines.last().zip(Some(false)))
+    {
+        for i in 1..outline.len() - 1 {
+            let [a, b, c] = [0, i, i + 1].map(|i| point(outline[i], z));
+            faces.push(if turned { [a, c, b] } else { [a, b, c] });
+        }
+    }
+    faces
+}
+
+/// A stamped shell of the size of USB-C about its tongue, with faces of 0.2 mm at its corners.
+fn shell() -> Task {
+    let [outer, inner] = [rounded([8.25, 2.4], 1.15), rounded([7.65, 1.8], 0.85)];
+    let [cavity, tongue] = [rounded([8.35, 2.5], 1.2), rounded([6.7, 0.7], 0.3)];
+    let [handle, block] = [rounded([12.0, 10.0], 1.0), rounded([16.0, 10.0], 1.0)];
+    let plug = between(&[
+        (&inner, 0.2),
+        (&inner, -6.2),
+        (&outer, -6.2),
+        (&outer, 0.5),
+        (&handle, 0.5),
+        (&handle, 20.5),
+    ]);
+    let socket = between(&[
+        (&block, -9.0),
+        (&block, 0.0),
+        (&cavity, 0.0),
+        (&cavity, -6.5),
+        (&tongue, -6.5),
+        (&tongue, -0.6),
+    ]);
+    let pair = Pair {
+        plug: &plug,
+        socket: &socket,
+        drawn: [&plug, &socket],
+        out: Vector3::z(),
+        jaws: &[Vector3::y()],
+        engaged: 6.2 * MM,
+        play: [0, 1].map(|axis| (Vector3::ith(axis, 1.0), 0.1 * MM)),
+    };
+    let made = mated::task(&pair, &Request { name: "shell", like: None, handle: None });
+    assert_eq!(made.difference, None);
+    made.task
+}
+
+#[divan::bench(sample_count = 3, sample_size = 1)]
+fn import_of_a_shell(bencher: Bencher) {
+    bencher.bench(shell);
+}
+
+#[divan::bench(sample_count = 10, sample_size = 1)]
+fn trial_of_a_shell(bencher: Bencher) {
+    let task = shell();
+    trial(bencher, &task, EngineKind::Direct);
 }

@@ -196,7 +196,8 @@ class Cell:
         return self.once(f"identified {name}", find) is not None
 
     def study(self, cell: str, space: str) -> dict[str, float]:
-        study = fo.Study.create(self.task, space=space, cell=self.path / f"{cell}.toml",
+        # The lab's start is taught, too.
+        study = fo.Study.create(self.task, space=space, cell=self.path / f"{cell}.toml", start="taught",
                                 out=self.path / f"study-{cell}-{Path(space).stem}", no_levers=True, no_map=True)
         found = study.run(progress=False).answer.finger
         return found or dict(zip(("infill_density_percent", "infill_direction_deg"), MEDIUM))

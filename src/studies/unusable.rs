@@ -3,6 +3,7 @@
 use crate::context::not_stopped;
 use crate::failure::Failure;
 use crate::setup::Setup;
+use insertion::task::StartRule;
 use insertion::trial::{Grasp, picture};
 use report::answer::words::{outcome, remedy};
 use std::path::Path;
@@ -36,9 +37,13 @@ pub(crate) fn check(
     let label = format!("evaluation {} at the nominal start: {class}{phase}", nearest.index);
     let file = dir.join(PICTURE);
     write_own_file(&file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial, &label))?;
+    let teach = match specimen.task.strategy.rule {
+        StartRule::Given => ". `--start taught` moves it to where the finger inserts",
+        StartRule::Taught => "",
+    };
     Err(Failure::running(format!(
         "no design of the study inserts at the nominal start of {}: evaluation {} ends with {class}{phase}, \
-         at depth {:.2} mm and tilt {:.2} deg; {} shows it. {}",
+         at depth {:.2} mm and tilt {:.2} deg; {} shows it. {}{teach}",
         specimen.task.name,
         nearest.index,
         trial.depth_mm,

@@ -121,12 +121,13 @@ class Cell:
 
     # The ways.
 
-    def run(self, nominal: list[float]) -> None:
+    def run(self, nominal: list[float], ways: str) -> None:
         named = [list(MEDIUM), nominal]
-        for finger, strategy in self.by_identification():
+        for finger, strategy in self.by_identification(ways):
             self.window_mm(finger, strategy)
             named.append(finger)
-        named += self.by_measurement()
+        if "c" in ways:
+            named += self.by_measurement()
         for finger in [*named, *map(list, fixed())]:
             self.window_mm(finger)
 
@@ -141,20 +142,21 @@ class Cell:
             prints.append(finger)
         return prints
 
-    def by_identification(self) -> list[tuple[list[float], dict[str, float]]]:
+    def by_identification(self, ways: str) -> list[tuple[list[float], dict[str, float]]]:
         """Ways d, e and f: two fingers' logs, a cell, a study, one finger more."""
-        folder = self.path / "d"
+        folder, chosen = self.path / "d", []
         self.two_windows(folder)
         if not (folder / "runs.csv").exists() or not self.identified(folder, "cell"):
             return []
-        d = self.once("d", lambda: self.study("cell", "infill"))
-        e = self.once("e", lambda: self.study("cell", str(strategy_space(self.path))))
-        self.measure(folder, infill(d), probe=False)
-        chosen = [(infill(d), {}), (infill(e), strategy(e))]
-        if self.identified(folder, "again"):
-            f = self.once("f", lambda: self.study("again", "infill"))
-            both = self.once("f with strategy", lambda: self.study("again", str(strategy_space(self.path))))
-            chosen += [(infill(f), {}), (infill(both), strategy(both))]
+        for cell in ("cell", "again") if "f" in ways else ("cell",):
+            if cell == "again":
+                self.measure(folder, chosen[0][0], probe=False)
+                if not self.identified(folder, cell):
+                    break
+            for way, space in (("d", "infill"), ("e", str(strategy_space(self.path)))):
+                if way in ways:
+                    found = self.once(f"{cell} {way}", lambda: self.study(cell, space))
+                    chosen.append((infill(found), strategy(found)))
         return chosen
 
     def two_windows(self, folder: Path) -> None:
@@ -290,8 +292,8 @@ def kept(file: Path, find: Callable[[], Any]) -> Any:
     return json.loads(file.read_text(encoding="utf-8"))
 
 
-def gains(folder: Path, cell: Path) -> dict[str, float] | None:
-    """The true width of each way's finger, mm; ``None`` for a cell that has not been run to its end."""
+def gains(folder: Path, cell: Path) -> dict[str, float | None] | None:
+    """The true width of each way's finger, mm, ``None`` of a way not followed; ``None`` for a cell not at its end."""
     task, seed = cell.name.rsplit("-", 1)
     found = Cell(folder, task, int(seed)).found
     widths = {key.removeprefix("window "): round(one["value"][1] - one["value"][0], 2)
@@ -303,16 +305,20 @@ def gains(folder: Path, cell: Path) -> dict[str, float] | None:
     def value(key: str) -> Any:
         return found.get(key, {}).get("value")
 
-    prints = [value(f"c print {i + 1}") for i in range(PRINTS)]
-    d, e, f, g = (value(key) for key in ("d", "e", "f", "f with strategy"))
-    said = {"a": width(list(MEDIUM)), "b": width(nominal_best(folder, task)),
-            "c": max((width(one) or 0.0 for one in prints if one), default=None)}
-    said |= {"d": width(infill(d)) if d else said["a"], "e": width(infill(e), strategy(e)) if e else said["a"]}
-    said |= {"f": width(infill(f)) if f else said["d"], "f+e": width(infill(g), strategy(g)) if g else said["e"]}
-    if len([one for one in fixed() if width(list(one)) is not None]) < 12 or None in said.values():
+    def of_study(key: str) -> float | None:
+        """Of a study's finger; where nothing could be identified, the medium one."""
+        if value("identified cell") is None:
+            return width(list(MEDIUM))
+        return width(infill(value(key)), strategy(value(key))) if value(key) else None
+
+    if None in [width(list(one)) for one in fixed()]:
         return None
-    return {**said, "best": max(widths.values()),
-            "best shipped": max(width for key, width in widths.items() if key.endswith("{}"))}
+    prints = [value(f"c print {i + 1}") for i in range(PRINTS)]
+    return {"a": width(list(MEDIUM)), "b": width(nominal_best(folder, task)),
+            "c": max((width(one) or 0.0 for one in prints if one), default=None),
+            "d": of_study("cell d"), "e": of_study("cell e"), "f": of_study("again d"), "f+e": of_study("again e"),
+            "best shipped": max(width for key, width in widths.items() if key.endswith("{}")),
+            "best": max(widths.values())}
 
 
 def table(folder: Path) -> None:
@@ -322,11 +328,11 @@ def table(folder: Path) -> None:
     ways = ("a", "b", "c", "d", "e", "f", "f+e", "best shipped", "best")
     print("| cell | " + " | ".join(f"{way}, mm" for way in ways) + " |\n| --- |" + " --- |" * len(ways))
     for name, one in done.items():
-        print(f"| {name} | " + " | ".join(f"{one[way]:.1f}" for way in ways) + " |")
+        print(f"| {name} | " + " | ".join("" if one[way] is None else f"{one[way]:.1f}" for way in ways) + " |")
     for way in ways[1:]:
-        gain = [one[way] - one["a"] for one in done.values()]
         best = "best" if "e" in way else "best shipped"
-        share = [100.0 * (one[way] - one["a"]) / (one[best] - one["a"]) for one in done.values() if one[best] > one["a"]]
+        pairs = [(one[way] - one["a"], one[best] - one["a"]) for one in done.values() if one[way] is not None]
+        gain, share = [one for one, _ in pairs], [100.0 * one / most for one, most in pairs if most > 0.0]
         if len(gain) > 1 and len(share) > 1:
             low, middle, high = statistics.quantiles(gain, n=4)
             print(f"{way}: {middle:+.1f} mm ({low:+.1f} to {high:+.1f}), {statistics.median(share):.0f} % of the possible; "
@@ -340,13 +346,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
     parser.add_argument("cells", nargs="*", metavar="TASK:SEED")
+    parser.add_argument("--ways", default="cdef", help="ways besides a and b [default: cdef]; the best is of those followed")
     parser.add_argument("--table", action="store_true")
     asked = parser.parse_args()
     asked.folder = asked.folder.resolve()
     asked.folder.mkdir(parents=True, exist_ok=True)
     for cell in asked.cells:
         task, seed = cell.rsplit(":", 1)
-        Cell(asked.folder, task, int(seed)).run(nominal_best(asked.folder, task))
+        Cell(asked.folder, task, int(seed)).run(nominal_best(asked.folder, task), asked.ways)
     if asked.table:
         table(asked.folder)
 

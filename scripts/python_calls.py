@@ -81,8 +81,8 @@ if study is not None:
         refuses="""\
 if plug is not None:
     without("plug", "one of them goes in", round=round)
-if plug is None and round is None:
-    without("no plug", "they go with plug or round", clearance=clearance, body=body)""",
+if plug is None and round is None and pins is None:
+    without("no plug", "they go with plug, round or pins", clearance=clearance, body=body)""",
     ),
     "task check": Call(
         "check_task", "_connector.TaskCheck", names={"file": "task"}, types={"file": "Given"},

@@ -98,7 +98,8 @@ def kind_of(option: dict[str, Any], call: Call) -> str:
         return "Numbers"
     parts = re.fullmatch(r"[A-Z]+(?:[,x][A-Z]+)+", value)
     if parts:
-        numbers = ", ".join(["float"] * len(re.split("[,x]", value)))
+        kind = "int" if value == "NxM" else "float"
+        numbers = ", ".join([kind] * len(re.split("[,x]", value)))
         kind = f"tuple[{numbers}]"
     else:
         kind = {"number": "float", "integer": "int", "path": "StrPath"}.get(option["kind"], "str")

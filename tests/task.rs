@@ -50,6 +50,7 @@ fn trial(task: &Task) -> Trial {
 fn drafted(plug: &str, clearance_mm: f64, body: Option<&str>) -> Task {
     let round = plug.matches('x').count() == 1;
     let size = Dimensions {
+        pins: None,
         plug: if round { Size::round(plug).unwrap() } else { plug.parse().unwrap() },
         round,
         clearance: clearance_mm * MM,
@@ -512,6 +513,43 @@ fn explore(path: &str, known: &mut Vec<String>) {
 }
 
 /// A keyed round plug and a chamfered opening; the page that shows a task in three dimensions.
+#[test]
+fn a_header_of_pins_inserts_and_misses_by_one_pitch() {
+    let studies = Studies::new();
+    let file = studies.word("header.toml");
+    let made = format!("task new header --pins 2x5 --clearance 0.2 --out {file}");
+    let made = optimize_line(&made);
+    let checked = made.succeeds();
+    assert!(
+        checked.contains("no problems") && checked.contains("inserted 6.0 mm deep"),
+        "{checked}"
+    );
+    let text = studies.read("header.toml");
+    let again = "--pins 2x5 --pitch-mm 2.54 --pin-mm 0.64 --pin-length-mm 6 --clearance 0.2 --body 5.08x12.7x20";
+    assert!(text.contains(again), "{text}");
+    // Ten pins and their body; six bars, five columns of three webs, and a floor.
+    assert_eq!(text.matches("[[plug.part]]").count(), 11);
+    assert_eq!(text.matches("[[socket.part]]").count(), 6 + 15 + 1);
+    for (offset_mm, outcome) in
+        [("0.4", "inserted"), ("2.54", "plug missed"), ("-2.54", "plug missed")]
+    {
+        let trial =
+            format!("trial --task {file} --density 20 --direction 20 --offset-mm={offset_mm}");
+        let ran = optimize_line(&trial);
+        assert!(ran.succeeds().contains(outcome), "{offset_mm}: {}", ran.succeeds());
+    }
+    let refused = [
+        ("--pins 2x5 --pitch-mm 0.7", "it must be more than a hole, 0.84 mm"),
+        ("--pins 2x0", "ROWSxCOLUMNS"),
+        ("--pins 20x20", "at most 100 pins"),
+        ("--pins 2x5 --pin-mm 0", "0.1"),
+        ("--pins 2x5 --round 8x12", "--round"),
+    ];
+    for (words, error) in refused {
+        optimize_line(&format!("task new a {words} --clearance 0.2")).fails(2, &[error]);
+    }
+}
+
 #[test]
 fn a_key_and_a_chamfer_are_in_the_file_and_the_task_is_shown() {
     let studies = Studies::new();

@@ -791,6 +791,10 @@ def new_task(
     *,
     plug: tuple[float, float, float] | None = None,
     round: tuple[float, float] | None = None,
+    pins: tuple[int, int] | None = None,
+    pitch_mm: float | None = None,
+    pin_mm: float | None = None,
+    pin_length_mm: float | None = None,
     clearance: float | None = None,
     key: tuple[float, float] | None = None,
     chamfer_mm: float | None = None,
@@ -801,20 +805,24 @@ def new_task(
 ) -> NewTask:
     """Create a commented task file from a few dimensions, or from another task, as ``optimize task new`` does.
 
-    With plug or round, start, tilt, strokes and success depth are derived from the geometry. With like
-    alone the file is a copy of that task; with both, friction and grasp force are taken from it. With
+    With plug, round or pins, start, tilt, strokes and success depth are derived from the geometry. With
+    like alone the file is a copy of that task; with both, friction and grasp force are taken from it. With
     neither the task is a USB-C plug.
 
     Args:
         name: Name of the task: letters, digits, - and _.
         plug: width (y, between the jaws) x height (x) x length, mm.
         round: Cylindrical plug: diameter x length, mm.
+        pins: Plug of square pins: rows (y, between the jaws) x columns (x); each has its own hole.
+        pitch_mm: Distance from pin to pin, mm [default: 2.54].
+        pin_mm: Side of a pin, mm [default: 0.64].
+        pin_length_mm: Length of a pin, mm [default: 6].
         clearance: Clearance, mm: opening minus plug in x and y, both sides together.
         key: Key of a cylindrical plug, on its side across the jaws (+x): width x height beyond the
             cylinder, mm.
         chamfer_mm: Chamfer of 45 degrees at the opening of a plug with flat sides, mm.
         body: Body that the fingers hold, above the plug: width x height x length, mm [default: the plug
-            itself].
+            itself; of pins their block, 20 mm long].
         like: Task to start from: ket8, ket12, rj45, usb, or the path of a task file.
         out: File to write [default: NAME.toml].
         engine: Contact engine for the nominal start.
@@ -826,11 +834,12 @@ def new_task(
     """
     if plug is not None:
         without("plug", "one of them goes in", round=round)
-    if plug is None and round is None:
-        without("no plug", "they go with plug or round", clearance=clearance, body=body)
+    if plug is None and round is None and pins is None:
+        without("no plug", "they go with plug, round or pins", clearance=clearance, body=body)
     return called("task new", {
-        "name": name, "plug": plug, "round": round, "clearance": clearance, "key": key, "chamfer_mm": chamfer_mm,
-        "body": body, "like": like, "out": out, "engine": engine,
+        "name": name, "plug": plug, "round": round, "pins": pins, "pitch_mm": pitch_mm, "pin_mm": pin_mm,
+        "pin_length_mm": pin_length_mm, "clearance": clearance, "key": key, "chamfer_mm": chamfer_mm, "body": body,
+        "like": like, "out": out, "engine": engine,
     }, NewTask)
 
 

@@ -165,6 +165,7 @@ TOGETHER = [
     (lambda: fo.new_task("x", plug=(8, 2.4, 25)), "clearance"),
     (lambda: fo.new_task("x", plug=(8, 2.4, 25), round=(8, 25), clearance=0.1), "round"),
     (lambda: fo.new_task("x", like="usb", clearance=0.1), "clearance"),
+    (lambda: fo.new_task("x", pins=(2, 5)), "clearance"),
     (lambda: fo.export_finger("study", format="stl", out="x.stl", density=12, direction=30), "density"),
     (lambda: fo.Measurements("x.csv").add("usb", not_measurable=True, range_mm=3.0), "range_mm"),
     (lambda: fo.trial("usb", 20, 10, probe=True), "probe"),

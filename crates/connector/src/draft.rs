@@ -1,13 +1,15 @@
 //! Task from a few dimensions: plug, clearance and the body that the fingers hold.
 
+use super::mesh::mated::ASIDE;
+use super::pins::Pins;
 use super::plan::{self, PlanError};
 use input::units::MM;
 use input::{Place, Placed};
 use insertion::finger::Pad;
 use insertion::task::finger::FingerModel;
 use insertion::task::{
-    Friction, Grip, Hold, Limits, PadTorsion, Part, Plug, Solid, StartRule, Strategy, Success,
-    Task, geometry,
+    Friction, Grip, Hold, Limits, Mated, PadTorsion, Part, Plug, Solid, StartRule, Strategy,
+    Success, Task, geometry,
 };
 use nalgebra::Vector3;
 use parameters::numbers;
@@ -91,6 +93,8 @@ fn lengths<const N: usize>(text: &str, right: &str) -> Result<[f64; N], String> 
 pub struct Dimensions {
     /// Part of the plug that goes in.
     pub plug: Size,
+    /// Pins that it consists of.
+    pub pins: Option<Pins>,
     /// Whether that part is a cylinder, with width and height as its diameter.
     pub round: bool,
     /// Opening less plug, in x and in y, m.
@@ -109,6 +113,9 @@ pub enum DraftError {
     /// Clearance that is not less than the plug's smallest side; both in mm.
     #[error("--clearance: is {0} mm; it must be less than the smallest side of the plug, {1} mm")]
     TooLoose(f64, f64),
+    /// Pins so near to one another that nothing is left between their holes; both in mm.
+    #[error("--pitch-mm: is {0} mm; it must be more than a hole, {1:.2} mm")]
+    NarrowPitch(f64, f64),
     /// Key as wide as the plug or wider; both in mm.
     #[error("--key: is {0} mm wide; it must be narrower than the plug, {1} mm")]
     WideKey(f64, f64),
@@ -128,6 +135,7 @@ impl Placed for DraftError {
     fn place(&self) -> Place {
         match self {
             DraftError::TooLoose(..) => Place::option("--clearance"),
+            DraftError::NarrowPitch(..) => Place::option("--pitch-mm"),
             DraftError::WideKey(..) => Place::option("--key"),
             DraftError::TooShort(option, ..) => Place::option(option),
             DraftError::Plan(_) => Place::default(),
@@ -164,24 +172,31 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
 /// If the plug is too short to be held, or no strategy can be derived.
 pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task, DraftError> {
     let (plug, body) = (size.plug, size.body);
-    let thickness = plug.width.min(plug.height);
+    let thickness = size.pins.map_or(plug.width.min(plug.height), |pins| pins.side);
     if size.clearance >= thickness {
         return Err(DraftError::TooLoose(size.clearance / MM, thickness / MM));
     }
+    if let Some(Pins { pitch, side, .. }) = size.pins
+        && side + size.clearance >= pitch
+    {
+        return Err(DraftError::NarrowPitch(pitch / MM, (side + size.clearance) / MM));
+    }
     let mut task = blank(name, like);
     let [width, height, clearance] = [plug.width, plug.height, size.clearance].map(|v| v / MM);
-    let shape = match size.round {
-        true => format!("round plug of {width} mm"),
-        false => format!("plug {width} x {height} mm"),
+    let shape = match (size.pins, size.round) {
+        (Some(Pins { count: [rows, columns], .. }), _) => format!("{rows} x {columns} pins"),
+        (None, true) => format!("round plug of {width} mm"),
+        (None, false) => format!("plug {width} x {height} mm"),
     };
     task.description = format!("{shape}, {clearance} mm clearance");
     let top = plug.length + body.map_or(0.0, |body| body.length);
-    let mut parts = match size.round {
-        true => {
+    let mut parts = match (size.pins, size.round) {
+        (Some(pins), _) => pins.parts(),
+        (None, true) => {
             let (radius, z) = (plug.width / 2.0, [0.0, plug.length]);
             vec![part("plug", Solid::Cylinder { centre: [0.0; 2], radius, z })]
         }
-        false => vec![upright("plug", plug, 0.0)],
+        (None, false) => vec![upright("plug", plug, 0.0)],
     };
     if let Some([wide, high]) = size.key {
         if wide + size.clearance >= plug.width {
@@ -214,6 +229,12 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     if let Some(leg) = size.chamfer {
         task = task.chamfered(leg);
     }
+    if size.pins.is_some() {
+        // A pin of many may stand in the hole of another.
+        let lateral = libm::hypot(size.clearance, size.clearance) / 2.0 + ASIDE;
+        task.success.mated = Some(Mated { tip: [0.0, 0.0, -plug.length], lateral });
+        return Ok(plan::mated(task));
+    }
     Ok(plan::complete(task)?)
 }
 
@@ -222,7 +243,7 @@ fn upright(name: &str, size: Size, from: f64) -> Part {
     block(name, [[-half[0], half[0]], [-half[1], half[1]], [from, from + size.length]])
 }
 
-fn block(name: &str, [x, y, z]: [[f64; 2]; 3]) -> Part {
+pub(crate) fn block(name: &str, [x, y, z]: [[f64; 2]; 3]) -> Part {
     let [min, max] = [0, 1].map(|end| Vector3::new(x[end], y[end], z[end]));
     part(name, Solid::Box { min, max })
 }
@@ -251,12 +272,13 @@ fn housing(size: &Dimensions, floor: f64) -> ([[f64; 2]; 2], Vec<Part>) {
         [-edge, edge]
     });
     let ([[left, right], [low, high]], z) = (opening, [-floor, 0.0]);
-    let mut parts = match hole {
-        Some(hole) => {
+    let mut parts = match (size.pins, hole) {
+        (Some(pins), _) => pins.plate(size.clearance, outer, z),
+        (None, Some(hole)) => {
             let walls = hole.walls(outer.map(|[_, edge]| edge), z);
             slot.map_or(walls.clone(), |slot| slotted(&walls, slot))
         }
-        None => vec![
+        (None, None) => vec![
             block("wall at -y", [outer[0], [outer[1][0], low], z]),
             block("wall at +y", [outer[0], [high, outer[1][1]], z]),
             block("wall at -x", [[outer[0][0], left], opening[1], z]),
@@ -364,7 +386,8 @@ mod tests {
         let plug: Size = "8x2.4x25".parse().unwrap();
         let draft = |clearance| {
             let (key, chamfer) = (None, None);
-            let size = Dimensions { plug, round: false, clearance, key, chamfer, body: None };
+            let size =
+                Dimensions { plug, pins: None, round: false, clearance, key, chamfer, body: None };
             draft("mine", &size, None)
         };
         assert!(draft(2.3 * MM).is_ok());
@@ -398,6 +421,7 @@ mod tests {
         assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
         let size = |key| Dimensions {
             plug: Size::round("8x12").unwrap(),
+            pins: None,
             round: true,
             clearance,
             key: Some(key),

@@ -12,6 +12,7 @@ pub mod mating;
 pub mod mesh;
 pub mod nominal;
 pub mod picture;
+pub mod pins;
 pub mod plan;
 pub mod rewrite;
 pub mod seat;

@@ -136,6 +136,7 @@ pub static NUMBERS: &[Number] = &[
     // Connectors that are drafted from dimensions.
     fixed("connector.size_mm", 0.5, 200.0),
     fixed("connector.clearance_mm", 1e-3, 20.0),
+    fixed("connector.pin_mm", 0.1, 50.0),
     number(Kind::Added, CLEARANCE, -1e3, 1e3),
     number(Kind::Added, EDGE_RADIUS, 0.0, 1e3),
     number(Kind::Added, CHAMFER, 0.0, 1e3),

@@ -8,6 +8,7 @@ use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{begun, brief, chosen};
 use connector::draft::{self, DENSITY, Dimensions, Hole, Size};
+use connector::pins::Pins;
 use connector::tune::Tuned;
 use connector::write::{self, Notes};
 use input::shipped::Source;
@@ -25,7 +26,7 @@ const EXAMPLE: [&str; 3] = ["8.25x2.4x6.65", "0.1", "12x6.5x20"];
 
 /// Create a commented task file from a few dimensions, or from another task
 ///
-/// With --plug or --round, start, tilt, strokes and success depth are derived from the geometry. With --like
+/// With --plug, --round or --pins, start, tilt, strokes and success depth are derived from the geometry. With --like
 /// alone the file is a copy of that task; with both, friction and grasp force are taken from it.
 /// With neither the task is a USB-C plug.
 #[derive(Debug, clap::Args)]
@@ -43,6 +44,18 @@ pub struct Request {
     /// Cylindrical plug: diameter x length, mm
     #[arg(long, value_name = "DxL", requires = "clearance", group = "tip", value_parser = Size::round)]
     pub round: Option<Size>,
+    /// Plug of square pins: rows (y, between the jaws) x columns (x); each has its own hole
+    #[arg(long, value_name = "NxM", requires = "clearance", group = "tip", value_parser = Pins::count)]
+    pub pins: Option<[u32; 2]>,
+    /// Distance from pin to pin, mm [default: 2.54]
+    #[arg(long, value_name = "MM", requires = "pins", value_parser = Pins::length_mm)]
+    pub pitch_mm: Option<f64>,
+    /// Side of a pin, mm [default: 0.64]
+    #[arg(long, value_name = "MM", requires = "pins", value_parser = Pins::length_mm)]
+    pub pin_mm: Option<f64>,
+    /// Length of a pin, mm [default: 6]
+    #[arg(long, value_name = "MM", requires = "pins", value_parser = Pins::length_mm)]
+    pub pin_length_mm: Option<f64>,
     /// Clearance, mm: opening minus plug in x and y, both sides together
     #[arg(long, value_name = "C", requires = "tip", value_parser = clearance)]
     pub clearance: Option<f64>,
@@ -52,7 +65,8 @@ pub struct Request {
     /// Chamfer of 45 degrees at the opening of a plug with flat sides, mm
     #[arg(long, value_name = "MM", requires = "plug", conflicts_with = "round", value_parser = chamfer)]
     pub chamfer_mm: Option<f64>,
-    /// Body that the fingers hold, above the plug: width x height x length, mm [default: the plug itself]
+    /// Body that the fingers hold, above the plug: width x height x length, mm [default: the plug itself; of pins
+    /// their block, 20 mm long]
     #[arg(long, value_name = "WxHxL", requires = "tip")]
     pub body: Option<Size>,
     /// Task to start from: ket8, ket12, rj45, usb, or the path of a task file
@@ -78,7 +92,7 @@ impl command::Request for Request {
 
     fn run(&self, context: &Context<'_>) -> Result<Written, Failure> {
         let like = self.like.as_deref().map(read_task).transpose()?;
-        let (text, tuned) = match (&like, self.plug.or(self.round)) {
+        let (text, tuned) = match (&like, tip(self)) {
             (Some(like), None) => (copy(&self.name, like), None),
             (like, _) => drafted(self, like.as_ref(), context.stop)?,
         };
@@ -137,9 +151,15 @@ fn drafted(
     let task =
         draft::draft(&request.name, &size, like.map(|like| &like.task)).map_err(Failure::input)?;
     let body = size.body.map_or(String::new(), |body| format!(" --body {}", text(&body)));
-    let tip = match size.round {
-        true => format!("--round {}", mm(&[size.plug.width, size.plug.length])),
-        false => format!("--plug {}", text(&size.plug)),
+    let tip = match (size.pins, size.round) {
+        (Some(Pins { count: [rows, columns], pitch, side, length }), _) => {
+            let [pitch, side, length] = [pitch, side, length].map(|length| mm(&[length]));
+            format!(
+                "--pins {rows}x{columns} --pitch-mm {pitch} --pin-mm {side} --pin-length-mm {length}"
+            )
+        }
+        (None, true) => format!("--round {}", mm(&[size.plug.width, size.plug.length])),
+        (None, false) => format!("--plug {}", text(&size.plug)),
     };
     let (name, clearance_mm) = (&request.name, size.clearance / MM);
     let key = size.key.map_or(String::new(), |key| format!(" --key {}", mm(&key)));
@@ -163,20 +183,32 @@ fn drafted(
     Ok((write::task(&task, &Notes { head, mass, ..Notes::default() }), tuned))
 }
 
+fn pins(request: &Request) -> Option<Pins> {
+    let [pitch, side, length] =
+        [(request.pitch_mm, 2.54), (request.pin_mm, 0.64), (request.pin_length_mm, 6.0)]
+            .map(|(given, usual)| given.unwrap_or(usual) * MM);
+    request.pins.map(|count| Pins { count, pitch, side, length })
+}
+
+/// Returns the size of what goes in.
+fn tip(request: &Request) -> Option<Size> {
+    request.plug.or(request.round).or(pins(request).map(|pins| pins.size()))
+}
+
 fn dimensions(request: &Request) -> Result<(Dimensions, bool), Failure> {
-    let tip = request.plug.or(request.round);
-    if let (Some(plug), Some(clearance)) = (tip, request.clearance) {
-        let (clearance, body) = (clearance * MM, request.body);
+    if let (Some(plug), Some(clearance)) = (tip(request), request.clearance) {
+        let (clearance, pins) = (clearance * MM, pins(request));
+        let body = request.body.or(pins.map(|pins| pins.body()));
         let round = request.round.is_some();
         let (key, chamfer) = (request.key, request.chamfer_mm.map(|mm| mm * MM));
-        return Ok((Dimensions { plug, round, clearance, key, chamfer, body }, false));
+        return Ok((Dimensions { plug, pins, round, clearance, key, chamfer, body }, false));
     }
     let [plug, clearance, body] = EXAMPLE;
     let parse = |text: &str| text.parse::<Size>().map_err(Failure::usage);
     let clearance = self::clearance(clearance).map_err(Failure::usage)?;
     let (plug, body) = (parse(plug)?, Some(parse(body)?));
     let (clearance, key, chamfer) = (clearance * MM, None, None);
-    Ok((Dimensions { plug, round: false, clearance, key, chamfer, body }, true))
+    Ok((Dimensions { plug, pins: None, round: false, clearance, key, chamfer, body }, true))
 }
 
 fn text(size: &Size) -> String {

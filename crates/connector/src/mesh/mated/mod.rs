@@ -26,7 +26,7 @@ pub const HANDLE: [f64; 3] = [12.0 * MM, 10.0 * MM, 20.0 * MM];
 /// Height of the tip whose middle is the plug's axis, m.
 const TIP: f64 = 1.0 * MM;
 /// Allowance for the lateral place of a mated plug beyond its play, m.
-const ASIDE: f64 = 0.1 * MM;
+pub(crate) const ASIDE: f64 = 0.1 * MM;
 /// Least play assumed between plug and opening, m.
 const LEAST_PLAY: f64 = 0.02 * MM;
 

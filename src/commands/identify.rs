@@ -11,6 +11,7 @@ use crate::setup::files::find;
 use crate::setup::request::SetupRequest;
 use calibration::identify::check::Remark;
 use calibration::identify::frame::Frame;
+use calibration::identify::mount;
 use calibration::identify::question::{Identified, IdentifyDone, Question};
 use calibration::identify::runs;
 use input::files::{self, LARGEST_INPUT};
@@ -97,13 +98,15 @@ impl command::Request for Request {
             seed: self.seed,
             stop,
         };
-        let remarks = question.remarks(&self.runs.to_string_lossy()).map_err(Failure::input)?;
+        let file = self.runs.to_string_lossy();
+        let mut remarks = question.remarks(&file).map_err(Failure::input)?;
         let found = question.answer().map_err(Failure::input)?;
         not_stopped(stop)?;
         // Curves that were compared are shown all the same, but make no cell.
         if !found.is_informative() && (self.out.is_some() || found.compared.is_empty()) {
             return Err(nothing_learnt(&remarks));
         }
+        remarks.extend(mount::remark(&file, &found.compared));
         let cell = cell(&setup, &found, runs.len()).checked("the cell").map_err(Failure::input)?;
         let done = IdentifyDone { task: template.task.name.clone(), remarks, found, cell };
         if let Some(path) = &self.out {

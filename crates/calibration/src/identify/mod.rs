@@ -17,6 +17,7 @@ pub mod formulas;
 pub mod frame;
 pub mod log;
 pub mod misfit;
+pub mod mount;
 pub mod question;
 pub mod read;
 pub mod replay;

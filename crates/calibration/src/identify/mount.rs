@@ -1,0 +1,96 @@
+//! A socket or a grip that gives way under the push, which the model does not have: seen by how the TCP sinks as the
+//! force rises, beside the same slope of the simulation, in which the fingers yield alone.
+
+use super::check::Remark;
+use super::curves::Curves;
+use super::question::Compared;
+use ask_tell::statistics::median;
+use input::units::N_PER_MM;
+use nalgebra::Vector3;
+
+/// Shares of the largest force between which the slope is taken: the seated plug is pressed.
+const BETWEEN: [f64; 2] = [0.4, 0.9];
+/// Least largest force, N, and least number of points.
+const PRESSED: (f64, usize) = (20.0, 4);
+/// Least compliance that is remarked, m/N: 125 N/mm, beyond what an unknown modulus of the fingers explains.
+const YIELDS: f64 = 8e-6;
+/// Least number of attempts.
+const ATTEMPTS: usize = 3;
+
+/// Returns a remark on what gives way beyond the fingers, median over the attempts; `file` has the runs.
+pub fn remark(file: &str, compared: &[Compared]) -> Option<Remark> {
+    let more = |one: &Compared| {
+        let [measured, simulated] =
+            [&one.logged.curves, &one.after.0].map(|curves| compliance(curves, one.logged.push));
+        Some(measured? - simulated?)
+    };
+    said(file, &compared.iter().filter_map(more).collect::<Vec<_>>())
+}
+
+fn said(file: &str, compliances: &[f64]) -> Option<Remark> {
+    let more = median(compliances.iter().copied())?;
+    (compliances.len() >= ATTEMPTS && more > YIELDS).then(|| Remark {
+        file: file.to_owned(),
+        lines: None,
+        text: format!(
+            "under the push the tool sinks as if socket or grip stood on a spring of {:.0} N/mm, which the model does \
+             not have: plugs that only the push straightens jam sooner than predicted; clamp the socket",
+            1.0 / more / N_PER_MM
+        ),
+        serious: false,
+    })
+}
+
+/// Returns how far the TCP sinks per newton as the force of the push rises, m/N.
+fn compliance(curves: &Curves, push: usize) -> Option<f64> {
+    let height = |force: &Vector3<f64>| force.z;
+    let pushed = curves.force.get(push..)?;
+    let most = (0..pushed.len()).max_by(|&a, &b| pushed[a].z.total_cmp(&pushed[b].z))?;
+    let largest = height(&pushed[most]);
+    let before = |end: usize, share: f64| {
+        pushed[..=end].iter().rposition(|force| height(force) <= share * largest)
+    };
+    let to = before(most, BETWEEN[1])?;
+    let from = before(to, BETWEEN[0])?;
+    let (least, points) = PRESSED;
+    if largest < least || to - from < points {
+        return None;
+    }
+    let count = (to - from + 1) as f64;
+    let pair = |i: usize| (pushed[i].z, curves.tcp[push + i].z);
+    let (force, place) = (from..=to).map(pair).fold((0.0, 0.0), |(f, z), (a, b)| (f + a, z + b));
+    let (force, place) = (force / count, place / count);
+    let terms = (from..=to).map(pair).map(|(f, z)| (f - force, z - place));
+    let (product, squares) = terms.fold((0.0, 0.0), |(p, s), (f, z)| (p + f * z, s + f * f));
+    (squares > 0.0).then(|| -product / squares)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pressed at 1 N per point onto a spring of 40 N/mm, with a hold at the end.
+    fn pressed(per_newton: f64) -> Curves {
+        let force = |i: i32| f64::from((i - 20).clamp(0, 60));
+        let at = |i: i32| Vector3::new(0.0, 0.0, 0.05 - per_newton * force(i));
+        Curves {
+            tcp: (0..120).map(at).collect(),
+            target: None,
+            force: (0..120).map(|i| Vector3::z() * force(i)).collect(),
+            tilt: vec![0.0; 120],
+        }
+    }
+
+    #[test]
+    fn the_slope_is_that_of_the_spring_and_a_soft_socket_is_said() {
+        let [rigid, soft] = [25e-6, 39e-6].map(|per_newton| compliance(&pressed(per_newton), 10));
+        assert!((rigid.unwrap() - 25e-6).abs() < 1e-9);
+        let more = soft.unwrap() - rigid.unwrap();
+        let remark = said("runs.csv", &[more, more, 0.8 * more]).unwrap();
+        assert!(remark.text.contains("a spring of 71 N/mm") && !remark.serious, "{remark}");
+        assert_eq!(said("runs.csv", &[more; 2]), None);
+        assert_eq!(said("runs.csv", &[4e-6, more, 4e-6]), None);
+        // Hardly pressed.
+        assert_eq!(compliance(&pressed(25e-6), 119), None);
+    }
+}

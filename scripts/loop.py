@@ -114,6 +114,8 @@ class Cell:
                 note_nothing(bench, self.task, finger)
                 return 17
             robot = SimulatedRobot(self.task, *finger, "mujoco", seed=self.seed, taught_mm=taught)
+            # Other jobs may run beside.
+            robot.timeout_s = 3600.0  # type: ignore[attr-defined]
             found = measure_window(robot, task=self.task, density=finger[0], direction=finger[1], out=bench, probe=probe)
             return found.attempts
 

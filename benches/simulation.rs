@@ -201,9 +201,7 @@ fn between(outlines: &[(&[[f64; 2]], f64)]) -> Vec<[Point3<f64>; 3]> {
             faces.extend([[a, b, d], [a, d, c]]);
         }
     }
-    for (&(outline, z), turned) in
-        outlines.first().zip(Some(true)).into_iter().chain(outlines.last().zip(Some(false)))
-    {
+    for ((outline, z), turned) in [(outlines[0], true), (outlines[outlines.len() - 1], false)] {
         for i in 1..outline.len() - 1 {
             let [a, b, c] = [0, i, i + 1].map(|i| point(outline[i], z));
             faces.push(if turned { [a, c, b] } else { [a, b, c] });

@@ -405,7 +405,10 @@ fn a_task_that_no_design_does_ends_with_what_went_wrong() {
                   source = \"too high\"\n";
     let space = ["--space", &studies.file("high.toml", format!("{infill}\n{centre}"))];
     let failed = studies.study("s", 8, &space);
-    failed.fails(1, &["nominal start of usb", "plug missed (class 2)", "nominal.svg"]);
+    failed.fails(
+        1,
+        &["nominal start of usb", "plug missed (class 2)", "nominal.svg", "--start taught"],
+    );
     assert!(failed.stdout.contains("No finger inserts on usb"), "{}", failed.stdout);
     let json = studies.study("s", 8, &[&space[..], &["--json"]].concat());
     json.fails(1, &["nominal start"]);

@@ -19,7 +19,7 @@ from ._commands import export_mjcf
 from ._native import InputError
 from ._task import Given, Task
 
-#: Physics step and period of the controller, s. The windows are those of a quarter of the step, as those of twice it are not.
+#: Physics step and period of the controller, s. A quarter of this step gives the same windows; twice it does not.
 STEP_S = 5e-5
 TICK_S = 1e-3
 #: Time constant of the force sensor, s.

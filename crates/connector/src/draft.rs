@@ -116,6 +116,9 @@ pub enum DraftError {
     /// Pins so near to one another that nothing is left between their holes; both in mm.
     #[error("--pitch-mm: is {0} mm; it must be more than a hole, {1:.2} mm")]
     NarrowPitch(f64, f64),
+    /// Body that does not reach over all pins: width and height of the body and of the pins, mm.
+    #[error("--body: is {0} x {1} mm; it must reach over all pins, {2:.2} x {3:.2} mm")]
+    NarrowBody(f64, f64, f64, f64),
     /// Key as wide as the plug or wider; both in mm.
     #[error("--key: is {0} mm wide; it must be narrower than the plug, {1} mm")]
     WideKey(f64, f64),
@@ -135,6 +138,7 @@ impl Placed for DraftError {
     fn place(&self) -> Place {
         match self {
             DraftError::TooLoose(..) => Place::option("--clearance"),
+            DraftError::NarrowBody(..) => Place::option("--body"),
             DraftError::NarrowPitch(..) => Place::option("--pitch-mm"),
             DraftError::WideKey(..) => Place::option("--key"),
             DraftError::TooShort(option, ..) => Place::option(option),
@@ -180,6 +184,12 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
         && side + size.clearance >= pitch
     {
         return Err(DraftError::NarrowPitch(pitch / MM, (side + size.clearance) / MM));
+    }
+    if let (Some(_), Some(body)) = (size.pins, body)
+        && (body.width < plug.width || body.height < plug.height)
+    {
+        let [width, height] = [body.width, body.height].map(|v| v / MM);
+        return Err(DraftError::NarrowBody(width, height, plug.width / MM, plug.height / MM));
     }
     let mut task = blank(name, like);
     let [width, height, clearance] = [plug.width, plug.height, size.clearance].map(|v| v / MM);

@@ -60,7 +60,7 @@ fn keywords_are_refused_by_their_option() {
     let study = |more: Value| {
         let Value::Object(words) = more else { unreachable!() };
         let request = keywords::request::<study::Request>(&words);
-        refused(request.and_then(|request| AnyStudy::Asked(Box::new(request)).folder()))
+        refused(request.and_then(|request| AnyStudy::Asked(Box::new(request)).create()))
     };
     for (more, said) in [
         (json!({"task": "usb", "budget": 0}), "--budget 0: must lie between 1 and "),

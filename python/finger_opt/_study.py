@@ -42,12 +42,12 @@ class Study(Asked):
 
     def __init__(self, asked: _native.Asked) -> None:
         #: The folder.
-        self.path: str = os.path.abspath(asked.folder())
+        self.path: str = os.path.abspath(asked.create())
         self._asked = asked
 
     @classmethod
     def asked(cls, words: Mapping[str, Any]) -> Study:
-        """The study of these words, all checked, as is a folder of it; :meth:`run`, which knows the workers, makes one."""
+        """The study of these words, in its folder; a batch that is not given follows from the workers of :meth:`run`."""
         return cls(_native.Asked(keywords(words)))
 
     @classmethod
@@ -99,7 +99,7 @@ class Study(Asked):
         return self._asked.open(workers)
 
     def _begun(self) -> bool:
-        return os.path.exists(os.path.join(self.path, "study.toml"))
+        return os.path.exists(os.path.join(self.path, "journal.jsonl"))
 
     def _read(self) -> _native.Recorded:
         return _native.Recorded(self.path)
@@ -177,8 +177,6 @@ class Study(Asked):
         return True
 
     def __reduce__(self) -> tuple[Any, tuple[str]]:
-        if not self._begun():
-            raise TypeError(f"{self!r} has not begun: run it before it is pickled")
         return Study.resumed, (self.path,)
 
     def _repr_html_(self) -> str:

@@ -129,9 +129,9 @@ impl Asked {
         self.quiet
     }
 
-    /// Checks the request and returns the folder.
-    fn folder(&self, py: Python<'_>) -> PyResult<PathBuf> {
-        released(py, || self.study.folder())?.map_err(raise)
+    /// Writes the study without measuring and returns its folder.
+    fn create(&self, py: Python<'_>) -> PyResult<PathBuf> {
+        released(py, || self.study.create())?.map_err(raise)
     }
 
     /// Starts or continues the study.

@@ -101,6 +101,9 @@ def test_every_executor_gives_the_journal_of_one_machine(create, expected):
 def test_a_study_as_python_sees_it(create, tmp_path):
     study = create("seen")
     assert "not begun" in study._repr_html_()
+    assert study.config["seed"] == 4, "written at once"
+    with pytest.raises(fo.InputError, match="another configuration"):
+        create("seen", seed=5)
     assert (study.best, study.answer, len(study)) == (None, None, 0)
     with pytest.raises(ValueError, match="no design is recommended yet"):
         study.best_params
@@ -137,6 +140,7 @@ def test_a_study_goes_on_and_a_loaded_one_too(create, expected, tmp_path):
 
 def test_the_batch_is_the_number_of_workers_and_is_kept(create, tmp_path):
     study = create("workers", batch=None, budget=5)
+    assert study.config["batch"] == 4, "until it is run"
     study.run(Shuffled(1), progress=False)
     assert study.config["batch"] == 3
     create("workers", batch=None).run(progress=False)

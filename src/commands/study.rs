@@ -21,7 +21,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use study::{
     Confirmation, INDIFFERENCES_MM, IfChanged, LARGEST_BATCH, LARGEST_BUDGET, Study, StudyConfig,
-    check_continues, read_config, study_name,
+    has_begun, read_config, study_name,
 };
 
 /// Range of seeds, limited by the integers of TOML.
@@ -139,16 +139,17 @@ impl Request {
         let (setup, mut config, dir) = self.look()?;
         if self.batch.is_none() {
             // A study that goes on keeps its own.
-            let kept = read_config(&dir).ok().map(|found| found.batch);
+            let keeps = workers.is_none() || has_begun(&dir);
+            let kept = read_config(&dir).ok().filter(|_| keeps).map(|found| found.batch);
             config.batch = kept.or(workers).unwrap_or(DEFAULT_BATCH).clamp(1, LARGEST_BATCH);
         }
         Ok((setup, config, dir))
     }
 
-    /// Returns the folder, which holds no study of another configuration; nothing is written.
-    pub(crate) fn folder(&self) -> Result<PathBuf, Failure> {
-        let (_, config, dir) = self.planned(None)?;
-        check_continues(&dir, &config)?;
+    /// Writes the study without measuring and returns its folder; a study that is there stays as it is.
+    pub(crate) fn create(&self) -> Result<PathBuf, Failure> {
+        let (setup, config, dir) = self.planned(None)?;
+        Study::create(&dir, &config, &setup.inputs)?;
         Ok(dir)
     }
 

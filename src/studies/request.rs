@@ -40,13 +40,13 @@ impl AnyStudy {
         }
     }
 
-    /// Checks the request without writing anything and returns the folder.
+    /// Writes the study without measuring and returns its folder.
     ///
     /// # Errors
-    /// If the request is invalid, or the folder holds a study of another configuration.
-    pub fn folder(&self) -> Result<PathBuf, Failure> {
+    /// If the request is invalid, or the folder holds a study of another configuration or cannot be written.
+    pub fn create(&self) -> Result<PathBuf, Failure> {
         match self {
-            AnyStudy::Asked(request) => request.folder(),
+            AnyStudy::Asked(request) => request.create(),
             AnyStudy::Resumed(request) => Ok(request.dir.clone()),
         }
     }

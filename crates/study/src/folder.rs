@@ -93,8 +93,7 @@ impl Study {
     ) -> Result<Study, StudyError> {
         fs::create_dir_all(dir).map_err(StudyError::io("create the folder", dir))?;
         let lock = lock(dir)?;
-        let file = dir.join(CONFIG_FILE);
-        if file.try_exists().map_err(StudyError::io("look for", &file))? {
+        if has_config(dir)? && has_begun(dir) {
             check_continues(dir, config)?;
             let mut study = Study::open_locked(dir, lock, journal_file(dir)?)?;
             let before = (study.config.budget, study.config.settles);
@@ -109,17 +108,26 @@ impl Study {
             }
             return Ok(study);
         }
-        let journal = dir.join(JOURNAL_FILE);
-        if journal.exists() {
-            return Err(StudyError::file(
-                &journal,
-                "not the journal of this study: there is no study.toml beside it; give another --out",
-            ));
+        if has_config(dir)? {
+            // Created without a journal: the batch may follow from who measures.
+            let batch = read_config(dir)?.batch;
+            check_continues(dir, &StudyConfig { batch, ..config.clone() })?;
         }
-        write_inputs(dir, 1, inputs)?;
-        // Written last: a folder with a configuration is complete.
-        write_config(dir, config)?;
+        begin(dir, config, inputs)?;
         Study::open_locked(dir, lock, journal_file(dir)?)
+    }
+
+    /// Writes a study without a journal to `dir`; a study that is there already stays as it is.
+    ///
+    /// # Errors
+    /// If the folder holds a study of another configuration or cannot be written.
+    pub fn create(dir: &Path, config: &StudyConfig, inputs: &Inputs) -> Result<(), StudyError> {
+        if has_config(dir)? {
+            return check_continues(dir, config);
+        }
+        fs::create_dir_all(dir).map_err(StudyError::io("create the folder", dir))?;
+        let _lock = lock(dir)?;
+        begin(dir, config, inputs)
     }
 
     /// Opens the study in `dir` to continue it.
@@ -321,15 +329,35 @@ fn journal_file(dir: &Path) -> Result<Box<dyn Store>, StudyError> {
     }
 }
 
+/// Writes the inputs and the configuration of a study to `dir`.
+fn begin(dir: &Path, config: &StudyConfig, inputs: &Inputs) -> Result<(), StudyError> {
+    if has_begun(dir) {
+        return Err(StudyError::file(
+            &dir.join(JOURNAL_FILE),
+            "not the journal of this study: there is no study.toml beside it; give another --out",
+        ));
+    }
+    write_inputs(dir, 1, inputs)?;
+    // Written last: a folder with a configuration is complete.
+    write_config(dir, config)
+}
+
+/// Reports whether a folder holds the journal of a study.
+pub fn has_begun(dir: &Path) -> bool {
+    dir.join(JOURNAL_FILE).exists()
+}
+
+/// Reports whether a folder holds the configuration of a study.
+fn has_config(dir: &Path) -> Result<bool, StudyError> {
+    let file = dir.join(CONFIG_FILE);
+    file.try_exists().map_err(StudyError::io("look for", &file))
+}
+
 /// Checks that a study in a folder, if there is one, can be continued with a configuration.
 ///
 /// # Errors
 /// If it has another one, which are compared, or cannot be read.
-pub fn check_continues(dir: &Path, config: &StudyConfig) -> Result<(), StudyError> {
-    let file = dir.join(CONFIG_FILE);
-    if !file.try_exists().map_err(StudyError::io("look for", &file))? {
-        return Ok(());
-    }
+fn check_continues(dir: &Path, config: &StudyConfig) -> Result<(), StudyError> {
     let Some(differences) = read_config(dir)?.differences(config) else { return Ok(()) };
     Err(StudyError::file(
         dir,

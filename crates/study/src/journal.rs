@@ -110,9 +110,13 @@ impl Journal {
     }
 }
 
-/// Reads a journal without writing to it; a torn last line is ignored.
+/// Reads a journal without writing to it; a torn last line is ignored, and a study without one is empty.
 pub fn read(path: &Path, config: &StudyConfig) -> Result<Contents, StudyError> {
     let bytes = File::open(path).and_then(|file| files::read_up_to(file, LARGEST_JOURNAL));
+    let bytes = match bytes {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
+        read => read,
+    };
     let bytes = bytes.map_err(StudyError::io("read", path))?;
     parse(&bytes, path, config)
 }

@@ -38,7 +38,7 @@ pub use config::{
 pub use confirmer::{ConfirmationLog, Confirmed, Confirmer};
 pub use error::StudyError;
 pub use folder::{
-    CELL, FINGER, IfChanged, Inputs, Study, check_continues, input_path, read_analysis, read_config,
+    CELL, FINGER, IfChanged, Inputs, Study, has_begun, input_path, read_analysis, read_config,
 };
 pub use folder::{sha256, write_analysis, write_file, write_own_file};
 pub use limits::ForceLimits;

@@ -125,6 +125,9 @@ class Cell:
 
     def run(self, nominal: list[float], ways: str) -> None:
         named = [list(MEDIUM), nominal]
+        if "e" in ways:
+            found = nominal_strategy(self.path.parent, self.task)
+            self.window_mm(infill(found), strategy(found))
         for finger, strategy in self.by_identification(ways):
             self.window_mm(finger, strategy)
             named.append(finger)
@@ -155,9 +158,9 @@ class Cell:
                 self.measure(folder, chosen[0][0], probe=False)
                 if not self.identified(folder, cell):
                     break
-            for way, space in (("d", "infill"), ("e", str(strategy_space(self.path)))):
+            for way, space in (("d", "infill"), ("e", str(strategy_space(self.path.parent)))):
                 if way in ways:
-                    found = self.once(f"{cell} {way}", lambda: self.study(cell, space))
+                    found = self.once(f"{cell} {way}", lambda space=space: self.study(cell, space))
                     chosen.append((infill(found), strategy(found)))
         return chosen
 
@@ -279,6 +282,16 @@ def nominal_best(root: Path, task: str) -> list[float]:
     return kept(root / f"nominal-{task}.json", find)
 
 
+def nominal_strategy(root: Path, task: str) -> dict[str, float]:
+    """Finger and strategy of a study in the shipped cell."""
+    def find() -> dict[str, float]:
+        study = fo.Study.create(task, space=strategy_space(root), start="taught", out=root / f"nominal-strategy-{task}",
+                                no_levers=True, no_map=True)
+        return dict(study.run(progress=False).answer.finger or {})
+
+    return kept(root / f"nominal-strategy-{task}.json", find)
+
+
 def first_prints(root: Path, task: str) -> list[list[float]]:
     """The two fingers that ``next`` prints before anything is measured: the same for every cell."""
     def find() -> list[list[float]]:
@@ -313,10 +326,16 @@ def gains(folder: Path, cell: Path) -> dict[str, float | None] | None:
             return width(list(MEDIUM))
         return width(infill(value(key)), strategy(value(key))) if value(key) else None
 
+    def of_nominal() -> float | None:
+        file = folder / f"nominal-strategy-{task}.json"
+        both = json.loads(file.read_text(encoding="utf-8")) if file.exists() else None
+        return width(infill(both), strategy(both)) if both else None
+
     if None in [width(list(one)) for one in fixed()]:
         return None
     prints = [value(f"c print {i + 1}") for i in range(PRINTS)]
     return {"a": width(list(MEDIUM)), "b": width(nominal_best(folder, task)),
+            "b+e": of_nominal(),
             "c": max((width(one) or 0.0 for one in prints if one), default=None),
             "d": of_study("cell d"), "e": of_study("cell e"), "f": of_study("again d"), "f+e": of_study("again e"),
             "best shipped": max(width for key, width in widths.items() if key.endswith("{}")),
@@ -327,7 +346,7 @@ def table(folder: Path) -> None:
     """Prints the gain of each way over the medium finger with the shipped strategy, and its share of the possible."""
     cells = {path.name: gains(folder, path) for path in sorted(folder.glob("*-[0-9]*")) if path.is_dir()}
     done = {name: one for name, one in cells.items() if one}
-    ways = ("a", "b", "c", "d", "e", "f", "f+e", "best shipped", "best")
+    ways = ("a", "b", "b+e", "c", "d", "e", "f", "f+e", "best shipped", "best")
     print("| cell | " + " | ".join(f"{way}, mm" for way in ways) + " |\n| --- |" + " --- |" * len(ways))
     for name, one in done.items():
         print(f"| {name} | " + " | ".join("" if one[way] is None else f"{one[way]:.1f}" for way in ways) + " |")
@@ -348,7 +367,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
     parser.add_argument("cells", nargs="*", metavar="TASK:SEED")
-    parser.add_argument("--ways", default="cdef", help="ways besides a and b [default: cdef]; the best is of those followed")
+    parser.add_argument("--ways", default="cdef", help="ways besides a and b [default: cdef]; e adds b+e, finger and "
+                        "strategy of the shipped cell; the best is of those followed")
     parser.add_argument("--table", action="store_true")
     asked = parser.parse_args()
     asked.folder = asked.folder.resolve()

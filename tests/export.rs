@@ -92,6 +92,39 @@ fn a_3mf_is_a_zip_of_a_model_in_millimetres() {
     assert_eq!(count((core, "triangle")), prism.triangles.len());
 }
 
+/// The parts of the settings are components of the built object, and every setting of PrusaSlicer has its like.
+#[test]
+fn a_3mf_for_orcaslicer_names_the_parts_of_its_model() {
+    let geometry = finray9(18.0, 20.0);
+    let bytes = slicer::orcaslicer_project(&geometry).unwrap();
+    let text = String::from_utf8_lossy(&bytes);
+    let (model, config) = (document(&text, "model"), document(&text, "config"));
+    let all = |document: &roxmltree::Document<'_>, name: &str, attribute: &str| {
+        let nodes = document.descendants().filter(|node| node.tag_name().name() == name);
+        nodes.map(|node| node.attribute(attribute).unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(all(&model, "item", "objectid"), all(&config, "object", "id"));
+    assert_eq!(all(&model, "component", "objectid"), all(&config, "part", "id"));
+    assert_eq!(all(&model, "object", "id"), ["1", "2", "3"]);
+    assert_eq!(all(&config, "part", "subtype"), ["normal_part", "modifier_part"]);
+    let value = |key: &str| {
+        let mut nodes = config.descendants();
+        let node = nodes.find(|node| node.attribute("key") == Some(key));
+        node.unwrap_or_else(|| panic!("{key}")).attribute("value").unwrap().to_owned()
+    };
+    let prusa = slicer::prusaslicer(&geometry);
+    for (prusa_key, key) in [
+        ("fill_density", "sparse_infill_density"),
+        ("fill_angle", "infill_direction"),
+        ("fill_pattern", "sparse_infill_pattern"),
+        ("perimeters", "wall_loops"),
+        ("perimeter_extrusion_width", "inner_wall_line_width"),
+    ] {
+        assert!(prusa.contains(&format!("\n{prusa_key} = {}\n", value(key))), "{key}");
+    }
+    assert!(!text.contains("PrusaSlicer"), "OrcaSlicer would drop the settings");
+}
+
 #[test]
 fn every_format_of_a_studys_best_finger_is_written() {
     let studies = Studies::new();
@@ -110,9 +143,11 @@ fn every_format_of_a_studys_best_finger_is_written() {
         ("prusaslicer", "f.ini", "fill_pattern = alignedrectilinear"),
         ("stl", "f.stl", ""),
         ("3mf", "f.3mf", ""),
+        ("prusaslicer-3mf", "prusa.3mf", "Slic3r_PE_model.config"),
+        ("orcaslicer-3mf", "orca.3mf", "model_settings.config"),
     ] {
         export(format, file).succeeds();
-        if (format, file) != ("sheet", "sheet.svg") {
+        if (format, file) != ("sheet", "sheet.svg") && !format.ends_with("-3mf") {
             let written = std::fs::read(folder.join(file)).unwrap();
             optimize_line(&format!(
                 "export finger {} --out {}",
@@ -254,8 +289,11 @@ fn a_3mf_with_settings_is_printed_as_designed() {
     for density in [10.0, 16.0, 23.0, 30.0] {
         for direction in [0.0, 14.0, 40.0] {
             let geometry = finray9(density, direction);
-            std::fs::write(folder.path().join("finger.3mf"), slicer::project(&geometry).unwrap())
-                .unwrap();
+            std::fs::write(
+                folder.path().join("finger.3mf"),
+                slicer::prusaslicer_project(&geometry).unwrap(),
+            )
+            .unwrap();
             let lines = middle_layer(folder.path(), "finger.3mf", &[]);
             let start = lines.iter().map(|line| line[0].min(line[2])).fold(f64::MAX, f64::min);
             let end = lines.iter().map(|line| line[0].max(line[2])).fold(f64::MIN, f64::max);

@@ -712,7 +712,7 @@ def export_finger(
     direction: float | None = None,
     finger: StrPath | None = None,
     phase_mm: float | None = None,
-    format: Literal["stl", "3mf", "svg", "dxf", "sheet", "cura", "prusaslicer", "prusaslicer-3mf"] | None = None,
+    format: Literal["stl", "3mf", "svg", "dxf", "sheet", "cura", "prusaslicer", "prusaslicer-3mf", "orcaslicer-3mf"] | None = None,
 ) -> tuple[Path, ...]:
     """Export a finger for the printer: the best of a study, or one with a given infill, as ``optimize export finger`` does.
 

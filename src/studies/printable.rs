@@ -7,7 +7,7 @@ use finray::export::{slicer, title};
 use finray::mechanics;
 use insertion::evaluation::evaluator::Evaluator;
 use report::answer::Answer;
-use report::printer::{PROJECT, SHEET, SURFACE, THREE_MF, recommended};
+use report::printer::{ORCA_PROJECT, PROJECT, SHEET, SURFACE, THREE_MF, recommended};
 use std::path::Path;
 use study::write_own_file;
 
@@ -21,8 +21,12 @@ pub(crate) fn write(dir: &Path, answer: &Answer, evaluator: &Evaluator) -> Resul
             .map_err(|error| Failure::running(format!("{THREE_MF}: {error}")))?;
         write_own_file(&dir.join(THREE_MF), &three_mf)?;
     }
-    if let Ok(project) = slicer::project(&geometry) {
-        write_own_file(&dir.join(PROJECT), &project)?;
+    for (file, project) in [
+        (PROJECT, slicer::prusaslicer_project(&geometry)),
+        (ORCA_PROJECT, slicer::orcaslicer_project(&geometry)),
+    ] {
+        let Ok(project) = project else { continue };
+        write_own_file(&dir.join(file), &project)?;
     }
     if let Ok(ribs) = mechanics::compute(&geometry) {
         let design = answer.verdict.finger();

@@ -12,11 +12,14 @@ pub const SURFACE: &str = "finger.stl";
 pub const THREE_MF: &str = "finger.3mf";
 /// Outline and solid base with settings of PrusaSlicer.
 pub const PROJECT: &str = "finger-prusaslicer.3mf";
+/// Outline and solid base with settings of OrcaSlicer and Bambu Studio.
+pub const ORCA_PROJECT: &str = "finger-orcaslicer.3mf";
 /// Sheet for printing it and checking the print.
 pub const SHEET: &str = "finger-sheet.html";
 /// The files and their labels.
-pub const FILES: [(&str, &str); 4] = [
+pub const FILES: [(&str, &str); 5] = [
     (PROJECT, "3MF for PrusaSlicer"),
+    (ORCA_PROJECT, "3MF for OrcaSlicer, Bambu Studio"),
     (THREE_MF, "3MF with ribs"),
     (SURFACE, "STL with ribs"),
     (SHEET, "print sheet"),

@@ -56,7 +56,10 @@ pub enum Format {
     Prusaslicer,
     /// Outline and solid base with the settings of PrusaSlicer, in one 3MF; do not turn it on the bed
     #[value(name = "prusaslicer-3mf")]
-    Project,
+    PrusaslicerProject,
+    /// The same for OrcaSlicer and Bambu Studio: open as a project
+    #[value(name = "orcaslicer-3mf")]
+    OrcaslicerProject,
 }
 
 /// Files that were written.
@@ -88,8 +91,11 @@ impl command::Request for Request {
                     .map_err(|error| Failure::running(format!("{}: {error}", out.display())))?;
                 write_file(out, &bytes)?;
             }
-            Format::Project => {
-                let project = slicer::project(&geometry);
+            Format::PrusaslicerProject | Format::OrcaslicerProject => {
+                let project = match format {
+                    Format::OrcaslicerProject => slicer::orcaslicer_project(&geometry),
+                    _ => slicer::prusaslicer_project(&geometry),
+                };
                 let failure = |error| Failure::running(format!("{}: {error}", out.display()));
                 write_file(out, &project.map_err(failure)?)?;
             }
@@ -147,7 +153,7 @@ impl Format {
     fn endings(self) -> &'static [&'static str] {
         match self {
             Format::Stl => &["stl"],
-            Format::ThreeMf | Format::Project => &["3mf"],
+            Format::ThreeMf | Format::PrusaslicerProject | Format::OrcaslicerProject => &["3mf"],
             Format::Svg => &["svg"],
             Format::Dxf => &["dxf"],
             Format::Sheet => &["svg", "html", "htm"],

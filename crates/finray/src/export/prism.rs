@@ -32,6 +32,8 @@ const VOLUME_TOLERANCE: f64 = 1e-3;
 /// Length of the header of an STL file, bytes.
 const HEADER: usize = 80;
 
+pub(super) const DECLARATION: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+
 const TYPES: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>
 "#;
@@ -192,7 +194,7 @@ impl Prism {
     /// # Errors
     /// If the zip cannot be written.
     pub fn three_mf(&self, title: &str) -> ZipResult<Vec<u8>> {
-        self.three_mf_with(title, &[])
+        three_mf(&[self], title, &[])
     }
 
     /// Returns the two surfaces as one, the triangles of the other after those of this one.
@@ -202,50 +204,63 @@ impl Prism {
         self.triangles.extend(other.triangles.iter().map(|t| t.map(|corner| corner + first)));
         self
     }
+}
 
-    /// Returns a 3MF file with further texts.
-    pub(super) fn three_mf_with(&self, title: &str, more: &[(&str, &str)]) -> ZipResult<Vec<u8>> {
-        let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
-        let parts = [
-            ("[Content_Types].xml", TYPES),
-            ("_rels/.rels", RELATIONS),
-            ("3D/3dmodel.model", &*self.three_mf_model(title)),
-        ];
-        // No clock: the entries carry the format's first date.
-        let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
-        for &(name, text) in parts.iter().chain(more) {
-            zip.start_file(name, options)?;
-            zip.write_all(text.as_bytes())?;
-        }
-        Ok(zip.finish()?.into_inner())
+/// Returns a 3MF file, mm, with further texts. Several surfaces are components of one object, numbered from 1; that
+/// object follows them.
+pub(super) fn three_mf(parts: &[&Prism], title: &str, more: &[(&str, &str)]) -> ZipResult<Vec<u8>> {
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    let files = [
+        ("[Content_Types].xml", TYPES),
+        ("_rels/.rels", RELATIONS),
+        ("3D/3dmodel.model", &*model(parts, title)),
+    ];
+    // No clock: the entries carry the format's first date.
+    let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+    for &(name, text) in files.iter().chain(more) {
+        zip.start_file(name, options)?;
+        zip.write_all(text.as_bytes())?;
     }
+    Ok(zip.finish()?.into_inner())
+}
 
-    fn three_mf_model(&self, title: &str) -> String {
-        let declaration = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-        let model = html! {
-            model unit="millimeter" xml:lang="en-US"
-                xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
-                xmlns:slic3rpe="http://schemas.slic3r.org/3mf/2017/06" {
-                metadata name="slic3rpe:Version3mf" { "1" }
-                metadata name="Title" { (title) }
-                metadata name="Application" { "finger-opt " (env!("CARGO_PKG_VERSION")) }
-                resources {
-                    object id="1" type="model" name=(title) {
+/// Returns the number of the object that is built of this many surfaces.
+pub(super) fn object(parts: usize) -> usize {
+    if parts == 1 { 1 } else { parts + 1 }
+}
+
+fn model(parts: &[&Prism], title: &str) -> String {
+    let whole = object(parts.len());
+    let model = html! {
+        model unit="millimeter" xml:lang="en-US"
+            xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+            xmlns:slic3rpe="http://schemas.slic3r.org/3mf/2017/06" {
+            metadata name="slic3rpe:Version3mf" { "1" }
+            metadata name="Title" { (title) }
+            metadata name="Application" { "finger-opt " (env!("CARGO_PKG_VERSION")) }
+            resources {
+                @for (n, part) in (1..).zip(parts) {
+                    object id=(n) type="model" name=(title) {
                         mesh {
                             vertices {
-                                @for [x, y, z] in &self.corners { vertex x=(x) y=(y) z=(z) {} }
+                                @for [x, y, z] in &part.corners { vertex x=(x) y=(y) z=(z) {} }
                             }
                             triangles {
-                                @for [a, b, c] in &self.triangles { triangle v1=(a) v2=(b) v3=(c) {} }
+                                @for [a, b, c] in &part.triangles { triangle v1=(a) v2=(b) v3=(c) {} }
                             }
                         }
                     }
                 }
-                build { item objectid="1" {} }
+                @if whole > parts.len() {
+                    object id=(whole) type="model" name=(title) {
+                        components { @for n in 1..whole { component objectid=(n) {} } }
+                    }
+                }
             }
-        };
-        declaration.to_owned() + &model.into_string()
-    }
+            build { item objectid=(whole) {} }
+        }
+    };
+    DECLARATION.to_owned() + &model.into_string()
 }
 
 /// Returns the directed edges of a triangle.

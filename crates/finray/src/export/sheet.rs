@@ -215,8 +215,8 @@ fn print(geometry: &Geometry) -> Vec<(&'static str, String)> {
         ("line width", mm(geometry.finger.line_width)),
         ("STL, 3MF", "ribs are in the file: thin walls on,".to_owned()),
         ("", "solid infill, no other".to_owned()),
-        ("own infill", "3MF with settings, for PrusaSlicer: do not".to_owned()),
-        ("", "turn it. Not tried in OrcaSlicer, Bambu Studio".to_owned()),
+        ("own infill", "3MF with settings: do not turn it. Tried in".to_owned()),
+        ("", "PrusaSlicer, not in OrcaSlicer, Bambu Studio".to_owned()),
     ]
 }
 

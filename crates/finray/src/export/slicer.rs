@@ -5,12 +5,12 @@
 //! A slicer's density is not the design's: its pitch follows from its own line width. So the
 //! settings give the pitch. Where the first rib lies is the slicer's choice.
 
-use super::prism::{Prism, PrismError};
+use super::prism::{self, DECLARATION, Prism, PrismError};
 use super::{mm, title};
 use crate::geometry::Geometry;
 use crate::printed::PrintedFinger;
 use input::units::MM;
-use maud::html;
+use maud::{Markup, html};
 use std::f64::consts::PI;
 
 /// Height of a layer, mm: half the line width of the published fingers, a usual choice.
@@ -62,41 +62,49 @@ gradual_infill_steps = 0
 
 /// Returns the configuration for PrusaSlicer, 2.4 or later: `prusa-slicer --load FILE`.
 pub fn prusaslicer(geometry: &Geometry) -> String {
-    let lines = settings(geometry).into_iter().map(|(key, value)| format!("{key} = {value}\n"));
+    let lines = settings(geometry).into_iter().filter(|(key, ..)| !key.is_empty());
+    let lines = lines.map(|(key, _, value)| format!("{key} = {value}\n"));
     notes(geometry) + &lines.collect::<String>()
 }
 
-/// Returns the settings of PrusaSlicer. The fill pattern is `alignedrectilinear`: `rectilinear` turns by
-/// 90 degrees from layer to layer.
-fn settings(geometry: &Geometry) -> Vec<(&'static str, String)> {
+/// Returns the settings by their keys in PrusaSlicer, and in OrcaSlicer and Bambu Studio, which also count the angle
+/// and space the lines in the same way; no key where a program has none. The fill pattern is
+/// `alignedrectilinear`: `rectilinear` turns by 90 degrees from layer to layer.
+fn settings(geometry: &Geometry) -> Vec<(&'static str, &'static str, String)> {
     let (count, width) = walls(&geometry.finger);
     let (wall, line) = (mm(width), mm(geometry.finger.line_width));
     // At the design's pitch: the spacing of lines that touch (their ends are half circles of the
     // layer's height) over the pitch.
     let touching = geometry.finger.line_width / MM - LAYER * (1.0 - PI / 4.0);
     let density = touching / (geometry.lines.pitch / MM) * 100.0;
-    // PrusaSlicer counts from X, counter-clockwise; the design from Y, clockwise.
+    // Slicers count from X, counter-clockwise; the design from Y, clockwise.
     let angle = (90.0 - geometry.design.direction_deg).rem_euclid(180.0);
-    let off = || "0".to_owned();
+    let [off, on] = ["0", "1"].map(|text| move || text.to_owned());
     vec![
-        ("layer_height", LAYER.to_string()),
-        ("extrusion_width", line.clone()),
-        ("perimeters", count.to_string()),
-        ("perimeter_generator", "classic".to_owned()),
-        ("extra_perimeters", off()),
-        ("external_perimeter_extrusion_width", wall.clone()),
-        ("perimeter_extrusion_width", wall),
-        ("top_solid_layers", off()),
-        ("bottom_solid_layers", off()),
-        ("ensure_vertical_shell_thickness", off()),
-        ("solid_infill_below_area", off()),
-        ("fill_pattern", "alignedrectilinear".to_owned()),
-        ("infill_extrusion_width", line),
-        ("fill_density", format!("{density:.3}%")),
-        ("fill_angle", angle.to_string()),
-        ("infill_every_layers", "1".to_owned()),
-        ("infill_anchor", off()),
-        ("infill_anchor_max", off()),
+        ("layer_height", "layer_height", LAYER.to_string()),
+        ("extrusion_width", "line_width", line.clone()),
+        ("perimeters", "wall_loops", count.to_string()),
+        ("perimeter_generator", "wall_generator", "classic".to_owned()),
+        ("extra_perimeters", "", off()),
+        ("external_perimeter_extrusion_width", "outer_wall_line_width", wall.clone()),
+        ("perimeter_extrusion_width", "inner_wall_line_width", wall),
+        ("top_solid_layers", "top_shell_layers", off()),
+        ("bottom_solid_layers", "bottom_shell_layers", off()),
+        ("", "top_shell_thickness", off()),
+        ("", "bottom_shell_thickness", off()),
+        ("ensure_vertical_shell_thickness", "ensure_vertical_shell_thickness", off()),
+        ("solid_infill_below_area", "minimum_sparse_infill_area", off()),
+        ("fill_pattern", "sparse_infill_pattern", "alignedrectilinear".to_owned()),
+        ("infill_extrusion_width", "sparse_infill_line_width", line.clone()),
+        ("", "internal_solid_infill_line_width", line),
+        ("fill_density", "sparse_infill_density", format!("{density:.3}%")),
+        ("fill_angle", "infill_direction", angle.to_string()),
+        ("infill_every_layers", "", on()),
+        ("", "infill_combination", off()),
+        ("", "fill_multiline", on()),
+        ("", "align_infill_direction_to_model", on()),
+        ("infill_anchor", "infill_anchor", off()),
+        ("infill_anchor_max", "infill_anchor_max", off()),
     ]
 }
 
@@ -105,13 +113,15 @@ fn settings(geometry: &Geometry) -> Vec<(&'static str, String)> {
 ///
 /// # Errors
 /// If a surface is not closed, or the zip cannot be written.
-pub fn project(geometry: &Geometry) -> Result<Vec<u8>, PrismError> {
+pub fn prusaslicer_project(geometry: &Geometry) -> Result<Vec<u8>, PrismError> {
     let (outline, base) = (Prism::outline(geometry)?, Prism::base(geometry)?);
     let ends = [outline.triangles.len(), outline.triangles.len() + base.triangles.len()];
     let config = html! {
         config {
             object id="1" instances_count="1" {
-                @for (key, value) in settings(geometry) { metadata type="object" key=(key) value=(value) {} }
+                @for (key, _, value) in settings(geometry) {
+                    @if !key.is_empty() { metadata type="object" key=(key) value=(value) {} }
+                }
                 volume firstid="0" lastid=(ends[0] - 1) {
                     metadata type="volume" key="name" value="outline" {}
                     metadata type="volume" key="volume_type" value="ModelPart" {}
@@ -126,11 +136,48 @@ pub fn project(geometry: &Geometry) -> Result<Vec<u8>, PrismError> {
             }
         }
     };
-    let config = config.into_string().replace("></metadata>", "/>");
-    let config = format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{config}");
-    let both = outline.and(&base);
-    both.three_mf_with(&title(geometry), &[("Metadata/Slic3r_PE_model.config", &config)])
-        .map_err(|error| PrismError(error.to_string()))
+    written(&[&outline.and(&base)], geometry, "Metadata/Slic3r_PE_model.config", &config)
+}
+
+/// Returns a 3MF file with outline and solid base and their settings for OrcaSlicer and Bambu Studio, which are
+/// read when it is opened as a project. Both read volumes as components of an object, which PrusaSlicer splits
+/// into separate objects: hence a file of its own. Structure and keys follow the sources of OrcaSlicer 2.3 and
+/// Bambu Studio 2.6 (`libslic3r/Format/bbs_3mf.cpp`, `PrintConfig.cpp`).
+///
+/// # Errors
+/// See [`prusaslicer_project`].
+pub fn orcaslicer_project(geometry: &Geometry) -> Result<Vec<u8>, PrismError> {
+    let parts = [&Prism::outline(geometry)?, &Prism::base(geometry)?];
+    let config = html! {
+        config {
+            object id=(prism::object(parts.len())) {
+                metadata key="name" value=(title(geometry)) {}
+                @for (_, key, value) in settings(geometry) {
+                    @if !key.is_empty() { metadata key=(key) value=(value) {} }
+                }
+                part id="1" subtype="normal_part" { metadata key="name" value="outline" {} }
+                part id="2" subtype="modifier_part" {
+                    metadata key="name" value="solid base" {}
+                    metadata key="sparse_infill_density" value="100%" {}
+                    // OrcaSlicer reads it as its rectilinear, which Bambu Studio does not know by that name.
+                    metadata key="sparse_infill_pattern" value="zig-zag" {}
+                }
+            }
+        }
+    };
+    written(&parts, geometry, "Metadata/model_settings.config", &config)
+}
+
+/// Returns a 3MF file with a configuration of this name.
+fn written(
+    parts: &[&Prism],
+    geometry: &Geometry,
+    name: &str,
+    config: &Markup,
+) -> Result<Vec<u8>, PrismError> {
+    let config = DECLARATION.to_owned() + &config.0.replace("></metadata>", "/>");
+    let zip = prism::three_mf(parts, &title(geometry), &[(name, &config)]);
+    zip.map_err(|error| PrismError(error.to_string()))
 }
 
 /// Returns the number and width, m, of the walls that make the skin: the fewest at most two lines wide.

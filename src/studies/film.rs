@@ -7,10 +7,10 @@ use insertion::evaluation::evaluator::Specimen;
 use insertion::evaluation::tolerance::offset;
 use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
 use insertion::outcome::Outcome;
-use insertion::trial::Grasp;
+use insertion::trial::{Grasp, picture};
 use rayon::ThreadPool;
 use report::answer::Answer;
-use report::replay::{self, ENDS, pair_file};
+use report::replay::{self, ENDS, pair_file, poster_file};
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -30,9 +30,9 @@ pub(crate) fn boundary(
     let found = answer.record.config.objective.single().and_then(|_| answer.shown());
     for (at, template) in setup.evaluator.templates.iter().enumerate() {
         for (end, outward) in ENDS {
-            let file = dir.join(pair_file(at, end));
+            let files = [pair_file(at, end), poster_file(at, end)].map(|file| dir.join(file));
             let on_task = found.as_ref().and_then(|(design, tasks)| Some((design, tasks.get(at)?)));
-            let page = match on_task {
+            let texts = match on_task {
                 None => None,
                 Some((design, task)) => {
                     let evaluator = &setup.evaluator;
@@ -46,30 +46,30 @@ pub(crate) fn boundary(
             if stop.load(Ordering::SeqCst) {
                 return Ok(());
             }
-            match page {
-                Some(page) => {
-                    let folder = file.parent().unwrap_or(dir);
-                    fs::create_dir_all(folder).map_err(|error| {
-                        Failure::running(format!("{}: {error}", folder.display()))
-                    })?;
-                    write_own_file(&file, &page)?;
-                }
-                // It may be missing.
-                None => drop(fs::remove_file(&file)),
+            for (i, file) in files.iter().enumerate() {
+                let Some(texts) = &texts else {
+                    // It may be missing.
+                    drop(fs::remove_file(file));
+                    continue;
+                };
+                let folder = file.parent().unwrap_or(dir);
+                fs::create_dir_all(folder)
+                    .map_err(|error| Failure::running(format!("{}: {error}", folder.display())))?;
+                write_own_file(file, &texts[i])?;
             }
         }
     }
     Ok(())
 }
 
-/// Returns a page of both trials; `None` if no trial failed there, or the engine records nothing.
+/// Returns a page of both trials, and a picture of how the second ended; `None` if no trial failed there, or the engine records nothing.
 fn pair(
     setup: &Setup,
     specimen: &Specimen,
     measured: &Evaluation,
     (end, outward): (&str, OffsetStep),
     (pool, stop): (&ThreadPool, &AtomicBool),
-) -> Result<Option<String>, Failure> {
+) -> Result<Option<[String; 2]>, Failure> {
     let window = &measured.window;
     let (last, failed) = match outward {
         -1 => (window.negative_steps, window.end_negative),
@@ -87,5 +87,6 @@ fn pair(
     let labels = [last, last + outward].map(|step| shifted(grid_mm(step)));
     let films = [film(&labels[0], specimen, &inside), film(&labels[1], specimen, &outside)];
     let title = format!("{}: the {end} end of the window", specimen.task.name);
-    Ok(Some(replay::page(&title, &films)))
+    let poster = picture::ended(&specimen.task, &specimen.finger.pad, &outside.trial);
+    Ok(Some([replay::page(&title, &films), poster]))
 }

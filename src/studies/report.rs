@@ -6,7 +6,7 @@ use crate::setup::surrogate_of;
 use input::files::{self, LARGEST_OWN};
 use insertion::surrogate::Model;
 use report::answer::Answer;
-use report::replay::{ENDS, pair_file};
+use report::replay::{ENDS, pair_file, poster_file};
 use report::{self, Beside, printer};
 use std::path::Path;
 use study::{StudyRecord, write_evaluations_csv, write_own_file};
@@ -58,7 +58,7 @@ fn beside(dir: &Path, answer: &Answer) -> Beside {
         .flat_map(|task| first.iter().chain(&others).map(move |&end| (task, end)))
     {
         if let Some(page) = read(&pair_file(task, end)) {
-            beside.add(task, end, &page);
+            beside.add(task, end, &page, read(&poster_file(task, end)));
         }
     }
     beside

@@ -44,13 +44,15 @@ pub struct Film {
     pub end: &'static str,
     /// Its recordings as JSON without `<`; `None` if it is linked.
     pub data: Option<String>,
+    /// SVG of how its failed trial ended.
+    pub poster: Option<String>,
 }
 
 impl Beside {
     /// Adds a film from its page, embedded unless the total size would be too large.
-    pub fn add(&mut self, task: usize, end: &'static str, page: &str) {
+    pub fn add(&mut self, task: usize, end: &'static str, page: &str, poster: Option<String>) {
         let held: usize = self.films.iter().flat_map(|film| &film.data).map(String::len).sum();
         let data = replay::data(page).filter(|data| held + data.len() <= FILMS);
-        self.films.push(Film { task, end, data: data.map(str::to_owned) });
+        self.films.push(Film { task, end, data: data.map(str::to_owned), poster });
     }
 }

@@ -19,7 +19,7 @@ var play = (() => {
     if (source !== frame.contentWindow) return;
     frame.dataset.state = String(data);
     buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(k === shown && data === "playing")));
-    if (data === "ready" && wanted) { wanted = false; frame.contentWindow.postMessage("play", "*"); }
+    if (data !== "playing" && data !== "paused" && wanted) { wanted = false; frame.contentWindow.postMessage("play", "*"); }
   });
   buttons.forEach((button, k) => button.addEventListener("click", () => play(k)));
   // After the page itself has been drawn.

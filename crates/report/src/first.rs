@@ -127,7 +127,12 @@ fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Markup {
             div.films {
                 // The film comes from a file: sandboxed, it runs its script and has no other access.
                 @if let Some(film) = shown.first() {
-                    iframe #film title="two trials: the last that inserts, the first that fails" sandbox="allow-scripts" {}
+                    div.stage {
+                        @if let Some(poster) = &film.poster {
+                            img src=(inert(poster)) alt="how the failed trial ended";
+                        }
+                        iframe #film title="two trials: the last that inserts, the first that fails" sandbox="allow-scripts" {}
+                    }
                     p #caption.muted { (caption(film, tasks)) }
                 }
                 p.files {

@@ -18,10 +18,10 @@ pub const ORCA_PROJECT: &str = "finger-orcaslicer.3mf";
 pub const SHEET: &str = "finger-sheet.html";
 /// The files and their labels.
 pub const FILES: [(&str, &str); 5] = [
-    (PROJECT, "3MF for PrusaSlicer"),
-    (ORCA_PROJECT, "3MF for OrcaSlicer, Bambu Studio"),
-    (THREE_MF, "3MF with ribs"),
-    (SURFACE, "STL with ribs"),
+    (PROJECT, "3MF Prusa"),
+    (ORCA_PROJECT, "3MF Orca/Bambu"),
+    (THREE_MF, "3MF ribs"),
+    (SURFACE, "STL ribs"),
     (SHEET, "print sheet"),
 ];
 

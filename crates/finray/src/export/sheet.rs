@@ -127,29 +127,34 @@ fn degrees(angle: f64) -> f64 {
     (angle / DEG * 100.0).round() / 100.0
 }
 
+/// Returns a length in mm to a tenth, which is what a print keeps.
+fn tenth(length: f64) -> String {
+    format!("{}", (length / MM * 10.0).round() / 10.0)
+}
+
 /// Draws the dimension lines of the outline.
 fn lengths(drawing: &mut Drawing, geometry: &Geometry, view: View) {
     let outline = &geometry.finger.outline;
     let [beyond, wing] = block(geometry).map(|length| length * view.scale);
     let Outline { length, width, tip, solid, clamped, .. } = *outline;
     let arc = outline.arc_end();
-    let [pad, roof] = [outline.pad, outline.roof_length()].map(mm);
+    let [pad, roof] = [outline.pad, outline.roof_length()].map(tenth);
     let pad = format!("pad {pad} at {}°, roof {roof}", degrees(outline.pad_angle));
     let ends = [outline.tip_point(), outline.corner()].map(|p| [p.x, p.y]);
     for (ends, distance, words) in [
-        ([[0.0, -width], [length, -width]], -16.0 - wing, mm(length)),
-        ([[arc, -width], [length, -width]], -8.0 - wing, mm(length - arc)),
-        ([[length, -width], [length, 0.0]], -8.0 - beyond, mm(width)),
-        ([[length - solid, 0.0], [length, 0.0]], 7.0 + wing, format!("solid {}", mm(solid))),
-        ([[length - clamped, 0.0], [length, 0.0]], 14.0 + wing, format!("held {}", mm(clamped))),
-        ([[0.0, -tip], [0.0, 0.0]], 12.0, mm(tip)),
+        ([[0.0, -width], [length, -width]], -16.0 - wing, tenth(length)),
+        ([[arc, -width], [length, -width]], -8.0 - wing, tenth(length - arc)),
+        ([[length, -width], [length, 0.0]], -8.0 - beyond, tenth(width)),
+        ([[length - solid, 0.0], [length, 0.0]], 7.0 + wing, format!("solid {}", tenth(solid))),
+        ([[length - clamped, 0.0], [length, 0.0]], 14.0 + wing, format!("held {}", tenth(clamped))),
+        ([[0.0, -tip], [0.0, 0.0]], 12.0, tenth(tip)),
         (ends, 5.0, pad),
     ] {
         let ends = ends.map(|end| view.place(Point2::from(end) / MM));
         drawing.dimension(ends, distance, &words);
     }
     let middle = view.place(Point2::new(arc / 2.0, -width) / MM) - Vector2::new(12.0, 1.0);
-    drawing.text(middle, &format!("R {}", mm(outline.back_radius)), Font::new(3.2).middle());
+    drawing.text(middle, &format!("R {}", tenth(outline.back_radius)), Font::new(3.2).middle());
 }
 
 /// Draws the infill directions: 0 degrees, and the design's.

@@ -37,6 +37,11 @@ pub fn pair_file(task: usize, end: &str) -> String {
     format!("replay/{}-{end}.html", task + 1)
 }
 
+/// Returns the path of a picture of how the failed trial of the pair ended, shown until the films have loaded.
+pub fn poster_file(task: usize, end: &str) -> String {
+    format!("replay/{}-{end}.svg", task + 1)
+}
+
 /// Returns a page that plays films side by side, offline. Its script needs no library (three.js has 700 kB, this
 /// 18).
 pub fn page(title: &str, films: &[Film]) -> String {

@@ -329,6 +329,6 @@
   seekTo(compact ? end : begin);
   if (compact) {
     window.addEventListener("message", ({ source }) => { if (source === window.parent) play(!state.playing); });
-    window.parent.postMessage("ready", "*");
+    window.parent.postMessage(document.querySelector("canvas") ? "ready" : "picture", "*");
   }
 })();

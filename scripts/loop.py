@@ -128,8 +128,8 @@ class Cell:
         if "e" in ways:
             found = nominal_strategy(self.path.parent, self.task)
             self.window_mm(infill(found), strategy(found))
-        for finger, strategy in self.by_identification(ways):
-            self.window_mm(finger, strategy)
+        for finger, moves in self.by_identification(ways):
+            self.window_mm(finger, moves)
             named.append(finger)
         if "c" in ways:
             named += self.by_measurement()

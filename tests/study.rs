@@ -248,6 +248,36 @@ fn a_known_evaluation_leaves_the_journal_that_a_measured_one_does() {
     assert_eq!(cached("codesign", 4, &["--space", "codesign"]), 0);
 }
 
+/// The strategy of the task is among the designs, and neither speed nor force goes beyond the limits.
+#[test]
+fn finger_and_strategy_start_from_the_task_and_keep_to_its_limits() {
+    let studies = Studies::new();
+    let limits = "\n[limits]\nforce_n = 90.0\nspeed_mm_per_s = 155.0\n";
+    let usb = studies.file("usb.toml", include_str!("../tasks/usb.toml").to_owned() + limits);
+    let found =
+        studies.study("both", 12, &["--task", &usb, "--space", "codesign", "--json"]).json();
+    assert_eq!(found["constraints"], serde_json::json!(["peak-force<=90"]));
+    let table = std::fs::read_to_string(studies.dir("both").join("evaluations.csv")).unwrap();
+    let mut rows = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let head = rows.next().unwrap();
+    let column = |name: &str| head.iter().position(|key| *key == name).unwrap();
+    let speed = column("task.strategy.phase.assembly.speed_mm_per_s");
+    let rows: Vec<Vec<&str>> = rows.collect();
+    assert!(rows.iter().all(|row| row[speed].parse::<f64>().unwrap() <= 150.0));
+    let own = [
+        ("infill_density_percent", "20"),
+        ("task.strategy.tilt_deg", "10"),
+        ("task.strategy.phase.touch.preload_mm", "0.3"),
+        ("task.strategy.phase.side.move_mm.y", "-10"),
+        ("task.grip.force_n", "5"),
+    ];
+    assert!(rows.iter().any(|row| own.iter().all(|(key, value)| row[column(key)] == *value)));
+    // A limit that is given counts.
+    let more = ["--task", &usb, "--space", "codesign", "--json", "--constraint", "peak-force<=80"];
+    let found = studies.study("given", 2, &more).json();
+    assert_eq!(found["constraints"], serde_json::json!(["peak-force<=80"]));
+}
+
 /// Returns the best design in a study's JSON, and its evaluation.
 fn best_of(json: &serde_json::Value) -> u64 {
     json["best"]["evaluation"].as_u64().expect("a best design")

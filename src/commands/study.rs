@@ -16,7 +16,9 @@ use ask_tell::OptimizerKind;
 use input::shipped::PRIORS;
 use insertion::evaluation::INDIFFERENCE_MM;
 use insertion::evaluation::cell::Priors;
-use insertion::evaluation::objective::{Aggregate, AggregateKind, Constraint, Measure, Objectives};
+use insertion::evaluation::objective::{
+    Aggregate, AggregateKind, Bound, Constraint, Measure, Objectives,
+};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use study::{
@@ -212,6 +214,22 @@ impl Request {
         Ok((tasks > 1).then_some(aggregate))
     }
 
+    /// Returns the constraints: where the space changes the task, also the largest force that the connectors take.
+    fn constraints(&self, setup: &Setup) -> Vec<Constraint> {
+        let mut constraints = self.constraints.clone();
+        let bounded = constraints.iter().any(|constraint| constraint.measure == Measure::PeakForce);
+        let changed = setup.space.parameters.iter().any(|of| of.key.starts_with("task."));
+        if changed && !bounded {
+            let templates = setup.evaluator.templates.iter();
+            let forces = templates.filter_map(|template| template.task.limits.force);
+            let limit = forces.reduce(f64::min);
+            let at_most =
+                |limit| Constraint { measure: Measure::PeakForce, bound: Bound::AtMost, limit };
+            constraints.extend(limit.map(at_most));
+        }
+        constraints
+    }
+
     fn config(&self, setup: &Setup) -> Result<StudyConfig, Failure> {
         let evaluator = &setup.evaluator;
         let names = evaluator.templates.iter().map(|template| template.task.name.clone());
@@ -223,7 +241,7 @@ impl Request {
             finger_model: evaluator.fingers.kind(),
             optimizer: self.optimizer.to_string(),
             objective: self.objective.clone(),
-            constraints: self.constraints.clone(),
+            constraints: self.constraints(setup),
             uncertainty: setup.uncertainty.as_ref().map(|errors| errors.name.clone()),
             race: false,
             seed: self.seed,

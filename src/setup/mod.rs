@@ -28,7 +28,7 @@ use insertion::evaluation::cell::Priors;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::Plan;
-use insertion::evaluation::template::{Template, printable};
+use insertion::evaluation::template::{Template, printable, within_limits};
 use insertion::evaluation::uncertainty::Uncertainty;
 use insertion::finger::model::{FingerModelKind, FingerSource};
 use insertion::robot::Robot;
@@ -110,6 +110,7 @@ impl Setup {
             |task: &Source| Template::parse(&task.text, &task.file).map_err(Failure::task);
         let templates = tasks.iter().map(template).collect::<Result<Vec<_>, Failure>>()?;
         different(&templates)?;
+        let space = within_limits(space, &templates);
         let roles = (1..).map(task_role).zip(tasks);
         let others = [SPACE, ROBOT, STIFFNESS_DATA].map(str::to_owned).into_iter();
         let others = others.zip([space_source, robot_source, stiffness_source]);

@@ -20,7 +20,9 @@ pub(crate) fn optimizer(
     let measures = config.objective.measures().iter();
     let floors: Vec<f64> = measures.map(|measure| measure.rounding(trials)).collect();
     let search = ask_tell::build_for(kind, grid.clone(), config.seed, &floors);
-    let search = match measured_points(setup) {
+    let points: Vec<GridPoint> =
+        own_point(setup).into_iter().chain(measured_points(setup)).collect();
+    let search = match points {
         points if kind == OptimizerKind::Gp && !points.is_empty() => {
             let own = setup.space.parameters.len() + 1;
             Box::new(Informed::new(search, own, points)) as Box<dyn Optimizer + Send>
@@ -31,6 +33,16 @@ pub(crate) fn optimizer(
         0 => search,
         polish => Box::new(Polished::new(search, grid, config.budget, polish)),
     })
+}
+
+/// Returns the point nearest to the numbers of the (first) task, where the space changes them: the strategy to
+/// improve on; other parameters are in their middle.
+fn own_point(setup: &Setup) -> Option<GridPoint> {
+    let (parameters, template) = (&setup.space.parameters, setup.evaluator.templates.first()?);
+    let of_task = |p: &Variable| setup.evaluator.number(template, &p.key);
+    parameters.iter().find(|p| p.key.starts_with("task."))?;
+    let value = |p: &Variable| of_task(p).unwrap_or((p.low + p.high) / 2.0);
+    Some(GridPoint(parameters.iter().map(|p| p.nearest(value(p))).collect()))
 }
 
 /// Returns the points nearest to the measured fingers in a space of printed fingers; the measured ones have

@@ -11,6 +11,8 @@
 pub mod printable;
 mod space;
 
+pub use space::within_limits;
+
 use crate::finger::computed::AtPad;
 use crate::finger::file::is_shape;
 use crate::finger::model::{FingerSource, Made};

@@ -7,7 +7,25 @@ use crate::finger::model::FingerSource;
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space, Variable, corners};
 use crate::task::Task;
 use crate::trial::run::RigError;
+use input::units::MM;
 use input::{Check, InputError};
+
+/// Returns a space without the speeds that the connectors do not allow (`limits.speed_mm_per_s`).
+pub fn within_limits(mut space: Space, templates: &[Template]) -> Space {
+    let limits = templates.iter().filter_map(|template| template.task.limits.speed);
+    let most = limits.fold(f64::INFINITY, f64::min) / MM;
+    let speeds = |variable: &&mut Variable| {
+        variable.key.starts_with("task.") && variable.key.ends_with(".speed_mm_per_s")
+    };
+    for variable in space.parameters.iter_mut().filter(speeds) {
+        if variable.low <= most && most < variable.high {
+            let levels = (0..variable.levels()).map(|level| variable.value(level));
+            variable.high =
+                levels.take_while(|&speed| speed <= most).last().unwrap_or(variable.low);
+        }
+    }
+    space
+}
 
 /// Checks the extreme values of variables, each alone.
 ///

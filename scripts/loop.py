@@ -31,6 +31,8 @@ MEDIUM = (20.0, 20.0)
 PRINTS = 4
 #: Strides and resolution of a true window, and how far it is looked for, mm.
 STRIDE_MM, FINE_MM, FARTHEST_MM = 0.5, 0.1, 12.0
+#: Evaluations of a study of finger and strategy, which would take hours to settle.
+EVALUATIONS = 80
 #: Numbers of the space codesign that a lab sets without another print.
 STRATEGY = ("task.strategy.tilt_deg", "task.strategy.phase.touch.preload_mm", "task.strategy.phase.side.move_mm.y",
             "task.grip.force_n", "task.strategy.phase.assembly.speed_mm_per_s")
@@ -204,7 +206,8 @@ class Cell:
 
     def study(self, cell: str, space: str) -> dict[str, float]:
         # The lab's start is taught, too.
-        study = fo.Study.create(self.task, space=space, cell=self.path / f"{cell}.toml", start="taught",
+        budget = None if space == "infill" else EVALUATIONS
+        study = fo.Study.create(self.task, space=space, cell=self.path / f"{cell}.toml", start="taught", budget=budget,
                                 out=self.path / f"study-{cell}-{Path(space).stem}", no_levers=True, no_map=True)
         found = study.run(progress=False).answer.finger
         return found or dict(zip(("infill_density_percent", "infill_direction_deg"), MEDIUM))
@@ -285,8 +288,8 @@ def nominal_best(root: Path, task: str) -> list[float]:
 def nominal_strategy(root: Path, task: str) -> dict[str, float]:
     """Finger and strategy of a study in the shipped cell."""
     def find() -> dict[str, float]:
-        study = fo.Study.create(task, space=strategy_space(root), start="taught", out=root / f"nominal-strategy-{task}",
-                                no_levers=True, no_map=True)
+        study = fo.Study.create(task, space=strategy_space(root), start="taught", budget=EVALUATIONS,
+                                out=root / f"nominal-strategy-{task}", no_levers=True, no_map=True)
         return dict(study.run(progress=False).answer.finger or {})
 
     return kept(root / f"nominal-strategy-{task}.json", find)

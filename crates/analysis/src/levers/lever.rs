@@ -1,7 +1,7 @@
 //! Results of the lever analysis: the levers with the ranges at both ends, and a summary sentence.
 
 use insertion::evaluation::INDIFFERENCE_MM;
-use insertion::space::Design;
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use serde::{Deserialize, Serialize};
 
 /// Effect of the levers on the range of one finger on one task. Ranges are around a taught start.
@@ -95,7 +95,19 @@ impl Levers {
         };
         let task = &self.task;
         match (most(1.0), most(-1.0)) {
-            (Some((by, step)), _) => format!("{step} widens {task} by {by:.1} mm."),
+            (Some((by, step)), _) => {
+                let more = if self
+                    .design
+                    .0
+                    .keys()
+                    .all(|key| [DENSITY_KEY, DIRECTION_KEY].contains(&&**key))
+                {
+                    " --space codesign varies such numbers with the infill."
+                } else {
+                    ""
+                };
+                format!("{step} widens {task} by {by:.1} mm.{more}")
+            }
             (None, Some((by, step))) => format!(
                 "Nothing widens {task} by {INDIFFERENCE_MM} mm, and {step} narrows it by {:.1} mm.",
                 -by

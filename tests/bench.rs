@@ -56,6 +56,24 @@ fn calibration_and_the_next_print_answer_in_the_agreed_form() {
     assert_eq!((again["next"].as_array().map(Vec::len), &again["measured"]), (Some(10), &0.into()));
 }
 
+/// Another strategy for a printed finger needs no print; everything else does.
+#[test]
+fn a_strategy_is_advised_for_a_printed_finger_without_a_print() {
+    let folder = Studies::new();
+    let file = folder.file("bench.csv", format!("{HEAD}ket8,20,10,5.0\n"));
+    let few = "--task ket8 --engine fake --simulations 24 --samples 20 --json --measurements";
+    let found = optimize_line(&format!("next {few} {file} --space codesign --count 20")).json();
+    let prints = found["next"].as_array().unwrap();
+    let own = |print: &serde_json::Value| {
+        print["infill_density_percent"] == 20.0 && print["infill_direction_deg"] == 10.0
+    };
+    let needs = |print: &serde_json::Value| print["needs_print"].as_bool().unwrap();
+    assert!(prints.iter().any(|print| !needs(print)), "{found}");
+    assert!(prints.iter().filter(|print| !needs(print)).all(own), "{found}");
+    let words = format!("next {few} {file} --space codesign --count 20").replace("--json ", "");
+    assert!(optimize_line(&words).succeeds().contains("no print: this finger was printed"));
+}
+
 const HEAD: &str = "task,infill_density_percent,infill_direction_deg,range_mm\n";
 /// Options that make a prediction quick.
 const FEW: [&str; 6] = ["--task", "ket8", "--simulations", "24", "--samples", "20"];

@@ -230,6 +230,7 @@ class Print(Result):
     low_mm: float
     high_mm: float
     expected_gain_mm: float
+    needs_print: bool
     reason: str
 
 

@@ -588,8 +588,9 @@ def next_print(
     """Recommend the finger to print next, or to stop printing, as ``optimize next`` does.
 
     It is the finger whose measurement is expected to improve the final choice most, by simulation and
-    measurements: because it may be the best, or because it decides between others. The file of measurements
-    may be empty or missing.
+    measurements: because it may be the best, or because it decides between others. In a space with numbers
+    of the task (codesign) it is a finger with a strategy; another strategy for a printed finger costs no
+    print. The file of measurements may be empty or missing.
 
     Args:
         measurements: Bench measurements: published, or the path of a file.

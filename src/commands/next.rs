@@ -27,7 +27,8 @@ pub enum Among {
 /// Recommend the finger to print next, or to stop printing.
 ///
 /// It is the finger whose measurement is expected to improve the final choice most, by simulation and measurements:
-/// because it may be the best, or because it decides between others. The file of measurements may be empty or missing.
+/// because it may be the best, or because it decides between others. In a space with numbers of the task (codesign)
+/// it is a finger with a strategy; another strategy for a printed finger costs no print. The file of measurements may be empty or missing.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 22,
@@ -91,6 +92,8 @@ struct Print {
     low_mm: f64,
     high_mm: f64,
     expected_gain_mm: f64,
+    /// Whether it has to be printed; else only the strategy changes.
+    needs_print: bool,
     reason: String,
 }
 
@@ -128,7 +131,8 @@ impl command::Request for Request {
             }
         };
         let failed = subject.not_measurable();
-        let fingers = Fingers { among: &among, failed: &failed };
+        let printed = subject.printed();
+        let fingers = Fingers { among: &among, failed: &failed, printed: &printed };
         let mut random = stream(settings.seed, 0, "next");
         let posterior = sampled(&benches, layout.dimension(), &settings, &mut random);
         let (count, cost_mm) = (usize::from(self.count), self.print_cost_mm);
@@ -140,6 +144,7 @@ impl command::Request for Request {
             low_mm: print.low_mm,
             high_mm: print.high_mm,
             expected_gain_mm: print.expected_gain_mm,
+            needs_print: !printed.contains(&print.finger),
             reason: print.reason,
         };
         let choice = |choice: calibration::next::Choice| Choice {
@@ -184,6 +189,12 @@ impl Advised {
                 "   expected {:.1} mm (80 %: {:.1} to {:.1}): {}",
                 print.expected_mm, print.low_mm, print.high_mm, print.reason
             ));
+            if !print.needs_print {
+                lines.push(
+                    "   no print: this finger was printed; set the other numbers and measure it"
+                        .to_owned(),
+                );
+            }
             lines.push(format!(
                 "   expected improvement of the finger chosen afterwards: {:.2} mm",
                 print.expected_gain_mm

@@ -54,13 +54,16 @@ pub struct Fingers<'a> {
     pub among: &'a [usize],
     /// Fingers that were printed and insert from no start: a range of 0 mm, which no window was measured of.
     pub failed: &'a BTreeSet<usize>,
+    /// Fingers that need no print: another strategy with a printed one.
+    pub printed: &'a BTreeSet<usize>,
 }
 
-/// Returns which fingers to print, `count` at a time; a print must promise a gain of `cost_mm`.
+/// Returns which fingers to print, `count` at a time; a print must promise a gain of `cost_mm`, and between prints and
+/// other strategies for printed fingers those cost nothing.
 pub fn advise(
     bench: &Bench<'_>,
     posterior: &[Vec<f64>],
-    Fingers { among, failed }: Fingers<'_>,
+    Fingers { among, failed, printed: at_hand }: Fingers<'_>,
     count: usize,
     cost_mm: f64,
     random: &mut impl Rng,
@@ -91,7 +94,10 @@ pub fn advise(
     let mut stop = true;
     while next.len() < count {
         let gains = ranges.gains(&printed);
-        let first = gains.iter().rev().max_by(|a, b| a.value_mm.total_cmp(&b.value_mm));
+        let net = |gain: &Gain| {
+            gain.value_mm - if at_hand.contains(&all[gain.column]) { 0.0 } else { cost_mm }
+        };
+        let first = gains.iter().rev().max_by(|a, b| net(a).total_cmp(&net(b)));
         let Some(&Gain { column, choice_mm, .. }) = first else { break };
         stop &= !next.is_empty() || gains.iter().all(|gain| gain.choice_mm < cost_mm);
         let departures = told.departures.iter().map(|draw| draw[column]);

@@ -11,10 +11,12 @@ use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::template::Template;
 use insertion::outcome::FailureClass;
 use insertion::space::{Design, Space, Variable};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Most fingers of a space that are predicted; of a larger space it is a designed set.
 const MOST_FINGERS: u64 = 4000;
+/// Most strategies of printed fingers that are predicted.
+const STRATEGIES: usize = 500;
 /// Measured fingers, or simulations, near a finger that say how it fails.
 const NEAR: usize = 3;
 
@@ -42,7 +44,11 @@ impl Subject {
         more: &[Design],
     ) -> Result<Self, CalibrationError> {
         let task = template.task.name.clone();
+        let of_task = experiments.iter().filter(|line| line.task == task);
+        let lines = of_task.map(|line| Ok((whole(space, template, line)?, line)));
+        let lines = lines.collect::<Result<Vec<_>, CalibrationError>>()?;
         let mut designs = fingers(space);
+        designs.extend(strategies(space, lines.iter().map(|(design, _)| design)));
         let of_space = designs.len();
         let mut numbered = |design: Design| {
             designs.iter().position(|known| *known == design).unwrap_or_else(|| {
@@ -51,9 +57,8 @@ impl Subject {
             })
         };
         let mut measured = Vec::new();
-        for experiment in experiments.iter().filter(|line| line.task == task) {
-            let design = whole(space, template, experiment)?;
-            measured.push((numbered(design), experiment.clone()));
+        for (design, line) in lines {
+            measured.push((numbered(design), line.clone()));
         }
         for design in more {
             numbered(design.clone());
@@ -75,6 +80,15 @@ impl Subject {
 
     pub fn measured(&self) -> BTreeSet<usize> {
         self.experiments.iter().map(|(number, _)| *number).collect()
+    }
+
+    /// Returns the designs whose finger was printed: they differ from a measured one by numbers of the task alone.
+    pub fn printed(&self) -> BTreeSet<usize> {
+        let finger = |number: usize| {
+            self.designs[number].0.iter().filter(|(key, _)| !of_task(key)).collect::<Vec<_>>()
+        };
+        let known: Vec<_> = self.measured().into_iter().map(finger).collect();
+        (0..self.designs.len()).filter(|&number| known.contains(&finger(number))).collect()
     }
 
     /// Returns the fingers whose lines tell no range: they insert from no start.
@@ -136,12 +150,8 @@ fn fingers(space: &Space) -> Vec<Design> {
     let size = levels.iter().fold(1_u64, |size, &n| size.saturating_mul(u64::from(n)));
     let point = |levels: Vec<u32>| space.design(&GridPoint(levels));
     if size > MOST_FINGERS {
-        let at = |shares: Vec<f64>| {
-            let level = |(share, &n): (f64, &u32)| (share * f64::from(n)) as u32;
-            point(shares.into_iter().zip(&levels).map(level).collect())
-        };
         let set = SobolSequence::new(levels.len(), 0, 0, "fingers").take(MOST_FINGERS as usize / 2);
-        return set.map(at).collect();
+        return set.map(|shares| design_at(space, &levels, shares)).collect();
     }
     let number = |mut rest: u64| {
         let level = |&n: &u32| {
@@ -152,6 +162,48 @@ fn fingers(space: &Space) -> Vec<Design> {
         levels.iter().map(level).collect()
     };
     (0..size).map(|rest| point(number(rest))).collect()
+}
+
+/// Returns whether a key is of the task: a change of it needs no print.
+fn of_task(key: &str) -> bool {
+    key.starts_with("task.")
+}
+
+/// Strategies for each printed finger, if the space changes the task: a designed set.
+fn strategies<'a>(space: &Space, printed: impl Iterator<Item = &'a Design>) -> Vec<Design> {
+    if !space.parameters.iter().any(|parameter| of_task(&parameter.key)) {
+        return Vec::new();
+    }
+    let mut fingers: Vec<BTreeMap<String, f64>> = Vec::new();
+    for design in printed {
+        let shape = design.0.iter().filter(|(key, _)| !of_task(key));
+        let shape = shape.map(|(key, value)| (key.clone(), *value)).collect();
+        if !fingers.contains(&shape) {
+            fingers.push(shape);
+        }
+    }
+    let levels = space.levels();
+    let per_finger = STRATEGIES / fingers.len().max(1);
+    let set: Vec<Design> = SobolSequence::new(levels.len(), 0, 0, "strategies")
+        .take(per_finger)
+        .map(|shares| design_at(space, &levels, shares))
+        .collect();
+    let with = |(shape, design): (&BTreeMap<String, f64>, &Design)| {
+        let mut design = design.clone();
+        design.0.extend(shape.clone());
+        design
+    };
+    fingers
+        .iter()
+        .flat_map(|shape| set.iter().map(move |design| (shape, design)))
+        .map(with)
+        .collect()
+}
+
+/// Returns the design at these shares of the levels.
+fn design_at(space: &Space, levels: &[u32], shares: Vec<f64>) -> Design {
+    let level = |(share, &n): (f64, &u32)| (share * f64::from(n)) as u32;
+    space.design(&GridPoint(shares.into_iter().zip(levels).map(level).collect()))
 }
 
 /// A measured design with all parameters of the space, by default as in the task file.

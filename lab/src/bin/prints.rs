@@ -180,7 +180,8 @@ fn replay(prepared: &Prepared<'_>, task: &'static str, number: u64) -> Found {
                 break;
             }
         }
-        let fingers = Fingers { among: &among, failed: &BTreeSet::new() };
+        let fingers =
+            Fingers { among: &among, failed: &BTreeSet::new(), printed: &BTreeSet::new() };
         let advice = advise(&bench, &posterior, fingers, 1, 0.1, &mut random);
         let Some(finger) = advice.next.first().map(|print| print.finger) else { break };
         let at = among.iter().position(|&one| one == finger).unwrap_or(0);

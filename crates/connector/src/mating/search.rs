@@ -19,8 +19,8 @@ const EFFORT: f64 = 10e9;
 pub const FINE: usize = 4;
 /// Pairs of axes between two looks at the clock.
 const AT_ONCE: usize = 24;
-/// Most seats for each pair of axes.
-const MOST_SEATS: usize = 12;
+/// Most seats for each pair of axes: a header of two rows of 50 pins has 297, one pitch or more off and all as deep.
+const MOST_SEATS: usize = 300;
 
 /// Seat on the maps.
 #[derive(Debug, Clone, Copy)]

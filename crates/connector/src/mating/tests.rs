@@ -145,6 +145,29 @@ fn header_mates_by_its_shroud_and_not_a_pitch_beside_it() {
     assert_eq!(count, 2);
 }
 
+/// Of two rows of eight pins 45 seats are as deep: all pins engage in one alone.
+#[test]
+fn pins_without_a_shroud_mate_with_all_their_holes() {
+    let xs: Vec<f64> = (0..8).map(|i| 2.54 * f64::from(i) - 8.89).collect();
+    let mut plug = block([0.0; 2], [20.3, 5.0], [6.0, 8.5]);
+    let mut socket = block([0.0; 2], [20.8, 5.4], [-2.0, -0.2]);
+    for x in &xs {
+        for y in [-1.27, 1.27] {
+            plug.extend(block([*x, y], [0.64; 2], [0.0, 6.0]));
+        }
+        for (y, width) in [(-2.21, 0.98), (0.0, 1.64), (2.21, 0.98)] {
+            socket.extend(block([*x, y], [0.9, width], [-0.2, 6.0]));
+        }
+    }
+    for pair in [vec![-10.85], xs, vec![10.85]].concat().windows(2) {
+        let [low, high] = [pair[0] + 0.45, pair[1] - 0.45];
+        socket.extend(block([(low + high) / 2.0, 0.0], [high - low, 5.4], [-0.2, 6.0]));
+    }
+    let (mate, count) = found(&plug, &socket, 2);
+    close(&mate, [0.0; 3], [0.26, 0.26]);
+    assert_eq!(count, 2);
+}
+
 #[test]
 fn stamped_shell_with_seam_and_windows_mates_round_a_tongue() {
     // Shell of 0.3 mm sheet with a seam below and two windows above, about a tongue.

@@ -10,7 +10,7 @@ use crate::body::{extent, width};
 use facets::Facets;
 use input::units::MM;
 use insertion::task::Solid;
-use insertion::task::geometry::hull;
+use insertion::task::geometry::{hull, volume};
 use nalgebra::{Point3, Vector3};
 use parry::bounding_volume::{Aabb, BoundingVolume};
 use parry::partitioning::{Bvh, BvhBuildStrategy};
@@ -208,10 +208,14 @@ fn extruded(
     solid_of(&written).filter(is_thick)
 }
 
-/// Whether a solid has a size along each axis that files can have.
+/// Whether a solid has a size along each axis and a volume that files can have.
 pub fn is_thick(solid: &Solid) -> bool {
     (0..3).all(|axis| width(extent(solid.corners(), axis)) >= LEAST_SIZE)
+        && volume(solid) >= LEAST_VOLUME
 }
+
+/// Least volume of a part, m3: ten times what the reader of a task takes for flat.
+const LEAST_VOLUME: f64 = 1e-6 * MM * MM * MM;
 
 /// Box about points in millimetres, for which parry's tolerances are made.
 fn around(points: &[Point3<f64>]) -> Aabb {

@@ -276,6 +276,11 @@ fn finger_and_strategy_start_from_the_task_and_keep_to_its_limits() {
     let more = ["--task", &usb, "--space", "codesign", "--json", "--constraint", "peak-force<=80"];
     let found = studies.study("given", 2, &more).json();
     assert_eq!(found["constraints"], serde_json::json!(["peak-force<=80"]));
+    // A bench prediction knows no forces.
+    let head = "task,infill_density_percent,infill_direction_deg,range_mm\n";
+    let bench = studies.file("bench.csv", format!("{head}usb,20,10,5.0\n"));
+    let few = ["--task", &usb, "--space", "codesign", "--simulations", "24", "--samples", "20"];
+    studies.study("bench", 2, &[&few[..], &["--measurements", &bench]].concat()).succeeds();
 }
 
 /// Returns the best design in a study's JSON, and its evaluation.

@@ -28,7 +28,8 @@ pub enum Among {
 ///
 /// It is the finger whose measurement is expected to improve the final choice most, by simulation and measurements:
 /// because it may be the best, or because it decides between others. In a space with numbers of the task (codesign)
-/// it is a finger with a strategy; another strategy for a printed finger costs no print. The file of measurements may be empty or missing.
+/// it is a finger with a strategy; another strategy for a printed finger costs no print. The file of measurements may
+/// be empty or missing.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 22,

@@ -62,7 +62,8 @@ pub(crate) fn boundary(
     Ok(())
 }
 
-/// Returns a page of both trials, and a picture of how the second ended; `None` if no trial failed there, or the engine records nothing.
+/// Returns a page of both trials, and a picture of how the second ended; `None` if no trial failed there, or the
+/// engine records nothing.
 fn pair(
     setup: &Setup,
     specimen: &Specimen,

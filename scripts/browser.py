@@ -27,6 +27,19 @@ class Browser:
     """A separate Chromium process with a temporary profile."""
 
     def __enter__(self):
+        for left in (2, 1, 0):
+            self.start()
+            try:
+                self.call("Browser.getVersion")
+                return self
+            except (OSError, RuntimeError):
+                # Chromium sometimes ends as soon as it has begun.
+                self.__exit__()
+                if not left:
+                    raise
+
+    def start(self):
+        """Starts Chromium with a new profile."""
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         to_child, self.out = os.pipe()
         self.inn, from_child = os.pipe()
@@ -43,7 +56,6 @@ class Browser:
         os.close(to_child)
         os.close(from_child)
         self.number, self.rest, self.listeners = 0, b"", {}
-        return self
 
     def __exit__(self, *_):
         try:

@@ -218,9 +218,8 @@ impl Request {
     fn constraints(&self, setup: &Setup) -> Vec<Constraint> {
         let mut constraints = self.constraints.clone();
         let bounded = constraints.iter().any(|constraint| constraint.measure == Measure::PeakForce);
-        let changed = setup.space.parameters.iter().any(|of| of.key.starts_with("task."));
         // A bench prediction knows no forces.
-        if changed && !bounded && setup.measured.is_none() {
+        if setup.space.changes_task() && !bounded && setup.measured.is_none() {
             let templates = setup.evaluator.templates.iter();
             let forces = templates.filter_map(|template| template.task.limits.force);
             let limit = forces.reduce(f64::min);

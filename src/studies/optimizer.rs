@@ -39,8 +39,10 @@ pub(crate) fn optimizer(
 /// improve on; other parameters are in their middle.
 fn own_point(setup: &Setup) -> Option<GridPoint> {
     let (parameters, template) = (&setup.space.parameters, setup.evaluator.templates.first()?);
+    if !setup.space.changes_task() {
+        return None;
+    }
     let of_task = |p: &Variable| setup.evaluator.number(template, &p.key);
-    parameters.iter().find(|p| p.key.starts_with("task."))?;
     let value = |p: &Variable| of_task(p).unwrap_or((p.low + p.high) / 2.0);
     Some(GridPoint(parameters.iter().map(|p| p.nearest(value(p))).collect()))
 }

@@ -10,7 +10,7 @@ use ask_tell::statistics::Moments;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::template::Template;
 use insertion::outcome::FailureClass;
-use insertion::space::{Design, Space, Variable};
+use insertion::space::{Design, Space, Variable, is_of_task};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Most fingers of a space that are predicted; of a larger space it is a designed set.
@@ -44,8 +44,8 @@ impl Subject {
         more: &[Design],
     ) -> Result<Self, CalibrationError> {
         let task = template.task.name.clone();
-        let of_task = experiments.iter().filter(|line| line.task == task);
-        let lines = of_task.map(|line| Ok((whole(space, template, line)?, line)));
+        let lines = experiments.iter().filter(|line| line.task == task);
+        let lines = lines.map(|line| Ok((whole(space, template, line)?, line)));
         let lines = lines.collect::<Result<Vec<_>, CalibrationError>>()?;
         let mut designs = fingers(space);
         designs.extend(strategies(space, lines.iter().map(|(design, _)| design)));
@@ -85,7 +85,7 @@ impl Subject {
     /// Returns the designs whose finger was printed: they differ from a measured one by numbers of the task alone.
     pub fn printed(&self) -> BTreeSet<usize> {
         let finger = |number: usize| {
-            self.designs[number].0.iter().filter(|(key, _)| !of_task(key)).collect::<Vec<_>>()
+            self.designs[number].0.iter().filter(|(key, _)| !is_of_task(key)).collect::<Vec<_>>()
         };
         let known: Vec<_> = self.measured().into_iter().map(finger).collect();
         (0..self.designs.len()).filter(|&number| known.contains(&finger(number))).collect()
@@ -164,19 +164,14 @@ fn fingers(space: &Space) -> Vec<Design> {
     (0..size).map(|rest| point(number(rest))).collect()
 }
 
-/// Returns whether a key is of the task: a change of it needs no print.
-fn of_task(key: &str) -> bool {
-    key.starts_with("task.")
-}
-
 /// Strategies for each printed finger, if the space changes the task: a designed set.
 fn strategies<'a>(space: &Space, printed: impl Iterator<Item = &'a Design>) -> Vec<Design> {
-    if !space.parameters.iter().any(|parameter| of_task(&parameter.key)) {
+    if !space.changes_task() {
         return Vec::new();
     }
     let mut fingers: Vec<BTreeMap<String, f64>> = Vec::new();
     for design in printed {
-        let shape = design.0.iter().filter(|(key, _)| !of_task(key));
+        let shape = design.0.iter().filter(|(key, _)| !is_of_task(key));
         let shape = shape.map(|(key, value)| (key.clone(), *value)).collect();
         if !fingers.contains(&shape) {
             fingers.push(shape);

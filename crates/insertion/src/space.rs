@@ -1,4 +1,6 @@
 //! Search spaces and designs, as of the crate `parameters`.
 
-pub use parameters::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space, Variable, corners};
+pub use parameters::space::{
+    DENSITY_KEY, DIRECTION_KEY, Design, Space, Variable, corners, is_of_task,
+};
 pub use parameters::{Scale, label};

@@ -149,7 +149,17 @@ pub struct Space {
 #[serde(transparent)]
 pub struct Design(pub BTreeMap<String, f64>);
 
+/// Returns whether a path names a number of the task, of which a change needs no print.
+pub fn is_of_task(path: &str) -> bool {
+    path.starts_with("task.")
+}
+
 impl Design {
+    /// Returns whether it sets numbers of the task.
+    pub fn changes_task(&self) -> bool {
+        self.0.keys().any(|key| is_of_task(key))
+    }
+
     /// Returns a design with infill density (percent) and direction (degrees).
     pub fn infill(density_percent: f64, direction_deg: f64) -> Self {
         Design::default().with(DENSITY_KEY, density_percent).with(DIRECTION_KEY, direction_deg)
@@ -226,6 +236,11 @@ impl TryFrom<RawSpace> for Space {
 }
 
 impl Space {
+    /// Returns whether its designs set numbers of the task.
+    pub fn changes_task(&self) -> bool {
+        self.parameters.iter().any(|parameter| is_of_task(&parameter.key))
+    }
+
     /// Parses and checks a space; `file` is named in errors.
     ///
     /// # Errors

@@ -8,6 +8,9 @@ var play = (() => {
   const show = (k) => {
     shown = k;
     delete frame.dataset.state;
+    // It shows the first end alone.
+    const poster = document.querySelector(".stage img");
+    if (poster && k > 0) poster.remove();
     frame.srcdoc = viewer.replace("<body>", '<body class="compact">').replace('id="films">', () => `id="films">${at(`film${k}`).textContent}`);
     at("caption").textContent = buttons[k].dataset.caption;
   };

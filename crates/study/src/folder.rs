@@ -17,6 +17,7 @@ use super::confirmed;
 use super::error::StudyError;
 use super::journal::{self, Contents, Journal};
 use super::limits::ForceLimits;
+use super::lock::{Lock, UNKNOWN_OWNER, lock};
 use super::on_bench::{BENCH_FILE, OnBench};
 use super::provenance::{Provenance, Segment};
 use super::record::{Recorded, StudyRecord, first_current};
@@ -29,8 +30,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Read, Seek, Write};
+use std::fs::{self, File};
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// File of the configuration.
@@ -42,9 +43,6 @@ const INPUTS: &str = "inputs";
 pub const FINGER: &str = "finger";
 /// Role of the cell file among the inputs.
 pub const CELL: &str = "cell";
-const LOCK_FILE: &str = ".lock";
-/// Owner of a lock whose process number cannot be read.
-const UNKNOWN_OWNER: &str = "of unknown number";
 
 /// Texts of the input files of a study by role (`task_1` and so on, `space`, `robot`, `stiffness`).
 pub type Inputs = BTreeMap<String, String>;
@@ -477,40 +475,4 @@ fn plain(content: &[u8]) -> Cow<'_, [u8]> {
         Ok(text) if !content.contains(&0) => files::visible(text).into_bytes().into(),
         _ => content.into(),
     }
-}
-
-/// Locked file of a folder. The system releases the lock when the process ends.
-struct Lock(File);
-
-impl Drop for Lock {
-    fn drop(&mut self) {
-        // A child process that is just starting has the file open, too: closing it here would leave it locked.
-        let _ = self.0.unlock();
-    }
-}
-
-/// Locks the folder.
-fn lock(dir: &Path) -> Result<Lock, StudyError> {
-    let path = dir.join(LOCK_FILE);
-    let mut options = OpenOptions::new();
-    options.read(true).write(true).create(true).truncate(false);
-    let mut file = options.open(&path).map_err(StudyError::io("open", &path))?;
-    match file.try_lock() {
-        Ok(()) => {}
-        Err(TryLockError::WouldBlock) => {
-            let mut owner = String::new();
-            // Only for the message: on some systems a locked file cannot be read.
-            let _ = file.read_to_string(&mut owner);
-            let owner = if owner.is_empty() { UNKNOWN_OWNER.to_owned() } else { owner };
-            return Err(StudyError::Locked { dir: dir.to_owned(), owner });
-        }
-        Err(TryLockError::Error(error)) => return Err(StudyError::io("lock", &path)(error)),
-    }
-    let sign = |file: &mut File| {
-        file.set_len(0)?;
-        file.rewind()?;
-        write!(file, "number {}", std::process::id())
-    };
-    sign(&mut file).map_err(StudyError::io("write", &path))?;
-    Ok(Lock(file))
 }

@@ -16,6 +16,7 @@ mod header;
 mod journal;
 mod limits;
 mod line;
+mod lock;
 mod on_bench;
 mod provenance;
 mod race;

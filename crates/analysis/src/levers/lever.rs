@@ -1,7 +1,8 @@
 //! Results of the lever analysis: the levers with the ranges at both ends, and a summary sentence.
 
+use input::shipped::SPACES;
 use insertion::evaluation::INDIFFERENCE_MM;
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use insertion::space::{Design, Space, is_of_task};
 use serde::{Deserialize, Serialize};
 
 /// Effect of the levers on the range of one finger on one task. Ranges are around a taught start.
@@ -80,6 +81,19 @@ impl Lever {
 }
 
 impl Levers {
+    /// Returns whether the task has the numbers that the shipped space `codesign` varies, and the design does not vary
+    /// them already.
+    fn can_be_varied_together(&self) -> bool {
+        let codesign = SPACES.iter().find(|space| space.name == "codesign");
+        let codesign = codesign.and_then(|space| Space::parse(space.text, space.file).ok());
+        let tried = |key: &str| self.levers.iter().any(|lever| lever.key == key);
+        let has = |space: Space| {
+            let mut of_task = space.parameters.iter().filter(|of| is_of_task(&of.key));
+            of_task.all(|of| tried(&of.key))
+        };
+        !self.design.changes_task() && codesign.is_some_and(has)
+    }
+
     /// Summarises the most effective change besides the infill in one sentence; effects below 0.3 mm are
     /// omitted.
     pub fn sentence(&self) -> String {
@@ -96,15 +110,9 @@ impl Levers {
         let task = &self.task;
         match (most(1.0), most(-1.0)) {
             (Some((by, step)), _) => {
-                let more = if self
-                    .design
-                    .0
-                    .keys()
-                    .all(|key| [DENSITY_KEY, DIRECTION_KEY].contains(&&**key))
-                {
-                    " --space codesign varies such numbers with the infill."
-                } else {
-                    ""
+                let more = match self.can_be_varied_together() {
+                    true => " --space codesign varies such numbers with the infill.",
+                    false => "",
                 };
                 format!("{step} widens {task} by {by:.1} mm.{more}")
             }

@@ -253,7 +253,7 @@ pub fn hull(points: &[Point3<f64>]) -> Option<Triangles> {
 }
 
 /// A hull of less volume is flat, m3.
-const FLAT: f64 = 1e-7 * MM * MM * MM;
+pub const FLAT: f64 = 1e-7 * MM * MM * MM;
 
 /// Volume, centroid and second moments about it within a closed surface of outward triangles.
 pub fn surface_moments(corners: &[Point3<f64>], faces: &[[usize; 3]]) -> Moments {

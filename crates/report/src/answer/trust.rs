@@ -51,8 +51,10 @@ impl Trust {
             return Trust::Calibrated { fingers: found.measured, error_percent };
         }
         let nearest = |task| {
-            let of_task = published(task);
-            let named = nearest(of_task, finger?);
+            // Measured with the published strategies.
+            let finger = finger?;
+            let fingers = if finger.design.changes_task() { Vec::new() } else { published(task) };
+            let named = nearest(fingers, finger);
             Some((String::from(task), (!named.is_empty()).then_some(named)?))
         };
         let nearest: Option<Vec<(String, Vec<Measured>)>> =

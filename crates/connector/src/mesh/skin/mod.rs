@@ -10,7 +10,7 @@ use crate::body::{extent, width};
 use facets::Facets;
 use input::units::MM;
 use insertion::task::Solid;
-use insertion::task::geometry::{hull, volume};
+use insertion::task::geometry::{FLAT, hull, volume};
 use nalgebra::{Point3, Vector3};
 use parry::bounding_volume::{Aabb, BoundingVolume};
 use parry::partitioning::{Bvh, BvhBuildStrategy};
@@ -23,6 +23,8 @@ const THICK: f64 = 0.25 * MM;
 const THIN: f64 = 10e-3 * MM;
 /// Least size of a solid along an axis, m.
 const LEAST_SIZE: f64 = 2e-3 * MM;
+/// Least volume of a solid, m3: rounding in a file may take from it.
+const LEAST_VOLUME: f64 = 10.0 * FLAT;
 /// Resolution of lengths in files, m.
 pub const WRITTEN: f64 = 1e-4 * MM;
 /// Distance from the sides of a polygon within which what is behind it does not count, m.
@@ -213,9 +215,6 @@ pub fn is_thick(solid: &Solid) -> bool {
     (0..3).all(|axis| width(extent(solid.corners(), axis)) >= LEAST_SIZE)
         && volume(solid) >= LEAST_VOLUME
 }
-
-/// Least volume of a part, m3: ten times what the reader of a task takes for flat.
-const LEAST_VOLUME: f64 = 1e-6 * MM * MM * MM;
 
 /// Box about points in millimetres, for which parry's tolerances are made.
 fn around(points: &[Point3<f64>]) -> Aabb {

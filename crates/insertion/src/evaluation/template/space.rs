@@ -4,7 +4,7 @@ use super::{Impossible, Template, is_infill};
 use crate::finger::computed::AtPad;
 use crate::finger::file::is_shape;
 use crate::finger::model::FingerSource;
-use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space, Variable, corners};
+use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space, Variable, corners, is_of_task};
 use crate::task::Task;
 use crate::trial::run::RigError;
 use input::units::MM;
@@ -15,7 +15,7 @@ pub fn within_limits(mut space: Space, templates: &[Template]) -> Space {
     let limits = templates.iter().filter_map(|template| template.task.limits.speed);
     let most = limits.fold(f64::INFINITY, f64::min) / MM;
     let speeds = |variable: &&mut Variable| {
-        variable.key.starts_with("task.") && variable.key.ends_with(".speed_mm_per_s")
+        is_of_task(&variable.key) && variable.key.ends_with(".speed_mm_per_s")
     };
     for variable in space.parameters.iter_mut().filter(speeds) {
         if variable.low <= most && most < variable.high {

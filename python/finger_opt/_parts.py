@@ -26,6 +26,8 @@ class LeftOut(Result):
     """Parts that overlap the other half in the mated pose, as unloaded contact springs do; task frame, plug mated."""
 
     body: Literal["plug", "socket"]
+    #: Whether their faces were cut back, as those of a press fit; else the parts were left out.
+    cut_back: bool
     parts: int
     #: Deepest overlap.
     depth_mm: float
@@ -54,7 +56,7 @@ class Imported(Result):
     body_mm: tuple[float, float, float]
     plug_was_inward: bool
     socket_was_inward: bool
-    #: What overlaps in the mated pose and was left out of the shapes.
+    #: What overlaps in the mated pose and was left out of the shapes or cut back.
     left_out: tuple[LeftOut, ...]
     #: The strategy that was found for it, if it needed one.
     tuned: Step | None

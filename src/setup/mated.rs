@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use connector::body::{extent, width};
 use connector::mating::{Found, Mate, Watch, assembled, mates};
 use connector::mesh::axes::{Along, Jaws, Unit, value};
-use connector::mesh::mated::{HANDLE, Interference, Made, Pair, Request, TOLERANCE, task};
+use connector::mesh::mated::{GAP, HANDLE, Interference, Made, Pair, Request, TOLERANCE, task};
 use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
 use input::units::MM;
 use insertion::task::Task;
@@ -62,6 +62,7 @@ pub struct MatedTask {
 #[derive(Serialize)]
 pub struct LeftOut {
     body: &'static str,
+    cut_back: bool,
     parts: usize,
     depth_mm: f64,
     from_mm: [f64; 3],
@@ -72,7 +73,14 @@ impl From<&Interference> for LeftOut {
     fn from(of: &Interference) -> Self {
         let [from_mm, to_mm] = of.bounds.map(|p| [p.x, p.y, p.z].map(|v| v / MM));
         let body = ["plug", "socket"][of.body];
-        LeftOut { body, parts: of.parts, depth_mm: of.depth / MM, from_mm, to_mm }
+        LeftOut {
+            body,
+            cut_back: of.cut_back,
+            parts: of.parts,
+            depth_mm: of.depth / MM,
+            from_mm,
+            to_mm,
+        }
     }
 }
 
@@ -195,12 +203,16 @@ fn found(mate: &Mate, long: f64, made: &Made, given: &Given) -> Vec<(&'static st
     for left in left_out {
         let round = |p: [f64; 3]| p.map(|v| (v * 100.0).round() / 100.0);
         let why = format!(
-            "{} parts of the {} overlap by up to {:.3} mm, from {:?} to {:?} mm: left out",
+            "{} parts of the {} overlap by up to {:.3} mm, from {:?} to {:?} mm: {}",
             left.parts,
             left.body,
             left.depth_mm,
             round(left.from_mm),
-            round(left.to_mm)
+            round(left.to_mm),
+            match left.cut_back {
+                true => format!("a press fit, cut back to a gap of {} mm", GAP / MM),
+                false => "left out".to_owned(),
+            }
         );
         said.push(("overlap", why));
     }

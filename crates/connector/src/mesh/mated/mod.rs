@@ -16,7 +16,7 @@ pub use grip::Grasp;
 use input::units::MM;
 use insertion::task::{Mated, Part, Solid, Success, Task};
 use nalgebra::{Matrix3, Point3, Vector3};
-pub use overlap::Interference;
+pub use overlap::{GAP, Interference};
 use reach::Reach;
 use verify::Drawn;
 pub use verify::{Deviation, TOLERANCE};

@@ -1,14 +1,25 @@
-//! Interference of plug and socket on the way to the mated pose: contact springs are drawn unloaded, ribs uncrushed.
+//! Interference of plug and socket on the way to the mated pose: contact springs are drawn unloaded, ribs uncrushed, press fits
+//! with their oversize.
 
-use crate::body::{ConvexBody, Touching, longest_side, span};
+use crate::body::{ConvexBody, Touching, clipped, extent, longest_side, span};
+use crate::mesh::skin::cut_below;
 use contact::scene::Pose;
 use input::units::MM;
-use insertion::task::{Part, geometry};
+use insertion::task::geometry::outline_by;
+use insertion::task::{Part, Solid, geometry};
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// Overlap that rounding and facets explain, m.
 pub const ROUNDING: f64 = 0.02 * MM;
+/// Deepest overlap of a press fit, m: a pin of 0.64 mm in a hole of 0.6 mm with springs that narrow it by as much again.
+const FIT: f64 = 0.1 * MM;
+/// Gap that a face of the socket gets in a press fit, m: rigid walls stand for ones that yield, and a play of 0.05 mm is the
+/// least with which strategies are known to insert.
+pub const GAP: f64 = 0.025 * MM;
+/// Least overlap that counts, m.
+const LEAST: f64 = 1e-3 * MM;
 /// Step along the way, m.
 const STEP: f64 = 0.2 * MM;
 /// Component of a normal along the axis from which on an overlap is one of a stop.
@@ -16,12 +27,14 @@ const ALONG: f64 = 0.7;
 /// Height above the mated pose from which on nothing may be in the way, m.
 const STOP: f64 = 0.3 * MM;
 
-/// Parts of one body that overlap the other in the mated pose or on the way to it, and were left out.
+/// Parts of one body that overlap the other in the mated pose or on the way to it, and gave way.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interference {
     /// Body that gave way: 0 plug, 1 socket.
     pub body: usize,
-    /// Number of its parts that were left out.
+    /// Whether its faces were cut back by the overlap, as those of a press fit; else the parts were left out.
+    pub cut_back: bool,
+    /// Number of its parts that gave way.
     pub parts: usize,
     /// Deepest overlap, m.
     pub depth: f64,
@@ -37,63 +50,135 @@ impl Interference {
     }
 }
 
-/// Leaves out what keeps the plug from its mated pose, `depth` below the top, m: of two parts that overlap the smaller one.
+/// Makes way for the plug to its mated pose, `depth` below the top, m: of two parts that overlap deeply the smaller one is
+/// left out, and faces of the socket that overlap sideways by no more than a press fit are cut back.
 pub fn cut(plug: &mut Vec<Part>, socket: &mut Vec<Part>, depth: f64) -> Vec<Interference> {
-    let found = met(plug, socket, depth);
+    let mut gone = left_out(plug, socket, depth, FIT);
+    gone.extend(cut_back(plug, socket, depth));
+    gone.extend(left_out(plug, socket, depth, ROUNDING));
+    gone
+}
+
+/// Leaves out what overlaps by more than `least`, m: of two parts the smaller one.
+fn left_out(
+    plug: &mut Vec<Part>,
+    socket: &mut Vec<Part>,
+    depth: f64,
+    least: f64,
+) -> Vec<Interference> {
     let volumes = [&*plug, &*socket].map(|parts| -> Vec<f64> {
         parts.iter().map(|part| geometry::volume(&part.solid)).collect()
     });
     let mut out = [vec![0.0_f64; plug.len()], vec![0.0_f64; socket.len()]];
-    for Touching { depth, parts: [i, j], .. } in found {
+    for Touching { depth, parts: [i, j], .. } in met(plug, socket, depth, least) {
         let body = usize::from(volumes[0][i] > volumes[1][j]);
         let part = [i, j][body];
         out[body][part] = out[body][part].max(depth);
     }
-    let shift = [Vector3::new(0.0, 0.0, -depth), Vector3::zeros()];
     let mut gone = Vec::new();
     for (body, parts) in [plug, socket].into_iter().enumerate() {
-        let left: Vec<(f64, Part)> = parts
-            .iter()
-            .cloned()
-            .enumerate()
-            .filter_map(|(i, part)| (out[body][i] > 0.0).then(|| (out[body][i], part)))
-            .collect();
-        let mut number = 0;
-        parts.retain(|_| {
-            number += 1;
-            out[body][number - 1] == 0.0
-        });
-        gone.extend(groups(left).into_iter().map(|(parts, depth, [low, high])| Interference {
-            body,
-            parts,
-            depth,
-            bounds: [low + shift[body], high + shift[body]],
-        }));
+        let all = std::mem::take(parts).into_iter().zip(&out[body]);
+        let (left, kept): (Vec<_>, Vec<_>) = all.partition(|(_, depth)| **depth > 0.0);
+        *parts = kept.into_iter().map(|(part, _)| part).collect();
+        let left = left.into_iter().map(|(part, &deep)| (deep, part.solid)).collect();
+        gone.extend(listed(left, body, depth));
     }
     gone
 }
 
-/// Overlaps on the way down that are not those of the stop.
-fn met(plug: &[Part], socket: &[Part], depth: f64) -> Vec<Touching> {
+/// Cuts faces of the socket back to the gap of a press fit where the plug meets them sideways, if any overlaps by more than
+/// facets explain; parts without a rest are dropped.
+fn cut_back(plug: &[Part], socket: &mut Vec<Part>, depth: f64) -> Vec<Interference> {
+    let mut pairs: Vec<[usize; 2]> =
+        met(plug, socket, depth, LEAST).into_iter().map(|touch| touch.parts).collect();
+    pairs.sort_unstable();
+    pairs.dedup();
+    let mut solids: BTreeMap<usize, (f64, Option<Solid>)> = BTreeMap::new();
+    for [i, j] in pairs {
+        let own = || (0.0, Some(socket[j].solid.clone()));
+        let (deepest, solid) = solids.remove(&j).unwrap_or_else(own);
+        let planes = solid.as_ref().and_then(|solid| sideways(&plug[i].solid, solid, depth));
+        let (deep, solid) = match planes.filter(|(deep, _)| *deep < FIT) {
+            Some((deep, way)) => {
+                let [_, reach] = span(plug[i].solid.corners().iter().map(|p| p.coords.dot(&way)));
+                let plane = Point3::from(way * (reach + GAP));
+                (deep, solid.and_then(|solid| cut_below(&solid, &plane, &-way)))
+            }
+            None => (0.0, solid),
+        };
+        solids.insert(j, (deepest.max(deep), solid));
+    }
+    solids.retain(|_, (deep, _)| *deep > 0.0);
+    if solids.values().all(|(deep, _)| *deep <= ROUNDING) {
+        return Vec::new();
+    }
+    let gone = solids.iter().map(|(&j, (deep, _))| (*deep, socket[j].solid.clone())).collect();
+    *socket = std::mem::take(socket)
+        .into_iter()
+        .enumerate()
+        .filter_map(|(j, part)| match solids.remove(&j) {
+            Some((_, solid)) => Some(Part { solid: solid?, ..part }),
+            None => Some(part),
+        })
+        .collect();
+    let way = |of: Interference| Interference { cut_back: true, ..of };
+    listed(gone, 1, depth).map(way).collect()
+}
+
+/// Least depth to which a part of the plug, mated `depth` below the top, and one of the socket overlap across the axis, m,
+/// and the direction from the first to the second; `None` if they do not.
+fn sideways(plug: &Solid, socket: &Solid, depth: f64) -> Option<(f64, Vector3<f64>)> {
+    let own = plug.corners();
+    let [low, _] = extent(&own, 2);
+    let its = clipped(&socket.corners(), 2, [low - depth, f64::INFINITY]);
+    let [own, its] = [own, its].map(|points| outline_by(points, |p| p.xy()));
+    let normals = |outline: &[Point3<f64>], sign: f64| -> Vec<Vector3<f64>> {
+        let next = outline.iter().cycle().skip(1);
+        let across = outline.iter().zip(next).map(|(p, q)| (q - p).cross(&Vector3::z()));
+        across
+            .filter_map(|v| Vector3::new(v.x, v.y, 0.0).try_normalize(0.0))
+            .map(|v| v * sign)
+            .collect()
+    };
+    let depth = |way: Vector3<f64>| {
+        let [own, its] = [&own, &its].map(|points| span(points.iter().map(|p| p.coords.dot(&way))));
+        (own[1] - its[0], way)
+    };
+    let all = normals(&own, 1.0).into_iter().chain(normals(&its, -1.0)).map(depth);
+    all.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(deep, _)| *deep > 0.0)
+}
+
+/// Parts of a body that gave way, in groups, with their overlap, m.
+fn listed(parts: Vec<(f64, Solid)>, body: usize, depth: f64) -> impl Iterator<Item = Interference> {
+    let shift = [Vector3::new(0.0, 0.0, -depth), Vector3::zeros()][body];
+    groups(parts).into_iter().map(move |(parts, depth, bounds)| Interference {
+        body,
+        cut_back: false,
+        parts,
+        depth,
+        bounds: bounds.map(|corner| corner + shift),
+    })
+}
+
+/// Overlaps by more than `least`, m, on the way down that are not those of the stop.
+fn met(plug: &[Part], socket: &[Part], depth: f64, least: f64) -> Vec<Touching> {
     let (plug, socket) = (ConvexBody::new(plug), ConvexBody::new(socket));
     let steps = (depth / STEP).ceil() as usize;
     let at = |i: usize| {
         let above = i as f64 * STEP;
         let pose = Pose::translation(0.0, 0.0, above - depth);
         let mut found = plug.overlaps(&pose, &socket, &Pose::identity());
-        found.retain(|touch| {
-            touch.depth > ROUNDING && (above > STOP || touch.normal.z.abs() < ALONG)
-        });
+        found.retain(|touch| touch.depth > least && (above > STOP || touch.normal.z.abs() < ALONG));
         found
     };
     (0..=steps).into_par_iter().map(at).collect::<Vec<_>>().concat()
 }
 
 /// Number of parts, deepest overlap and bounds of the sets of parts that lie near to one another.
-fn groups(parts: Vec<(f64, Part)>) -> Vec<(usize, f64, [Point3<f64>; 2])> {
+fn groups(parts: Vec<(f64, Solid)>) -> Vec<(usize, f64, [Point3<f64>; 2])> {
     let mut groups: Vec<(usize, f64, [Point3<f64>; 2])> = Vec::new();
-    for (depth, part) in parts {
-        let corners = part.solid.corners();
+    for (depth, solid) in parts {
+        let corners = solid.corners();
         let ranges = [0, 1, 2].map(|axis| span(corners.iter().map(|p| p[axis])));
         let mut own = (1, depth, [0, 1].map(|end| Point3::from(ranges.map(|range| range[end]))));
         let near = 0.5 * longest_side(&corners).max(0.5 * MM);
@@ -115,4 +200,64 @@ fn groups(parts: Vec<(f64, Part)>) -> Vec<(usize, f64, [Point3<f64>; 2])> {
         groups.push(own);
     }
     groups
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn part(min_mm: [f64; 3], max_mm: [f64; 3]) -> Part {
+        let [min, max] = [min_mm, max_mm].map(|p| Vector3::from(p) * MM);
+        Part { name: String::new(), solid: Solid::Box { min, max }, friction: None }
+    }
+
+    /// Four walls about a hole of 0.6 mm, the first with a lead-in, and a floor.
+    fn hole() -> Vec<Part> {
+        let slope = [[-0.3, -0.3], [-0.6, 0.0], [-0.9, -0.3], [-0.6, -0.6]];
+        let outline = slope.iter().map(|p| p.map(|v| v * MM)).collect();
+        let lead = Solid::Prism { axis: 1, outline, span: [-0.6, 0.6].map(|y| y * MM) };
+        vec![
+            part([-0.6, -0.6, -4.0], [-0.3, 0.6, -0.3]),
+            part([0.3, -0.6, -4.0], [0.6, 0.6, 0.0]),
+            part([-0.3, -0.6, -4.0], [0.3, -0.3, 0.0]),
+            part([-0.3, 0.3, -4.0], [0.3, 0.6, 0.0]),
+            part([-0.6, -0.6, -4.5], [0.6, 0.6, -4.0]),
+            Part { name: String::new(), solid: lead, friction: None },
+        ]
+    }
+
+    #[test]
+    fn a_press_fit_keeps_its_walls_and_a_spring_is_left_out() {
+        let mut plug = vec![part([-0.32, -0.32, 0.0], [0.32, 0.32, 6.0])];
+        let mut socket = hole();
+        let spring = part([-0.1, 0.1, -2.0], [0.1, 0.5, -1.5]);
+        socket.push(spring);
+        let gone = cut(&mut plug, &mut socket, 4.0 * MM);
+        assert_eq!((plug.len(), socket.len()), (1, 6));
+        let sum = |cut_back| {
+            let parts = gone.iter().filter(|of| of.body == 1 && of.cut_back == cut_back);
+            parts.map(|of| of.parts).sum::<usize>()
+        };
+        assert_eq!((sum(true), sum(false)), (5, 1), "{gone:?}");
+        // Room to either side, the slope's lower edge included, and none beyond it.
+        let [pin, hole] = [&plug, &socket].map(|parts| ConvexBody::new(parts));
+        let deep = |x: f64, y: f64| {
+            let at = Pose::translation(x * MM, y * MM, -3.99 * MM);
+            pin.overlap(&at, &hole, &Pose::identity()).map_or(0.0, |(depth, _)| depth)
+        };
+        for [x, y] in [[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]] {
+            let near = 0.024;
+            assert_eq!(deep(near * x, near * y), 0.0, "{x} {y}");
+            assert!(deep(0.03 * x, 0.03 * y) > 4e-3 * MM, "{x} {y}");
+        }
+    }
+
+    /// Two faces that touch, and a pin that rests on a floor, stay as drawn.
+    #[test]
+    fn a_sliding_fit_stays_as_drawn() {
+        let mut plug = vec![part([-0.3, -0.3, 0.0], [0.305, 0.3, 6.0])];
+        let (mut socket, before) = (hole(), hole());
+        assert_eq!(cut(&mut plug, &mut socket, 4.0 * MM), []);
+        assert_eq!(socket, before);
+    }
 }

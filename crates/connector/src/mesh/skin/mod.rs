@@ -206,8 +206,18 @@ fn extruded(
     for (_, origin, side) in sharp {
         points = below(points, origin, side);
     }
-    let written: Vec<_> = points.iter().map(|p| Point3::from(p.coords.map(rounded))).collect();
-    solid_of(&written).filter(is_thick)
+    written(&points)
+}
+
+/// Returns the part of a solid below a plane, on the grid of files; `None` if it holds no volume.
+pub fn cut_below(solid: &Solid, origin: &Point3<f64>, normal: &Vector3<f64>) -> Option<Solid> {
+    written(&below(solid.corners(), origin, normal))
+}
+
+/// Returns the hull of points on the grid of files; `None` if it holds no volume.
+fn written(points: &[Point3<f64>]) -> Option<Solid> {
+    let points: Vec<_> = points.iter().map(|p| Point3::from(p.coords.map(rounded))).collect();
+    solid_of(&points).filter(is_thick)
 }
 
 /// Whether a solid has a size along each axis and a volume that files can have.

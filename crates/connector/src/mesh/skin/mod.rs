@@ -21,6 +21,8 @@ use rapier3d_f64::parry;
 const THICK: f64 = 0.25 * MM;
 /// Least thickness, m.
 const THIN: f64 = 10e-3 * MM;
+/// Length of a side from which on a polygon is cut in pieces, m.
+const LEAST_PIECE: f64 = 0.2 * MM;
 /// Least size of a solid along an axis, m.
 const LEAST_SIZE: f64 = 2e-3 * MM;
 /// Least volume of a solid, m3: rounding in a file may take from it.
@@ -69,7 +71,7 @@ pub fn skin(
             continue;
         }
         for polygon in polygons::polygons(&facets, &kept, &normal) {
-            solids.extend(walls.slab(flat, &polygon, &normal, &fitted));
+            solids.extend(walls.slabs(flat, &polygon, &normal, &fitted));
         }
     }
     solids
@@ -108,21 +110,32 @@ impl<'a> Walls<'a> {
         Walls { facets, of, tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) }
     }
 
-    /// Returns a polygon of a flat face extruded into the material; `None` if it holds no volume.
-    fn slab(
+    /// Returns a polygon of a flat face extruded into the material, in pieces if not as a whole: along a sharp edge the
+    /// material is too thin for a polygon that is wide elsewhere.
+    fn slabs(
         &self,
         flat: &[usize],
         polygon: &[usize],
         normal: &Vector3<f64>,
         fitted: impl Fn(Solid) -> Option<Solid>,
-    ) -> Option<Solid> {
-        let corners: Vec<Point3<f64>> = polygon.iter().map(|&i| self.facets.points[i]).collect();
+    ) -> Vec<Solid> {
         let sharp = self.sharp(flat, polygon, normal);
-        let half = |thick: &f64| (*thick > THIN).then(|| (thick / 2.0).max(THIN));
-        let thick = self.thickness(&corners, normal, &sharp);
-        std::iter::successors(Some(thick), half)
-            .filter_map(|thick| extruded(&corners, &(normal * thick), &sharp))
-            .find_map(fitted)
+        let mut open = vec![polygon.iter().map(|&i| self.facets.points[i]).collect::<Vec<_>>()];
+        let mut found = Vec::new();
+        while let Some(corners) = open.pop() {
+            let slab = [&sharp[..], &[]].iter().find_map(|sharp| {
+                let half = |thick: &f64| (*thick > THIN).then(|| (thick / 2.0).max(THIN));
+                let thick = self.thickness(&corners, normal, sharp);
+                std::iter::successors(Some(thick), half)
+                    .filter_map(|thick| extruded(&corners, &(normal * thick), sharp))
+                    .find_map(&fitted)
+            });
+            match slab {
+                Some(slab) => found.push(slab),
+                None => open.extend(halves(&corners).into_iter().flatten()),
+            }
+        }
+        found
     }
 
     /// Planes of the faces that meet a polygon at less than a right angle: their flat face, a point and the normal.
@@ -144,8 +157,11 @@ impl<'a> Walls<'a> {
                 let side = self.facets.normals[other];
                 let (flat, origin) = (self.of[other], self.facets.points[ends[0]]);
                 let convex = |p: Point3<f64>| (p - origin).dot(normal) < CONVEX;
+                // The plane at a short edge of a line that bends slightly inward would cut off all beyond it.
+                let below = |&i: &usize| (self.facets.points[i] - origin).dot(&side) < CONVEX;
                 if (-FILM..-1e-6).contains(&side.dot(normal))
                     && self.facets.corners(other).into_iter().all(convex)
+                    && polygon.iter().all(below)
                     && found.iter().all(|(known, ..)| *known != flat)
                 {
                     found.push((flat, origin, side));
@@ -193,6 +209,17 @@ impl<'a> Walls<'a> {
         }
         (least / 2.0).max(THIN)
     }
+}
+
+/// Halves of a polygon across its longest side; `None` if it is small.
+fn halves(corners: &[Point3<f64>]) -> Option<[Vec<Point3<f64>>; 2]> {
+    let ends = |i: usize| [corners[i], corners[(i + 1) % corners.len()]];
+    let [a, b] = (0..corners.len())
+        .map(ends)
+        .max_by(|[a, b], [c, d]| (b - a).norm().total_cmp(&(d - c).norm()))
+        .filter(|[a, b]| (b - a).norm() > LEAST_PIECE)?;
+    let middle = nalgebra::center(&a, &b);
+    Some([b - a, a - b].map(|way| cut(corners.to_vec(), &middle, &way)))
 }
 
 /// Solid of a polygon and the same polygon deeper, below the planes of faces at sharp edges.

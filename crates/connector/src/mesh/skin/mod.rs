@@ -303,7 +303,7 @@ fn below(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::ConvexBody;
+    use crate::body::{ConvexBody, longest_side};
     use crate::mesh::mated::verify::Drawn;
     use insertion::task::{Part, geometry};
 
@@ -361,5 +361,17 @@ mod tests {
         let open = parts(&open);
         let open = ConvexBody::new(&open).part_at(&(Point3::new(2.0, 0.25, 2.5) * MM));
         assert!(open.is_none());
+    }
+
+    /// Pieces cover a face that no single slab does.
+    #[test]
+    fn faces_are_cut_until_their_slabs_fit() {
+        let outline = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.0, 2.0], [0.0, 4.0]];
+        let drawn = extruded(&outline, &[[0, 1, 2, 3], [0, 3, 4, 4]]);
+        let short = |solid: Solid| (longest_side(&solid.corners()) < 1.5 * MM).then_some(solid);
+        let part = |solid| Part { name: String::new(), solid, friction: None };
+        let pieces: Vec<Part> = skin(&drawn, |_, _| true, short).into_iter().map(part).collect();
+        assert!(pieces.len() > 50, "{}", pieces.len());
+        assert_eq!(Drawn::new(&drawn).deviations(&drawn, &pieces), []);
     }
 }

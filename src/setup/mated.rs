@@ -184,7 +184,11 @@ fn as_drawn(files: Files, made: &Made, closeup: &Path) -> Result<(), Failure> {
 fn found(mate: &Mate, long: f64, made: &Made, given: &Given) -> Vec<(&'static str, String)> {
     let depth = mate.engaged_m / MM;
     let long = long / MM;
-    let mut said = vec![("mate", format!("{depth:.2} mm of the plug's {long:.1} mm engage"))];
+    let engaged = match depth <= long {
+        true => format!("{depth:.2} mm of the plug's {long:.1} mm engage"),
+        false => format!("the plug of {long:.1} mm goes {depth:.2} mm along a post"),
+    };
+    let mut said = vec![("mate", engaged)];
     if mate.through {
         let depth = given.depth.unwrap_or(mate.engaged_m) / MM;
         said.push(("through", format!("nothing stops the plug: {depth:.2} mm are to be reached")));

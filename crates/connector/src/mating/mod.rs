@@ -69,11 +69,13 @@ pub enum MatingError {
     /// No seat that encloses the plug from four sides.
     #[error(
         "the plug fits into the socket along none of their axes: no pose is at least {least_mm} mm deep \
-         with walls on four sides; if the parts do mate, give their assembly in the mated pose"
+         with walls on four sides at most {room_mm} mm away; if the parts do mate, give their assembly in the mated pose"
     )]
     NoFit {
         /// Least engagement, mm.
         least_mm: f64,
+        /// Largest play, mm.
+        room_mm: f64,
     },
     /// The parts of an assembly are not mated, or block one another in every direction.
     #[error(
@@ -125,5 +127,5 @@ pub fn mates(plug: &[Triangle], socket: &[Triangle], watch: &Watch) -> Result<Fo
             return Ok(found);
         }
     }
-    Err(MatingError::NoFit { least_mm: search::LEAST / MM })
+    Err(MatingError::NoFit { least_mm: search::LEAST / MM, room_mm: ROOMS[2] / MM })
 }

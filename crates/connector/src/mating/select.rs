@@ -1,7 +1,7 @@
 //! Choice among refined poses.
 
 use super::frame::Parts;
-use super::map::bounds;
+use super::map::{NOWHERE, bounds};
 use super::refine::Pose;
 use super::search::{LEAST, Scene};
 use super::{Found, precise};
@@ -14,6 +14,9 @@ const SAME: f64 = 0.05 * MM;
 /// Share of the plug's outline that walls must face over the least depth.
 const GUIDED: f64 = 0.25;
 
+/// Width of the rim about a plug in which a socket surrounds it, m.
+const RIM: f64 = 2.0 * MM;
+
 /// Choice among poses, the best first; none if no pose guides the plug.
 pub fn select(
     parts: &Parts,
@@ -24,8 +27,9 @@ pub fn select(
     let guided = |pose: &&Pose| {
         let [x, y, z] = bounds(&scene.plugs[pose.turn]);
         let size = ((x[1] - x[0]) * (y[1] - y[0])).sqrt();
-        // What sinks in wholly has fallen, and nobody could hold it.
-        (LEAST..z[1] - z[0]).contains(&pose.depth) && pose.walls >= LEAST * GUIDED * size
+        // What sinks in wholly has fallen, and nobody could hold it; a ring on a longer post has not.
+        let held = pose.depth < z[1] - z[0] || z[1] + pose.z > beside(scene, pose, [x, y]);
+        pose.depth >= LEAST && held && pose.walls >= LEAST * GUIDED * size
     };
     let poses: Vec<_> = poses.iter().filter(guided).collect();
     let best = poses.first()?;
@@ -46,4 +50,17 @@ pub fn select(
     Some(Found::Ambiguous(
         [*best].into_iter().chain(others.into_iter().copied()).map(mate).collect(),
     ))
+}
+
+/// Height of the socket just outside the bounds of a plug in x and y, m.
+fn beside(scene: &Scene, pose: &Pose, plug: [[f64; 2]; 2]) -> f64 {
+    let map = &scene.upper[pose.out];
+    let cell = |length: f64, axis: usize| (length / map.step[axis]).floor() as i32;
+    let rim = |axis: usize| cell(RIM, axis).max(2);
+    let [x, y] = [0, 1].map(|axis| plug[axis].map(|v| cell(v + pose.shift[axis], axis)));
+    let within = |v: i32, [low, high]: [i32; 2]| (low - 1..=high + 1).contains(&v);
+    let columns = (y[0] - rim(1)..=y[1] + rim(1))
+        .flat_map(|j| (x[0] - rim(0)..=x[1] + rim(0)).map(move |i| [i, j]));
+    let outside = columns.filter(|&[i, j]| !(within(i, x) && within(j, y)));
+    outside.map(|[i, j]| f64::from(map.at(i, j))).fold(-f64::from(NOWHERE), f64::max)
 }

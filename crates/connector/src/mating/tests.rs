@@ -109,6 +109,17 @@ fn plug_goes_round_a_post() {
     close(&mate, [0.0, 0.0, 1.0], [0.12, 0.08]);
 }
 
+/// A washer on a rod four times as long, square, so that one mate of eight is as good as any.
+#[test]
+fn ring_goes_round_a_post_longer_than_itself() {
+    let plug = ring(&rectangle([0.0; 2], [9.0, 8.0]), &rectangle([0.0; 2], [4.2, 3.3]), [0.0, 5.0]);
+    let mut socket = block([0.0; 2], [16.0, 16.0], [-4.0, 0.0]);
+    socket.extend(block([0.0; 2], [4.0, 3.0], [0.0, 20.0]));
+    let (mate, count) = found(&plug, &socket, 3);
+    assert_eq!(count, 4, "{mate:?}");
+    assert!((mate.engaged_m - 20.0 * MM).abs() < CLOSE, "{mate:?}");
+}
+
 #[test]
 fn key_leaves_no_yaw_and_a_through_hole_no_stop() {
     let socket =

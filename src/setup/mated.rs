@@ -172,11 +172,16 @@ fn as_drawn(files: Files, made: &Made, closeup: &Path) -> Result<(), Failure> {
         (None, None) => return Ok(()),
     };
     write_file(closeup, made.closeup.as_deref().unwrap_or_default())?;
-    let problem = format!(
-        "{problem}: more than the {allowed} mm allowed; look there for faces that cross one another or are turned inside \
-         out ({})",
-        closeup.display()
-    );
+    let deepest = made.interference.iter().map(|of| of.depth / MM).fold(0.0, f64::max);
+    let cause = match made.deviation.is_none() && deepest > 0.0 {
+        true => format!(
+            "plug and socket overlap by up to {deepest:.2} mm in the pose that was found: if it is not theirs, give their \
+             assembly in the mated pose"
+        ),
+        false => "look there for faces that cross one another or are turned inside out".to_owned(),
+    };
+    let problem =
+        format!("{problem}: more than the {allowed} mm allowed; {cause} ({})", closeup.display());
     Err(Failure::in_file(file, problem))
 }
 

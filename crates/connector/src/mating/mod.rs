@@ -17,6 +17,7 @@ mod symmetry;
 #[cfg(test)]
 mod tests;
 
+use crate::body::span;
 use crate::mesh::Triangle;
 pub use assembled::assembled;
 use input::units::MM;
@@ -25,6 +26,9 @@ pub use split::plugs;
 
 /// Largest total play of a plug in its seat, m: of connectors, of toys and enlarged ones, and of the paper's usb.
 const ROOMS: [f64; 3] = [0.5 * MM, 2.0 * MM, 4.0 * MM];
+
+/// Share of the plug's length over which it only catches on an edge.
+const CATCH: f64 = 0.05;
 
 /// Straight mate of a plug in its socket.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,6 +62,25 @@ pub enum Found {
     Symmetric(Mate, usize),
     /// Different mates of similar engagement, the best first.
     Ambiguous(Vec<Mate>),
+}
+
+impl Found {
+    /// Returns whether the plug, in its own frame, does more than catch on an edge.
+    fn is_deep(&self, plug: &[Triangle]) -> bool {
+        let mates = match self {
+            Found::One(mate) | Found::Symmetric(mate, _) => std::slice::from_ref(mate),
+            Found::Ambiguous(all) => all,
+        };
+        mates.iter().any(|mate| mate.is_deep(plug))
+    }
+}
+
+impl Mate {
+    fn is_deep(&self, plug: &[Triangle]) -> bool {
+        let out = self.pose.inverse_transform_vector(&self.out);
+        let [low, high] = span(plug.iter().flatten().map(|p| p.coords.dot(&out)));
+        self.engaged_m >= CATCH * (high - low)
+    }
 }
 
 /// Error of a search for a mate.
@@ -119,13 +142,15 @@ pub fn mates(plug: &[Triangle], socket: &[Triangle], watch: &Watch) -> Result<Fo
     let scene = search::Scene::new(&parts);
     let pairs = symmetry::pairs(&scene);
     let few: Vec<_> = pairs.iter().map(|(pair, _)| *pair).collect();
-    // The tightest fit guides: a looser one counts only where there is none.
+    // The tightest fit guides: a looser one counts only where there is none, or where the plug only catches on an edge.
+    let mut shallow = None;
     for room in ROOMS {
         let seats = search::seats(&scene, &few, room, watch)?;
         let poses = refine::refined(&scene, &seats, room, watch)?;
-        if let Some(found) = select::select(&parts, &scene, &poses, (&pairs, room)) {
-            return Ok(found);
+        match select::select(&parts, &scene, &poses, (&pairs, room)) {
+            Some(found) if found.is_deep(plug) => return Ok(found),
+            found => shallow = shallow.or(found),
         }
     }
-    Err(MatingError::NoFit { least_mm: search::LEAST / MM, room_mm: ROOMS[2] / MM })
+    shallow.ok_or(MatingError::NoFit { least_mm: search::LEAST / MM, room_mm: ROOMS[2] / MM })
 }

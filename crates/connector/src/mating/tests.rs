@@ -120,15 +120,15 @@ fn ring_goes_round_a_post_longer_than_itself() {
     assert!((mate.engaged_m - 20.0 * MM).abs() < CLOSE, "{mate:?}");
 }
 
-/// A peg in a deep bore with 0.8 mm of play, beside a recess of 0.8 mm that it fits tightly.
+/// A peg in a deep bore with 2.4 mm of play, beside a recess of 1.2 mm that it fits.
 #[test]
 fn deep_bore_counts_more_than_a_tight_recess() {
     let (bore, recess) = ([0.0; 2], [8.0, 0.0]);
     let socket = [
-        ring(&rectangle(bore, [8.0, 8.0]), &rectangle(bore, [3.8, 2.8]), [-30.0, 0.0]),
+        ring(&rectangle(bore, [8.0, 8.0]), &rectangle(bore, [5.4, 4.4]), [-30.0, 0.0]),
         block(bore, [8.0, 8.0], [-34.0, -30.0]),
-        ring(&rectangle(recess, [8.0, 8.0]), &rectangle(recess, [3.06, 2.06]), [-0.8, 0.0]),
-        block(recess, [8.0, 8.0], [-34.0, -0.8]),
+        ring(&rectangle(recess, [8.0, 8.0]), &rectangle(recess, [3.2, 2.2]), [-1.2, 0.0]),
+        block(recess, [8.0, 8.0], [-34.0, -1.2]),
     ];
     let (mate, _) = found(&block(bore, [3.0, 2.0], [-30.0, 10.0]), &socket.concat(), 5);
     assert!((mate.engaged_m - 30.0 * MM).abs() < CLOSE, "{mate:?}");

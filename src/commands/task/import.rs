@@ -37,7 +37,7 @@ const DEPTHS_MM: RangeInclusive<f64> = 0.4..=300.0;
 /// Give one file that holds both in their mated pose, or one of each with --plug and --socket, in any pose: the
 /// mated pose is found from their shapes. STEP needs the Python package with its extra `step`. The faces that the two
 /// can touch become convex parts, within 0.02 mm of the drawing; many are written to a file beside the task. Faces that overlap
-/// in the mated pose are listed: contact springs, drawn unloaded, are left out, and in a press fit the socket is cut back.
+/// in the mated pose are listed: contact springs, drawn unloaded, are left out, and in a press fit one of both is cut back.
 /// Unit, direction and axis of the jaws are derived from the shapes and printed, unless they are given. Grip and
 /// strategy are derived from the shapes, too; with --like the strategy is that of another task, on these shapes.
 #[derive(Debug, Clone, clap::Args)]

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 pub const ROUNDING: f64 = 0.02 * MM;
 /// Deepest overlap of a press fit, m: a pin of 0.64 mm in a hole of 0.6 mm with springs that narrow it by as much again.
 const FIT: f64 = 0.1 * MM;
-/// Gap that a face of the socket gets in a press fit, m: rigid walls stand for ones that yield, and a play of 0.05 mm is the
+/// Gap of the faces of a press fit, m: rigid walls stand for ones that yield, and a play of 0.05 mm is the
 /// least with which strategies are known to insert.
 pub const GAP: f64 = 0.025 * MM;
 /// Least overlap that counts, m.
@@ -51,7 +51,7 @@ impl Interference {
 }
 
 /// Makes way for the plug to its mated pose, `depth` below the top, m: of two parts that overlap deeply the smaller one is
-/// left out, and faces of the socket that overlap sideways by no more than a press fit are cut back.
+/// left out, and faces that overlap sideways by no more than a press fit are cut back.
 pub fn cut(plug: &mut Vec<Part>, socket: &mut Vec<Part>, depth: f64) -> Vec<Interference> {
     let mut gone = left_out(plug, socket, depth, FIT);
     gone.extend(cut_back(plug, socket, depth));
@@ -86,66 +86,98 @@ fn left_out(
     gone
 }
 
-/// Cuts faces of the socket back to the gap of a press fit where the plug meets them sideways, if any overlaps by more than
-/// facets explain; parts without a rest are dropped.
-fn cut_back(plug: &[Part], socket: &mut Vec<Part>, depth: f64) -> Vec<Interference> {
+/// Cuts faces that meet the other body sideways back to the gap of a press fit, if any overlaps by more than facets explain: of
+/// two parts the smaller one, so that a rib does not move a wall. Parts without a rest are dropped.
+fn cut_back(plug: &mut Vec<Part>, socket: &mut Vec<Part>, depth: f64) -> Vec<Interference> {
     let mut pairs: Vec<[usize; 2]> =
         met(plug, socket, depth, LEAST).into_iter().map(|touch| touch.parts).collect();
     pairs.sort_unstable();
     pairs.dedup();
-    let mut solids: BTreeMap<usize, (f64, Option<Solid>)> = BTreeMap::new();
+    let mut bodies = [&plug[..], &socket[..]].map(Yielding::new);
     for [i, j] in pairs {
-        let own = || (0.0, Some(socket[j].solid.clone()));
-        let (deepest, solid) = solids.remove(&j).unwrap_or_else(own);
-        let planes = solid.as_ref().and_then(|solid| sideways(&plug[i].solid, solid, depth));
-        let (deep, solid) = match planes.filter(|(deep, _)| *deep < FIT) {
-            Some((deep, way)) => {
-                let [_, reach] = span(plug[i].solid.corners().iter().map(|p| p.coords.dot(&way)));
-                let plane = Point3::from(way * (reach + GAP));
-                (deep, solid.and_then(|solid| cut_below(&solid, &plane, &-way)))
-            }
-            None => (0.0, solid),
-        };
-        solids.insert(j, (deepest.max(deep), solid));
+        let [Some(own), Some(its)] = [bodies[0].solid(i), bodies[1].solid(j)] else { continue };
+        let Some(fit) = Fit::new(own, its, depth).filter(|fit| fit.depth < FIT) else { continue };
+        match geometry::volume(own) < geometry::volume(its) {
+            true => bodies[0].cut(i, &fit, fit.faces[1] - GAP, fit.way),
+            false => bodies[1].cut(j, &fit, fit.faces[0] + GAP, -fit.way),
+        }
     }
-    solids.retain(|_, (deep, _)| *deep > 0.0);
-    if solids.values().all(|(deep, _)| *deep <= ROUNDING) {
+    let deepest = bodies.iter().flat_map(|body| body.cut.values()).map(|(deep, _)| *deep);
+    if deepest.fold(0.0, f64::max) <= ROUNDING {
         return Vec::new();
     }
-    let gone = solids.iter().map(|(&j, (deep, _))| (*deep, socket[j].solid.clone())).collect();
-    *socket = std::mem::take(socket)
-        .into_iter()
-        .enumerate()
-        .filter_map(|(j, part)| match solids.remove(&j) {
-            Some((_, solid)) => Some(Part { solid: solid?, ..part }),
-            None => Some(part),
-        })
-        .collect();
-    let way = |of: Interference| Interference { cut_back: true, ..of };
-    listed(gone, 1, depth).map(way).collect()
+    let mut gone = Vec::new();
+    let cuts = bodies.map(|body| body.cut);
+    for (body, (parts, mut cut)) in [plug, socket].into_iter().zip(cuts).enumerate() {
+        let left = cut.iter().map(|(&i, (deep, _))| (*deep, parts[i].solid.clone())).collect();
+        gone.extend(listed(left, body, depth).map(|of| Interference { cut_back: true, ..of }));
+        *parts = std::mem::take(parts)
+            .into_iter()
+            .enumerate()
+            .filter_map(|(i, part)| match cut.remove(&i) {
+                Some((_, solid)) => Some(Part { solid: solid?, ..part }),
+                None => Some(part),
+            })
+            .collect();
+    }
+    gone
 }
 
-/// Least depth to which a part of the plug, mated `depth` below the top, and one of the socket overlap across the axis, m,
-/// and the direction from the first to the second; `None` if they do not.
-fn sideways(plug: &Solid, socket: &Solid, depth: f64) -> Option<(f64, Vector3<f64>)> {
-    let own = plug.corners();
-    let [low, _] = extent(&own, 2);
-    let its = clipped(&socket.corners(), 2, [low - depth, f64::INFINITY]);
-    let [own, its] = [own, its].map(|points| outline_by(points, |p| p.xy()));
-    let normals = |outline: &[Point3<f64>], sign: f64| -> Vec<Vector3<f64>> {
-        let next = outline.iter().cycle().skip(1);
-        let across = outline.iter().zip(next).map(|(p, q)| (q - p).cross(&Vector3::z()));
-        across
-            .filter_map(|v| Vector3::new(v.x, v.y, 0.0).try_normalize(0.0))
-            .map(|v| v * sign)
-            .collect()
-    };
-    let depth = |way: Vector3<f64>| {
-        let [own, its] = [&own, &its].map(|points| span(points.iter().map(|p| p.coords.dot(&way))));
-        (own[1] - its[0], way)
-    };
-    let all = normals(&own, 1.0).into_iter().chain(normals(&its, -1.0)).map(depth);
-    all.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(deep, _)| *deep > 0.0)
+/// Parts of a body and what is left of those that were cut.
+struct Yielding<'a> {
+    parts: &'a [Part],
+    /// Deepest overlap, m, and what is left of each part that was cut.
+    cut: BTreeMap<usize, (f64, Option<Solid>)>,
+}
+
+impl<'a> Yielding<'a> {
+    fn new(parts: &'a [Part]) -> Self {
+        Yielding { parts, cut: BTreeMap::new() }
+    }
+
+    fn solid(&self, part: usize) -> Option<&Solid> {
+        self.cut.get(&part).map_or(Some(&self.parts[part].solid), |(_, solid)| solid.as_ref())
+    }
+
+    /// Cuts a part below a plane at a distance along the way of a fit, m, that looks along a normal.
+    fn cut(&mut self, part: usize, fit: &Fit, at: f64, normal: Vector3<f64>) {
+        let plane = Point3::from(fit.way * at);
+        let left = self.solid(part).and_then(|solid| cut_below(solid, &plane, &normal));
+        let (deepest, solid) = self.cut.entry(part).or_default();
+        (*deepest, *solid) = (deepest.max(fit.depth), left);
+    }
+}
+
+/// Overlap of a part of the plug and one of the socket across the axis, in the direction in which it is shallowest.
+struct Fit {
+    /// Depth, m.
+    depth: f64,
+    /// Direction from the plug to the socket.
+    way: Vector3<f64>,
+    /// Place of the plug's face and of the socket's along it, m.
+    faces: [f64; 2],
+}
+
+impl Fit {
+    /// Overlap of solids, the plug mated `depth` below the top, m; `None` if they do not.
+    fn new(plug: &Solid, socket: &Solid, depth: f64) -> Option<Self> {
+        let own = plug.corners();
+        let [low, _] = extent(&own, 2);
+        let its = clipped(&socket.corners(), 2, [low - depth, f64::INFINITY]);
+        let [own, its] = [own, its].map(|points| outline_by(points, |p| p.xy()));
+        let normals = |outline: &[Point3<f64>], sign: f64| -> Vec<Vector3<f64>> {
+            let next = outline.iter().cycle().skip(1);
+            let across = outline.iter().zip(next).map(|(p, q)| (q - p).cross(&Vector3::z()));
+            across.filter_map(|v| (v * sign).try_normalize(0.0)).collect()
+        };
+        let fit = |way: Vector3<f64>| {
+            let along = |points: &[Point3<f64>]| span(points.iter().map(|p| p.coords.dot(&way)));
+            let faces = [along(&own)[1], along(&its)[0]];
+            Fit { depth: faces[0] - faces[1], way, faces }
+        };
+        let all = normals(&own, 1.0).into_iter().chain(normals(&its, -1.0)).map(fit);
+        all.min_by(|a, b| a.depth.total_cmp(&b.depth)).filter(|fit| fit.depth > 0.0)
+    }
 }
 
 /// Parts of a body that gave way, in groups, with their overlap, m.
@@ -250,6 +282,18 @@ mod tests {
             assert_eq!(deep(near * x, near * y), 0.0, "{x} {y}");
             assert!(deep(0.03 * x, 0.03 * y) > 4e-3 * MM, "{x} {y}");
         }
+    }
+
+    /// A rib that a wall would crush is cut, and the wall stays.
+    #[test]
+    fn a_crush_rib_moves_no_wall() {
+        let rib = part([0.25, -0.05, 0.0], [0.36, 0.05, 5.0]);
+        let mut plug = vec![part([-0.25, -0.25, 0.0], [0.25, 0.25, 6.0]), rib];
+        let (mut socket, before) = (hole(), hole());
+        let gone = cut(&mut plug, &mut socket, 4.0 * MM);
+        assert_eq!((socket, gone.len()), (before, 1), "{gone:?}");
+        let [_, high] = extent(plug[1].solid.corners(), 0);
+        assert!((high - 0.275 * MM).abs() < 1e-9, "{high}");
     }
 
     /// Two faces that touch, and a pin that rests on a floor, stay as drawn.

@@ -226,7 +226,7 @@ impl Request {
             "Imported from {plug} and {socket}, in {unit}, inserted along {along}, jaws along {jaws}."
         );
         let head = vec![head.replace(['\n', '\r'], " ")];
-        Notes { head, mass, parts: None, left_out: !made.interference.is_empty() }
+        Notes { head, mass, parts: None, left_out: made.interference.iter().any(|of| !of.cut_back) }
     }
 }
 

@@ -76,6 +76,7 @@ impl Found {
 }
 
 impl Mate {
+    /// As [`Found::is_deep`].
     fn is_deep(&self, plug: &[Triangle]) -> bool {
         let out = self.pose.inverse_transform_vector(&self.out);
         let [low, high] = span(plug.iter().flatten().map(|p| p.coords.dot(&out)));

@@ -35,16 +35,17 @@ pub struct Format {
 }
 
 impl Format {
-    /// Returns what the reader prints of a file; `file` is named in errors.
+    /// Returns what the reader prints of a file, which is called `file` in errors, and its warnings.
     ///
     /// # Errors
     /// If it cannot read the file, or the package or its extra is not installed.
-    pub fn read(&self, path: &Path, file: &str) -> Result<Vec<u8>, Fault> {
+    pub fn read(&self, path: &Path, file: &str) -> Result<(Vec<u8>, Vec<String>), Fault> {
         let Format { name, extra, reader, otherwise } = self;
         let python = interpreter();
+        let called = |said: &str| said.replace(&path.display().to_string(), file);
         let fail = |said: &str| {
             // Names the file itself, unless the package is missing.
-            let named = said.replace(&path.display().to_string(), file);
+            let named = called(said);
             let problem = match named.strip_prefix(file) {
                 Some(problem) => problem.trim_start_matches(':').trim_start().to_owned(),
                 None => format!(
@@ -57,10 +58,11 @@ impl Format {
         };
         let run = command(reader).arg(path).stdin(Stdio::null()).output();
         let found = run.map_err(|error| fail(&error.to_string()))?;
-        if found.status.success() {
-            return Ok(found.stdout);
-        }
         let said = String::from_utf8_lossy(&found.stderr);
+        if found.status.success() {
+            let warnings = said.lines().filter(|line| line.starts_with("warning: "));
+            return Ok((found.stdout, warnings.map(called).collect()));
+        }
         Err(fail(said.lines().last().unwrap_or("nothing")))
     }
 }

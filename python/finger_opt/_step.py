@@ -27,8 +27,8 @@ INSTALL = "pip install 'finger_opt[step]'"
 #: Largest angle between neighbouring facets, rad. It rules radii under 0.13 mm alone, of which a connector has
 #: many: the tolerance rules all others.
 ANGLE_RAD = 0.8
-#: Triangles of a product above which it is meshed more coarsely: a thread has as many.
-MANY_TRIANGLES = 12_000
+#: Triangles of a product above which it is meshed more coarsely: what a body has more is reduced after reading.
+MANY_TRIANGLES = 60_000
 #: How much coarser than asked for, one after the other.
 COARSER = (1, 3, 9)
 #: Time for reading and meshing a file, s.

@@ -31,6 +31,6 @@ pub fn log_text(path: &Path) -> Result<String, Fault> {
         return read::text(path);
     }
     let file = path.display().to_string();
-    let found = BAG.read(path, &file)?;
+    let (found, _) = BAG.read(path, &file)?;
     String::from_utf8(found).map_err(|error| Place::file(file).fault(error.to_string()))
 }

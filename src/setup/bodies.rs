@@ -2,6 +2,7 @@
 
 use super::assembly::split;
 use super::step;
+use crate::context::Context;
 use crate::failure::Failure;
 use connector::mesh::axes::{Unit, value};
 use connector::mesh::{Body, Files, Triangle, is_step, pick, read};
@@ -40,11 +41,11 @@ pub struct Pair {
 ///
 /// # Errors
 /// If a file cannot be read, has no such body, or does not say which body is the plug.
-pub fn pair(files: Files, named: &Named) -> Result<Pair, Failure> {
-    let (plug, plug_step) = bodies(named.plug, files[0])?;
+pub fn pair(files: Files, named: &Named, context: &Context<'_>) -> Result<Pair, Failure> {
+    let (plug, plug_step) = bodies(named.plug, files[0], context)?;
     let both = named.socket == named.plug;
     let (socket, socket_step) =
-        if both { (plug.clone(), plug_step) } else { bodies(named.socket, files[1])? };
+        if both { (plug.clone(), plug_step) } else { bodies(named.socket, files[1], context)? };
     let unit = if plug_step || socket_step { Some(Unit::Mm) } else { named.unit };
     if let Some(other) = named.unit.filter(|given| Some(*given) != unit) {
         let problem = format!("--unit {}: STEP names its unit, and is read in mm", value(other));
@@ -81,13 +82,17 @@ pub fn pair(files: Files, named: &Named) -> Result<Pair, Failure> {
 }
 
 /// Bodies of a file, and whether it is STEP, which names its unit and is read in mm.
-fn bodies(path: &Path, file: &str) -> Result<(Vec<Body>, bool), Failure> {
+fn bodies(
+    path: &Path,
+    file: &str,
+    context: &Context<'_>,
+) -> Result<(Vec<Body>, bool), Failure> {
     let unreadable =
         |error: std::io::Error| Failure::in_file(file, format!("cannot read the mesh: {error}"));
     let opened = std::fs::File::open(path).map_err(unreadable)?;
     let bytes = input::files::read_up_to(opened, LARGEST_FILE).map_err(unreadable)?;
     if is_step(&bytes, &path.display().to_string()) {
-        return Ok((step::bodies(path, file)?, true));
+        return Ok((step::bodies(path, file, context)?, true));
     }
     Ok((read(&bytes, file).map_err(Failure::input)?, false))
 }

@@ -4,8 +4,8 @@ use crate::command;
 use crate::context::Context;
 use crate::failure::{Failure, within};
 use crate::setup::bench::DEFAULT_PRIORS;
-use crate::setup::files::find;
-use crate::setup::request::SetupRequest;
+use crate::setup::files::{DEFAULT_FINGER, find};
+use crate::setup::request::{DEFAULT_SPACE, SetupRequest};
 use crate::setup::run::RunRequest;
 use crate::setup::words::Words;
 use crate::setup::{Setup, measured};
@@ -19,6 +19,7 @@ use insertion::evaluation::cell::Priors;
 use insertion::evaluation::objective::{
     Aggregate, AggregateKind, Bound, Constraint, Measure, Objectives,
 };
+use std::ffi::OsStr;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use study::{
@@ -105,7 +106,7 @@ pub struct Request {
     #[arg(
         long,
         value_name = "DIR",
-        help = "Folder of the study [default: results/<task>-<optimizer>-seed<seed>]"
+        help = "Folder of the study [default: results/<task>-<optimizer>-seed<seed>, with what else is asked for]"
     )]
     pub out: Option<PathBuf>,
     /// Options of the run.
@@ -190,8 +191,39 @@ impl Request {
         if setup.measured.is_some() {
             on_bench::check(&config)?;
         }
-        let dir = self.out.clone().unwrap_or_else(|| default_folder(&config));
+        let dir = self.out.clone().unwrap_or_else(|| self.default_folder(&config));
         Ok((setup, config, dir))
+    }
+
+    /// Returns `results/<task>-<optimizer>-seed<seed>`, with what else was asked for after the task, so that another
+    /// question has a folder of its own.
+    fn default_folder(&self, config: &StudyConfig) -> PathBuf {
+        let setup = &self.setup;
+        let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+        let word = |name: &str| -> String {
+            let stem = Path::new(name).file_stem().and_then(OsStr::to_str).unwrap_or(name);
+            stem.chars().map(safe).collect()
+        };
+        // The plus sign separates tasks.
+        let tasks = config.tasks().map(|name| name.chars().map(safe).collect::<String>());
+        let unlike = |name: &str, default: &str| (name != default).then(|| word(name));
+        let given = |name: &Option<String>| name.as_deref().map(word);
+        let words = [
+            Some(tasks.collect::<Vec<_>>().join("+")),
+            unlike(&setup.space, DEFAULT_SPACE),
+            unlike(&self.objective.to_string(), "range"),
+            given(&setup.robot),
+            given(&setup.cell),
+            given(&setup.stiffness_data),
+            setup.finger_model.kind.and_then(|kind| unlike(kind.name(), "paper")),
+            unlike(&setup.finger_model.finger, DEFAULT_FINGER),
+            given(&self.uncertainty),
+            given(&self.measurements),
+        ];
+        let limits =
+            self.constraints.iter().map(|limit| limit.to_string().chars().map(safe).collect());
+        let task = words.into_iter().flatten().chain(limits).collect::<Vec<_>>().join("-");
+        Path::new("results").join(study_name(&task, &config.method(), config.seed))
     }
 
     /// Returns the aggregation over several tasks; `None` for one task.
@@ -285,13 +317,4 @@ fn check(kind: OptimizerKind, config: &StudyConfig) -> Result<(), Failure> {
         return Err(Failure::usage("--polish supports a single objective only; leave it out"));
     }
     Ok(())
-}
-
-/// Returns `results/<task>-<optimizer>-seed<seed>`, with other characters of task names replaced.
-fn default_folder(config: &StudyConfig) -> PathBuf {
-    let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-    // The plus sign separates tasks.
-    let task = |name: &str| name.chars().map(safe).collect::<String>();
-    let task = config.tasks().map(task).collect::<Vec<_>>().join("+");
-    Path::new("results").join(study_name(&task, &config.method(), config.seed))
 }

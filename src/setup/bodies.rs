@@ -82,11 +82,7 @@ pub fn pair(files: Files, named: &Named, context: &Context<'_>) -> Result<Pair, 
 }
 
 /// Bodies of a file, and whether it is STEP, which names its unit and is read in mm.
-fn bodies(
-    path: &Path,
-    file: &str,
-    context: &Context<'_>,
-) -> Result<(Vec<Body>, bool), Failure> {
+fn bodies(path: &Path, file: &str, context: &Context<'_>) -> Result<(Vec<Body>, bool), Failure> {
     let unreadable =
         |error: std::io::Error| Failure::in_file(file, format!("cannot read the mesh: {error}"));
     let opened = std::fs::File::open(path).map_err(unreadable)?;

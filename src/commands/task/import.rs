@@ -184,7 +184,8 @@ impl Request {
             socket_body: &self.socket_body,
             unit: self.unit,
         };
-        let Pair { triangles: [plug, socket], unit, said } = pair([&files[0], &files[1]], &named, context)?;
+        let Pair { triangles: [plug, socket], unit, said } =
+            pair([&files[0], &files[1]], &named, context)?;
         not_stopped(context.stop)?;
         let given = Given {
             name: &self.name(),

@@ -1,7 +1,9 @@
 //! Triangles of STL (binary and text) and OBJ files.
 
 use super::MeshError;
-use nalgebra::Point3;
+use earcut::Earcut;
+use earcut::utils3d::project3d_to_2d;
+use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::Path;
@@ -117,8 +119,7 @@ fn parsed(text: &str, stl: bool) -> Result<Vec<Body>, String> {
                 let face: Option<Vec<_>> = words.map(|word| corner(word, &points)).collect();
                 let missing = || format!("line {number}: a face names a vertex that is not there");
                 let face = face.ok_or_else(missing)?;
-                // A polygon as a fan, as viewers do.
-                triangles.extend((2..face.len()).map(|i| [face[0], face[i - 1], face[i]]));
+                triangles.extend(polygon(&face));
             }
             (true, Some("solid")) | (false, Some("o" | "g")) => {
                 keep(&name, std::mem::take(&mut triangles));
@@ -129,6 +130,28 @@ fn parsed(text: &str, stl: bool) -> Result<Vec<Body>, String> {
     }
     keep(&name, triangles);
     Ok(bodies)
+}
+
+/// Triangles of a polygon: a fan, as viewers draw it, or ears if a fan would leave a concave one.
+fn polygon(corners: &[Point3<f64>]) -> Vec<Triangle> {
+    let fan: Vec<Triangle> =
+        (2..corners.len()).map(|i| [corners[0], corners[i - 1], corners[i]]).collect();
+    let normal = |[a, b, c]: &Triangle| (b - a).cross(&(c - a));
+    let whole: Vector3<f64> = fan.iter().map(normal).sum();
+    let (mut flat, mut ears) = (Vec::new(), Vec::<usize>::new());
+    let places: Vec<[f64; 3]> = corners.iter().map(|p| [p.x, p.y, p.z]).collect();
+    if fan.iter().all(|triangle| normal(triangle).dot(&whole) >= 0.0)
+        || !project3d_to_2d(&places, places.len(), &mut flat)
+    {
+        return fan;
+    }
+    Earcut::new().earcut(flat, &[], &mut ears);
+    let ears = ears.chunks_exact(3).map(|ear| [0, 1, 2].map(|i| corners[ear[i]]));
+    let outward = |ear: Triangle| match normal(&ear).dot(&whole) < 0.0 {
+        true => [ear[0], ear[2], ear[1]],
+        false => ear,
+    };
+    ears.map(outward).collect()
 }
 
 /// Triangles of the bodies of these names, or of the shells of these numbers, counted from 1; and all others.
@@ -198,4 +221,31 @@ fn corner(word: &str, points: &[Point3<f64>]) -> Option<Point3<f64>> {
     let count = i64::try_from(points.len()).ok()?;
     let index = if number < 0 { count + number } else { number - 1 };
     points.get(usize::try_from(index).ok()?).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Both senses, each corner as the first one: a fan from most of them would cover the notch.
+    #[test]
+    fn a_concave_polygon_keeps_its_notch() {
+        let corners = [[0, 0], [4, 0], [4, 4], [2, 1], [0, 4]]
+            .map(|[x, y]| Point3::new(f64::from(x), f64::from(y), 1.0));
+        for first in 0..5 {
+            for sense in [1.0, -1.0] {
+                let mut turned = corners.to_vec();
+                turned.rotate_left(first);
+                if sense < 0.0 {
+                    turned.reverse();
+                }
+                let areas: Vec<f64> = polygon(&turned)
+                    .iter()
+                    .map(|[a, b, c]| sense * (b - a).cross(&(c - a)).z / 2.0)
+                    .collect();
+                assert!(areas.iter().all(|area| *area > 0.0), "{areas:?}");
+                assert!((areas.iter().sum::<f64>() - 10.0).abs() < 1e-12, "{areas:?}");
+            }
+        }
+    }
 }

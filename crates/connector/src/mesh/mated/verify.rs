@@ -2,8 +2,7 @@
 
 use crate::body::ConvexBody;
 use crate::mesh::Triangle;
-use crate::mesh::skin::is_thick;
-use crate::mesh::solid::solid_of;
+use crate::mesh::skin::written;
 use input::units::MM;
 use insertion::task::{Part, Solid, geometry};
 use nalgebra::{Point3, Vector3};
@@ -58,7 +57,7 @@ impl<'a> Drawn<'a> {
     pub fn trimmed(&self, solid: Solid) -> Option<Solid> {
         let corners = solid.corners();
         let moved: Vec<_> = corners.iter().map(|place| self.inside(place)).collect();
-        let solid = if moved == corners { solid } else { solid_of(&moved).filter(is_thick)? };
+        let solid = if moved == corners { solid } else { written(&moved)? };
         self.stands_out(&solid).is_none().then_some(solid)
     }
 
@@ -129,7 +128,11 @@ mod tests {
     use super::*;
 
     fn cube() -> Vec<Triangle> {
-        let solid = Solid::Box { min: Vector3::zeros(), max: Vector3::repeat(4.0 * MM) };
+        cube_of(4.0)
+    }
+
+    fn cube_of(side_mm: f64) -> Vec<Triangle> {
+        let solid = Solid::Box { min: Vector3::zeros(), max: Vector3::repeat(side_mm * MM) };
         let (corners, faces) = geometry::hull(&solid.corners()).unwrap();
         faces.iter().map(|face| face.map(|corner| corners[corner])).collect()
     }
@@ -153,5 +156,18 @@ mod tests {
         let short = part([0.0; 3], [4.0, 4.0, 3.95]);
         let bare = Drawn::new(&drawn).deviations(&drawn, &[short]);
         assert!(!bare.is_empty() && bare.iter().all(|d| d.out.is_none() && d.place.z > 3.9 * MM));
+    }
+    /// What a file rounds would else be read as another solid, or as none.
+    #[test]
+    fn what_is_trimmed_is_on_the_grid_of_files() {
+        let Solid::Box { min, max } = part([1.0, 1.0, 3.0], [2.0, 2.0, 4.1]).solid else {
+            panic!()
+        };
+        let trimmed = Drawn::new(&cube_of(4.000_03)).trimmed(Solid::Box { min, max }).unwrap();
+        for corner in trimmed.corners() {
+            let grid = corner / (1e-4 * MM);
+            assert!((grid - grid.map(f64::round)).amax() < 1e-6, "{corner}");
+        }
+        assert_eq!(crate::body::extent(&trimmed.corners(), 2)[1], 4.0 * MM);
     }
 }

@@ -242,13 +242,13 @@ pub fn cut_below(solid: &Solid, origin: &Point3<f64>, normal: &Vector3<f64>) -> 
 }
 
 /// Returns the hull of points on the grid of files; `None` if it holds no volume.
-fn written(points: &[Point3<f64>]) -> Option<Solid> {
+pub fn written(points: &[Point3<f64>]) -> Option<Solid> {
     let points: Vec<_> = points.iter().map(|p| Point3::from(p.coords.map(rounded))).collect();
     solid_of(&points).filter(is_thick)
 }
 
 /// Whether a solid has a size along each axis and a volume that files can have.
-pub fn is_thick(solid: &Solid) -> bool {
+fn is_thick(solid: &Solid) -> bool {
     (0..3).all(|axis| width(extent(solid.corners(), axis)) >= LEAST_SIZE)
         && volume(solid) >= LEAST_VOLUME
 }

@@ -135,8 +135,8 @@ pub(super) fn lengths(case: &Case) -> Vec<Problem> {
     let (task, grip) = (case.task, &case.task.grip);
     let mut found: Vec<Problem> = [
         ("plug.part", width(case.plug.extent(2)), [8.0, 300.0]),
-        ("socket.opening_x_mm", width(task.opening[0]), [0.5, 100.0]),
-        ("socket.opening_y_mm", width(task.opening[1]), [0.5, 100.0]),
+        ("socket.opening_x_mm", width(task.opening[0]), [0.5, 300.0]),
+        ("socket.opening_y_mm", width(task.opening[1]), [0.5, 300.0]),
         ("grip.tcp_z_mm", grip.tcp_z, [3.0, 300.0]),
         ("grip.shoulder_z_mm", grip.shoulder_z, [3.0, 300.0]),
         ("grip.faces_y_mm", width(grip.faces_y), FACES_MM),

@@ -144,7 +144,8 @@ pub fn task(pair: &Pair, request: &Request) -> Made {
         (placed, grasp)
     });
     let (mut plug, mut socket, deviation) = skins(&placed, pair.engaged);
-    let interference = overlap::cut(&mut plug, &mut socket, pair.engaged);
+    let tight = placed.play.iter().any(|play| *play < LEAST_PLAY);
+    let interference = overlap::cut(&mut plug, &mut socket, pair.engaged, tight);
     let drawn = [&placed.drawn[0][..], &placed.drawn[1]];
     let bodies =
         gaps::Bodies { drawn, parts: [&plug, &socket], depth: pair.engaged, play: placed.play };
@@ -180,7 +181,7 @@ pub fn task(pair: &Pair, request: &Request) -> Made {
 fn skins(placed: &Placed, depth: f64) -> (Vec<Part>, Vec<Part>, Option<(usize, Deviation)>) {
     let mated: Vec<Triangle> =
         placed.plug.iter().map(|t| t.map(|p| p - Vector3::z() * depth)).collect();
-    let reach = Reach::new(&mated, &placed.socket);
+    let reach = Reach::new(&mated, &placed.socket, placed.play[0].max(placed.play[1]));
     let ((plug, off), (socket, its)) = rayon::join(
         || checked("plug", &mated, |face, normal| reach.of_plug(face, normal)),
         || checked("socket", &placed.socket, |face, normal| reach.of_socket(face, normal)),

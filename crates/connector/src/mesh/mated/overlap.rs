@@ -51,10 +51,16 @@ impl Interference {
 }
 
 /// Makes way for the plug to its mated pose, `depth` below the top, m: of two parts that overlap deeply the smaller one is
-/// left out, and faces that overlap sideways by no more than a press fit are cut back.
-pub fn cut(plug: &mut Vec<Part>, socket: &mut Vec<Part>, depth: f64) -> Vec<Interference> {
+/// left out, and faces that overlap sideways by no more than a press fit are cut back; those of a `tight` fit, drawn
+/// without play, too.
+pub fn cut(
+    plug: &mut Vec<Part>,
+    socket: &mut Vec<Part>,
+    depth: f64,
+    tight: bool,
+) -> Vec<Interference> {
     let mut gone = left_out(plug, socket, depth, FIT);
-    gone.extend(cut_back(plug, socket, depth));
+    gone.extend(cut_back(plug, socket, depth, tight));
     gone.extend(left_out(plug, socket, depth, ROUNDING));
     gone
 }
@@ -70,7 +76,7 @@ fn left_out(
         parts.iter().map(|part| geometry::volume(&part.solid)).collect()
     });
     let mut out = [vec![0.0_f64; plug.len()], vec![0.0_f64; socket.len()]];
-    for Touching { depth, parts: [i, j], .. } in met(plug, socket, depth, least) {
+    for Touching { depth, parts: [i, j], .. } in met(plug, socket, depth, least, [0.0; 2]) {
         let body = usize::from(volumes[0][i] > volumes[1][j]);
         let part = [i, j][body];
         out[body][part] = out[body][part].max(depth);
@@ -88,22 +94,32 @@ fn left_out(
 
 /// Cuts faces that meet the other body sideways back to the gap of a press fit, if any overlaps by more than facets explain: of
 /// two parts the smaller one, so that a rib does not move a wall. Parts without a rest are dropped.
-fn cut_back(plug: &mut Vec<Part>, socket: &mut Vec<Part>, depth: f64) -> Vec<Interference> {
-    let mut pairs: Vec<[usize; 2]> =
-        met(plug, socket, depth, LEAST).into_iter().map(|touch| touch.parts).collect();
+fn cut_back(
+    plug: &mut Vec<Part>,
+    socket: &mut Vec<Part>,
+    depth: f64,
+    tight: bool,
+) -> Vec<Interference> {
+    let (room, aside) = match tight {
+        true => (GAP, &[[GAP, 0.0], [-GAP, 0.0], [0.0, GAP], [0.0, -GAP]][..]),
+        false => (0.0, &[[0.0; 2]][..]),
+    };
+    let met = aside.iter().flat_map(|&aside| met(plug, socket, depth, LEAST, aside));
+    let mut pairs: Vec<[usize; 2]> = met.map(|touch| touch.parts).collect();
     pairs.sort_unstable();
     pairs.dedup();
     let mut bodies = [&plug[..], &socket[..]].map(Yielding::new);
     for [i, j] in pairs {
         let [Some(own), Some(its)] = [bodies[0].solid(i), bodies[1].solid(j)] else { continue };
-        let Some(fit) = Fit::new(own, its, depth).filter(|fit| fit.depth < FIT) else { continue };
+        let fit = Fit::new(own, its, depth);
+        let Some(fit) = fit.filter(|fit| (-room..FIT).contains(&fit.depth)) else { continue };
         match geometry::volume(own) < geometry::volume(its) {
             true => bodies[0].cut(i, &fit, fit.faces[1] - GAP, fit.way),
             false => bodies[1].cut(j, &fit, fit.faces[0] + GAP, -fit.way),
         }
     }
     let deepest = bodies.iter().flat_map(|body| body.cut.values()).map(|(deep, _)| *deep);
-    if deepest.fold(0.0, f64::max) <= ROUNDING {
+    if deepest.fold(0.0, f64::max) <= ROUNDING && !tight {
         return Vec::new();
     }
     let mut gone = Vec::new();
@@ -150,7 +166,7 @@ impl<'a> Yielding<'a> {
 
 /// Overlap of a part of the plug and one of the socket across the axis, in the direction in which it is shallowest.
 struct Fit {
-    /// Depth, m.
+    /// Depth, m; negative with a gap.
     depth: f64,
     /// Direction from the plug to the socket.
     way: Vector3<f64>,
@@ -159,7 +175,7 @@ struct Fit {
 }
 
 impl Fit {
-    /// Overlap of solids, the plug mated `depth` below the top, m; `None` if they do not.
+    /// Overlap of solids, the plug mated `depth` below the top, m; `None` if one has no outline.
     fn new(plug: &Solid, socket: &Solid, depth: f64) -> Option<Self> {
         let own = plug.corners();
         let [low, _] = extent(&own, 2);
@@ -176,7 +192,7 @@ impl Fit {
             Fit { depth: faces[0] - faces[1], way, faces }
         };
         let all = normals(&own, 1.0).into_iter().chain(normals(&its, -1.0)).map(fit);
-        all.min_by(|a, b| a.depth.total_cmp(&b.depth)).filter(|fit| fit.depth > 0.0)
+        all.min_by(|a, b| a.depth.total_cmp(&b.depth))
     }
 }
 
@@ -192,13 +208,13 @@ fn listed(parts: Vec<(f64, Solid)>, body: usize, depth: f64) -> impl Iterator<It
     })
 }
 
-/// Overlaps by more than `least`, m, on the way down that are not those of the stop.
-fn met(plug: &[Part], socket: &[Part], depth: f64, least: f64) -> Vec<Touching> {
+/// Overlaps by more than `least`, m, on the way down that are not those of the stop, the plug aside by so much, m.
+fn met(plug: &[Part], socket: &[Part], depth: f64, least: f64, [x, y]: [f64; 2]) -> Vec<Touching> {
     let (plug, socket) = (ConvexBody::new(plug), ConvexBody::new(socket));
     let steps = (depth / STEP).ceil() as usize;
     let at = |i: usize| {
         let above = i as f64 * STEP;
-        let pose = Pose::translation(0.0, 0.0, above - depth);
+        let pose = Pose::translation(x, y, above - depth);
         let mut found = plug.overlaps(&pose, &socket, &Pose::identity());
         found.retain(|touch| touch.depth > least && (above > STOP || touch.normal.z.abs() < ALONG));
         found
@@ -264,7 +280,7 @@ mod tests {
         let mut socket = hole();
         let spring = part([-0.1, 0.1, -2.0], [0.1, 0.5, -1.5]);
         socket.push(spring);
-        let gone = cut(&mut plug, &mut socket, 4.0 * MM);
+        let gone = cut(&mut plug, &mut socket, 4.0 * MM, false);
         assert_eq!((plug.len(), socket.len()), (1, 6));
         let sum = |cut_back| {
             let parts = gone.iter().filter(|of| of.body == 1 && of.cut_back == cut_back);
@@ -290,10 +306,24 @@ mod tests {
         let rib = part([0.25, -0.05, 0.0], [0.36, 0.05, 5.0]);
         let mut plug = vec![part([-0.25, -0.25, 0.0], [0.25, 0.25, 6.0]), rib];
         let (mut socket, before) = (hole(), hole());
-        let gone = cut(&mut plug, &mut socket, 4.0 * MM);
+        let gone = cut(&mut plug, &mut socket, 4.0 * MM, false);
         assert_eq!((socket, gone.len()), (before, 1), "{gone:?}");
         let [_, high] = extent(plug[1].solid.corners(), 0);
         assert!((high - 0.275 * MM).abs() < 1e-9, "{high}");
+    }
+
+    /// A pin that fills its hole, without an overlap: room to every side.
+    #[test]
+    fn a_fit_without_play_gets_room() {
+        let mut plug = vec![part([-0.3, -0.3, 0.0], [0.3, 0.3, 6.0])];
+        let mut socket = hole();
+        let gone = cut(&mut plug, &mut socket, 4.0 * MM, true);
+        assert!(gone.iter().all(|of| of.cut_back && of.depth < 1e-9), "{gone:?}");
+        let [pin, hole] = [&plug, &socket].map(|parts| ConvexBody::new(parts));
+        for [x, y] in [[-0.024, 0.0], [0.024, 0.0], [0.0, -0.024], [0.0, 0.024]] {
+            let at = Pose::translation(x * MM, y * MM, -3.99 * MM);
+            assert_eq!(pin.overlap(&at, &hole, &Pose::identity()), None, "{x} {y}");
+        }
     }
 
     /// Two faces that touch, and a pin that rests on a floor, stay as drawn.
@@ -301,7 +331,7 @@ mod tests {
     fn a_sliding_fit_stays_as_drawn() {
         let mut plug = vec![part([-0.3, -0.3, 0.0], [0.305, 0.3, 6.0])];
         let (mut socket, before) = (hole(), hole());
-        assert_eq!(cut(&mut plug, &mut socket, 4.0 * MM), []);
+        assert_eq!(cut(&mut plug, &mut socket, 4.0 * MM, false), []);
         assert_eq!(socket, before);
     }
 }

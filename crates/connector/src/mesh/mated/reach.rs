@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 /// Side of a cell of the height maps, m.
 const CELL: f64 = 0.12 * MM;
-/// Way in front of a face, of tilt, play and misfit, within which the other body must pass, m.
+/// Way in front of a face, of tilt and misfit, within which the other body must pass beyond its play, m.
 const ASIDE: f64 = 0.6 * MM;
 /// Allowance in height, m.
 const ABOVE: f64 = 0.6 * MM;
@@ -63,10 +63,10 @@ impl Envelope {
         self.place(y, 1) * self.size[0] + self.place(x, 0)
     }
 
-    /// Returns the largest height over the box of a triangle and of what lies in front of it.
-    fn over(&self, triangle: &Triangle, normal: &Vector3<f64>) -> f64 {
+    /// Returns the largest height over the box of a triangle and of what lies so far in front of it, m.
+    fn over(&self, triangle: &Triangle, normal: &Vector3<f64>, aside: f64) -> f64 {
         let range = |axis: usize| {
-            let ([low, high], ahead) = (extent(triangle, axis), normal[axis] * ASIDE);
+            let ([low, high], ahead) = (extent(triangle, axis), normal[axis] * aside);
             [low + ahead.min(0.0) - self.cell, high + ahead.max(0.0) + self.cell]
         };
         let [x, y] = [0, 1].map(|axis| range(axis).map(|v| self.place(v, axis)));
@@ -88,24 +88,28 @@ pub struct Reach {
     socket: Envelope,
     plug: Envelope,
     tip: f64,
+    /// Way in front of a face, m.
+    aside: f64,
     about: [[f64; 2]; 2],
 }
 
 impl Reach {
-    /// Reach of a plug in its mated pose and its socket.
-    pub fn new(plug: &[Triangle], socket: &[Triangle]) -> Self {
+    /// Reach of a plug in its mated pose, which has so much play, m, and its socket.
+    pub fn new(plug: &[Triangle], socket: &[Triangle], play: f64) -> Self {
         let [tip, _] = extent(plug.iter().flatten(), 2);
         let low = plug.iter().flatten().filter(|p| p.z < tip + SEARCHED);
         let low: Vec<_> = low.collect();
         let about = [0, 1].map(|axis| span(low.iter().map(|p| p[axis])));
         let about = about.map(|[low, high]| [low - SEARCH, high + SEARCH]);
-        Reach { socket: Envelope::new(socket, 1.0), plug: Envelope::new(plug, -1.0), tip, about }
+        let (socket, plug) = (Envelope::new(socket, 1.0), Envelope::new(plug, -1.0));
+        Reach { socket, plug, tip, aside: ASIDE + play, about }
     }
 
     /// Returns whether the socket can touch a face of the plug.
     pub fn of_plug(&self, face: &Triangle, normal: &Vector3<f64>) -> bool {
         let [low, _] = extent(face, 2);
-        let near = low < self.tip + SEARCHED || low < self.socket.over(face, normal) + ABOVE;
+        let near =
+            low < self.tip + SEARCHED || low < self.socket.over(face, normal, self.aside) + ABOVE;
         normal.z < AWAY && near
     }
 
@@ -116,7 +120,7 @@ impl Reach {
             let ([low, high], [from, to]) = (extent(face, axis), self.about[axis]);
             low < to && high > from
         });
-        let near = -high < self.plug.over(face, normal) + ABOVE;
+        let near = -high < self.plug.over(face, normal, self.aside) + ABOVE;
         normal.z > -AWAY && (near || (high > -SEARCHED && searched))
     }
 }

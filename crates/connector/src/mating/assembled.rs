@@ -2,7 +2,7 @@
 
 use super::frame::{Part, Parts, outs, turned, turns};
 use super::refine::{Pose, settled_areas};
-use super::search::Scene;
+use super::search::{EFFORTS, Scene};
 use super::{Mate, MatingError, ROOMS, precise};
 use crate::mesh::Triangle;
 
@@ -19,7 +19,7 @@ pub fn assembled(plug: &[Triangle], socket: &[Triangle]) -> Result<Mate, MatingE
         return Err(MatingError::Empty("plug"));
     }
     let parts = Parts { plug: Part { own, triangles: turned(plug, &own) }, socket };
-    let scene = Scene::new(&parts);
+    let scene = Scene::new(&parts, EFFORTS[0]);
     let mut poses: Vec<(Pose, f64)> = Vec::new();
     for (out, turn) in outs().iter().enumerate() {
         // The plug turns with the socket.

@@ -140,17 +140,20 @@ impl Watch<'_> {
 pub fn mates(plug: &[Triangle], socket: &[Triangle], watch: &Watch) -> Result<Found, MatingError> {
     let parts = frame::Parts::new(plug, socket)?;
     watch.check(0.0)?;
-    let scene = search::Scene::new(&parts);
-    let pairs = symmetry::pairs(&scene);
-    let few: Vec<_> = pairs.iter().map(|(pair, _)| *pair).collect();
-    // The tightest fit guides: a looser one counts only where there is none, or where the plug only catches on an edge.
     let mut shallow = None;
-    for room in ROOMS {
-        let seats = search::seats(&scene, &few, room, watch)?;
-        let poses = refine::refined(&scene, &seats, room, watch)?;
-        match select::select(&parts, &scene, &poses, (&pairs, room)) {
-            Some(found) if found.is_deep(plug) => return Ok(found),
-            found => shallow = shallow.or(found),
+    for effort in search::EFFORTS {
+        let scene = search::Scene::new(&parts, effort);
+        let pairs = symmetry::pairs(&scene);
+        let few: Vec<_> = pairs.iter().map(|(pair, _)| *pair).collect();
+        let seats = search::seats(&scene, &few, &ROOMS, watch)?;
+        // The tightest fit guides: a looser one counts only where there is none, or where the plug only catches on an
+        // edge.
+        for (room, seats) in ROOMS.into_iter().zip(seats) {
+            let poses = refine::refined(&scene, &seats, room, watch)?;
+            match select::select(&parts, &scene, &poses, (&pairs, room)) {
+                Some(found) if found.is_deep(plug) => return Ok(found),
+                found => shallow = shallow.or(found),
+            }
         }
     }
     shallow.ok_or(MatingError::NoFit { least_mm: search::LEAST / MM, room_mm: ROOMS[2] / MM })

@@ -13,8 +13,8 @@ pub const LEAST: f64 = 0.4 * MM;
 const INTERFERENCE: f64 = 0.2 * MM;
 /// Least cell of the maps, m.
 const LEAST_CELL: f64 = 0.1 * MM;
-/// Comparisons of two cells that the search may take.
-const EFFORT: f64 = 10e9;
+/// Comparisons of two cells that a search may take: a quick one, and one for thin walls, which coarse maps lose.
+pub const EFFORTS: [f64; 2] = [10e9, 160e9];
 /// Cells of a fine map along a side of a coarse one.
 pub const FINE: usize = 4;
 /// Pairs of axes between two looks at the clock.
@@ -50,13 +50,13 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Maps of both parts.
-    pub fn new(parts: &Parts) -> Self {
+    /// Maps of both parts for a search of so many comparisons.
+    pub fn new(parts: &Parts, effort: f64) -> Self {
         let sockets: Vec<_> =
             outs().iter().map(|turn| turned(&parts.socket.triangles, turn)).collect();
         let plugs: Vec<_> =
             turns().iter().map(|turn| turned(&parts.plug.triangles, turn)).collect();
-        let step = cell(&sockets, &plugs) / FINE as f64;
+        let step = cell(&sockets, &plugs, effort) / FINE as f64;
         let (upper, lower) =
             (maps(&sockets, Envelope::Upper, step), maps(&plugs, Envelope::Lower, step));
         Scene { sockets, plugs, step, upper, lower }
@@ -64,7 +64,7 @@ impl Scene {
 }
 
 /// Cell of the coarse maps with which the search takes its effort, m.
-fn cell(sockets: &[Vec<Triangle>], plugs: &[Vec<Triangle>]) -> f64 {
+fn cell(sockets: &[Vec<Triangle>], plugs: &[Vec<Triangle>], effort: f64) -> f64 {
     let sizes = |part: &Vec<Triangle>| bounds(part).map(|[low, high]| high - low);
     let (sockets, plugs): (Vec<_>, Vec<_>) =
         (sockets.iter().map(sizes).collect(), plugs.iter().map(sizes).collect());
@@ -73,7 +73,7 @@ fn cell(sockets: &[Vec<Triangle>], plugs: &[Vec<Triangle>]) -> f64 {
     };
     let work: f64 = sockets.iter().flat_map(|s| plugs.iter().map(move |p| pair(s, p))).sum();
     // Two bounds, with and without interference.
-    (4.0 * work / EFFORT).sqrt().sqrt().max(LEAST_CELL)
+    (4.0 * work / effort).sqrt().sqrt().max(LEAST_CELL)
 }
 
 /// Coarse maps of a part: outermost heights, and innermost heights of two cells each way.
@@ -93,14 +93,14 @@ impl Coarse {
     }
 }
 
-/// Seats of pairs of axes in which the plug has at most `room` of play, m.
-pub fn seats(
+/// Seats of pairs of axes for each of some largest plays, m.
+pub fn seats<const N: usize>(
     scene: &Scene,
     pairs: &[[usize; 2]],
-    room: f64,
+    rooms: &[f64; N],
     watch: &Watch,
-) -> Result<Vec<Seat>, MatingError> {
-    let mut seats = Vec::new();
+) -> Result<[Vec<Seat>; N], MatingError> {
+    let mut seats = [const { Vec::new() }; N];
     for (pass, interference) in [0.0, INTERFERENCE].into_iter().enumerate() {
         let erosion = (interference / 2.0 / scene.step).round() as usize;
         let coarse = |fine: &Vec<Map>| -> Vec<Coarse> {
@@ -113,10 +113,13 @@ pub fn seats(
             let of = |pair: &[usize; 2]| {
                 let [out, turn] = *pair;
                 let passed = bounds(&scene.sockets[out])[2][0] - bounds(&scene.plugs[turn])[2][1];
-                enclosed((&sockets[out], &plugs[turn]), *pair, passed as f32, room)
+                let rests = Rests::new(&sockets[out], &plugs[turn], passed as f32);
+                rooms.map(|room| rests.enclosed(*pair, room))
             };
-            let found: Vec<Vec<Seat>> = few.par_iter().map(of).collect();
-            seats.extend(found.into_iter().flatten());
+            let found: Vec<[Vec<Seat>; N]> = few.par_iter().map(of).collect();
+            for of_pair in found {
+                seats.iter_mut().zip(of_pair).for_each(|(all, more)| all.extend(more));
+            }
         }
     }
     Ok(seats)
@@ -127,10 +130,19 @@ struct Rests {
     first: [i32; 2],
     count: [usize; 2],
     heights: Vec<f32>,
+    /// Size of a shift, m.
+    step: f64,
+    /// Height below which the plug has gone through, m.
+    passed: f32,
 }
 
 impl Rests {
-    fn new(socket: &Coarse, plug: &Coarse, range: [f32; 2]) -> Self {
+    fn new(socket: &Coarse, plug: &Coarse, passed: f32) -> Self {
+        let extremes = |map: &Map, take: fn(f32, f32) -> f32| {
+            map.heights.iter().copied().fold(map.envelope.empty(), take)
+        };
+        let highest = extremes(&socket.outer, f32::max) - extremes(&plug.outer, f32::min);
+        let range = [passed, highest - LEAST as f32];
         let (s, p) = (&socket.outer, &plug.outer);
         let first = [0, 1].map(|a| s.first[a] - p.first[a] - p.count[a] as i32);
         let count = [0, 1].map(|a| s.count[a] + p.count[a] + 1);
@@ -146,60 +158,50 @@ impl Rests {
             z.clamp(range[0], range[1])
         };
         let heights = (0..count[0] * count[1]).map(height).collect();
-        Rests { first, count, heights }
+        Rests { first, count, heights, step: s.step[0], passed }
     }
 
-    fn at(&self, x: i32, y: i32, outside: f32) -> f32 {
+    fn at(&self, x: i32, y: i32) -> f32 {
         let inside = x >= 0 && y >= 0 && x < self.count[0] as i32 && y < self.count[1] as i32;
-        if inside { self.heights[y as usize * self.count[0] + x as usize] } else { outside }
+        if inside { self.heights[y as usize * self.count[0] + x as usize] } else { self.passed }
     }
-}
 
-/// Seats from which the plug must climb to each of four sides; below the height `passed` it has gone
-/// through.
-fn enclosed(
-    (socket, plug): (&Coarse, &Coarse),
-    [out, turn]: [usize; 2],
-    passed: f32,
-    room: f64,
-) -> Vec<Seat> {
-    let extremes = |map: &Map, take: fn(f32, f32) -> f32| {
-        map.heights.iter().copied().fold(map.envelope.empty(), take)
-    };
-    let highest = extremes(&socket.outer, f32::max) - extremes(&plug.outer, f32::min);
-    let range = [passed, highest - LEAST as f32];
-    let rests = Rests::new(socket, plug, range);
-    let step = socket.outer.step[0];
-    // A bound is as wide as two cells more.
-    let radius = (room / step).ceil() as i32 + 2;
-    let mut found: Vec<(f32, [i32; 2])> = Vec::new();
-    for y in 0..rests.count[1] as i32 {
-        for x in 0..rests.count[0] as i32 {
-            let z = rests.at(x, y, range[0]);
-            let climb = |[dx, dy]: [i32; 2]| {
-                let path = (1..=radius).map(|r| rests.at(x + r * dx, y + r * dy, range[0]));
-                path.fold(z, f32::max) - z
-            };
-            let least =
-                [[1, 0], [-1, 0], [0, 1], [0, -1]].into_iter().map(climb).fold(NOWHERE, f32::min);
-            if f64::from(least) >= LEAST {
-                found.push((least, [x, y]));
+    /// Seats from which the plug must climb to each of four sides, with at most `room` of play, m.
+    fn enclosed(&self, [out, turn]: [usize; 2], room: f64) -> Vec<Seat> {
+        // A bound is as wide as two cells more.
+        let radius = (room / self.step).ceil() as i32 + 2;
+        let mut found: Vec<(f32, [i32; 2])> = Vec::new();
+        for y in 0..self.count[1] as i32 {
+            for x in 0..self.count[0] as i32 {
+                let z = self.at(x, y);
+                let climb = |[dx, dy]: [i32; 2]| {
+                    let path = (1..=radius).map(|r| self.at(x + r * dx, y + r * dy));
+                    path.fold(z, f32::max) - z
+                };
+                let least = [[1, 0], [-1, 0], [0, 1], [0, -1]]
+                    .into_iter()
+                    .map(climb)
+                    .fold(NOWHERE, f32::min);
+                if f64::from(least) >= LEAST {
+                    found.push((least, [x, y]));
+                }
             }
         }
-    }
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut seats: Vec<(f32, [i32; 2])> = Vec::new();
-    for (depth, place) in found {
-        let near = |other: &[i32; 2]| {
-            (other[0] - place[0]).abs() <= radius / 2 && (other[1] - place[1]).abs() <= radius / 2
-        };
-        if seats.len() < MOST_SEATS && !seats.iter().any(|(_, other)| near(other)) {
-            seats.push((depth, place));
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut seats: Vec<(f32, [i32; 2])> = Vec::new();
+        for (depth, place) in found {
+            let near = |other: &[i32; 2]| {
+                (other[0] - place[0]).abs() <= radius / 2
+                    && (other[1] - place[1]).abs() <= radius / 2
+            };
+            if seats.len() < MOST_SEATS && !seats.iter().any(|(_, other)| near(other)) {
+                seats.push((depth, place));
+            }
         }
+        let seat = |(depth, place): (f32, [i32; 2])| {
+            let shift = [0, 1].map(|a| (place[a] + self.first[a]) * FINE as i32 + FINE as i32 / 2);
+            Seat { out, turn, shift, depth: f64::from(depth) }
+        };
+        seats.into_iter().map(seat).collect()
     }
-    let seat = |(depth, place): (f32, [i32; 2])| {
-        let shift = [0, 1].map(|a| (place[a] + rests.first[a]) * FINE as i32 + FINE as i32 / 2);
-        Seat { out, turn, shift, depth: f64::from(depth) }
-    };
-    seats.into_iter().map(seat).collect()
 }

@@ -168,6 +168,6 @@ mod tests {
             let grid = corner / (1e-4 * MM);
             assert!((grid - grid.map(f64::round)).amax() < 1e-6, "{corner}");
         }
-        assert_eq!(crate::body::extent(&trimmed.corners(), 2)[1], 4.0 * MM);
+        assert_eq!(crate::body::extent(trimmed.corners(), 2)[1], 4.0 * MM);
     }
 }

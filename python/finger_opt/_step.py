@@ -32,7 +32,7 @@ MANY_TRIANGLES = 60_000
 #: How much coarser than asked for, one after the other.
 COARSER = (1, 3, 9)
 #: Time for reading and meshing a file, s.
-LIMIT_S = 25.0
+LIMIT_S = 60.0
 #: Largest file, bytes.
 LARGEST_FILE = 200 << 20
 #: Most bodies that a message names.

@@ -5,7 +5,7 @@ use crate::context::Context;
 use crate::failure::{Failure, within};
 use crate::setup::bench::DEFAULT_PRIORS;
 use crate::setup::files::{DEFAULT_FINGER, find};
-use crate::setup::request::{DEFAULT_SPACE, SetupRequest};
+use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE, SetupRequest};
 use crate::setup::run::RunRequest;
 use crate::setup::words::Words;
 use crate::setup::{Setup, measured};
@@ -208,16 +208,18 @@ impl Request {
         let tasks = config.tasks().map(|name| name.chars().map(safe).collect::<String>());
         let unlike = |name: &str, default: &str| (name != default).then(|| word(name));
         let given = |name: &Option<String>| name.as_deref().map(word);
+        let other =
+            |name: &Option<String>, default| name.as_deref().and_then(|name| unlike(name, default));
         let words = [
             Some(tasks.collect::<Vec<_>>().join("+")),
             unlike(&setup.space, DEFAULT_SPACE),
             unlike(&self.objective.to_string(), "range"),
-            given(&setup.robot),
+            other(&setup.robot, DEFAULT_ROBOT),
             given(&setup.cell),
             given(&setup.stiffness_data),
             setup.finger_model.kind.and_then(|kind| unlike(kind.name(), "paper")),
             unlike(&setup.finger_model.finger, DEFAULT_FINGER),
-            given(&self.uncertainty),
+            other(&self.uncertainty, DEFAULT_UNCERTAINTY),
             given(&self.measurements),
         ];
         let limits =

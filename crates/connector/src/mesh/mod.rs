@@ -9,7 +9,6 @@ pub mod skin;
 mod solid;
 mod surface;
 
-use input::{Place, Placed};
 pub use read::{Body, Triangle, is_step, pick, read, separate};
 pub use reduce::{TOLERANCE, reduced};
 pub use surface::{SIZES, Surface};
@@ -17,18 +16,11 @@ pub use surface::{SIZES, Surface};
 /// Names of the files of plug and socket, for messages.
 pub type Files<'a> = [&'a str; 2];
 
-impl Placed for MeshError {
-    fn place(&self) -> Place {
-        match self {
-            MeshError::File(file, _) => Place::file(file),
-        }
+/// Returns the representative of an element's set: the element that is its own parent.
+fn root(parent: &mut [usize], mut of: usize) -> usize {
+    while parent[of] != of {
+        parent[of] = parent[parent[of]];
+        of = parent[of];
     }
-}
-
-/// Error of an import.
-#[derive(Debug, thiserror::Error, PartialEq)]
-pub enum MeshError {
-    /// File and its fault, with advice.
-    #[error("{0}: {1}")]
-    File(String, String),
+    of
 }

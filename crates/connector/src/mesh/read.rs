@@ -1,8 +1,9 @@
 //! Triangles of STL (binary and text) and OBJ files.
 
-use super::MeshError;
+use super::root;
 use earcut::Earcut;
 use earcut::utils3d::project3d_to_2d;
+use input::{Fault, Place};
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -39,11 +40,11 @@ pub fn is_step(bytes: &[u8], file: &str) -> bool {
 ///
 /// # Errors
 /// If the bytes are neither STL nor OBJ, or name no finite triangles.
-pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Body>, MeshError> {
+pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Body>, Fault> {
     let step = is_step(bytes, file);
     let fail = |problem: &str| {
         let neither = || format!("is neither an STL nor an OBJ file: {problem}");
-        MeshError::File(file.to_owned(), if step { STEP.to_owned() } else { neither() })
+        Place::file(file).fault(if step { STEP.to_owned() } else { neither() })
     };
     // A binary STL may begin with "solid", too: its length tells.
     let bodies = match binary_count(bytes) {
@@ -158,11 +159,7 @@ fn polygon(corners: &[Point3<f64>]) -> Vec<Triangle> {
 ///
 /// # Errors
 /// If the file lacks one of them; the text names those that it has.
-pub fn pick(
-    bodies: &[Body],
-    names: &[String],
-    file: &str,
-) -> Result<[Vec<Triangle>; 2], MeshError> {
+pub fn pick(bodies: &[Body], names: &[String], file: &str) -> Result<[Vec<Triangle>; 2], Fault> {
     let named = |name: &String| bodies.iter().position(|body| body.name == *name);
     let of: Vec<Body> = match names.iter().all(|name| named(name).is_some()) {
         true => bodies.to_vec(),
@@ -176,7 +173,7 @@ pub fn pick(
             known.join(", "),
             of.len()
         );
-        return Err(MeshError::File(file.to_owned(), problem));
+        return Err(Place::file(file).fault(problem));
     }
     for body in of {
         picked[usize::from(!names.contains(&body.name))].extend(body.triangles);
@@ -194,13 +191,6 @@ fn shells(bodies: &[Body]) -> Vec<Body> {
     let triangles: Vec<_> = bodies.iter().flat_map(|body| body.triangles.iter().copied()).collect();
     let mut at: BTreeMap<[u64; 3], usize> = BTreeMap::new();
     let mut parent: Vec<usize> = (0..triangles.len()).collect();
-    fn root(parent: &mut [usize], mut i: usize) -> usize {
-        while parent[i] != i {
-            parent[i] = parent[parent[i]];
-            i = parent[i];
-        }
-        i
-    }
     for (i, corner) in triangles.iter().enumerate().flat_map(|(i, t)| t.map(|p| (i, p))) {
         let first =
             *at.entry([corner.x, corner.y, corner.z].map(|v| (v + 0.0).to_bits())).or_insert(i);

@@ -1,6 +1,6 @@
 //! Direction in which the plug of an assembly leaves.
 
-use super::frame::{Part, Parts, outs, turned, turns};
+use super::frame::{Part, Parts, outs, turned};
 use super::refine::{Pose, settled_areas};
 use super::search::{EFFORTS, Scene};
 use super::{Mate, MatingError, ROOMS, precise};
@@ -20,16 +20,13 @@ pub fn assembled(plug: &[Triangle], socket: &[Triangle]) -> Result<Mate, MatingE
     }
     let parts = Parts { plug: Part { own, triangles: turned(plug, &own) }, socket };
     let scene = Scene::new(&parts, EFFORTS[0]);
-    let mut poses: Vec<(Pose, f64)> = Vec::new();
-    for (out, turn) in outs().iter().enumerate() {
-        // The plug turns with the socket.
-        let same = |other: &nalgebra::Rotation3<f64>| (other.matrix() - turn.matrix()).amax() < 0.5;
-        let Some(turn) = turns().iter().position(same) else { continue };
-        let pose = Pose { out, turn, ..Pose::default() };
-        poses.push(settled_areas(&scene, pose, ROOMS[0]));
-    }
+    let poses = (0..outs().len()).map(|out| {
+        // The plug turns with the socket, whose directions are every fourth turn.
+        let pose = Pose { out, turn: 4 * out, ..Pose::default() };
+        settled_areas(&scene, pose, ROOMS[0])
+    });
     let value = |(pose, out): &(Pose, f64)| pose.value() * (1.0 + ASIDE * out.signum());
-    let best = poses.into_iter().max_by(|a, b| value(a).total_cmp(&value(b)));
+    let best = poses.max_by(|a, b| value(a).total_cmp(&value(b)));
     let (pose, _) = best.filter(|(pose, _)| pose.value() > 0.0).ok_or(MatingError::Blocked)?;
     Ok(precise::mate(&parts, &scene, &pose, ROOMS[0]))
 }

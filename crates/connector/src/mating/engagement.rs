@@ -37,22 +37,30 @@ impl Sides {
     /// Side walls in a map, steeper than 45 degrees.
     pub fn new(plug: &Map) -> Self {
         let mut strips = Vec::new();
-        for y in plug.first[1]..plug.first[1] + plug.count[1] as i32 {
-            for x in plug.first[0]..plug.first[0] + plug.count[0] as i32 {
-                let low = plug.at(x, y);
-                if low > NOWHERE / 2.0 {
-                    continue;
-                }
-                for (side, [dx, dy]) in SIDES.into_iter().enumerate() {
-                    // The neighbour ends higher: between both heights the plug has a wall to its side.
-                    let high = plug.at(x + dx, y + dy);
-                    if high - low > plug.step[side / 2] as f32 {
-                        strips.push(Strip { cell: [x, y], side, low, high });
-                    }
+        for [x, y] in plug.cells() {
+            let low = plug.at(x, y);
+            if low > NOWHERE / 2.0 {
+                continue;
+            }
+            for (side, [dx, dy]) in SIDES.into_iter().enumerate() {
+                // The neighbour ends higher: between both heights the plug has a wall to its side.
+                let high = plug.at(x + dx, y + dy);
+                if high - low > plug.step[side / 2] as f32 {
+                    strips.push(Strip { cell: [x, y], side, low, high });
                 }
             }
         }
         Sides { strips, step: plug.step }
+    }
+
+    /// Returns the facing walls on the weaker sides, and what both parts fill as an area, m2; `plug` is the lower
+    /// envelope of the plug without the tolerance.
+    pub fn areas(&self, socket: &Faces, plug: &Map, shift: [i32; 2], z: f32) -> [f64; 2] {
+        let walls = score(&self.facing(socket, shift, z));
+        let heights =
+            rests(socket.map, plug, shift).map(|(_, rest)| f64::from((rest - z).max(0.0)));
+        let volume = heights.sum::<f64>() * plug.step[0] * plug.step[1];
+        [walls, volume / LEDGE]
     }
 
     /// Walls of the plug shifted by whole cells, at a height, that face one of the socket.
@@ -104,44 +112,16 @@ impl<'a> Faces<'a> {
     }
 }
 
-/// Socket and plug in contact.
-pub struct Contact<'a> {
-    /// Walls of the socket.
-    pub socket: &'a Faces<'a>,
-    /// Lower envelope of the plug, without the tolerance.
-    pub plug: &'a Map,
-    /// Side walls of the plug.
-    pub sides: &'a Sides,
-}
-
-impl Contact<'_> {
-    /// Facing walls on the weaker sides, and what both parts fill as an area, m2.
-    pub fn areas(&self, shift: [i32; 2], z: f32) -> [f64; 2] {
-        let walls = score(&self.sides.facing(self.socket, shift, z));
-        let mut volume = 0.0;
-        let add = |_, rest: f32| volume += f64::from((rest - z).max(0.0));
-        each(self.socket.map, self.plug, shift, add);
-        [walls, volume * self.plug.step[0] * self.plug.step[1] / LEDGE]
-    }
-}
-
 /// Cells of a shifted plug at a height that the socket fills, too.
 pub fn shared(socket: &Map, plug: &Map, shift: [i32; 2], z: f32) -> Vec<[i32; 2]> {
-    let mut cells = Vec::new();
-    each(socket, plug, shift, |cell, rest| {
-        if rest > z {
-            cells.push(cell);
-        }
-    });
-    cells
+    rests(socket, plug, shift).filter(|(_, rest)| *rest > z).map(|(cell, _)| cell).collect()
 }
 
-/// Shows each cell of a shifted plug with the height at which it would rest on the socket.
-fn each(socket: &Map, plug: &Map, shift: [i32; 2], mut see: impl FnMut([i32; 2], f32)) {
-    let [nx, ny] = plug.count.map(|count| count as i32);
-    for y in plug.first[1]..plug.first[1] + ny {
-        for x in plug.first[0]..plug.first[0] + nx {
-            see([x, y], socket.at(x + shift[0], y + shift[1]) - plug.at(x, y));
-        }
-    }
+/// Returns each cell of a shifted plug with the height at which it would rest on the socket.
+fn rests<'a>(
+    socket: &'a Map,
+    plug: &'a Map,
+    shift: [i32; 2],
+) -> impl Iterator<Item = ([i32; 2], f32)> + 'a {
+    plug.cells().map(move |[x, y]| ([x, y], socket.at(x + shift[0], y + shift[1]) - plug.at(x, y)))
 }

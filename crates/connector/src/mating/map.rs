@@ -1,5 +1,6 @@
 //! Height maps.
 
+use crate::body::extent;
 use crate::mesh::Triangle;
 use rayon::prelude::*;
 
@@ -53,10 +54,7 @@ pub struct Map {
 
 /// Bounds of triangles in x, y and z, m.
 pub fn bounds(triangles: &[Triangle]) -> [[f64; 2]; 3] {
-    [0, 1, 2].map(|axis| {
-        let values = triangles.iter().flatten().map(|p| p[axis]);
-        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
-    })
+    [0, 1, 2].map(|axis| extent(triangles.iter().flatten(), axis))
 }
 
 impl Map {
@@ -90,14 +88,14 @@ impl Map {
 
     fn draw(&mut self, [a, b, c]: &Triangle) {
         let area = (b - a).xy().perp(&(c - a).xy());
-        let (low, high) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
-        let Some([from, to]) = self.cells(1, low, high) else { return };
+        let [low, high] = extent([a, b, c], 1);
+        let Some([from, to]) = self.between(1, low, high) else { return };
         if area.abs() < 1e-3 * self.step[0] * self.step[1] * 1e-3 {
             return;
         }
         let normal = (b - a).cross(&(c - a));
         let slope = [-normal.x / normal.z, -normal.y / normal.z];
-        let (bottom, top) = (a.z.min(b.z).min(c.z), a.z.max(b.z).max(c.z));
+        let [bottom, top] = extent([a, b, c], 2);
         for row in from..=to {
             let y = self.middle(1, row);
             let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -110,7 +108,7 @@ impl Map {
                     right = right.max(x).max(if q.y > p.y { x } else { q.x });
                 }
             }
-            let Some([start, end]) = self.cells(0, left, right) else { continue };
+            let Some([start, end]) = self.between(0, left, right) else { continue };
             let at = a.z + slope[1] * (y - a.y);
             for column in start..=end {
                 let z = at + slope[0] * (self.middle(0, column) - a.x);
@@ -122,11 +120,17 @@ impl Map {
     }
 
     /// Cells whose middles lie between two coordinates.
-    fn cells(&self, axis: usize, low: f64, high: f64) -> Option<[usize; 2]> {
+    fn between(&self, axis: usize, low: f64, high: f64) -> Option<[usize; 2]> {
         let first = f64::from(self.first[axis]) + 0.5;
         let from = (low / self.step[axis] - first - 1e-9).ceil().max(0.0);
         let to = (high / self.step[axis] - first + 1e-9).floor().min(self.count[axis] as f64 - 1.0);
         (from <= to).then_some([from as usize, to as usize])
+    }
+
+    /// Returns the indices of the cells, row by row.
+    pub fn cells(&self) -> impl Iterator<Item = [i32; 2]> + use<> {
+        let ([x, y], [nx, ny]) = (self.first, self.count.map(|count| count as i32));
+        (y..y + ny).flat_map(move |y| (x..x + nx).map(move |x| [x, y]))
     }
 
     /// Height of a cell by its index; empty outside.
@@ -235,17 +239,15 @@ impl Map {
         let count = last.map(|count| usize::try_from(count).unwrap_or(0));
         let step = self.step.map(|step| step * f64::from(factor));
         [Envelope::outer as fn(Envelope, f32, f32) -> f32, Envelope::inner].map(|take| {
-            let mut heights = vec![f32::NAN; count[0] * count[1]];
-            for y in first[1] * factor..(first[1] + count[1] as i32) * factor {
-                for x in first[0] * factor..(first[0] + count[0] as i32) * factor {
-                    let row = (y.div_euclid(factor) - first[1]) as usize;
-                    let cell =
-                        &mut heights[row * count[0] + (x.div_euclid(factor) - first[0]) as usize];
-                    let z = self.at(x, y);
-                    *cell = if cell.is_nan() { z } else { take(self.envelope, *cell, z) };
-                }
-            }
-            Map { envelope: self.envelope, step, first, count, heights }
+            let envelope = self.envelope;
+            let mut map = Map { envelope, step, first, count, heights: Vec::new() };
+            let height = |[x, y]: [i32; 2]| {
+                let cells = (0..factor * factor).map(|i| [i % factor, i / factor]);
+                let fine = cells.map(|[i, j]| self.at(x * factor + i, y * factor + j));
+                fine.reduce(|a, b| take(envelope, a, b)).unwrap_or(envelope.empty())
+            };
+            map.heights = map.cells().map(height).collect();
+            map
         })
     }
 }

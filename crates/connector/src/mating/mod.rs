@@ -17,12 +17,13 @@ mod symmetry;
 #[cfg(test)]
 mod tests;
 
-use crate::body::span;
+use crate::body::{span, width};
 use crate::mesh::Triangle;
 pub use assembled::assembled;
 use input::units::MM;
 use nalgebra::{Isometry3, Unit, Vector3};
 pub use split::plugs;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Largest total play of a plug in its seat, m: of connectors, of toys and enlarged ones, and of the paper's usb.
 const ROOMS: [f64; 3] = [0.5 * MM, 2.0 * MM, 4.0 * MM];
@@ -43,44 +44,25 @@ pub struct Mate {
     pub engaged_m: f64,
     /// Total lateral play along each of `across`, m, without the faces that interfere.
     pub play_m: [f64; 2],
-    /// Total play about the axis, rad; a full turn if nothing blocks it.
-    pub yaw_rad: f64,
-    /// Interference that had to be eroded for the plug to go in, m.
-    pub overlap_m: f64,
-    /// Area of the plug's side walls that face a wall of the socket, on the weaker sides, m2.
-    pub walls_m2: f64,
     /// Whether nothing stops the plug; the pose then has its tip at the far side of the socket.
     pub through: bool,
 }
 
 /// Result of the search for a mate.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Found {
-    /// One mate.
-    One(Mate),
-    /// One of several mates that are equal by symmetry, and their number.
-    Symmetric(Mate, usize),
-    /// Different mates of similar engagement, the best first.
-    Ambiguous(Vec<Mate>),
-}
-
-impl Found {
-    /// Returns whether the plug, in its own frame, does more than catch on an edge.
-    fn is_deep(&self, plug: &[Triangle]) -> bool {
-        let mates = match self {
-            Found::One(mate) | Found::Symmetric(mate, _) => std::slice::from_ref(mate),
-            Found::Ambiguous(all) => all,
-        };
-        mates.iter().any(|mate| mate.is_deep(plug))
-    }
+pub struct Found {
+    /// Mates of similar engagement, the best first.
+    pub mates: Vec<Mate>,
+    /// Number of poses that equal the mate by symmetry, itself included; 1 if there are several mates.
+    pub equal: usize,
 }
 
 impl Mate {
-    /// As [`Found::is_deep`].
+    /// Returns whether the plug, in its own frame, does more than catch on an edge.
     fn is_deep(&self, plug: &[Triangle]) -> bool {
         let out = self.pose.inverse_transform_vector(&self.out);
-        let [low, high] = span(plug.iter().flatten().map(|p| p.coords.dot(&out)));
-        self.engaged_m >= CATCH * (high - low)
+        let long = width(span(plug.iter().flatten().map(|p| p.coords.dot(&out))));
+        self.engaged_m >= CATCH * long
     }
 }
 
@@ -92,15 +74,12 @@ pub enum MatingError {
     Empty(&'static str),
     /// No seat that encloses the plug from four sides.
     #[error(
-        "the plug fits into the socket along none of their axes: no pose is at least {least_mm} mm deep \
-         with walls on four sides at most {room_mm} mm away; if the parts do mate, give their assembly in the mated pose"
+        "the plug fits into the socket along none of their axes: no pose is at least {} mm deep \
+         with walls on four sides at most {} mm away; if the parts do mate, give their assembly in the mated pose",
+        search::LEAST / MM,
+        ROOMS[2] / MM
     )]
-    NoFit {
-        /// Least engagement, mm.
-        least_mm: f64,
-        /// Largest play, mm.
-        room_mm: f64,
-    },
+    NoFit,
     /// The parts of an assembly are not mated, or block one another in every direction.
     #[error(
         "no body of the assembly can be withdrawn along an axis between walls on four sides: are the parts mated?"
@@ -114,47 +93,38 @@ pub enum MatingError {
     Stopped,
 }
 
-/// Progress and cancellation of a search.
-#[derive(Clone, Copy)]
-pub struct Watch<'a> {
-    /// Callback for the share that is done.
-    pub progress: &'a (dyn Fn(f64) + Sync),
-    /// Whether to stop.
-    pub stopped: &'a (dyn Fn() -> bool + Sync),
-}
-
-impl Watch<'_> {
-    /// Watch that neither shows progress nor stops.
-    pub const NONE: Watch<'static> = Watch { progress: &|_| {}, stopped: &|| false };
-
-    fn check(&self, share: f64) -> Result<(), MatingError> {
-        (self.progress)(share);
-        if (self.stopped)() { Err(MatingError::Stopped) } else { Ok(()) }
-    }
+/// Returns an error if the search was stopped.
+fn check(stop: &AtomicBool) -> Result<(), MatingError> {
+    if stop.load(Ordering::SeqCst) { Err(MatingError::Stopped) } else { Ok(()) }
 }
 
 /// Finds the mated pose of two parts in frames of their own, m.
 ///
 /// # Errors
-/// If a part is empty, nothing fits, or the caller stops.
-pub fn mates(plug: &[Triangle], socket: &[Triangle], watch: &Watch) -> Result<Found, MatingError> {
+/// If a part is empty, nothing fits, or `stop` is set meanwhile.
+pub fn mates(
+    plug: &[Triangle],
+    socket: &[Triangle],
+    stop: &AtomicBool,
+) -> Result<Found, MatingError> {
     let parts = frame::Parts::new(plug, socket)?;
-    watch.check(0.0)?;
     let mut shallow = None;
     for effort in search::EFFORTS {
         let scene = search::Scene::new(&parts, effort);
         let pairs = symmetry::pairs(&scene);
         let few: Vec<_> = pairs.iter().map(|(pair, _)| *pair).collect();
-        let seats = search::seats(&scene, &few, &ROOMS, watch)?;
+        let seats = search::seats(&scene, &few, stop)?;
         // The tightest fit guides: a looser one counts only where there is none, or where the plug only catches on an
         // edge.
         for (room, seats) in ROOMS.into_iter().zip(seats) {
-            let poses = refine::refined(&scene, &seats, room, watch)?;
+            let poses = refine::refined(&scene, &seats, room, stop)?;
             match select::select(&parts, &scene, &poses, (&pairs, room)) {
-                Some(found) if found.is_deep(plug) => return Ok(found),
+                Some(found) if found.mates.iter().any(|mate| mate.is_deep(plug)) => {
+                    return Ok(found);
+                }
                 found => shallow = shallow.or(found),
             }
         }
     }
-    shallow.ok_or(MatingError::NoFit { least_mm: search::LEAST / MM, room_mm: ROOMS[2] / MM })
+    shallow.ok_or(MatingError::NoFit)
 }

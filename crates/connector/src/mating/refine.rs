@@ -1,13 +1,13 @@
 //! Refinement of rough seats: shift, height, interference and engagement.
 
-use super::engagement::{Contact, Faces, SIDES, Sides, score, shared};
+use super::engagement::{Faces, SIDES, Sides, score, shared};
 use super::map::{Envelope, Map, NOWHERE, Window, bounds, rest};
 use super::search::{FINE, Scene, Seat};
-use super::{MatingError, Watch};
-use crate::mesh::Triangle;
+use super::{MatingError, check};
 use input::units::MM;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
+use std::sync::atomic::AtomicBool;
 
 /// Distance within which two walls face one another, as a share of the play.
 pub const REACH: f64 = 0.6;
@@ -40,8 +40,6 @@ pub struct Pose {
     pub z: f64,
     /// Whether nothing stops the plug.
     pub through: bool,
-    /// Interference, m.
-    pub overlap: f64,
     /// Area of facing walls on the weaker sides, m2.
     pub walls: f64,
     /// What both parts fill, as an area, m2.
@@ -62,11 +60,6 @@ impl Pose {
             && apart.into_iter().all(|v| v < room)
             && (self.z - other.z).abs() < room
     }
-}
-
-/// Heights of the lowest and the highest place of a part, m.
-pub fn heights(part: &[Triangle]) -> [f64; 2] {
-    bounds(part)[2]
 }
 
 /// Height of a plug: that of its seat, or with its tip at the far side of the socket.
@@ -109,13 +102,12 @@ fn middle(shifts: &[[i32; 2]]) -> [i32; 2] {
 
 /// Climb out of a seat towards its lowest side, m.
 fn climb(socket: &Map, plug: &Map, shift: [i32; 2], z: f64, reach: i32) -> f64 {
-    let mut least = f64::INFINITY;
-    for [dx, dy] in [[1, 0], [-1, 0], [0, 1], [0, -1]] {
+    let side = |[dx, dy]: [i32; 2]| {
         let path = (1..=reach)
             .map(|r| rest(socket, plug, [shift[0] + r * dx, shift[1] + r * dy], NOWHERE));
-        least = least.min(f64::from(path.fold(-NOWHERE, f32::max)) - z);
-    }
-    least.max(0.0)
+        f64::from(path.fold(-NOWHERE, f32::max)) - z
+    };
+    SIDES.map(side).into_iter().fold(f64::INFINITY, f64::min).max(0.0)
 }
 
 /// Refines seats; the best first.
@@ -123,9 +115,9 @@ pub fn refined(
     scene: &Scene,
     seats: &[Seat],
     room: f64,
-    watch: &Watch,
+    stop: &AtomicBool,
 ) -> Result<Vec<Pose>, MatingError> {
-    watch.check(0.6)?;
+    check(stop)?;
     let rough = Rough::new(scene, room);
     let mut poses: Vec<Pose> = seats.par_iter().filter_map(|seat| rough.pose(seat)).collect();
     poses.sort_by(|a, b| b.walls.total_cmp(&a.walls));
@@ -136,11 +128,10 @@ pub fn refined(
             kept.push(pose);
         }
     }
-    watch.check(0.7)?;
+    check(stop)?;
     let mut fine: Vec<Pose> =
         kept.par_iter().filter_map(|pose| Fine::new(scene, pose, room).best(pose)).collect();
     fine.sort_by(|a, b| b.value().total_cmp(&a.value()));
-    watch.check(0.9)?;
     Ok(fine)
 }
 
@@ -148,8 +139,8 @@ pub fn refined(
 pub fn settled_areas(scene: &Scene, pose: Pose, room: f64) -> (Pose, f64) {
     let fine = Fine::new(scene, &pose, room);
     let [socket, plug] = fine.heights;
-    let at = pose.shift.map(|v| (v / fine.step).round() as i32);
-    let [walls, jam] = fine.contact(&fine.faces()).areas(at, pose.z as f32 + LEVEL);
+    let at = fine.cells(&pose);
+    let [walls, jam] = fine.areas(&fine.faces(), at, pose.z as f32 + LEVEL);
     let lowest = f64::from(rest(&fine.upper, &fine.tight, at, NOWHERE));
     let through = seated(lowest.min(pose.z) as f32, socket, plug).1;
     let outside = pose.z + (plug[0] + plug[1] - socket[0] - socket[1]) / 2.0;
@@ -180,31 +171,19 @@ impl<'a> Rough<'a> {
     fn pose(&self, seat: &Seat) -> Option<Pose> {
         let step = self.scene.step;
         let (socket, plug) = (&self.scene.sockets[seat.out], &self.scene.plugs[seat.turn]);
-        let contact = Contact {
-            socket: &self.faces[seat.out],
-            plug: &self.lower[seat.turn][0],
-            sides: &self.sides[seat.turn],
-        };
-        let mut found: Vec<Pose> = Vec::new();
-        for level in [0, 1, 2] {
-            let (s, p) = (&self.upper[seat.out][level], &self.lower[seat.turn][level]);
+        let (faces, sides) = (&self.faces[seat.out], &self.sides[seat.turn]);
+        let [socket, plug] = [socket, plug].map(|part| bounds(part)[2]);
+        let (upper, lower) = (&self.upper[seat.out], &self.lower[seat.turn]);
+        let poses = upper.iter().zip(lower).map(|(s, p)| {
             let (shifts, z) = lowest(s, p, seat.shift, FINE as i32 / 2 + 1);
-            let shift = middle(&shifts);
-            let (z, through) = seated(z, heights(socket), heights(plug));
-            let [walls, jam] = contact.areas(shift, z as f32);
-            found.push(Pose {
-                out: seat.out,
-                turn: seat.turn,
-                shift: shift.map(|s| f64::from(s) * step),
-                z,
-                through,
-                overlap: 0.0,
-                walls,
-                jam,
-                depth: seat.depth,
-            });
-        }
-        found.into_iter().max_by(|a, b| a.walls.total_cmp(&b.walls))
+            let cells = middle(&shifts);
+            let (z, through) = seated(z, socket, plug);
+            let [walls, jam] = sides.areas(faces, &lower[0], cells, z as f32);
+            let shift = cells.map(|cell| f64::from(cell) * step);
+            let Seat { out, turn, depth, .. } = *seat;
+            Pose { out, turn, shift, z, through, walls, jam, depth }
+        });
+        poses.max_by(|a, b| a.walls.total_cmp(&b.walls))
     }
 }
 
@@ -227,7 +206,7 @@ impl Fine {
     /// Maps about a pose.
     pub fn new(scene: &Scene, pose: &Pose, room: f64) -> Self {
         let (socket, plug) = (&scene.sockets[pose.out], &scene.plugs[pose.turn]);
-        let ([px, py, _], [sx, sy, _]) = (bounds(plug), bounds(socket));
+        let ([px, py, pz], [sx, sy, sz]) = (bounds(plug), bounds(socket));
         let common = |p: [f64; 2], s: [f64; 2], shift: f64| {
             [(p[0] + shift).max(s[0]) - 4.0 * room, (p[1] + shift).min(s[1]) + 4.0 * room]
         };
@@ -239,23 +218,27 @@ impl Fine {
         let lower = Map::new(plug, Envelope::Lower, [step; 2], Some(back));
         let tight = lower.eroded([(TOLERANCE / step).ceil() as usize; 2]);
         let radius = (1.5 * scene.step / step).ceil() as i32 + 1;
-        let heights = [heights(socket), heights(plug)];
-        let sides = Sides::new(&lower);
+        let (sides, heights) = (Sides::new(&lower), [sz, pz]);
         Fine { step, upper, lower, tight, sides, heights, window, radius, room }
     }
 
-    fn contact<'a>(&'a self, socket: &'a Faces<'a>) -> Contact<'a> {
-        Contact { socket, plug: &self.tight, sides: &self.sides }
+    fn areas(&self, faces: &Faces, shift: [i32; 2], z: f32) -> [f64; 2] {
+        self.sides.areas(faces, &self.tight, shift, z)
     }
 
     fn faces(&self) -> Faces<'_> {
         Faces::new(&self.upper, [REACH * self.room, TOLERANCE])
     }
 
+    /// Returns the shift of a pose in cells.
+    fn cells(&self, pose: &Pose) -> [i32; 2] {
+        pose.shift.map(|v| (v / self.step).round() as i32)
+    }
+
     /// Seat with as much interference as makes it best.
     fn best(&self, pose: &Pose) -> Option<Pose> {
         let faces = self.faces();
-        let mut about = pose.shift.map(|v| (v / self.step).round() as i32);
+        let mut about = self.cells(pose);
         let (mut best, mut last): (Option<Pose>, _) = (None, None);
         for overlap in OVERLAPS {
             let cells = (overlap / self.step).round() as usize;
@@ -266,7 +249,7 @@ impl Fine {
             let p = self.lower.eroded([cells - cells / 2; 2]);
             let Some((shift, z)) = self.settled([&s, &p], &faces, about) else { continue };
             let (z, through) = seated(z, self.heights[0], self.heights[1]);
-            let [walls, jam] = self.contact(&faces).areas(shift, z as f32);
+            let [walls, jam] = self.areas(&faces, shift, z as f32);
             let at = shift.map(|v| f64::from(v) * self.step);
             let next = Pose { shift: at, z, through, walls, jam, ..*pose };
             if best.as_ref().is_none_or(|best| next.value() > best.value()) {
@@ -277,15 +260,15 @@ impl Fine {
         best.map(|best| self.measured(best))
     }
 
-    /// The pose with its interference and the climb out of it.
+    /// Returns the pose with the climb out of it.
     fn measured(&self, best: Pose) -> Pose {
-        let shift = best.shift.map(|v| (v / self.step).round() as i32);
-        let overlap = self.interference(shift, best.z);
+        let shift = self.cells(&best);
+        let overlap = self.interference(&best);
         let side = ((self.room + 2.0 * overlap) / self.step).ceil() as i32;
         let free = (overlap / self.step).ceil() as usize;
         let (s, p) = (self.upper.eroded([free / 2; 2]), self.tight.eroded([free - free / 2; 2]));
         let depth = climb(&s, &p, shift, best.z, side);
-        Pose { depth, overlap, ..best }
+        Pose { depth, ..best }
     }
 
     /// Lowest shift near a shift with the most facing walls, and its height.
@@ -316,14 +299,12 @@ impl Fine {
 
     /// Cells of the plug that the socket fills, too, at a pose.
     pub fn shared(&self, pose: &Pose) -> Vec<[i32; 2]> {
-        let shift = pose.shift.map(|v| (v / self.step).round() as i32);
-        shared(&self.upper, &self.tight, shift, pose.z as f32 + LEVEL)
+        shared(&self.upper, &self.tight, self.cells(pose), pose.z as f32 + LEVEL)
     }
 
-    /// Width of what both parts fill, m.
-    fn interference(&self, shift: [i32; 2], z: f64) -> f64 {
-        let cells = shared(&self.upper, &self.tight, shift, z as f32 + LEVEL);
-        let mut cells: BTreeSet<[i32; 2]> = cells.into_iter().collect();
+    /// Returns the width of what both parts fill at a pose, m.
+    fn interference(&self, pose: &Pose) -> f64 {
+        let mut cells: BTreeSet<[i32; 2]> = self.shared(pose).into_iter().collect();
         let mut width = if cells.is_empty() { 0.0 } else { TOLERANCE };
         while !cells.is_empty() {
             let inner =

@@ -42,14 +42,9 @@ pub fn select(
         (pose.depth - best.depth).abs() < SAME && pose.walls > SIMILAR * best.walls
     });
     let mate = |pose: &Pose| precise::mate(parts, scene, pose, room);
-    if others.is_empty() {
-        let count = equal.iter().map(|pose| number(pose)).sum();
-        let mate = mate(best);
-        return Some(if count > 1 { Found::Symmetric(mate, count) } else { Found::One(mate) });
-    }
-    Some(Found::Ambiguous(
-        [*best].into_iter().chain(others.into_iter().copied()).map(mate).collect(),
-    ))
+    let equal = if others.is_empty() { equal.iter().map(|pose| number(pose)).sum() } else { 1 };
+    let mates = [*best].into_iter().chain(others.into_iter().copied()).map(mate).collect();
+    Some(Found { mates, equal })
 }
 
 /// Height of the socket just outside the bounds of a plug in x and y, m.

@@ -7,6 +7,7 @@ use super::map::{Envelope, Map, NOWHERE, bounds, rest};
 use super::refine::{REACH, TOLERANCE};
 use super::search::LEAST;
 use super::{MatingError, ROOMS};
+use crate::body::{span, width};
 use crate::mesh::Triangle;
 use input::units::MM;
 use nalgebra::{Point3, Vector3};
@@ -150,10 +151,7 @@ struct Axis {
 impl Axis {
     fn new(bodies: &[Vec<Triangle>], contact: BTreeMap<[usize; 2], f64>) -> Self {
         let bounds: Vec<_> = bodies.iter().map(|body| bounds(body)).collect();
-        let side = |axis: usize| {
-            let [low, high] = crate::body::span(bounds.iter().flat_map(|of| of[axis]));
-            high - low
-        };
+        let side = |axis: usize| width(span(bounds.iter().flat_map(|of| of[axis])));
         let step = (side(0).max(side(1)) / MOST_CELLS).max(LEAST_CELL);
         let maps = |envelope| -> Vec<Map> {
             bodies.iter().map(|body| Map::new(body, envelope, [step; 2], None)).collect()
@@ -260,25 +258,21 @@ impl Axis {
         (set.len() < self.upper.len()).then(|| score(&walls) - touching)
     }
 
-    /// Whether a set is narrower than the rest at the heights that both have.
+    /// Returns whether a set is narrower than the rest at the heights that both have.
     fn is_inner(&self, set: &Set) -> bool {
-        let heights = |of: bool| {
-            let own = self.bounds.iter().enumerate().filter(|(i, _)| set.contains(i) == of);
-            crate::body::span(own.flat_map(|(_, bounds)| bounds[2]))
-        };
-        let ([a, b], [c, d]) = (heights(true), heights(false));
+        let [own, rest] = [true, false].map(|inside| -> Vec<[[f64; 2]; 3]> {
+            let bodies = (0..self.bounds.len()).filter(|i| set.contains(i) == inside);
+            bodies.map(|i| self.bounds[i]).collect()
+        });
+        let heights = |bodies: &[[[f64; 2]; 3]]| span(bodies.iter().flat_map(|of| of[2]));
+        let ([a, b], [c, d]) = (heights(&own), heights(&rest));
         let middle = (a.max(c) + b.min(d)) / 2.0;
-        let area = |of: bool| {
-            let at = |bounds: &&[[f64; 2]; 3]| bounds[2][0] < middle && middle < bounds[2][1];
-            let own = self.bounds.iter().enumerate().filter(|(i, _)| set.contains(i) == of);
-            let own: Vec<_> = own.map(|(_, bounds)| bounds).filter(at).collect();
-            let side = |axis: usize| {
-                let [low, high] = crate::body::span(own.iter().flat_map(|bounds| bounds[axis]));
-                high - low
-            };
+        let area = |bodies: &[[[f64; 2]; 3]]| {
+            let at = |of: &&[[f64; 2]; 3]| of[2][0] < middle && middle < of[2][1];
+            let side = |axis| width(span(bodies.iter().filter(at).flat_map(|of| of[axis])));
             side(0) * side(1)
         };
-        area(true) <= area(false)
+        area(&own) <= area(&rest)
     }
 }
 
@@ -300,21 +294,19 @@ fn walls([lower, upper]: [&Map; 2], other: [&Map; 2], reach: f64) -> Walls {
         (low < NOWHERE).then(|| [low, upper.at(x, y)])
     };
     let mut sums = [0.0; 4];
-    for y in lower.first[1]..lower.first[1] + lower.count[1] as i32 {
-        for x in lower.first[0]..lower.first[0] + lower.count[0] as i32 {
-            let Some([low, high]) = heights([lower, upper], x, y) else { continue };
-            for (side, [dx, dy]) in SIDES.into_iter().enumerate() {
-                // What the next cell does not cover.
-                let [low, high] = match heights([lower, upper], x + dx, y + dy) {
-                    Some([next, _]) if next > low => [low, next.min(high)],
-                    Some([_, next]) => [next.max(low), high],
-                    None => [low, high],
-                };
-                let faced = (1..=reach).filter_map(|r| heights(other, x + r * dx, y + r * dy));
-                let faced = faced.map(|[a, b]| f64::from(b.min(high) - a.max(low)));
-                if high > low {
-                    sums[side] += faced.fold(0.0, f64::max) * lower.step[1 - side / 2];
-                }
+    for [x, y] in lower.cells() {
+        let Some([low, high]) = heights([lower, upper], x, y) else { continue };
+        for (side, [dx, dy]) in SIDES.into_iter().enumerate() {
+            // What the next cell does not cover.
+            let [low, high] = match heights([lower, upper], x + dx, y + dy) {
+                Some([next, _]) if next > low => [low, next.min(high)],
+                Some([_, next]) => [next.max(low), high],
+                None => [low, high],
+            };
+            let faced = (1..=reach).filter_map(|r| heights(other, x + r * dx, y + r * dy));
+            let faced = faced.map(|[a, b]| f64::from(b.min(high) - a.max(low)));
+            if high > low {
+                sums[side] += faced.fold(0.0, f64::max) * lower.step[1 - side / 2];
             }
         }
     }

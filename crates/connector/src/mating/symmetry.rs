@@ -60,15 +60,11 @@ fn alike(maps: &[Map]) -> Vec<(usize, usize)> {
     let ranges: Vec<[Map; 2]> =
         maps.par_iter().map(|map| [map.eroded([1; 2]), map.dilated([1; 2])]).collect();
     let within = |a: &Map, [inner, outer]: &[Map; 2]| {
-        let [nx, ny] = a.count.map(|count| count as i32);
-        let mut others = 0;
-        for y in a.first[1]..a.first[1] + ny {
-            for x in a.first[0]..a.first[0] + nx {
-                let (z, one, two) = (a.at(x, y), inner.at(x, y), outer.at(x, y));
-                others += usize::from(z < one.min(two) - SAME || z > one.max(two) + SAME);
-            }
-        }
-        others * RARE <= a.heights.len()
+        let differs = |[x, y]: &[i32; 2]| {
+            let (z, one, two) = (a.at(*x, *y), inner.at(*x, *y), outer.at(*x, *y));
+            z < one.min(two) - SAME || z > one.max(two) + SAME
+        };
+        a.cells().filter(differs).count() * RARE <= a.heights.len()
     };
     let near = |a: &Map, b: &Map| {
         (0..2).all(|i| a.count[i].abs_diff(b.count[i]) <= 1 && (a.first[i] - b.first[i]).abs() <= 1)

@@ -3,7 +3,7 @@
 use super::body::{ConvexBody, clipped, extent};
 use contact::scene::Pose;
 use input::units::MM;
-use insertion::task::{Ending, Part, Stage, Task};
+use insertion::task::{Ending, Mated, Part, Stage, Task};
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 
 /// Overlap that does not count, m: that of rounding to 0.01 mm.
@@ -40,24 +40,22 @@ pub struct Seat {
 }
 
 pub struct Seating<'a> {
+    task: &'a Task,
     plug: &'a ConvexBody<'a>,
     socket: &'a ConvexBody<'a>,
-    opening: [[f64; 2]; 2],
-    mated: Option<[f64; 3]>,
 }
 
 impl<'a> Seating<'a> {
-    pub fn new(task: &Task, plug: &'a ConvexBody, socket: &'a ConvexBody) -> Self {
-        let mated = task.success.mated.map(|mated| mated.tip);
-        Seating { plug, socket, opening: task.opening, mated }
+    pub fn new(task: &'a Task, plug: &'a ConvexBody, socket: &'a ConvexBody) -> Self {
+        Seating { task, plug, socket }
     }
 
     pub fn deepest(&self) -> Seat {
-        if let Some([x, y, z]) = self.mated {
+        if let Some(Mated { tip: [x, y, z], .. }) = self.task.success.mated {
             return Seat { depth: -z, at: [x, y], stopped_by: None };
         }
         let [bottom, top] = self.plug.extent(2);
-        let mut at = self.opening.map(|[low, high]| (low + high) / 2.0);
+        let mut at = self.task.opening.map(|[low, high]| (low + high) / 2.0);
         let mut free = 0.0;
         let mut depth = STEP;
         while depth < top - bottom {
@@ -120,7 +118,7 @@ impl<'a> Seating<'a> {
         // Range of the plug's axis with all below the top inside the opening.
         let section = section(self.plug, depth);
         let range = [0, 1].map(|axis| {
-            let ([low, high], [from, to]) = (self.opening[axis], section[axis]);
+            let ([low, high], [from, to]) = (self.task.opening[axis], section[axis]);
             [low - from, high - to]
         });
         let mut middle = range.map(|[low, high]| (low + high) / 2.0);
@@ -146,7 +144,8 @@ impl<'a> Seating<'a> {
 
     fn overlap(&self, depth: f64, [x, y]: [f64; 2]) -> (f64, [usize; 2]) {
         let pose = Pose::translation(x, y, -depth);
-        self.plug.overlap(&pose, self.socket, &Pose::identity()).unwrap_or((0.0, [0, 0]))
+        let found = self.plug.overlap(&pose, self.socket, &Pose::identity());
+        found.map_or((0.0, [0, 0]), |found| (found.depth, found.parts))
     }
 }
 
@@ -180,34 +179,28 @@ pub fn waypoints(task: &Task, plug: &ConvexBody) -> Vec<Waypoint> {
     let start = Vector3::from(task.strategy.start);
     let lowest = plug.lowest(&plug_pose(task, start));
     let edge = lowest.unwrap_or_else(Point3::origin) - start;
-    let mut at = Waypoint {
+    let mut found = vec![Waypoint {
         name: "start".to_owned(),
         stage: Stage::Approach,
         tcp: start,
         edge: Point3::from(start + edge.coords),
         short_by: None,
-    };
-    let mut found = vec![at.clone()];
-    for phase in &task.strategy.phases {
+    }];
+    for (i, phase) in task.strategy.phases.iter().enumerate() {
+        let (tcp, edge) = (found[i].tcp, found[i].edge);
         let mut by = Vector3::from(phase.displacement);
         let mut short_by = None;
         if let Ending::Touch { preload, .. } = phase.ending {
-            let end = at.edge.z + by.z;
+            let end = edge.z + by.z;
             if end > 0.0 || by.z >= 0.0 {
                 short_by = Some(end);
             } else {
                 // Straight down to the surface, and on by the preload.
-                by *= (at.edge.z.max(0.0) + preload) / -by.z;
+                by *= (edge.z.max(0.0) + preload) / -by.z;
             }
         }
-        at = Waypoint {
-            name: phase.name.clone(),
-            stage: phase.stage,
-            tcp: at.tcp + by,
-            edge: at.edge + by,
-            short_by,
-        };
-        found.push(at.clone());
+        let (name, stage) = (phase.name.clone(), phase.stage);
+        found.push(Waypoint { name, stage, tcp: tcp + by, edge: edge + by, short_by });
     }
     found
 }

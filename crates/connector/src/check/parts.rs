@@ -1,9 +1,10 @@
 //! Parts of plug and socket: thickness, overlaps, gaps, latch and mass; lengths in another unit.
 
 use super::{Case, Problem, field, mm, part_key};
-use crate::body::{ConvexBody, extent, longest_side, width};
+use crate::body::{ConvexBody, Touching, extent, longest_side, width};
 use crate::hold::SEAM;
 use crate::seat::section;
+use contact::scene::Pose;
 use input::units::{GRAM, MM};
 use insertion::task::{Ending, Part, geometry};
 use nalgebra::Vector3;
@@ -41,8 +42,10 @@ fn thin(body: &str, part: &Part) -> Option<Problem> {
 }
 
 fn overlaps(name: &str, body: &ConvexBody) -> Vec<Problem> {
-    let deep = body.own_overlaps().into_iter().filter(|(depth, _)| *depth > OVERLAP);
-    deep.map(|(depth, parts)| {
+    let here = Pose::identity();
+    let own = body.overlaps(&here, body, &here).filter(|found| found.parts[0] < found.parts[1]);
+    let deep = own.filter(|found| found.depth > OVERLAP);
+    deep.map(|Touching { depth, parts, .. }| {
         let [i, j] = parts.map(|i| &body.parts[i]);
         let counted = if name == "plug" { ": its mass is counted twice there" } else { "" };
         Problem::new(

@@ -1,7 +1,7 @@
 //! Commanded moves: free approach, search over the opening, deep enough push.
 
 use super::{Case, Problem, mm, pair};
-use crate::body::span;
+use crate::body::{Touching, span};
 use crate::seat::{self, Waypoint, section};
 use contact::scene::Pose;
 use input::units::MM;
@@ -57,7 +57,8 @@ fn upward(phase: &Phase) -> Option<Problem> {
 fn inside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     let collision = |tcp: Vector3<f64>| {
         let pose = seat::plug_pose(case.task, tcp);
-        let (depth, [plug, socket]) = case.plug.overlap(&pose, &case.socket, &Pose::identity())?;
+        let Touching { depth, parts: [plug, socket], .. } =
+            case.plug.overlap(&pose, &case.socket, &Pose::identity())?;
         let names = [&case.plug.parts[plug].name, &case.socket.parts[socket].name];
         (depth > ROUNDING).then_some((depth, names))
     };

@@ -15,7 +15,7 @@ use rapier3d_f64::parry;
 use rayon::prelude::*;
 
 /// Poses that are compared.
-pub const POSES: u32 = 1000;
+const POSES: u32 = 1000;
 /// Gap beyond which gaps count as equal, m.
 const WIDE: f64 = 0.1 * MM;
 /// Way beyond the play by which poses differ, m.
@@ -52,7 +52,7 @@ pub struct Bodies<'a> {
 }
 
 /// Returns the pose at which the gaps differ most, if they do; what was left out does not count.
-pub fn difference(of: &Bodies, left_out: &[Interference], poses: u32) -> Option<Difference> {
+pub fn difference(of: &Bodies, left_out: &[Interference]) -> Option<Difference> {
     let [plug, socket] = of.drawn.map(Faces::new);
     let parts = of.parts.map(ConvexBody::new);
     let at = |number: u32| {
@@ -72,12 +72,13 @@ pub fn difference(of: &Bodies, left_out: &[Interference], poses: u32) -> Option<
         // Where the drawn faces meet, parts that overlap may name a place far along them.
         let both = || {
             let own = pose.inverse_transform_point(&place);
-            parts[0].reaches(&own, TOLERANCE) && parts[1].reaches(&place, TOLERANCE)
+            let near = |body: usize, at| parts[body].near(at, TOLERANCE).next().is_some();
+            near(0, &own) && near(1, &place)
         };
         let differs = differs && !(gaps[0] <= 0.0 && both());
         differs.then_some(Difference { pose, place, gaps })
     };
-    let found = (0..poses).into_par_iter().filter_map(at).collect::<Vec<_>>();
+    let found = (0..POSES).into_par_iter().filter_map(at).collect::<Vec<_>>();
     let off = |of: &Difference| (of.gaps[0] - of.gaps[1]).abs();
     found.into_iter().max_by(|a, b| off(a).total_cmp(&off(b)))
 }
@@ -221,7 +222,7 @@ mod tests {
             depth: 5.0 * MM,
             play,
         };
-        assert_eq!(difference(&bodies, &[], 1000), None);
+        assert_eq!(difference(&bodies, &[]), None);
         // A wall that is 0.05 mm off, and one that is not there.
         let moved: Vec<Triangle> = socket.iter().map(|face| face.map(|p| p * 1.025)).collect();
         let wrong = task(&Pair { drawn: [&plug, &moved], ..pair }, &request);
@@ -231,7 +232,7 @@ mod tests {
         let far = |part: &&Part| part.solid.corners().iter().all(|p| p.x < 1.95 * MM);
         let few: Vec<Part> = made.task.socket.iter().filter(far).cloned().collect();
         let bare = Bodies { drawn: [&raised, &socket], parts: [bodies.parts[0], &few], ..bodies };
-        let off = difference(&bare, &[], POSES).unwrap();
+        let off = difference(&bare, &[]).unwrap();
         assert!(off.gaps[0] + TOLERANCE < off.gaps[1], "{off:?}");
     }
 }

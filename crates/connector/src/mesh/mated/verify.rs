@@ -44,30 +44,25 @@ impl<'a> Drawn<'a> {
         Drawn { triangles, mesh: TriMesh::new(points, faces).ok() }
     }
 
-    /// Returns by how much a place lies outside of the body, m, if by more than the tolerance.
-    fn outside(&self, place: &Point3<f64>) -> Option<f64> {
+    /// Returns the nearest place of the surface and the distance from it, m, of a place outside of the body by more than the
+    /// tolerance.
+    fn outside(&self, place: &Point3<f64>) -> Option<(Point3<f64>, f64)> {
         let point: Vector = (place.coords / MM).into();
-        let near = self.mesh.as_ref()?.project_local_point(point, false);
-        let distance = (near.point - point).length() * MM;
-        (distance > TOLERANCE && winding(self.triangles, place) < 0.5).then_some(distance)
+        let near = self.mesh.as_ref()?.project_local_point(point, false).point;
+        let distance = (near - point).length() * MM;
+        (distance > TOLERANCE && winding(self.triangles, place) < 0.5)
+            .then(|| (Point3::from(Vector3::from(near) * MM), distance))
     }
 
     /// Returns a slab whose corners outside of the body are moved to its surface, unless faces still stand out: behind a
     /// narrow edge the material may end askew.
     pub fn trimmed(&self, solid: Solid) -> Option<Solid> {
         let corners = solid.corners();
-        let moved: Vec<_> = corners.iter().map(|place| self.inside(place)).collect();
+        let moved =
+            |place: &Point3<f64>| self.outside(place).map_or(*place, |(nearest, _)| nearest);
+        let moved: Vec<_> = corners.iter().map(moved).collect();
         let solid = if moved == corners { solid } else { written(&moved)? };
         self.stands_out(&solid).is_none().then_some(solid)
-    }
-
-    /// Returns a place, or the nearest one of the surface if it is outside of the body.
-    fn inside(&self, place: &Point3<f64>) -> Point3<f64> {
-        let Some(mesh) = self.mesh.as_ref().filter(|_| self.outside(place).is_some()) else {
-            return *place;
-        };
-        let near = mesh.project_local_point((place.coords / MM).into(), false);
-        Point3::from(Vector3::from(near.point) * MM)
     }
 
     /// Returns a corner or the middle of a face of a convex part that is outside of the body.
@@ -78,7 +73,7 @@ impl<'a> Drawn<'a> {
             Point3::from((a + b + c) / 3.0)
         });
         let off = |place: Point3<f64>| {
-            self.outside(&place).map(|out| Deviation { place, out: Some(out) })
+            self.outside(&place).map(|(_, out)| Deviation { place, out: Some(out) })
         };
         corners.iter().copied().chain(middles).find_map(off)
     }
@@ -87,7 +82,8 @@ impl<'a> Drawn<'a> {
     pub fn deviations(&self, kept: &[Triangle], parts: &[Part]) -> Vec<Deviation> {
         let body = ConvexBody::new(parts);
         let lacks = |triangle: &Triangle| -> Vec<Deviation> {
-            let bare = samples(triangle).into_iter().filter(|p| !body.reaches(p, TOLERANCE));
+            let bare =
+                samples(triangle).into_iter().filter(|p| body.near(p, TOLERANCE).next().is_none());
             bare.map(|place| Deviation { place, out: None }).collect()
         };
         let mut found: Vec<Deviation> = kept.par_iter().flat_map_iter(lacks).collect();

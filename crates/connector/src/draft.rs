@@ -243,9 +243,9 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
         // A pin of many may stand in the hole of another.
         let lateral = libm::hypot(size.clearance, size.clearance) / 2.0 + ASIDE;
         task.success.mated = Some(Mated { tip: [0.0, 0.0, -plug.length], lateral });
-        return Ok(plan::mated(task));
+        return Ok(plan::mated(&task));
     }
-    Ok(plan::complete(task)?)
+    Ok(plan::complete(&task)?)
 }
 
 fn upright(name: &str, size: Size, from: f64) -> Part {
@@ -258,7 +258,7 @@ pub(crate) fn block(name: &str, [x, y, z]: [[f64; 2]; 3]) -> Part {
     part(name, Solid::Box { min, max })
 }
 
-fn part(name: &str, solid: Solid) -> Part {
+pub(crate) fn part(name: &str, solid: Solid) -> Part {
     Part { name: name.to_owned(), solid, friction: None }
 }
 
@@ -311,12 +311,12 @@ fn slotted(walls: &[Part], [reach, half]: [f64; 2]) -> Vec<Part> {
         let between = side(&side(outline, [0.0, 1.0], half), [0.0, -1.0], half);
         let beyond = side(&between, [-1.0, 0.0], -reach);
         let left = [above, below, beyond].into_iter().filter(|piece| area(piece) > SLIVER);
-        let part = |(at, outline): (usize, Vec<[f64; 2]>)| {
-            let name =
-                if at == 0 { wall.name.clone() } else { format!("{} {}", wall.name, at + 1) };
-            Part { name, solid: Solid::Prism { axis: *axis, outline, span: *span }, friction: None }
+        let piece = |(number, outline): (usize, Vec<[f64; 2]>)| {
+            let solid = Solid::Prism { axis: *axis, outline, span: *span };
+            let name = &wall.name;
+            if number == 1 { part(name, solid) } else { part(&format!("{name} {number}"), solid) }
         };
-        left.enumerate().map(part).collect()
+        (1..).zip(left).map(piece).collect()
     };
     walls.iter().flat_map(pieces).collect()
 }
@@ -380,7 +380,7 @@ impl Hole {
         let wall = |k: u32| {
             let ([a, b], [d, c]) = (corner(k), corner(k + 1));
             let solid = Solid::Prism { axis: 2, outline: vec![a, b, c, d], span: z };
-            Part { name: format!("wall {}", k + 1), solid, friction: None }
+            part(&format!("wall {}", k + 1), solid)
         };
         (0..self.flats).map(wall).collect()
     }

@@ -66,24 +66,22 @@ pub enum PlanError {
 }
 
 /// Task with grasp point, strategy and success derived from shapes, opening, shoulder and faces.
-pub fn complete(task: Task) -> Result<Task, PlanError> {
-    let (plug_parts, socket_parts) = (task.plug.parts.clone(), task.socket.clone());
-    let (plug, socket) = (ConvexBody::new(&plug_parts), ConvexBody::new(&socket_parts));
-    let seat = Seating::new(&task, &plug, &socket).deepest();
+pub fn complete(task: &Task) -> Result<Task, PlanError> {
+    let (plug, socket) = (ConvexBody::new(&task.plug.parts), ConvexBody::new(&task.socket));
+    let seat = Seating::new(task, &plug, &socket).deepest();
     let Some([by, on]) = seat.stopped_by else { return Err(PlanError::NoFloor) };
     if seat.depth < LEAST_DEPTH {
-        let names = (plug_parts[by].name.clone(), socket_parts[on].name.clone());
-        return Err(PlanError::NoEntry(seat.depth / MM, names.0, names.1));
+        let (by, on) = (plug.parts[by].name.clone(), socket.parts[on].name.clone());
+        return Err(PlanError::NoEntry(seat.depth / MM, by, on));
     }
-    Ok(planned(task, &plug, &socket, &seat))
+    Ok(planned(task.clone(), &plug, &socket, &seat))
 }
 
 /// Returns the task with grasp point, strategy and success derived from shapes, opening, shoulder, faces and mated pose.
-pub fn mated(task: Task) -> Task {
-    let (plug_parts, socket_parts) = (task.plug.parts.clone(), task.socket.clone());
-    let (plug, socket) = (ConvexBody::new(&plug_parts), ConvexBody::new(&socket_parts));
-    let seat = Seating::new(&task, &plug, &socket).deepest();
-    planned(task, &plug, &socket, &seat)
+pub fn mated(task: &Task) -> Task {
+    let (plug, socket) = (ConvexBody::new(&task.plug.parts), ConvexBody::new(&task.socket));
+    let seat = Seating::new(task, &plug, &socket).deepest();
+    planned(task.clone(), &plug, &socket, &seat)
 }
 
 fn planned(mut task: Task, plug: &ConvexBody, socket: &ConvexBody, seat: &Seat) -> Task {

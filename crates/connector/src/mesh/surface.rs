@@ -7,8 +7,8 @@ use insertion::task::geometry::surface_moments;
 use nalgebra::Point3;
 use std::collections::BTreeMap;
 
-/// Grid on which corners are welded, m: files have 32-bit numbers.
-const GRID: f64 = 1e-4 * MM;
+/// Grid on which corners lie, m: that of lengths in task files. Mesh files have 32-bit numbers.
+pub const GRID: f64 = 1e-4 * MM;
 /// Least and largest size of a connector, m.
 pub const SIZES: [f64; 2] = [3.0 * MM, 300.0 * MM];
 
@@ -56,8 +56,8 @@ impl Surface {
     }
 }
 
-/// Coordinate rounded to the grid.
-fn snap(value: f64) -> f64 {
+/// Returns a length on the grid.
+pub fn snap(value: f64) -> f64 {
     (value / GRID).round() * GRID
 }
 

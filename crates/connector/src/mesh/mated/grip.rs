@@ -2,12 +2,13 @@
 
 use crate::body::{extent, width};
 use crate::check::FACES_MM;
+use crate::draft::block;
 use crate::hold::{SEAM, pad_z};
 use crate::mesh::Triangle;
 use input::units::MM;
 use insertion::finger::Pad;
-use insertion::task::{Part, Solid};
-use nalgebra::{Point3, Vector3};
+use insertion::task::Part;
+use nalgebra::Point3;
 
 /// Least height of the faces between the pads, m.
 const LEAST_HEIGHT: f64 = 3.0 * MM;
@@ -41,15 +42,10 @@ struct Face {
 /// Returns the grasp of a plug at its own faces whose pads stay above `free`, m, the largest faces first.
 pub fn own(plug: &[Triangle], free: f64) -> Option<Grasp> {
     let [left, right] = [-1.0, 1.0].map(|sign| faces(plug, sign));
-    let mut best: Option<(f64, Grasp)> = None;
-    for low in &left {
-        for high in &right {
-            let Some((area, grasp)) = between(plug, low, high, free) else { continue };
-            if best.as_ref().is_none_or(|(most, _)| area > *most) {
-                best = Some((area, grasp));
-            }
-        }
-    }
+    let pairs = left.iter().flat_map(|low| right.iter().map(move |high| (low, high)));
+    let grasps = pairs.filter_map(|(low, high)| between(plug, low, high, free));
+    // Of equal ones the first.
+    let best = grasps.reduce(|best, next| if next.0 > best.0 { next } else { best });
     best.map(|(_, grasp)| grasp)
 }
 
@@ -108,7 +104,7 @@ fn between(plug: &[Triangle], low: &Face, high: &Face, free: f64) -> Option<(f64
     if fails {
         return None;
     }
-    let part = block("grip", x, faces, [held[0], shoulder]);
+    let part = block("grip", [x, faces, [held[0], shoulder]]);
     Some((width(held) * width(common(x, pad)), Grasp { shoulder, faces, part }))
 }
 
@@ -119,11 +115,6 @@ pub fn handle(plug: &[Triangle], [x, y, z]: [f64; 3], free: f64) -> Grasp {
     // The pads, too, stay above the socket.
     let shoulder = (low + z).max(free + FREE + Pad::PAPER.height);
     let faces = [-y / 2.0, y / 2.0];
-    let part = block("handle", [-x / 2.0, x / 2.0], faces, [low, shoulder]);
+    let part = block("handle", [[-x / 2.0, x / 2.0], faces, [low, shoulder]]);
     Grasp { shoulder, faces, part }
-}
-
-fn block(name: &str, x: [f64; 2], y: [f64; 2], z: [f64; 2]) -> Part {
-    let [min, max] = [0, 1].map(|end| Vector3::new(x[end], y[end], z[end]));
-    Part { name: name.to_owned(), solid: Solid::Box { min, max }, friction: None }
 }

@@ -6,6 +6,7 @@ mod polygons;
 
 use super::Triangle;
 use super::solid::solid_of;
+use super::surface::snap;
 use crate::body::{extent, width};
 use facets::Facets;
 use input::units::MM;
@@ -27,8 +28,6 @@ const LEAST_PIECE: f64 = 0.2 * MM;
 const LEAST_SIZE: f64 = 2e-3 * MM;
 /// Least volume of a solid, m3: rounding in a file may take from it.
 const LEAST_VOLUME: f64 = 10.0 * FLAT;
-/// Resolution of lengths in files, m.
-pub const WRITTEN: f64 = 1e-4 * MM;
 /// Distance from the sides of a polygon within which what is behind it does not count, m.
 const BESIDE: f64 = 5e-3 * MM;
 /// Depth below which a face that is met is the polygon's own, m.
@@ -243,7 +242,7 @@ pub fn cut_below(solid: &Solid, origin: &Point3<f64>, normal: &Vector3<f64>) -> 
 
 /// Returns the hull of points on the grid of files; `None` if it holds no volume.
 pub fn written(points: &[Point3<f64>]) -> Option<Solid> {
-    let points: Vec<_> = points.iter().map(|p| Point3::from(p.coords.map(rounded))).collect();
+    let points: Vec<_> = points.iter().map(|p| Point3::from(p.coords.map(snap))).collect();
     solid_of(&points).filter(is_thick)
 }
 
@@ -257,11 +256,6 @@ fn is_thick(solid: &Solid) -> bool {
 fn around(points: &[Point3<f64>]) -> Aabb {
     let points = points.iter().map(|p| (p.coords / MM).into());
     Aabb::from_points(points).loosened(1e-3)
-}
-
-/// Length as files have it.
-fn rounded(length: f64) -> f64 {
-    (length / WRITTEN).round() * WRITTEN
 }
 
 /// Returns the polygon below a plane.

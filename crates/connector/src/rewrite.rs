@@ -14,7 +14,7 @@ const MARK: char = '\u{feff}';
 pub fn strategy(text: &str, task: &Task, after: &Strategy) -> Result<String, TomlError> {
     let mut file: DocumentMut = text.parse()?;
     let changed = Task { strategy: after.clone(), ..task.clone() };
-    let new: DocumentMut = write::strategy_of(&changed).parse()?;
+    let new: DocumentMut = write::strategy(&changed).parse()?;
     // Inline tables are written out: a comment has no place in them.
     if let Ok(table) = std::mem::take(&mut file["strategy"]).into_table() {
         file["strategy"] = Item::Table(table);
@@ -24,10 +24,11 @@ pub fn strategy(text: &str, task: &Task, after: &Strategy) -> Result<String, Tom
             old.insert("phase", Item::ArrayOfTables(phases));
         }
         change(old, new);
-        if let Some(rule) = old.remove("start") {
-            comment_above(old, "start_mm", &format!("# start was {}", shown(&rule)));
+        if let Some(Item::Value(rule)) = old.remove("start") {
+            comment_above(old, "start_mm", &format!("# start was {}", bare(&rule)));
         }
-        if let (Some(from), Some(to)) = (phases(old), new["phase"].as_array_of_tables()) {
+        let phases = old.get_mut("phase").and_then(Item::as_array_of_tables_mut);
+        if let (Some(from), Some(to)) = (phases, new["phase"].as_array_of_tables()) {
             if alike(from, to) {
                 from.iter_mut().zip(to).for_each(|(old, new)| change(old, new));
             } else {
@@ -45,10 +46,6 @@ fn ended_as(other: &str, text: String) -> String {
     let text = if 2 * crlf > lines { text.replace('\n', "\r\n") } else { text };
     let marked = other.starts_with(MARK) && !text.starts_with(MARK);
     if marked { format!("{MARK}{text}") } else { text }
-}
-
-fn phases(strategy: &mut Table) -> Option<&mut ArrayOfTables> {
-    strategy.get_mut("phase")?.as_array_of_tables_mut()
 }
 
 /// Returns whether two strategies consist of the same moves but for their numbers.
@@ -127,10 +124,6 @@ fn bare(value: &Value) -> String {
     let mut bare = value.clone();
     bare.decor_mut().clear();
     bare.to_string()
-}
-
-fn shown(item: &Item) -> String {
-    item.as_value().map_or(String::new(), bare)
 }
 
 #[cfg(test)]

@@ -89,15 +89,10 @@ fn under_roof(plug: &ConvexBody, shoulder: f64, face: f64, side: usize) -> Optio
 /// Default grasp of a plug, shoulder and faces in m: the highest shoulder that both roofs rest on,
 /// with faces that the pads meet over `least_cover`, m. Flat faces are preferred to a cable.
 pub fn find(plug: &ConvexBody, least_cover: f64) -> Option<(f64, [f64; 2])> {
-    [true, false].into_iter().find_map(|flat| grasp(plug, least_cover, flat))
-}
-
-/// As [`find`], on flat faces only or on any.
-fn grasp(plug: &ConvexBody, least_cover: f64, flat: bool) -> Option<(f64, [f64; 2])> {
     let mut tops: Vec<f64> =
         plug.stiff().map(|(_, part)| extent(part.solid.corners(), 2)[1]).collect();
     tops.sort_by(|a, b| b.total_cmp(a));
-    tops.iter().find_map(|&shoulder| {
+    let grasp = |shoulder: f64, flat: bool| {
         let held = held(plug, shoulder, None);
         let rests = |top: &Option<f64>| top.is_some_and(|z| (z - shoulder).abs() < SEAM);
         let found = held.faces?;
@@ -105,7 +100,8 @@ fn grasp(plug: &ConvexBody, least_cover: f64, flat: bool) -> Option<(f64, [f64; 
             && held.cover.iter().all(|&cover| cover >= least_cover)
             && (!flat || found.iter().all(|&(y, part)| is_flat(&plug.parts[part], y)));
         right.then_some((shoulder, found.map(|(y, _)| y)))
-    })
+    };
+    [true, false].into_iter().find_map(|flat| tops.iter().find_map(|&top| grasp(top, flat)))
 }
 
 /// Returns whether a part has a face at this y, m, not only an edge or a line.

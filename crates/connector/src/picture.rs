@@ -27,7 +27,7 @@ const MARGIN: f64 = 0.08;
 const AROUND: f64 = 8.0 * MM;
 
 /// Views of the task: title, and the axes to the right and up.
-const VIEWS: [(&str, [usize; 2]); 3] = [
+pub(crate) const VIEWS: [(&str, [usize; 2]); 3] = [
     ("from the side: y to the right, z up", [1, 2]),
     ("from the front: x to the right, z up", [0, 2]),
     ("from above: y to the right, x up", [1, 0]),

@@ -64,7 +64,7 @@ impl<'a> ConvexBody<'a> {
         ConvexBody { parts, shapes, tree, yielding: &[] }
     }
 
-    /// Body of a plug, whose latch gives way.
+    /// Creates the body of a plug, whose latch gives way.
     pub fn plug(plug: &'a Plug) -> Self {
         let yielding = plug.latch.as_ref().map_or(&[][..], |latch| &latch.parts);
         ConvexBody { yielding, ..ConvexBody::new(&plug.parts) }
@@ -130,7 +130,7 @@ impl<'a> ConvexBody<'a> {
         })
     }
 
-    /// Gap between two of its parts, m; 0 if they touch.
+    /// Returns the gap between two of its parts, m; 0 if they touch.
     pub fn own_gap(&self, i: usize, j: usize) -> f64 {
         let [a, b] = [&self.shapes[i], &self.shapes[j]];
         let [at, to] = [a, b].map(|part| shapes::pose(&part.pose, MILLIMETRES));
@@ -138,7 +138,7 @@ impl<'a> ConvexBody<'a> {
         query::distance(&at, &*a.shape, &to, &*b.shape).map_or(0.0, |found| found.distance * MM)
     }
 
-    /// Index of the first part that contains a point.
+    /// Returns the index of the first part that contains a point.
     pub fn part_at(&self, point: &Point3<f64>) -> Option<usize> {
         let point = (point.coords * MILLIMETRES).into();
         let holds = |part: &Placed| {
@@ -174,14 +174,14 @@ impl<'a> ConvexBody<'a> {
         self.parts.iter().flat_map(|part| part.solid.corners())
     }
 
-    /// Lowest and highest coordinate along an axis (0 x, 1 y, 2 z), m.
+    /// Returns the lowest and the highest coordinate along an axis (0 x, 1 y, 2 z), m.
     pub fn extent(&self, axis: usize) -> [f64; 2] {
         extent(self.corners(), axis)
     }
 }
 
 impl Placed {
-    /// Box about the part, its body at a pose, mm.
+    /// Returns the bounding box of the part, its body at a pose, mm.
     fn boxed(&self, at: &Pose) -> Aabb {
         let part = self.shape.compute_aabb(&shapes::pose(&self.pose, MILLIMETRES));
         part.transform_by(&shapes::pose(at, MILLIMETRES))
@@ -201,7 +201,7 @@ impl Placed {
     }
 }
 
-/// Lowest and highest coordinate of points along an axis (0 x, 1 y, 2 z); see [`span`].
+/// Returns the lowest and the highest coordinate of points along an axis (0 x, 1 y, 2 z); see [`span`].
 pub fn extent<P: Borrow<Point3<f64>>>(
     points: impl IntoIterator<Item = P>,
     axis: usize,
@@ -217,7 +217,7 @@ pub fn width([low, high]: [f64; 2]) -> f64 {
     high - low
 }
 
-/// Lowest and highest number; infinity and minus infinity without numbers.
+/// Returns the lowest and the highest number; infinity and minus infinity without numbers.
 pub fn span(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }

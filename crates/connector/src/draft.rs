@@ -57,7 +57,7 @@ impl FromStr for Size {
 }
 
 impl Size {
-    /// Size of a cylinder from DIAMETERxLENGTH in mm.
+    /// Parses the size of a cylinder, DIAMETERxLENGTH in mm.
     ///
     /// # Errors
     /// If the text is something else, or a dimension beyond 0.5 to 200 mm.
@@ -67,7 +67,7 @@ impl Size {
     }
 }
 
-/// Width and height of a key from WIDTHxHEIGHT in mm, m.
+/// Parses the width and the height of a key, m, from WIDTHxHEIGHT in mm.
 ///
 /// # Errors
 /// As of [`Size::round`].
@@ -75,7 +75,7 @@ pub fn key(text: &str) -> Result<[f64; 2], String> {
     lengths(text, "give WIDTHxHEIGHT in mm, as in 2x1")
 }
 
-/// Dimensions, m, of a text that has them in mm with an x between them.
+/// Parses dimensions, m, that are separated by an x and in mm.
 fn lengths<const N: usize>(text: &str, right: &str) -> Result<[f64; N], String> {
     let numbers: Result<Vec<f64>, _> =
         text.split(['x', 'X', '×']).map(|number| number.trim().parse()).collect();
@@ -147,7 +147,7 @@ impl Placed for DraftError {
     }
 }
 
-/// Task without shapes: friction, grasp force and fingers as in the shipped tasks, or as in `like`.
+/// Creates a task without shapes; friction, grasp force and fingers are those of the shipped tasks, or of `like`.
 pub fn blank(name: &str, like: Option<&Task>) -> Task {
     let finger_torsion = PadTorsion::Points(30.0 * MM);
     let friction = Friction { finger_plug: 1.0, finger_torsion, plug_socket: 0.2 };
@@ -170,7 +170,7 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
     }
 }
 
-/// Task of these dimensions; what they do not decide is taken from `like`.
+/// Creates the task of these dimensions; all else is taken from `like`.
 ///
 /// # Errors
 /// If the plug is too short to be held, or no strategy can be derived.
@@ -262,7 +262,7 @@ pub(crate) fn part(name: &str, solid: Solid) -> Part {
     Part { name: name.to_owned(), solid, friction: None }
 }
 
-/// Opening, and a socket of walls about it and a floor.
+/// Returns the opening, and a socket of a floor and walls about the opening.
 fn housing(size: &Dimensions, floor: f64) -> ([[f64; 2]; 2], Vec<Part>) {
     let hole = size.round.then(|| Hole::new(size.plug.width, size.clearance));
     let mut opening = [size.plug.height, size.plug.width].map(|plug| {
@@ -357,7 +357,7 @@ pub struct Hole {
 }
 
 impl Hole {
-    /// Hole for a plug of a diameter with a clearance, m.
+    /// Creates the hole for a plug of a diameter with a clearance, m.
     pub fn new(diameter: f64, clearance: f64) -> Self {
         let radius = (diameter + clearance) / 2.0;
         // With the flat at r - off and its corners at (r - off) / cos(pi / n) = r + off.
@@ -368,7 +368,7 @@ impl Hole {
         Hole { flats, flat: radius - off(flats), off: off(flats) }
     }
 
-    /// Prisms between the hole and a rectangle of half sides `outer` in x and y, m.
+    /// Returns prisms that fill a rectangle of half sides `outer` in x and y, m, around the hole.
     pub fn walls(&self, outer: [f64; 2], z: [f64; 2]) -> Vec<Part> {
         let corner = |k: u32| {
             let turn = (f64::from(k) - 0.5) * 2.0 * PI / f64::from(self.flats);

@@ -117,7 +117,7 @@ impl<'a> Picture<'a> {
         Pose::translation(x, y, -self.seat.depth)
     }
 
-    /// Interval that a view shows along an axis, m.
+    /// Returns the interval that a view shows along an axis, m.
     fn reach(&self, axis: usize) -> [f64; 2] {
         let corners = |parts: &[Part], pose: Pose| {
             let corners = parts.iter().flat_map(|part| part.solid.corners());

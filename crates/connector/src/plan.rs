@@ -65,7 +65,7 @@ pub enum PlanError {
     NoFloor,
 }
 
-/// Task with grasp point, strategy and success derived from shapes, opening, shoulder and faces.
+/// Returns the task with grasp point, strategy and success derived from shapes, opening, shoulder and faces.
 pub fn complete(task: &Task) -> Result<Task, PlanError> {
     let (plug, socket) = (ConvexBody::new(&task.plug.parts), ConvexBody::new(&task.socket));
     let seat = Seating::new(task, &plug, &socket).deepest();
@@ -108,7 +108,7 @@ fn planned(mut task: Task, plug: &ConvexBody, socket: &ConvexBody, seat: &Seat) 
     task
 }
 
-/// Strategy that sets the plug down upright over its seat, sweeps it along y until it drops in, and pushes. Drawn
+/// Returns a strategy that sets the plug down upright over its seat, sweeps it along y until it drops in, and pushes. Drawn
 /// connectors have a lead-in, and pins and tongues that a tilted plug would meet first.
 fn straight(task: &Task, mated: &Mated) -> Strategy {
     let [x, y, z] = mated.tip;
@@ -200,7 +200,7 @@ impl Family {
     }
 }
 
-/// Intervals of the tip in x and in y, m.
+/// Returns the extent of the tip in x and in y, m.
 fn tip(plug: &ConvexBody) -> [[f64; 2]; 2] {
     section(plug, plug.extent(2)[0] + LEAST_DEPTH)
 }
@@ -233,7 +233,7 @@ struct Moves {
 }
 
 impl Moves {
-    /// Moves of a tip with a lower edge, set down on the rim at -x.
+    /// Returns the moves of a tip with a lower edge, set down on the rim at -x.
     fn of_edge(task: &Task, tip: [[f64; 2]; 2]) -> Self {
         let [[left, right], [low, high]] = task.opening;
         let play = right - left - width(tip[0]);
@@ -292,7 +292,7 @@ impl Moves {
         [beyond, task.strategy.phases.last().map_or(PUSH[1], |phase| phase.speed)]
     }
 
-    /// Moves of a round tip, whose lowest point is set down near the wall at -y.
+    /// Returns the moves of a round tip, whose lowest point is set down near the wall at -y.
     fn of_point(task: &Task, tip: [[f64; 2]; 2]) -> Self {
         let [x, [low, high]] = task.opening;
         let half = (high - low) / 2.0;
@@ -308,7 +308,7 @@ impl Moves {
     }
 }
 
-/// Depth and tilt of success, from the play in y, m.
+/// Sets depth and tilt of success from the play in y, m.
 fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat, play: f64) {
     let upright = libm::atan(play / seat.depth) / DEG + UPRIGHT_DEG;
     let tilt = upright.ceil().max(LEAST_UPRIGHT_DEG) * DEG;
@@ -339,13 +339,13 @@ fn phases(task: &Task, search: &Moves, seat: f64) -> Vec<Phase> {
     ]
 }
 
-/// Phase of a displacement, m, at a speed, mm/s.
+/// Creates a phase of a displacement, m, at a speed, mm/s.
 fn phase(name: &str, stage: Stage, by: [f64; 3], speed: f64, ending: Ending) -> Phase {
     let displacement = by.map(round_mm);
     Phase { name: name.to_owned(), stage, displacement, speed: speed * MM, ending }
 }
 
-/// Length rounded to 0.01 mm, as in files.
+/// Rounds a length to 0.01 mm, as in files.
 fn round_mm(length: f64) -> f64 {
     round(length / MM, 0.01) * MM
 }

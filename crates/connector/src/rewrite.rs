@@ -80,7 +80,7 @@ fn change(old: &mut Table, new: &Table) {
     }
 }
 
-/// Other phases in place of the old ones, which stay as comments.
+/// Replaces the phases; the old ones stay as comments.
 fn replace(old: &mut ArrayOfTables, new: &ArrayOfTables) {
     let mut was = String::from("\n# was:\n");
     for phase in old.iter() {

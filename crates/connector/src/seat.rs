@@ -6,7 +6,7 @@ use input::units::MM;
 use insertion::task::{Ending, Mated, Part, Stage, Task};
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 
-/// Overlap that does not count, m: that of rounding to 0.01 mm.
+/// Overlap that is ignored, m: that of rounding to 0.01 mm.
 const TOLERANCE: f64 = 0.02 * MM;
 /// Step of the depth on the way down, m.
 const STEP: f64 = 0.25 * MM;
@@ -14,7 +14,7 @@ const STEP: f64 = 0.25 * MM;
 const FINE: f64 = 0.005 * MM;
 /// Overlap of bodies that only touch, m.
 const TOUCHING: f64 = 1e-3 * MM;
-/// Largest displacement to the side, m.
+/// Largest lateral play that is measured, m.
 const MOST_PLAY: f64 = 10.0 * MM;
 /// Intervals of the grid of places along x and along y.
 const GRID: i32 = 8;
@@ -68,7 +68,7 @@ impl<'a> Seating<'a> {
         Seat { depth: free, at, stopped_by: None }
     }
 
-    /// Play of the upright plug at a depth along an axis (0 x, 1 y), both ways together, m.
+    /// Returns the total play of the upright plug at a depth along an axis (0 x, 1 y), m.
     pub fn play(&self, depth: f64, at: [f64; 2], axis: usize) -> f64 {
         // A seated plug may touch walls, so first to the middle between them.
         let mut middle = at;
@@ -79,7 +79,7 @@ impl<'a> Seating<'a> {
         self.ways(depth, middle, axis).iter().sum()
     }
 
-    /// Free way back and forth along an axis, m.
+    /// Returns the free distances in both directions along an axis, m.
     fn ways(&self, depth: f64, at: [f64; 2], axis: usize) -> [f64; 2] {
         let least = self.overlap(depth, at).0.max(TOUCHING);
         [-1.0, 1.0].map(|sign| {
@@ -96,7 +96,7 @@ impl<'a> Seating<'a> {
         })
     }
 
-    /// Lowest place between a free depth and a blocked one, by bisection.
+    /// Finds the deepest free place between a free depth and a blocked one by bisection.
     fn between(&self, mut free: f64, mut blocked: f64, mut at: [f64; 2]) -> Seat {
         let mut stopped_by = None;
         while blocked - free > FINE {
@@ -109,7 +109,7 @@ impl<'a> Seating<'a> {
         Seat { depth: (free - TOLERANCE).max(0.0), at, stopped_by }
     }
 
-    /// Free place at this depth, near `at` if there is one; otherwise the two parts in the way.
+    /// Finds a free place at this depth, near `at` if possible; otherwise returns the two parts that collide.
     fn place(&self, depth: f64, mut at: [f64; 2]) -> Result<[f64; 2], [usize; 2]> {
         let mut best = self.overlap(depth, at);
         if best.0 <= TOLERANCE {
@@ -149,7 +149,7 @@ impl<'a> Seating<'a> {
     }
 }
 
-/// Intervals in x and y that the plug occupies of the opening at a depth, m.
+/// Returns the extent in x and y of the part of the plug that is in the socket at a depth, m.
 pub fn section(plug: &ConvexBody, depth: f64) -> [[f64; 2]; 2] {
     let below = |part: &Part| clipped(&part.solid.corners(), 2, [f64::NEG_INFINITY, depth]);
     let below: Vec<_> = plug.parts.iter().flat_map(below).collect();
@@ -169,7 +169,7 @@ pub struct Waypoint {
     pub short_by: Option<f64>,
 }
 
-/// Pose of the plug, tilted as the task says, with the TCP at `tcp`, task frame, m.
+/// Returns the pose of the plug at the tilt of the strategy with the TCP at `tcp`, task frame, m.
 pub fn plug_pose(task: &Task, tcp: Vector3<f64>) -> Pose {
     let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), task.strategy.tilt);
     Pose::from_parts(tcp.into(), turn) * Pose::translation(0.0, 0.0, -task.grip.tcp_z)

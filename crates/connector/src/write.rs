@@ -195,12 +195,12 @@ fn phase(phase: &Phase) -> String {
     )
 }
 
-/// Length in mm, to a tenth of a micrometre.
+/// Returns a length in mm, to a tenth of a micrometre.
 fn mm(length: f64) -> String {
     round(length / MM, 1e4)
 }
 
-/// TOML float, rounded to `1 / parts`.
+/// Returns a TOML float, rounded to `1 / parts`.
 fn round(value: f64, parts: f64) -> String {
     // Adding zero avoids "-0.0".
     format!("{:?}", (value * parts).round() / parts + 0.0)

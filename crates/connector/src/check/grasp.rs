@@ -88,7 +88,7 @@ fn cover(case: &Case, held: &Held) -> Option<Problem> {
     })
 }
 
-/// Fault of roofs that do not rest on the plug, which they push in.
+/// Checks that the roofs rest on the plug, which they push in.
 fn roof(case: &Case, held: &Held) -> Option<Problem> {
     let shoulder = case.task.grip.shoulder_z;
     let wrong = |top: &Option<f64>| top.is_none_or(|z| (z - shoulder).abs() > SEAM);

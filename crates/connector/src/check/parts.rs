@@ -177,7 +177,7 @@ pub(super) fn lengths(case: &Case) -> Vec<Problem> {
     found
 }
 
-/// Fault of a length, m, that does not lie in its range, mm.
+/// Checks that a length, m, lies in its range, mm.
 fn problem(key: &str, length: f64, [low, high]: [f64; 2]) -> Option<Problem> {
     let value_mm = length / MM;
     if (low..=high).contains(&value_mm) {

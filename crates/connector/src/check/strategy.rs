@@ -34,7 +34,7 @@ fn key(name: &str) -> String {
     format!("strategy.phase \"{name}\" move_mm")
 }
 
-/// Fault of a touch or push that does not go down.
+/// Checks that a touch or push goes down.
 fn upward(phase: &Phase) -> Option<Problem> {
     let z = phase.displacement[2];
     let touch = matches!(phase.ending, Ending::Touch { .. });
@@ -53,7 +53,7 @@ fn upward(phase: &Phase) -> Option<Problem> {
     ))
 }
 
-/// Collision at the start or on the approach.
+/// Checks for collisions at the start and on the approach.
 fn inside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     let collision = |tcp: Vector3<f64>| {
         let pose = seat::plug_pose(case.task, tcp);
@@ -98,7 +98,7 @@ fn short(point: &Waypoint) -> Option<Problem> {
     ))
 }
 
-/// Fault of moves that end above the success depth.
+/// Checks that the moves reach the success depth.
 fn too_shallow(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     // Of the upright tip at the end of the path.
     let depth = way.last().map_or(0.0, |last| case.task.grip.tcp_z - last.tcp.z);
@@ -113,7 +113,7 @@ fn too_shallow(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     ))
 }
 
-/// Fault of a search that does not pass over the opening.
+/// Checks that the search passes over the opening.
 fn beside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     let [bottom, _] = case.plug.extent(2);
     let tip = section(&case.plug, bottom + AIR);

@@ -1,4 +1,4 @@
-//! Direction in which the plug of an assembly leaves.
+//! Direction in which the plug of an assembly can be withdrawn.
 
 use super::frame::{Part, Parts, outs, turned};
 use super::refine::{Pose, settled_areas};
@@ -6,9 +6,9 @@ use super::search::{EFFORTS, Scene};
 use super::{Mate, MatingError, ROOMS, precise};
 use crate::mesh::Triangle;
 
-/// Finds the direction in which the plug of an assembly can be withdrawn; both in the frame of the
-/// assembly, m. Of several the one with the most facing walls beyond what interferes is taken, and of
-/// equal ones that in which the plug stands out further.
+/// Finds the direction in which the plug of an assembly can be withdrawn; both parts in the frame of the assembly, m. Among
+/// several directions it selects the one with the largest facing area less interference, and among equal ones that in which
+/// the plug protrudes further.
 ///
 /// # Errors
 /// If a part is empty, or the plug is blocked or loose in every direction.
@@ -21,7 +21,7 @@ pub fn assembled(plug: &[Triangle], socket: &[Triangle]) -> Result<Mate, MatingE
     let parts = Parts { plug: Part { own, triangles: turned(plug, &own) }, socket };
     let scene = Scene::new(&parts, EFFORTS[0]);
     let poses = (0..outs().len()).map(|out| {
-        // The plug turns with the socket, whose directions are every fourth turn.
+        // The plug is rotated like the socket, whose directions are every fourth rotation.
         let pose = Pose { out, turn: 4 * out, ..Pose::default() };
         settled_areas(&scene, pose, ROOMS[0])
     });
@@ -31,5 +31,5 @@ pub fn assembled(plug: &[Triangle], socket: &[Triangle]) -> Result<Mate, MatingE
     Ok(precise::mate(&parts, &scene, &pose, ROOMS[0]))
 }
 
-/// Preference for the direction in which the plug stands out, as a share of the engagement.
+/// Preference for the direction in which the plug protrudes, as a share of the engagement.
 const ASIDE: f64 = 0.01;

@@ -4,10 +4,10 @@ use crate::body::extent;
 use crate::mesh::Triangle;
 use rayon::prelude::*;
 
-/// Height of what is not there, m; small enough for sums to stay finite.
+/// Height of a column without material, m; finite, so that sums stay finite.
 pub const NOWHERE: f32 = 1e6;
 
-/// Side of a part that a map shows.
+/// Side of a part whose heights a map contains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Envelope {
     /// Highest place of each column.
@@ -17,7 +17,7 @@ pub enum Envelope {
 }
 
 impl Envelope {
-    /// Height of a column without material.
+    /// Returns the height of a column without material.
     pub fn empty(self) -> f32 {
         match self {
             Envelope::Upper => -NOWHERE,
@@ -40,25 +40,25 @@ pub type Window = [[f64; 2]; 2];
 /// Heights at the middles of cells, m.
 #[derive(Debug, Clone)]
 pub struct Map {
-    /// Side shown.
+    /// Side of the part.
     pub envelope: Envelope,
     /// Size of a cell in x and y, m.
     pub step: [f64; 2],
-    /// Index of the first cell in x and y; cell i lies from i to i + 1 steps.
+    /// Index of the first cell in x and y; cell i extends from i to i + 1 steps.
     pub first: [i32; 2],
-    /// Cells in x and y.
+    /// Number of cells in x and y.
     pub count: [usize; 2],
     /// Heights, row by row.
     pub heights: Vec<f32>,
 }
 
-/// Bounds of triangles in x, y and z, m.
+/// Returns the bounds of triangles in x, y and z, m.
 pub fn bounds(triangles: &[Triangle]) -> [[f64; 2]; 3] {
     [0, 1, 2].map(|axis| extent(triangles.iter().flatten(), axis))
 }
 
 impl Map {
-    /// Envelope of triangles within a window.
+    /// Creates the envelope of triangles within a window.
     pub fn new(
         triangles: &[Triangle],
         envelope: Envelope,
@@ -81,7 +81,7 @@ impl Map {
         map
     }
 
-    /// Middle of the cell of an index.
+    /// Returns the coordinate of the centre of a cell along an axis, m.
     pub fn middle(&self, axis: usize, index: usize) -> f64 {
         (f64::from(self.first[axis]) + index as f64 + 0.5) * self.step[axis]
     }
@@ -119,7 +119,7 @@ impl Map {
         }
     }
 
-    /// Cells whose middles lie between two coordinates.
+    /// Returns the first and the last cell whose centres lie between two coordinates along an axis.
     fn between(&self, axis: usize, low: f64, high: f64) -> Option<[usize; 2]> {
         let first = f64::from(self.first[axis]) + 0.5;
         let from = (low / self.step[axis] - first - 1e-9).ceil().max(0.0);
@@ -133,7 +133,7 @@ impl Map {
         (y..y + ny).flat_map(move |y| (x..x + nx).map(move |x| [x, y]))
     }
 
-    /// Height of a cell by its index; empty outside.
+    /// Returns the height of a cell; outside the map that of a column without material.
     pub fn at(&self, x: i32, y: i32) -> f32 {
         let [i, j] = [x - self.first[0], y - self.first[1]];
         let inside =
@@ -145,22 +145,22 @@ impl Map {
         }
     }
 
-    /// The map without a margin of material: each cell takes the innermost height within a radius.
+    /// Erodes the material: each cell gets the innermost height within a radius.
     pub fn eroded(&self, radius: [usize; 2]) -> Map {
         self.filtered(radius, radius, Envelope::inner)
     }
 
-    /// The map with material grown by a radius.
+    /// Dilates the material by a radius.
     pub fn dilated(&self, radius: [usize; 2]) -> Map {
         self.filtered(radius, radius, Envelope::outer)
     }
 
-    /// Each cell the innermost of itself and the cells `back` before and `on` after it.
+    /// Sets each cell to the innermost height of itself, the `back` cells before it and the `on` cells after it.
     pub fn inner(&self, back: usize, on: usize) -> Map {
         self.filtered([back; 2], [on; 2], Envelope::inner)
     }
 
-    /// Each cell the highest of those from `low` to `high` cells beside it along an axis.
+    /// Sets each cell to the largest height of the cells from `low` to `high` beside it along an axis.
     pub fn highest(&self, axis: usize, [low, high]: [i32; 2]) -> Map {
         let wide = usize::try_from(high - low + 1).unwrap_or(1);
         let (mut map, mut done) = (self.clone(), 1);
@@ -173,7 +173,7 @@ impl Map {
         map
     }
 
-    /// Each cell the higher of itself and the one `by` cells after it along an axis.
+    /// Sets each cell to the larger height of itself and the cell `by` after it along an axis.
     fn higher(&self, axis: usize, by: usize) -> Map {
         let mut map = Map { heights: Vec::new(), ..*self };
         map.first[axis] -= by as i32;
@@ -229,7 +229,7 @@ impl Map {
         map
     }
 
-    /// Coarser maps of cells of `factor` cells each: the outermost and the innermost height.
+    /// Returns maps whose cells are `factor` times as large: of the outermost and of the innermost heights.
     pub fn coarser(&self, factor: usize) -> [Map; 2] {
         let factor = factor as i32;
         let first = self.first.map(|first| first.div_euclid(factor));
@@ -252,7 +252,7 @@ impl Map {
     }
 }
 
-/// Height at which a plug shifted by whole cells rests; stops at `enough`.
+/// Returns the height at which a plug shifted by whole cells rests; stops once it reaches `enough`.
 pub fn rest(socket: &Map, plug: &Map, shift: [i32; 2], enough: f32) -> f32 {
     let ([snx, _], [pnx, pny]) = (socket.count, plug.count);
     let span = |axis: usize| {
@@ -267,7 +267,7 @@ pub fn rest(socket: &Map, plug: &Map, shift: [i32; 2], enough: f32) -> f32 {
     }
     debug_assert!(toy as usize <= pny);
     let mut highest = -NOWHERE;
-    // Rows far apart first: what does not fit is seen early.
+    // Rows far apart first, to detect a misfit early.
     for phase in 0..8 {
         for row in (fromy + phase..toy).step_by(8) {
             let plug_row = row as usize * pnx;
@@ -298,7 +298,7 @@ fn row_rest(socket: &[f32], plug: &[f32], highest: f32) -> f32 {
     lanes.iter().fold(tail, |high, z| if *z > high { *z } else { high })
 }
 
-/// Maps of several turned parts.
+/// Creates the maps of a part in several rotations.
 pub fn maps(parts: &[Vec<Triangle>], envelope: Envelope, step: f64) -> Vec<Map> {
     parts.par_iter().map(|part| Map::new(part, envelope, [step; 2], None)).collect()
 }

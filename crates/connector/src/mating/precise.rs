@@ -13,19 +13,19 @@ use std::collections::BTreeSet;
 /// Cell along the direction in which play is measured, m, and most cells of a map.
 const CELL: f64 = 0.005 * MM;
 const MOST_CELLS: f64 = 1.5e6;
-/// Height above the seat at which play is measured, m: so that the stop itself does not count.
+/// Height above the seat at which play is measured, m, so that the stop does not limit it.
 const LIFT: f64 = 0.1 * MM;
-/// Margin about what interferes that is left out, m.
+/// Margin about interfering cells that is ignored too, m.
 const MARGIN: f64 = 0.1 * MM;
-/// Times that x and y are centred.
+/// Number of times that the plug is centred in x and y.
 const ROUNDS: usize = 2;
 
-/// Parts without what interferes.
+/// Parts without the cells that interfere.
 struct Bench<'a> {
     socket: &'a [Triangle],
     plug: &'a [Triangle],
     window: Window,
-    /// Cells of the plug, of side `step`, that interfere, with a margin.
+    /// Cells of the plug, of side `step`, that interfere, and a margin about them.
     left_out: BTreeSet<[i32; 2]>,
     step: f64,
     shift: [f64; 2],
@@ -41,7 +41,7 @@ impl Bench<'_> {
         maps
     }
 
-    /// Removes what interferes from a map.
+    /// Clears the cells that interfere from a map.
     fn without(&self, map: &mut Map) {
         if self.left_out.is_empty() {
             return;
@@ -56,7 +56,7 @@ impl Bench<'_> {
         }
     }
 
-    /// Cells, m, of which one axis is fine.
+    /// Returns the sides of the cells, m; fine along one axis.
     fn cells(&self, axis: usize) -> [f64; 2] {
         let area: f64 = self.window.iter().map(|[low, high]| high - low).product();
         let other = (area / MOST_CELLS / CELL).max(2.0 * CELL);
@@ -84,14 +84,14 @@ impl Bench<'_> {
         f64::from(high - low + 1) * CELL
     }
 
-    /// Height at which the plug rests, m.
+    /// Returns the height at which the plug rests, m.
     fn rest(&self) -> f64 {
         let [upper, lower] = self.maps(self.cells(0));
         f64::from(rest(&upper, &lower, [0; 2], f32::MAX))
     }
 }
 
-/// Mate of a pose, exact.
+/// Measures seat and play of a pose.
 pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, room: f64) -> Mate {
     let fine = Fine::new(scene, pose, room);
     let margin = (MARGIN / fine.step).ceil() as i32;

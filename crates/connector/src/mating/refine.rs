@@ -9,30 +9,30 @@ use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 
-/// Distance within which two walls face one another, as a share of the play.
+/// Largest distance between walls that face each other, as a share of the play.
 pub const REACH: f64 = 0.6;
-/// Interference tried, m.
+/// Interferences that are tried, m.
 const OVERLAPS: [f64; 10] =
     [0.0, 0.02e-3, 0.05e-3, 0.1e-3, 0.15e-3, 0.2e-3, 0.3e-3, 0.5e-3, 0.8e-3, 1.25e-3];
 /// Interference of faces that touch, m.
 pub const TOLERANCE: f64 = 0.02 * MM;
-/// Difference of heights of one seat, m.
+/// Largest difference between resting heights of one seat, m.
 const LEVEL: f32 = 0.02e-3;
 /// Least cell, m, and most cells of a map.
 const LEAST_CELL: f64 = 0.01 * MM;
 const MOST_CELLS: f64 = 1e6;
-/// Most times that the middle of the shifts tried moves.
+/// Largest number of moves of the search window.
 const MOST_MOVES: usize = 4;
-/// Most seats refined, and share of the best that is still refined.
+/// Largest number of seats that are refined, and the smallest share of the best facing area with which they are.
 const MOST: usize = 24;
 const SHARE: f64 = 0.4;
 
 /// Pose on the maps, refined.
 #[derive(Debug, Clone, Default)]
 pub struct Pose {
-    /// Number of the direction out of the socket.
+    /// Index of the direction out of the socket.
     pub out: usize,
-    /// Number of the plug's turn.
+    /// Index of the rotation of the plug.
     pub turn: usize,
     /// Shift of the turned plug in the turned socket, m.
     pub shift: [f64; 2],
@@ -42,14 +42,14 @@ pub struct Pose {
     pub through: bool,
     /// Area of facing walls on the weaker sides, m2.
     pub walls: f64,
-    /// What both parts fill, as an area, m2.
+    /// Volume that both parts fill, as an area, m2.
     pub jam: f64,
-    /// Climb out of the seat towards the lowest side, m.
+    /// Lift that frees the plug towards its lowest side, m.
     pub depth: f64,
 }
 
 impl Pose {
-    /// Engagement, less for interference.
+    /// Returns the facing area less a penalty for interference, m2.
     pub fn value(&self) -> f64 {
         self.walls - self.jam
     }
@@ -62,7 +62,7 @@ impl Pose {
     }
 }
 
-/// Height of a plug: that of its seat, or with its tip at the far side of the socket.
+/// Returns the height of a seated plug, and whether it has gone through: then its tip is at the far side of the socket.
 fn seated(z: f32, socket: [f64; 2], plug: [f64; 2]) -> (f64, bool) {
     let z = f64::from(z);
     if z + plug[1] < socket[0] {
@@ -72,7 +72,7 @@ fn seated(z: f32, socket: [f64; 2], plug: [f64; 2]) -> (f64, bool) {
     }
 }
 
-/// Shifts near a shift with the lowest rest, and that.
+/// Returns the shifts near a shift with the lowest resting height, and that height.
 fn lowest(socket: &Map, plug: &Map, about: [i32; 2], radius: i32) -> (Vec<[i32; 2]>, f32) {
     let mut low = NOWHERE;
     let mut rests = Vec::new();
@@ -89,7 +89,7 @@ fn lowest(socket: &Map, plug: &Map, about: [i32; 2], radius: i32) -> (Vec<[i32; 
     (rests.into_iter().map(|(shift, _)| shift).collect(), low)
 }
 
-/// Shift nearest to the mean of shifts.
+/// Returns the shift nearest to the mean of shifts.
 fn middle(shifts: &[[i32; 2]]) -> [i32; 2] {
     let mean = [0, 1]
         .map(|a| shifts.iter().map(|shift| f64::from(shift[a])).sum::<f64>() / shifts.len() as f64);
@@ -100,8 +100,8 @@ fn middle(shifts: &[[i32; 2]]) -> [i32; 2] {
     nearest.copied().unwrap_or_default()
 }
 
-/// Climb out of a seat towards its lowest side, m.
-fn climb(socket: &Map, plug: &Map, shift: [i32; 2], z: f64, reach: i32) -> f64 {
+/// Returns the lift that frees the plug towards its lowest side, m.
+fn lift(socket: &Map, plug: &Map, shift: [i32; 2], z: f64, reach: i32) -> f64 {
     let side = |[dx, dy]: [i32; 2]| {
         let path = (1..=reach)
             .map(|r| rest(socket, plug, [shift[0] + r * dx, shift[1] + r * dy], NOWHERE));
@@ -110,7 +110,7 @@ fn climb(socket: &Map, plug: &Map, shift: [i32; 2], z: f64, reach: i32) -> f64 {
     SIDES.map(side).into_iter().fold(f64::INFINITY, f64::min).max(0.0)
 }
 
-/// Refines seats; the best first.
+/// Refines seats into poses, the best first.
 pub fn refined(
     scene: &Scene,
     seats: &[Seat],
@@ -135,7 +135,7 @@ pub fn refined(
     Ok(fine)
 }
 
-/// Areas of a given pose, and how far the middle of the plug lies outside that of the socket, m.
+/// Returns a given pose with its areas, and the distance of the middle of the plug out of that of the socket, m.
 pub fn settled_areas(scene: &Scene, pose: Pose, room: f64) -> (Pose, f64) {
     let fine = Fine::new(scene, &pose, room);
     let [socket, plug] = fine.heights;
@@ -147,7 +147,7 @@ pub fn settled_areas(scene: &Scene, pose: Pose, room: f64) -> (Pose, f64) {
     (fine.measured(Pose { walls, jam, through, ..pose }), outside)
 }
 
-/// Maps for the first look at a seat.
+/// Maps for a first estimate of the pose in a seat.
 struct Rough<'a> {
     scene: &'a Scene,
     upper: Vec<[Map; 3]>,
@@ -203,7 +203,7 @@ pub struct Fine {
 }
 
 impl Fine {
-    /// Maps about a pose.
+    /// Creates the maps about a pose.
     pub fn new(scene: &Scene, pose: &Pose, room: f64) -> Self {
         let (socket, plug) = (&scene.sockets[pose.out], &scene.plugs[pose.turn]);
         let ([px, py, pz], [sx, sy, sz]) = (bounds(plug), bounds(socket));
@@ -235,7 +235,7 @@ impl Fine {
         pose.shift.map(|v| (v / self.step).round() as i32)
     }
 
-    /// Seat with as much interference as makes it best.
+    /// Returns the pose with the amount of interference at which it is best.
     fn best(&self, pose: &Pose) -> Option<Pose> {
         let faces = self.faces();
         let mut about = self.cells(pose);
@@ -260,18 +260,18 @@ impl Fine {
         best.map(|best| self.measured(best))
     }
 
-    /// Returns the pose with the climb out of it.
+    /// Returns the pose with its depth.
     fn measured(&self, best: Pose) -> Pose {
         let shift = self.cells(&best);
         let overlap = self.interference(&best);
         let side = ((self.room + 2.0 * overlap) / self.step).ceil() as i32;
         let free = (overlap / self.step).ceil() as usize;
         let (s, p) = (self.upper.eroded([free / 2; 2]), self.tight.eroded([free - free / 2; 2]));
-        let depth = climb(&s, &p, shift, best.z, side);
+        let depth = lift(&s, &p, shift, best.z, side);
         Pose { depth, ..best }
     }
 
-    /// Lowest shift near a shift with the most facing walls, and its height.
+    /// Returns the lowest shift near a shift that has the most facing walls, and its height.
     fn settled(
         &self,
         [socket, plug]: [&Map; 2],
@@ -297,12 +297,12 @@ impl Fine {
         found
     }
 
-    /// Cells of the plug that the socket fills, too, at a pose.
+    /// Returns the cells that both parts fill at a pose.
     pub fn shared(&self, pose: &Pose) -> Vec<[i32; 2]> {
         shared(&self.upper, &self.tight, self.cells(pose), pose.z as f32 + LEVEL)
     }
 
-    /// Returns the width of what both parts fill at a pose, m.
+    /// Returns the width of the region that both parts fill at a pose, m.
     fn interference(&self, pose: &Pose) -> f64 {
         let mut cells: BTreeSet<[i32; 2]> = self.shared(pose).into_iter().collect();
         let mut width = if cells.is_empty() { 0.0 } else { TOLERANCE };

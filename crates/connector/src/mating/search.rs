@@ -1,4 +1,4 @@
-//! Rough search for seats: all axes, turns and shifts on coarse maps that bound the height of rest.
+//! Coarse search for seats over all axes, rotations and shifts, on height maps that bound the resting height.
 
 use super::engagement::SIDES;
 use super::frame::{Parts, outs, turned, turns};
@@ -12,37 +12,37 @@ use std::sync::atomic::AtomicBool;
 
 /// Least depth of a seat, m.
 pub const LEAST: f64 = 0.4 * MM;
-/// Interference allowed for in a second pass, m: springs are drawn unloaded.
+/// Interference that the second pass tolerates, m: contact springs are drawn unloaded.
 const INTERFERENCE: f64 = 0.2 * MM;
-/// Least cell of the maps, m.
+/// Smallest cell of the coarse maps, m.
 const LEAST_CELL: f64 = 0.1 * MM;
-/// Comparisons of two cells that a search may take: a quick one, and one for thin walls, which coarse maps lose.
+/// Budgets of the search in comparisons of two cells: a fast one, and one that resolves thin walls.
 pub const EFFORTS: [f64; 2] = [10e9, 160e9];
-/// Cells of a fine map along a side of a coarse one.
+/// Number of fine cells along the side of a coarse cell.
 pub const FINE: usize = 4;
-/// Pairs of axes between two checks for a stop.
+/// Number of pairs of axes between two checks of the stop flag.
 const AT_ONCE: usize = 24;
-/// Most seats for each pair of axes: a header of two rows of 50 pins has 297, one pitch or more off and all as deep.
+/// Largest number of seats per pair of axes: a header of two rows of 50 pins has 297, shifted by whole pitches.
 const MOST_SEATS: usize = 300;
 
-/// Seat on the maps.
+/// Seat found on the coarse maps.
 #[derive(Debug, Clone, Copy)]
 pub struct Seat {
-    /// Number of the direction out of the socket.
+    /// Index of the direction out of the socket in [`outs`].
     pub out: usize,
-    /// Number of the plug's turn.
+    /// Index of the rotation of the plug in [`turns`].
     pub turn: usize,
     /// Shift of the plug in cells of the fine maps.
     pub shift: [i32; 2],
-    /// Climb out of the seat towards the lowest side, m.
+    /// Lift that frees the plug towards its lowest side, m.
     pub depth: f64,
 }
 
-/// Turned triangles of both parts, and the fine maps.
+/// Triangles of both parts in all rotations, and their fine height maps.
 pub struct Scene {
-    /// Socket, for each direction out of it.
+    /// Socket, rotated so that z is each of the directions out of it.
     pub sockets: Vec<Vec<Triangle>>,
-    /// Plug in each turn.
+    /// Plug in each rotation.
     pub plugs: Vec<Vec<Triangle>>,
     /// Cell of the fine maps, m.
     pub step: f64,
@@ -53,7 +53,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Maps of both parts for a search of so many comparisons.
+    /// Creates the maps of both parts for a search of `effort` comparisons.
     pub fn new(parts: &Parts, effort: f64) -> Self {
         let sockets: Vec<_> =
             outs().iter().map(|turn| turned(&parts.socket.triangles, turn)).collect();
@@ -66,7 +66,7 @@ impl Scene {
     }
 }
 
-/// Cell of the coarse maps with which the search takes its effort, m.
+/// Returns the cell of the coarse maps with which a search takes `effort` comparisons, m.
 fn cell(sockets: &[Vec<Triangle>], plugs: &[Vec<Triangle>], effort: f64) -> f64 {
     let sizes = |parts: &[Vec<Triangle>]| -> Vec<[f64; 3]> {
         parts.iter().map(|part| bounds(part).map(width)).collect()
@@ -97,7 +97,7 @@ impl Coarse {
     }
 }
 
-/// Finds the seats of pairs of axes for each of the largest plays.
+/// Finds the seats of pairs of axes, for each of the limits of play.
 pub fn seats(
     scene: &Scene,
     pairs: &[[usize; 2]],
@@ -127,7 +127,7 @@ pub fn seats(
     Ok(seats)
 }
 
-/// Returns the heights of rest for each shift, from below; at `passed`, m, the plug has gone through.
+/// Returns lower bounds of the resting height for each shift of the plug; at `passed`, m, it has gone through the socket.
 fn rests(socket: &Coarse, plug: &Coarse, passed: f32) -> Map {
     let extremes = |map: &Map, take: fn(f32, f32) -> f32| {
         map.heights.iter().copied().fold(map.envelope.empty(), take)
@@ -148,11 +148,11 @@ fn rests(socket: &Coarse, plug: &Coarse, passed: f32) -> Map {
     map
 }
 
-/// Finds the seats from which the plug must climb to each of four sides, with at most `room` of play, m.
+/// Finds the seats that the plug can leave to none of four sides without a lift, with at most `room` of play, m.
 fn enclosed(rests: &Map, [out, turn]: [usize; 2], room: f64) -> Vec<Seat> {
-    // A bound is as wide as two cells more.
+    // Bounds widen the play by up to two cells.
     let radius = (room / rests.step[0]).ceil() as i32 + 2;
-    let climb = |[x, y]: [i32; 2]| {
+    let lift = |[x, y]: [i32; 2]| {
         let z = rests.at(x, y);
         let side = |[dx, dy]: [i32; 2]| {
             let path = (1..=radius).map(|r| rests.at(x + r * dx, y + r * dy));
@@ -160,8 +160,8 @@ fn enclosed(rests: &Map, [out, turn]: [usize; 2], room: f64) -> Vec<Seat> {
         };
         SIDES.map(side).into_iter().fold(NOWHERE, f32::min)
     };
-    let climbs = rests.cells().map(|place| (climb(place), place));
-    let mut found: Vec<_> = climbs.filter(|(climb, _)| f64::from(*climb) >= LEAST).collect();
+    let lifts = rests.cells().map(|place| (lift(place), place));
+    let mut found: Vec<_> = lifts.filter(|(lift, _)| f64::from(*lift) >= LEAST).collect();
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut seats: Vec<(f32, [i32; 2])> = Vec::new();
     for (depth, place) in found {

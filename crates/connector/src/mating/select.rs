@@ -7,17 +7,17 @@ use super::search::{LEAST, Scene};
 use super::{Found, precise};
 use input::units::MM;
 
-/// Share of the best engagement that is similar: the maps know it within some hundredths.
+/// Share of the best engagement from which on another one is similar, given the resolution of the maps.
 const SIMILAR: f64 = 0.97;
-/// Difference of depth of equal mates, m.
+/// Largest difference in depth between equal mates, m.
 const SAME: f64 = 0.05 * MM;
-/// Share of the plug's outline that walls must face over the least depth.
+/// Share of the outline of the plug that walls must face over the least depth.
 const GUIDED: f64 = 0.25;
 
-/// Width of the rim about a plug in which a socket surrounds it, m.
+/// Width of the rim about the plug within which the height of the socket is measured, m.
 const RIM: f64 = 2.0 * MM;
 
-/// Choice among poses, the best first; none if no pose guides the plug.
+/// Selects the mates among poses that are sorted, the best first; `None` if no pose guides the plug.
 pub fn select(
     parts: &Parts,
     scene: &Scene,
@@ -27,7 +27,7 @@ pub fn select(
     let guided = |pose: &&Pose| {
         let [x, y, z] = bounds(&scene.plugs[pose.turn]);
         let size = ((x[1] - x[0]) * (y[1] - y[0])).sqrt();
-        // What sinks in wholly has fallen, and nobody could hold it; a ring on a longer post has not.
+        // A plug that sinks in entirely could not be held; a ring on a longer post can.
         let held = pose.depth < z[1] - z[0] || z[1] + pose.z > beside(scene, pose, [x, y]);
         pose.depth >= LEAST && held && pose.walls >= LEAST * GUIDED * size
     };
@@ -47,7 +47,7 @@ pub fn select(
     Some(Found { mates, equal })
 }
 
-/// Height of the socket just outside the bounds of a plug in x and y, m.
+/// Returns the height of the socket just outside the bounds of a plug in x and y, m.
 fn beside(scene: &Scene, pose: &Pose, plug: [[f64; 2]; 2]) -> f64 {
     let map = &scene.upper[pose.out];
     let cell = |length: f64, axis: usize| (length / map.step[axis]).floor() as i32;

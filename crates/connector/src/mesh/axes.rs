@@ -59,7 +59,7 @@ pub enum Jaws {
     Z,
 }
 
-/// Name of a value on the command line.
+/// Returns the name of a value on the command line.
 pub fn value(of: impl ValueEnum) -> String {
     of.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned())
 }

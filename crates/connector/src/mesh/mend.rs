@@ -71,7 +71,7 @@ fn open(faces: &[[usize; 3]]) -> BTreeMap<[usize; 2], usize> {
     odd.map(|(edge, (_, face))| (edge, face)).collect()
 }
 
-/// Distance of a corner from the inside of an edge, m, if it is near.
+/// Returns the distance of a corner from an edge, m, if it is close to the edge and between its ends.
 fn beside(points: &[Point3<f64>], [a, b]: [usize; 2], corner: usize) -> Option<f64> {
     if corner == a || corner == b {
         return None;

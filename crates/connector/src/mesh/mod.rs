@@ -1,4 +1,4 @@
-//! Plug and socket from triangle meshes: read, mated, covered with convex parts, checked.
+//! Import of plug and socket from triangle meshes: reading, cleaning, convex parts and their check.
 
 pub mod axes;
 pub mod mated;
@@ -13,10 +13,10 @@ pub use read::{Body, Triangle, is_step, pick, read, separate};
 pub use reduce::{TOLERANCE, reduced};
 pub use surface::{SIZES, Surface};
 
-/// Names of the files of plug and socket, for messages.
+/// File names of plug and socket for messages.
 pub type Files<'a> = [&'a str; 2];
 
-/// Returns the representative of an element's set: the element that is its own parent.
+/// Returns the root of an element in a union-find forest, and shortens the path to it.
 fn root(parent: &mut [usize], mut of: usize) -> usize {
     while parent[of] != of {
         parent[of] = parent[parent[of]];

@@ -184,7 +184,7 @@ struct Facet {
 }
 
 impl Facet {
-    /// Facet whose first edge leaves `at`; a normal of zero without an area.
+    /// Creates the facet whose first edge begins at `at`; its normal is zero if it has no area.
     fn new(corners: [Point3<f64>; 3], at: Point3<f64>) -> Self {
         let [a, b, c] = &corners;
         let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
@@ -194,18 +194,18 @@ impl Facet {
         Facet { corners, normal, samples: [half, middle] }
     }
 
-    /// Distance of the sample of some facets that is farthest from others, m.
+    /// Returns the largest distance of the samples of facets from other facets, m.
     fn farthest(of: &[Facet], from: &[Facet]) -> f64 {
         let samples = of.iter().flat_map(|facet| &facet.samples);
         samples.map(|place| Facet::distance(from, place)).fold(0.0, f64::max)
     }
 
-    /// Distance of a point from the nearest of some facets, m.
+    /// Returns the distance of a point from the nearest of some facets, m.
     fn distance(facets: &[Facet], point: &Point3<f64>) -> f64 {
         facets.iter().map(|facet| facet.away(point)).fold(f64::INFINITY, f64::min)
     }
 
-    /// Distance of a point (Ericson 2005, Real-time collision detection, 5.1.5), m.
+    /// Returns the distance of a point (Ericson 2005, Real-time collision detection, 5.1.5), m.
     fn away(&self, point: &Point3<f64>) -> f64 {
         let [a, b, c] = &self.corners;
         let beyond = |from: &Point3<f64>, to: &Point3<f64>| {

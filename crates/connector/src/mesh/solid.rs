@@ -5,13 +5,13 @@ use input::units::MM;
 use insertion::task::{Solid, geometry};
 use nalgebra::{Point3, Vector3};
 
-/// Largest difference of equal coordinates, m.
+/// Largest difference between coordinates that count as equal, m.
 const NEAR: f64 = 1e-3 * MM;
 
 /// Returns the hull of points as a box, a prism or a hull; `None` without volume.
 pub fn solid_of(points: &[Point3<f64>]) -> Option<Solid> {
     let (corners, _) = geometry::hull(points)?;
-    let prism = [2, 0, 1].into_iter().find_map(|axis| Some((axis, extruded(&corners, axis)?)));
+    let prism = [2, 0, 1].into_iter().find_map(|axis| Some((axis, prism_along(&corners, axis)?)));
     let Some((axis, (outline, span))) = prism else { return Some(Solid::Hull { points: corners }) };
     let [min, max] = [0, 1].map(|end| Vector3::from_fn(|axis, _| extent(&corners, axis)[end]));
     let on_corner = |p: &[f64; 2]| {
@@ -24,11 +24,11 @@ pub fn solid_of(points: &[Point3<f64>]) -> Option<Solid> {
     })
 }
 
-/// The two other axes of each axis.
+/// The other two axes, for each axis.
 const OTHERS: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
 
-/// Returns outline and span, if the convex body of these corners is an outline extruded along this axis.
-fn extruded(corners: &[Point3<f64>], axis: usize) -> Option<(Vec<[f64; 2]>, [f64; 2])> {
+/// Returns outline and span along an axis if the hull of the corners is a prism along it.
+fn prism_along(corners: &[Point3<f64>], axis: usize) -> Option<(Vec<[f64; 2]>, [f64; 2])> {
     let ends = extent(corners, axis);
     let [a, b] = OTHERS[axis];
     let at = |end: f64| -> Vec<[f64; 2]> {
@@ -45,7 +45,7 @@ fn extruded(corners: &[Point3<f64>], axis: usize) -> Option<(Vec<[f64; 2]>, [f64
     equal.then(|| (outline(first), ends))
 }
 
-/// Returns corners in their order about the middle, without those on a straight line.
+/// Returns the corners of a convex outline counter-clockwise, without those on a line between their neighbours.
 fn outline(mut corners: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let count = corners.len() as f64;
     let middle = [0, 1].map(|i| corners.iter().map(|p| p[i]).sum::<f64>() / count);

@@ -50,7 +50,7 @@ impl Surface {
         self.faces.iter().map(|face| face.map(|corner| self.points[corner])).collect()
     }
 
-    /// Enclosed volume, m3.
+    /// Returns the enclosed volume, m3.
     pub fn volume(&self) -> f64 {
         surface_moments(&self.points, &self.faces).0
     }
@@ -84,7 +84,7 @@ pub fn weld(triangles: &[Triangle], unit: f64) -> (Vec<Point3<f64>>, Vec<[usize;
     (points, without_films(faces))
 }
 
-/// Without pairs of faces that cover one another back to back: they hold nothing.
+/// Removes pairs of coincident faces of opposite orientation, which enclose nothing.
 fn without_films(faces: Vec<[usize; 3]>) -> Vec<[usize; 3]> {
     // The same face begins with the same corner.
     let turned = |face: [usize; 3]| {

@@ -144,8 +144,8 @@ impl Tuned {
         tried.map(|tried| tried.force_n).filter(|force| *force > 0.0).min_by(f64::total_cmp)
     }
 
-    /// A step of a later stage must be better by what matters; of the same stage, or of two that fail, at
-    /// all.
+    /// Adds strategies that were tried. To become the best, one of a later stage must be better by [`INDIFFERENCE_MM`]; any
+    /// improvement is enough within a stage, or if the best one fails.
     fn add(
         &mut self,
         stage: Stage,

@@ -90,7 +90,7 @@ fn differ(gaps: [f64; 2]) -> bool {
     high - low > 2.0 * TOLERANCE || (low <= 0.0 && high > TOLERANCE)
 }
 
-/// A pose about the mated one and the way to it.
+/// Returns a pose near the mated one or near the path to it.
 fn pose(number: u32, of: &Bodies) -> Pose {
     let [x, y, high, about_x, about_y, about_z] =
         STEPS.map(|step| (0.5 + f64::from(number + 1) * step).fract());

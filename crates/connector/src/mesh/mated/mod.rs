@@ -229,7 +229,7 @@ fn raised(solid: Solid, by: f64) -> Solid {
     }
 }
 
-/// Opening that leaves the plug its play, m: about all of the plug that goes below the top, without a shoulder that
+/// Returns the opening that leaves the plug its play, m, about all of the plug that goes below the top, without a shoulder that
 /// rests on it.
 fn opening(plug: &[Triangle], depth: f64, play: [f64; 2]) -> [[f64; 2]; 2] {
     let below = [f64::NEG_INFINITY, depth - plan::BELOW_TOP];

@@ -151,7 +151,7 @@ struct Fit {
 }
 
 impl Fit {
-    /// Overlap of solids, the plug mated `depth` below the top, m; `None` if one has no outline.
+    /// Measures the overlap of solids, the plug mated `depth` below the top, m; `None` if one has no outline.
     fn new(plug: &Solid, socket: &Solid, depth: f64) -> Option<Self> {
         let own = plug.corners();
         let [low, _] = extent(&own, 2);

@@ -30,7 +30,7 @@ struct Envelope {
 }
 
 impl Envelope {
-    /// Upper envelope of triangles whose heights are counted in the direction of `sign`.
+    /// Creates the upper envelope of triangles whose heights are counted in the direction of `sign`.
     fn new(triangles: &[Triangle], sign: f64) -> Self {
         let ranges = [0, 1].map(|axis| extent(triangles.iter().flatten(), axis));
         let longest = ranges.iter().map(|[low, high]| high - low).fold(0.0, f64::max);
@@ -94,7 +94,7 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// Reach of a plug in its mated pose, which has so much play, m, and its socket.
+    /// Creates the reach of a plug in its mated pose, with a play, m, and of its socket.
     pub fn new(plug: &[Triangle], socket: &[Triangle], play: f64) -> Self {
         let [tip, _] = extent(plug.iter().flatten(), 2);
         let low = plug.iter().flatten().filter(|p| p.z < tip + SEARCHED);

@@ -221,7 +221,7 @@ fn halves(corners: &[Point3<f64>]) -> Option<[Vec<Point3<f64>>; 2]> {
     Some([b - a, a - b].map(|way| cut(corners.to_vec(), &middle, &way)))
 }
 
-/// Solid of a polygon and the same polygon deeper, below the planes of faces at sharp edges.
+/// Extrudes a polygon into the material, below the planes of faces at sharp edges.
 fn extruded(
     corners: &[Point3<f64>],
     deeper: &Vector3<f64>,
@@ -246,13 +246,13 @@ pub fn written(points: &[Point3<f64>]) -> Option<Solid> {
     solid_of(&points).filter(is_thick)
 }
 
-/// Whether a solid has a size along each axis and a volume that files can have.
+/// Returns whether the size of a solid along each axis and its volume are large enough for files.
 fn is_thick(solid: &Solid) -> bool {
     (0..3).all(|axis| width(extent(solid.corners(), axis)) >= LEAST_SIZE)
         && volume(solid) >= LEAST_VOLUME
 }
 
-/// Box about points in millimetres, for which parry's tolerances are made.
+/// Returns the bounding box of points in millimetres, for which parry's tolerances are made.
 fn around(points: &[Point3<f64>]) -> Aabb {
     let points = points.iter().map(|p| (p.coords / MM).into());
     Aabb::from_points(points).loosened(1e-3)

@@ -233,7 +233,7 @@ pub fn clipped(points: &[Point3<f64>], axis: usize, [from, to]: [f64; 2]) -> Vec
         };
         let crossings =
             kept.iter().flat_map(|p| beyond.iter().map(move |q| crossing(p, q))).collect();
-        // Without those within the outline, repeated clipping does not multiply corners.
+        // Corners inside the outline are dropped, so that repeated clipping does not multiply them.
         kept.extend(outline_by(crossings, |p| Point2::new(p[(axis + 1) % 3], p[(axis + 2) % 3])));
         kept
     };

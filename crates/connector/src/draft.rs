@@ -16,7 +16,7 @@ use parameters::numbers;
 use std::f64::consts::PI;
 use std::str::FromStr;
 
-/// Least thickness of the walls about the opening, m.
+/// Smallest thickness of the walls about the opening, m.
 const WALL: f64 = 5.0 * MM;
 /// Reach of the walls beyond the body that rests on them, m.
 const BEYOND_BODY: f64 = 2.0 * MM;
@@ -30,7 +30,7 @@ const KEY_ROOT: f64 = 0.45 * MM;
 const SLIVER: f64 = 1e-10;
 /// Thickness of the floor, m.
 const FLOOR: f64 = 2.0 * MM;
-/// Share of its length by which a plug without a body goes in.
+/// Share of its length to which a plug without a body is inserted.
 const SHARE: f64 = 0.6;
 /// Assumed density of a plug, kg/m3: plastic with some metal in it.
 pub const DENSITY: f64 = 1500.0;

@@ -10,7 +10,7 @@ use nalgebra::Point3;
 pub const SEAM: f64 = 0.05 * MM;
 
 /// Extent of a pad in x, m.
-const PAD_X: [f64; 2] = [-Pad::PAPER.width / 2.0, Pad::PAPER.width / 2.0];
+pub const PAD_X: [f64; 2] = [-Pad::PAPER.width / 2.0, Pad::PAPER.width / 2.0];
 
 /// Grasp of a plug by pads whose roofs rest at a given height; plug frame, m.
 #[derive(Debug, Clone, PartialEq)]

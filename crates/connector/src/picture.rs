@@ -145,7 +145,7 @@ impl<'a> Picture<'a> {
             frame.polygon(drawing, &part.geom(), &Pose::identity(), SOCKET);
         }
         let seated = self.seated();
-        // From above only the parts that enter the opening, which the rest would hide.
+        // From above only the parts that enter the opening are drawn: the rest would hide them.
         let enters = |part: &Part| extent(part.solid.corners(), 2)[0] < self.task.success.depth;
         for part in self.task.plug.parts.iter().filter(|part| !from_above || enters(part)) {
             frame.polygon(drawing, &part.geom(), &self.start, PLUG);
@@ -175,7 +175,7 @@ impl<'a> Picture<'a> {
     fn path(&self, drawing: &mut Drawing, frame: &Frame) {
         let points: Vec<_> = self.way.iter().map(|point| frame.at(&point.edge)).collect();
         drawing.line(points.iter().copied(), Style::line(PATH, 1.5));
-        // Waypoints that fall together in a view share a label.
+        // Waypoints that coincide in a view share a label.
         let near = |p: &Point2<f64>, q: &Point2<f64>| (p - q).norm() < 9.0;
         for (first, p) in points.iter().enumerate() {
             if points[..first].iter().any(|q| near(p, q)) {

@@ -5,7 +5,7 @@ use input::units::MM;
 use insertion::task::Part;
 use parameters::numbers;
 
-/// Most pins of a header.
+/// Largest number of pins of a header.
 const MOST: u32 = 100;
 
 /// Pins of a header, m.

@@ -20,7 +20,7 @@ use insertion::task::{
 const BELOW_SHOULDER: f64 = 3.5 * MM;
 /// Height of a tilted tip's upper edge above its lower one, m.
 const RISE: f64 = 0.35 * MM;
-/// Least and largest tilt, degrees.
+/// Smallest and largest tilt, degrees.
 const TILT_DEG: [f64; 2] = [5.0, 10.0];
 /// Clear height above the socket at the start and after the approach, m.
 const AIR: [f64; 2] = [5.0 * MM, 1.0 * MM];
@@ -32,9 +32,9 @@ const BESIDE: f64 = 1.0 * MM;
 const ACROSS: [f64; 2] = [0.8 * MM, 0.45 * MM];
 /// Move of a round tip to either side in x, m.
 const ROUND_ACROSS: f64 = 0.5 * MM;
-/// Share of a round opening's half that the tip's lowest point starts beyond its middle.
+/// Distance of the lowest point of the tip from the middle of a round opening at the start, as a share of its radius.
 const ROUND_AHEAD: f64 = 0.75;
-/// Way to either side of a plug that is swept over its seat upright, m: the margin that a strategy is to have.
+/// Amplitude of the sweep of an upright plug over its seat, m: the margin that a strategy should have.
 const SWEEP: f64 = 1.0 * MM;
 /// Command beyond the touch during the sweep, m.
 const SWEPT_PRELOAD: f64 = 0.15 * MM;
@@ -42,13 +42,13 @@ const SWEPT_PRELOAD: f64 = 0.15 * MM;
 const PUSH: [f64; 2] = [4.0 * MM, 100.0 * MM];
 /// Tilt that counts as upright beyond what the play allows, degrees.
 const UPRIGHT_DEG: f64 = 2.0;
-/// Least tilt that counts as upright, degrees.
+/// Smallest limit of the tilt of an upright plug, degrees.
 const LEAST_UPRIGHT_DEG: f64 = 3.0;
 /// Allowance for the success depth beside that of a tilt: m, and a share of the full depth.
 const MISSING: (f64, f64) = (0.2 * MM, 0.02);
 /// Share of the full depth at which the play is measured.
 const WITHIN: f64 = 0.9;
-/// Least depth of a plug that goes in, m.
+/// Smallest depth at which a plug counts as entered, m.
 const LEAST_DEPTH: f64 = 1.0 * MM;
 /// Distance below the top at which the opening of a mated plug is measured, m.
 pub(crate) const BELOW_TOP: f64 = 0.1 * MM;
@@ -144,14 +144,14 @@ pub fn has_core(task: &Task) -> bool {
     })
 }
 
-/// Connectors that a search is known to suit.
+/// Family of connectors for which a search strategy is known.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Family {
-    /// Its tip comes down with an edge.
+    /// Connectors whose tilted tip touches down with an edge.
     Key,
-    /// Its tip comes down with a point.
+    /// Connectors whose tilted tip touches down with a point.
     Peg,
-    /// Those of a shipped task.
+    /// Connectors like that of a shipped task.
     Like(Box<Task>),
 }
 
@@ -262,7 +262,7 @@ impl Moves {
         let search = way.iter().filter(|point| point.stage == Stage::Search);
         let mut x = search.clone().map(|point| carried(point.tcp.x, from, to));
         let mut y = search.map(|point| carried(point.edge.y, other.opening[1], task.opening[1]));
-        // Of a small tip less lies on the rim.
+        // A small tip overlaps the rim by less.
         let quarter = width(tip[0]) / 4.0;
         let touch = x.next().unwrap_or(0.0).clamp(to[0] - quarter, to[1].max(to[0]) + quarter);
         let [back, front, aside] = [(); 3].map(|()| x.next().unwrap_or(touch));

@@ -72,7 +72,7 @@ fn change(old: &mut Table, new: &Table) {
         let join = if beside.is_empty() { "#" } else { ";" };
         *value.decor_mut() =
             toml_edit::Decor::new(" ", format!(" {beside}{join} {note}").replace(" ;", ";"));
-        // In place: a key that is inserted anew loses the comments above it.
+        // Replaced in place, because a key that is removed and inserted loses the comments above it.
         match old.get_mut(key) {
             Some(item) => *item = Item::Value(value),
             None => drop(old.insert(key, Item::Value(value))),
@@ -113,7 +113,7 @@ fn same(a: &Value, b: &Value) -> bool {
     let list =
         |a: &Array, b: &Array| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b));
     match (number(a), number(b), a.as_array(), b.as_array()) {
-        // As written: a tenth of a micrometre.
+        // The resolution of written lengths, 0.1 um.
         (Some(a), Some(b), ..) => (a - b).abs() < 1e-4,
         (.., Some(a), Some(b)) => list(a, b),
         _ => a.as_str().is_some() && a.as_str() == b.as_str(),

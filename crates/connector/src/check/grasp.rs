@@ -4,7 +4,7 @@ use super::{Case, Problem, mm, pair};
 use crate::hold::{Held, SEAM, find, held};
 use input::units::MM;
 
-/// Least height of face that a pad must meet, m.
+/// Smallest height over which a pad must touch its face, m.
 const LEAST_COVER: f64 = 1.0 * MM;
 
 pub(super) fn problems(case: &Case) -> Vec<Problem> {

@@ -57,7 +57,7 @@ struct Case<'a> {
 pub fn problems(task: &Task) -> Vec<Problem> {
     let case =
         Case { task, plug: ConvexBody::plug(&task.plug), socket: ConvexBody::new(&task.socket) };
-    // In a wrong unit everything else is wrong, too.
+    // With a wrong unit, all other checks would fail too.
     let mut found = parts::lengths(&case);
     if !found.is_empty() {
         return found;

@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 
 /// Largest overlap of joined parts, m.
 const OVERLAP: f64 = 0.5 * MM;
-/// Least thickness of a part that weighs and stops something, m.
+/// Smallest thickness of a part with a mass and a contact surface, m.
 const THIN: f64 = 0.01 * MM;
 /// Lightest and heaviest material, kg/m3: foam, tungsten.
 const DENSITIES: [f64; 2] = [100.0, 20e3];

@@ -21,7 +21,7 @@ pub(super) fn problems(case: &Case) -> Vec<Problem> {
     let way = seat::waypoints(case.task, &case.plug);
     let mut found: Vec<Problem> = case.task.strategy.phases.iter().filter_map(upward).collect();
     found.extend(inside(case, &way));
-    // Of moves that go up nothing else can be said.
+    // The other checks are meaningless for moves that go up.
     if found.is_empty() {
         found.extend(way.iter().filter_map(short));
         found.extend(too_shallow(case, &way));
@@ -100,7 +100,7 @@ fn short(point: &Waypoint) -> Option<Problem> {
 
 /// Checks that the moves reach the success depth.
 fn too_shallow(case: &Case, way: &[Waypoint]) -> Option<Problem> {
-    // Of the upright tip at the end of the path.
+    // Depth of the tip of an upright plug at the end of the path.
     let depth = way.last().map_or(0.0, |last| case.task.grip.tcp_z - last.tcp.z);
     let missing = case.task.success.depth - depth;
     let last = case.task.strategy.phases.last().filter(|_| missing > 0.0)?;

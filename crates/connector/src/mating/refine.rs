@@ -18,7 +18,7 @@ const OVERLAPS: [f64; 10] =
 pub const TOLERANCE: f64 = 0.02 * MM;
 /// Largest difference between resting heights of one seat, m.
 const LEVEL: f32 = 0.02e-3;
-/// Least cell, m, and most cells of a map.
+/// Smallest cell, m, and largest number of cells of a map.
 const LEAST_CELL: f64 = 0.01 * MM;
 const MOST_CELLS: f64 = 1e6;
 /// Largest number of moves of the search window.

@@ -10,7 +10,7 @@ use input::units::MM;
 use rayon::prelude::*;
 use std::sync::atomic::AtomicBool;
 
-/// Least depth of a seat, m.
+/// Smallest depth of a seat, m.
 pub const LEAST: f64 = 0.4 * MM;
 /// Interference that the second pass tolerates, m: contact springs are drawn unloaded.
 const INTERFERENCE: f64 = 0.2 * MM;

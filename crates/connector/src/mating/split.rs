@@ -17,7 +17,7 @@ use rapier3d_f64::parry;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Least cell of the maps, m, and most cells along a side.
+/// Smallest cell of the maps, m, and largest number of cells along a side.
 const LEAST_CELL: f64 = 0.05 * MM;
 const MOST_CELLS: f64 = 400.0;
 /// Interferences that are tolerated in a withdrawal, m: contact springs are drawn unloaded.
@@ -297,7 +297,7 @@ fn walls([lower, upper]: [&Map; 2], other: [&Map; 2], reach: f64) -> Walls {
     for [x, y] in lower.cells() {
         let Some([low, high]) = heights([lower, upper], x, y) else { continue };
         for (side, [dx, dy]) in SIDES.into_iter().enumerate() {
-            // What the next cell does not cover.
+            // Heights that the next cell does not cover.
             let [low, high] = match heights([lower, upper], x + dx, y + dy) {
                 Some([next, _]) if next > low => [low, next.min(high)],
                 Some([_, next]) => [next.max(low), high],

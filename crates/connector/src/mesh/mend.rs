@@ -7,9 +7,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Widest gap that is closed, m.
 pub const GAP: f64 = 0.1 * MM;
-/// Most corners on open edges: each is compared with each.
+/// Largest number of corners on open edges, all pairs of which are compared.
 const MOST: usize = 4000;
-/// Most rounds in which edges are split: an edge has so many corners in its middle.
+/// Largest number of rounds in which edges are split, and so of corners that lie on one edge.
 const ROUNDS: usize = 16;
 
 /// Joins corners of open edges that are near to one another, and splits open edges at corners near to

@@ -47,10 +47,8 @@ pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Body>, Fault> {
         Place::file(file).fault(if step { STEP.to_owned() } else { neither() })
     };
     // A binary STL can begin with "solid" too, so its length decides.
-    let bodies = match binary_count(bytes) {
-        Some(count) => {
-            vec![Body { name: String::new(), triangles: binary(&bytes[HEADER..], count) }]
-        }
+    let bodies = match binary(bytes) {
+        Some(triangles) => vec![Body { name: String::new(), triangles }],
         None => {
             let text = std::str::from_utf8(bytes);
             let text = text.map_err(|_| fail("a binary file of odd length"))?;
@@ -68,13 +66,13 @@ pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Body>, Fault> {
     Ok(bodies)
 }
 
-/// Returns the number of triangles of a binary STL; `None` if the length of the file does not match it.
-fn binary_count(bytes: &[u8]) -> Option<usize> {
+/// Returns the triangles of a binary STL; `None` if the length of the file does not match their number.
+fn binary(bytes: &[u8]) -> Option<Vec<Triangle>> {
     let count = u32::from_le_bytes(bytes.get(80..HEADER)?.try_into().ok()?) as usize;
-    (count.checked_mul(RECORD)?.checked_add(HEADER)? == bytes.len()).then_some(count)
-}
-
-fn binary(records: &[u8], count: usize) -> Vec<Triangle> {
+    let records = &bytes[HEADER..];
+    if count.checked_mul(RECORD)? != records.len() {
+        return None;
+    }
     let number = |bytes: &[u8]| {
         bytes.try_into().map_or(f64::NAN, |four| f64::from(f32::from_le_bytes(four)))
     };
@@ -83,9 +81,10 @@ fn binary(records: &[u8], count: usize) -> Vec<Triangle> {
         let values: Vec<f64> = record[12..48].chunks_exact(4).map(number).collect();
         std::array::from_fn(|i| Point3::new(values[3 * i], values[3 * i + 1], values[3 * i + 2]))
     };
-    records.chunks_exact(RECORD).take(count).map(triangle).collect()
+    Some(records.chunks_exact(RECORD).map(triangle).collect())
 }
 
+/// Parses the three coordinates on a line.
 fn coordinates<'a>(
     mut words: impl Iterator<Item = &'a str>,
     line: usize,

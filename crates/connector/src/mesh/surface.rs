@@ -9,10 +9,10 @@ use std::collections::BTreeMap;
 
 /// Grid on which corners lie, m: that of lengths in task files. Mesh files have 32-bit numbers.
 pub const GRID: f64 = 1e-4 * MM;
-/// Least and largest size of a connector, m.
+/// Smallest and largest size of a connector, m.
 pub const SIZES: [f64; 2] = [3.0 * MM, 300.0 * MM];
 
-/// Least volume that a body encloses, m3: less has a sign by chance.
+/// Smallest volume of a body, m3: the sign of a smaller one is a rounding error.
 const LEAST_VOLUME: f64 = 1.0 * MM * MM * MM;
 
 /// Closed triangle mesh, m.
@@ -76,7 +76,7 @@ pub fn weld(triangles: &[Triangle], unit: f64) -> (Vec<Point3<f64>>, Vec<[usize;
     let mut faces = Vec::with_capacity(triangles.len());
     for triangle in triangles {
         let face = [index(&triangle[0]), index(&triangle[1]), index(&triangle[2])];
-        // What has shrunk to a line on the grid holds nothing; its neighbours still meet.
+        // A face that has become a line on the grid encloses nothing, and its neighbours still meet.
         if face[0] != face[1] && face[1] != face[2] && face[2] != face[0] {
             faces.push(face);
         }

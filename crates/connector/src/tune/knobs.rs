@@ -11,7 +11,7 @@ use parameters::Parameter;
 
 /// Values of a knob: an odd number, so that the present one is among them.
 pub const LEVELS: u32 = 31;
-/// Most tilt, degrees: the larger published one and the shift that `priors/levers.toml` allows.
+/// Largest tilt, degrees: the larger published tilt plus the shift that `priors/levers.toml` allows.
 const MOST_TILT_DEG: f64 = 15.0;
 
 /// Number of a strategy, with the row of `priors/` that bounds it: from its lower bound by the present

@@ -59,7 +59,7 @@ pub struct Step {
     pub what: String,
     /// Result.
     pub tried: Tried,
-    /// Least range of another finger with the socket turned either way, mm, if that was checked.
+    /// Smallest range of another finger with the socket turned in either direction, mm, if that was checked.
     pub turned_mm: Option<f64>,
 }
 
@@ -337,7 +337,7 @@ const TOUCHING: f64 = 0.05 * MM;
 /// End of the trial with the largest margin, if all failed.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Stopped {
-    /// How it failed.
+    /// Kind of failure.
     pub outcome: &'static str,
     /// Phase in which the trial ended.
     pub phase: String,

@@ -18,11 +18,11 @@ use rayon::prelude::*;
 const POSES: u32 = 1000;
 /// Gap beyond which gaps count as equal, m.
 const WIDE: f64 = 0.1 * MM;
-/// Way beyond the play by which poses differ, m.
+/// Deviation of poses beyond the play, m.
 const BEYOND: f64 = 0.1 * MM;
 /// Heights above the seat, m: those of every other pose, and what the rest go beyond the depth.
 const HEIGHTS: [f64; 3] = [0.03 * MM, 1.0 * MM, 0.5 * MM];
-/// Least arm of a turn, m.
+/// Smallest lever arm of a rotation, m.
 const ARM: f64 = 2.0 * MM;
 /// Irrational steps of a sequence that fills six dimensions evenly (Roberts 2018).
 const STEPS: [f64; 6] =
@@ -69,7 +69,7 @@ pub fn difference(of: &Bodies, left_out: &[Interference]) -> Option<Difference> 
         let place = if gaps[0] < gaps[1] { place.or(other) } else { other.or(place) }?;
         // About what was left out a place of the one may count where that of the other does not.
         let differs = differ(gaps) && beyond(&place, 4.0 * BEYOND);
-        // Where the drawn faces meet, parts that overlap may name a place far along them.
+        // If the drawn faces touch, the place found for overlapping parts can be elsewhere along them.
         let both = || {
             let own = pose.inverse_transform_point(&place);
             let near = |body: usize, at| parts[body].near(at, TOLERANCE).next().is_some();

@@ -3,7 +3,7 @@
 use crate::body::{extent, width};
 use crate::check::FACES_MM;
 use crate::draft::block;
-use crate::hold::{SEAM, pad_z};
+use crate::hold::{PAD_X, SEAM, pad_z};
 use crate::mesh::Triangle;
 use input::units::MM;
 use insertion::finger::Pad;
@@ -79,8 +79,7 @@ fn grasp_at(plug: &[Triangle], low: &Face, high: &Face, free: f64) -> Option<(f6
     if width(x) < LEAST_WIDTH || !(FACES_MM[0]..=FACES_MM[1]).contains(&wide) {
         return None;
     }
-    let pad = [-Pad::PAPER.width / 2.0, Pad::PAPER.width / 2.0];
-    let in_pad = |p: &&Point3<f64>| pad[0] < p.x && p.x < pad[1];
+    let in_pad = |p: &&Point3<f64>| PAD_X[0] < p.x && p.x < PAD_X[1];
     let points = || plug.iter().flatten().filter(in_pad);
     // The highest points under the two roofs must be at the same height.
     let top = |column: [f64; 2]| {
@@ -94,7 +93,7 @@ fn grasp_at(plug: &[Triangle], low: &Face, high: &Face, free: f64) -> Option<(f6
     let held = common(z, pads);
     let in_the_way = |face: &Triangle| {
         let within = extent(face, 2)[1] > pads[0] && extent(face, 2)[0] < pads[1];
-        let near = extent(face, 0)[1] > pad[0] && extent(face, 0)[0] < pad[1];
+        let near = extent(face, 0)[1] > PAD_X[0] && extent(face, 0)[0] < PAD_X[1];
         let [from, to] = extent(face, 1);
         within && near && (from < faces[0] - SEAM || to > faces[1] + SEAM)
     };
@@ -106,7 +105,7 @@ fn grasp_at(plug: &[Triangle], low: &Face, high: &Face, free: f64) -> Option<(f6
         return None;
     }
     let part = block("grip", [x, faces, [held[0], shoulder]]);
-    Some((width(held) * width(common(x, pad)), Grasp { shoulder, faces, part }))
+    Some((width(held) * width(common(x, PAD_X)), Grasp { shoulder, faces, part }))
 }
 
 /// Returns the grasp of a handle of a size (x, y, z), m, which is added to the top of the plug and stays above `free`, m.

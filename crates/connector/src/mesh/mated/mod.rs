@@ -28,7 +28,7 @@ pub const HANDLE: [f64; 3] = [12.0 * MM, 10.0 * MM, 20.0 * MM];
 const TIP: f64 = 1.0 * MM;
 /// Allowance for the lateral place of a mated plug beyond its play, m.
 pub(crate) const ASIDE: f64 = 0.1 * MM;
-/// Least play assumed between plug and opening, m.
+/// Smallest play assumed between plug and opening, m.
 const LEAST_PLAY: f64 = 0.02 * MM;
 
 /// Pair in its mated pose.
@@ -70,7 +70,7 @@ pub struct Made {
     pub held: f64,
     /// Whether the plug is held by a handle that its drawing lacks.
     pub handle: bool,
-    /// What was left out.
+    /// Interference that was removed from the parts.
     pub interference: Vec<Interference>,
     /// Worst place at which the parts of a body (0 plug, 1 socket) are not as drawn, task frame, plug mated, if any.
     pub deviation: Option<(usize, Deviation)>,
@@ -126,7 +126,7 @@ impl Placed {
 
 /// Returns the task of a pair in its mated pose.
 pub fn task(pair: &Pair, request: &Request) -> Made {
-    // On the grid of files, so that corners stay on it.
+    // Rounded to the grid of files, so that corners stay on it.
     let pair = &Pair { engaged: snap(pair.engaged), ..*pair };
     let first = pair.jaws.first().copied().unwrap_or_else(Vector3::y);
     let high = |placed: &Placed| extent(placed.socket.iter().flatten(), 2)[1].max(0.0);

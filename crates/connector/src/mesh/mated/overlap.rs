@@ -18,7 +18,7 @@ const FIT: f64 = 0.1 * MM;
 /// Gap of the faces of a press fit, m: rigid walls stand for ones that yield, and a play of 0.05 mm is the
 /// least with which strategies are known to insert.
 pub const GAP: f64 = 0.025 * MM;
-/// Least overlap that counts, m.
+/// Smallest overlap that is considered, m.
 const LEAST: f64 = 1e-3 * MM;
 /// Step along the way, m.
 const STEP: f64 = 0.2 * MM;

@@ -20,13 +20,13 @@ use rapier3d_f64::parry;
 /// Largest thickness of a slab, m: more than the gap at which contacts are foreseen, so that a body that comes along a
 /// face towards its edge meets the side of the slab, not its edge.
 const THICK: f64 = 0.25 * MM;
-/// Least thickness, m.
+/// Smallest thickness of a slab, m.
 const THIN: f64 = 10e-3 * MM;
 /// Length of a side from which on a polygon is cut in pieces, m.
 const LEAST_PIECE: f64 = 0.2 * MM;
-/// Least size of a solid along an axis, m.
+/// Smallest size of a solid along an axis, m.
 const LEAST_SIZE: f64 = 2e-3 * MM;
-/// Least volume of a solid, m3: rounding in a file may take from it.
+/// Smallest volume of a solid, m3, with a margin for the rounding in files.
 const LEAST_VOLUME: f64 = 10.0 * FLAT;
 /// Distance from the sides of a polygon within which what is behind it does not count, m.
 const BESIDE: f64 = 5e-3 * MM;
@@ -34,7 +34,7 @@ const BESIDE: f64 = 5e-3 * MM;
 const BEHIND: f64 = 5e-3 * MM;
 /// Tolerance of a convex body, m.
 const CONVEX: f64 = 2e-3 * MM;
-/// Most corners of a convex body that is one part.
+/// Largest number of corners of a convex body that becomes one part.
 const MOST_CORNERS: usize = 400;
 /// Cosine between the normals of a film's two sides, which do not cut one another.
 const FILM: f64 = 0.9999;
@@ -290,7 +290,7 @@ fn below(
     let crossings: Vec<_> =
         kept.iter().flat_map(|p| beyond.iter().map(move |q| crossing(p, q))).collect();
     kept.extend(crossings);
-    // Without those inside, repeated cuts do not multiply corners.
+    // Corners inside the hull are dropped, so that repeated cuts do not multiply them.
     if kept.len() < MANY { kept } else { hull(&kept).map_or(kept, |(corners, _)| corners) }
 }
 

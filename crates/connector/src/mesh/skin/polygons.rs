@@ -60,7 +60,7 @@ fn joined(first: &[usize], second: &[usize], [from, to]: [usize; 2]) -> Option<V
     // From `to` round to `from`, then all of the second between them.
     let mut both = round(first, i + 1);
     both.extend(&round(second, j + 2)[..second.len() - 2]);
-    // Where they share a second edge, the line runs there and back.
+    // Along a second common edge the outline runs back and forth.
     while both.len() > 2 {
         let count = both.len();
         let Some(tip) = (0..count).find(|&k| both[k] == both[(k + 2) % count]) else { break };

@@ -3,7 +3,7 @@
 use super::frame::{Part, Parts, outs, turned};
 use super::refine::{Pose, settled_areas};
 use super::search::{EFFORTS, Scene};
-use super::{Mate, MatingError, ROOMS, precise};
+use super::{MAX_PLAYS, Mate, MatingError, precise};
 use crate::mesh::Triangle;
 
 /// Finds the direction in which the plug of an assembly can be withdrawn; both parts in the frame of the assembly, m. Among
@@ -23,12 +23,12 @@ pub fn assembled(plug: &[Triangle], socket: &[Triangle]) -> Result<Mate, MatingE
     let poses = (0..outs().len()).map(|out| {
         // The plug is rotated like the socket, whose directions are every fourth rotation.
         let pose = Pose { out, turn: 4 * out, ..Pose::default() };
-        settled_areas(&scene, pose, ROOMS[0])
+        settled_areas(&scene, pose, MAX_PLAYS[0])
     });
     let value = |(pose, out): &(Pose, f64)| pose.value() * (1.0 + ASIDE * out.signum());
     let best = poses.max_by(|a, b| value(a).total_cmp(&value(b)));
     let (pose, _) = best.filter(|(pose, _)| pose.value() > 0.0).ok_or(MatingError::Blocked)?;
-    Ok(precise::mate(&parts, &scene, &pose, ROOMS[0]))
+    Ok(precise::mate(&parts, &scene, &pose, MAX_PLAYS[0]))
 }
 
 /// Preference for the direction in which the plug protrudes, as a share of the engagement.

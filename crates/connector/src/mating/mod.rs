@@ -26,7 +26,7 @@ pub use split::plugs;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Limits of the total play of a plug in its seat, m: for connectors, for toys and enlarged models, and for the paper's usb.
-const ROOMS: [f64; 3] = [0.5 * MM, 2.0 * MM, 4.0 * MM];
+const MAX_PLAYS: [f64; 3] = [0.5 * MM, 2.0 * MM, 4.0 * MM];
 
 /// Engagement below which the plug is only caught on an edge, as a share of its length.
 const CAUGHT: f64 = 0.05;
@@ -77,7 +77,7 @@ pub enum MatingError {
         "the plug fits into the socket along none of their axes: no pose is at least {} mm deep \
          with walls on four sides at most {} mm away; if the parts do mate, give their assembly in the mated pose",
         search::LEAST / MM,
-        ROOMS[2] / MM
+        MAX_PLAYS[2] / MM
     )]
     NoFit,
     /// Assembly whose parts are not mated, or block one another in every direction.
@@ -112,13 +112,13 @@ pub fn mates(
     for effort in search::EFFORTS {
         let scene = search::Scene::new(&parts, effort);
         let pairs = symmetry::pairs(&scene);
-        let few: Vec<_> = pairs.iter().map(|(pair, _)| *pair).collect();
-        let seats = search::seats(&scene, &few, stop)?;
+        let representatives: Vec<_> = pairs.iter().map(|(pair, _)| *pair).collect();
+        let seats = search::seats(&scene, &representatives, stop)?;
         // The tightest fit is preferred: a looser one is used only if there is none, or if the plug is only caught on an
         // edge.
-        for (room, seats) in ROOMS.into_iter().zip(seats) {
-            let poses = refine::refined(&scene, &seats, room, stop)?;
-            match select::select(&parts, &scene, &poses, (&pairs, room)) {
+        for (max_play, seats) in MAX_PLAYS.into_iter().zip(seats) {
+            let poses = refine::refined(&scene, &seats, max_play, stop)?;
+            match select::select(&parts, &scene, &poses, (&pairs, max_play)) {
                 Some(found) if found.mates.iter().any(|mate| mate.is_inserted(plug)) => {
                     return Ok(found);
                 }

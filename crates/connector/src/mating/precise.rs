@@ -92,8 +92,8 @@ impl Bench<'_> {
 }
 
 /// Measures seat and play of a pose.
-pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, room: f64) -> Mate {
-    let fine = Fine::new(scene, pose, room);
+pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
+    let fine = Fine::new(scene, pose, max_play);
     let margin = (MARGIN / fine.step).ceil() as i32;
     let about = move |[x, y]: [i32; 2]| {
         (-margin..=margin).flat_map(move |dy| (-margin..=margin).map(move |dx| [x + dx, y + dy]))
@@ -105,7 +105,7 @@ pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, room: f64) -> Mate {
     let height = pose.z + LIFT;
     let mut play_m = [0.0; 2];
     for _ in 0..ROUNDS {
-        play_m = [0, 1].map(|axis| bench.centre(axis, height, 2.0 * room));
+        play_m = [0, 1].map(|axis| bench.centre(axis, height, 2.0 * max_play));
     }
     let rest = bench.rest();
     let z = if pose.through || (rest - pose.z).abs() > LIFT { pose.z } else { rest };

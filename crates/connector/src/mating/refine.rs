@@ -54,11 +54,11 @@ impl Pose {
         self.walls - self.jam
     }
 
-    fn near(&self, other: &Pose, room: f64) -> bool {
+    fn near(&self, other: &Pose, max_play: f64) -> bool {
         let apart = [0, 1].map(|a| (self.shift[a] - other.shift[a]).abs());
         (self.out, self.turn) == (other.out, other.turn)
-            && apart.into_iter().all(|v| v < room)
-            && (self.z - other.z).abs() < room
+            && apart.into_iter().all(|v| v < max_play)
+            && (self.z - other.z).abs() < max_play
     }
 }
 
@@ -114,30 +114,30 @@ fn lift(socket: &Map, plug: &Map, shift: [i32; 2], z: f64, reach: i32) -> f64 {
 pub fn refined(
     scene: &Scene,
     seats: &[Seat],
-    room: f64,
+    max_play: f64,
     stop: &AtomicBool,
 ) -> Result<Vec<Pose>, MatingError> {
     check(stop)?;
-    let rough = Rough::new(scene, room);
+    let rough = Rough::new(scene, max_play);
     let mut poses: Vec<Pose> = seats.par_iter().filter_map(|seat| rough.pose(seat)).collect();
     poses.sort_by(|a, b| b.walls.total_cmp(&a.walls));
     let mut kept: Vec<Pose> = Vec::new();
     for pose in poses {
         let good = kept.first().is_none_or(|best| pose.walls > SHARE * best.walls);
-        if good && kept.len() < MOST && !kept.iter().any(|other| other.near(&pose, room)) {
+        if good && kept.len() < MOST && !kept.iter().any(|other| other.near(&pose, max_play)) {
             kept.push(pose);
         }
     }
     check(stop)?;
     let mut fine: Vec<Pose> =
-        kept.par_iter().filter_map(|pose| Fine::new(scene, pose, room).best(pose)).collect();
+        kept.par_iter().filter_map(|pose| Fine::new(scene, pose, max_play).best(pose)).collect();
     fine.sort_by(|a, b| b.value().total_cmp(&a.value()));
     Ok(fine)
 }
 
 /// Returns a given pose with its areas, and the distance of the middle of the plug out of that of the socket, m.
-pub fn settled_areas(scene: &Scene, pose: Pose, room: f64) -> (Pose, f64) {
-    let fine = Fine::new(scene, &pose, room);
+pub fn settled_areas(scene: &Scene, pose: Pose, max_play: f64) -> (Pose, f64) {
+    let fine = Fine::new(scene, &pose, max_play);
     let [socket, plug] = fine.heights;
     let at = fine.cells(&pose);
     let [walls, jam] = fine.areas(&fine.faces(), at, pose.z as f32 + LEVEL);
@@ -157,13 +157,13 @@ struct Rough<'a> {
 }
 
 impl<'a> Rough<'a> {
-    fn new(scene: &'a Scene, room: f64) -> Self {
+    fn new(scene: &'a Scene, max_play: f64) -> Self {
         let radii = [0.0, 0.1 * MM, 0.2 * MM].map(|r| ((r / scene.step).round() as usize).max(1));
         let eroded = |maps: &Vec<Map>| -> Vec<[Map; 3]> {
             maps.par_iter().map(|map| radii.map(|r| map.eroded([r; 2]))).collect()
         };
         let sides = scene.lower.par_iter().map(Sides::new).collect();
-        let limits = [REACH * room, scene.step];
+        let limits = [REACH * max_play, scene.step];
         let faces = scene.upper.par_iter().map(|map| Faces::new(map, limits)).collect();
         Rough { scene, upper: eroded(&scene.upper), lower: eroded(&scene.lower), sides, faces }
     }
@@ -199,16 +199,16 @@ pub struct Fine {
     /// Rectangle of the socket that the plug can touch, m.
     pub window: Window,
     radius: i32,
-    room: f64,
+    max_play: f64,
 }
 
 impl Fine {
     /// Creates the maps about a pose.
-    pub fn new(scene: &Scene, pose: &Pose, room: f64) -> Self {
+    pub fn new(scene: &Scene, pose: &Pose, max_play: f64) -> Self {
         let (socket, plug) = (&scene.sockets[pose.out], &scene.plugs[pose.turn]);
         let ([px, py, pz], [sx, sy, sz]) = (bounds(plug), bounds(socket));
         let common = |p: [f64; 2], s: [f64; 2], shift: f64| {
-            [(p[0] + shift).max(s[0]) - 4.0 * room, (p[1] + shift).min(s[1]) + 4.0 * room]
+            [(p[0] + shift).max(s[0]) - 4.0 * max_play, (p[1] + shift).min(s[1]) + 4.0 * max_play]
         };
         let window = [common(px, sx, pose.shift[0]), common(py, sy, pose.shift[1])];
         let area: f64 = window.iter().map(|[low, high]| (high - low).max(0.0)).product();
@@ -219,7 +219,7 @@ impl Fine {
         let tight = lower.eroded([(TOLERANCE / step).ceil() as usize; 2]);
         let radius = (1.5 * scene.step / step).ceil() as i32 + 1;
         let (sides, heights) = (Sides::new(&lower), [sz, pz]);
-        Fine { step, upper, lower, tight, sides, heights, window, radius, room }
+        Fine { step, upper, lower, tight, sides, heights, window, radius, max_play }
     }
 
     fn areas(&self, faces: &Faces, shift: [i32; 2], z: f32) -> [f64; 2] {
@@ -227,7 +227,7 @@ impl Fine {
     }
 
     fn faces(&self) -> Faces<'_> {
-        Faces::new(&self.upper, [REACH * self.room, TOLERANCE])
+        Faces::new(&self.upper, [REACH * self.max_play, TOLERANCE])
     }
 
     /// Returns the shift of a pose in cells.
@@ -264,7 +264,7 @@ impl Fine {
     fn measured(&self, best: Pose) -> Pose {
         let shift = self.cells(&best);
         let overlap = self.interference(&best);
-        let side = ((self.room + 2.0 * overlap) / self.step).ceil() as i32;
+        let side = ((self.max_play + 2.0 * overlap) / self.step).ceil() as i32;
         let free = (overlap / self.step).ceil() as usize;
         let (s, p) = (self.upper.eroded([free / 2; 2]), self.tight.eroded([free - free / 2; 2]));
         let depth = lift(&s, &p, shift, best.z, side);

@@ -3,7 +3,7 @@
 use super::engagement::SIDES;
 use super::frame::{Parts, outs, turned, turns};
 use super::map::{Envelope, Map, NOWHERE, bounds, maps, rest};
-use super::{MatingError, ROOMS, check};
+use super::{MAX_PLAYS, MatingError, check};
 use crate::body::width;
 use crate::mesh::Triangle;
 use input::units::MM;
@@ -102,23 +102,23 @@ pub fn seats(
     scene: &Scene,
     pairs: &[[usize; 2]],
     stop: &AtomicBool,
-) -> Result<[Vec<Seat>; ROOMS.len()], MatingError> {
-    let mut seats = [const { Vec::new() }; ROOMS.len()];
+) -> Result<[Vec<Seat>; MAX_PLAYS.len()], MatingError> {
+    let mut seats = [const { Vec::new() }; MAX_PLAYS.len()];
     for interference in [0.0, INTERFERENCE] {
         let erosion = (interference / 2.0 / scene.step).round() as usize;
         let coarse = |fine: &Vec<Map>| -> Vec<Coarse> {
             fine.par_iter().map(|map| Coarse::new(map, erosion)).collect()
         };
         let (sockets, plugs) = (coarse(&scene.upper), coarse(&scene.lower));
-        for few in pairs.chunks(AT_ONCE) {
+        for chunk in pairs.chunks(AT_ONCE) {
             check(stop)?;
             let of = |pair: &[usize; 2]| {
                 let [out, turn] = *pair;
                 let passed = bounds(&scene.sockets[out])[2][0] - bounds(&scene.plugs[turn])[2][1];
                 let rests = rests(&sockets[out], &plugs[turn], passed as f32);
-                ROOMS.map(|room| enclosed(&rests, *pair, room))
+                MAX_PLAYS.map(|max_play| enclosed(&rests, *pair, max_play))
             };
-            let found: Vec<_> = few.par_iter().map(of).collect();
+            let found: Vec<_> = chunk.par_iter().map(of).collect();
             for of_pair in found {
                 seats.iter_mut().zip(of_pair).for_each(|(all, more)| all.extend(more));
             }
@@ -148,10 +148,10 @@ fn rests(socket: &Coarse, plug: &Coarse, passed: f32) -> Map {
     map
 }
 
-/// Finds the seats that the plug can leave to none of four sides without a lift, with at most `room` of play, m.
-fn enclosed(rests: &Map, [out, turn]: [usize; 2], room: f64) -> Vec<Seat> {
+/// Finds the seats that the plug can leave to none of four sides without a lift, with at most `max_play` of play, m.
+fn enclosed(rests: &Map, [out, turn]: [usize; 2], max_play: f64) -> Vec<Seat> {
     // Bounds widen the play by up to two cells.
-    let radius = (room / rests.step[0]).ceil() as i32 + 2;
+    let radius = (max_play / rests.step[0]).ceil() as i32 + 2;
     let lift = |[x, y]: [i32; 2]| {
         let z = rests.at(x, y);
         let side = |[dx, dy]: [i32; 2]| {

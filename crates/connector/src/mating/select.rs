@@ -22,7 +22,7 @@ pub fn select(
     parts: &Parts,
     scene: &Scene,
     poses: &[Pose],
-    (pairs, room): (&[([usize; 2], usize)], f64),
+    (pairs, max_play): (&[([usize; 2], usize)], f64),
 ) -> Option<Found> {
     let guided = |pose: &&Pose| {
         let [x, y, z] = bounds(&scene.plugs[pose.turn]);
@@ -41,7 +41,7 @@ pub fn select(
     let (equal, others): (Vec<&&Pose>, Vec<&&Pose>) = similar.partition(|pose| {
         (pose.depth - best.depth).abs() < SAME && pose.walls > SIMILAR * best.walls
     });
-    let mate = |pose: &Pose| precise::mate(parts, scene, pose, room);
+    let mate = |pose: &Pose| precise::mate(parts, scene, pose, max_play);
     let equal = if others.is_empty() { equal.iter().map(|pose| number(pose)).sum() } else { 1 };
     let mates = [*best].into_iter().chain(others.into_iter().copied()).map(mate).collect();
     Some(Found { mates, equal })

@@ -6,7 +6,7 @@ use super::frame::{Part, outs, turned};
 use super::map::{Envelope, Map, NOWHERE, bounds, rest};
 use super::refine::{REACH, TOLERANCE};
 use super::search::LEAST;
-use super::{MatingError, ROOMS};
+use super::{MAX_PLAYS, MatingError};
 use crate::body::{span, width};
 use crate::mesh::Triangle;
 use input::units::MM;
@@ -162,8 +162,8 @@ impl Axis {
 
     /// Returns the sets of bodies that can be withdrawn upward, at the tightest fit and the least interference that allow any.
     fn leaving(&mut self) -> Vec<Leaving> {
-        for room in ROOMS {
-            self.face(REACH * room);
+        for max_play in MAX_PLAYS {
+            self.face(REACH * max_play);
             for interference in INTERFERENCES {
                 let found = self.leaving_through(interference);
                 if !found.is_empty() {

@@ -60,16 +60,17 @@ impl TryFrom<u8> for FailureClass {
     }
 }
 
-/// Outcome of one trial.
+/// Outcome of one trial, in files `inserted`, `diverged` or the number of the failure class.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// Seated: deep enough and upright enough.
     Inserted,
-    /// Not seated, for a physical reason.
-    Failed(FailureClass),
     /// Numerical divergence of the simulation; not a property of the design.
     Diverged,
+    /// Not seated, for a physical reason.
+    #[serde(untagged)]
+    Failed(FailureClass),
 }
 
 impl Outcome {

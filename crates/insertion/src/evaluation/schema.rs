@@ -1,7 +1,7 @@
 //! The one form of an evaluation outside the program: the keys of JSON, journal and tables.
 
 use super::{OffsetStep, RobustRange, SuccessRate, Window, grid_mm};
-use crate::outcome::{FailureClass, Outcome};
+use crate::outcome::Outcome;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 #[derive(Serialize, Deserialize)]
@@ -11,34 +11,8 @@ pub(super) struct WindowRow {
     positive_mm: f64,
     /// Outcome without its class: that is at either end.
     nominal: String,
-    failure_negative: Option<End>,
-    failure_positive: Option<End>,
-}
-
-/// Outcome that ended the search at one side: the failure class, 1 to 4, or `diverged`.
-#[derive(Serialize, Deserialize)]
-#[serde(untagged)]
-enum End {
-    Class(FailureClass),
-    Other(Outcome),
-}
-
-impl From<Outcome> for End {
-    fn from(outcome: Outcome) -> Self {
-        match outcome {
-            Outcome::Failed(class) => End::Class(class),
-            other => End::Other(other),
-        }
-    }
-}
-
-impl From<End> for Outcome {
-    fn from(end: End) -> Self {
-        match end {
-            End::Class(class) => Outcome::Failed(class),
-            End::Other(outcome) => outcome,
-        }
-    }
+    failure_negative: Option<Outcome>,
+    failure_positive: Option<Outcome>,
 }
 
 impl From<Window> for WindowRow {
@@ -48,8 +22,8 @@ impl From<Window> for WindowRow {
             negative_mm: window.negative_mm(),
             positive_mm: window.positive_mm(),
             nominal: window.nominal.word().to_owned(),
-            failure_negative: window.end_negative.map(End::from),
-            failure_positive: window.end_positive.map(End::from),
+            failure_negative: window.end_negative,
+            failure_positive: window.end_positive,
         }
     }
 }
@@ -58,20 +32,19 @@ impl TryFrom<WindowRow> for Window {
     type Error = String;
 
     fn try_from(row: WindowRow) -> Result<Self, String> {
-        let end_negative = row.failure_negative.map(Outcome::from);
         let nominal = match &*row.nominal {
             "inserted" => Outcome::Inserted,
             "diverged" => Outcome::Diverged,
             // A window that is empty ends as its nominal start does.
-            "failed" => end_negative.ok_or("a nominal failure without its class")?,
+            "failed" => row.failure_negative.ok_or("a nominal failure without its class")?,
             other => return Err(format!("`{other}` is not inserted, failed or diverged")),
         };
         Ok(Window {
             nominal,
             negative_steps: steps(row.negative_mm),
             positive_steps: steps(row.positive_mm),
-            end_negative,
-            end_positive: row.failure_positive.map(Outcome::from),
+            end_negative: row.failure_negative,
+            end_positive: row.failure_positive,
         })
     }
 }
@@ -159,6 +132,7 @@ mod tests {
     use super::*;
     use crate::evaluation::Evaluation;
     use crate::evaluation::tests::{ranges, success};
+    use crate::outcome::FailureClass;
     use serde_json::Value;
 
     fn evaluation() -> Evaluation {

@@ -5,7 +5,7 @@ use super::classify::{Facts, Placement, classify};
 use super::motion::{Move, Tcp};
 use super::record::{Frame, Recorder, Sample, Trace};
 use super::watch::{LeadingEdge, Watch};
-use super::{Conditions, NEVER, PhaseEnd, Poses, Trial};
+use super::{Conditions, PhaseEnd, Poses, Trial};
 use crate::outcome::Outcome;
 use crate::robot::Mounted;
 use crate::task::duration::{CARRY_S, GRASP_S, TOLERANCE_TIMEOUT_S};
@@ -94,32 +94,6 @@ impl<'a> Attempt<'a> {
             phases: Vec::new(),
             trace: None,
             recorder: None,
-        }
-    }
-
-    /// Returns the attempt without its stop flag.
-    pub fn unstoppable(self) -> Attempt<'static> {
-        let Attempt { robot, task, cell, world, target, stage, begun, conditions, socket, .. } =
-            self;
-        let Attempt { time, grasp, watch, edge, phases, trace, recorder, .. } = self;
-        Attempt {
-            robot,
-            stop: &NEVER,
-            task,
-            cell,
-            world,
-            target,
-            stage,
-            begun,
-            conditions,
-            socket,
-            time,
-            grasp,
-            watch,
-            edge,
-            phases,
-            trace,
-            recorder,
         }
     }
 

@@ -138,9 +138,8 @@ pub trait Rig: Send + Sync {
         Vec::new()
     }
 
-    /// Returns the trial of such a grasp whose moves the caller commands, once it is made whatever
-    /// becomes of the grasp's flag, if it is simulated.
-    fn driven(&self, _grasp: Grasp<'_>) -> Option<Driven> {
+    /// Returns the trial of these fingers whose moves the caller commands, if it is simulated.
+    fn driven(&self, _finger: &Finger) -> Option<Driven> {
         None
     }
 }

@@ -46,8 +46,7 @@ pub struct State {
 }
 
 impl Driven {
-    pub(in crate::trial) fn new(ready: Attempt<'_>, prepared: Result<(), Stop>) -> Self {
-        let ready = ready.unstoppable();
+    pub(in crate::trial) fn new(ready: Attempt<'static>, prepared: Result<(), Stop>) -> Self {
         let attempt = ready.clone();
         let mut driven = Driven { ready, prepared, attempt, end: Ok(()), seated_s: 0.0 };
         driven.start(0.0);
@@ -130,10 +129,10 @@ mod tests {
     use super::*;
     use crate::fixtures::{finger, rig, task};
     use crate::outcome::FailureClass;
-    use crate::trial::{Grasp, Rig};
+    use crate::trial::Rig;
 
     fn driven() -> Driven {
-        rig(task("ket8")).driven(Grasp::of(&finger(2.6, 45.0))).unwrap()
+        rig(task("ket8")).driven(&finger(2.6, 45.0)).unwrap()
     }
 
     #[test]

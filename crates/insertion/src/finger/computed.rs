@@ -29,22 +29,6 @@ pub(super) struct Given {
     pub tilting: Option<f64>,
 }
 
-/// Stiffness of one finger at its pad in y and z, N/m: measured, or predicted from measurements.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AtPad {
-    /// In the compliance direction.
-    pub compliance: f64,
-    /// In the assembly direction.
-    pub assembly: f64,
-}
-
-impl AtPad {
-    /// Returns the means of a prediction.
-    pub fn of(predicted: &Prediction) -> Self {
-        AtPad { compliance: predicted.compliance.mean, assembly: predicted.assembly.mean }
-    }
-}
-
 impl Pad {
     /// Pad and roof of a printed finger.
     pub fn of(outline: &Outline) -> Self {
@@ -52,7 +36,7 @@ impl Pad {
     }
 }
 
-/// Returns the finger that is so stiff at the pad, from the stiffness computed in its `plane` and, of x,
+/// Returns the finger with this stiffness `at_pad` in y and z, from the stiffness computed in its `plane` and, of x,
 /// ry and rz at the pad's middle, `across` it; the part's `shoulder` lies so far above the TCP, m.
 ///
 /// # Errors
@@ -62,9 +46,10 @@ pub(super) fn finger(
     plane: PlanarStiffness,
     across: Matrix3<f64>,
     shoulder: f64,
-    at_pad: AtPad,
+    at_pad: &Prediction,
     given: Given,
 ) -> Result<Finger, FingerError> {
+    let [compliance, assembly] = [at_pad.compliance.mean, at_pad.assembly.mean];
     let pad = Pad::of(&printed.outline);
     let middle = pad.middle(shoulder);
     let rcc = given.rcc.unwrap_or(plane.centre_below_pad() - middle);
@@ -85,8 +70,8 @@ pub(super) fn finger(
         );
         Err(FingerError::Unfit { file: printed.file.clone(), problem })
     };
-    let in_y = at_centre("compliance", at_pad.compliance, below)?;
-    let in_z = at_centre("assembly", at_pad.assembly, ahead)?;
+    let in_y = at_centre("compliance", compliance, below)?;
+    let in_z = at_centre("assembly", assembly, ahead)?;
     // x at the pad = x at the centre + ry below + rz ahead.
     let to_pad = Matrix3::new(1.0, below, ahead, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
     let across = to_pad.transpose() * across * to_pad;
@@ -107,7 +92,7 @@ pub(super) fn finger(
         ahead,
         pad,
         coupling: Coupling::of(&matrix),
-        ..Finger::new(at_pad.compliance, at_pad.assembly)
+        ..Finger::new(compliance, assembly)
     })
 }
 
@@ -120,7 +105,7 @@ mod tests {
     use nalgebra::Vector3;
 
     const SHOULDER: f64 = 3.5 * MM;
-    const AT_PAD: AtPad = AtPad { compliance: 2.6e3, assembly: 45e3 };
+    const AT_PAD: [f64; 2] = [2.6e3, 45e3];
 
     /// Springs that sit so far below and in front of the pad, and a plate.
     fn stiffness(below: f64, ahead: f64, tilting: f64) -> (PlanarStiffness, Matrix3<f64>) {
@@ -131,14 +116,14 @@ mod tests {
         (plane, across)
     }
 
-    fn finger(at_pad: AtPad, given: Given) -> Result<Finger, FingerError> {
+    fn finger([compliance, assembly]: [f64; 2], given: Given) -> Result<Finger, FingerError> {
         let (plane, across) = stiffness(8.0 * MM, -2.0 * MM, 2.5);
         super::finger(
             &crate::fixtures::finger_file().finger,
             plane,
             across,
             SHOULDER,
-            at_pad,
+            &Prediction::exact(compliance, assembly),
             given,
         )
     }
@@ -162,7 +147,7 @@ mod tests {
             assert!((found / stiffness - 1.0).abs() < 1e-12, "{axis}: {found}");
         }
         // The pad's middle lies 0.95 mm below the TCP of the keys.
-        assert!((finger.rcc - 8.95 * MM).abs() < 1e-12 && finger.compliance > AT_PAD.compliance);
+        assert!((finger.rcc - 8.95 * MM).abs() < 1e-12 && finger.compliance > AT_PAD[0]);
         assert_eq!(finger.pad.height, 9.0 * MM);
         let plate = stiffness(0.0, 0.0, 1.0).1.try_inverse().unwrap();
         for (i, row) in ACROSS.into_iter().enumerate() {
@@ -188,7 +173,11 @@ mod tests {
         for part in ["finray9", "2.60 N/mm", "compliance", "39.0 mm", "2.50 N m/rad", "rcc_mm"] {
             assert!(error.contains(part), "{error}");
         }
-        let stiff = AtPad { assembly: 1e6, ..AT_PAD };
-        assert!(finger(stiff, Given::default()).unwrap_err().to_string().contains("assembly"));
+        assert!(
+            finger([AT_PAD[0], 1e6], Given::default())
+                .unwrap_err()
+                .to_string()
+                .contains("assembly")
+        );
     }
 }

@@ -1,11 +1,12 @@
 //! Models of the springs of a finger that were not measured: of the paper, or computed from the ribs.
 
 use super::Finger;
-use super::computed::{self, AtPad, Given};
+use super::computed::{self, Given};
 use crate::finger::file::{FingerFile, infill, is_shape};
 use crate::space::{DIRECTION_KEY, Design};
+use crate::surrogate::Prediction;
 use crate::task::Task;
-use crate::task::finger::{Coupling, Rcc};
+use crate::task::finger::Coupling;
 use finray::FingerError;
 use finray::mechanics::{FingerStiffness, StiffnessCache};
 use input::units::MM;
@@ -50,15 +51,6 @@ pub struct ComputedFingers {
     cache: StiffnessCache,
 }
 
-/// A finger, and where its remote centre comes from.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Made {
-    /// Finger with its springs.
-    pub finger: Finger,
-    /// Source of its remote centre.
-    pub centre: CentreFrom,
-}
-
 /// Source of a finger's remote centre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CentreFrom {
@@ -79,34 +71,32 @@ impl FingerSource {
         }
     }
 
-    /// Returns the finger of a design on a task, so stiff at its pad (or, in the paper, at its centre).
+    /// Returns the finger of a design on a task with the predicted stiffness at its pad (of the paper's model, at
+    /// its centre).
     /// Its other numbers, but for remote centre and tilting stiffness, are set by the caller.
     ///
     /// # Errors
     /// If the printed finger cannot be, or cannot be so stiff.
-    pub fn make(&self, at_pad: AtPad, design: &Design, task: &Task) -> Result<Made, FingerError> {
-        let (set, by_file) = (design.get(RCC_KEY), task.finger.rcc);
-        let centre = match (set, by_file) {
-            (Some(_), _) => CentreFrom::Design,
-            (None, Some(_)) => CentreFrom::TaskFile,
-            (None, None) => CentreFrom::Model,
-        };
+    pub fn make(
+        &self,
+        at_pad: &Prediction,
+        design: &Design,
+        task: &Task,
+    ) -> Result<Finger, FingerError> {
+        let rcc = design.get(RCC_KEY).map(|mm| mm * MM);
         let direction = design.get(DIRECTION_KEY).unwrap_or_default();
-        let finger = match self {
+        match self {
             FingerSource::Paper => {
-                let finger = Finger::new(at_pad.compliance, at_pad.assembly);
+                let finger = Finger::new(at_pad.compliance.mean, at_pad.assembly.mean);
                 let finger = finger.shaped(&task.finger, direction);
-                Finger { rcc: set.map_or(finger.rcc, |mm| mm * MM), ..finger }
+                Ok(Finger { rcc: rcc.unwrap_or(finger.rcc), ..finger })
             }
             FingerSource::Computed(fingers) => {
-                let given = Given {
-                    rcc: set.map(|mm| mm * MM).or(by_file.map(|rcc: Rcc| rcc.at(direction))),
-                    tilting: design.get(TILTING_KEY),
-                };
-                fingers.finger(at_pad, design, task, given)?
+                let rcc = rcc.or(task.finger.rcc.map(|rcc| rcc.at(direction)));
+                let given = Given { rcc, tilting: design.get(TILTING_KEY) };
+                fingers.finger(at_pad, design, task, given)
             }
-        };
-        Ok(Made { finger, centre })
+        }
     }
 
     /// Returns a finger of this kind, for asking whether an engine can simulate such.
@@ -135,7 +125,7 @@ impl ComputedFingers {
 
     fn finger(
         &self,
-        at_pad: AtPad,
+        at_pad: &Prediction,
         design: &Design,
         task: &Task,
         given: Given,
@@ -148,7 +138,7 @@ impl ComputedFingers {
         let mut plane = computed.pad_and_roof;
         if design.0.keys().any(|key| is_shape(key)) {
             // Not measured: the ratio of others may not make their centre impossible.
-            plane = plane.corrected(at_pad.compliance, at_pad.assembly).unwrap_or(plane);
+            plane = plane.corrected(at_pad.compliance.mean, at_pad.assembly.mean).unwrap_or(plane);
         }
         let (printed, across) = (&self.file.with(design)?, computed.cross.matrix);
         computed::finger(printed, plane, across, task.grip.shoulder(), at_pad, given)

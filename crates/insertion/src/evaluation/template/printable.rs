@@ -3,7 +3,6 @@
 use super::space::{each_corner, each_extreme};
 use super::{Impossible, is_infill};
 use crate::evaluation::evaluator::Evaluator;
-use crate::finger::computed::AtPad;
 use crate::finger::file::{FingerFile, infill, is_shape};
 use crate::finger::model::{FingerSource, RCC_KEY, TILTING_KEY};
 use crate::space::{Design, Space, Variable};
@@ -49,9 +48,8 @@ pub fn check_springs(evaluator: &Evaluator, space: &Space, file: &str) -> Result
 
 fn springs(evaluator: &Evaluator, design: &Design) -> Result<(), Impossible> {
     let stiffness = evaluator.predict(design)?;
-    let at_pad = AtPad::of(&stiffness);
     for template in &evaluator.templates {
-        evaluator.fingers.make(at_pad, design, &template.task)?;
+        evaluator.fingers.make(&stiffness, design, &template.task)?;
     }
     Ok(())
 }

@@ -6,8 +6,7 @@ use super::mating_force::{RawMatingForce, mating_force};
 use super::parts_file::PartsFile;
 use super::raw_part::{RawPart, interval, parts};
 use super::{
-    Ending, Friction, Grip, Limits, PadTorsion, Phase, Plug, Sensed, Stage, StartRule, Strategy,
-    Success, Task,
+    Ending, Friction, Grip, Limits, PadTorsion, Phase, Plug, Sensed, Stage, Strategy, Success, Task,
 };
 use input::units::MM;
 use input::units::read::{deg, gram, mm};
@@ -30,7 +29,7 @@ struct RawTask {
     friction: Friction,
     #[serde(default)]
     finger: RawFinger,
-    strategy: RawStrategy,
+    strategy: Strategy<RawPhase>,
     success: Success,
     #[serde(default)]
     limits: Limits,
@@ -57,18 +56,6 @@ struct RawSocket {
     opening_y: [f64; 2],
     #[serde(default)]
     part: Vec<RawPart>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawStrategy {
-    #[serde(rename = "tilt_deg", deserialize_with = "deg")]
-    tilt: f64,
-    #[serde(rename = "start_mm", deserialize_with = "mm")]
-    start: [f64; 3],
-    #[serde(rename = "start", default)]
-    rule: StartRule,
-    phase: Vec<RawPhase>,
 }
 
 #[derive(Deserialize)]
@@ -198,9 +185,9 @@ fn check_torsion(check: Check<'_>, friction: &Friction) -> Result<(), InputError
     check.fail("friction.finger_plug_torsion_mm", problem)
 }
 
-fn strategy(check: Check<'_>, raw: RawStrategy) -> Result<Strategy, InputError> {
+fn strategy(check: Check<'_>, raw: Strategy<RawPhase>) -> Result<Strategy, InputError> {
     let key = "strategy.phase";
-    let RawStrategy { tilt, start, rule, phase: raw } = raw;
+    let Strategy { tilt, start, rule, phases: raw } = raw;
     if raw.len() > MAX_PHASES {
         return check.fail(key, format!("there are {}; the maximum is {MAX_PHASES}", raw.len()));
     }

@@ -98,12 +98,8 @@ impl<R: Deref<Target: Rig> + Send + Sync> Rig for Moved<R> {
 }
 
 impl Grasped for Moved<Box<dyn Grasped + '_>> {
-    fn sampled(&self, shift: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
-        self.rig.sampled(shift + offset(self.by), every_s)
-    }
-
-    fn logged(&self, shift: f64, every_s: f64) -> (Trial, Vec<Sample>) {
-        self.rig.logged(shift + offset(self.by), every_s)
+    fn run(&self, shift: f64, every_s: Option<f64>, rest_s: f64) -> (Trial, Vec<Sample>) {
+        self.rig.run(shift + offset(self.by), every_s, rest_s)
     }
 }
 

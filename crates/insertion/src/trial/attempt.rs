@@ -4,6 +4,7 @@ use super::cell::{self, Hand, WorkCell};
 use super::classify::{Facts, Placement, classify};
 use super::motion::{Move, Tcp};
 use super::record::{Frame, Recorder, Sample, Trace};
+use super::run::Watched;
 use super::watch::{LeadingEdge, Watch};
 use super::{Conditions, PhaseEnd, Poses, Trial};
 use crate::outcome::Outcome;
@@ -163,13 +164,7 @@ impl<'a> Attempt<'a> {
     }
 
     fn phase(&mut self, phase: &Phase) -> Result<(), Stop> {
-        if phase.stage == Stage::Assembly
-            && self.stage != Stage::Assembly
-            && self.task.grip.hold == Hold::Assembly
-        {
-            self.hold();
-        }
-        self.stage = phase.stage;
+        self.enter(phase.stage);
         let begun = self.begun.take().unwrap_or(Begun { motion: self.motion(phase), steps: 0 });
         let motion = begun.motion;
         let end = match phase.ending {
@@ -179,6 +174,15 @@ impl<'a> Attempt<'a> {
         };
         self.end_phase(&phase.name);
         end
+    }
+
+    /// Begins a stage; the jaws may be held from the assembly on.
+    fn enter(&mut self, stage: Stage) {
+        let assembly = stage == Stage::Assembly && self.stage != stage;
+        if assembly && self.task.grip.hold == Hold::Assembly {
+            self.hold();
+        }
+        self.stage = stage;
     }
 
     fn motion(&self, phase: &Phase) -> Move {
@@ -413,7 +417,8 @@ impl<'a> Attempt<'a> {
         self.watch.entered && !self.placement().astray(&self.task)
     }
 
-    pub fn result(self, end: Result<(), Stop>) -> Trial {
+    /// Returns the trial that ended so, its samples and its frames.
+    pub fn result(self, end: Result<(), Stop>) -> Watched {
         let placement = self.placement();
         // At rest, or where a bottomed part stopped the robot: what passes by may tip on.
         let held = matches!(end, Ok(()) | Err(Stop::ForceLimit));
@@ -425,7 +430,7 @@ impl<'a> Attempt<'a> {
         };
         let diverged = matches!(end, Err(Stop::Diverged | Stop::Interrupted));
         let outcome = if diverged { Outcome::Diverged } else { classify(facts) };
-        Trial {
+        let trial = Trial {
             outcome,
             margin: placement.margin(&self.task, outcome),
             depth_mm: -placement.tip.z / MM,
@@ -435,7 +440,9 @@ impl<'a> Attempt<'a> {
             simulated_s: self.time,
             phases: self.phases,
             retried: false,
-        }
+        };
+        let samples = self.trace.map_or_else(Vec::new, |trace| trace.samples);
+        (trial, samples, self.recorder.map_or_else(Vec::new, |recorder| recorder.frames))
     }
 }
 

@@ -144,18 +144,27 @@ pub trait Rig: Send + Sync {
     }
 }
 
+/// Rest before a logged trial, and once more as the first part of its log, s.
+const ZEROED_S: f64 = 0.2;
+
 /// A part held and tilted, ready for a trial at any offset.
 pub trait Grasped: Send + Sync {
-    /// One trial with the start shifted by `offset` metres along y; sampled each `every_s` seconds.
-    fn sampled(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>);
+    /// Runs a trial with the start shifted by `offset` metres along y: after a rest of `rest_s` seconds, sampled each
+    /// `every_s` seconds from there on, and a second rest.
+    fn run(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> (Trial, Vec<Sample>);
 
-    /// The same after a rest in which a robot zeroes its sensor, sampled from there on: what it logs.
+    /// Returns the trial from the search on, with its samples.
+    fn sampled(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
+        self.run(offset, every_s, 0.0)
+    }
+
+    /// Returns the trial with the rest in which a robot zeroes its sensor, sampled as the robot logs it.
     fn logged(&self, offset: f64, every_s: f64) -> (Trial, Vec<Sample>) {
-        self.sampled(offset, Some(every_s))
+        self.run(offset, Some(every_s), ZEROED_S)
     }
 
     /// Returns the trial alone.
     fn trial(&self, offset: f64) -> Trial {
-        self.sampled(offset, None).0
+        self.run(offset, None, 0.0).0
     }
 }

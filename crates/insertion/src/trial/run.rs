@@ -92,8 +92,6 @@ impl EngineRig {
     }
 }
 
-/// Rest before a logged attempt, and once more as the first part of its log, s.
-const ZEROED_S: f64 = 0.2;
 /// Half of the width of the plate that is probed, m: no plug gets near its rim.
 const PLATE: f64 = 0.1;
 
@@ -117,9 +115,9 @@ impl Rig for EngineRig {
 
     fn follow(&self, grasp: Grasp<'_>, course: Course<'_>, every_s: f64) -> Vec<Followed> {
         let engine = &*self.engine;
-        let ended = |mut attempt: Attempt<'_>, end| {
-            let samples = attempt.sampled();
-            (attempt.result(end), samples)
+        let ended = |attempt: Attempt<'_>, end| {
+            let (trial, samples, _) = attempt.result(end);
+            (trial, samples)
         };
         match course {
             Course::Paths(paths) => {
@@ -157,19 +155,14 @@ struct Ready<'a> {
 }
 
 impl Grasped for Ready<'_> {
-    fn sampled(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
-        let (trial, samples, _) = self.watched(offset, every_s, 0.0);
-        (trial, samples)
-    }
-
-    fn logged(&self, offset: f64, every_s: f64) -> (Trial, Vec<Sample>) {
-        let (trial, samples, _) = self.watched(offset, Some(every_s), ZEROED_S);
+    fn run(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> (Trial, Vec<Sample>) {
+        let (trial, samples, _) = self.watched(offset, every_s, rest_s);
         (trial, samples)
     }
 }
 
 /// A trial, samples from the search on, and frames from the grasp on; both if asked for.
-type Watched = (Trial, Vec<Sample>, Vec<Frame>);
+pub(super) type Watched = (Trial, Vec<Sample>, Vec<Frame>);
 
 impl Ready<'_> {
     fn watched(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> Watched {
@@ -211,9 +204,7 @@ impl<'a> Prepared<'a> {
         }
         let end = end.and_then(|()| attempt.rest(rest_s));
         let end = end.and_then(|()| attempt.search_and_assemble());
-        let samples = attempt.trace.take().map_or_else(Vec::new, |trace| trace.samples);
-        let frames = attempt.recorder.take().map_or_else(Vec::new, |recorder| recorder.frames);
-        (attempt.result(end), samples, frames)
+        attempt.result(end)
     }
 }
 

@@ -1,9 +1,9 @@
 //! Trial along the commanded path of a log; and the friction probe.
 
 use super::{Attempt, Stop};
-use crate::task::{Hold, Stage};
+use crate::task::Stage;
 use crate::trial::motion::{Move, Tcp};
-use crate::trial::record::{Sample, Trace};
+use crate::trial::record::Trace;
 use input::units::MM;
 use nalgebra::Vector3;
 
@@ -101,10 +101,7 @@ impl Attempt<'_> {
             let time = i as f64 * self.world.step_s();
             if time > push && self.stage == Stage::Search {
                 self.end_phase("search");
-                self.stage = Stage::Assembly;
-                if self.task.grip.hold == Hold::Assembly {
-                    self.hold();
-                }
+                self.enter(Stage::Assembly);
             }
             self.target = path.at(time);
             self.step()?;
@@ -145,10 +142,5 @@ impl Attempt<'_> {
     fn press(&mut self, velocity: Vector3<f64>) -> Result<(), Stop> {
         self.target = self.target.moved(velocity * self.world.step_s());
         self.step()
-    }
-
-    /// Samples so far, which are taken out.
-    pub fn sampled(&mut self) -> Vec<Sample> {
-        self.trace.take().map_or_else(Vec::new, |trace| trace.samples)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Attempt, REST, Stop};
 use crate::outcome::Outcome;
-use crate::task::{Hold, Stage};
+use crate::task::Stage;
 use crate::trial::classify::{Facts, classify};
 use input::units::{DEG, MM};
 use nalgebra::Vector3;
@@ -81,10 +81,7 @@ impl Driven {
     fn watch(&mut self, dt: f64) {
         let attempt = &mut self.attempt;
         if attempt.watch.entered && attempt.stage == Stage::Search {
-            attempt.stage = Stage::Assembly;
-            if attempt.task.grip.hold == Hold::Assembly {
-                attempt.hold();
-            }
+            attempt.enter(Stage::Assembly);
         }
         let seated = attempt.placement().seated(&attempt.task) && attempt.watch.gripped();
         self.seated_s = if seated { self.seated_s + dt } else { 0.0 };

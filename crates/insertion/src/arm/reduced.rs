@@ -73,6 +73,7 @@ impl Arm {
             Matrix6::from_diagonal(&Angles::from_iterator(self.joints.iter().map(of)))
         };
         let linear = (both(&task.inverse()) * jacobian).fixed_rows::<3>(0).into_owned();
+        let time_constants = self.joints.iter().map(|joint| joint.damping / joint.stiffness);
         let soft = diagonal(|joint| 1.0 / joint.stiffness);
         Ok(Reduced {
             stiffness: at_tcp(&diagonal(|joint| joint.stiffness)),
@@ -80,11 +81,7 @@ impl Arm {
             mass: at_tcp(&self.mass(&posture)),
             tilt: 0.0,
             feed_forward: self.feed_forward,
-            time_constant: self
-                .joints
-                .iter()
-                .map(|joint| joint.damping / joint.stiffness)
-                .fold(0.0, f64::max),
+            time_constant: time_constants.fold(0.0, f64::max),
             assembly_force: self.assembly_force,
             compliance: linear * soft * linear.transpose(),
             torques: linear.transpose(),

@@ -101,10 +101,7 @@ impl Solid {
                 Vector3::new(centre[0], centre[1], (z[0] + z[1]) / 2.0),
             ),
             Solid::Prism { .. } | Solid::Hull { .. } | Solid::Rounded(_) => {
-                let corners = self.corners();
-                let middle =
-                    corners.iter().map(|p| p.coords).sum::<Vector3<f64>>() / corners.len() as f64;
-                (Shape::Hull { points: corners.iter().map(|p| p - middle).collect() }, middle)
+                centred(&self.corners())
             }
         }
     }
@@ -154,6 +151,12 @@ impl Solid {
             }
         }
     }
+}
+
+/// Returns the hull of points about their mean, and the mean.
+pub(super) fn centred(points: &[Point3<f64>]) -> (Shape, Vector3<f64>) {
+    let middle = points.iter().map(|p| p.coords).sum::<Vector3<f64>>() / points.len().max(1) as f64;
+    (Shape::Hull { points: points.iter().map(|p| p - middle).collect() }, middle)
 }
 
 /// Returns the two axes that are not `axis`, in the order x, y, z.

@@ -95,7 +95,7 @@ impl Rounded {
         if points.len() != flats.len() {
             return None;
         }
-        found.push(centred(points));
+        found.push(geometry::centred(&points));
         found.extend(
             self.ends().filter(|end| self.ball(end).is_none()).filter_map(|end| self.corner(&end)),
         );
@@ -177,7 +177,7 @@ impl Rounded {
             let from_low = if end.high { self.size[end.axis] - reach } else { reach };
             bounds.push(far_side(*end, from_low));
         }
-        Some(centred(corners(&bounds))).filter(|(shape, _)| shape.corners().len() > 3)
+        Some(geometry::centred(&corners(&bounds))).filter(|(shape, _)| shape.corners().len() > 3)
     }
 }
 
@@ -185,11 +185,6 @@ impl Rounded {
 fn far_side(end: Face, at: f64) -> HalfSpace {
     let inward = -end.outward();
     (inward, inward[end.axis] * at)
-}
-
-fn centred(points: Vec<Point3<f64>>) -> (Shape, Vector3<f64>) {
-    let middle = points.iter().map(|p| p.coords).sum::<Vector3<f64>>() / points.len().max(1) as f64;
-    (Shape::Hull { points: points.iter().map(|p| p - middle).collect() }, middle)
 }
 
 #[cfg(test)]

@@ -237,15 +237,12 @@ impl RawRobust {
         let statistic = match (self.statistic, self.sd_factor, self.tail) {
             (RawStatistic::MeanMinusSd, Some(factor), None) => Statistic::MeanMinusSd(factor),
             (RawStatistic::LowerTail, None, Some(share)) => Statistic::LowerTail(share),
-            (statistic, ..) => {
-                let problem = match statistic {
-                    RawStatistic::MeanMinusSd => {
-                        "\"mean-minus-sd\" requires sd_factor and excludes tail_percent"
-                    }
-                    RawStatistic::LowerTail => {
-                        "\"lower-tail\" requires tail_percent and excludes sd_factor"
-                    }
-                };
+            (RawStatistic::MeanMinusSd, ..) => {
+                let problem = "\"mean-minus-sd\" requires sd_factor and excludes tail_percent";
+                return check.fail("robust_range.statistic", problem);
+            }
+            (RawStatistic::LowerTail, ..) => {
+                let problem = "\"lower-tail\" requires tail_percent and excludes sd_factor";
                 return check.fail("robust_range.statistic", problem);
             }
         };

@@ -25,15 +25,10 @@ pub struct Race {
 impl Race {
     /// Returns the order of this number of draws.
     pub fn order(&self, draws: u32) -> Vec<u32> {
-        let mut place = vec![usize::MAX; draws as usize];
-        for (at, &draw) in self.first.iter().enumerate() {
-            if let Some(place) = place.get_mut(draw as usize) {
-                *place = at;
-            }
-        }
+        let place = |draw: &u32| self.first.iter().rposition(|first| first == draw);
         let mut order: Vec<u32> = (0..draws).collect();
         // Stable: the others stay in their order.
-        order.sort_by_key(|&draw| place[draw as usize]);
+        order.sort_by_cached_key(|draw| place(draw).unwrap_or(usize::MAX));
         order
     }
 

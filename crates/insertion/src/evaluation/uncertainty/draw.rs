@@ -63,17 +63,10 @@ fn draw(errors: &Errors, seed: u64, index: u64) -> Draw {
 }
 
 impl Draw {
-    /// An insertion without any error.
-    const NOMINAL: Draw = Draw {
-        offset: 0.0,
-        conditions: Conditions::NOMINAL,
-        stiffness: [0.0; 2],
-        stiffness_sd_factor: 1.0,
-    };
-
     /// Returns the insertion under these errors of the cell, each in the unit of its path, and no others.
     pub fn under<'a>(errors: impl IntoIterator<Item = (&'a str, f64)>) -> Self {
-        let mut draw = Draw::NOMINAL;
+        let (conditions, stiffness) = (Conditions::NOMINAL, [0.0; 2]);
+        let mut draw = Draw { offset: 0.0, conditions, stiffness, stiffness_sd_factor: 1.0 };
         errors.into_iter().for_each(|(path, value)| draw.set(path, value));
         draw
     }
@@ -224,10 +217,10 @@ mod tests {
     fn every_error_of_the_table_of_numbers_is_set_by_its_path_alone() {
         let paths = paths(Kind::Error);
         assert_eq!(paths.len(), 11);
-        assert_eq!(Draw::under(paths.iter().map(|path| (&**path, 0.0))), Draw::NOMINAL);
+        assert_eq!(Draw::under(paths.iter().map(|path| (&**path, 0.0))), Draw::under([]));
         let set: Vec<Draw> = paths.iter().map(|path| Draw::under([(&**path, 1.0)])).collect();
         for (i, draw) in set.iter().enumerate() {
-            assert_ne!(*draw, Draw::NOMINAL, "{}", paths[i]);
+            assert_ne!(*draw, Draw::under([]), "{}", paths[i]);
             assert!(!set[..i].contains(draw), "{}", paths[i]);
         }
     }

@@ -412,9 +412,17 @@ impl<'a> Attempt<'a> {
         self.phases.push(end);
     }
 
-    /// Whether the leading edge was inside the opening, and the plug is not beside its mated pose.
-    pub fn entered(&self) -> bool {
-        self.watch.entered && !self.placement().astray(&self.task)
+    /// Returns the outcome of an attempt that ended so, with the part seated or not.
+    fn outcome(&self, end: Result<(), Stop>, seated: bool) -> Outcome {
+        if matches!(end, Err(Stop::Diverged | Stop::Interrupted)) {
+            return Outcome::Diverged;
+        }
+        classify(Facts {
+            seated,
+            gripped: self.watch.gripped(),
+            lost_in: (end == Err(Stop::Lost)).then_some(self.stage),
+            entered: self.watch.entered && !self.placement().astray(&self.task),
+        })
     }
 
     /// Returns the trial that ended so, its samples and its frames.
@@ -422,14 +430,8 @@ impl<'a> Attempt<'a> {
         let placement = self.placement();
         // At rest, or where a bottomed part stopped the robot: what passes by may tip on.
         let held = matches!(end, Ok(()) | Err(Stop::ForceLimit));
-        let facts = Facts {
-            seated: held && self.stage == Stage::Assembly && placement.seated(&self.task),
-            gripped: self.watch.gripped(),
-            lost_in: (end == Err(Stop::Lost)).then_some(self.stage),
-            entered: self.entered(),
-        };
-        let diverged = matches!(end, Err(Stop::Diverged | Stop::Interrupted));
-        let outcome = if diverged { Outcome::Diverged } else { classify(facts) };
+        let seated = held && self.stage == Stage::Assembly && placement.seated(&self.task);
+        let outcome = self.outcome(end, seated);
         let trial = Trial {
             outcome,
             margin: placement.margin(&self.task, outcome),

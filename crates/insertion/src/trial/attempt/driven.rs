@@ -3,7 +3,6 @@
 use super::{Attempt, REST, Stop};
 use crate::outcome::Outcome;
 use crate::task::Stage;
-use crate::trial::classify::{Facts, classify};
 use input::units::{DEG, MM};
 use nalgebra::Vector3;
 
@@ -90,13 +89,10 @@ impl Driven {
     fn outcome(&self) -> Option<Outcome> {
         match self.end {
             Ok(()) => (self.seated_s >= REST).then_some(Outcome::Inserted),
-            Err(Stop::Diverged | Stop::Interrupted) => Some(Outcome::Diverged),
-            Err(stop) => Some(classify(Facts {
-                seated: stop == Stop::ForceLimit && self.seated_s > 0.0,
-                gripped: self.attempt.watch.gripped(),
-                lost_in: (stop == Stop::Lost).then_some(self.attempt.stage),
-                entered: self.attempt.entered(),
-            })),
+            Err(stop) => {
+                let seated = stop == Stop::ForceLimit && self.seated_s > 0.0;
+                Some(self.attempt.outcome(self.end, seated))
+            }
         }
     }
 

@@ -31,7 +31,7 @@ impl FailureClass {
         self as u8 + 1
     }
 
-    /// Name for texts and tables.
+    /// Returns the name for texts and tables.
     pub fn label(self) -> &'static str {
         let labels =
             ["contact loss before insertion", "plug missed", "jammed", "contact loss in insertion"];
@@ -74,7 +74,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// `inserted`, `failed` or `diverged`, as files and JSON have it.
+    /// Returns `inserted`, `failed` or `diverged`, as in files and JSON.
     pub fn word(self) -> &'static str {
         match self {
             Outcome::Inserted => "inserted",
@@ -83,7 +83,7 @@ impl Outcome {
         }
     }
 
-    /// Words for readers; of a failure the name of its class.
+    /// Returns the name for texts; for a failure that of its class.
     pub fn label(self) -> &'static str {
         match self {
             Outcome::Failed(class) => class.label(),

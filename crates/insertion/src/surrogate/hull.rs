@@ -32,7 +32,7 @@ impl Hull {
         hull
     }
 
-    /// Distance in units of the spans; 0 inside and on the edge.
+    /// Returns the distance in units of the spans; 0 inside and on the edge.
     pub fn distance(&self, point: Infill) -> f64 {
         let p = self.scale(point);
         let edges =
@@ -47,6 +47,7 @@ impl Hull {
     }
 }
 
+/// Returns the distance of `p` from the segment from `a` to `b`.
 fn to_segment(a: Point2<f64>, b: Point2<f64>, p: Point2<f64>) -> f64 {
     let (along, from_a) = (b - a, p - a);
     let squared = along.norm_squared();

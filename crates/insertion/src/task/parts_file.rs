@@ -35,7 +35,7 @@ pub fn with_parts(source: Source) -> Result<Source, InputError> {
     if !source.text.contains("[parts]") || source.text.contains(APPENDED) {
         return Ok(source);
     }
-    // What is no TOML is told by the parser of the task.
+    // The parser of the task reports invalid TOML.
     let Ok(mut table) = source.text.parse::<Table>() else { return Ok(source) };
     let named = table.remove("parts").and_then(|named| named.try_into::<PartsFile>().ok());
     let Some(named) = named else { return Ok(source) };

@@ -23,7 +23,7 @@ pub struct FakeRig {
 const DELAY: &str = "FINGER_OPT_FAKE_DELAY_US";
 
 impl FakeRig {
-    /// With the delay that the environment asks for.
+    /// Creates the rig with the delay of the environment variable.
     pub fn from_environment() -> Self {
         let delay = std::env::var(DELAY).ok().and_then(|text| text.parse().ok());
         FakeRig { delay: std::time::Duration::from_micros(delay.unwrap_or(0)) }

@@ -13,40 +13,40 @@ use input::units::N_PER_MM;
 use nalgebra::Vector3;
 use std::sync::{Arc, OnceLock};
 
-/// A task, a robot in place for it, and an engine that can simulate both.
+/// Task, robot at its start, and an engine that supports both.
 pub struct EngineRig {
-    /// Task that the robot is in place for.
+    /// Task at whose start the robot is.
     pub task: Task,
     robot: Arc<Mounted>,
     engine: Box<dyn Engine>,
 }
 
-/// Error of task, robot and engine that do not go together.
+/// Error of a robot or an engine that does not support a task.
 #[derive(Debug, thiserror::Error)]
 pub enum RigError {
-    /// Names of robot and task, and why the robot cannot do it, or not in time.
+    /// Names of robot and task, and why the robot does not support it.
     #[error("the robot `{0}` on the task `{1}`: {2}")]
     Robot(String, String, String),
-    /// The engine cannot simulate the two.
+    /// The engine does not support them.
     #[error(transparent)]
     Engine(#[from] Unsupported),
 }
 
 impl EngineRig {
-    /// Puts the robot in place for the paper's fingers.
+    /// Creates the rig for the paper's fingers.
     ///
     /// # Errors
-    /// If robot or engine cannot do the task.
+    /// If the robot or the engine does not support the task.
     pub fn new(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<Self, RigError> {
-        // What a scene needs does not depend on how stiff its fingers are.
+        // Whether a scene is supported does not depend on the stiffness of the fingers.
         let any = Finger::new(N_PER_MM, N_PER_MM).shaped(&task.finger, 0.0);
         Self::with(task, robot, &any, engine)
     }
 
-    /// Puts the robot in place for such fingers.
+    /// Creates the rig for fingers like this one.
     ///
     /// # Errors
-    /// If robot or engine cannot do the task.
+    /// If the robot or the engine does not support the task.
     pub fn with(
         task: Task,
         robot: &Robot,
@@ -144,7 +144,7 @@ impl Rig for EngineRig {
     }
 }
 
-/// An attempt stopped right before the search, and what it takes to begin it again.
+/// Attempt stopped right before the search, and the inputs to repeat it.
 struct Ready<'a> {
     rig: &'a EngineRig,
     grasp: Grasp<'a>,
@@ -161,7 +161,7 @@ impl Grasped for Ready<'_> {
     }
 }
 
-/// A trial, samples from the search on, and frames from the grasp on; both if asked for.
+/// A trial, samples from the search on, and frames from the grasp on; both empty unless requested.
 pub(super) type Watched = (Trial, Vec<Sample>, Vec<Frame>);
 
 impl Ready<'_> {
@@ -177,16 +177,16 @@ impl Ready<'_> {
     }
 }
 
-/// An attempt stopped right before the search; every offset starts from a copy.
+/// Attempt stopped right before the search; every offset starts from a copy.
 struct Prepared<'a> {
     attempt: Attempt<'a>,
     end: Result<(), Stop>,
-    /// The attempt after its way through the air, where that is the same for every offset.
+    /// Attempt after the shared descent, if there is one.
     descended: OnceLock<Option<Attempt<'a>>>,
 }
 
 impl<'a> Prepared<'a> {
-    /// Common start of all offsets, where nobody looks at the way through the air.
+    /// Returns the common start of all offsets after the shared descent, if there is one.
     fn descended(&self) -> Option<&Attempt<'a>> {
         self.end.ok()?;
         self.descended.get_or_init(|| self.attempt.descended()).as_ref()

@@ -130,7 +130,7 @@ impl Evaluator {
     /// Checks the values of the evaluator's cell on each task; `file` is named in errors.
     ///
     /// # Errors
-    /// The first row with an invalid value, or as of [`Evaluator::check_paths`].
+    /// The first row with an invalid value, or same as for [`Evaluator::check_paths`].
     pub fn check_cell(&self, file: &str) -> Result<(), InputError> {
         let Some(cell) = &self.cell else { return Ok(()) };
         self.check_paths(cell, file)?;

@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Race {
-    /// Success rate to be reached, 0 to 1. With several tasks it holds on each of them: the worst
-    /// counts.
+    /// Success rate to be reached, 0 to 1. With several tasks, each must
+    /// reach it.
     pub bar_share: f64,
     /// Number of draws.
     pub draws: u32,

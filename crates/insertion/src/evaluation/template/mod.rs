@@ -2,7 +2,7 @@
 //!
 //! A key of a space is `infill_density_percent`, `infill_direction_deg`, or a path to one number:
 //!
-//! - `task.`, then the path in the task file as of [`NumberFile`]
+//! - `task.`, then the path in the task file as described at [`NumberFile`]
 //!   (`task.strategy.phase.side.speed_mm_per_s`, `task.strategy.phase.side.move_mm.y`);
 //! - `finger.`, then a number of the finger that the files make (`finger.rcc_mm`).
 //!
@@ -31,7 +31,7 @@ use parameters::numbers::{self, Kind, paths};
 pub struct Template {
     /// Numbers of the file, by their keys.
     pub numbers: NumberFile,
-    /// The task as the file has it.
+    /// Task of the file, unchanged.
     pub task: Task,
 }
 
@@ -67,7 +67,7 @@ impl Template {
     /// Reads and checks a task file; `file` is named in errors.
     ///
     /// # Errors
-    /// As of [`Task::parse`].
+    /// Same as for [`Task::parse`].
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         let document = Document::parse(text, file)?;
         let task = Task::read(&document)?;

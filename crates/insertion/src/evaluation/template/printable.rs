@@ -29,8 +29,8 @@ pub fn check(space: &Space, file: &str, finger: &FingerFile) -> Result<(), Input
 }
 
 /// Checks that a space read from `file` that sets the remote centre or tilting stiffness of computed fingers has
-/// springs for each. A centre may be so far away that turning about it alone is softer than measured, the more
-/// so the farther and the softer; so the extreme values are tried, also of the infill.
+/// springs for each. Turning about a distant centre alone can be softer than the measured finger, so all
+/// combinations of extreme values are tried, including those of the infill.
 ///
 /// # Errors
 /// The first combination without springs.

@@ -1,4 +1,4 @@
-//! A trial whose moves are commanded from outside: for learning a search.
+//! Trial with moves commanded by the caller, for learning a search strategy.
 
 use super::{Attempt, REST, Stop};
 use crate::outcome::Outcome;
@@ -6,18 +6,18 @@ use crate::task::Stage;
 use input::units::{DEG, MM};
 use nalgebra::Vector3;
 
-/// For how long a command holds, s.
+/// Duration of a command, s.
 pub const CONTROL_S: f64 = 1e-3;
 
-/// A part that is held at the start of the search, and waits for commands.
+/// Trial of a held part at the start of the search, moved by commands.
 pub struct Driven {
-    /// Right before the search; every start is a copy of it.
+    /// State right before the search; each start is a copy.
     ready: Attempt<'static>,
-    /// Whether grasp and approach came so far.
+    /// Result of grasp and approach.
     prepared: Result<(), Stop>,
     attempt: Attempt<'static>,
     end: Result<(), Stop>,
-    /// For how long the part has been seated and held, s.
+    /// Time for which the part has been seated and held, s.
     seated_s: f64,
 }
 
@@ -26,9 +26,9 @@ pub struct Driven {
 pub struct State {
     /// Simulated time since the start of the search, s.
     pub time_s: f64,
-    /// The TCP as the robot measures it, mm: from where it believes the opening's middle to be.
+    /// TCP as measured by the robot, relative to the assumed middle of the opening, mm.
     pub tcp_mm: [f64; 3],
-    /// Turn of the flange about x, y and z, degrees; the tilt for the search counts.
+    /// Turn of the flange about x, y and z, degrees; it includes the tilt of the search.
     pub turn_deg: [f64; 3],
     /// Net force of the socket on the plug as a wrist sensor filters it, N.
     pub force_n: [f64; 3],
@@ -38,7 +38,7 @@ pub struct State {
     pub tilt_deg: f64,
     /// Slip of the part in the grasp since the grasp, mm.
     pub slip_mm: f64,
-    /// From the tip to where it counts as inserted, mm.
+    /// Distance of the tip from where it counts as inserted, mm.
     pub distance_mm: f64,
     /// Outcome, once it has ended.
     pub outcome: Option<Outcome>,
@@ -52,7 +52,7 @@ impl Driven {
         driven
     }
 
-    /// Begins anew, with the start shifted by `offset` metres along y.
+    /// Restarts, with the start shifted by `offset` metres along y.
     pub fn start(&mut self, offset: f64) -> State {
         self.attempt = self.ready.shifted(offset);
         self.end = self.prepared;
@@ -76,7 +76,7 @@ impl Driven {
         self.state()
     }
 
-    /// Detects what a strategy knows by its phases: the begin of the push, and the part at rest.
+    /// Detects the start of the push and the part at rest, which a strategy defines by its phases.
     fn watch(&mut self, dt: f64) {
         let attempt = &mut self.attempt;
         if attempt.watch.entered && attempt.stage == Stage::Search {
@@ -101,7 +101,7 @@ impl Driven {
         let flange = attempt.world.pose(attempt.cell.flange);
         let placement = attempt.placement();
         let seat = placement.tip + Vector3::z() * attempt.task.success.depth;
-        // Deeper is not farther.
+        // Depth beyond the seat does not count as distance.
         let away = Vector3::new(seat.x, seat.y, seat.z.max(0.0));
         State {
             time_s: attempt.time - self.ready.time,

@@ -140,7 +140,7 @@ pub trait World: Send + Sync {
     /// Moves a fixed body, which must touch nothing before and after.
     fn place(&mut self, body: BodyId, pose: Pose);
 
-    /// Replaces the spring of a sprung axis (0..6) of a joint.
+    /// Replaces the spring of an axis (0..6) of a joint that is a servo from the start.
     fn set_spring(&mut self, joint: JointId, axis: usize, spring: Spring);
 
     /// Applies a force at a free body's centre of mass, N, and a moment, N m, in world axes, in

@@ -55,8 +55,11 @@ impl Geometry {
 
     /// Returns the outline, openings and holes through the base, mm: the solid lies left of every ring.
     pub fn rings_mm(&self) -> Vec<Vec<[f64; 2]>> {
-        let mm = |ring: &Ring| ring.iter().map(|p| [p.x / MM, p.y / MM]).collect();
-        std::iter::once(&self.outer).chain(&self.voids).chain(&self.holes()).map(mm).collect()
+        self.rings().map(|ring| ring.iter().map(|p| [p.x / MM, p.y / MM]).collect()).collect()
+    }
+
+    fn rings(&self) -> impl Iterator<Item = Ring> {
+        std::iter::once(&self.outer).chain(&self.voids).cloned().chain(self.holes())
     }
 
     /// Returns the holes through the held base, clockwise, m; they are no openings of the mechanics.
@@ -67,11 +70,7 @@ impl Geometry {
 
     /// Returns the area of the solid profile, m2.
     pub fn area(&self) -> f64 {
-        std::iter::once(&self.outer)
-            .chain(&self.voids)
-            .chain(&self.holes())
-            .map(|ring| polygon::area(ring))
-            .sum()
+        self.rings().map(|ring| polygon::area(&ring)).sum()
     }
 
     /// Returns the holes and the block that has them, if they do not run through the held base.

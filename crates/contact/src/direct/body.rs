@@ -64,12 +64,9 @@ impl MovingBody {
         if let Kind::Dynamic(place) = self.kind { Some(place) } else { None }
     }
 
-    /// Puts the body elsewhere, at rest.
+    /// Moves a fixed body to a pose.
     pub fn put(&mut self, pose: Pose) {
         self.pose = pose;
-        if let Kind::Driven(target) = &mut self.kind {
-            *target = pose;
-        }
         self.refresh();
     }
 

@@ -11,7 +11,8 @@ use super::body::MovingBody;
 use crate::scene::{Friction, Geom, GeomPair, Pose, Scene, Shape};
 use crate::shapes;
 use nalgebra::{Matrix3, Point3, Vector3};
-use near::{NearList, NearPair, tree};
+use near::{NearList, tree};
+use parry::bounding_volume::{Aabb, BoundingVolume};
 use parry::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
 use parry::shape::{Cuboid, SharedShape, SupportMap};
 use rapier3d_f64::parry;
@@ -69,8 +70,7 @@ struct Solid {
     frame: Pose,
     half: Vector3<f64>,
     /// Enclosing box in the world's axes, m.
-    low: Vector3<f64>,
-    high: Vector3<f64>,
+    boxed: Aabb,
     /// Pose of the body for which these were computed.
     enclosed_at: Option<Pose>,
     /// Axes and centre of the enclosing box in the world.
@@ -86,8 +86,7 @@ struct Solid {
 struct Neighbour {
     solid: usize,
     /// Box about it and all that it may cover, body frame, m.
-    low: Vector3<f64>,
-    high: Vector3<f64>,
+    boxed: Aabb,
 }
 
 /// Pair of shapes that may touch.
@@ -110,7 +109,8 @@ pub(super) struct Detector {
     /// Pairs of bodies, in the order of the scene.
     lists: Vec<NearList>,
     prediction: f64,
-    round: bool,
+    /// Whether a shape has round edges.
+    pub has_round_shapes: bool,
 }
 
 impl Detector {
@@ -125,18 +125,14 @@ impl Detector {
         }
         for i in 0..solids.len() {
             let (own, (range, tree)) = (&solids[i], &bodies[solids[i].body]);
-            let boxed = own.enclosing(2.0 * COVER);
+            let boxed = own.boxed.loosened(2.0 * COVER);
             let found = tree.intersect_aabb(&boxed);
             let mut near: Vec<_> = found.map(|leaf| range.start + leaf as usize).collect();
             near.retain(|&j| j != i && !own.apart(&solids[j], COVER));
             near.sort_unstable();
-            let margin = Vector3::repeat(4.0 * SEAM);
-            let neighbour = |solid: usize| {
-                let Solid { low, high, .. } = &solids[solid];
-                Neighbour { solid, low: low - margin, high: high + margin }
-            };
-            let near: Vec<Neighbour> = near.into_iter().map(neighbour).collect();
-            solids[i].neighbours = near.into();
+            let neighbour =
+                |solid: usize| Neighbour { solid, boxed: solids[solid].boxed.loosened(4.0 * SEAM) };
+            solids[i].neighbours = near.into_iter().map(neighbour).collect();
         }
         let mut from = 0;
         let list = |(number, pair): (usize, &crate::scene::ContactPair)| {
@@ -147,13 +143,8 @@ impl Detector {
             list
         };
         let lists = scene.contacts.iter().enumerate().map(list).collect();
-        let round = solids.iter().any(|solid| solid.round.is_some());
-        Detector { lists, solids, prediction, round }
-    }
-
-    /// Returns whether a shape has round edges.
-    pub fn has_round_shapes(&self) -> bool {
-        self.round
+        let has_round_shapes = solids.iter().any(|solid| solid.round.is_some());
+        Detector { lists, solids, prediction, has_round_shapes }
     }
 
     /// Finds the contacts at the bodies' poses.
@@ -174,22 +165,13 @@ impl Detector {
             if many {
                 list.choose(&relative, &self.solids, prediction);
             }
-            for &NearPair { number, candidate, solids } in
-                if many { &list.close } else { &list.near }
-            {
-                let [first, second] = solids.map(|solid| &self.solids[solid]);
+            for pair in if many { &list.close } else { &list.near } {
+                let [first, second] = pair.solids.map(|solid| &self.solids[solid]);
                 if first.apart(second, prediction) || first.separated(second, prediction) {
                     continue;
                 }
-                let pair = [first, second];
-                list.candidates[candidate].find(
-                    number,
-                    pair,
-                    bodies,
-                    &self.solids,
-                    prediction,
-                    found,
-                );
+                let Some(candidate) = list.candidates.get_mut(&pair.number) else { continue };
+                candidate.find(pair.number, bodies, &self.solids, prediction, found);
             }
         }
         patches::join(found);
@@ -215,8 +197,7 @@ impl Solid {
             pose: geom.pose * turn,
             frame: geom.pose * Pose::translation(centre.x, centre.y, centre.z),
             half,
-            low: Vector3::zeros(),
-            high: Vector3::zeros(),
+            boxed: Aabb::new_invalid(),
             enclosed_at: None,
             axes: Matrix3::identity(),
             centre: Vector3::zeros(),
@@ -244,8 +225,7 @@ impl Solid {
         self.axes = frame.rotation.to_rotation_matrix().into_inner();
         self.centre = frame.translation.vector;
         let reach = self.axes.abs() * self.half;
-        self.low = self.centre - reach;
-        self.high = self.centre + reach;
+        self.boxed = Aabb::from_half_extents(self.centre.into(), reach.into());
     }
 
     /// Whether a face of one of the enclosing boxes separates them.
@@ -257,19 +237,20 @@ impl Solid {
         own.max() > margin || its.max() > margin
     }
 
+    /// Returns whether the enclosing boxes in the world's axes are farther apart than a margin, m.
     fn apart(&self, other: &Solid, margin: f64) -> bool {
-        (0..3).any(|i| self.low[i] > other.high[i] + margin || other.low[i] > self.high[i] + margin)
+        !self.boxed.loosened(margin).intersects(&other.boxed)
     }
 
     /// Whether a neighbour covers a place on the surface, in parry's frame of the shape, m.
     fn covered(&self, place: &Vector3<f64>, outward: &Vector3<f64>, solids: &[Solid]) -> bool {
         let outside = self.pose * Point3::from(place + outward * COVER);
-        self.neighbours.iter().any(|&Neighbour { solid: j, low, high }| {
-            if (0..3).any(|i| outside[i] < low[i] || outside[i] > high[i]) {
+        self.neighbours.iter().any(|&Neighbour { solid: j, boxed }| {
+            if !boxed.contains_local_point(outside.coords.into()) {
                 return false;
             }
-            let boxed = solids[j].frame.inverse_transform_point(&outside).coords.abs();
-            if (0..3).any(|i| boxed[i] > solids[j].half[i] + 2.0 * SEAM) {
+            let inside = solids[j].frame.inverse_transform_point(&outside).coords.abs();
+            if (0..3).any(|i| inside[i] > solids[j].half[i] + 2.0 * SEAM) {
                 return false;
             }
             let local = solids[j].pose.inverse_transform_point(&outside).coords * MILLIMETRES;
@@ -305,6 +286,16 @@ fn faces(shape: &SharedShape) -> Vec<(Vector3<f64>, f64)> {
     normals.map(|normal| (normal, farthest(&normal))).collect()
 }
 
+/// Returns whether no point within `reach`, m, of the origin has moved by `distance`, m, since a pose.
+fn has_stayed(before: Option<&Pose>, now: &Pose, reach: f64, distance: f64) -> bool {
+    before.is_some_and(|before| {
+        let moved = (now.translation.vector - before.translation.vector).norm();
+        // Half the angle, if it is small; of a quaternion that changed its sign about 2.
+        let turned = now.rotation.coords - before.rotation.coords;
+        moved + 2.0 * turned.norm() * reach < distance
+    })
+}
+
 impl Candidate {
     fn new(pair: GeomPair) -> Self {
         let (manifold, points) = (ContactManifold::new(), Vec::new());
@@ -315,12 +306,12 @@ impl Candidate {
     fn find(
         &mut self,
         geoms: usize,
-        [first, second]: [&Solid; 2],
         bodies: &[MovingBody],
         solids: &[Solid],
         prediction: f64,
         found: &mut Vec<Touch>,
     ) {
+        let [first, second] = [self.pair.first, self.pair.second].map(|solid| &solids[solid]);
         let pose = bodies[first.body].pose * first.pose;
         let other = bodies[second.body].pose * second.pose;
         let relative = pose.inv_mul(&other);
@@ -329,7 +320,7 @@ impl Candidate {
             0.0 => STILL,
             radius => STILL.min(ROLL * radius / MILLIMETRES),
         };
-        if !self.still(&relative, second.reach, way) {
+        if !has_stayed(self.found_at.as_ref(), &relative, second.reach, way) {
             self.compute(&relative, (first, second), prediction);
             self.drop_covered(solids);
             self.choose(prediction);
@@ -371,17 +362,6 @@ impl Candidate {
             let places = [point.local_p1, point.local_p2].map(Vector3::from);
             (0..2).all(|i| !sides[i].covered(&(places[i] / MILLIMETRES), &outward[i], solids))
         });
-    }
-
-    /// Whether no point of the second shape, which reaches so far, m, has moved against the first
-    /// since the points were found.
-    fn still(&self, relative: &Pose, reach: f64, way: f64) -> bool {
-        self.found_at.as_ref().is_some_and(|before| {
-            let moved = (relative.translation.vector - before.translation.vector).norm();
-            // Half the angle, if it is small; of a quaternion that changed its sign about 2.
-            let turned = relative.rotation.coords - before.rotation.coords;
-            moved + 2.0 * turned.norm() * reach < way
-        })
     }
 
     /// Keeps the manifold's extreme points.

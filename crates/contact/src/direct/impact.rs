@@ -21,7 +21,7 @@ const IMPACT: f64 = 5e-3;
 impl DirectWorld {
     /// Returns whether the next step has to be divided; the contacts have been detected.
     pub(super) fn is_divided(&mut self) -> bool {
-        if !self.detector.has_round_shapes() {
+        if !self.detector.has_round_shapes {
             return false;
         }
         if self.meets() {

@@ -87,7 +87,7 @@ impl DirectWorld {
         let share = spring / (spring + self.settings.contact_damping);
         let normal = share / (spring * step);
         let tangent = 1.0 / (self.settings.stick_damping * step);
-        self.press(None);
+        self.add_patches();
         for touch in &self.touches {
             let pair = &self.pairs[touch.pair];
             let ends = [&self.bodies[pair.first.0], &self.bodies[pair.second.0]];
@@ -121,18 +121,16 @@ impl DirectWorld {
         self.patches.iter().find(|(at, _)| *at == geoms).map(|(_, patch)| patch)
     }
 
-    /// Sets the patches as these contacts load them; without contacts the new ones, evenly.
-    fn press(&mut self, contacts: Option<&[Contact]>) {
+    /// Adds the patches that are missing, as their contacts load them; before the contacts are set, evenly.
+    fn add_patches(&mut self) {
         if !self.patched {
             return;
         }
         let mut from = 0;
         for touches in self.touches.chunk_by(|a, b| a.geoms == b.geoms) {
             let Touch { geoms, pair, normal, friction, .. } = touches[0];
-            let load = |i: usize| contacts.map_or(0.0, |all| all[i].impulse.dot(&all[i].normal));
-            if friction.torsion == Torsion::Patch
-                && (contacts.is_some() || self.patch(geoms).is_none())
-            {
+            let load = |i: usize| self.contacts.get(i).map_or(0.0, |c| c.impulse.dot(&c.normal));
+            if friction.torsion == Torsion::Patch && self.patch(geoms).is_none() {
                 let frame = self.bodies[self.pairs[pair].first.0].pose.inverse();
                 let loaded = |(i, touch): (usize, &Touch)| (frame * touch.point, load(from + i));
                 let points: Vec<_> = touches.iter().enumerate().map(loaded).collect();
@@ -225,9 +223,7 @@ impl DirectWorld {
         }
         self.add_forces();
         self.patches.clear();
-        let contacts = std::mem::take(&mut self.contacts);
-        self.press(Some(&contacts));
-        self.contacts = contacts;
+        self.add_patches();
         for body in &mut self.bodies {
             body.advance(step);
         }

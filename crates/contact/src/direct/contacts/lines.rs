@@ -26,12 +26,11 @@ pub(super) fn add_ends(
         return;
     };
     let about = first.local_p1;
-    let axes = normal.any_orthonormal_pair();
-    let axes = [axes.0, axes.1];
+    let (u, v) = normal.any_orthonormal_pair();
     // Farther by what the turn takes them apart.
     let reach = prediction * MILLIMETRES + own + other;
     for (i, j) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
-        let turn = pm::Rotation::from_scaled_axis((axes[0] * i + axes[1] * j) * TURN);
+        let turn = pm::Rotation::from_scaled_axis((u * i + v * j) * TURN);
         let turned = pm::Pose::from_parts(
             about + turn * (relative.translation - about),
             turn * relative.rotation,

@@ -72,12 +72,12 @@ const VIEWER_FREQUENCY: f64 = 100.0;
 
 /// Feature of a scene that MJCF lacks.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{part}` cannot be written as MJCF: it has no {lacking}")]
+#[error("`{part}` cannot be written as MJCF: it has no {feature}")]
 pub struct NotMjcf {
     /// Body or joint of the scene.
     pub part: String,
     /// Missing feature.
-    pub lacking: &'static str,
+    pub feature: &'static str,
 }
 
 /// Checks that a scene can be written.
@@ -85,9 +85,9 @@ pub struct NotMjcf {
 /// # Errors
 /// If it has a feature that MJCF lacks.
 pub fn supports(scene: &Scene) -> Result<(), NotMjcf> {
-    let refuse = |part: &str, lacking| Err(NotMjcf { part: part.to_owned(), lacking });
-    if let Some((part, lacking)) = lacking(scene).next_back() {
-        return refuse(part, lacking);
+    let refuse = |part: &str, feature| Err(NotMjcf { part: part.to_owned(), feature });
+    if let Some((part, feature)) = lacking(scene).next_back() {
+        return refuse(part, feature);
     }
     for (i, joint) in scene.joints.iter().enumerate() {
         let child = &scene.bodies[joint.child.0];

@@ -93,18 +93,14 @@ impl Halving {
 
     /// Returns the cut across which the fewest corners are shared.
     fn best(&mut self, order: &mut [u32]) -> Cut {
-        let mut best = (usize::MAX, (0, order.len() / 2));
-        for direction in 0..DIRECTIONS.len() {
-            for share in SHARES {
-                let cut = (direction, (order.len() as f64 * share) as usize);
-                self.cut(order, cut);
-                let count = self.shared(order, cut.1);
-                if count < best.0 {
-                    best = (count, cut);
-                }
-            }
-        }
-        best.1
+        let firsts = SHARES.map(|share| (order.len() as f64 * share) as usize);
+        let cuts =
+            (0..DIRECTIONS.len()).flat_map(|direction| firsts.map(|first| (direction, first)));
+        let shared = |&cut: &Cut| {
+            self.cut(order, cut);
+            self.shared(order, cut.1)
+        };
+        cuts.min_by_key(shared).unwrap_or_default()
     }
 
     /// Returns the number of corners that both parts of an order touch.

@@ -79,8 +79,5 @@ impl DirectWorld {
 
 /// Returns the pose of a driven body and the one that it is driven to.
 fn way(body: &MovingBody) -> Option<[Pose; 2]> {
-    match body.kind {
-        Kind::Driven(to) => Some([body.pose, to]),
-        Kind::Fixed | Kind::Dynamic(_) => None,
-    }
+    if let Kind::Driven(to) = body.kind { Some([body.pose, to]) } else { None }
 }

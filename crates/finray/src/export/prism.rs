@@ -137,23 +137,19 @@ impl Prism {
         Ok(prism)
     }
 
+    /// Returns the surface if each edge belongs to two triangles, once in each direction. Corners are identified by
+    /// their positions, as in a file without numbers of corners.
     fn closed(self) -> Result<Self, PrismError> {
-        match self.open_edges() {
-            0 => Ok(self),
-            open => Err(PrismError(format!("{open} edges do not belong to exactly two triangles"))),
-        }
-    }
-
-    /// Returns the number of edges that are not met exactly twice, once each way; corners are told apart by
-    /// their places alone, as in a file without numbers of corners.
-    fn open_edges(&self) -> usize {
         let place = |corner: u32| self.corners[corner as usize].map(f32::to_bits);
         let mut met: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
         for [a, b] in self.triangles.iter().flat_map(sides) {
             *met.entry([place(a), place(b)]).or_default() += 1;
         }
         let twice = |[a, b]: &[[u32; 3]; 2]| met[&[*a, *b]] == 1 && met.get(&[*b, *a]) == Some(&1);
-        met.keys().filter(|edge| !twice(edge)).count()
+        match met.keys().filter(|edge| !twice(edge)).count() {
+            0 => Ok(self),
+            open => Err(PrismError(format!("{open} edges do not belong to exactly two triangles"))),
+        }
     }
 
     /// Returns the volume that the surface encloses, mm3.

@@ -14,16 +14,16 @@ use crate::scene::{
 use crate::{ContactForce, ContactPoint, Diverged, World};
 use nalgebra::{Vector3, Vector4};
 
-/// Most tries at finding the servos that are at their limits.
+/// Largest number of solutions of a step, to find the servos that are at their limits.
 const TRIES: usize = 5;
 
-/// Scene in motion; a clone continues with the same bits.
+/// Simulation of a scene; a clone continues bit for bit as the original does.
 #[derive(Clone)]
 pub(super) struct DirectWorld {
     pub settings: Direct,
     gravity: Vector3<f64>,
     pub bodies: Vec<MovingBody>,
-    /// Those of the scene, then that of the friction along an axis, if any.
+    /// Joints of the scene, then that of the axial friction, if any.
     joints: Vec<SprungJoint>,
     axial_friction: Option<AxialFriction>,
     /// Pairs of bodies that may touch.
@@ -38,12 +38,12 @@ pub(super) struct DirectWorld {
     pushes: Vec<Vector6>,
     solver: Solver,
     pub touches: Vec<Touch>,
-    /// Steps that are still to be divided.
+    /// Number of following steps that are divided.
     pub divided: usize,
     contacts: Vec<Contact>,
-    /// Whether a friction has patches.
+    /// Whether contacts have patches.
     patched: bool,
-    /// Contact patches, each with the number of its pair of geoms.
+    /// Contact patches, each with its number ([`Touch::geoms`]).
     patches: Vec<(usize, Patch)>,
 }
 
@@ -140,7 +140,7 @@ impl DirectWorld {
         }
     }
 
-    /// Solves for the velocities at the end of the step, with the servos as they are assumed.
+    /// Solves for the velocities at the end of the step, with the servos that are assumed to be at their limits.
     fn solve(&mut self) -> Option<()> {
         let step = self.settings.step_s;
         self.system.clear();
@@ -183,13 +183,13 @@ impl DirectWorld {
         }
     }
 
-    /// Sets the largest friction along an axis at the present poses.
-    fn rub(&mut self) {
+    /// Sets the limit of the axial friction at the present poses.
+    fn update_axial_friction(&mut self) {
         let (Some(along), Some(joint)) = (&self.axial_friction, self.joints.last_mut()) else {
             return;
         };
         let [parent, child] = [along.parent, along.child].map(|body| &self.bodies[body.0].pose);
-        joint.rub(along.largest(parent, child), self.settings.stick_damping);
+        joint.set_friction(along.largest(parent, child), self.settings.stick_damping);
     }
 
     /// Takes a step with the detected contacts.
@@ -206,7 +206,7 @@ impl DirectWorld {
         for joint in &mut self.joints {
             joint.locate(&self.bodies);
         }
-        self.rub();
+        self.update_axial_friction();
         self.set_contacts();
         for _ in 0..TRIES {
             self.solve()?;
@@ -231,8 +231,8 @@ impl DirectWorld {
     }
 }
 
-/// Returns the place of each dynamic body in the system, the number of those eliminated before contacts, and
-/// their number. Those that touch nothing come first, by number of joints: little fill-in.
+/// Returns the place of each dynamic body in the system, the number of bodies that are eliminated, and the number of
+/// dynamic bodies. Bodies without contacts come first, in the order of their number of joints: little fill-in.
 fn places(scene: &Scene) -> (Vec<usize>, usize, usize) {
     let dynamic = |i: &usize| !matches!(scene.bodies[*i].motion, Motion::Fixed | Motion::Driven);
     let touching = |i: &usize| scene.contacts.iter().any(|pair| pair.has(BodyId(*i)));
@@ -251,7 +251,7 @@ fn places(scene: &Scene) -> (Vec<usize>, usize, usize) {
 impl World for DirectWorld {
     fn step(&mut self) -> Result<(), Diverged> {
         self.detector.detect(&self.bodies, self.settings.step_s, &mut self.touches);
-        let done = if self.is_divided() { self.divided_step() } else { self.try_step() };
+        let done = if self.divides_step() { self.divided_step() } else { self.try_step() };
         done.ok_or(Diverged)
     }
 

@@ -104,8 +104,8 @@ impl MujocoWorld {
         MujocoWorld { data, bodies, servos, owners, pairs, forces, axial_friction }
     }
 
-    /// Sets the largest friction along an axis at the present poses.
-    fn rub(&mut self) {
+    /// Sets the limit of the axial friction at the present poses.
+    fn update_axial_friction(&mut self) {
         let Some(Rubbing { along, tendon, .. }) = &self.axial_friction else { return };
         let limit = along.largest(&self.pose(along.parent), &self.pose(along.child));
         let tendon = *tendon;
@@ -188,7 +188,7 @@ impl MujocoWorld {
 impl World for MujocoWorld {
     fn step(&mut self) -> Result<(), Diverged> {
         self.steer();
-        self.rub();
+        self.update_axial_friction();
         self.data.step();
         self.add_forces();
         self.add_axial_friction();

@@ -1,5 +1,5 @@
-//! Neighbour lists (Verlet 1967, Phys. Rev. 159:98): the shapes of two bodies that may touch before
-//! the bodies have moved by a margin against one another. Only these are looked at in a step.
+//! Neighbour lists (Verlet 1967, Phys. Rev. 159:98): the pairs of shapes of two bodies that may touch before
+//! the bodies have moved by a margin relative to one another. Only these are tested in a step.
 
 use super::super::body::MovingBody;
 use super::{Candidate, Solid, has_stayed};
@@ -12,10 +12,10 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Way that two bodies may move against one another before their list is made anew, m.
+/// Relative displacement of two bodies up to which their list is valid, m.
 const MARGIN: f64 = 0.5e-3;
 
-/// ... and before those of many pairs that are looked at in a step are chosen from the list, m.
+/// Relative displacement up to which the close pairs of a long list are valid, m.
 const CLOSE: f64 = 0.12e-3;
 
 /// Pair of shapes that may touch.
@@ -34,11 +34,11 @@ pub(super) struct NearList {
     pub bodies: [usize; 2],
     /// Pairs that may touch.
     pub near: Vec<NearPair>,
-    /// Those of them that are nearer still, of many pairs.
+    /// Closest of them, the only ones tested in a step if there are many.
     pub close: Vec<NearPair>,
     /// Shapes of these pairs.
     pub solids: Vec<usize>,
-    /// All pairs that were near once, by their numbers: they keep their points.
+    /// All pairs that have been near, by their numbers, with their contact points.
     pub candidates: BTreeMap<usize, Candidate>,
     number: usize,
     friction: Friction,
@@ -50,11 +50,11 @@ pub(super) struct NearList {
     tree: Arc<Bvh>,
     /// Farthest point of the second body's shapes from its origin, m.
     reach: f64,
-    /// Pose of the second body in the frame of the first when the list was made.
+    /// Pose of the second body in the frame of the first for which the list was made.
     made_at: Option<Pose>,
-    /// ... and when those nearer still were chosen.
+    /// The same for the close pairs.
     chosen_at: Option<Pose>,
-    /// Gap up to which they were chosen, m.
+    /// Largest gap of the close pairs, m.
     chosen_for: f64,
 }
 
@@ -65,7 +65,7 @@ pub(super) fn tree(solids: &[Solid]) -> Bvh {
 }
 
 impl NearList {
-    /// List of the pair of bodies of a number in the scene; its pairs of shapes are counted `from` there on.
+    /// Creates the list of the pair of bodies with this number in the scene; its first pair of shapes is number `from`.
     pub fn new(
         number: usize,
         friction: Friction,
@@ -95,7 +95,7 @@ impl NearList {
         }
     }
 
-    /// Number of pairs of shapes.
+    /// Returns the number of pairs of shapes.
     pub fn pairs(&self) -> usize {
         self.first.len() * self.second.len()
     }
@@ -110,7 +110,7 @@ impl NearList {
         linear + turned + angular * self.reach
     }
 
-    /// Makes the list anew if the bodies have moved; `relative` is the second one's pose in the first's frame.
+    /// Renews the list if the bodies have moved; `relative` is the pose of the second one in the frame of the first.
     pub fn renew(&mut self, relative: &Pose, solids: &[Solid], prediction: f64) {
         if has_stayed(self.made_at.as_ref(), relative, self.reach, MARGIN) {
             return;
@@ -143,18 +143,18 @@ impl NearList {
         }
     }
 
-    /// Chooses the pairs that may touch in the next steps; the shapes are enclosed where they are.
+    /// Selects the pairs that may touch in the next steps by the present enclosing boxes.
     pub fn choose(&mut self, relative: &Pose, solids: &[Solid], prediction: f64) {
         let stayed = has_stayed(self.chosen_at.as_ref(), relative, self.reach, CLOSE);
         if stayed && prediction <= self.chosen_for {
             return;
         }
-        // Speeds change: not for every larger one anew.
+        // With a margin, so that not every increase of the speed requires a new selection.
         (self.chosen_at, self.chosen_for) = (Some(*relative), 1.5 * prediction);
         let first = self.solids.first().copied().unwrap_or(0);
         let count = self.solids.last().map_or(0, |last| last + 1 - first);
         let mut dense = vec![Aabb::new_invalid(); count];
-        // Close together in memory: a shape has much else.
+        // Copied so that they are contiguous in memory: a shape has many other fields.
         self.solids.iter().for_each(|&i| dense[i - first] = solids[i].boxed);
         let margin = self.chosen_for + CLOSE;
         self.close.clear();

@@ -62,7 +62,7 @@ impl Geometry {
         std::iter::once(&self.outer).chain(&self.voids).cloned().chain(self.holes())
     }
 
-    /// Returns the holes through the held base, clockwise, m; they are no openings of the mechanics.
+    /// Returns the holes through the held base, clockwise, m; the mechanical model ignores them.
     pub fn holes(&self) -> Vec<Ring> {
         let holes = self.finger.holes.as_ref().filter(|holes| holes.block.is_none());
         holes.map_or_else(Vec::new, |holes| holes.rings(&self.finger.outline))
@@ -73,7 +73,7 @@ impl Geometry {
         self.rings().map(|ring| polygon::area(&ring)).sum()
     }
 
-    /// Returns the holes and the block that has them, if they do not run through the held base.
+    /// Returns the holes and their block, if they do not run through the held base.
     pub fn block(&self) -> Option<(&Holes, Block)> {
         self.finger.holes.as_ref().and_then(|holes| Some((holes, holes.block?)))
     }
@@ -84,7 +84,7 @@ impl Geometry {
     }
 }
 
-/// Returns the openings that the ribs leave of the inside, clockwise, by the number of the rib before them.
+/// Returns the openings between the ribs, clockwise, with the number of the rib before them.
 fn gaps(inside: &Ring, finger: &PrintedFinger, lines: &RibLines) -> Vec<(i64, Vec<Ring>)> {
     let half = finger.ribs.thickness / 2.0;
     let gap = |n: i64| {
@@ -183,7 +183,7 @@ fn check_rings(check: Check<'_>, finger: &PrintedFinger, outer: &Ring, inside: &
                        outline.width_mm, outline.tip_mm and notch.pad_mm";
         return check.fail("outline", problem);
     }
-    // Moved inwards by too much, sides change places and the ring crosses itself.
+    // If the inset is too large, sides change places and the ring crosses itself.
     let finite = inside.iter().all(|p| p.x.is_finite() && p.y.is_finite());
     let hollow = inside.first().is_some_and(|tip| tip.x < finger.outline.corner().x);
     if !finite || !hollow || polygon::crosses_itself(inside) || polygon::area(inside) <= 0.0 {

@@ -236,7 +236,7 @@ fn insert_body(
     group: rp::InteractionGroups,
 ) -> rp::RigidBodyHandle {
     let builder = match &body.motion {
-        // A mechanism's end is refused before; see `supports`.
+        // `supports` rejects mechanisms.
         Motion::Fixed | Motion::Mechanism(_) => rp::RigidBodyBuilder::fixed(),
         Motion::Driven => rp::RigidBodyBuilder::kinematic_position_based(),
         Motion::Free(inertia) | Motion::Carried(inertia) => {
@@ -278,7 +278,7 @@ fn generic_joint(joint: &Joint) -> rp::GenericJoint {
     made.set_local_frame1(shapes::pose(&joint.in_parent, LENGTH));
     made.set_local_frame2(shapes::pose(&joint.in_child, LENGTH));
     made.set_contacts_enabled(false);
-    // Coupled springs are refused before; see `supports`.
+    // `supports` rejects coupled springs.
     let Springs::Axes(axes) = &joint.springs else { return made };
     for (axis, spring) in JOINT_AXES.into_iter().zip(axes) {
         match spring {

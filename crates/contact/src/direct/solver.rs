@@ -286,7 +286,7 @@ impl Solver {
 /// `K` is symmetric, so `(K lever)^T` is `lever^T K`.
 fn add_stiffness(hessian: &mut [Six], bodies: usize, contact: &Contact, k: &Matrix4<f64>) {
     let [first, second] = contact.place;
-    let across = contact.lever.map(|lever| k * lever);
+    let across = [k * contact.lever[0], k * contact.lever[1]];
     let mut add = |sides: [usize; 2], [i, j]: [usize; 2]| {
         let sign = if i == j { 1.0 } else { -1.0 };
         let [left, right] = sides.map(|side| &across[side]);

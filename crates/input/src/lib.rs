@@ -113,11 +113,23 @@ impl<'a> Document<'a> {
     /// # Errors
     /// If the structure differs, or the document has a control character or an invalid name.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, InputError> {
-        let value = self.of()?;
-        match bad_text(&self.of()?) {
-            Some((key, problem)) => Check { file: self.file }.fail(&key, problem),
-            None => Ok(value),
+        let (value, table) = (self.of()?, self.of()?);
+        if let Some((key, problem)) = bad_text(&table) {
+            return Check { file: self.file }.fail(&key, problem);
         }
+        self.check_lengths::<T>(table)?;
+        Ok(value)
+    }
+
+    /// Checks that no array has more elements than are used. The deserializer of a text ignores the others: of
+    /// `[-4,175, 4,175]`, with decimal commas, it would take -4 and 175.
+    fn check_lengths<T: DeserializeOwned>(&self, table: toml::Table) -> Result<(), InputError> {
+        T::deserialize(toml::Value::Table(table)).map(|_| ()).map_err(|error| InputError {
+            file: self.file.to_owned(),
+            line: None,
+            key: error.to_string().rsplit('`').nth(1).map(str::to_owned),
+            problem: error.message().to_owned(),
+        })
     }
 
     fn of<T: DeserializeOwned>(&self) -> Result<T, InputError> {
@@ -294,5 +306,24 @@ mod tests {
         assert!(
             !read::<Friction>("other = 0.3", "task.toml").unwrap_err().to_string().contains("mean")
         );
+    }
+
+    #[derive(Debug, serde::Deserialize)]
+    struct Start {
+        #[expect(dead_code, reason = "only its length is checked")]
+        at_mm: [f64; 2],
+    }
+
+    #[test]
+    fn elements_beyond_those_that_are_used_are_refused() {
+        #[derive(Debug, serde::Deserialize)]
+        struct Strategy {
+            #[expect(dead_code, reason = "only its name is read")]
+            start: Start,
+        }
+        read::<Strategy>("[start]\nat_mm = [-4.175, 4.175]", "task.toml").unwrap();
+        let error = read::<Strategy>("[start]\nat_mm = [-4,175, 4,175]", "task.toml").unwrap_err();
+        assert_eq!(error.key.as_deref(), Some("start.at_mm"));
+        assert!(error.to_string().contains("invalid length 4"), "{error}");
     }
 }

@@ -180,10 +180,12 @@ fn replay(prepared: &Prepared<'_>, task: &'static str, number: u64) -> Found {
                 break;
             }
         }
+        let none = BTreeSet::new();
         let fingers =
-            Fingers { among: &among, failed: &BTreeSet::new(), printed: &BTreeSet::new() };
+            Fingers { designs: &subject.designs, among: &among, failed: &none, printed: &none };
         let advice = advise(&bench, &posterior, fingers, 1, 0.1, &mut random);
-        let Some(finger) = advice.next.first().map(|print| print.finger) else { break };
+        let first = advice.next.first();
+        let Some(finger) = first.and_then(|print| subject.finger(&print.design)) else { break };
         let at = among.iter().position(|&one| one == finger).unwrap_or(0);
         printed.push(at);
         let normal: f64 = noise.sample(StandardNormal);

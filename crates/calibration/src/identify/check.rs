@@ -1,6 +1,7 @@
 //! Checks of a log before the fit; the remarks are sentences for its author.
 
 use super::axes::{cause, motion};
+use super::formulas::runs_of;
 use super::log::{Ended, Log, Moment, Run};
 use super::read::median_gap;
 use super::touch::{Air, after, air, any_touch, mean, touch};
@@ -9,6 +10,7 @@ use input::units::{DEG, MM};
 use insertion::outcome::FailureClass;
 use insertion::task::Task;
 use nalgebra::Vector3;
+use std::ops::Range;
 
 /// Lowest sampling rate, Hz: six samples in a search stroke of 60 ms.
 const SLOWEST_HZ: f64 = 100.0;
@@ -48,13 +50,12 @@ pub struct Remark {
 
 impl std::fmt::Display for Remark {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self.lines {
-            Some([from, to]) if from != to => {
-                write!(f, "{}: lines {from} to {to}: {}", self.file, self.text)
-            }
-            Some([line, _]) => write!(f, "{}: line {line}: {}", self.file, self.text),
-            None => write!(f, "{}: {}", self.file, self.text),
-        }
+        let lines = match self.lines {
+            Some([from, to]) if from != to => format!("lines {from} to {to}: "),
+            Some([line, _]) => format!("line {line}: "),
+            None => String::new(),
+        };
+        write!(f, "{}: {lines}{}", self.file, self.text)
     }
 }
 
@@ -245,23 +246,18 @@ fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
         remarks.say(false, span, text);
     }
     for (axis, name) in ["fx", "fy", "fz"].into_iter().enumerate() {
-        let all = || log.moments.iter().map(|moment| moment.force[axis]);
-        for extreme in [all().fold(f64::MIN, f64::max), all().fold(f64::MAX, f64::min)] {
-            let (mut run, mut longest) = (0, [0, 0]);
-            for (at, force) in all().enumerate() {
-                run = if force == extreme { run + 1 } else { 0 };
-                if run > longest[1] - longest[0] {
-                    longest = [at + 1 - run, at + 1];
-                }
-            }
-            let [from, end] = longest;
-            if end - from >= SATURATED.0 && (extreme - bias[axis]).abs() > SATURATED.1 {
+        let all: Vec<f64> = log.moments.iter().map(|moment| moment.force[axis]).collect();
+        let extremes = [f64::max, f64::min].map(|of| all.iter().copied().reduce(of).unwrap_or(0.0));
+        for extreme in extremes {
+            let runs = runs_of(all.len(), |i| all[i] == extreme).into_iter().rev();
+            let longest = runs.max_by_key(Range::len).unwrap_or_default();
+            if longest.len() >= SATURATED.0 && (extreme - bias[axis]).abs() > SATURATED.1 {
                 let text = format!(
                     "{name} stays at {extreme:.1} N, its extreme, for {} moments: the sensor is \
                      saturated",
-                    end - from
+                    longest.len()
                 );
-                remarks.say(true, Some([from, end - 1]), text);
+                remarks.say(true, Some([longest.start, longest.end - 1]), text);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Curves of a log or a simulated attempt at regular times.
 
-use super::log::{Log, Moment, Target};
+use super::log::{Log, Moment};
 use input::units::{DEG, MM};
 use insertion::trial::{Path, Sample, Tcp};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -92,13 +92,12 @@ impl Curves {
         let target = self.target.as_ref()?;
         let speeds: Vec<f64> =
             target.windows(2).map(|pair| (pair[0].z - pair[1].z) / STEP_S).collect();
-        let fastest = speeds.iter().copied().fold(0.0, f64::max);
         let before = self.path().map_or(0, |path| (path.push() / STEP_S) as usize);
         let slowed = |i: &usize| speeds[*i] - speeds[*i + 1];
         let all = 0..before.min(speeds.len().saturating_sub(1));
         let most = all.max_by(|a, b| slowed(a).total_cmp(&slowed(b)))?;
         let usual = speeds[..before.min(speeds.len())].iter().copied().fold(0.0, f64::max);
-        (slowed(&most) > STOPPED * usual.min(fastest)).then_some(most + 1)
+        (slowed(&most) > STOPPED * usual).then_some(most + 1)
     }
 }
 
@@ -106,7 +105,7 @@ fn between(a: &Moment, b: &Moment, time: f64) -> Moment {
     let share = ((time - a.time_s) / (b.time_s - a.time_s)).clamp(0.0, 1.0);
     let vector = |a: Vector3<f64>, b: Vector3<f64>| a + share * (b - a);
     let number = |a: f64, b: f64| a + share * (b - a);
-    let target = a.target.zip(b.target).map(|(a, b)| Target {
+    let target = a.target.zip(b.target).map(|(a, b)| Tcp {
         position: vector(a.position, b.position),
         tilt: number(a.tilt, b.tilt),
     });

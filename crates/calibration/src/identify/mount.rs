@@ -28,16 +28,13 @@ pub fn remark(file: &str, compared: &[Compared]) -> Option<Remark> {
 
 fn said(file: &str, compliances: &[f64]) -> Option<Remark> {
     let more = median(compliances.iter().copied())?;
-    (compliances.len() >= ATTEMPTS && more > YIELDS).then(|| Remark {
-        file: file.to_owned(),
-        lines: None,
-        text: format!(
-            "under the push the tool sinks as if socket or grip stood on a spring of {:.0} N/mm, which the model does \
-             not have: plugs that only the push straightens jam sooner than predicted; clamp the socket",
-            1.0 / more / N_PER_MM
-        ),
-        serious: false,
-    })
+    let text = format!(
+        "under the push the tool sinks as if socket or grip stood on a spring of {:.0} N/mm, which the model does \
+         not have: plugs that only the push straightens jam sooner than predicted; clamp the socket",
+        1.0 / more / N_PER_MM
+    );
+    let remark = Remark { file: file.to_owned(), lines: None, text, serious: false };
+    (compliances.len() >= ATTEMPTS && more > YIELDS).then_some(remark)
 }
 
 /// Returns how far the TCP sinks per newton as the force of the push rises, m/N.

@@ -13,6 +13,7 @@ use input::{Fault, Place, Placed, UNCLOSED, unclosed_quote};
 use insertion::outcome::FailureClass;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use line::{Cells, is_of_space};
+use serde::Serialize;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
@@ -97,26 +98,30 @@ pub(crate) fn problem(line: u64, column: &str, words: &str) -> Fault {
     Place::default().line(line as usize).key(column).fault(words)
 }
 
-/// One line of a measurement file: one finger on one task.
-#[derive(Debug, Clone, PartialEq)]
+/// One line of a measurement file: one finger on one task, by the keys of `--json`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Experiment {
     pub line: u64,
     pub task: String,
-    /// The finger's infill, and what else its columns set.
-    pub design: Design,
     /// Most negative start that inserted, mm.
     pub negative_mm: Option<f64>,
     /// Most positive start that inserted, mm.
     pub positive_mm: Option<f64>,
-    range_mm: Option<f64>,
-    /// Failure below and above the window.
-    pub failures: [Option<FailureClass>; 2],
+    /// Tolerable range, if it was measured whole, mm.
+    pub range_mm: Option<f64>,
+    /// Failure below the window.
+    pub failure_negative: Option<FailureClass>,
+    /// Failure above the window.
+    pub failure_positive: Option<FailureClass>,
     /// Measurements that the values are the mean of.
     pub repeats: u32,
     pub peak_force_n: Option<f64>,
     /// Day of the measurement, `YYYY-MM-DD`.
     pub date: Option<String>,
     pub note: String,
+    /// The finger's infill, and what else its columns set.
+    #[serde(flatten)]
+    pub design: Design,
 }
 
 impl Experiment {
@@ -127,30 +132,17 @@ impl Experiment {
     pub fn extent(&self) -> Option<(f64, bool)> {
         match (self.range_mm, self.negative_mm, self.positive_mm) {
             (Some(range), ..) => Some((range, false)),
-            (None, Some(negative), Some(positive)) => Some((positive - negative, false)),
             (None, Some(end), None) | (None, None, Some(end)) => Some((end.abs(), true)),
-            (None, None, None) => None,
+            _ => None,
         }
     }
 
     /// The order in which lines are used, whatever their order in the file: by task, then finger.
     pub fn order(&self, other: &Self) -> Ordering {
-        let numbers = |line: &Self| {
-            let ends = [line.negative_mm, line.positive_mm, line.range_mm, line.peak_force_n];
-            ends.map(|number| number.unwrap_or(f64::NEG_INFINITY))
-        };
-        let (own, theirs) = (&self.design.0, &other.design.0);
-        let settings = own.iter().zip(theirs).map(|(a, b)| a.0.cmp(b.0).then(a.1.total_cmp(b.1)));
-        let numbers = numbers(self).into_iter().zip(numbers(other)).map(|(a, b)| a.total_cmp(&b));
-        let task = self.task.cmp(&other.task);
-        let design = settings.fold(task, Ordering::then).then(own.len().cmp(&theirs.len()));
-        let date = design.then(self.date.cmp(&other.date));
-        numbers.fold(date, Ordering::then).then(self.repeats.cmp(&other.repeats))
-    }
-
-    /// The range, if it was measured whole, mm.
-    pub fn range_mm(&self) -> Option<f64> {
-        self.extent().filter(|(_, at_least)| !at_least).map(|(range, _)| range)
+        // No two lines of a file agree in all of these; the numbers of a design are finite.
+        let own = (&self.task, &self.design.0, &self.date);
+        let order = own.partial_cmp(&(&other.task, &other.design.0, &other.date));
+        order.unwrap_or(Ordering::Equal)
     }
 }
 
@@ -291,26 +283,23 @@ pub fn appended(text: &str, comment: &str, cells: &[(&str, String)]) -> Result<S
         let cell = cells.iter().find(|(column, _)| column == name);
         cell.map_or("", |(_, text)| text.as_str())
     });
-    let line = |cells: &mut dyn Iterator<Item = &str>| {
-        // What begins with the mark of a comment is quoted.
-        let mut writer = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(Vec::new());
-        writer.write_record(cells)?;
-        let bytes = writer.into_inner().map_err(|error| error.into_error())?;
-        Ok::<_, csv::Error>(String::from_utf8_lossy(&bytes).into_owned())
-    };
-    let last = line(&mut new.into_iter())?;
     // What is there stays as it was written, unless a column is new.
-    if had == header.len() && !is_empty(text) {
-        let end = if text.ends_with('\n') { "" } else { "\n" };
-        return Ok(format!("{text}{end}{comment}{last}"));
+    let stays = had == header.len() && !is_empty(text);
+    let start = match stays {
+        true if text.ends_with('\n') => format!("{text}{comment}"),
+        true => format!("{text}\n{comment}"),
+        false => comments(text).flat_map(|line| [line, "\n"]).chain([comment]).collect(),
+    };
+    // What begins with the mark of a comment is quoted.
+    let mut writer = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(start.into_bytes());
+    if !stays {
+        writer.write_record(&header)?;
+        for record in reader.records() {
+            let more = std::iter::repeat_n("", header.len() - had);
+            writer.write_record(record?.iter().chain(more))?;
+        }
     }
-    let mut whole: String = comments(text).flat_map(|line| [line, "\n"]).collect();
-    whole += comment;
-    whole += &line(&mut header.iter().map(String::as_str))?;
-    for record in reader.records() {
-        let record = record?;
-        let more = std::iter::repeat_n("", header.len() - had);
-        whole += &line(&mut record.iter().chain(more))?;
-    }
-    Ok(whole + &last)
+    writer.write_record(new)?;
+    let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }

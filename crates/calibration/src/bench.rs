@@ -109,18 +109,15 @@ pub fn sampled(
     sample(&parts, &log_likelihood, settings, random)
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Effort {
-    /// Sweeps over all coordinates before the first sample is kept.
-    pub warm_up: usize,
-    pub samples: usize,
-    /// Sweeps from one to the next.
-    pub thin: usize,
-}
-
+/// Settings of the sampler.
 #[derive(Clone, Copy)]
 pub struct Settings<'a> {
-    pub effort: Effort,
+    /// Sweeps over all coordinates before the first sample is kept.
+    pub warm_up: usize,
+    /// Number of samples.
+    pub samples: usize,
+    /// Sweeps from one sample to the next.
+    pub thin: usize,
     pub seed: u64,
     /// Set when it is to end: what it gives is then worthless.
     pub stop: &'a AtomicBool,
@@ -144,16 +141,16 @@ fn sample(
     settings: &Settings<'_>,
     random: &mut impl Rng,
 ) -> Vec<Vec<f64>> {
-    let effort = settings.effort;
+    let Settings { warm_up, samples, thin, stop, .. } = *settings;
     let dimension = parts.len();
     let count = parts.iter().flatten().max().map_or(0, |last| last + 1);
     let mut state = vec![0.0; dimension];
     let mut current: Vec<f64> = (0..count).map(|part| log_likelihood(part, &state)).collect();
     let mut step = vec![1.0_f64; dimension];
     let mut accepted = vec![0_usize; dimension];
-    let mut kept = Vec::with_capacity(effort.samples);
-    for sweep in 0..effort.warm_up + effort.samples * effort.thin {
-        if settings.stop.load(Ordering::SeqCst) {
+    let mut kept = Vec::with_capacity(samples);
+    for sweep in 0..warm_up + samples * thin {
+        if stop.load(Ordering::SeqCst) {
             return vec![state];
         }
         for c in 0..dimension {
@@ -171,14 +168,14 @@ fn sample(
                 state[c] = old;
             }
         }
-        if sweep < effort.warm_up && (sweep + 1).is_multiple_of(BATCH) {
+        if sweep < warm_up && (sweep + 1).is_multiple_of(BATCH) {
             for (step, accepted) in step.iter_mut().zip(&mut accepted) {
                 let share = *accepted as f64 / BATCH as f64;
                 *step = (*step * libm::exp(1.5 * (share - ACCEPTED))).clamp(0.05, 4.0);
                 *accepted = 0;
             }
         }
-        if sweep >= effort.warm_up && (sweep - effort.warm_up + 1).is_multiple_of(effort.thin) {
+        if sweep >= warm_up && (sweep - warm_up + 1).is_multiple_of(thin) {
             kept.push(state.clone());
         }
     }

@@ -5,6 +5,7 @@
 use super::simulation::Simulation;
 use ask_tell::SobolSequence;
 use ask_tell::gp::{FitEffort, Gp, fit_until};
+use ask_tell::process::distance2;
 use ask_tell::statistics::Moments;
 use insertion::evaluation::template::Impossible;
 use insertion::outcome::{FailureClass, Outcome};
@@ -50,27 +51,21 @@ pub enum CalibrationError {
     Measured(u64, String),
 }
 
-/// A designed set of simulations.
-#[derive(Debug, Clone, Copy)]
-pub struct Set<'a> {
-    pub task: &'a str,
-    pub count: usize,
-    pub seed: u64,
-}
-
 impl Emulator {
     /// From `count` simulations, of which one in eight measures the error; `done` is told of each.
     pub fn new(
         simulation: &Simulation<'_>,
         space: &Space,
-        Set { task, count, seed }: Set<'_>,
+        count: usize,
+        seed: u64,
         done: &(dyn Fn() + Sync),
     ) -> Result<Self, CalibrationError> {
         let dimension = space.parameters.len() + simulation.parameters.len();
         let points: Vec<Vec<f64>> =
             SobolSequence::new(dimension, seed, 0, "emulator").take(count).collect();
         let simulations = count - count / FRESH;
-        let no_fit = || CalibrationError::NoFit(task.to_owned(), simulations);
+        let task = &simulation.template.task.name;
+        let no_fit = || CalibrationError::NoFit(task.clone(), simulations);
         let run = |at: Vec<f64>| {
             if simulation.stop.load(Ordering::SeqCst) {
                 // Worthless: whoever has set it does not look at what follows.
@@ -87,10 +82,7 @@ impl Emulator {
             let evaluation = simulation.window(&design, shares)?;
             done();
             let window = &evaluation.window;
-            let class = |end: Option<Outcome>| match end {
-                Some(Outcome::Failed(class)) => Some(class),
-                _ => None,
-            };
+            let class = |end: Option<Outcome>| FailureClass::try_from(end?.failure()?).ok();
             Ok(Run {
                 range_mm: window.range_mm(),
                 failures: [class(window.end_negative), class(window.end_positive)],
@@ -135,8 +127,7 @@ impl Emulator {
 
     /// The failure class at each end that most of the `count` simulations nearest to a design met.
     pub fn failures(&self, design: &[f64], count: usize) -> [Option<FailureClass>; 2] {
-        let distance =
-            |run: &Run| -> f64 { run.at.iter().zip(design).map(|(a, b)| (a - b).powi(2)).sum() };
+        let distance = |run: &Run| distance2(&run.at, design);
         let mut nearest: Vec<&Run> = self.runs.iter().collect();
         nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
         [0, 1].map(|end| most(nearest.iter().take(count).filter_map(|run| run.failures[end])))

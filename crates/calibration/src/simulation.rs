@@ -19,8 +19,8 @@ use study::Cache;
 const TAUGHT_MM: [f64; 4] = [1.0, -1.0, 2.0, -2.0];
 
 pub struct Simulation<'a> {
-    evaluator: &'a Evaluator,
-    template: &'a Template,
+    pub(super) evaluator: &'a Evaluator,
+    pub(super) template: &'a Template,
     /// The parameters that the task and the robot have, in order.
     pub parameters: Vec<&'a Parameter>,
     /// Where windows are kept, if they are.

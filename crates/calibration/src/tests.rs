@@ -1,6 +1,6 @@
 //! Made-up benches, whose truth is known.
 
-use super::bench::{Bench, Effort, Observation, Settings, Simulator, sampled};
+use super::bench::{Bench, Observation, Settings, Simulator, sampled};
 use super::predict::{Of, Predicted, draws, predict};
 use super::process::{COORDINATES, Place};
 use ask_tell::normal::StandardNormal;
@@ -11,12 +11,8 @@ use rand::{Rng, RngExt};
 
 const FINGERS: usize = 20;
 const SCALE_MM: f64 = 5.0;
-const SETTINGS: Settings<'_> = Settings {
-    effort: Effort { warm_up: 200, samples: 150, thin: 3 },
-    seed: 0,
-    stop: &NEVER,
-    done: &|_| (),
-};
+const SETTINGS: Settings<'_> =
+    Settings { warm_up: 200, samples: 150, thin: 3, seed: 0, stop: &NEVER, done: &|_| () };
 
 /// A simulator of two parameters, the first of which turns the order of the fingers.
 struct MadeUp {

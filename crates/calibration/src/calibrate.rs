@@ -1,7 +1,7 @@
 //! All tasks together: which coordinate is what, the posterior, and how far to trust it.
 
 use super::bench::{Bench, Settings, sampled};
-use super::predict::{Of, Predicted, draws, predict};
+use super::predict::{IntervalKind, Predicted, draws, predict};
 use super::process::COORDINATES;
 use super::subject::Subject;
 use ask_tell::statistics::{mean, spearman};
@@ -104,7 +104,7 @@ impl Calibration {
         let task = |(i, subject): (usize, &Subject)| {
             let mut random = stream(settings.seed, i as u64, "draws");
             let fingers: Vec<usize> = (0..subject.of_space).collect();
-            let ranges = predict(&benches[i], &posterior, &fingers, Of::Truth);
+            let ranges = predict(&benches[i], &posterior, &fingers, IntervalKind::Truth);
             // Stopped, what follows is worthless.
             let goes_on = |_: &&Vec<f64>| !settings.stop.load(Ordering::SeqCst);
             let of =
@@ -202,7 +202,7 @@ fn leave_one_out(
         benches[task].observations.retain(|one| !fold.contains(&one.finger));
         let mut random = stream(settings.seed, fold[0] as u64, "leave one out");
         let posterior = sampled(&benches, dimension, settings, &mut random);
-        let predicted = predict(&benches[task], &posterior, fold, Of::Measurement);
+        let predicted = predict(&benches[task], &posterior, fold, IntervalKind::Measurement);
         let left_out = |(&finger, predicted): (&usize, Predicted)| {
             let own = known().filter(|one| one.finger == finger).map(|one| one.range_mm);
             let measured_mm = mean(own)?;

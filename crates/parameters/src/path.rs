@@ -41,6 +41,11 @@ impl Path {
         }
     }
 
+    /// Returns the path as text.
+    pub fn as_str(&self) -> &str {
+        &self.text
+    }
+
     /// Returns the object on which the number is set.
     pub fn kind(&self) -> Kind {
         self.number.kind

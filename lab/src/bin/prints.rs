@@ -8,7 +8,7 @@ use ask_tell::statistics::mean;
 use ask_tell::stream::stream;
 use calibration::bench::{Observation, sampled};
 use calibration::next::{Fingers, advise};
-use calibration::predict::{Of, predict};
+use calibration::predict::{IntervalKind, predict};
 use clap::Parser;
 use finger_opt::context::Context;
 use finger_opt::failure::Failure;
@@ -171,7 +171,7 @@ fn replay(prepared: &Prepared<'_>, task: &'static str, number: u64) -> Found {
             sampled(std::slice::from_ref(&bench), layout.dimension(), settings, &mut random);
         if printed.len() == FEW {
             let best = printed.iter().map(|&at| truth.ranges_mm[at]).fold(0.0, f64::max);
-            let expected = predict(&bench, &posterior, &among, Of::Truth);
+            let expected = predict(&bench, &posterior, &among, IntervalKind::Truth);
             let named = (0..among.len())
                 .max_by(|&a, &b| expected[a].mean_mm.total_cmp(&expected[b].mean_mm))
                 .unwrap_or(0);

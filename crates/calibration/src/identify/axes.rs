@@ -111,7 +111,7 @@ fn commanded(remarks: &mut Remarks<'_>) {
             found.apart / MM,
             if cause == METRES.0 { "" } else { " in one of the two" }
         );
-        remarks.say(true, None, text);
+        remarks.add(true, None, text);
     }
 }
 
@@ -165,7 +165,7 @@ fn search(remarks: &mut Remarks<'_>, task: &Task) {
         let apart = apart / MM;
         let text =
             format!("its search is {apart:.1} mm beside that of the task on average: {cause}");
-        remarks.say(true, None, text);
+        remarks.add(true, None, text);
     }
 }
 
@@ -179,7 +179,7 @@ fn twice(remarks: &mut Remarks<'_>, touched: usize) {
     if let Some(down) = moments[up..].iter().position(|moment| moment.position.z <= touch) {
         let text = "the tool rises and goes down to the socket once more: there are two attempts in this \
                     log; cut it into one log for each";
-        remarks.say(true, Some([up, up + down]), text);
+        remarks.add(true, Some([up, up + down]), text);
     }
 }
 

@@ -1,4 +1,4 @@
-//! All tasks together: which coordinate is what, the posterior, and how far to trust it.
+//! Calibration of all tasks together: meaning of the coordinates, posterior, leave-one-out validation.
 
 use super::bench::{Bench, Settings, sampled};
 use super::predict::{IntervalKind, Predicted, draws, predict};
@@ -22,7 +22,7 @@ const DRAWS: usize = 3;
 #[derive(Debug, Clone)]
 pub struct Coordinate {
     pub parameter: Parameter,
-    /// The task it belongs to; `None` if they share it.
+    /// Task of the parameter; `None` if all tasks share it.
     pub task: Option<String>,
 }
 
@@ -46,10 +46,10 @@ impl Layout {
                 coordinates.len() - 1
             })
         };
-        let mut numbers = |Subject { task, parameters, .. }: &Subject| {
+        let numbers = |Subject { task, parameters, .. }: &Subject| {
             parameters.iter().map(|parameter| number(parameter, task)).collect()
         };
-        let of_task = subjects.iter().map(&mut numbers).collect();
+        let of_task = subjects.iter().map(numbers).collect();
         Layout { coordinates, of_task }
     }
 
@@ -105,7 +105,7 @@ impl Calibration {
             let mut random = stream(settings.seed, i as u64, "draws");
             let fingers: Vec<usize> = (0..subject.of_space).collect();
             let ranges = predict(&benches[i], &posterior, &fingers, IntervalKind::Truth);
-            // Stopped, what follows is worthless.
+            // After cancellation the result is not used.
             let goes_on = |_: &&Vec<f64>| !settings.stop.load(Ordering::SeqCst);
             let of =
                 |state| draws(&benches[i], slice::from_ref(state), &fingers, DRAWS, &mut random);
@@ -132,7 +132,7 @@ impl Calibration {
     }
 }
 
-/// Share of the draws in which each finger is the best, 0 to 1.
+/// Returns the share of the draws in which each finger is the best, 0 to 1.
 fn shares_best(drawn: &[Vec<f64>], fingers: usize) -> Vec<f64> {
     let mut counts = vec![0_u32; fingers];
     for draw in drawn {
@@ -162,8 +162,8 @@ impl LeftOut {
 }
 
 impl TaskResult {
-    /// Accuracy of the predictions of left-out fingers, made with an emulator of this error. One that
-    /// does not insert at all has no deviation in percent.
+    /// Returns the accuracy of the leave-one-out predictions, with the error of the emulator. A finger with a
+    /// measured range of 0 has no deviation in percent.
     pub fn trust(&self, emulator_error_mm: f64) -> LeaveOneOut {
         let left_out = &self.left_out;
         let wide = left_out.iter().filter(|one| one.measured_mm > 0.0);
@@ -182,7 +182,7 @@ impl TaskResult {
     }
 }
 
-/// Most times that a calibration is repeated with fingers left out.
+/// Largest number of leave-one-out calibrations.
 const MOST_FOLDS: usize = 20;
 
 /// Predicts the measured fingers of one bench without them, at most `MOST_FOLDS` times.

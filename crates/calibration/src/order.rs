@@ -1,4 +1,4 @@
-//! How far our simulation ranks the fingers of a task as the bench does.
+//! Rank correlation of simulated and measured ranges.
 
 use crate::experiments::Experiment;
 use crate::published::{Origin, of_task};

@@ -14,11 +14,11 @@ use insertion::space::{Design, Space, Variable, is_of_task};
 use parameters::Parameter;
 use std::collections::BTreeSet;
 
-/// Most fingers of a space that are predicted; of a larger space it is a designed set.
+/// Largest space of which all fingers are predicted; of a larger one a designed set is.
 const MOST_FINGERS: u64 = 4000;
-/// Most strategies of printed fingers that are predicted.
+/// Number of predicted strategies, over all printed fingers.
 const STRATEGIES: usize = 500;
-/// Measured fingers, or simulations, near a finger that say how it fails.
+/// Number of nearest measured fingers from which the failure of a finger is predicted.
 const NEAR: usize = 3;
 
 pub struct Subject {
@@ -27,7 +27,7 @@ pub struct Subject {
     pub designs: Vec<Design>,
     pub of_space: usize,
     pub emulator: Emulator,
-    /// Measurements on this task, with the number of the finger.
+    /// Measurements on this task, each with the number of its finger.
     pub experiments: Vec<(usize, Experiment)>,
     places: Vec<Place>,
     /// Shares of the space, as the emulator takes them.
@@ -37,7 +37,7 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// The fingers of a space on a task, those of `more` and those measured.
+    /// Returns the fingers of a space, those measured and those of `more` on a task.
     pub fn new(
         simulation: &Simulation<'_>,
         space: &Space,
@@ -91,7 +91,7 @@ impl Subject {
         (0..self.designs.len()).filter(|&number| known.contains(&shape(number))).collect()
     }
 
-    /// Returns the fingers whose lines tell no range: they insert from no start.
+    /// Returns the measured fingers without a range: they insert from no start.
     pub fn not_measurable(&self) -> BTreeSet<usize> {
         let told = |number: &usize| {
             self.experiments.iter().any(|(of, line)| of == number && line.extent().is_some())
@@ -99,7 +99,8 @@ impl Subject {
         self.measured().into_iter().filter(|number| !told(number)).collect()
     }
 
-    /// Its bench, with the coordinates of its parameters and hyperparameters.
+    /// Returns its bench; `parameters` are the coordinates of its parameters, `first` is the first one of its
+    /// hyperparameters.
     pub fn bench(&self, parameters: Vec<usize>, first: usize) -> Bench<'_> {
         let observation = |&(finger, ref line): &(usize, Experiment)| {
             let (range_mm, at_least) = line.extent()?;
@@ -116,7 +117,8 @@ impl Subject {
         }
     }
 
-    /// Failure at either end: as of most of the nearest measured fingers, else of simulated ones.
+    /// Returns the failure at either end: the most frequent of the nearest measured fingers, else of the nearest
+    /// simulations.
     pub fn failures(&self, finger: usize) -> [Option<FailureClass>; 2] {
         let distance = |(number, _): &(usize, Experiment)| {
             distance2(&self.places[finger], &self.places[*number])
@@ -167,7 +169,7 @@ fn strategies<'a>(space: &Space, printed: impl Iterator<Item = &'a Design>) -> V
         design.0.extend(shape.0.clone());
         design
     };
-    fingers.iter().flat_map(|shape| set.iter().cloned().map(|one| with(shape, one))).collect()
+    fingers.iter().flat_map(|shape| set.iter().cloned().map(move |one| with(shape, one))).collect()
 }
 
 /// Returns a design without its numbers of the task.
@@ -183,7 +185,7 @@ fn designed(space: &Space, count: usize, purpose: &str) -> Vec<Design> {
     set.map(|shares| space.design(&grid.cell(&shares))).collect()
 }
 
-/// A measured design with all parameters of the space, by default as in the task file.
+/// Returns a measured design with all parameters of the space; missing ones are as in the task file.
 pub fn whole(
     space: &Space,
     template: &Template,
@@ -221,7 +223,7 @@ fn shares(space: &Space, design: &Design) -> Vec<f64> {
     space.parameters.iter().map(share).collect()
 }
 
-/// Less the mean, over the standard deviation, of the first `reference` rows.
+/// Standardises rows by mean and standard deviation of the first `reference` ones.
 fn standardised(rows: &[[f64; 2]], reference: usize) -> Vec<Place> {
     let scale = [0, 1].map(|axis| {
         let moments = Moments::of(rows.iter().take(reference).map(|row| row[axis]));

@@ -167,9 +167,8 @@ impl TaskResult {
     pub fn trust(&self, emulator_error_mm: f64) -> LeaveOneOut {
         let left_out = &self.left_out;
         let wide = left_out.iter().filter(|one| one.measured_mm > 0.0);
-        let percent = |one: &LeftOut| {
-            100.0 * (one.range_mm - one.measured_mm).abs() / one.measured_mm
-        };
+        let percent =
+            |one: &LeftOut| 100.0 * (one.range_mm - one.measured_mm).abs() / one.measured_mm;
         let pairs: Vec<(f64, f64)> =
             left_out.iter().map(|one| (one.range_mm, one.measured_mm)).collect();
         LeaveOneOut {

@@ -83,7 +83,8 @@ fn from_draws(
     let mut random = stream(0, numbers.len() as u64, "predict from draws");
     let mut drawn = draws(bench, posterior, numbers, DRAWS_PER_SAMPLE, &mut random);
     if kind == IntervalKind::Measurement {
-        let states = posterior.iter().flat_map(|state| std::iter::repeat_n(state, DRAWS_PER_SAMPLE));
+        let states =
+            posterior.iter().flat_map(|state| std::iter::repeat_n(state, DRAWS_PER_SAMPLE));
         for (draw, state) in drawn.iter_mut().zip(states) {
             let noise = bench.hyperparameters(state).noise * bench.scale_mm;
             for value in draw {

@@ -320,7 +320,10 @@ mod tests {
         let mut table = Table::open(&path, LARGEST_INPUT).unwrap();
         let other = dir.path().join("table.csv.before");
         fs::write(&other, "older").unwrap();
-        assert!(table.replace("another beginning\n").is_err(), "an existing backup is not overwritten");
+        assert!(
+            table.replace("another beginning\n").is_err(),
+            "an existing backup is not overwritten"
+        );
         assert_eq!(fs::read_to_string(&other).unwrap(), "older");
         fs::remove_file(other).unwrap();
         table.replace("another beginning\n").unwrap();

@@ -94,7 +94,8 @@ pub(super) fn experiment(cells: &mut Cells<'_>, before: &[Experiment]) -> Experi
         cells.problems.extend(twice(&experiment, before));
     }
     let ends = experiment.positive_mm.zip(experiment.negative_mm);
-    experiment.range_mm = experiment.range_mm.or(ends.map(|(positive, negative)| positive - negative));
+    experiment.range_mm =
+        experiment.range_mm.or(ends.map(|(positive, negative)| positive - negative));
     experiment
 }
 

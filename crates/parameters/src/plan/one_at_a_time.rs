@@ -27,7 +27,8 @@ pub fn farthest<T>(
         End::Low => parameter.low.min(neutral),
         End::High => parameter.high.max(neutral),
     };
-    let at_step = |steps: u32| at(neutral + f64::from(steps) / f64::from(STEPS) * (bound - neutral));
+    let at_step =
+        |steps: u32| at(neutral + f64::from(steps) / f64::from(STEPS) * (bound - neutral));
     if let Some(found) = at_step(STEPS) {
         return Some(found);
     }

@@ -82,7 +82,7 @@ impl Robot {
 }
 
 /// Time constants after which a servo has all but reached its command.
-const SETTLED: f64 = 5.0;
+const SETTLING_TIME_CONSTANTS: f64 = 5.0;
 
 impl Mounted {
     /// Returns the extra length of an assembly move along a unit vector, m: the deflection of the arm
@@ -94,7 +94,7 @@ impl Mounted {
 
     /// Returns the settling time of the robot after a command, s.
     pub fn settling(&self) -> f64 {
-        self.arm().map_or(0.0, |arm| SETTLED * arm.time_constant)
+        self.arm().map_or(0.0, |arm| SETTLING_TIME_CONSTANTS * arm.time_constant)
     }
 
     /// Returns whether a plug-socket force, N, task axes, stops the robot or overloads a joint.

@@ -42,7 +42,7 @@ pub const HEADER: [&str; 5] = [
 ];
 
 /// Largest number of designs of a table: the time to leave each out in turn grows with its fourth power.
-pub const MOST: usize = 100;
+pub const MAX_DESIGNS: usize = 100;
 
 /// Stiffness of one printed finger, as measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,7 +93,7 @@ pub enum SurrogateError {
     None,
     /// So many designs that leaving each out in turn would take minutes.
     #[error(
-        "{0} measured designs are too many: {MOST} at most; give the average of fingers that are \
+        "{0} measured designs are too many: {MAX_DESIGNS} at most; give the average of fingers that are \
          nearly alike"
     )]
     TooMany(usize),
@@ -212,7 +212,7 @@ fn refused(place: Place) -> impl Fn((&'static str, String)) -> SurrogateError {
 fn enough(measurements: &[Measurement]) -> Result<(), SurrogateError> {
     match measurements.len() {
         0 => Err(SurrogateError::None),
-        found if found > MOST => Err(SurrogateError::TooMany(found)),
+        found if found > MAX_DESIGNS => Err(SurrogateError::TooMany(found)),
         _ => Ok(()),
     }
 }

@@ -361,7 +361,7 @@ impl Scheduler {
     fn observation(&self, point: GridPoint, recorded: &Recorded) -> Observation {
         let told = || {
             let score = recorded.score.as_ref()?;
-            Some((self.goals.told(&recorded.tasks())?, score.violations.clone()))
+            Some((self.goals.interpolated(&recorded.tasks())?, score.violations.clone()))
         };
         match told() {
             None => Observation::new(point, None),

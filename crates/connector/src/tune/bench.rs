@@ -138,7 +138,7 @@ impl<'a> Bench<'a> {
         let rig = self.engine.rig(&task, self.robot, &medium, 1.0)?;
         match teach(&*rig, &medium, self.stop) {
             Ok(taught) => {
-                strategy.start[1] += offset(taught.by);
+                strategy.start[1] += offset(taught.shift);
                 let others = self.windows(&strategy, &[soft, stiff], Conditions::NOMINAL)?;
                 let mut found = others;
                 let (window, force_n) = (taught.window, taught.peak_force_n);
@@ -146,7 +146,7 @@ impl<'a> Bench<'a> {
                 Ok(self.tried(strategy, found))
             }
             Err(nearest) => {
-                strategy.start[1] += offset(nearest.by);
+                strategy.start[1] += offset(nearest.shift);
                 // Below the score of any strategy that inserts with the medium finger.
                 let score = nearest.trial.margin.min(0.0) - 1.0;
                 let nearest = Some(Box::new(nearest.trial));

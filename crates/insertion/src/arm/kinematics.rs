@@ -11,9 +11,9 @@ use nalgebra::{
 /// Damping `l` far from the target, m: steps near a singular pose stay bounded.
 const DAMPING: f64 = 0.02;
 /// Largest number of steps; a start near home takes fewer than twenty.
-const STEPS: usize = 200;
+const MAX_STEPS: usize = 200;
 /// Largest error of a solution, m and rad.
-const EXACT: f64 = 1e-10;
+const TOLERANCE: f64 = 1e-10;
 
 /// Posture of an arm at some joint angles, base frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,8 +42,8 @@ impl Arm {
         Posture { links, axes, tcp: frame * self.tool }
     }
 
-    /// Returns the mass matrix `M(q)` of the kinetic energy `q' M q' / 2`, kg m2: the sum of `m Jv^T Jv + Jw^T I Jw` over
-    /// the links.
+    /// Returns the mass matrix `M(q)` of the kinetic energy `q' M q' / 2`, kg m2: the sum of
+    /// `m Jv^T Jv + Jw^T I Jw` over the links.
     pub fn mass(&self, posture: &Posture) -> Matrix6<f64> {
         (0..JOINTS)
             .map(|i| {
@@ -64,10 +64,10 @@ impl Arm {
     pub fn reach(&self, target: &Pose) -> Result<Angles, ArmError> {
         let mut angles = self.home;
         let mut error = Vector6::zeros();
-        for _ in 0..STEPS {
+        for _ in 0..MAX_STEPS {
             let posture = self.at(&angles);
             error = displacement(&posture.tcp, target);
-            if error.amax() < EXACT {
+            if error.amax() < TOLERANCE {
                 return Ok(angles);
             }
             let jacobian = posture.tcp_jacobian();

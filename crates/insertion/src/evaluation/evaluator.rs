@@ -172,7 +172,7 @@ impl Evaluator {
             return Ok(None);
         }
         let rig = self.rig(specimen, None, 1.0)?;
-        Ok(Some(teach(&*rig, &specimen.finger, stop).map_or(0, |taught| taught.by)))
+        Ok(Some(teach(&*rig, &specimen.finger, stop).map_or(0, |taught| taught.shift)))
     }
 
     /// Returns the rig of a specimen at its taught start, with `step_factor` times the time step.
@@ -195,7 +195,7 @@ impl Evaluator {
         let rig = self.engine.rig(task, robot, finger, step_factor)?;
         Ok(match taught {
             None | Some(0) => rig,
-            Some(by) => Box::new(Moved { rig, by }),
+            Some(shift) => Box::new(Moved { rig, shift }),
         })
     }
 

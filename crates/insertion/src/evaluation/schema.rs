@@ -50,10 +50,10 @@ impl TryFrom<WindowRow> for Window {
 }
 
 /// Largest number of grid steps that is read: beyond any window, and small enough for sums.
-const MOST_STEPS: f64 = 1e8;
+const MAX_STEPS: f64 = 1e8;
 
 fn steps(mm: f64) -> OffsetStep {
-    (mm / grid_mm(1)).round().clamp(-MOST_STEPS, MOST_STEPS) as OffsetStep
+    (mm / grid_mm(1)).round().clamp(-MAX_STEPS, MAX_STEPS) as OffsetStep
 }
 
 /// Serializes grid steps as mm.

@@ -21,7 +21,7 @@ const FARTHEST: OffsetStep = 100;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Taught {
     /// Shift of the start, in grid steps.
-    pub by: OffsetStep,
+    pub shift: OffsetStep,
     /// Tolerance window around it.
     pub window: Window,
     /// Largest contact force over the inserted trials of the window search, N.
@@ -32,7 +32,7 @@ pub struct Taught {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Nearest {
     /// Shift of the start, in grid steps.
-    pub by: OffsetStep,
+    pub shift: OffsetStep,
     /// Trial from this start.
     pub trial: Trial,
 }
@@ -45,35 +45,35 @@ pub fn teach(rig: &dyn Rig, finger: &Finger, stop: &AtomicBool) -> Result<Taught
     let grasp = Grasp { stop, ..Grasp::of(finger) };
     let grasped = rig.hold(grasp);
     let found = first_inserting(&*grasped)?;
-    let moved = Moved { rig, by: found };
+    let moved = Moved { rig, shift: found };
     let Evaluation { mut window, peak_force_n, .. } =
         tolerance::evaluate_in(&moved, grasp, Search::Strides);
     let both = window.negative_steps + window.positive_steps;
     // The division rounds towards zero.
     let middle = both.clamp(-OFFSET_LIMIT_STEPS, OFFSET_LIMIT_STEPS) / 2;
-    let by = found + middle;
-    if grasped.trial(offset(by)).outcome != Outcome::Inserted {
-        return Ok(Taught { by: found, window, peak_force_n });
+    let shift = found + middle;
+    if grasped.trial(offset(shift)).outcome != Outcome::Inserted {
+        return Ok(Taught { shift: found, window, peak_force_n });
     }
     window.negative_steps -= middle;
     window.positive_steps -= middle;
-    Ok(Taught { by, window, peak_force_n })
+    Ok(Taught { shift, window, peak_force_n })
 }
 
 /// Returns the first start that inserts, outward from the task's own.
 fn first_inserting(grasped: &dyn Grasped) -> Result<OffsetStep, Box<Nearest>> {
     let outward = (1..=FARTHEST / STRIDE).flat_map(|n| [n * STRIDE, -n * STRIDE]);
-    let mut nearest = Nearest { by: 0, trial: grasped.trial(0.0) };
+    let mut nearest = Nearest { shift: 0, trial: grasped.trial(0.0) };
     if nearest.trial.outcome == Outcome::Inserted {
         return Ok(0);
     }
-    for by in outward {
-        let trial = grasped.trial(offset(by));
+    for shift in outward {
+        let trial = grasped.trial(offset(shift));
         if trial.outcome == Outcome::Inserted {
-            return Ok(by);
+            return Ok(shift);
         }
         if trial.margin > nearest.trial.margin {
-            nearest = Nearest { by, trial };
+            nearest = Nearest { shift, trial };
         }
     }
     Err(Box::new(nearest))
@@ -84,22 +84,22 @@ pub struct Moved<R> {
     /// Rig or grasped part.
     pub rig: R,
     /// Shift of the start, in grid steps.
-    pub by: OffsetStep,
+    pub shift: OffsetStep,
 }
 
 impl<R: Deref<Target: Rig> + Send + Sync> Rig for Moved<R> {
     fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
-        Box::new(Moved { rig: self.rig.hold(grasp), by: self.by })
+        Box::new(Moved { rig: self.rig.hold(grasp), shift: self.shift })
     }
 
     fn record(&self, grasp: Grasp<'_>, shift: f64) -> Option<Recording> {
-        self.rig.record(grasp, shift + offset(self.by))
+        self.rig.record(grasp, shift + offset(self.shift))
     }
 }
 
 impl Grasped for Moved<Box<dyn Grasped + '_>> {
     fn run(&self, shift: f64, every_s: Option<f64>, rest_s: f64) -> (Trial, Vec<Sample>) {
-        self.rig.run(shift + offset(self.by), every_s, rest_s)
+        self.rig.run(shift + offset(self.shift), every_s, rest_s)
     }
 }
 
@@ -116,17 +116,18 @@ mod tests {
         let finger = finger(3.0, 20.0);
         let fake = FakeRig::default();
         for (away, taught) in [(0, -9), (30, -39), (-50, 41)] {
-            let moved = Moved { rig: &fake as &dyn Rig, by: away };
-            let Taught { by: found, window: said, .. } = teach(&moved, &finger, &NEVER).unwrap();
+            let moved = Moved { rig: &fake as &dyn Rig, shift: away };
+            let Taught { shift: found, window: returned, .. } =
+                teach(&moved, &finger, &NEVER).unwrap();
             assert!((found - taught).abs() <= 1, "{away}: {found}");
-            let middled = Moved { rig: &moved as &dyn Rig, by: found };
-            let window = tolerance::evaluate(&middled, &finger, Search::Walk).window;
+            let centred = Moved { rig: &moved as &dyn Rig, shift: found };
+            let window = tolerance::evaluate(&centred, &finger, Search::Walk).window;
             assert_eq!(window.range_mm(), 4.7);
-            assert_eq!(said, window);
+            assert_eq!(returned, window);
             assert!((window.negative_steps + window.positive_steps).abs() <= 2, "{window:?}");
         }
-        let far = Moved { rig: &fake as &dyn Rig, by: 200 };
+        let far = Moved { rig: &fake as &dyn Rig, shift: 200 };
         let nearest = teach(&far, &finger, &NEVER).unwrap_err();
-        assert!(nearest.trial.margin < 0.0 && nearest.by.abs() <= FARTHEST, "{nearest:?}");
+        assert!(nearest.trial.margin < 0.0 && nearest.shift.abs() <= FARTHEST, "{nearest:?}");
     }
 }

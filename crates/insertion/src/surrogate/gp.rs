@@ -33,7 +33,7 @@ const NUGGETS: [f64; 5] = [1e-6, 1e-3, 1e-1, 1.0, 10.0];
 /// prediction claims less, even where the data happen to lie on the mean.
 pub(super) const READING_SD: f64 = 0.01;
 /// Smallest density that is used, percent: the law diverges at 0.
-const LEAST_DENSITY: f64 = 1.0;
+const MIN_DENSITY: f64 = 1.0;
 
 #[derive(Debug, Clone, Copy)]
 struct Setting {
@@ -67,7 +67,7 @@ fn correlation(a: &Place, b: &Place) -> f64 {
 
 /// Returns the feature of the mean, then the inputs of the process.
 fn inputs(infill: Infill, exponent: f64) -> [f64; 3] {
-    let density = infill[0].max(LEAST_DENSITY);
+    let density = infill[0].max(MIN_DENSITY);
     let lamina = libm::cos(infill[1] * DEG).powi(4);
     [libm::pow(density / 20.0, exponent) * lamina, libm::log(density), infill[1]]
 }

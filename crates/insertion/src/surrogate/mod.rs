@@ -30,7 +30,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use computed::Computed;
-pub use model::{ENOUGH, Loo, Model, ModelKind, fit};
+pub use model::{Loo, MIN_MEASURED, Model, ModelKind, fit};
 
 /// A value with its standard deviation, both in the same unit.
 #[derive(Debug, Clone, Copy, PartialEq)]

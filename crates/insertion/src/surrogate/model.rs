@@ -102,11 +102,6 @@ impl Data {
         Data { axis, measured: measured(&infills, &values.collect::<Vec<_>>()), units }
     }
 
-    /// Returns a model of all designs.
-    fn fit(&self, kind: ModelKind) -> Option<Box<dyn Fitted>> {
-        fit_axis(self.axis, kind, &self.measured)
-    }
-
     /// Fits `kind` without each design in turn and predicts that design.
     fn leave_one_out(&self, kind: ModelKind) -> Loo {
         let count = self.measured.targets().len();
@@ -132,9 +127,9 @@ impl Data {
 
 /// Fewest designs that a model is fitted to without computing any: the quadratic has six
 /// terms, and a leave-one-out error needs one design more than that.
-pub const ENOUGH: usize = 7;
+pub const MIN_MEASURED: usize = 7;
 /// Fewest designs for which leave-one-out may choose a process about the computed stiffness.
-const SEVERAL: usize = 4;
+const MIN_FOR_PROCESS: usize = 4;
 
 /// Stiffness of a finger as a function of its infill, fitted to measurements.
 #[derive(Debug)]
@@ -158,7 +153,7 @@ struct Chosen {
     widen: f64,
 }
 
-/// Fits every model, chooses one per axis by its leave-one-out error. Of [`ENOUGH`] designs
+/// Fits every model, chooses one per axis by its leave-one-out error. Of [`MIN_MEASURED`] designs
 /// without the finger, which costs nothing; of fewer about its computed stiffness.
 ///
 /// # Errors
@@ -168,8 +163,8 @@ pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model
     check_all(measurements)?;
     let infills: Vec<Infill> = measurements.iter().map(Measurement::infill).collect();
     let (ratios, kinds) = match measurements.len() {
-        ENOUGH.. => (false, &ModelKind::MEASURED[..]),
-        SEVERAL.. => (true, &[ModelKind::ComputedScale, ModelKind::ComputedProcess][..]),
+        MIN_MEASURED.. => (false, &ModelKind::MEASURED[..]),
+        MIN_FOR_PROCESS.. => (true, &[ModelKind::ComputedScale, ModelKind::ComputedProcess][..]),
         _ => (true, &[ModelKind::ComputedScale][..]),
     };
     let computed = Computed::new(finger);
@@ -179,7 +174,7 @@ pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model
             false => Ok(1.0),
         };
         let units = measurements.iter().map(unit).collect::<Result<_, FingerError>>()?;
-        choose(axis, &Data::new(axis, measurements, units), kinds)
+        choose(&Data::new(axis, measurements, units), kinds)
     };
     let (assembly, mut loo) = choose(Axis::Assembly)?;
     let (compliance, rest) = choose(Axis::Compliance)?;
@@ -189,13 +184,10 @@ pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model
     Ok(Model { measurements, hull, chosen: [assembly, compliance], loo, computed, ratios })
 }
 
-fn choose(
-    axis: Axis,
-    data: &Data,
-    kinds: &[ModelKind],
-) -> Result<(Chosen, Vec<Loo>), SurrogateError> {
+/// Chooses the model with the smallest leave-one-out error.
+fn choose(data: &Data, kinds: &[ModelKind]) -> Result<(Chosen, Vec<Loo>), SurrogateError> {
     let mut loo: Vec<Loo> = kinds.iter().map(|&kind| data.leave_one_out(kind)).collect();
-    let unfittable = SurrogateError::Unfittable(axis.label());
+    let unfittable = SurrogateError::Unfittable(data.axis.label());
     // A single finger has no leave-one-out error.
     let eligible = |row: &&mut Loo| match row.model {
         ModelKind::Linear => false,
@@ -210,7 +202,7 @@ fn choose(
     best.chosen = true;
     // Overconfident: widen until the left-out errors fit. Never narrow.
     let widen = best.standardised_rms.max(1.0);
-    let fitted = data.fit(best.model).ok_or(unfittable)?;
+    let fitted = fit_axis(data.axis, best.model, &data.measured).ok_or(unfittable)?;
     Ok((Chosen { fitted, widen }, loo))
 }
 

@@ -200,11 +200,11 @@ fn meeting(planes: [&HalfSpace; 3]) -> Option<Point3<f64>> {
 }
 
 /// Largest distance from the plug's tip at which a box that leads in begins, m.
-const LEAD: f64 = 2.0 * MM;
+const LEAD_IN: f64 = 2.0 * MM;
 /// Largest radius, as a share of a box's smallest side: sheet metal is round at its edge.
-const MOST: f64 = 0.49;
+const MAX_SHARE: f64 = 0.49;
 /// Largest distance from the opening at which a face counts as its wall, m.
-const BESIDE: f64 = 0.15 * MM;
+const WALL_DISTANCE: f64 = 0.15 * MM;
 
 impl Task {
     /// Returns the task with a radius, m, on the edges that lead in: those at the bottom of the plug's boxes
@@ -215,7 +215,7 @@ impl Task {
         let corners = self.plug.parts.iter().flat_map(|part| part.solid.corners());
         let tip = corners.map(|p| p.z).fold(f64::INFINITY, f64::min);
         for part in &mut task.plug.parts {
-            let edges = |min: &Vector3<f64>| if min.z < tip + LEAD { named("-z") } else { None };
+            let edges = |min: &Vector3<f64>| if min.z < tip + LEAD_IN { named("-z") } else { None };
             lead_in(part, radius, Cut::Radius, |min, _| edges(min));
         }
         task.cut_opening(radius, Cut::Radius);
@@ -241,7 +241,7 @@ impl Task {
                     (min.y - y[1], "-y+z"),
                 ];
                 let beside =
-                    walls.iter().filter(|(off, _)| max.z.abs() < SAME && off.abs() < BESIDE);
+                    walls.iter().filter(|(off, _)| max.z.abs() < SAME && off.abs() < WALL_DISTANCE);
                 Some(beside.filter_map(|(_, edge)| named(edge)).flatten().collect())
             });
         }
@@ -257,7 +257,7 @@ fn lead_in(
 ) {
     let Solid::Box { min, max } = &part.solid else { return };
     let edges = which(min, max).unwrap_or_default();
-    let size = size.min(MOST * (max - min).min());
+    let size = size.min(MAX_SHARE * (max - min).min());
     let cuts: Vec<_> = edges.into_iter().map(|edge| (edge, cut_by(size))).collect();
     if cuts.is_empty() {
         return;

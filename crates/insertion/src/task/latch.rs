@@ -15,7 +15,7 @@ const GAMMA: f64 = 0.85;
 /// Stiffness coefficient of the same model.
 const K_THETA: f64 = 2.65;
 /// Largest component of a flexure along the axis about which it bends, as a share of its length.
-const SLANT: f64 = 0.05;
+const MAX_SLANT: f64 = 0.05;
 
 /// Parts of a plug that rotate together about a hinge with a spring.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,7 +80,7 @@ pub fn latch(check: Check<'_>, raw: &RawLatch, parts: &[Part]) -> Result<Latch, 
     if length < THINNEST {
         return check.fail("plug.latch.end_mm", "must be at least 0.001 mm from root_mm");
     }
-    if along[axis].abs() > SLANT * length {
+    if along[axis].abs() > MAX_SLANT * length {
         return check.fail("plug.latch.axis", "is along the flexure; it must be across it");
     }
     if raw.thickness > 0.5 * length {

@@ -6,7 +6,7 @@ use super::motion::{Move, Tcp};
 use super::record::{Frame, Recorder, Sample, Trace};
 use super::run::Watched;
 use super::watch::{LeadingEdge, Watch};
-use super::{Conditions, PhaseEnd, Poses, Trial};
+use super::{Conditions, Grasp, PhaseEnd, Poses, Trial};
 use crate::outcome::Outcome;
 use crate::robot::Mounted;
 use crate::task::duration::{CARRY_S, GRASP_S, TOLERANCE_TIMEOUT_S};
@@ -55,7 +55,7 @@ pub(super) struct Attempt<'a> {
     stage: Stage,
     /// First phase of the search, if a part of it has been simulated.
     begun: Option<Begun>,
-    pub conditions: Conditions,
+    conditions: Conditions,
     pub socket: Pose,
     time: f64,
     /// Grasp point in each finger's frame right after the grasp.
@@ -73,7 +73,7 @@ impl<'a> Attempt<'a> {
         task: Arc<Task>,
         cell: WorkCell,
         world: Box<dyn World>,
-        stop: &'a AtomicBool,
+        Grasp { conditions, stop, .. }: Grasp<'a>,
     ) -> Self {
         let pose = world.pose(cell.command);
         let edge = LeadingEdge::new(&task);
@@ -86,7 +86,7 @@ impl<'a> Attempt<'a> {
             target: Tcp { position: pose.translation.vector, tilt: 0.0 },
             stage: Stage::Approach,
             begun: None,
-            conditions: Conditions::NOMINAL,
+            conditions,
             socket: Pose::identity(),
             time: 0.0,
             grasp: [Vector3::zeros(); 2],

@@ -17,7 +17,7 @@ use contact::scene::Pose;
 use nalgebra::Vector3;
 
 /// Lateral distance beyond that of an inserted plug at which the plug has missed, m.
-const ASTRAY: f64 = 0.5e-3;
+const ASTRAY_DISTANCE: f64 = 0.5e-3;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Placement {
@@ -46,7 +46,7 @@ impl Placement {
     /// Returns whether the plug is beside its mated position, for example by one pitch of its pins.
     pub fn astray(&self, task: &Task) -> bool {
         let mated = task.success.mated.as_ref();
-        mated.is_some_and(|mated| mated.aside(&self.tip) > mated.lateral + ASTRAY)
+        mated.is_some_and(|mated| mated.aside(&self.tip) > mated.lateral + ASTRAY_DISTANCE)
     }
 
     /// Returns the margin of this outcome; see [`super::Trial::margin`].

@@ -76,14 +76,11 @@ impl EngineRig {
 
     /// Returns an attempt right before its grasp.
     fn attempt<'a>(&self, engine: &dyn Engine, task: &Task, grasp: Grasp<'a>) -> Attempt<'a> {
-        let Grasp { finger, conditions, stop } = grasp;
-        let task = Arc::new(conditions.task(task));
-        let mut cell = cell::build(&task, &self.robot, &finger);
-        conditions.displace(&mut cell);
+        let task = Arc::new(grasp.conditions.task(task));
+        let mut cell = cell::build(&task, &self.robot, &grasp.finger);
+        grasp.conditions.displace(&mut cell);
         let world = engine.world(&cell.scene);
-        let mut attempt = Attempt::new(Arc::clone(&self.robot), task, cell, world, stop);
-        attempt.conditions = conditions;
-        attempt
+        Attempt::new(Arc::clone(&self.robot), task, cell, world, grasp)
     }
 
     fn ready<'a>(&'a self, grasp: Grasp<'a>, filmed: bool) -> Ready<'a> {

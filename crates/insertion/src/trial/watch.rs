@@ -53,11 +53,11 @@ impl Watch {
 }
 
 /// Number of corners above which only those of their hull are checked.
-const MANY: usize = 500;
+const MAX_CORNERS: usize = 500;
 /// Depth of an edge that is inside, m: more than contacts sink, less than any preload.
-const DEPTH: f64 = 0.15 * MM;
+const INSIDE_DEPTH: f64 = 0.15 * MM;
 /// Overlap of an edge that leans on a wall, m: more than contacts sink, less than a clearance.
-const LEANING: f64 = 0.02 * MM;
+const WALL_OVERLAP: f64 = 0.02 * MM;
 
 /// Corners of a plug that can enter the opening first.
 #[derive(Debug, Clone)]
@@ -73,10 +73,10 @@ impl LeadingEdge {
         let corners = task.plug.rigid().flat_map(|part| part.solid.corners());
         let corners: Vec<_> = corners.filter(|corner| corner.z < task.success.depth).collect();
         // The corners are checked in every step.
-        let few = if corners.len() > MANY { hull(&corners) } else { None };
+        let few = if corners.len() > MAX_CORNERS { hull(&corners) } else { None };
         LeadingEdge {
             corners: few.map_or(corners, |(corners, _)| corners),
-            opening: task.opening.map(|[from, to]| [from - LEANING, to + LEANING]),
+            opening: task.opening.map(|[from, to]| [from - WALL_OVERLAP, to + WALL_OVERLAP]),
         }
     }
 
@@ -96,7 +96,7 @@ impl LeadingEdge {
             }
             lowest = lowest.min(place.z);
         }
-        lowest < -DEPTH
+        lowest < -INSIDE_DEPTH
     }
 }
 

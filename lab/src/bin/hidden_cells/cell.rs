@@ -98,13 +98,13 @@ impl FingerWindows {
         let (specimen, robot) = cell.setup(&design)?;
         let direct = window(&specimen, &robot, EngineKind::Direct, None)?;
         let clock = Instant::now();
-        let near = direct.as_ref().map_or(0, |taught| taught.by);
+        let near = direct.as_ref().map_or(0, |taught| taught.shift);
         let truth = window(&specimen, &robot, engine, Some(near))?;
         let elapsed_s = clock.elapsed().as_secs_f64();
         let nominal = cell.evaluator.under(cell.template, (&design, None), &[]);
         let (specimen, robot) = nominal.map_err(Failure::input)?;
         let nominal = window(&specimen, &robot, EngineKind::Direct, None)?;
-        let taught_again = truth.as_ref().is_none_or(|truth| truth.by != near);
+        let taught_again = truth.as_ref().is_none_or(|truth| truth.shift != near);
         let windows = [truth, direct, nominal];
         Ok(FingerWindows { finger: *finger, windows, taught_again, elapsed_s })
     }
@@ -137,8 +137,8 @@ impl FingerWindows {
 }
 
 fn starts_mm(taught: &Taught) -> [f64; 3] {
-    let Taught { by, window, .. } = taught;
-    [*by, by + window.negative_steps, by + window.positive_steps].map(grid_mm)
+    let Taught { shift, window, .. } = taught;
+    [*shift, shift + window.negative_steps, shift + window.positive_steps].map(grid_mm)
 }
 
 fn cells(taught: &Taught) -> String {
@@ -161,12 +161,12 @@ pub fn window(
 ) -> Result<Option<Taught>, Failure> {
     let Specimen { task, finger, .. } = specimen;
     let rig = engine.rig(task, robot, finger, 1.0).map_err(Failure::input)?;
-    if let Some(by) = near {
-        let moved = Moved { rig: &*rig, by };
+    if let Some(shift) = near {
+        let moved = Moved { rig: &*rig, shift };
         let found = tolerance::evaluate(&moved, finger, Search::Strides);
         let Evaluation { window, peak_force_n, .. } = found;
         if window.nominal == Outcome::Inserted {
-            return Ok(Some(Taught { by, window, peak_force_n }));
+            return Ok(Some(Taught { shift, window, peak_force_n }));
         }
     }
     Ok(teach(&*rig, finger, &NEVER).ok())

@@ -174,7 +174,7 @@ pub fn windows(
             StartRule::Given => None,
             StartRule::Taught => teach(&*rig, &finger, &NEVER).ok(),
         };
-        let moved = Moved { rig: &*rig, by: taught.map_or(0, |taught| taught.by) };
+        let moved = Moved { rig: &*rig, shift: taught.map_or(0, |taught| taught.shift) };
         Ok((*design, tolerance::evaluate(&moved, &finger, search).window))
     };
     let table = |task: &Task| {

@@ -16,15 +16,15 @@ use std::fmt;
 use std::str::FromStr;
 
 /// Conversions for types that study files store as on the command line.
-macro_rules! kept_as_text {
-    ($($kept:ty),*) => {$(
-        impl From<$kept> for String {
-            fn from(value: $kept) -> String {
+macro_rules! stored_as_text {
+    ($($stored:ty),*) => {$(
+        impl From<$stored> for String {
+            fn from(value: $stored) -> String {
                 value.to_string()
             }
         }
 
-        impl TryFrom<String> for $kept {
+        impl TryFrom<String> for $stored {
             type Error = String;
             fn try_from(text: String) -> Result<Self, String> {
                 text.parse()
@@ -33,10 +33,10 @@ macro_rules! kept_as_text {
     )*};
 }
 
-kept_as_text!(Aggregate, Constraint, Objectives);
+stored_as_text!(Aggregate, Constraint, Objectives);
 
 /// Largest number of objectives: a Pareto front of more does not help to choose.
-const MOST: usize = 3;
+const MAX_OBJECTIVES: usize = 3;
 
 /// One to three different measures to be optimized, in the order given.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -100,8 +100,8 @@ impl FromStr for Objectives {
             return Err(format!("{} is given twice; give each objective once", twice.1));
         }
         match all.len() {
-            ..=MOST => Ok(Objectives(all)),
-            count => Err(format!("there are {count} objectives; give at most {MOST}")),
+            ..=MAX_OBJECTIVES => Ok(Objectives(all)),
+            count => Err(format!("there are {count} objectives; give at most {MAX_OBJECTIVES}")),
         }
     }
 }
@@ -192,7 +192,7 @@ impl Score {
 impl Goals {
     /// Returns the values for an optimizer: those of [`score`](Goals::score) with the sign for which larger is
     /// better, interpolated within the grid step. `None` if there is no score.
-    pub fn told(&self, tasks: &[&Evaluation]) -> Option<Vec<f64>> {
+    pub fn interpolated(&self, tasks: &[&Evaluation]) -> Option<Vec<f64>> {
         let of = |&measure: &Measure| {
             let values: Option<Vec<f64>> = tasks
                 .iter()
@@ -295,8 +295,8 @@ mod tests {
         assert!("range,".parse::<Objectives>().unwrap_err().contains("``"));
     }
 
-    fn told(measure: Measure, evaluation: &Evaluation) -> f64 {
-        Goals::of(measure).told(&[evaluation]).unwrap()[0]
+    fn interpolated(measure: Measure, evaluation: &Evaluation) -> f64 {
+        Goals::of(measure).interpolated(&[evaluation]).unwrap()[0]
     }
 
     fn measured(compliance: f64, assembly: f64) -> Evaluation {
@@ -307,18 +307,20 @@ mod tests {
     #[test]
     fn the_slope_is_half_of_what_the_grid_cuts_off() {
         let evaluation = measured(3.0, 20.0);
-        let beyond = told(Measure::Range, &evaluation) - 4.7;
+        let beyond = interpolated(Measure::Range, &evaluation) - 4.7;
         assert!((beyond - 0.033_333 / 2.0).abs() < 1e-5, "{beyond}");
-        let centred = told(Measure::CentredRange, &evaluation) - 2.8;
+        let centred = interpolated(Measure::CentredRange, &evaluation) - 2.8;
         assert!(centred.abs() < 1e-5, "{centred}");
-        assert_eq!(told(Measure::PeakForce, &evaluation), -evaluation.peak_force_n);
+        assert_eq!(interpolated(Measure::PeakForce, &evaluation), -evaluation.peak_force_n);
     }
 
     #[test]
     fn plateaus_have_a_slope_and_the_order_of_ranges_stays() {
         let fingers = (0..200).map(|i| measured(3.0, 20.0 + 0.05 * f64::from(i)));
         let found: Vec<(f64, f64)> = fingers
-            .map(|evaluation| (evaluation.window.range_mm(), told(Measure::Range, &evaluation)))
+            .map(|evaluation| {
+                (evaluation.window.range_mm(), interpolated(Measure::Range, &evaluation))
+            })
             .collect();
         assert!(found.windows(2).filter(|pair| pair[0].0 == pair[1].0).count() > 150);
         for pair in found.windows(2) {
@@ -332,7 +334,7 @@ mod tests {
             let mut evaluation = measured(3.0, 20.0);
             evaluation.window.nominal = Outcome::Failed(FailureClass::Jammed);
             evaluation.end_shares = [share; 2];
-            told(Measure::Range, &evaluation)
+            interpolated(Measure::Range, &evaluation)
         };
         assert!(failed(-1.0) < failed(-0.2) && failed(-0.2) < 0.0 && failed(-1.0) >= -0.1);
     }

@@ -88,7 +88,8 @@ pub fn evaluate(
         draws.iter().enumerate().map(one).collect()
     };
     if let Some((draws, settings)) = &plan.success {
-        evaluation.success = Some(success_rate(&drawn(draws), settings, plan.race.as_ref()));
+        evaluation.success =
+            Some(success_rate(&drawn(draws), settings.confidence, plan.race.as_ref()));
     }
     if let Some((draws, settings)) = &plan.robust {
         evaluation.robust = Some(robust_range(&drawn(draws), settings));
@@ -96,12 +97,8 @@ pub fn evaluate(
     evaluation
 }
 
-fn success_rate(
-    drawn: &[Insertion],
-    settings: &SuccessSettings,
-    race: Option<&Race>,
-) -> SuccessRate {
-    race::run(drawn.len() as u32, settings.confidence, race, |draw| {
+fn success_rate(drawn: &[Insertion], confidence: f64, race: Option<&Race>) -> SuccessRate {
+    race::run(drawn.len() as u32, confidence, race, |draw| {
         let (rig, grasp, offset) = drawn[draw as usize];
         rig.hold(grasp).trial(offset).outcome
     })
@@ -165,7 +162,7 @@ mod tests {
     fn every_trial_ends_as_its_own_window_says() {
         let rig = FakeRig::default();
         let (typical, drawn) = drawn(&rig, 20.0, 300);
-        let found = success_rate(&drawn, &typical.success, None);
+        let found = success_rate(&drawn, typical.success.confidence, None);
         let (mut below, mut above) = (0, 0);
         for (_, grasp, offset) in &drawn {
             let (low, high) = window_mm(&grasp.finger, &grasp.conditions);

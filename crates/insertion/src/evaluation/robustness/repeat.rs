@@ -89,15 +89,15 @@ impl<'a> Repeats<'a> {
     pub fn bands(&self, window: &Window) -> Bands {
         let [negative, positive] = [-1, 1].map(|sign| self.band(window, sign));
         let inside = negative.surely_inserts.zip(positive.surely_inserts);
-        let looked_at: Vec<OffsetStep> = inside
+        let tried: Vec<OffsetStep> = inside
             .map(|(below, above)| (-below..=above).step_by(INSIDE_STRIDE as usize).collect())
             .unwrap_or_default();
-        let unsure = |step: &&OffsetStep| self.inserted(**step) < self.runs.len();
+        let uncertain = |step: &&OffsetStep| self.inserted(**step) < self.runs.len();
         Bands {
             negative,
             positive,
-            looked_at_inside: looked_at.len(),
-            unsure_inside: looked_at.iter().filter(unsure).map(|&step| grid_mm(step)).collect(),
+            tried_inside: tried.len(),
+            uncertain_inside: tried.iter().filter(uncertain).map(|&step| grid_mm(step)).collect(),
         }
     }
 }
@@ -126,9 +126,9 @@ pub struct Bands {
     /// Band at the positive end.
     pub positive: Band,
     /// Offsets tried between the two, every 0.5 mm.
-    pub looked_at_inside: usize,
+    pub tried_inside: usize,
     /// Offsets among them at which not all repeats insert, mm.
-    pub unsure_inside: Vec<f64>,
+    pub uncertain_inside: Vec<f64>,
 }
 
 #[cfg(test)]
@@ -149,8 +149,8 @@ mod tests {
         assert!((0.5..=0.7).contains(&below), "{bands:?}");
         let above = bands.positive.width_mm().unwrap();
         assert!((0.0..=0.1).contains(&above), "{bands:?}");
-        assert_eq!(bands.unsure_inside, Vec::<f64>::new());
-        assert!(bands.looked_at_inside >= 8, "{bands:?}");
+        assert_eq!(bands.uncertain_inside, Vec::<f64>::new());
+        assert!(bands.tried_inside >= 8, "{bands:?}");
     }
 
     #[test]

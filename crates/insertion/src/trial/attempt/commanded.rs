@@ -15,7 +15,7 @@ pub struct Path {
 }
 
 /// Shortest continuous descent that counts as the push, m: longer than any in a search.
-const PUSH: f64 = 3.0 * MM;
+const MIN_PUSH: f64 = 3.0 * MM;
 
 impl Path {
     /// Creates a path from times, s, and targets; `None` unless there are at least two and the times increase.
@@ -53,7 +53,7 @@ impl Path {
         // The command may rest at the end.
         let end = (0..last).rev().find(|i| !rises(i)).map_or(0, |i| i + 1);
         let begin = (0..end).rev().find(rises).map_or(0, |i| i + 1);
-        let far = heights[begin] - heights[end] > PUSH;
+        let far = heights[begin] - heights[end] > MIN_PUSH;
         self.times[if far { begin } else { last }] - self.times[0]
     }
 }
@@ -78,16 +78,16 @@ impl Probe {
 }
 
 /// Height above the face from which the probe descends, m.
-const ABOVE: f64 = 2.0 * MM;
+const PROBE_HEIGHT: f64 = 2.0 * MM;
 /// Largest descent, m: enough for the softest robot to press.
-const DEEPEST: f64 = 20.0 * MM;
+const MAX_DESCENT: f64 = 20.0 * MM;
 /// Rest in the air before the probe and after it, s: reference of the sensor without contact.
-const SETTLED: f64 = 0.2;
+const REST_IN_AIR: f64 = 0.2;
 /// Admittance of the command, m/s per N: a stiff robot reaches the force within 0.1 s, and the control does not
 /// oscillate.
-const YIELDING: f64 = 2e-4;
+const ADMITTANCE: f64 = 2e-4;
 /// Speed at which it is lifted off, m/s.
-const LIFTING: f64 = 0.02;
+const LIFT_SPEED: f64 = 0.02;
 
 impl Attempt<'_> {
     /// Carries the grasped part to the start of the path and follows the path; samples begin there.
@@ -112,13 +112,13 @@ impl Attempt<'_> {
 
     /// Probes the face that replaces the socket with the grasped part.
     pub fn probe(&mut self, probe: &Probe, every_s: f64) -> Result<(), Stop> {
-        let z = self.task.grip.tcp_z + ABOVE;
+        let z = self.task.grip.tcp_z + PROBE_HEIGHT;
         self.carry(Tcp { position: Vector3::new(0.0, -0.5 * probe.stroke, z), tilt: 0.0 })?;
         self.trace = Some(Trace::new(every_s));
         self.stage = Stage::Search;
-        self.rest(SETTLED)?;
+        self.rest(REST_IN_AIR)?;
         let down = Vector3::new(0.0, 0.0, -probe.speed);
-        for _ in 0..self.steps(DEEPEST / probe.speed) {
+        for _ in 0..self.steps(MAX_DESCENT / probe.speed) {
             if self.watch.force.z >= probe.force {
                 break;
             }
@@ -128,12 +128,12 @@ impl Attempt<'_> {
         for i in 0..probe.slides {
             let along = if i.is_multiple_of(2) { probe.speed } else { -probe.speed };
             for _ in 0..slide {
-                let lower = YIELDING * (self.watch.force.z - probe.force);
+                let lower = ADMITTANCE * (self.watch.force.z - probe.force);
                 self.press(Vector3::new(0.0, along, lower))?;
             }
         }
-        let up = self.target.moved(Vector3::new(0.0, 0.0, 2.0 * ABOVE));
-        self.make(Move::new(self.target, up, LIFTING), SETTLED)?;
+        let up = self.target.moved(Vector3::new(0.0, 0.0, 2.0 * PROBE_HEIGHT));
+        self.make(Move::new(self.target, up, LIFT_SPEED), REST_IN_AIR)?;
         self.end_phase("probe");
         Ok(())
     }

@@ -7,9 +7,9 @@ use contact::scene::BodyId;
 use input::units::MM;
 
 /// Clearance above the socket down to which all offsets share the descent, m.
-const CLEAR: f64 = 0.3 * MM;
+const SHARED_CLEARANCE: f64 = 0.3 * MM;
 /// Clearance that must remain at the end of the shared descent, m: a fast move may overshoot.
-const UNTOUCHED: f64 = 0.25 * MM;
+const MIN_CLEARANCE: f64 = 0.25 * MM;
 
 /// Search move that has been simulated up to a step.
 #[derive(Debug, Clone, Copy)]
@@ -32,13 +32,13 @@ impl<'a> Attempt<'a> {
         copy.stage = phase.stage;
         let motion = copy.motion(phase);
         let mut steps = 0;
-        while steps < copy.steps(motion.duration) && copy.clearance() > CLEAR {
+        while steps < copy.steps(motion.duration) && copy.clearance() > SHARED_CLEARANCE {
             steps += 1;
             copy.target = motion.at(steps as f64 * copy.world.step_s());
             copy.step().ok()?;
         }
         copy.begun = Some(Begun { motion, steps });
-        (copy.clearance() > UNTOUCHED).then_some(copy)
+        (copy.clearance() > MIN_CLEARANCE).then_some(copy)
     }
 
     /// Returns the distance from the top of the socket to the lowest corner of the plug with its latch, along z, m.

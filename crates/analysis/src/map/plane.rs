@@ -59,18 +59,14 @@ impl<'a> Plane<'a> {
         Plane { rig, grasp, axes, grasped }
     }
 
-    /// Returns the outcome of the trial with these errors.
+    /// Returns the outcome of the trial with these errors, which are within [`LIMIT`].
     pub(super) fn outcome(&self, [y, other]: Node) -> Outcome {
         let hold = || {
             let conditions = Draw::under([(self.axes.second().1, value(other))]).conditions;
             self.rig.hold(Grasp { conditions, ..self.grasp })
         };
-        let inserts = |grasped: &dyn Grasped| grasped.trial(value(y) * MM).outcome;
-        let place = usize::try_from(other + LIMIT[1]).ok().and_then(|at| self.grasped.get(at));
-        match place {
-            Some(place) => inserts(&**place.get_or_init(hold)),
-            None => inserts(&*hold()),
-        }
+        let grasped = self.grasped[(other + LIMIT[1]) as usize].get_or_init(hold);
+        grasped.trial(value(y) * MM).outcome
     }
 }
 

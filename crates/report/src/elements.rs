@@ -1,7 +1,7 @@
 //! Building blocks of the page's sections.
 
 use super::theme::{inline, variables};
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 
 /// Returns a page without external resources.
 pub(super) fn document(title: &str, body: Markup) -> String {
@@ -59,7 +59,7 @@ pub(super) fn table(head: &[&str], rows: &[Vec<String>]) -> Markup {
 }
 
 /// Returns a table whose cells are stacked with their headings on a phone.
-pub(super) fn stacked(head: &[&str], rows: &[Vec<Markup>]) -> Markup {
+pub(super) fn stacked(head: &[&str], rows: &[Vec<impl Render>]) -> Markup {
     html! {
         table.stacked {
             thead { tr { @for name in head { th { (name) } } } }

@@ -5,9 +5,9 @@ use super::beside::{Beside, Film};
 use super::elements::{figure, inert};
 use super::glossary::explained;
 use super::printer::{self, recommended};
-use super::replay::{ENDS, pair_file};
+use super::replay::{ENDS, pair_file, viewer};
 use super::{bar, explore};
-use crate::answer::words::{design, evaluated, outcome, remedy};
+use crate::answer::words::{design, evaluated, on, outcome, remedy};
 use crate::answer::{Answer, Verdict, command, expectation, lines};
 use finray::export::sheet;
 use insertion::evaluation::Evaluation;
@@ -149,7 +149,7 @@ fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Markup {
                     }
                 }
                 script type="application/json" id="viewer" {
-                    (PreEscaped(explore::embedded(&super::replay::viewer())))
+                    (PreEscaped(explore::embedded(&viewer().into())))
                 }
                 script { (PreEscaped(include_str!("films.js"))) }
             }
@@ -158,10 +158,8 @@ fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Markup {
 }
 
 fn label(answer: &Answer, film: &Film) -> String {
-    let task = answer.record.config.tasks().nth(film.task).unwrap_or_default();
-    let on =
-        if answer.record.config.several_tasks() { format!(" on {task}") } else { String::new() };
-    format!("{} end{on}", film.end)
+    let config = &answer.record.config;
+    format!("{} end{}", film.end, on(config, config.tasks().nth(film.task).unwrap_or_default()))
 }
 
 /// Returns `Left: the last start that inserts (+5.7 mm). Right: the next (+5.8 mm): jammed (class 3).`

@@ -50,10 +50,12 @@ fn simulated_finger<'a, 'b>(answer: &'b Answer<'a>) -> Option<&'b Recommended<'a
 
 /// Returns the ends of the windows of a recommended design, its constraints and its ties.
 pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
+    let config = &answer.record.config;
     let of_task = |task: &OnTask| {
         let window = &task.measured.window;
         let [below, above] = [window.end_negative, window.end_positive].map(words::end);
-        let ends = line("ends", format!("{below} below, {above} above{}", found.on(task)));
+        let ends =
+            line("ends", format!("{below} below, {above} above{}", words::on(config, task.name)));
         iter::once(ends).chain(drawn(task.measured)).collect::<Vec<_>>()
     };
     let limits = found.constraints.iter();

@@ -14,13 +14,12 @@ pub mod words;
 
 use calibration::order::{Order, order_on_bench};
 use insertion::evaluation::Evaluation;
-use insertion::evaluation::objective::Measure;
-use insertion::evaluation::robustness::firm::Firm;
 use insertion::space::Design;
 use study::{Recorded, StudyRecord, Volume, Walked, nearest, volume};
 
 pub use alike::{Safe, Spread, Ties};
 pub use force::ExcessForce;
+use recommended::firm_range_mm;
 pub use recommended::{OnTask, Recommended};
 pub use robots::UnderRobot;
 pub use start::Start;
@@ -76,10 +75,7 @@ impl<'a> Answer<'a> {
     pub fn of(record: &'a StudyRecord) -> Self {
         let (config, current) = (&record.config, record.current());
         let front = || Front { designs: record.front(), volume: volume(&config.goals(), current) };
-        let walked = |walked: &'a Walked| {
-            let firm: Vec<f64> = walked.firm.iter().map(Firm::range_mm).collect();
-            (&walked.recorded, record.aggregated(Measure::Range, &firm))
-        };
+        let walked = |walked: &'a Walked| (&walked.recorded, firm_range_mm(record, walked));
         let order = |(at, task)| Some((task, order_on_bench(record, at)?));
         let measured = measured(record);
         let recommended = Recommended::of(record, &measured);
@@ -115,6 +111,11 @@ impl<'a> Answer<'a> {
             (Verdict::Any { .. }, Some(Ties { safe: Some(safe), .. })) => Some(safe.design),
             _ => Some(found.design),
         }
+    }
+
+    /// Returns the range of a finger on a robot, mm, if it was measured.
+    pub fn on_robot(&self, finger: &Design) -> Option<f64> {
+        trust::range_mm(&self.measured, finger)
     }
 
     /// Returns the finger to print and its simulated evaluation on each task; `None` if there is none.

@@ -77,7 +77,7 @@ fn a_film_ends_decided() {
     recording.decided_s = 1.000_04;
     recording.frames.last_mut().unwrap().time_s = recording.decided_s;
     let film = Film { label: "a", task: &task, pad: &Pad::PAPER, recording: &recording };
-    let json = serde_json::to_value(film::Data::new(&film)).unwrap();
+    let json = film::data(&film);
     let times = json["time"].as_array().unwrap();
     assert!(times[times.len() - 1].as_f64() >= json["decided_s"].as_f64(), "{json}");
 }

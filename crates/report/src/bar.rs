@@ -80,7 +80,7 @@ fn on_robot(robot: &UnderRobot) -> Bar {
 
 fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> Vec<Bar> {
     // The safe choice was not confirmed itself.
-    let other = answer.named().filter(|named| named.index != found.design.index);
+    let other = answer.design_to_print().filter(|named| named.index != found.design.index);
     let mut rows = vec![match other.and_then(|named| named.on(at)) {
         Some(other) => Bar::simulated(&other.window, None),
         None => Bar::simulated(&task.measured.window, task.firm.and_then(|firm| firm.window_mm())),

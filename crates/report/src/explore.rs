@@ -67,7 +67,7 @@ fn best(answer: &Answer) -> Markup {
         all.into_iter().filter_map(|found| Some((found, found.feasible()?))).collect();
     // Stable, so that equals stay in their order.
     best.sort_by(|a, b| goals.order(b.1, a.1));
-    let named = answer.named().map(|named| named.index);
+    let named = answer.design_to_print().map(|named| named.index);
     best.sort_by_key(|(found, _)| Some(found.index) != named);
     let row = |(found, values): &(&Recorded, &[f64])| {
         let window = &found.on(0)?.window;

@@ -107,13 +107,8 @@ fn draw(area: &Area<'_>, levers: &Levers, bars: &[Bar<'_>]) -> Drawn {
         for (words, ink, x, side) in
             [(*name, ink, left, HPos::Left), (&moves, MUTED, right, HPos::Right)]
         {
-            label(
-                &mut chart,
-                (x, y - 0.2),
-                (0, 0),
-                words,
-                &text_style(TEXT, ink, side, VPos::Center),
-            )?;
+            let style = text_style(TEXT, ink, side, VPos::Center);
+            label(&mut chart, (x, y - 0.2), (0, 0), words, &style)?;
         }
         for ((mm, words), top) in ends.iter().zip([y - 0.37, y - 0.65]) {
             let (by, anchor) = if *mm < base { (-5, HPos::Right) } else { (5, HPos::Left) };

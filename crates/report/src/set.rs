@@ -14,7 +14,7 @@ const LISTED: usize = 8;
 pub(super) fn section(answer: &Answer) -> Option<Markup> {
     answer.verdict.finger()?;
     let found = answer.recommended.as_ref()?.ties.as_ref()?;
-    let named = answer.named()?.index;
+    let named = answer.design_to_print()?.index;
     let mut designs = found.designs.clone();
     // The recommended one first, then by increasing loss.
     designs

@@ -159,7 +159,7 @@ mod tests {
         let answer = Answer::of(&record);
         let found = answer.recommended.as_ref().and_then(|found| found.ties.as_ref()).unwrap();
         assert!(found.share < 0.5 && matches!(answer.verdict, Verdict::Print(_)), "{found:?}");
-        let named = answer.named().unwrap().index;
+        let named = answer.design_to_print().unwrap().index;
         assert!(found.designs.iter().any(|(member, loss)| member.index == named && *loss == 0.0));
         // All designs tie.
         record.config.indifference_mm = 10.0;

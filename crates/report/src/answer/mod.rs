@@ -33,9 +33,9 @@ pub struct Answer<'a> {
     pub record: &'a StudyRecord,
     /// Recommended action.
     pub verdict: Verdict<'a>,
-    /// Evidence that it rests on.
+    /// Evidence for the recommended action.
     pub trust: Trust,
-    /// Number of evaluations with the present settings.
+    /// Number of evaluations with the current settings.
     pub designs: usize,
     /// Number of them that satisfy all constraints and have a value.
     pub feasible: usize,
@@ -98,13 +98,14 @@ impl<'a> Answer<'a> {
             orders: config.tasks().enumerate().filter_map(order).collect(),
         };
         answer.verdict = Verdict::of(&answer, &answer.measured);
-        answer.trust = Trust::of(record, answer.named());
-        answer.force = answer.shown().and_then(|(_, tasks)| ExcessForce::of(record, &tasks));
+        answer.trust = Trust::of(record, answer.design_to_print());
+        answer.force =
+            answer.finger_and_evaluations().and_then(|(_, tasks)| ExcessForce::of(record, &tasks));
         answer
     }
 
-    /// Returns the evaluation of the finger to print by simulation; `None` if there is none.
-    pub fn named(&self) -> Option<&'a Recorded> {
+    /// Returns the design to print by simulation, with its evaluation; `None` if there is none.
+    pub fn design_to_print(&self) -> Option<&'a Recorded> {
         let found = self.recommended.as_ref()?;
         match (&self.verdict, &found.ties) {
             (Verdict::NothingInserts { .. } | Verdict::NoneFeasible, _) => None,
@@ -119,11 +120,11 @@ impl<'a> Answer<'a> {
     }
 
     /// Returns the finger to print and its simulated evaluation on each task; `None` if there is none.
-    pub fn shown(&self) -> Option<(&'a Design, Vec<&'a Evaluation>)> {
+    pub fn finger_and_evaluations(&self) -> Option<(&'a Design, Vec<&'a Evaluation>)> {
         let finger = self.verdict.finger()?;
         match &self.record.on_bench {
             Some(bench) => Some((finger, vec![&bench.simulated])),
-            None => self.named().map(|named| (finger, named.tasks())),
+            None => self.design_to_print().map(|named| (finger, named.tasks())),
         }
     }
 }

@@ -16,6 +16,7 @@ use input::units::{MM, N_PER_MM};
 use insertion::surrogate::Estimate;
 use serde_json::{Map, Value, json};
 
+/// Axes of the task's frame.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Returns the result as JSON.
@@ -66,7 +67,7 @@ pub fn json(done: &IdentifyDone) -> Value {
     })
 }
 
-/// Returns a number of the cell as JSON.
+/// Returns a parameter of the cell, before and after the identification, as JSON.
 fn identified(Unknown { prior, posterior, left, from, advice }: &Unknown) -> Value {
     json!({
         "name": posterior.name,
@@ -152,17 +153,17 @@ fn validated(one: &Validation) -> String {
 
 /// Returns a sentence on each phase and force component that the identified cell does not explain.
 fn unmodelled(compared: &[Compared]) -> Vec<String> {
-    let off = misfits(compared).into_iter().filter(|one| one.after > 3.0);
-    let words = |one: Misfit| {
+    let unexplained = misfits(compared).into_iter().filter(|one| one.after > 3.0);
+    let sentence = |one: Misfit| {
         let Misfit { phase, axis, after, .. } = one;
         format!(
             "the model does not explain these curves: phase {phase}, {axis}: misfit {after:.1} standard deviations"
         )
     };
-    off.map(words).collect()
+    unexplained.map(sentence).collect()
 }
 
-/// Rounds to three digits.
+/// Formats a number with three significant digits.
 fn short(value: f64) -> String {
     let digits = (2.0 - libm::log10(value.abs().max(1e-3)).floor()).clamp(0.0, 4.0);
     format!("{value:.0$}", digits as usize)

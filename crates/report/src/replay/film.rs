@@ -9,10 +9,10 @@ use input::units::MM;
 use insertion::trial::record::Frame;
 use serde_json::{Value, json};
 
-/// Time between two frames of a page, s.
+/// Smallest time between two frames of a page, s.
 const INTERVAL: f64 = 6e-3;
-/// Largest number of frames.
-const MOST: f64 = 500.0;
+/// Largest number of frames of a page.
+const MAX_FRAMES: f64 = 500.0;
 /// Drawn height of the jaws above the grasp point, mm.
 const JAW_MM: f64 = 45.0;
 
@@ -33,11 +33,11 @@ pub(super) fn bodies(film: &Film) -> Vec<(&'static str, &'static str, Vec<Geom>)
     bodies
 }
 
-/// Returns the data of a film: mm, s, N, degrees.
+/// Returns the data of a film in mm, s, N and degrees.
 pub(super) fn data(film: &Film) -> Value {
     let recording = film.recording;
     let trial = &recording.trial;
-    let frames = thinned(&recording.frames, INTERVAL.max(trial.simulated_s / MOST));
+    let frames = thinned(&recording.frames, INTERVAL.max(trial.simulated_s / MAX_FRAMES));
     let each = |of: &dyn Fn(&Frame) -> f64, digits| -> Vec<f64> {
         frames.iter().map(|frame| rounded(of(frame), digits)).collect()
     };
@@ -49,7 +49,7 @@ pub(super) fn data(film: &Film) -> Value {
     };
     let failed = if trial.outcome.failure().is_some() { "failed: " } else { "" };
     let phases = trial.phases.iter().map(|p| (&*p.name, rounded(p.time_s, 4)));
-    let mut moved = json!({
+    let mut trajectories = json!({
         "plug": poses(&|frame| frame.poses.plug),
         "finger0": poses(&|frame| frame.poses.fingers[0]),
         "finger1": poses(&|frame| frame.poses.fingers[1]),
@@ -57,7 +57,7 @@ pub(super) fn data(film: &Film) -> Value {
         "jaw1": poses(&|frame| frame.jaws[1]),
     });
     if film.task.plug.latch.is_some() {
-        moved["latch"] = json!(poses(&Frame::latch));
+        trajectories["latch"] = json!(poses(&Frame::latch));
     }
     json!({
         "label": film.label,
@@ -69,7 +69,7 @@ pub(super) fn data(film: &Film) -> Value {
         "bodies": bodies(film).into_iter().flat_map(surfaces).collect::<Value>(),
         "beam": beam(film),
         "time": each(&|frame| frame.time_s, 4),
-        "pose": moved,
+        "pose": trajectories,
         "force": each(&|frame| frame.force.norm(), 2),
         "depth": each(&|frame| frame.depth_mm(), 3),
         "tilt": each(&|frame| frame.tilt_deg(), 3),
@@ -114,7 +114,7 @@ fn surfaces((kind, of, geoms): (&'static str, &'static str, Vec<Geom>)) -> Vec<V
     geoms.iter().map(surface).collect()
 }
 
-/// Returns position, mm, and quaternion x, y, z, w.
+/// Returns a pose as its position, mm, and its quaternion x, y, z, w.
 fn pose(pose: &Pose) -> [f64; 7] {
     let (p, q) = (pose.translation.vector / MM, pose.rotation.coords);
     let [x, y, z] = [p.x, p.y, p.z].map(|mm| rounded(mm, 3));
@@ -122,7 +122,7 @@ fn pose(pose: &Pose) -> [f64; 7] {
     [x, y, z, i, j, k, w]
 }
 
-/// Returns point, mm, and force, N.
+/// Returns a contact as its point, mm, and its force, N.
 fn contact(contact: &ContactPoint) -> [f64; 6] {
     let (p, f) = (contact.point.coords / MM, contact.force);
     let [x, y, z] = [p.x, p.y, p.z].map(|mm| rounded(mm, 2));

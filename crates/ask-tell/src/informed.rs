@@ -1,7 +1,7 @@
 //! An optimizer that is given the values of chosen points.
 
 use super::{GridPoint, Observation, Optimizer, StopReason};
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 
 /// Asks another optimizer for a number of points first, so that it has its own first design, then
 /// proposes chosen points, and leaves the rest to the other, which is told of all.
@@ -24,13 +24,9 @@ impl Informed {
         before: usize,
         chosen: impl IntoIterator<Item = GridPoint>,
     ) -> Self {
-        let mut unique = VecDeque::new();
-        for point in chosen {
-            if !unique.contains(&point) {
-                unique.push_back(point);
-            }
-        }
-        Informed { inner, before, chosen: unique, proposed: Vec::new() }
+        let mut seen = BTreeSet::new();
+        let chosen = chosen.into_iter().filter(|point| seen.insert(point.clone())).collect();
+        Informed { inner, before, chosen, proposed: Vec::new() }
     }
 }
 

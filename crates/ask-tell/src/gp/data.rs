@@ -15,24 +15,12 @@ pub(super) struct Standardised {
     pub noise_floor: f64,
     /// Zero of the values given, in the model's units.
     pub zero: f64,
-    /// The way to the model's units.
-    pub scale: Scale,
-}
-
-/// The way from a value as given to the model's units.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Scale {
-    mean: f64,
-    /// 0 of values that do not differ.
-    deviation: f64,
-    warp: Option<Warp>,
-}
-
-impl Scale {
-    fn of(&self, value: f64) -> f64 {
-        let standard = (value - self.mean) / self.deviation;
-        self.warp.map_or(standard, |warp| warp.of(standard))
-    }
+    /// Mean of the values given.
+    pub mean: f64,
+    /// Standard deviation of the values given; 0 of values that do not differ.
+    pub deviation: f64,
+    /// Power transformation, if there is one.
+    pub warp: Option<Warp>,
 }
 
 /// Standardises `values`; `noise_floor` is a standard deviation in objective units.
@@ -54,14 +42,20 @@ pub(super) fn standardise(values: &[Option<f64>], noise_floor: f64) -> Option<St
             values: vec![0.0; filled.len()],
             noise_floor: 1e-6,
             zero: -mean,
-            scale: Scale { mean: mean * unit, ..Scale::default() },
+            mean: mean * unit,
+            deviation: 0.0,
+            warp: None,
         });
     }
     let floor = noise_floor / unit / deviation;
-    let values = filled.iter().map(|v| (v - mean) / deviation).collect();
-    let noise_floor = (floor * floor).clamp(1e-8, 1.0);
-    let scale = Scale { mean: mean * unit, deviation: deviation * unit, warp: None };
-    Some(Standardised { values, noise_floor, zero: -mean / deviation, scale })
+    Some(Standardised {
+        values: filled.iter().map(|v| (v - mean) / deviation).collect(),
+        noise_floor: (floor * floor).clamp(1e-8, 1.0),
+        zero: -mean / deviation,
+        mean: mean * unit,
+        deviation: deviation * unit,
+        warp: None,
+    })
 }
 
 impl Standardised {
@@ -73,14 +67,14 @@ impl Standardised {
             spread(self.values.len(), WARPED_BY).map(|i| self.values[i]).collect();
         let Some((values, warp)) = warp(&self.values, &sample) else { return self };
         let noise_floor = (self.noise_floor * warp.slope * warp.slope).clamp(1e-8, 1.0);
-        let scale = Scale { warp: Some(warp), ..self.scale };
-        Standardised { values, noise_floor, zero: f64::NAN, scale }
+        Standardised { values, noise_floor, zero: f64::NAN, warp: Some(warp), ..self }
     }
 
     /// A value as given in the model's units: plus or minus infinity away from values that do not
     /// differ.
     pub fn of(&self, value: f64) -> f64 {
-        self.scale.of(value)
+        let standard = (value - self.mean) / self.deviation;
+        self.warp.map_or(standard, |warp| warp.of(standard))
     }
 }
 

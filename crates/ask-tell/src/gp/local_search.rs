@@ -27,7 +27,7 @@ pub(super) fn maximise(known: &Neighbours, room: Room) -> Option<GridPoint> {
     };
     let promise = |point: GridPoint| {
         let x = room.grid().free_unit(&point);
-        let value = known.about(&x, FEW)?.acquisition(&x);
+        let value = known.near(&x, FEW)?.acquisition(&x);
         value.is_finite().then_some((value, point))
     };
     let unseen = candidates.into_iter().filter(|point| !room.proposed.contains(point));
@@ -46,9 +46,9 @@ fn climb(known: &Neighbours, room: Room, start: &GridPoint) -> Option<(GridPoint
     let side = |by: f64| x.iter().zip(&reach).map(move |(x, r)| (x + by * r).clamp(0.0, 1.0));
     let (low, high): (Vec<f64>, Vec<f64>) = (side(-1.0).collect(), side(1.0).collect());
     let limits = Limits { low: &low, high: &high, evaluations: SLOPES };
-    let trained = known.about(&x, MANY)?;
+    let trained = known.near(&x, MANY)?;
     let top = Search { trained: &trained, room }.ascend(start, &limits);
-    let trained = known.about(&room.grid().free_unit(&top), MANY)?;
+    let trained = known.near(&room.grid().free_unit(&top), MANY)?;
     let search = Search { trained: &trained, room };
     let mut memory = Memory::new();
     search.value(start, &mut memory);

@@ -90,7 +90,7 @@ impl Training {
         }
         let mut known = Neighbours::new(x, data, self.thetas.clone(), zeros);
         if whole {
-            let mut trained = known.of(&(0..n).collect::<Vec<_>>())?;
+            let mut trained = known.models_of(&(0..n).collect::<Vec<_>>())?;
             let (x, objectives) = (&known.x, &trained.models[..trained.objectives()]);
             let margin = |i: usize| trained.acquisition(&x[i]);
             let leaders = |feasible| best_first(|i| objectives[0].mean(&x[i]), feasible);
@@ -107,7 +107,7 @@ impl Training {
             margins.fold(f64::INFINITY, f64::min)
         };
         let mean = |i: usize| {
-            let near = known.about(&known.x[i], FEW);
+            let near = known.near(&known.x[i], FEW);
             near.map_or(f64::NEG_INFINITY, |near| near.models[0].mean(&known.x[i]))
         };
         let leaders = |feasible: Vec<usize>| {

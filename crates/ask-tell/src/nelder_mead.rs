@@ -70,7 +70,7 @@ impl NelderMead {
     /// Builds a simplex about the best point: its vertices lie along each free axis, on the side
     /// with more room, at least one level away.
     fn restart(&mut self) {
-        let grid = self.costs.proposed.grid();
+        let grid = &self.costs.proposed.grid;
         let Some(start) = self.costs.best() else { return };
         let edge = EDGE * 0.5f64.powi(self.runs);
         self.simplex = vec![start.clone()];
@@ -125,7 +125,7 @@ impl CostFunction for &Recorded<'_> {
     type Output = f64;
 
     fn cost(&self, x: &Vec<f64>) -> Result<f64, Error> {
-        let point = self.costs.proposed.grid().folded(x);
+        let point = self.costs.proposed.grid.folded(x);
         if let Some(cost) = self.costs.of.get(&point) {
             return Ok(*cost);
         }

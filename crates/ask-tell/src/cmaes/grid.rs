@@ -75,7 +75,7 @@ impl CmaEsOptimizer {
                 continue;
             }
             let x = self.restarts.current.sample();
-            let point = self.costs.proposed.grid().folded(&x);
+            let point = self.costs.proposed.grid.folded(&x);
             let new = self.costs.proposed.insert(&point);
             // A full generation that is waiting for values is only extended by new points.
             if new || !full {

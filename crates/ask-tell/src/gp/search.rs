@@ -27,8 +27,6 @@ pub(super) struct Room<'a> {
     pub proposed: &'a Proposed,
     /// Good points to start from, best first.
     pub incumbents: &'a [GridPoint],
-    /// Names the streams.
-    pub seed: u64,
 }
 
 /// One search for the best unseen point.
@@ -149,7 +147,7 @@ impl Search<'_> {
 
 impl Room<'_> {
     pub fn grid(&self) -> &Grid {
-        self.proposed.grid()
+        &self.proposed.grid
     }
 
     /// The unseen point of the largest finite value.
@@ -161,11 +159,11 @@ impl Room<'_> {
 
     /// Sobol points and perturbations of the incumbents, half and half; ascending.
     pub fn candidates(&self, count: usize) -> Vec<GridPoint> {
-        let (grid, call) = (self.grid(), self.proposed.len());
+        let (grid, seed, call) = (self.grid(), self.proposed.seed, self.proposed.len());
         let half = count / 2;
-        let sobol = SobolSequence::new(grid.dimension(), self.seed, call, "gp candidates");
+        let sobol = SobolSequence::new(grid.dimension(), seed, call, "gp candidates");
         let mut points: Vec<GridPoint> = sobol.take(half).map(|u| grid.cell(&u)).collect();
-        let mut random = stream(self.seed, call, "gp perturbations");
+        let mut random = stream(seed, call, "gp perturbations");
         for i in 0..if self.incumbents.is_empty() { 0 } else { half } {
             let mut unit = grid.unit(&self.incumbents[i % self.incumbents.len()]);
             // Radii from a twohundredth of the edge to a third, on a logarithmic scale.
@@ -204,13 +202,13 @@ mod tests {
         let best = y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let trained = Trained { models: vec![gp], zeros: Vec::new(), goal: Goal::Improve(best) };
         let proposed = &proposed;
-        let room = Room { proposed, incumbents: &[], seed: 0 };
+        let room = Room { proposed, incumbents: &[] };
         let search = Search { trained: &trained, room };
         let found = search.exhaustive().unwrap();
         let mut memory = BTreeMap::new();
         let value = search.value(&found, &mut memory);
         assert!(!proposed.contains(&found));
-        for point in proposed.grid().points() {
+        for point in proposed.grid.points() {
             let other = search.value(&point, &mut memory);
             assert!(proposed.contains(&point) || other <= value + 1e-9);
         }

@@ -23,8 +23,8 @@ use rayon::ThreadPool;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use study::{
-    Cache, ConfirmationLog, Confirmed, Confirmer, Ending, Recorded, Runner, Simulated, Study,
-    StudyConfig, StudyError, StudyRecord,
+    Cache, ConfirmationLog, ConfirmationStep, Confirmer, Ending, Recorded, Runner, Simulated,
+    Study, StudyConfig, StudyError, StudyRecord,
 };
 
 /// Study that is open; no other process can open it.
@@ -187,8 +187,8 @@ pub(super) fn confirmer<'a>(
 ) -> Confirmer<'a> {
     let done = move |phase, recorded: &Recorded, [done, of]: [usize; 2]| {
         let (word, cost) = match phase {
-            Confirmed::Repeated => ("confirming", cost::REPEATED),
-            Confirmed::Walked => ("walking", cost::WALKED),
+            ConfirmationStep::Repeated => ("confirming", cost::REPEATED),
+            ConfirmationStep::Walked => ("walking", cost::WALKED),
         };
         let what = format!("{word} {}", short(recorded));
         context.part(&Part { what, done, of, cost });

@@ -34,11 +34,11 @@ pub struct Confirmer<'a> {
 }
 
 /// Callback for a confirmed design, with the numbers of designs done and of all.
-pub type OnConfirmed<'a> = dyn Fn(Confirmed, &Recorded, [usize; 2]) + Sync + 'a;
+pub type OnConfirmed<'a> = dyn Fn(ConfirmationStep, &Recorded, [usize; 2]) + Sync + 'a;
 
 /// Kind of confirmation of a design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Confirmed {
+pub enum ConfirmationStep {
     /// Its ends were repeated.
     Repeated,
     /// It was walked step by step.
@@ -132,7 +132,7 @@ impl Confirmer<'_> {
             }
             let chosen: Vec<&Recorded> = chosen.iter().map(|&at| &current[at]).collect();
             let walking = chosen.iter().any(|found| log.get(found).is_some());
-            let phase = if walking { Confirmed::Walked } else { Confirmed::Repeated };
+            let phase = if walking { ConfirmationStep::Walked } else { ConfirmationStep::Repeated };
             let further = |found: &Recorded| self.further(found, log, config.seed);
             let results = self.each(phase, &chosen, further)?;
             log.add(results)?;
@@ -171,7 +171,7 @@ impl Confirmer<'_> {
     /// Returns the result of `what` for each design that has one, in their order; calls it in parallel.
     fn each<T: Send>(
         &self,
-        phase: Confirmed,
+        phase: ConfirmationStep,
         designs: &[&Recorded],
         what: impl Fn(&Recorded) -> Result<Option<T>, StudyError> + Sync,
     ) -> Result<Vec<T>, StudyError> {

@@ -36,7 +36,7 @@ pub use config::{
     BenchEffort, Conclusion, Confirmation, INDIFFERENCES_MM, LARGEST_BATCH, LARGEST_BUDGET,
     StudyConfig, study_name,
 };
-pub use confirmer::{ConfirmationLog, Confirmed, Confirmer};
+pub use confirmer::{ConfirmationLog, ConfirmationStep, Confirmer};
 pub use error::StudyError;
 pub use folder::{CELL, FINGER, Inputs, Study, has_begun, input_path, read_analysis, read_config};
 pub use folder::{sha256, write_analysis, write_file, write_own_file};

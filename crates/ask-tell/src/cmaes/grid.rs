@@ -69,7 +69,7 @@ impl CmaEsOptimizer {
     fn next(&mut self) -> Option<GridPoint> {
         let mut extra = 0;
         while self.barren_restarts < BARREN_RESTARTS && extra < EXTRA_DRAWS {
-            let full = self.generation.len() >= self.restarts.current.parameters.lambda;
+            let full = self.generation.len() >= self.restarts.current.lambda;
             if full && self.generation.iter().all(|(_, point)| self.costs.of.contains_key(point)) {
                 self.finish_generation();
                 continue;

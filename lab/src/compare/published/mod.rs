@@ -13,12 +13,12 @@ use insertion::evaluation::Window;
 use insertion::evaluation::taught::{Moved, teach};
 use insertion::evaluation::template::Impossible;
 use insertion::evaluation::tolerance::{self, Search};
-use insertion::finger::computed::AtPad;
 use insertion::finger::model::FingerSource;
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::stiffness::Measurement;
+use insertion::surrogate::Prediction;
 use insertion::task::{StartRule, Task};
 use insertion::trial::NEVER;
 use insertion::trial::engine::EngineKind;
@@ -167,7 +167,7 @@ pub fn windows(
     let window = |task: &Task, design: &Measurement| {
         let Measurement { compliance, assembly, density_percent, direction_deg, .. } = *design;
         let infill = Design::infill(density_percent, direction_deg);
-        let finger = fingers.make(AtPad { compliance, assembly }, &infill, task)?.finger;
+        let finger = fingers.make(&Prediction::exact(compliance, assembly), &infill, task)?;
         let rig = engine.rig(task, robot, &finger, 1.0)?;
         let taught = match task.strategy.rule {
             StartRule::Given => None,

@@ -33,7 +33,7 @@ impl Priors {
     /// Reads and checks a file; `file` is named in errors.
     ///
     /// # Errors
-    /// If the text cannot be parsed, or as of [`Priors::checked`].
+    /// If the text cannot be parsed, or same as for [`Priors::checked`].
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         read::<Priors>(text, file)?.checked(file)
     }

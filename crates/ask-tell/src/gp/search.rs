@@ -1,4 +1,4 @@
-//! Where on the grid the acquisition is largest.
+//! Search for the grid point with the largest acquisition.
 
 use super::lbfgs::{Limits, minimise};
 use super::trained::Trained;
@@ -14,14 +14,14 @@ use std::collections::BTreeMap;
 const EXHAUSTIVE: u64 = 20_000;
 /// ... as long as grid size times observations stays below this (some ten milliseconds).
 const EXHAUSTIVE_WORK: u64 = 1_000_000;
-/// Starts of the local search.
+/// Number of candidates that are improved.
 const STARTS: usize = 4;
-/// Cost of an acquisition with its derivatives, in acquisitions.
+/// Cost of an acquisition with its gradient, in acquisitions.
 const COST_OF_SLOPE: usize = 3;
-/// Most of them from one start.
+/// Largest number of gradient evaluations from one start.
 const MOST_SLOPES: usize = 40;
 
-/// Where to search.
+/// Search region: the points not yet proposed.
 #[derive(Clone, Copy)]
 pub(super) struct Room<'a> {
     pub proposed: &'a Proposed,
@@ -29,18 +29,18 @@ pub(super) struct Room<'a> {
     pub incumbents: &'a [GridPoint],
 }
 
-/// One search for the best unseen point.
+/// Search for the best unseen point.
 pub(super) struct Search<'a> {
     pub trained: &'a Trained,
     pub room: Room<'a>,
 }
 
-/// The values that were computed.
+/// Acquisitions that were computed.
 pub(super) type Memory = BTreeMap<GridPoint, f64>;
 
 impl Search<'_> {
-    /// The unseen grid point found with the largest acquisition; `None` if no unseen point
-    /// was met or none has a finite one.
+    /// Returns the unseen grid point with the largest acquisition found; `None` if no unseen point was
+    /// evaluated or none has a finite acquisition.
     pub fn maximise(&self) -> Option<GridPoint> {
         let (size, known) =
             (self.room.grid().size(), self.trained.len() * self.trained.models.len());
@@ -50,9 +50,9 @@ impl Search<'_> {
         self.sampled()
     }
 
-    /// Every unseen point, exactly: log expected improvement grows with the variance, so a bound
-    /// of the variance bounds it, and constraints only take away from it. Points are taken by
-    /// falling bound until it is below the best found, and few need the triangular solve.
+    /// Returns the best of all unseen points. The log expected improvement increases with the variance, so an
+    /// upper bound of the variance bounds it, and constraints only lower it. Points are evaluated in the
+    /// order of decreasing bound until it falls below the best value; few need the triangular solve.
     fn exhaustive(&self) -> Option<GridPoint> {
         let unseen = self.room.grid().points().filter(|point| !self.room.proposed.contains(point));
         let bound =
@@ -74,8 +74,8 @@ impl Search<'_> {
         best.map(|(_, point)| point)
     }
 
-    /// Sobol points and perturbations of the incumbents, the best of them improved by L-BFGS
-    /// within the cube and by single levels about the grid point nearest to where it ends.
+    /// Returns the best point found from Sobol points and perturbations of the incumbents, of which the best
+    /// are improved by L-BFGS within the cube and then by single-level steps on the grid.
     fn sampled(&self) -> Option<GridPoint> {
         let (n, models) = (self.trained.len(), self.trained.models.len());
         // A prediction takes about n^2 / 4 + 15 n nanoseconds; some six milliseconds in all.
@@ -97,7 +97,7 @@ impl Search<'_> {
         self.room.best_unseen(memory).map(|(point, _)| point)
     }
 
-    /// The grid point nearest to where L-BFGS ends within a box.
+    /// Returns the grid point nearest to the result of L-BFGS within a box.
     pub fn ascend(&self, from: &GridPoint, limits: &Limits) -> GridPoint {
         let negated = |x: &[f64]| {
             let (value, slope) = self.trained.sloped_acquisition(x)?;
@@ -114,8 +114,8 @@ impl Search<'_> {
         *memory.entry(point.clone()).or_insert_with(acquisition)
     }
 
-    /// Single levels along each axis while they improve and `budget` lasts. Leaves every point
-    /// it tried in `memory`.
+    /// Moves by single levels along each axis while they improve the acquisition and `budget` lasts. Stores
+    /// every point that it evaluates in `memory`.
     pub fn step_uphill(&self, mut at: GridPoint, mut budget: usize, memory: &mut Memory) {
         let mut value = self.value(&at, memory);
         let free = self.room.grid().free_axes();
@@ -150,14 +150,14 @@ impl Room<'_> {
         &self.proposed.grid
     }
 
-    /// The unseen point of the largest finite value.
+    /// Returns the unseen point with the largest finite value.
     pub fn best_unseen(&self, memory: Memory) -> Option<(GridPoint, f64)> {
         let unseen = memory.into_iter().filter(|(p, _)| !self.proposed.contains(p));
         let finite = unseen.filter(|(_, v)| *v > f64::NEG_INFINITY);
         finite.reduce(|a, b| if b.1 > a.1 { b } else { a })
     }
 
-    /// Sobol points and perturbations of the incumbents, half and half; ascending.
+    /// Returns Sobol points and perturbations of the incumbents, half of each, ascending.
     pub fn candidates(&self, count: usize) -> Vec<GridPoint> {
         let (grid, seed, call) = (self.grid(), self.proposed.seed, self.proposed.len());
         let half = count / 2;

@@ -68,7 +68,7 @@ pub fn planar(geometry: &Geometry, size: f64) -> Result<[PlanarStiffness; 2], Fi
              finger has 0.05 to 100; check that lengths are in mm and material.modulus_gpa in GPa \
              (PETG has 2)"
         );
-        return Err(FingerError::Unfit { file: geometry.finger.file.clone(), problem });
+        return Err(FingerError::finger(&geometry.finger, problem));
     }
     Ok([pad, stiffness(held[1])?])
 }

@@ -133,7 +133,6 @@ impl PrintedFinger {
     fn checked(raw: RawFinger, file: &str) -> Result<Self, InputError> {
         let check = Check { file };
         let length = |key, value| length(check, key, value);
-        let coordinate = |key, value| check.finite(key, value).map(|value| value * MM);
         let RawFinger { outline, notch, base, skin, ribs, material, mount, print, .. } = raw;
         Ok(PrintedFinger {
             outline: Outline {
@@ -152,11 +151,11 @@ impl PrintedFinger {
             ribs: Ribs {
                 thickness: length("ribs.thickness_mm", ribs.thickness_mm)?,
                 line_spacing: length("ribs.line_spacing_mm", ribs.line_spacing_mm)?,
-                origin: Point2::new(
-                    coordinate("ribs.origin_mm", ribs.origin_mm[0])?,
-                    coordinate("ribs.origin_mm", ribs.origin_mm[1])?,
-                ),
-                phase: coordinate("ribs.phase_mm", ribs.phase_mm)?,
+                origin: check
+                    .each("ribs.origin_mm", ribs.origin_mm, Check::finite)?
+                    .map(|value| value * MM)
+                    .into(),
+                phase: check.finite("ribs.phase_mm", ribs.phase_mm)? * MM,
             },
             material: checked_material(check, material)?,
             tilt: angle(check, "mount.tilt_deg", mount.tilt_deg)?,

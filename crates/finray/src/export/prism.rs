@@ -79,7 +79,7 @@ impl Prism {
     /// Adds the block that has the finger's holes, if there is one: a closed surface of its own that
     /// overlaps the finger's. What lies in either is solid (3MF Core Specification 1.3, 4.1: the
     /// positive fill rule), and slicers read STL files so, too.
-    fn with_block(mut self, geometry: &Geometry) -> Result<Self, PrismError> {
+    fn with_block(self, geometry: &Geometry) -> Result<Self, PrismError> {
         let Some((holes, block)) = geometry.block() else { return Ok(self) };
         let outline = &geometry.finger.outline;
         let [u, v] = holes.axis.across().map(|direction| direction as usize);
@@ -94,15 +94,13 @@ impl Prism {
         let rings: Vec<Ring> =
             rings.map(|ring| ring.iter().map(|p| placed(p.x, p.y)).collect()).collect();
         let [start, end] = ends[axis].map(|end| end / MM + origin[axis]);
-        let block = Prism::new(&outer.map(|[x, y]| placed(x, y)).to_vec(), &rings, end - start)?;
-        let first = self.corners.len() as u32;
-        self.corners.extend(block.corners.iter().map(|&[x, y, z]| {
-            let mut corner = [0.0; 3];
+        let outer = outer.map(|[x, y]| placed(x, y)).to_vec();
+        let mut block = Prism::new(&outer, &rings, end - start)?;
+        for corner in &mut block.corners {
+            let [x, y, z] = *corner;
             (corner[u], corner[v], corner[axis]) = (x, y, z + start as f32);
-            corner
-        }));
-        self.triangles.extend(block.triangles.iter().map(|t| t.map(|corner| corner + first)));
-        self.closed()
+        }
+        self.and(&block).closed()
     }
 
     /// Extrudes a ring less holes (clockwise) from 0 to `depth`, mm.
@@ -139,23 +137,19 @@ impl Prism {
         Ok(prism)
     }
 
+    /// Returns the surface if each edge belongs to two triangles, once in each direction. Corners are identified by
+    /// their positions, as in a file without numbers of corners.
     fn closed(self) -> Result<Self, PrismError> {
-        match self.open_edges() {
-            0 => Ok(self),
-            open => Err(PrismError(format!("{open} edges do not belong to exactly two triangles"))),
-        }
-    }
-
-    /// Returns the number of edges that are not met exactly twice, once each way; corners are told apart by
-    /// their places alone, as in a file without numbers of corners.
-    fn open_edges(&self) -> usize {
         let place = |corner: u32| self.corners[corner as usize].map(f32::to_bits);
         let mut met: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
         for [a, b] in self.triangles.iter().flat_map(sides) {
             *met.entry([place(a), place(b)]).or_default() += 1;
         }
         let twice = |[a, b]: &[[u32; 3]; 2]| met[&[*a, *b]] == 1 && met.get(&[*b, *a]) == Some(&1);
-        met.keys().filter(|edge| !twice(edge)).count()
+        match met.keys().filter(|edge| !twice(edge)).count() {
+            0 => Ok(self),
+            open => Err(PrismError(format!("{open} edges do not belong to exactly two triangles"))),
+        }
     }
 
     /// Returns the volume that the surface encloses, mm3.

@@ -70,7 +70,7 @@ pub(super) fn finger(
              finger.rcc_mm nearer to the pad, or use --finger-model paper",
             lever / MM
         );
-        Err(FingerError::Unfit { file: printed.file.clone(), problem })
+        Err(FingerError::finger(printed, problem))
     };
     let in_y = at_centre("compliance", compliance, below)?;
     let in_z = at_centre("assembly", assembly, ahead)?;

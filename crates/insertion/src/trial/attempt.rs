@@ -312,7 +312,7 @@ impl<'a> Attempt<'a> {
     fn presses(&self, body: BodyId) -> impl Iterator<Item = ContactPoint> {
         let parts = [self.cell.plug].into_iter().chain(self.cell.latch);
         let points = parts.flat_map(move |part| self.world.contact_points(body, part));
-        points.map(|point| point.seen(&self.socket))
+        points.map(|point| point.transformed(&self.socket))
     }
 
     fn socket_force(&self) -> ContactForce {

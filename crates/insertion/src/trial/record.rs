@@ -64,7 +64,7 @@ impl Frame {
             *pose = from * *pose;
         }
         for point in self.contacts.iter_mut().chain(&mut self.grips) {
-            *point = point.seen(from);
+            *point = point.transformed(from);
         }
         self.force = from * self.force;
     }

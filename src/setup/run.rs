@@ -9,7 +9,7 @@ use rayon::ThreadPool;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
-use study::{BenchEffort, Cache, Conclusion, IfChanged};
+use study::{BenchEffort, Cache, Conclusion};
 
 const CACHE: &str = "results/.cache";
 const THREADS: RangeInclusive<u16> = 1..=1024;
@@ -123,11 +123,6 @@ fn executor(text: &str) -> Result<String, String> {
 }
 
 impl RunRequest {
-    /// Returns what to do if the provenance differs.
-    pub(crate) fn if_changed(&self) -> IfChanged {
-        if self.accept_changed { IfChanged::NewSegment } else { IfChanged::Refuse }
-    }
-
     /// Returns the settings of the analyses after a study; `effort` is that of its bench prediction so far.
     pub(crate) fn conclusion(&self, setup: &Setup, effort: Option<BenchEffort>) -> Conclusion {
         let bench = setup.measured.as_ref().map(|_| self.effort.or(effort));

@@ -3,10 +3,11 @@
 use crate::failure::Failure;
 use crate::setup::Setup;
 use crate::setup::film::{film, shifted};
-use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::template::Template;
 use insertion::evaluation::tolerance::offset;
 use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
 use insertion::outcome::Outcome;
+use insertion::space::Design;
 use insertion::trial::{Grasp, picture};
 use rayon::ThreadPool;
 use report::answer::Answer;
@@ -35,12 +36,8 @@ pub(crate) fn boundary(
             let on_task = found.as_ref().and_then(|(design, tasks)| Some((design, tasks.get(at)?)));
             let texts = match on_task {
                 None => None,
-                Some((design, task)) => {
-                    let evaluator = &setup.evaluator;
-                    let stiffness = evaluator.predict(design).map_err(Failure::input)?;
-                    let specimen =
-                        evaluator.specimen(template, design, stiffness).map_err(Failure::input)?;
-                    pair(setup, &specimen, task, (end, outward), (pool, stop))?
+                Some((design, measured)) => {
+                    pair(setup, (template, design), measured, (end, outward), (pool, stop))?
                 }
             };
             // After cancellation trials may have been skipped.
@@ -67,7 +64,7 @@ pub(crate) fn boundary(
 /// engine records nothing.
 fn pair(
     setup: &Setup,
-    specimen: &Specimen,
+    (template, design): (&Template, &Design),
     measured: &Evaluation,
     (end, outward): (&str, OffsetStep),
     (pool, stop): (&ThreadPool, &AtomicBool),
@@ -80,7 +77,10 @@ fn pair(
     if window.nominal != Outcome::Inserted || failed.is_none() {
         return Ok(None);
     }
-    let rig = setup.evaluator.rig(specimen, measured.taught, 1.0).map_err(Failure::input)?;
+    let evaluator = &setup.evaluator;
+    let stiffness = evaluator.predict(design).map_err(Failure::input)?;
+    let specimen = &evaluator.specimen(template, design, stiffness).map_err(Failure::input)?;
+    let rig = evaluator.rig(specimen, measured.taught, 1.0).map_err(Failure::input)?;
     let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
     let record = |step| rig.record(grasp, offset(step));
     let (inside, outside) =

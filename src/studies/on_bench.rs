@@ -11,7 +11,7 @@ use calibration::simulation::Simulation;
 use calibration::table::{self, by_range, on_bench};
 use insertion::evaluation::objective::{Measure, Objectives};
 use rayon::ThreadPool;
-use study::{Study, StudyConfig, write_own_file};
+use study::{BENCH_FILE, Study, StudyConfig, write_analysis, write_own_file};
 
 /// Table of the predictions of all fingers of the space.
 const TABLE: &str = "bench_predictions.csv";
@@ -71,5 +71,5 @@ pub(crate) fn predict(
         Ok::<_, Failure>((found, table::predictions_csv(subject, result)))
     })?;
     write_own_file(&study.dir().join(TABLE), &predictions)?;
-    Ok(study.keep_on_bench(&found)?)
+    Ok(write_analysis(study.dir(), BENCH_FILE, &found)?)
 }

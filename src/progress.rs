@@ -38,6 +38,8 @@ pub mod cost {
 
 /// Time between two lines without a terminal.
 const EVERY: Duration = Duration::from_secs(3);
+/// Longest time of a result that comes from the cache.
+const CACHED: Duration = Duration::from_millis(5);
 /// Typical numbers of designs that are repeated and walked.
 const CONFIRMED: [f64; 2] = [5.0, 1.5];
 
@@ -45,11 +47,14 @@ const CONFIRMED: [f64; 2] = [5.0, 1.5];
 pub struct Progress {
     bar: Option<ProgressBar>,
     shown: bool,
-    begun: Instant,
     said: Instant,
+    /// End of the last part.
+    last: Instant,
     /// Work done since it began, and estimated work left.
     done: f64,
     left: f64,
+    /// Work that took time, unlike results from the cache, and the time that it took.
+    computed: (f64, Duration),
     /// Number of evaluations of a study, unless it stops early, and the best so far.
     search: Option<(Option<u64>, Standing)>,
 }
@@ -75,7 +80,8 @@ impl Progress {
     pub fn of(left: f64, shown: bool) -> Self {
         let bar = (shown && stderr().is_terminal()).then(|| bar(left));
         let now = Instant::now();
-        Progress { bar, shown, begun: now, said: now, done: 0.0, left, search: None }
+        let computed = (0.0, Duration::ZERO);
+        Progress { bar, shown, said: now, last: now, done: 0.0, left, computed, search: None }
     }
 
     /// Shows that a part is done.
@@ -97,7 +103,12 @@ impl Progress {
     fn step(&mut self, cost: f64, what: &str, last: bool) {
         self.done += cost;
         self.left = (self.left - cost).max(0.0);
-        let left = self.begun.elapsed().mul_f64(self.left / self.done.max(1.0));
+        let took = self.last.elapsed();
+        self.last = Instant::now();
+        if took > CACHED {
+            self.computed = (self.computed.0 + cost, self.computed.1 + took);
+        }
+        let left = self.computed.1.mul_f64(self.left / self.computed.0.max(1.0));
         if let Some(bar) = &self.bar {
             bar.set_message(format!("{what}, about {:#} left", HumanDuration(left)));
             bar.set_length((self.done + self.left).ceil() as u64);

@@ -150,6 +150,20 @@ fn computed<S: Serializer>(by_ribs: &Option<ByRibs>, serializer: S) -> Result<S:
 
 impl command::Response for Evaluated {}
 
+impl Evaluated {
+    /// Returns a remark if the two finger models give ranges of which one is less than half the other.
+    fn disagreement(&self) -> Option<&'static str> {
+        let Some(ByRibs::Measured(tasks)) = &self.by_ribs else { return None };
+        let range_mm = self.evaluation.window.range_mm();
+        let apart = |ribs: &Evaluation| {
+            let other_mm = ribs.window.range_mm();
+            range_mm.min(other_mm) < 0.5 * range_mm.max(other_mm)
+        };
+        let remark = "less than half of the other: measure a finger before you rely on either";
+        tasks.iter().any(apart).then_some(remark)
+    }
+}
+
 impl fmt::Display for Evaluated {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Evaluated { chosen, evaluation, .. } = self;
@@ -167,6 +181,7 @@ impl fmt::Display for Evaluated {
         rest.extend(lines::taught(evaluation.taught));
         rest.extend(lines::drawn(evaluation));
         rest.extend(self.by_ribs.iter().flat_map(lines::by_ribs));
+        rest.extend(self.disagreement().map(|remark| (String::new(), remark.to_owned())));
         let text = format!(
             "task          {}\n{}{}{}time          {:.1} s\n",
             chosen.specimen.task.name,

@@ -91,6 +91,9 @@ impl command::Request for Request {
         };
         let file = &self.bench.measurements;
         let missing = measured::is_missing(file);
+        if missing {
+            context.note(&format!("{file} does not exist: fingers are chosen by simulation alone"));
+        }
         let source = match missing {
             true => Source { file: file.clone(), text: String::new() },
             false => measured::file(file)?,
@@ -135,7 +138,8 @@ impl Advised {
         let file = measurements_missing.then(|| format!(" ({measurements} does not exist)"));
         let mut lines = vec![match advice.best_known_mm {
             Some(best) => format!(
-                "{task}: {measured} fingers measured, the best of them expected at {best:.1} mm"
+                "{task}: {} measured, the best of them expected at {best:.1} mm",
+                input::counted(*measured, "finger")
             ),
             None => format!(
                 "{task}: nothing measured yet{}; by simulation alone",

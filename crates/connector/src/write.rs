@@ -32,7 +32,13 @@ pub fn task(task: &Task, notes: &Notes) -> String {
     };
     let [plug, socket] = match notes.parts {
         Some(_) => [String::new(), String::new()],
-        None => [parts("plug", &task.plug.parts), parts("socket", &task.socket)],
+        None => [
+            format!(
+                "# Convex parts, z counted from the tip upwards.\n{}",
+                parts("plug", &task.plug.parts)
+            ),
+            parts("socket", &task.socket),
+        ],
     };
     let [x, y] = task.opening.map(pair);
     let mut out = format!(
@@ -40,8 +46,7 @@ pub fn task(task: &Task, notes: &Notes) -> String {
          # Frame: origin in the middle of the opening, on the socket's top; z out of the socket; y the\n\
          # direction in which the jaws close and the start is shifted. Lengths in mm.\n\n\
          name = {name}\ndescription = {description}\n{turn}\n\
-         [plug]\n# {}\nmass_g = {}\n\n\
-         # Convex parts, z counted from the tip upwards.\n{plug}\
+         [plug]\n# {}\nmass_g = {}\n\n{plug}\
          [socket]\n# From, to of the opening on the top, between the walls below.\n\
          opening_x_mm = {x}\nopening_y_mm = {y}\n\n{socket}{}{}\
          [success]\n# Judged at rest after the push: tip this deep below the top, axis this upright.\n\

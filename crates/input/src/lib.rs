@@ -202,6 +202,11 @@ pub fn shown(value: f64) -> String {
     if plain { value.to_string() } else { format!("{value:e}") }
 }
 
+/// Returns a count with its noun, as in "1 line" and "2 lines".
+pub fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
 /// Checks of the values of a file.
 #[derive(Debug, Clone, Copy)]
 pub struct Check<'a> {

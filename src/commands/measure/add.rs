@@ -1,7 +1,6 @@
 //! `optimize measure add`: adds a line to a measurement file.
 
 use crate::command::{self, Output};
-use crate::commands::measure::check::counted;
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::setup::task::{TaskFile, read_task};
@@ -104,7 +103,7 @@ impl command::Request for Request {
             cells = asked(&mut io::stdin().lock())?;
         }
         let lines = added(file, cells, self.dry_run)?.len();
-        let text = format!("{file}: {}\n", counted(lines));
+        let text = format!("{file}: {}\n", input::counted(lines, "line"));
         Ok(Output { value: Added { file: file.clone(), lines }, text, picture: None })
     }
 }

@@ -71,21 +71,15 @@ impl command::Request for Request {
         let line = |OfTask { task, lines, ranges, bounds, .. }: &OfTask| {
             let rest = lines - ranges - bounds;
             format!(
-                "{task:<8} {ranges:>3} ranges, {bounds:>3} lower bounds, {rest:>3} not measurable\n"
+                "{task:<8} {}, {}, {rest:>3} not measurable\n",
+                input::counted(*ranges, "range"),
+                input::counted(*bounds, "lower bound")
             )
         };
         let (file, lines) = (self.file.clone(), found.len());
         let text = tasks.iter().map(line).collect::<String>()
-            + &format!("{file}: {}, no problems found\n", counted(lines));
+            + &format!("{file}: {}, no problems found\n", input::counted(lines, "line"));
         let rows = self.rows.then_some(found);
         Ok(Output { value: Checked { file, lines, tasks, rows }, text, picture: None })
-    }
-}
-
-/// Returns the number of lines in words.
-pub fn counted(lines: usize) -> String {
-    match lines {
-        1 => "1 line".to_owned(),
-        count => format!("{count} lines"),
     }
 }

@@ -70,7 +70,10 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
             };
             (format!("optimize next {asked}"), why)
         }
-        _ => ("optimize measure add bench.csv".to_owned(), "enter what your robot measured"),
+        _ => {
+            let task = if several { String::new() } else { format!(" --task {tasks}") };
+            (format!("optimize measure add bench.csv{task}"), "enter what your robot measured")
+        }
     }
 }
 

@@ -110,6 +110,10 @@ pub fn force(answer: &Answer) -> Option<Line> {
     });
     let remedy = match safe {
         Some(safe) => format!("take the safe choice, {}", words::design(&safe.design.design)),
+        // A study that predicts a robot takes no constraints.
+        None if answer.record.on_bench.is_some() => {
+            format!("try optimize task tune --max-force-n {:.0}", acceptable(answer))
+        }
         None => format!("try --constraint 'peak-force<={:.0}'", acceptable(answer)),
     };
     Some(line("force", format!("{}; {remedy}", excess.words())))

@@ -92,7 +92,7 @@ impl Trust {
             Trust::Calibrated { fingers, error_percent } => {
                 let missed = error_percent
                     .map_or(String::new(), |error| format!(", leave-one-out error {error:.1} %"));
-                format!("{fingers} fingers measured{missed}")
+                format!("{} measured{missed}", input::counted(*fingers, "finger"))
             }
             Trust::Published { nearest, itself } => {
                 let who = if *itself { "this finger" } else { "similar fingers" };

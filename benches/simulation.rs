@@ -1,6 +1,6 @@
 //! Time of what is simulated: `cargo bench --bench simulation`.
 
-use connector::mating::{Watch, mates};
+use connector::mating::mates;
 use connector::mesh::mated::{self, Pair, Request};
 use contact::direct::Direct;
 use contact::scene::{Body, Friction, Geom, Inertia, Motion, Pose, Scene, Shape};
@@ -19,6 +19,7 @@ use insertion::task::Task;
 use insertion::trial::Rig;
 use insertion::trial::engine::EngineKind;
 use nalgebra::{Point3, Vector3};
+use std::sync::atomic::AtomicBool;
 
 fn main() {
     divan::main();
@@ -170,8 +171,8 @@ fn mated_pose(bencher: Bencher) {
         squares(outline).into_iter().map(|face| face.map(|p| p * MM)).collect()
     };
     let (plug, socket) = (metres(&plug), metres(&socket));
-    let watch = Watch { progress: &|_| {}, stopped: &|| false };
-    bencher.bench_local(|| mates(&plug, &socket, &watch).expect("a mated pose"));
+    let stop = AtomicBool::new(false);
+    bencher.bench_local(|| mates(&plug, &socket, &stop).expect("a mated pose"));
 }
 
 /// Corners of a rectangle with round corners, mm, counter-clockwise.

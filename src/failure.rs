@@ -3,7 +3,6 @@
 use calibration::experiments::Problems;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use connector::draft::DraftError;
-use connector::mesh::MeshError;
 use finray::FingerError;
 use input::shipped::ShippedError;
 use input::{Fault, InputError, Place, Placed};
@@ -44,7 +43,7 @@ fn place<E: Placed + Error + 'static>(error: &(dyn Error + 'static)) -> Option<P
 }
 
 /// Types of errors that have a place.
-const PLACED: [fn(&(dyn Error + 'static)) -> Option<Place>; 11] = [
+const PLACED: [fn(&(dyn Error + 'static)) -> Option<Place>; 10] = [
     place::<Usage>,
     place::<Fault>,
     place::<InputError>,
@@ -54,7 +53,6 @@ const PLACED: [fn(&(dyn Error + 'static)) -> Option<Place>; 11] = [
     place::<FingerError>,
     place::<Impossible>,
     place::<DraftError>,
-    place::<MeshError>,
     place::<StudyError>,
 ];
 

@@ -13,7 +13,6 @@ use insertion::evaluation::robustness::{self, Plan};
 use insertion::evaluation::tolerance::{Search, evaluate};
 use insertion::evaluation::uncertainty::Uncertainty;
 use insertion::finger::Finger;
-use insertion::finger::computed::AtPad;
 use insertion::finger::file::FingerFile;
 use insertion::finger::model::{ComputedFingers, FingerSource};
 use insertion::outcome::{FailureClass, Outcome};
@@ -296,8 +295,8 @@ fn computed() -> Finger {
     let printed = FingerFile::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
     let fingers = ComputedFingers::new(printed);
     let fingers = FingerSource::Computed(Box::new(fingers));
-    let at_pad = AtPad { compliance: 2.6e3, assembly: 45e3 };
-    fingers.make(at_pad, &Design::infill(20.0, 20.0), &direct("rj45").task).unwrap().finger
+    let at_pad = Prediction::exact(2.6e3, 45e3);
+    fingers.make(&at_pad, &Design::infill(20.0, 20.0), &direct("rj45").task).unwrap()
 }
 
 /// A finger on its springs at a jaw that stands still, the springs at rest with the pad so far inward.

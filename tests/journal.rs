@@ -12,8 +12,7 @@ use insertion::evaluation::template::{Impossible, Template};
 use insertion::evaluation::tolerance::{Search, evaluate};
 use insertion::evaluation::{Evaluation, RobustRange, SuccessRate, Window};
 use insertion::finger::Finger;
-use insertion::finger::computed::AtPad;
-use insertion::finger::model::{FingerSource, Made};
+use insertion::finger::model::FingerSource;
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::{Design, Space};
 use insertion::surrogate::{Estimate, Prediction};
@@ -256,9 +255,9 @@ impl Evaluate for NotAll {
         let template = Template::parse(usb, "usb.toml").unwrap();
         let tilt = (design.get("infill_density_percent") == Some(13.0)).then_some(90.0);
         let set = tilt.map(|tilt| ("task.strategy.tilt_deg".to_owned(), tilt));
-        let at_pad = AtPad { compliance: 3e3, assembly: 2e4 };
+        let at_pad = Prediction::exact(3e3, 2e4);
         let design = Design(set.into_iter().collect());
-        let (_, Made { finger, .. }) = template.apply(&design, &FingerSource::Paper, at_pad)?;
+        let (_, finger) = template.apply(&design, &FingerSource::Paper, &at_pad)?;
         let one = Estimate { mean: 1e3, sd: 1.0 };
         Ok(Measured {
             stiffness: Prediction { compliance: one, assembly: one, hull_distance: 0.0 },

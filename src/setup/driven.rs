@@ -6,7 +6,7 @@ use crate::context::not_stopped;
 use crate::failure::Failure;
 use input::units::MM;
 use insertion::evaluation::tolerance;
-use insertion::trial::{Driven, Grasp, State};
+use insertion::trial::{Driven, State};
 use nalgebra::Vector3;
 use std::sync::atomic::AtomicBool;
 
@@ -37,8 +37,7 @@ impl Insertion {
         let specimen = finger.choose(&setup)?.specimen;
         let taught = setup.evaluator.taught(&specimen, stop).map_err(Failure::input)?;
         let rig = setup.evaluator.rig(&specimen, None, 1.0).map_err(Failure::input)?;
-        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
-        let driven = rig.driven(grasp).ok_or_else(undriven)?;
+        let driven = rig.driven(&specimen.finger).ok_or_else(undriven)?;
         not_stopped(stop)?;
         Ok(Insertion { driven, taught: taught.map_or(0.0, tolerance::offset) })
     }

@@ -194,7 +194,7 @@ fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure
 
 impl Serialize for Chosen {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Specimen { task, finger, centre, stiffness, .. } = &self.specimen;
+        let Specimen { task, finger, stiffness, .. } = &self.specimen;
         let mut subject = json!({
             "task": task.name,
             "robot": self.robot,
@@ -204,7 +204,7 @@ impl Serialize for Chosen {
             "set": self.set,
             "finger_model": self.finger_model.name(),
             "rcc_mm": finger.rcc / MM,
-            "rcc_from": match centre {
+            "rcc_from": match self.specimen.centre_from() {
                 CentreFrom::Model => "finger-model",
                 CentreFrom::TaskFile => "task",
                 CentreFrom::Design => "design",
@@ -245,12 +245,12 @@ impl Chosen {
 
     /// Returns the results of the finger model, if it is not the paper's.
     fn model_text(&self) -> String {
-        let Specimen { finger, centre, .. } = &self.specimen;
+        let Specimen { finger, .. } = &self.specimen;
         if self.finger_model == FingerModelKind::Paper {
             return String::new();
         }
         let (below, ahead) = (finger.rcc / MM, finger.ahead / MM);
-        let given = match centre {
+        let given = match self.specimen.centre_from() {
             CentreFrom::Model => String::new(),
             CentreFrom::TaskFile => ", as the task file says, not computed".to_owned(),
             CentreFrom::Design => format!(", as {RCC_KEY} says, not computed"),

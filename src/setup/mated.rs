@@ -3,7 +3,7 @@
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use connector::body::{extent, width};
-use connector::mating::{Found, Mate, Watch, assembled, mates};
+use connector::mating::{Found, Mate, assembled, mates};
 use connector::mesh::axes::{Along, Jaws, Unit, value};
 use connector::mesh::mated::{GAP, HANDLE, Interference, Made, Pair, Request, TOLERANCE, task};
 use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
@@ -12,7 +12,6 @@ use insertion::task::Task;
 use nalgebra::{Point3, Vector3};
 use serde::Serialize;
 use std::path::Path;
-use std::sync::atomic::Ordering;
 use study::write_file;
 
 /// Most places of overlap that are listed.
@@ -241,23 +240,16 @@ fn mate(
     context: &Context<'_>,
     said: &mut Vec<(&'static str, String)>,
 ) -> Result<Mate, Failure> {
-    let stopped = || context.stop.load(Ordering::SeqCst);
-    let watch = Watch { progress: &|_| {}, stopped: &stopped };
     let found = match given.assembled {
-        true => assembled(plug, socket).map(Found::One),
-        false => mates(plug, socket, &watch),
+        true => assembled(plug, socket).map(|mate| Found { mates: vec![mate], equal: 1 }),
+        false => mates(plug, socket, context.stop),
     };
     not_stopped(context.stop)?;
     let nowhere = |why: String| Failure::in_file(files.join(", "), why);
-    let found = found.map_err(|error| nowhere(error.to_string()))?;
-    let mut all = match found {
-        Found::One(mate) => vec![mate],
-        Found::Symmetric(mate, count) => {
-            said.push(("symmetry", format!("the first of {count} equal poses is taken")));
-            vec![mate]
-        }
-        Found::Ambiguous(all) => all,
-    };
+    let Found { mates: mut all, equal } = found.map_err(|error| nowhere(error.to_string()))?;
+    if equal > 1 {
+        said.push(("symmetry", format!("the first of {equal} equal poses is taken")));
+    }
     if let Some(along) = given.along {
         all.retain(|mate| along_of(&-mate.out.into_inner()) == along);
     }

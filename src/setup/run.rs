@@ -3,7 +3,7 @@
 use super::Setup;
 use crate::failure::Failure;
 use crate::failure::wide;
-use calibration::bench::{Effort, Settings};
+use calibration::bench::Settings;
 use input::shipped::nearest;
 use rayon::ThreadPool;
 use std::ops::RangeInclusive;
@@ -71,8 +71,8 @@ impl EffortRequest {
 }
 
 pub(crate) fn settings(effort: BenchEffort, seed: u64, stop: &AtomicBool) -> Settings<'_> {
-    let effort = Effort { warm_up: WARM_UP, samples: usize::from(effort.samples), thin: THIN };
-    Settings { effort, seed, stop, done: &|_| () }
+    let samples = usize::from(effort.samples);
+    Settings { warm_up: WARM_UP, samples, thin: THIN, seed, stop, done: &|_| () }
 }
 
 /// Options of the run of a study that change no evaluation.

@@ -64,29 +64,31 @@ impl<'a> ConvexBody<'a> {
         ConvexBody { parts, shapes, tree, yielding: &[] }
     }
 
-    /// Body of a plug, whose latch gives way.
+    /// Creates the body of a plug, whose latch gives way.
     pub fn plug(plug: &'a Plug) -> Self {
         let yielding = plug.latch.as_ref().map_or(&[][..], |latch| &latch.parts);
         ConvexBody { yielding, ..ConvexBody::new(&plug.parts) }
     }
 
-    /// Depth of the deepest overlap with another body, m, and the index of each part in its body.
-    pub fn overlap(&self, own: &Pose, other: &ConvexBody, at: &Pose) -> Option<(f64, [usize; 2])> {
-        let pairs = self.near_pairs(own, other, at).filter(|[i, _]| !self.yielding.contains(i));
-        let deep = pairs.filter_map(|[i, j]| {
-            Some((self.shapes[i].overlap(own, &other.shapes[j], at)?, [i, j]))
-        });
-        deep.max_by(|a, b| a.0.total_cmp(&b.0))
+    /// Returns the deepest overlap of the parts that do not give way with another body.
+    pub fn overlap(&self, own: &Pose, other: &ConvexBody, at: &Pose) -> Option<Touching> {
+        let stiff = |touching: &Touching| !self.yielding.contains(&touching.parts[0]);
+        let overlaps = self.overlaps(own, other, at).filter(stiff);
+        overlaps.max_by(|a, b| a.depth.total_cmp(&b.depth))
     }
 
-    /// Returns all overlaps with another body.
-    pub fn overlaps(&self, own: &Pose, other: &ConvexBody, at: &Pose) -> Vec<Touching> {
-        let touching = |parts: [usize; 2]| {
+    /// Returns all overlaps with another body, in the order of the parts.
+    pub fn overlaps<'b>(
+        &'b self,
+        own: &'b Pose,
+        other: &'b ConvexBody,
+        at: &'b Pose,
+    ) -> impl Iterator<Item = Touching> + 'b {
+        self.pairs_within(0.0, own, other, at).filter_map(|parts| {
             let [first, second] = [&self.shapes[parts[0]], &other.shapes[parts[1]]];
             let (depth, normal) = first.penetration(own, second, at)?;
             Some(Touching { depth, normal, parts })
-        };
-        self.near_pairs(own, other, at).filter_map(touching).collect()
+        })
     }
 
     /// Returns the gap to another body in its own frame, m, if less than `wide`, 0 if they overlap, and its place; only
@@ -110,16 +112,6 @@ impl<'a> ConvexBody<'a> {
         pairs.filter_map(gap).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// Pairs of parts of this and another body whose boxes meet, in order.
-    fn near_pairs<'b>(
-        &'b self,
-        own: &Pose,
-        other: &'b ConvexBody,
-        at: &Pose,
-    ) -> impl Iterator<Item = [usize; 2]> + 'b {
-        self.pairs_within(0.0, own, other, at)
-    }
-
     /// Pairs of parts whose boxes are within a distance, m, of one another, in order.
     fn pairs_within<'b>(
         &'b self,
@@ -138,17 +130,7 @@ impl<'a> ConvexBody<'a> {
         })
     }
 
-    /// Overlaps among its own parts: depth, m, and indices.
-    pub fn own_overlaps(&self) -> Vec<(f64, [usize; 2])> {
-        let (here, count) = (Pose::identity(), self.shapes.len());
-        let pairs = (0..count).flat_map(|i| (i + 1..count).map(move |j| [i, j]));
-        let overlap = |[i, j]: [usize; 2]| {
-            Some((self.shapes[i].overlap(&here, &self.shapes[j], &here)?, [i, j]))
-        };
-        pairs.filter_map(overlap).collect()
-    }
-
-    /// Gap between two of its parts, m; 0 if they touch.
+    /// Returns the gap between two of its parts, m; 0 if they touch.
     pub fn own_gap(&self, i: usize, j: usize) -> f64 {
         let [a, b] = [&self.shapes[i], &self.shapes[j]];
         let [at, to] = [a, b].map(|part| shapes::pose(&part.pose, MILLIMETRES));
@@ -156,7 +138,7 @@ impl<'a> ConvexBody<'a> {
         query::distance(&at, &*a.shape, &to, &*b.shape).map_or(0.0, |found| found.distance * MM)
     }
 
-    /// Index of the first part that contains a point.
+    /// Returns the index of the first part that contains a point.
     pub fn part_at(&self, point: &Point3<f64>) -> Option<usize> {
         let point = (point.coords * MILLIMETRES).into();
         let holds = |part: &Placed| {
@@ -165,25 +147,17 @@ impl<'a> ConvexBody<'a> {
         self.shapes.iter().position(holds)
     }
 
-    /// Indices of the parts within a distance, m, of a point.
+    /// Returns the indices of the parts within a distance, m, of a point, in any order.
     pub fn near(&self, point: &Point3<f64>, within: f64) -> impl Iterator<Item = usize> {
-        let point = (point.coords * MILLIMETRES).into();
-        let close = move |part: &Placed| {
-            let pose = shapes::pose(&part.pose, MILLIMETRES);
-            part.shape.distance_to_point(&pose, point, true) <= within * MILLIMETRES
-        };
-        self.shapes.iter().enumerate().filter(move |(_, part)| close(part)).map(|(i, _)| i)
-    }
-
-    /// Returns whether a part is within a distance, m, of a point.
-    pub fn reaches(&self, point: &Point3<f64>, within: f64) -> bool {
         let (centre, reach) = ((point.coords * MILLIMETRES).into(), within * MILLIMETRES);
         let boxed = Aabb::from_half_extents(centre, Vector3::repeat(reach).into());
-        self.tree.intersect_aabb(&boxed).any(|i| {
-            let part = &self.shapes[i as usize];
+        let close = move |i: &usize| {
+            let part = &self.shapes[*i];
             let pose = shapes::pose(&part.pose, MILLIMETRES);
             part.shape.distance_to_point(&pose, centre, true) <= reach
-        })
+        };
+        let boxes: Vec<u32> = self.tree.intersect_aabb(&boxed).collect();
+        boxes.into_iter().map(|i| i as usize).filter(close)
     }
 
     /// Parts outside the latch, which the fingers do not press, with their indices.
@@ -200,25 +174,20 @@ impl<'a> ConvexBody<'a> {
         self.parts.iter().flat_map(|part| part.solid.corners())
     }
 
-    /// Lowest and highest coordinate along an axis (0 x, 1 y, 2 z), m.
+    /// Returns the lowest and the highest coordinate along an axis (0 x, 1 y, 2 z), m.
     pub fn extent(&self, axis: usize) -> [f64; 2] {
         extent(self.corners(), axis)
     }
 }
 
 impl Placed {
-    /// Box about the part, its body at a pose, mm.
+    /// Returns the bounding box of the part, its body at a pose, mm.
     fn boxed(&self, at: &Pose) -> Aabb {
         let part = self.shape.compute_aabb(&shapes::pose(&self.pose, MILLIMETRES));
         part.transform_by(&shapes::pose(at, MILLIMETRES))
     }
 
-    /// Penetration depth of this part, its body at `own`, in another, m.
-    fn overlap(&self, own: &Pose, other: &Placed, at: &Pose) -> Option<f64> {
-        self.penetration(own, other, at).map(|(depth, _)| depth)
-    }
-
-    /// As `overlap`, with its normal.
+    /// Returns the penetration depth of this part, its body at `own`, in another, m, and its normal.
     fn penetration(&self, own: &Pose, other: &Placed, at: &Pose) -> Option<(f64, Vector3<f64>)> {
         let apart = (own * self.centre - at * other.centre).norm() > self.radius + other.radius;
         if apart {
@@ -232,7 +201,7 @@ impl Placed {
     }
 }
 
-/// Lowest and highest coordinate of points along an axis (0 x, 1 y, 2 z); see [`span`].
+/// Returns the lowest and the highest coordinate of points along an axis (0 x, 1 y, 2 z); see [`span`].
 pub fn extent<P: Borrow<Point3<f64>>>(
     points: impl IntoIterator<Item = P>,
     axis: usize,
@@ -248,7 +217,7 @@ pub fn width([low, high]: [f64; 2]) -> f64 {
     high - low
 }
 
-/// Lowest and highest number; infinity and minus infinity without numbers.
+/// Returns the lowest and the highest number; infinity and minus infinity without numbers.
 pub fn span(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
@@ -264,7 +233,7 @@ pub fn clipped(points: &[Point3<f64>], axis: usize, [from, to]: [f64; 2]) -> Vec
         };
         let crossings =
             kept.iter().flat_map(|p| beyond.iter().map(move |q| crossing(p, q))).collect();
-        // Without those within the outline, repeated clipping does not multiply corners.
+        // Corners inside the outline are dropped, so that repeated clipping does not multiply them.
         kept.extend(outline_by(crossings, |p| Point2::new(p[(axis + 1) % 3], p[(axis + 2) % 3])));
         kept
     };

@@ -16,7 +16,7 @@ use parameters::numbers;
 use std::f64::consts::PI;
 use std::str::FromStr;
 
-/// Least thickness of the walls about the opening, m.
+/// Smallest thickness of the walls about the opening, m.
 const WALL: f64 = 5.0 * MM;
 /// Reach of the walls beyond the body that rests on them, m.
 const BEYOND_BODY: f64 = 2.0 * MM;
@@ -30,7 +30,7 @@ const KEY_ROOT: f64 = 0.45 * MM;
 const SLIVER: f64 = 1e-10;
 /// Thickness of the floor, m.
 const FLOOR: f64 = 2.0 * MM;
-/// Share of its length by which a plug without a body goes in.
+/// Share of its length to which a plug without a body is inserted.
 const SHARE: f64 = 0.6;
 /// Assumed density of a plug, kg/m3: plastic with some metal in it.
 pub const DENSITY: f64 = 1500.0;
@@ -57,7 +57,7 @@ impl FromStr for Size {
 }
 
 impl Size {
-    /// Size of a cylinder from DIAMETERxLENGTH in mm.
+    /// Parses the size of a cylinder, DIAMETERxLENGTH in mm.
     ///
     /// # Errors
     /// If the text is something else, or a dimension beyond 0.5 to 200 mm.
@@ -67,7 +67,7 @@ impl Size {
     }
 }
 
-/// Width and height of a key from WIDTHxHEIGHT in mm, m.
+/// Parses the width and the height of a key, m, from WIDTHxHEIGHT in mm.
 ///
 /// # Errors
 /// As of [`Size::round`].
@@ -75,7 +75,7 @@ pub fn key(text: &str) -> Result<[f64; 2], String> {
     lengths(text, "give WIDTHxHEIGHT in mm, as in 2x1")
 }
 
-/// Dimensions, m, of a text that has them in mm with an x between them.
+/// Parses dimensions, m, that are separated by an x and in mm.
 fn lengths<const N: usize>(text: &str, right: &str) -> Result<[f64; N], String> {
     let numbers: Result<Vec<f64>, _> =
         text.split(['x', 'X', '×']).map(|number| number.trim().parse()).collect();
@@ -147,7 +147,7 @@ impl Placed for DraftError {
     }
 }
 
-/// Task without shapes: friction, grasp force and fingers as in the shipped tasks, or as in `like`.
+/// Creates a task without shapes; friction, grasp force and fingers are those of the shipped tasks, or of `like`.
 pub fn blank(name: &str, like: Option<&Task>) -> Task {
     let finger_torsion = PadTorsion::Points(30.0 * MM);
     let friction = Friction { finger_plug: 1.0, finger_torsion, plug_socket: 0.2 };
@@ -170,7 +170,7 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
     }
 }
 
-/// Task of these dimensions; what they do not decide is taken from `like`.
+/// Creates the task of these dimensions; all else is taken from `like`.
 ///
 /// # Errors
 /// If the plug is too short to be held, or no strategy can be derived.
@@ -243,9 +243,9 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
         // A pin of many may stand in the hole of another.
         let lateral = libm::hypot(size.clearance, size.clearance) / 2.0 + ASIDE;
         task.success.mated = Some(Mated { tip: [0.0, 0.0, -plug.length], lateral });
-        return Ok(plan::mated(task));
+        return Ok(plan::mated(&task));
     }
-    Ok(plan::complete(task)?)
+    Ok(plan::complete(&task)?)
 }
 
 fn upright(name: &str, size: Size, from: f64) -> Part {
@@ -258,11 +258,11 @@ pub(crate) fn block(name: &str, [x, y, z]: [[f64; 2]; 3]) -> Part {
     part(name, Solid::Box { min, max })
 }
 
-fn part(name: &str, solid: Solid) -> Part {
+pub(crate) fn part(name: &str, solid: Solid) -> Part {
     Part { name: name.to_owned(), solid, friction: None }
 }
 
-/// Opening, and a socket of walls about it and a floor.
+/// Returns the opening, and a socket of a floor and walls about the opening.
 fn housing(size: &Dimensions, floor: f64) -> ([[f64; 2]; 2], Vec<Part>) {
     let hole = size.round.then(|| Hole::new(size.plug.width, size.clearance));
     let mut opening = [size.plug.height, size.plug.width].map(|plug| {
@@ -311,12 +311,12 @@ fn slotted(walls: &[Part], [reach, half]: [f64; 2]) -> Vec<Part> {
         let between = side(&side(outline, [0.0, 1.0], half), [0.0, -1.0], half);
         let beyond = side(&between, [-1.0, 0.0], -reach);
         let left = [above, below, beyond].into_iter().filter(|piece| area(piece) > SLIVER);
-        let part = |(at, outline): (usize, Vec<[f64; 2]>)| {
-            let name =
-                if at == 0 { wall.name.clone() } else { format!("{} {}", wall.name, at + 1) };
-            Part { name, solid: Solid::Prism { axis: *axis, outline, span: *span }, friction: None }
+        let piece = |(number, outline): (usize, Vec<[f64; 2]>)| {
+            let solid = Solid::Prism { axis: *axis, outline, span: *span };
+            let name = &wall.name;
+            if number == 1 { part(name, solid) } else { part(&format!("{name} {number}"), solid) }
         };
-        left.enumerate().map(part).collect()
+        (1..).zip(left).map(piece).collect()
     };
     walls.iter().flat_map(pieces).collect()
 }
@@ -357,7 +357,7 @@ pub struct Hole {
 }
 
 impl Hole {
-    /// Hole for a plug of a diameter with a clearance, m.
+    /// Creates the hole for a plug of a diameter with a clearance, m.
     pub fn new(diameter: f64, clearance: f64) -> Self {
         let radius = (diameter + clearance) / 2.0;
         // With the flat at r - off and its corners at (r - off) / cos(pi / n) = r + off.
@@ -368,7 +368,7 @@ impl Hole {
         Hole { flats, flat: radius - off(flats), off: off(flats) }
     }
 
-    /// Prisms between the hole and a rectangle of half sides `outer` in x and y, m.
+    /// Returns prisms that fill a rectangle of half sides `outer` in x and y, m, around the hole.
     pub fn walls(&self, outer: [f64; 2], z: [f64; 2]) -> Vec<Part> {
         let corner = |k: u32| {
             let turn = (f64::from(k) - 0.5) * 2.0 * PI / f64::from(self.flats);
@@ -380,7 +380,7 @@ impl Hole {
         let wall = |k: u32| {
             let ([a, b], [d, c]) = (corner(k), corner(k + 1));
             let solid = Solid::Prism { axis: 2, outline: vec![a, b, c, d], span: z };
-            Part { name: format!("wall {}", k + 1), solid, friction: None }
+            part(&format!("wall {}", k + 1), solid)
         };
         (0..self.flats).map(wall).collect()
     }

@@ -6,18 +6,18 @@ use insertion::finger::{Pad, ROOF_GAP};
 use insertion::task::Part;
 use nalgebra::Point3;
 
-/// Tolerance of a surface's place, m.
+/// Tolerance of the position of a surface, m.
 pub const SEAM: f64 = 0.05 * MM;
 
-/// Pad in x, m.
-const PAD_X: [f64; 2] = [-Pad::PAPER.width / 2.0, Pad::PAPER.width / 2.0];
+/// Extent of a pad in x, m.
+pub const PAD_X: [f64; 2] = [-Pad::PAPER.width / 2.0, Pad::PAPER.width / 2.0];
 
 /// Grasp of a plug by pads whose roofs rest at a given height; plug frame, m.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Held {
     /// Lower and upper edge of the pads.
     pub pad_z: [f64; 2],
-    /// Outermost y of the plug between the pads, at -y and +y, with the index of that part.
+    /// Outermost y of the plug between the pads, at -y and at +y, each with the index of its part.
     pub faces: Option<[(f64, usize); 2]>,
     /// Height over which each pad meets its face.
     pub cover: [f64; 2],
@@ -25,18 +25,18 @@ pub struct Held {
     pub under_roof: [Option<f64>; 2],
 }
 
-/// Lower and upper edge of pads whose roofs rest on a shoulder, plug frame, m.
+/// Returns the lower and upper edge of pads whose roofs rest on a shoulder, plug frame, m.
 pub fn pad_z(shoulder: f64) -> [f64; 2] {
     [shoulder + ROOF_GAP - Pad::PAPER.height, shoulder + ROOF_GAP]
 }
 
-/// Grasp by pads whose roofs rest at `shoulder`, m, on the widest faces or those at `faces_y`, m.
+/// Returns the grasp by pads whose roofs rest at `shoulder`, m, at the widest faces or at those given by `faces_y`, m.
 pub fn held(plug: &ConvexBody, shoulder: f64, faces_y: Option<[f64; 2]>) -> Held {
     let pad_z = pad_z(shoulder);
     let mut pieces: Vec<Vec<Point3<f64>>> = vec![Vec::new(); plug.parts.len()];
     for (i, part) in plug.stiff() {
         let within = clipped(&part.solid.corners(), 2, pad_z);
-        // What only touches the pads' edge from above or below is not between them.
+        // A part that only touches an edge of the pads from above or below is not between them.
         if width(extent(&within, 2)) >= SEAM {
             pieces[i] = clipped(&within, 0, PAD_X);
         }
@@ -49,6 +49,7 @@ pub fn held(plug: &ConvexBody, shoulder: f64, faces_y: Option<[f64; 2]>) -> Held
     Held { pad_z, faces, cover, under_roof }
 }
 
+/// Returns the outermost y of the pieces at -y and at +y, each with its index.
 fn widest(pieces: &[Vec<Point3<f64>>]) -> Option<[(f64, usize); 2]> {
     let reach = |sign: f64| {
         let each = pieces.iter().enumerate().filter(|(_, piece)| !piece.is_empty());
@@ -60,7 +61,7 @@ fn widest(pieces: &[Vec<Point3<f64>>]) -> Option<[(f64, usize); 2]> {
     Some([reach(-1.0)?, reach(1.0)?])
 }
 
-/// Height over which the plug reaches a pad's face.
+/// Returns the height over which the plug touches the pad on a side.
 fn cover(pieces: &[Vec<Point3<f64>>], face: f64, side: usize) -> f64 {
     let sign = [-1.0, 1.0][side];
     let reaching = pieces.iter().filter_map(|piece| {
@@ -70,9 +71,9 @@ fn cover(pieces: &[Vec<Point3<f64>>], face: f64, side: usize) -> f64 {
     width(span(reaching.flatten())).max(0.0)
 }
 
-/// Returns the highest point of the plug in the column of a roof, from the pads' middle up.
+/// Returns the height of the highest point of the plug under or in a roof, above the middle of the pads.
 fn under_roof(plug: &ConvexBody, shoulder: f64, face: f64, side: usize) -> Option<f64> {
-    // A seam inside, so that what the roof only touches from the side does not count.
+    // Narrowed by the tolerance, so that a part beside the roof does not count.
     let column = match side {
         0 => [face, face + Pad::PAPER.roof - SEAM],
         _ => [face - Pad::PAPER.roof + SEAM, face],
@@ -86,18 +87,13 @@ fn under_roof(plug: &ConvexBody, shoulder: f64, face: f64, side: usize) -> Optio
     plug.stiff().filter_map(|(_, part)| top(part)).max_by(f64::total_cmp)
 }
 
-/// Default grasp of a plug, shoulder and faces in m: the highest shoulder that both roofs rest on,
-/// with faces that the pads meet over `least_cover`, m. Flat faces are preferred to a cable.
+/// Finds the default grasp of a plug, shoulder and faces in m: the highest shoulder on which both roofs can rest, and faces
+/// that the pads touch over at least `least_cover`, m. Flat faces are preferred to round ones such as cables.
 pub fn find(plug: &ConvexBody, least_cover: f64) -> Option<(f64, [f64; 2])> {
-    [true, false].into_iter().find_map(|flat| grasp(plug, least_cover, flat))
-}
-
-/// As [`find`], on flat faces only or on any.
-fn grasp(plug: &ConvexBody, least_cover: f64, flat: bool) -> Option<(f64, [f64; 2])> {
     let mut tops: Vec<f64> =
         plug.stiff().map(|(_, part)| extent(part.solid.corners(), 2)[1]).collect();
     tops.sort_by(|a, b| b.total_cmp(a));
-    tops.iter().find_map(|&shoulder| {
+    let grasp = |shoulder: f64, flat: bool| {
         let held = held(plug, shoulder, None);
         let rests = |top: &Option<f64>| top.is_some_and(|z| (z - shoulder).abs() < SEAM);
         let found = held.faces?;
@@ -105,10 +101,11 @@ fn grasp(plug: &ConvexBody, least_cover: f64, flat: bool) -> Option<(f64, [f64; 
             && held.cover.iter().all(|&cover| cover >= least_cover)
             && (!flat || found.iter().all(|&(y, part)| is_flat(&plug.parts[part], y)));
         right.then_some((shoulder, found.map(|(y, _)| y)))
-    })
+    };
+    [true, false].into_iter().find_map(|flat| tops.iter().find_map(|&top| grasp(top, flat)))
 }
 
-/// Returns whether a part has a face at this y, m, not only an edge or a line.
+/// Returns whether a part has a face at this y, m, not just an edge or a corner.
 fn is_flat(part: &Part, y: f64) -> bool {
     let corners = part.solid.corners();
     width(extent(corners.iter().filter(|p| (p.y - y).abs() < SEAM), 0)) > 1.0 * MM

@@ -7,7 +7,7 @@ use insertion::outcome::{FailureClass, Outcome};
 use insertion::task::{Stage, Task};
 use insertion::trial::{PhaseEnd, Trial};
 
-/// Outcome of a trial in plain words, with advice.
+/// Explains the outcome of a trial in plain words, with advice.
 pub fn explain(task: &Task, trial: &Trial) -> String {
     let slip = format!("slip {:.1} mm, allowed {:.1}", trial.slip_mm, task.grip.slip_limit / MM);
     match trial.outcome {

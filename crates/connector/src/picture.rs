@@ -27,7 +27,7 @@ const MARGIN: f64 = 0.08;
 const AROUND: f64 = 8.0 * MM;
 
 /// Views of the task: title, and the axes to the right and up.
-const VIEWS: [(&str, [usize; 2]); 3] = [
+pub(crate) const VIEWS: [(&str, [usize; 2]); 3] = [
     ("from the side: y to the right, z up", [1, 2]),
     ("from the front: x to the right, z up", [0, 2]),
     ("from above: y to the right, x up", [1, 0]),
@@ -117,7 +117,7 @@ impl<'a> Picture<'a> {
         Pose::translation(x, y, -self.seat.depth)
     }
 
-    /// Interval that a view shows along an axis, m.
+    /// Returns the interval that a view shows along an axis, m.
     fn reach(&self, axis: usize) -> [f64; 2] {
         let corners = |parts: &[Part], pose: Pose| {
             let corners = parts.iter().flat_map(|part| part.solid.corners());
@@ -145,7 +145,7 @@ impl<'a> Picture<'a> {
             frame.polygon(drawing, &part.geom(), &Pose::identity(), SOCKET);
         }
         let seated = self.seated();
-        // From above only the parts that enter the opening, which the rest would hide.
+        // From above only the parts that enter the opening are drawn: the rest would hide them.
         let enters = |part: &Part| extent(part.solid.corners(), 2)[0] < self.task.success.depth;
         for part in self.task.plug.parts.iter().filter(|part| !from_above || enters(part)) {
             frame.polygon(drawing, &part.geom(), &self.start, PLUG);
@@ -175,7 +175,7 @@ impl<'a> Picture<'a> {
     fn path(&self, drawing: &mut Drawing, frame: &Frame) {
         let points: Vec<_> = self.way.iter().map(|point| frame.at(&point.edge)).collect();
         drawing.line(points.iter().copied(), Style::line(PATH, 1.5));
-        // Waypoints that fall together in a view share a label.
+        // Waypoints that coincide in a view share a label.
         let near = |p: &Point2<f64>, q: &Point2<f64>| (p - q).norm() < 9.0;
         for (first, p) in points.iter().enumerate() {
             if points[..first].iter().any(|q| near(p, q)) {

@@ -5,7 +5,7 @@ use input::units::MM;
 use insertion::task::Part;
 use parameters::numbers;
 
-/// Most pins of a header.
+/// Largest number of pins of a header.
 const MOST: u32 = 100;
 
 /// Pins of a header, m.
@@ -22,7 +22,7 @@ pub struct Pins {
 }
 
 impl Pins {
-    /// Number of pins in y and in x from NxM.
+    /// Parses the number of pins in y and in x, NxM.
     ///
     /// # Errors
     /// If the text is something else, a number is 0, or their product is above 100.
@@ -37,7 +37,7 @@ impl Pins {
         count.filter(usable).ok_or(right)
     }
 
-    /// Length of a pin's side, of a pin or between pins, mm.
+    /// Parses the side of a pin, its length or the pitch, mm.
     ///
     /// # Errors
     /// If the text is no number, or one beyond 0.1 to 50 mm.
@@ -46,25 +46,25 @@ impl Pins {
         numbers::problem("connector.pin_mm", mm).map_or(Ok(mm), |problem| Err(problem + " mm"))
     }
 
-    /// Size of the block about all pins.
+    /// Returns the size of the block about all pins.
     pub fn size(&self) -> Size {
         let [width, height] = self.count.map(|count| f64::from(count - 1) * self.pitch + self.side);
         Size { width, height, length: self.length }
     }
 
-    /// Size of the body that the pins stand in: a pitch for each, and high enough for the pads.
+    /// Returns the size of the body of the header: a pitch for each pin, and long enough for the pads.
     pub fn body(&self) -> Size {
         let [width, height] = self.count.map(|count| f64::from(count) * self.pitch);
         Size { width, height, length: 20.0 * MM }
     }
 
-    /// Middles of the pins in y or in x.
+    /// Returns the centres of the pins in y or in x.
     fn middles(&self, axis: usize) -> impl Iterator<Item = f64> {
         let (count, pitch) = (self.count[axis], self.pitch);
         (0..count).map(move |i| (f64::from(i) - f64::from(count - 1) / 2.0) * pitch)
     }
 
-    /// Pins from z = 0 up.
+    /// Returns the pins from z = 0 upwards.
     pub fn parts(&self) -> Vec<Part> {
         let about = |middle: f64| [middle - self.side / 2.0, middle + self.side / 2.0];
         let pin = |(i, [x, y]): (usize, [f64; 2])| {
@@ -74,7 +74,7 @@ impl Pins {
         (1..).zip(places).map(pin).collect()
     }
 
-    /// Plate of an extent in x, y and z with a hole for each pin.
+    /// Returns a plate of an extent in x, y and z with a hole for each pin.
     pub fn plate(&self, clearance: f64, [x, y]: [[f64; 2]; 2], z: [f64; 2]) -> Vec<Part> {
         let half = (self.side + clearance) / 2.0;
         let between = |axis: usize, [low, high]: [f64; 2]| -> Vec<[f64; 2]> {

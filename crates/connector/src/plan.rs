@@ -20,7 +20,7 @@ use insertion::task::{
 const BELOW_SHOULDER: f64 = 3.5 * MM;
 /// Height of a tilted tip's upper edge above its lower one, m.
 const RISE: f64 = 0.35 * MM;
-/// Least and largest tilt, degrees.
+/// Smallest and largest tilt, degrees.
 const TILT_DEG: [f64; 2] = [5.0, 10.0];
 /// Clear height above the socket at the start and after the approach, m.
 const AIR: [f64; 2] = [5.0 * MM, 1.0 * MM];
@@ -32,9 +32,9 @@ const BESIDE: f64 = 1.0 * MM;
 const ACROSS: [f64; 2] = [0.8 * MM, 0.45 * MM];
 /// Move of a round tip to either side in x, m.
 const ROUND_ACROSS: f64 = 0.5 * MM;
-/// Share of a round opening's half that the tip's lowest point starts beyond its middle.
+/// Distance of the lowest point of the tip from the middle of a round opening at the start, as a share of its radius.
 const ROUND_AHEAD: f64 = 0.75;
-/// Way to either side of a plug that is swept over its seat upright, m: the margin that a strategy is to have.
+/// Amplitude of the sweep of an upright plug over its seat, m: the margin that a strategy should have.
 const SWEEP: f64 = 1.0 * MM;
 /// Command beyond the touch during the sweep, m.
 const SWEPT_PRELOAD: f64 = 0.15 * MM;
@@ -42,13 +42,13 @@ const SWEPT_PRELOAD: f64 = 0.15 * MM;
 const PUSH: [f64; 2] = [4.0 * MM, 100.0 * MM];
 /// Tilt that counts as upright beyond what the play allows, degrees.
 const UPRIGHT_DEG: f64 = 2.0;
-/// Least tilt that counts as upright, degrees.
+/// Smallest limit of the tilt of an upright plug, degrees.
 const LEAST_UPRIGHT_DEG: f64 = 3.0;
 /// Allowance for the success depth beside that of a tilt: m, and a share of the full depth.
 const MISSING: (f64, f64) = (0.2 * MM, 0.02);
 /// Share of the full depth at which the play is measured.
 const WITHIN: f64 = 0.9;
-/// Least depth of a plug that goes in, m.
+/// Smallest depth at which a plug counts as entered, m.
 const LEAST_DEPTH: f64 = 1.0 * MM;
 /// Distance below the top at which the opening of a mated plug is measured, m.
 pub(crate) const BELOW_TOP: f64 = 0.1 * MM;
@@ -65,25 +65,23 @@ pub enum PlanError {
     NoFloor,
 }
 
-/// Task with grasp point, strategy and success derived from shapes, opening, shoulder and faces.
-pub fn complete(task: Task) -> Result<Task, PlanError> {
-    let (plug_parts, socket_parts) = (task.plug.parts.clone(), task.socket.clone());
-    let (plug, socket) = (ConvexBody::new(&plug_parts), ConvexBody::new(&socket_parts));
-    let seat = Seating::new(&task, &plug, &socket).deepest();
+/// Returns the task with grasp point, strategy and success derived from shapes, opening, shoulder and faces.
+pub fn complete(task: &Task) -> Result<Task, PlanError> {
+    let (plug, socket) = (ConvexBody::new(&task.plug.parts), ConvexBody::new(&task.socket));
+    let seat = Seating::new(task, &plug, &socket).deepest();
     let Some([by, on]) = seat.stopped_by else { return Err(PlanError::NoFloor) };
     if seat.depth < LEAST_DEPTH {
-        let names = (plug_parts[by].name.clone(), socket_parts[on].name.clone());
-        return Err(PlanError::NoEntry(seat.depth / MM, names.0, names.1));
+        let (by, on) = (plug.parts[by].name.clone(), socket.parts[on].name.clone());
+        return Err(PlanError::NoEntry(seat.depth / MM, by, on));
     }
-    Ok(planned(task, &plug, &socket, &seat))
+    Ok(planned(task.clone(), &plug, &socket, &seat))
 }
 
 /// Returns the task with grasp point, strategy and success derived from shapes, opening, shoulder, faces and mated pose.
-pub fn mated(task: Task) -> Task {
-    let (plug_parts, socket_parts) = (task.plug.parts.clone(), task.socket.clone());
-    let (plug, socket) = (ConvexBody::new(&plug_parts), ConvexBody::new(&socket_parts));
-    let seat = Seating::new(&task, &plug, &socket).deepest();
-    planned(task, &plug, &socket, &seat)
+pub fn mated(task: &Task) -> Task {
+    let (plug, socket) = (ConvexBody::new(&task.plug.parts), ConvexBody::new(&task.socket));
+    let seat = Seating::new(task, &plug, &socket).deepest();
+    planned(task.clone(), &plug, &socket, &seat)
 }
 
 fn planned(mut task: Task, plug: &ConvexBody, socket: &ConvexBody, seat: &Seat) -> Task {
@@ -110,7 +108,7 @@ fn planned(mut task: Task, plug: &ConvexBody, socket: &ConvexBody, seat: &Seat) 
     task
 }
 
-/// Strategy that sets the plug down upright over its seat, sweeps it along y until it drops in, and pushes. Drawn
+/// Returns a strategy that sets the plug down upright over its seat, sweeps it along y until it drops in, and pushes. Drawn
 /// connectors have a lead-in, and pins and tongues that a tilted plug would meet first.
 fn straight(task: &Task, mated: &Mated) -> Strategy {
     let [x, y, z] = mated.tip;
@@ -146,14 +144,14 @@ pub fn has_core(task: &Task) -> bool {
     })
 }
 
-/// Connectors that a search is known to suit.
+/// Family of connectors for which a search strategy is known.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Family {
-    /// Its tip comes down with an edge.
+    /// Connectors whose tilted tip touches down with an edge.
     Key,
-    /// Its tip comes down with a point.
+    /// Connectors whose tilted tip touches down with a point.
     Peg,
-    /// Those of a shipped task.
+    /// Connectors like that of a shipped task.
     Like(Box<Task>),
 }
 
@@ -202,7 +200,7 @@ impl Family {
     }
 }
 
-/// Intervals of the tip in x and in y, m.
+/// Returns the extent of the tip in x and in y, m.
 fn tip(plug: &ConvexBody) -> [[f64; 2]; 2] {
     section(plug, plug.extent(2)[0] + LEAST_DEPTH)
 }
@@ -235,7 +233,7 @@ struct Moves {
 }
 
 impl Moves {
-    /// Moves of a tip with a lower edge, set down on the rim at -x.
+    /// Returns the moves of a tip with a lower edge, set down on the rim at -x.
     fn of_edge(task: &Task, tip: [[f64; 2]; 2]) -> Self {
         let [[left, right], [low, high]] = task.opening;
         let play = right - left - width(tip[0]);
@@ -264,7 +262,7 @@ impl Moves {
         let search = way.iter().filter(|point| point.stage == Stage::Search);
         let mut x = search.clone().map(|point| carried(point.tcp.x, from, to));
         let mut y = search.map(|point| carried(point.edge.y, other.opening[1], task.opening[1]));
-        // Of a small tip less lies on the rim.
+        // A small tip overlaps the rim by less.
         let quarter = width(tip[0]) / 4.0;
         let touch = x.next().unwrap_or(0.0).clamp(to[0] - quarter, to[1].max(to[0]) + quarter);
         let [back, front, aside] = [(); 3].map(|()| x.next().unwrap_or(touch));
@@ -294,7 +292,7 @@ impl Moves {
         [beyond, task.strategy.phases.last().map_or(PUSH[1], |phase| phase.speed)]
     }
 
-    /// Moves of a round tip, whose lowest point is set down near the wall at -y.
+    /// Returns the moves of a round tip, whose lowest point is set down near the wall at -y.
     fn of_point(task: &Task, tip: [[f64; 2]; 2]) -> Self {
         let [x, [low, high]] = task.opening;
         let half = (high - low) / 2.0;
@@ -310,7 +308,7 @@ impl Moves {
     }
 }
 
-/// Depth and tilt of success, from the play in y, m.
+/// Sets depth and tilt of success from the play in y, m.
 fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat, play: f64) {
     let upright = libm::atan(play / seat.depth) / DEG + UPRIGHT_DEG;
     let tilt = upright.ceil().max(LEAST_UPRIGHT_DEG) * DEG;
@@ -341,13 +339,13 @@ fn phases(task: &Task, search: &Moves, seat: f64) -> Vec<Phase> {
     ]
 }
 
-/// Phase of a displacement, m, at a speed, mm/s.
+/// Creates a phase of a displacement, m, at a speed, mm/s.
 fn phase(name: &str, stage: Stage, by: [f64; 3], speed: f64, ending: Ending) -> Phase {
     let displacement = by.map(round_mm);
     Phase { name: name.to_owned(), stage, displacement, speed: speed * MM, ending }
 }
 
-/// Length rounded to 0.01 mm, as in files.
+/// Rounds a length to 0.01 mm, as in files.
 fn round_mm(length: f64) -> f64 {
     round(length / MM, 0.01) * MM
 }

@@ -14,7 +14,7 @@ const MARK: char = '\u{feff}';
 pub fn strategy(text: &str, task: &Task, after: &Strategy) -> Result<String, TomlError> {
     let mut file: DocumentMut = text.parse()?;
     let changed = Task { strategy: after.clone(), ..task.clone() };
-    let new: DocumentMut = write::strategy_of(&changed).parse()?;
+    let new: DocumentMut = write::strategy(&changed).parse()?;
     // Inline tables are written out: a comment has no place in them.
     if let Ok(table) = std::mem::take(&mut file["strategy"]).into_table() {
         file["strategy"] = Item::Table(table);
@@ -24,10 +24,11 @@ pub fn strategy(text: &str, task: &Task, after: &Strategy) -> Result<String, Tom
             old.insert("phase", Item::ArrayOfTables(phases));
         }
         change(old, new);
-        if let Some(rule) = old.remove("start") {
-            comment_above(old, "start_mm", &format!("# start was {}", shown(&rule)));
+        if let Some(Item::Value(rule)) = old.remove("start") {
+            comment_above(old, "start_mm", &format!("# start was {}", bare(&rule)));
         }
-        if let (Some(from), Some(to)) = (phases(old), new["phase"].as_array_of_tables()) {
+        let phases = old.get_mut("phase").and_then(Item::as_array_of_tables_mut);
+        if let (Some(from), Some(to)) = (phases, new["phase"].as_array_of_tables()) {
             if alike(from, to) {
                 from.iter_mut().zip(to).for_each(|(old, new)| change(old, new));
             } else {
@@ -45,10 +46,6 @@ fn ended_as(other: &str, text: String) -> String {
     let text = if 2 * crlf > lines { text.replace('\n', "\r\n") } else { text };
     let marked = other.starts_with(MARK) && !text.starts_with(MARK);
     if marked { format!("{MARK}{text}") } else { text }
-}
-
-fn phases(strategy: &mut Table) -> Option<&mut ArrayOfTables> {
-    strategy.get_mut("phase")?.as_array_of_tables_mut()
 }
 
 /// Returns whether two strategies consist of the same moves but for their numbers.
@@ -75,7 +72,7 @@ fn change(old: &mut Table, new: &Table) {
         let join = if beside.is_empty() { "#" } else { ";" };
         *value.decor_mut() =
             toml_edit::Decor::new(" ", format!(" {beside}{join} {note}").replace(" ;", ";"));
-        // In place: a key that is inserted anew loses the comments above it.
+        // Replaced in place, because a key that is removed and inserted loses the comments above it.
         match old.get_mut(key) {
             Some(item) => *item = Item::Value(value),
             None => drop(old.insert(key, Item::Value(value))),
@@ -83,7 +80,7 @@ fn change(old: &mut Table, new: &Table) {
     }
 }
 
-/// Other phases in place of the old ones, which stay as comments.
+/// Replaces the phases; the old ones stay as comments.
 fn replace(old: &mut ArrayOfTables, new: &ArrayOfTables) {
     let mut was = String::from("\n# was:\n");
     for phase in old.iter() {
@@ -116,7 +113,7 @@ fn same(a: &Value, b: &Value) -> bool {
     let list =
         |a: &Array, b: &Array| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b));
     match (number(a), number(b), a.as_array(), b.as_array()) {
-        // As written: a tenth of a micrometre.
+        // The resolution of written lengths, 0.1 um.
         (Some(a), Some(b), ..) => (a - b).abs() < 1e-4,
         (.., Some(a), Some(b)) => list(a, b),
         _ => a.as_str().is_some() && a.as_str() == b.as_str(),
@@ -127,10 +124,6 @@ fn bare(value: &Value) -> String {
     let mut bare = value.clone();
     bare.decor_mut().clear();
     bare.to_string()
-}
-
-fn shown(item: &Item) -> String {
-    item.as_value().map_or(String::new(), bare)
 }
 
 #[cfg(test)]

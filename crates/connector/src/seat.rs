@@ -3,10 +3,10 @@
 use super::body::{ConvexBody, clipped, extent};
 use contact::scene::Pose;
 use input::units::MM;
-use insertion::task::{Ending, Part, Stage, Task};
+use insertion::task::{Ending, Mated, Part, Stage, Task};
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 
-/// Overlap that does not count, m: that of rounding to 0.01 mm.
+/// Overlap that is ignored, m: that of rounding to 0.01 mm.
 const TOLERANCE: f64 = 0.02 * MM;
 /// Step of the depth on the way down, m.
 const STEP: f64 = 0.25 * MM;
@@ -14,7 +14,7 @@ const STEP: f64 = 0.25 * MM;
 const FINE: f64 = 0.005 * MM;
 /// Overlap of bodies that only touch, m.
 const TOUCHING: f64 = 1e-3 * MM;
-/// Largest displacement to the side, m.
+/// Largest lateral play that is measured, m.
 const MOST_PLAY: f64 = 10.0 * MM;
 /// Intervals of the grid of places along x and along y.
 const GRID: i32 = 8;
@@ -40,24 +40,22 @@ pub struct Seat {
 }
 
 pub struct Seating<'a> {
+    task: &'a Task,
     plug: &'a ConvexBody<'a>,
     socket: &'a ConvexBody<'a>,
-    opening: [[f64; 2]; 2],
-    mated: Option<[f64; 3]>,
 }
 
 impl<'a> Seating<'a> {
-    pub fn new(task: &Task, plug: &'a ConvexBody, socket: &'a ConvexBody) -> Self {
-        let mated = task.success.mated.map(|mated| mated.tip);
-        Seating { plug, socket, opening: task.opening, mated }
+    pub fn new(task: &'a Task, plug: &'a ConvexBody, socket: &'a ConvexBody) -> Self {
+        Seating { task, plug, socket }
     }
 
     pub fn deepest(&self) -> Seat {
-        if let Some([x, y, z]) = self.mated {
+        if let Some(Mated { tip: [x, y, z], .. }) = self.task.success.mated {
             return Seat { depth: -z, at: [x, y], stopped_by: None };
         }
         let [bottom, top] = self.plug.extent(2);
-        let mut at = self.opening.map(|[low, high]| (low + high) / 2.0);
+        let mut at = self.task.opening.map(|[low, high]| (low + high) / 2.0);
         let mut free = 0.0;
         let mut depth = STEP;
         while depth < top - bottom {
@@ -70,7 +68,7 @@ impl<'a> Seating<'a> {
         Seat { depth: free, at, stopped_by: None }
     }
 
-    /// Play of the upright plug at a depth along an axis (0 x, 1 y), both ways together, m.
+    /// Returns the total play of the upright plug at a depth along an axis (0 x, 1 y), m.
     pub fn play(&self, depth: f64, at: [f64; 2], axis: usize) -> f64 {
         // A seated plug may touch walls, so first to the middle between them.
         let mut middle = at;
@@ -81,7 +79,7 @@ impl<'a> Seating<'a> {
         self.ways(depth, middle, axis).iter().sum()
     }
 
-    /// Free way back and forth along an axis, m.
+    /// Returns the free distances in both directions along an axis, m.
     fn ways(&self, depth: f64, at: [f64; 2], axis: usize) -> [f64; 2] {
         let least = self.overlap(depth, at).0.max(TOUCHING);
         [-1.0, 1.0].map(|sign| {
@@ -98,7 +96,7 @@ impl<'a> Seating<'a> {
         })
     }
 
-    /// Lowest place between a free depth and a blocked one, by bisection.
+    /// Finds the deepest free place between a free depth and a blocked one by bisection.
     fn between(&self, mut free: f64, mut blocked: f64, mut at: [f64; 2]) -> Seat {
         let mut stopped_by = None;
         while blocked - free > FINE {
@@ -111,7 +109,7 @@ impl<'a> Seating<'a> {
         Seat { depth: (free - TOLERANCE).max(0.0), at, stopped_by }
     }
 
-    /// Free place at this depth, near `at` if there is one; otherwise the two parts in the way.
+    /// Finds a free place at this depth, near `at` if possible; otherwise returns the two parts that collide.
     fn place(&self, depth: f64, mut at: [f64; 2]) -> Result<[f64; 2], [usize; 2]> {
         let mut best = self.overlap(depth, at);
         if best.0 <= TOLERANCE {
@@ -120,7 +118,7 @@ impl<'a> Seating<'a> {
         // Range of the plug's axis with all below the top inside the opening.
         let section = section(self.plug, depth);
         let range = [0, 1].map(|axis| {
-            let ([low, high], [from, to]) = (self.opening[axis], section[axis]);
+            let ([low, high], [from, to]) = (self.task.opening[axis], section[axis]);
             [low - from, high - to]
         });
         let mut middle = range.map(|[low, high]| (low + high) / 2.0);
@@ -146,11 +144,12 @@ impl<'a> Seating<'a> {
 
     fn overlap(&self, depth: f64, [x, y]: [f64; 2]) -> (f64, [usize; 2]) {
         let pose = Pose::translation(x, y, -depth);
-        self.plug.overlap(&pose, self.socket, &Pose::identity()).unwrap_or((0.0, [0, 0]))
+        let found = self.plug.overlap(&pose, self.socket, &Pose::identity());
+        found.map_or((0.0, [0, 0]), |found| (found.depth, found.parts))
     }
 }
 
-/// Intervals in x and y that the plug occupies of the opening at a depth, m.
+/// Returns the extent in x and y of the part of the plug that is in the socket at a depth, m.
 pub fn section(plug: &ConvexBody, depth: f64) -> [[f64; 2]; 2] {
     let below = |part: &Part| clipped(&part.solid.corners(), 2, [f64::NEG_INFINITY, depth]);
     let below: Vec<_> = plug.parts.iter().flat_map(below).collect();
@@ -170,7 +169,7 @@ pub struct Waypoint {
     pub short_by: Option<f64>,
 }
 
-/// Pose of the plug, tilted as the task says, with the TCP at `tcp`, task frame, m.
+/// Returns the pose of the plug at the tilt of the strategy with the TCP at `tcp`, task frame, m.
 pub fn plug_pose(task: &Task, tcp: Vector3<f64>) -> Pose {
     let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), task.strategy.tilt);
     Pose::from_parts(tcp.into(), turn) * Pose::translation(0.0, 0.0, -task.grip.tcp_z)
@@ -180,34 +179,28 @@ pub fn waypoints(task: &Task, plug: &ConvexBody) -> Vec<Waypoint> {
     let start = Vector3::from(task.strategy.start);
     let lowest = plug.lowest(&plug_pose(task, start));
     let edge = lowest.unwrap_or_else(Point3::origin) - start;
-    let mut at = Waypoint {
+    let mut found = vec![Waypoint {
         name: "start".to_owned(),
         stage: Stage::Approach,
         tcp: start,
         edge: Point3::from(start + edge.coords),
         short_by: None,
-    };
-    let mut found = vec![at.clone()];
-    for phase in &task.strategy.phases {
+    }];
+    for (i, phase) in task.strategy.phases.iter().enumerate() {
+        let (tcp, edge) = (found[i].tcp, found[i].edge);
         let mut by = Vector3::from(phase.displacement);
         let mut short_by = None;
         if let Ending::Touch { preload, .. } = phase.ending {
-            let end = at.edge.z + by.z;
+            let end = edge.z + by.z;
             if end > 0.0 || by.z >= 0.0 {
                 short_by = Some(end);
             } else {
                 // Straight down to the surface, and on by the preload.
-                by *= (at.edge.z.max(0.0) + preload) / -by.z;
+                by *= (edge.z.max(0.0) + preload) / -by.z;
             }
         }
-        at = Waypoint {
-            name: phase.name.clone(),
-            stage: phase.stage,
-            tcp: at.tcp + by,
-            edge: at.edge + by,
-            short_by,
-        };
-        found.push(at.clone());
+        let (name, stage) = (phase.name.clone(), phase.stage);
+        found.push(Waypoint { name, stage, tcp: tcp + by, edge: edge + by, short_by });
     }
     found
 }

@@ -7,7 +7,6 @@ use insertion::task::{
     Ending, Hold, Limits, Mated, PadTorsion, Part, Phase, Sensed, Solid, Stage, StartRule, Task,
 };
 use nalgebra::{Point3, Vector3};
-use std::fmt::Write;
 
 #[derive(Debug, Clone, Default)]
 pub struct Notes {
@@ -19,60 +18,43 @@ pub struct Notes {
     pub left_out: bool,
 }
 
-/// Text of the parts of a task, to lie beside it.
+/// Returns the text of the parts of a task, to lie beside it.
 pub fn parts_file(task: &Task) -> String {
-    let mut out = String::new();
-    parts(&mut out, "plug", &task.plug.parts);
-    parts(&mut out, "socket", &task.socket);
-    out
+    parts("plug", &task.plug.parts) + &parts("socket", &task.socket)
 }
 
 pub fn task(task: &Task, notes: &Notes) -> String {
-    let mut out = String::new();
-    for line in &notes.head {
-        let _ = writeln!(out, "# {line}");
-    }
+    let head: String = notes.head.iter().map(|line| format!("# {line}\n")).collect();
     let [name, description] = [&task.name, &task.description].map(|value| text(value));
     let turn = match task.turn {
         0.0 => String::new(),
         turn => format!("turn_in_base_deg = {}\n", round(turn / DEG, 100.0)),
     };
-    let _ = write!(
-        out,
-        "# Every key, with its unit and how to choose it: docs/guide/tasks.md.\n\
+    let [plug, socket] = match notes.parts {
+        Some(_) => [String::new(), String::new()],
+        None => [parts("plug", &task.plug.parts), parts("socket", &task.socket)],
+    };
+    let [x, y] = task.opening.map(pair);
+    let mut out = format!(
+        "{head}# Every key, with its unit and how to choose it: docs/guide/tasks.md.\n\
          # Frame: origin in the middle of the opening, on the socket's top; z out of the socket; y the\n\
          # direction in which the jaws close and the start is shifted. Lengths in mm.\n\n\
          name = {name}\ndescription = {description}\n{turn}\n\
          [plug]\n# {}\nmass_g = {}\n\n\
-         # Convex parts, z counted from the tip upwards.\n",
+         # Convex parts, z counted from the tip upwards.\n{plug}\
+         [socket]\n# From, to of the opening on the top, between the walls below.\n\
+         opening_x_mm = {x}\nopening_y_mm = {y}\n\n{socket}{}{}\
+         [success]\n# Judged at rest after the push: tip this deep below the top, axis this upright.\n\
+         depth_mm = {}\ntilt_deg = {}\n",
         notes.mass,
         round(task.plug.mass / GRAM, 100.0),
-    );
-    let inline = notes.parts.is_none();
-    if inline {
-        parts(&mut out, "plug", &task.plug.parts);
-    }
-    let [x, y] = task.opening.map(pair);
-    let _ = write!(
-        out,
-        "[socket]\n# From, to of the opening on the top, between the walls below.\n\
-         opening_x_mm = {x}\nopening_y_mm = {y}\n\n"
-    );
-    if inline {
-        parts(&mut out, "socket", &task.socket);
-    }
-    grip(&mut out, task);
-    strategy(&mut out, task);
-    let _ = write!(
-        out,
-        "[success]\n# Judged at rest after the push: tip this deep below the top, axis this upright.\n\
-         depth_mm = {}\ntilt_deg = {}\n",
+        grip(task),
+        strategy(task),
         mm(task.success.depth),
         round(task.success.tilt / DEG, 100.0)
     );
     if let Some(Mated { tip, lateral }) = &task.success.mated {
-        let _ = write!(
-            out,
+        out += &format!(
             "\n[success.mated]\n# The plug's tip when it is mated, and how far an inserted one may be aside.\n\
              tip_mm = {}\nlateral_mm = {}\n",
             list(tip.iter().map(|&v| mm(v))),
@@ -80,8 +62,7 @@ pub fn task(task: &Task, notes: &Notes) -> String {
         );
     }
     if let Some(PartsFile { file, sha256 }) = &notes.parts {
-        let _ = write!(
-            out,
+        out += &format!(
             "\n[parts]\n# Convex parts of plug and socket.\nfile = {}\nsha256 = \"{sha256}\"\n",
             text(file)
         );
@@ -92,26 +73,27 @@ pub fn task(task: &Task, notes: &Notes) -> String {
         limits.iter().filter_map(|(key, value)| Some(format!("{key} = {}\n", value.as_ref()?)));
     let limits: String = limits.collect();
     if !limits.is_empty() {
-        let _ = write!(out, "\n[limits]\n# Of the data sheet.\n{limits}");
+        out += &format!("\n[limits]\n# Of the data sheet.\n{limits}");
     }
-    let _ = write!(
-        out,
+    out + &format!(
         "\n# Contact springs{}: no force unless given here, by the depth of the tip, as on the data sheet.\n\
          # [mating_force]\n# depth_mm = [0.0, {}]\n# force_n = [0.0, 10.0]\n",
         if notes.left_out { ", whose overlap was left out of the parts" } else { "" },
         mm(task.success.depth)
-    );
-    out
+    )
 }
 
-fn parts(out: &mut String, body: &str, parts: &[Part]) {
-    for part in parts {
-        let _ = write!(out, "[[{body}.part]]\nname = {}\n{}", text(&part.name), solid(&part.solid));
-        if let Some(friction) = part.friction {
-            let _ = writeln!(out, "friction = {friction:?}");
-        }
-        out.push('\n');
-    }
+fn parts(body: &str, parts: &[Part]) -> String {
+    let written = |part: &Part| {
+        let friction = part.friction.map(|friction| format!("friction = {friction:?}\n"));
+        format!(
+            "[[{body}.part]]\nname = {}\n{}{}\n",
+            text(&part.name),
+            solid(&part.solid),
+            friction.unwrap_or_default()
+        )
+    };
+    parts.iter().map(written).collect()
 }
 
 fn solid(solid: &Solid) -> String {
@@ -147,7 +129,7 @@ fn cuboid(min: &Vector3<f64>, max: &Vector3<f64>) -> String {
     format!("shape = \"box\"\nx_mm = {x}\ny_mm = {y}\nz_mm = {z}\n")
 }
 
-fn grip(out: &mut String, task: &Task) {
+fn grip(task: &Task) -> String {
     let (grip, friction) = (&task.grip, &task.friction);
     let [low, high] = hold::pad_z(grip.shoulder_z).map(mm);
     let [tcp, shoulder, slip] = [grip.tcp_z, grip.shoulder_z, grip.slip_limit].map(mm);
@@ -160,42 +142,34 @@ fn grip(out: &mut String, task: &Task) {
         PadTorsion::Points(moment) => mm(moment),
         PadTorsion::Patch => "\"patch\"".to_owned(),
     };
-    let _ = write!(
-        out,
+    format!(
         "[grip]\n# The roofs of the fingertips rest on shoulder_z; their pads then reach from {low} to {high} mm\n\
          # and press the faces. tcp_z is the height of the grasp point. All counted from the tip.\n\
          tcp_z_mm = {tcp}\nshoulder_z_mm = {shoulder}\nfaces_y_mm = {faces}\nforce_n = {:?}\nhold = \"{hold}\"\n\
          # Beyond this slip the plug counts as lost.\nslip_limit_mm = {slip}\n\n\
          [friction]\nfinger_plug = {:?}\nfinger_plug_torsion_mm = {torsion}\nplug_socket = {:?}\n\n",
         grip.force, friction.finger_plug, friction.plug_socket,
-    );
+    )
 }
 
 /// Returns the part of the file that says how the task is searched.
-pub fn strategy_of(task: &Task) -> String {
-    let mut out = String::new();
-    strategy(&mut out, task);
-    out
-}
-
-fn strategy(out: &mut String, task: &Task) {
+pub fn strategy(task: &Task) -> String {
     let strategy = &task.strategy;
-    let _ = write!(
-        out,
+    let rule = match strategy.rule {
+        StartRule::Taught => "start = \"taught\"\n",
+        StartRule::Given => "",
+    };
+    let phases: String = strategy.phases.iter().map(phase).collect();
+    format!(
         "[strategy]\n# Tilted about x: the tip's edge at -y is the lowest.\ntilt_deg = {}\n\
          # The grasp point (TCP): the tip's lower edge over the middle of the opening in y.\n\
-         start_mm = {}\n",
+         start_mm = {}\n{rule}\n{phases}",
         round(strategy.tilt / DEG, 100.0),
         list(strategy.start.iter().map(|&v| mm(v)))
-    );
-    if strategy.rule == StartRule::Taught {
-        out.push_str("start = \"taught\"\n");
-    }
-    out.push('\n');
-    strategy.phases.iter().for_each(|item| phase(out, item));
+    )
 }
 
-fn phase(out: &mut String, phase: &Phase) {
+fn phase(phase: &Phase) -> String {
     let stage = match phase.stage {
         Stage::Approach => "approach",
         Stage::Search => "search",
@@ -206,29 +180,27 @@ fn phase(out: &mut String, phase: &Phase) {
         Ending::Duration(rest) => ("duration", "settle_s", round(rest, 1e4)),
         Ending::Touch { preload, .. } => ("touch", "preload_mm", mm(preload)),
     };
-    let _ = write!(
-        out,
+    let sensed = match phase.ending {
+        Ending::Touch { sensed, .. } if sensed != Sensed::FIRST => {
+            format!("touch_force_n = {:?}\nlatency_s = {:?}\n", sensed.force, sensed.latency)
+        }
+        _ => String::new(),
+    };
+    format!(
         "[[strategy.phase]]\nname = {}\nstage = \"{stage}\"\nmove_mm = {}\nspeed_mm_per_s = {}\n\
-         motion = \"{motion}\"\n{key} = {value}\n",
+         motion = \"{motion}\"\n{key} = {value}\n{sensed}\n",
         text(&phase.name),
         list(phase.displacement.iter().map(|&v| mm(v))),
         mm(phase.speed),
-    );
-    if let Ending::Touch { sensed, .. } = phase.ending
-        && sensed != Sensed::FIRST
-    {
-        let _ =
-            writeln!(out, "touch_force_n = {:?}\nlatency_s = {:?}", sensed.force, sensed.latency);
-    }
-    out.push('\n');
+    )
 }
 
-/// Length in mm, to a tenth of a micrometre.
+/// Returns a length in mm, to a tenth of a micrometre.
 fn mm(length: f64) -> String {
     round(length / MM, 1e4)
 }
 
-/// TOML float, rounded to `1 / parts`.
+/// Returns a TOML float, rounded to `1 / parts`.
 fn round(value: f64, parts: f64) -> String {
     // Adding zero avoids "-0.0".
     format!("{:?}", (value * parts).round() / parts + 0.0)

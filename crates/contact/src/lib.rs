@@ -1,4 +1,4 @@
-//! Contact engines behind one trait. They depend on scenes alone, not on studies.
+//! Contact engines behind one trait. They depend on scenes only, not on studies.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -21,23 +21,23 @@ pub trait Engine: Send + Sync {
     /// Returns the name and version, as recorded in a study.
     fn version(&self) -> String;
 
-    /// Checks that it can simulate a scene exactly as it stands.
+    /// Checks that the engine can simulate a scene without simplifying it.
     ///
     /// # Errors
-    /// If it lacks a feature that the scene needs, or refuses its numbers.
+    /// If the engine lacks a feature that the scene needs, or rejects a value of the scene.
     fn supports(&self, _scene: &Scene) -> Result<(), Unsupported> {
         Ok(())
     }
 
-    /// Returns whether face contacts have the friction of [`scene::Friction::torsion`].
-    fn turns_with_friction(&self) -> bool {
+    /// Returns whether face contacts have torsional friction ([`scene::Friction::torsion`]).
+    fn has_torsional_friction(&self) -> bool {
         true
     }
 
-    /// Creates the world at time zero of a scene that it [supports](Engine::supports).
+    /// Creates the simulation, at time zero, of a scene that the engine [supports](Engine::supports).
     fn world(&self, scene: &Scene) -> Box<dyn World>;
 
-    /// Returns the same engine with half the step, for trials that diverged.
+    /// Returns the same engine with half the step, to repeat trials that diverged.
     fn halved(&self) -> Box<dyn Engine>;
 
     /// Returns finer engines for convergence studies, each with its name.
@@ -49,9 +49,9 @@ pub trait Engine: Send + Sync {
 /// Reason why an engine cannot simulate a scene.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Unsupported {
-    /// It lacks a feature that the scene needs.
+    /// A feature that the scene needs is missing.
     #[error(
-        "the engine {engine} cannot simulate `{part}`: it has no {lacking}; use --engine direct"
+        "the engine {engine} cannot simulate `{part}`: it has no {feature}; use --engine direct"
     )]
     Lacking {
         /// Name and version of the engine.
@@ -59,9 +59,9 @@ pub enum Unsupported {
         /// Body or joint of the scene.
         part: String,
         /// Missing feature.
-        lacking: &'static str,
+        feature: &'static str,
     },
-    /// It has all features, but refuses the numbers of the scene.
+    /// The engine rejects a value of the scene.
     #[error("the engine {engine} refuses these bodies: {reason}; use --engine direct")]
     Refused {
         /// Name and version of the engine.
@@ -71,8 +71,8 @@ pub enum Unsupported {
     },
 }
 
-/// Returns the parts of a scene that only `direct` can simulate, each with the feature that others lack:
-/// springs that couple axes, friction of a patch, mass that depends on the direction.
+/// Returns the parts of a scene that only `direct` can simulate, each with the feature that the other engines lack:
+/// springs that couple axes, friction of a contact patch, mass that depends on the direction.
 fn lacking(scene: &Scene) -> impl DoubleEndedIterator<Item = (&str, &'static str)> {
     let coupled = |joint: &&Joint| matches!(joint.springs, Springs::Coupled { .. });
     let mechanism = |body: &&Body| matches!(body.motion, Motion::Mechanism(_));
@@ -92,7 +92,7 @@ fn lacking(scene: &Scene) -> impl DoubleEndedIterator<Item = (&str, &'static str
 #[error("the simulation diverged: a body's state is no longer finite")]
 pub struct Diverged;
 
-/// Contact between two bodies over the last step.
+/// Contact force between two bodies over the last step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ContactForce {
     /// Net force on the second body, with friction, N.
@@ -101,7 +101,7 @@ pub struct ContactForce {
     pub normal_sum: f64,
 }
 
-/// Point at which two bodies press on one another.
+/// Point at which two bodies press against each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactPoint {
     /// Position, m.
@@ -111,13 +111,13 @@ pub struct ContactPoint {
 }
 
 impl ContactPoint {
-    /// Returns the point in the frame that contains the old one at `from`.
-    pub fn seen(&self, from: &Pose) -> Self {
-        ContactPoint { point: from * self.point, force: from * self.force }
+    /// Returns the contact point in another frame, in which the pose of its present frame is `frame`.
+    pub fn transformed(&self, frame: &Pose) -> Self {
+        ContactPoint { point: frame * self.point, force: frame * self.force }
     }
 }
 
-/// Scene in simulation.
+/// Simulation of a scene.
 pub trait World: Send + Sync {
     /// Advances by one step.
     ///
@@ -128,7 +128,7 @@ pub trait World: Send + Sync {
     /// Returns the length of one step, s.
     fn step_s(&self) -> f64;
 
-    /// Sets the length of the steps to come, s; an engine that cannot keeps its own.
+    /// Sets the length of the following steps, s; engines with a fixed step ignore it.
     fn set_step(&mut self, _step_s: f64) {}
 
     /// Returns the frame of a body in the world.
@@ -137,25 +137,25 @@ pub trait World: Send + Sync {
     /// Commands the pose of a driven body at the end of the next step.
     fn drive(&mut self, body: BodyId, pose: Pose);
 
-    /// Moves a fixed body, which must touch nothing before and after.
+    /// Moves a fixed body, which must have no contacts before or after.
     fn place(&mut self, body: BodyId, pose: Pose);
 
-    /// Replaces the spring of a sprung axis (0..6) of a joint.
+    /// Replaces the spring of an axis (0..6) of a joint that is a servo from the start.
     fn set_spring(&mut self, joint: JointId, axis: usize, spring: Spring);
 
-    /// Applies a force at a free body's centre of mass, N, and a moment, N m, in world axes, in
-    /// every step from now on, in place of those before.
+    /// Sets the force at a free body's centre of mass, N, and the moment, N m, in world axes, that act
+    /// on it in all following steps.
     fn push(&mut self, body: BodyId, force: Vector3<f64>, moment: Vector3<f64>);
 
-    /// Returns the contact between two bodies over the last step.
+    /// Returns the contact force between two bodies over the last step.
     fn contact(&self, first: BodyId, second: BodyId) -> ContactForce;
 
-    /// Returns the points at which two bodies press on one another, for pictures; not every engine has them.
+    /// Returns the contact points of two bodies, for pictures; empty for engines that do not report them.
     fn contact_points(&self, _first: BodyId, _second: BodyId) -> Vec<ContactPoint> {
         Vec::new()
     }
 
-    /// Returns an independent copy that continues with the same bits.
+    /// Returns an independent copy, which continues bit for bit as this one does.
     fn snapshot(&self) -> Box<dyn World>;
 }
 

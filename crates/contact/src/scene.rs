@@ -52,7 +52,7 @@ pub struct Geom {
     pub shape: Shape,
     /// Shape frame in the body frame.
     pub pose: Pose,
-    /// Coefficient of friction in place of the pair's; of two geoms that have one, the smaller.
+    /// Coefficient of friction that replaces that of the pair; if both geoms have one, the smaller applies.
     pub friction: Option<f64>,
 }
 
@@ -63,11 +63,11 @@ pub struct ContactPair {
     pub first: BodyId,
     /// Second body.
     pub second: BodyId,
-    /// Friction of their surfaces, but for geoms with their own coefficient.
+    /// Friction of their surfaces, except for geoms with a coefficient of their own.
     pub friction: Friction,
 }
 
-/// Pair of geoms that may touch; geoms are numbered through all bodies.
+/// Pair of geoms that may touch; geoms are numbered consecutively over all bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GeomPair {
     /// Index of their bodies' pair in [`Scene::contacts`].
@@ -85,36 +85,36 @@ pub struct GeomPair {
 pub struct Friction {
     /// Coefficient of friction.
     pub coefficient: f64,
-    /// Friction against a turn about the contact's normal.
+    /// Friction against rotation about the contact normal.
     pub torsion: Torsion,
 }
 
-/// Friction against a turn of two faces about their normal.
+/// Friction against rotation of two faces about their normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Torsion {
-    /// Soft patch of this radius, m, at each contact point: friction resists a turn with at most
-    /// that times the friction force, and force and moment share an ellipsoid (Howe and Cutkosky
-    /// 1996, Int. J. Robot. Res. 15:557), beside the moment that the points have by their
-    /// distances. At 0 a point turns freely. Engines without it ignore it.
+    /// Soft patch of this radius, m, at each contact point: the friction moment is at most the radius times
+    /// the friction force, and both are limited by an ellipsoid (Howe and Cutkosky 1996, Int. J. Robot. Res.
+    /// 15:557). It adds to the moment that several points have due to their distances. With a radius of 0 a
+    /// point rotates freely. Engines without torsional friction ignore it.
     Radius(f64),
-    /// Contact patch between the points of a contact: they have its moment, evenly pressed, alone.
+    /// Contact patch spanned by the contact points, whose friction moment is that of the evenly pressed patch alone.
     Patch,
 }
 
 impl Friction {
-    /// Returns a friction that resists no turn.
+    /// Creates friction without torsion.
     pub fn hard(coefficient: f64) -> Self {
         Friction { coefficient, torsion: Torsion::Radius(0.0) }
     }
 
-    /// Returns the friction of two geoms with coefficients of their own, if any: the smaller one counts.
+    /// Returns the friction of two geoms that may have coefficients of their own: the smaller one applies.
     pub fn of_geoms(self, [first, second]: [Option<f64>; 2]) -> Self {
         let own = first.into_iter().chain(second).reduce(f64::min);
         Friction { coefficient: own.unwrap_or(self.coefficient), ..self }
     }
 }
 
-/// Returns 1 for the same two bodies, -1 for them in the other order.
+/// Returns 1 for the bodies of the pair, -1 for them in reverse order, `None` for others.
 fn sign(pair: (BodyId, BodyId), bodies: (BodyId, BodyId)) -> Option<f64> {
     match bodies {
         ends if ends == pair => Some(1.0),
@@ -124,7 +124,7 @@ fn sign(pair: (BodyId, BodyId), bodies: (BodyId, BodyId)) -> Option<f64> {
 }
 
 impl ContactPair {
-    /// Returns 1 for the bodies of the pair, -1 for them in the other order.
+    /// Returns 1 for the bodies of the pair, -1 for them in reverse order, `None` for others.
     pub fn sign(&self, first: BodyId, second: BodyId) -> Option<f64> {
         sign((self.first, self.second), (first, second))
     }
@@ -156,7 +156,7 @@ pub enum Motion {
     Driven,
     /// Motion under forces.
     Free(Inertia),
-    /// Motion under forces but for the weight, which the robot compensates.
+    /// Motion under forces except the weight, which the robot compensates.
     Carried(Inertia),
     /// `Carried` end of a mechanism, whose mass depends on the direction: symmetric, positive
     /// definite 6x6, about the body frame's origin, along the body axes: kg, kg m, kg m2.
@@ -228,8 +228,8 @@ pub struct Joint {
     pub springs: Springs,
 }
 
-/// Coulomb friction along z of a fixed body's frame on the origin of another body's frame, as of springs
-/// that press on it from the sides: it opposes the velocity, and sticks as a contact of the engine does.
+/// Coulomb friction along z of a fixed body's frame that acts at the origin of another body's frame, like that of
+/// springs that press on a plug from the sides. It opposes the velocity, and sticks as a contact of the engine does.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxialFriction {
     /// Fixed body.
@@ -243,7 +243,7 @@ pub struct AxialFriction {
 }
 
 impl AxialFriction {
-    /// Returns 1 for parent and child, -1 for them in the other order.
+    /// Returns 1 for parent and child, -1 for them in reverse order, `None` for other bodies.
     pub fn sign(&self, first: BodyId, second: BodyId) -> Option<f64> {
         sign((self.parent, self.child), (first, second))
     }
@@ -283,13 +283,13 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Adds a body and gives its index.
+    /// Adds a body and returns its index.
     pub fn body(&mut self, body: Body) -> BodyId {
         self.bodies.push(body);
         BodyId(self.bodies.len() - 1)
     }
 
-    /// Adds a joint and gives its index.
+    /// Adds a joint and returns its index.
     pub fn joint(&mut self, joint: Joint) -> JointId {
         self.joints.push(joint);
         JointId(self.joints.len() - 1)
@@ -328,8 +328,8 @@ impl Scene {
 }
 
 impl Shape {
-    /// Returns the corners, m; of a cylinder those of a 16-sided prism inside it, of an arc every 22.5
-    /// degrees (for pictures and extents).
+    /// Returns the corners, m, for pictures and extents: of a cylinder those of an inscribed prism with 16 sides,
+    /// of a round edge a point every 22.5 degrees.
     pub fn corners(&self) -> Vec<Point3<f64>> {
         match self {
             Shape::Box { half } => {

@@ -1,11 +1,11 @@
-//! Contacts of round edges: normals, the force of crossing a round rim, the limit of capture.
+//! Contacts of round edges: normals, the force needed to cross a round rim, the largest overlap that is crossed.
 //!
-//! A peg with an edge of radius `a` on a lateral spring `k` goes down beside a rim of radius `b`,
-//! which it overlaps by `e`. With `s = a + b` the line between the two arcs' centres is first at
-//! `cos p0 = (s - e)/s` from the horizontal. Later, at `p`, the spring is off by
-//! `s (cos p - cos p0)`, and the force on the peg lies at the friction angle `f` beside the line:
-//! `Fz = k s (cos p - cos p0) tan(p + f)`. Where `p0 + f` is a right angle the rim holds the peg:
-//! `e = s (1 - sin f)`.
+//! A peg with an edge of radius `a` on a lateral spring `k` moves down beside a rim of radius `b`,
+//! which it overlaps by `e`. With `s = a + b`, the line between the centres of the two arcs is first at the angle
+//! `p0` to the horizontal, `cos p0 = (s - e)/s`. Later, at the angle `p`, the spring is deflected by
+//! `s (cos p - cos p0)`, and the force on the peg is inclined to the line by the friction angle `f`:
+//! `Fz = k s (cos p - cos p0) tan(p + f)`. If `p0 + f` is a right angle or more, the peg stays on the rim; the
+//! limit is `e = s (1 - sin f)`.
 
 use contact::direct::Direct;
 use contact::rapier::Rapier;
@@ -27,7 +27,8 @@ fn body(name: &str, motion: Motion, pose: Pose, shapes: Vec<(Shape, Pose)>) -> B
     Body { name: name.into(), motion, pose, geoms: shapes.into_iter().map(geom).collect() }
 }
 
-/// Returns a box with round edges, its lowest or highest face at z = 0, one side at x = 0.
+/// Returns a box with round edges, one side at x = 0, its upper or lower face at z = 0. `sides` are the signs of its
+/// centre along x and z.
 fn rounded(size: [f64; 3], radius: f64, sides: [f64; 2]) -> (Shape, Pose) {
     let half = Vector3::from(size) / 2.0;
     let pose = Pose::translation(sides[0] * half.x, 0.0, sides[1] * half.z);
@@ -42,7 +43,8 @@ fn free() -> Motion {
     Motion::Carried(Inertia { mass: 0.02, centre: Point3::origin(), moments })
 }
 
-/// Returns the direction of the force on a body with a round edge that touches a rim so high.
+/// Returns the direction of the contact force on a peg with a round edge that touches a rim of radius `rim` at an angle
+/// to the horizontal, rad.
 fn normal(engine: &dyn Engine, angle: f64, rim: f64) -> Vector3<f64> {
     let mut scene = Scene::default();
     let socket = rounded([8.0 * MM, 30.0 * MM, 6.0 * MM], rim, [-1.0, -1.0]);
@@ -99,13 +101,13 @@ struct Crossing {
 const SOCKET: BodyId = BodyId(0);
 const CARRIAGE: BodyId = BodyId(1);
 const PEG: BodyId = BodyId(2);
-/// Time constant of the filter of forces, s.
+/// Time constant of the low-pass filter of the force, s.
 const SMOOTHING: f64 = 5e-3;
 /// Speed of the carriage, m/s.
 const SPEED: f64 = 0.5 * MM;
 
 impl Crossing {
-    /// Overlap, m, and stiffness along z, N/m, if it yields.
+    /// Creates a crossing with an overlap, m, and a spring along z, N/m, locked if `None`.
     fn new(engine: &dyn Engine, overlap: f64, along: Option<f64>) -> Self {
         let mut scene = Scene::default();
         let fixed = rounded([8.0 * MM, 30.0 * MM, 6.0 * MM], RADII[1], [-1.0, -1.0]);
@@ -131,7 +133,7 @@ impl Crossing {
         crossing
     }
 
-    /// Steps; returns the force along z, N, and how far the peg gave way, m.
+    /// Takes a step; returns the force on the peg along z, N, and its lateral deflection, m.
     fn step(&mut self, overlap: f64) -> (f64, f64) {
         self.time += self.world.step_s();
         self.world.drive(CARRIAGE, Pose::translation(-overlap, 0.0, 1e-6 - SPEED * self.time));
@@ -142,11 +144,11 @@ impl Crossing {
 }
 
 #[test]
-fn crossing_a_round_rim_takes_the_force_of_the_formula() {
+fn the_force_to_cross_a_round_rim_follows_the_formula() {
     let sum = RADII[0] + RADII[1];
     let friction = libm::atan(FRICTION);
     for engine in engines() {
-        // It keeps a normal until its points have slid by 1 mm.
+        // rapier keeps the normal of a contact while its points slide.
         if engine.version().starts_with("rapier") {
             continue;
         }
@@ -171,7 +173,7 @@ fn crossing_a_round_rim_takes_the_force_of_the_formula() {
 }
 
 #[test]
-fn a_rim_captures_a_peg_up_to_the_limit() {
+fn a_peg_crosses_a_rim_up_to_the_limit_of_overlap() {
     let limit = (RADII[0] + RADII[1]) * (1.0 - libm::sin(libm::atan(FRICTION)));
     for engine in engines() {
         let slides = |overlap: f64| {

@@ -1,8 +1,8 @@
 //! Static condensation of a finite-element mesh onto a few of its nodes.
 //!
-//! The mesh is halved again and again; each half is condensed onto the nodes it shares with
+//! The mesh is halved repeatedly; each half is condensed onto the nodes it shares with
 //! the rest, and the results of two halves are added and condensed in turn. A printed finger
-//! is a net of thin walls: its halves share few nodes, so every matrix met on the way is
+//! is a net of thin walls: its halves share few nodes, so that all intermediate matrices are
 //! small and dense. (Nested dissection: George 1973, SIAM J. Numer. Anal. 10:345; the
 //! multifrontal method: Duff and Reid 1983, ACM Trans. Math. Softw. 9:302.)
 //! The order of all sums depends on the mesh alone.
@@ -14,17 +14,18 @@ use crate::outline::Outline;
 use nalgebra::{DMatrix, DVector, Point2};
 use std::ops::Range;
 
-/// Most elements that are added up together.
+/// Largest number of elements that are assembled together.
 const LEAF: usize = 8;
 
 /// Elasticity of the triangles of a mesh.
 pub trait Element {
     /// Degrees of freedom of a node.
     const FREEDOMS: usize;
-    /// Returns the lower half of a triangle's stiffness matrix, square, row by row, by its six nodes' freedoms.
+    /// Returns the stiffness matrix of a triangle, square, row by row, by the degrees of freedom of its six nodes; only the
+    /// lower half is used.
     fn stiffness(&self, corners: [Point2<f64>; 3]) -> Vec<f64>;
-    /// Returns the rows, one for each degree of freedom, of a node at a distance along y and z from the pad's
-    /// middle, m: its displacement by the three motions of a rigid pad.
+    /// Returns the displacement of a node by the three motions of a rigid pad, a row for each degree of freedom;
+    /// `place` is the position of the node along y and z, from the middle of the pad, m.
     fn follow(&self, outline: &Outline, place: [f64; 2]) -> Vec<[f64; 3]>;
 }
 
@@ -39,7 +40,7 @@ pub enum Role {
     Kept,
 }
 
-/// Stiffness of a mesh as seen from its kept nodes.
+/// Stiffness of a mesh condensed onto its kept nodes.
 #[derive(Debug, Clone)]
 pub struct Condensed {
     /// Kept nodes, in the order of the matrix.
@@ -52,7 +53,7 @@ pub struct Condensed {
 }
 
 /// Condenses a mesh onto the nodes of role [`Role::Kept`]. With `remember`,
-/// [`Condensed::expand`] gives the motion of the free nodes, too.
+/// [`Condensed::expand`] also returns the displacements of the free nodes.
 ///
 /// # Errors
 /// If a part of the mesh is not connected to a clamped or kept node.
@@ -107,13 +108,14 @@ struct Condensation<'a, E> {
     /// First and last place in `order` of the triangles of a node.
     spans: Vec<[u32; 2]>,
     roles: &'a [Role],
-    /// Scratch: a node's place in the present frontal matrix.
+    /// Scratch: place of each node in the present frontal matrix.
     places: Vec<u32>,
     steps: Option<Vec<Frontal>>,
 }
 
 impl<E: Element> Condensation<'_, E> {
-    /// Returns the triangles at these places of the order, condensed onto the nodes that others touch.
+    /// Returns the stiffness of the triangles at these places of the order, condensed onto the nodes they share with
+    /// others.
     fn part(&mut self, range: Range<usize>) -> Result<Frontal, MeshError> {
         let cut = if range.len() > LEAF { self.cuts.next() } else { None };
         let parts: Vec<(Vec<u32>, Vec<f64>)> = match cut.map(|cut| range.start + cut) {
@@ -144,7 +146,7 @@ impl<E: Element> Condensation<'_, E> {
         Ok(rest)
     }
 
-    /// Returns the zero matrix of these nodes, first those that no triangle outside the range touches.
+    /// Returns the zero matrix of these nodes, those first that belong to no triangle outside the range.
     fn frontal(&mut self, mut nodes: Vec<u32>, range: &Range<usize>) -> Frontal {
         nodes.sort_unstable();
         nodes.dedup();

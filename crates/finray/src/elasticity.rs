@@ -1,11 +1,11 @@
-//! Plane stress in quadratic triangles (Zienkiewicz and Taylor, The Finite Element Method, vol. 1).
+//! Quadratic triangles in plane stress (Zienkiewicz and Taylor, The Finite Element Method, vol. 1).
 
 use super::condense::Element;
 use crate::outline::Outline;
 use crate::printed::PrintedFinger;
 use nalgebra::Point2;
 
-/// Profile extruded to a slab of an elastic material.
+/// Elastic slab: extruded profile with its material.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slab {
     /// Young's modulus, N/m2.
@@ -24,20 +24,20 @@ impl Slab {
     }
 }
 
-/// Slab loaded in its own plane.
+/// Plane stress of a slab that is loaded in its plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlaneStress(pub Slab);
 
-/// Shape functions of a six-node triangle at a point, and their gradients, 1/m.
+/// Shape functions of a six-node triangle at a point.
 #[derive(Debug, Clone, Copy)]
 pub struct Shape {
-    /// Values of the nodes' functions.
+    /// Value of each node's function.
     pub values: [f64; 6],
-    /// Gradients of the nodes' functions, 1/m.
+    /// Gradient of each node's function, 1/m.
     pub gradients: [[f64; 2]; 6],
 }
 
-/// Area coordinates of three points whose mean integrates quadratic functions exactly.
+/// Area coordinates of three integration points of equal weight, exact for quadratic functions.
 const POINTS: [[f64; 3]; 3] = {
     const A: f64 = 2.0 / 3.0;
     const B: f64 = 1.0 / 6.0;
@@ -52,7 +52,7 @@ pub fn area([a, b, c]: [Point2<f64>; 3]) -> f64 {
 /// Returns the shape functions at a point given by its area coordinates.
 pub fn shape([a, b, c]: [Point2<f64>; 3], [l, m, n]: [f64; 3]) -> Shape {
     let double = 2.0 * area([a, b, c]);
-    // Gradient of an area coordinate: the opposite side, turned.
+    // Gradient of an area coordinate: the opposite side, rotated by a right angle, over twice the area.
     let gradient =
         |from: Point2<f64>, to: Point2<f64>| [(from.y - to.y) / double, (to.x - from.x) / double];
     let [gl, gm, gn] = [gradient(b, c), gradient(c, a), gradient(a, b)];
@@ -105,7 +105,7 @@ impl Element for PlaneStress {
         matrix
     }
 
-    /// The body moves along y and z and turns about x = y x z.
+    /// Motions: translations along y and z, rotation about x = y x z.
     fn follow(&self, outline: &Outline, [at_y, at_z]: [f64; 2]) -> Vec<[f64; 3]> {
         let (y, z) = (outline.out_of_pad(), outline.along_pad());
         let turn = z * at_y - y * at_z;

@@ -1,16 +1,17 @@
-//! Frontal matrix: the dense symmetric stiffness of some nodes, the first of which are eliminated.
+//! Frontal matrix: dense symmetric stiffness matrix of some nodes, the first of which are eliminated.
 
 use super::mesh::MeshError;
 
 /// Number of columns that are eliminated together.
 const PANEL: usize = 4;
-/// A pivot below this share of its value before the elimination is rounding: nothing holds it.
-const LOOSE: f64 = 1e-11;
+/// Smallest pivot, as a share of its value before the elimination; below it the pivot is a rounding error, and
+/// the node is not supported.
+const SMALLEST_PIVOT: f64 = 1e-11;
 
-/// Stiffness of a part of a mesh on some of its nodes.
+/// Stiffness matrix of some nodes of a part of a mesh.
 #[derive(Debug, Clone)]
 pub struct Frontal {
-    /// Nodes of the mesh, first those to eliminate.
+    /// Nodes of the mesh, those to eliminate first.
     pub nodes: Vec<u32>,
     eliminated: usize,
     freedoms: usize,
@@ -30,12 +31,13 @@ impl Frontal {
         self.nodes.len() * self.freedoms
     }
 
-    /// Returns the entry of the lower triangle.
+    /// Returns an entry of the lower triangle.
     pub fn at(&self, row: usize, column: usize) -> f64 {
         self.values[row * self.size() + column]
     }
 
-    /// Adds the lower half of a square matrix of nodes at these places here, `None` if fixed.
+    /// Adds the lower half of a square matrix. `places` are the places of its nodes in this matrix, `None` for a
+    /// fixed node.
     pub fn add(&mut self, places: &[Option<usize>], lower: &[f64]) {
         let (size, f) = (self.size(), self.freedoms);
         let width = places.len() * f;
@@ -54,28 +56,29 @@ impl Frontal {
         }
     }
 
-    /// Computes the Cholesky factorisation of the first nodes' rows; the rest is condensed onto the others.
+    /// Eliminates the first nodes by a partial Cholesky factorization, which condenses the matrix onto the others.
     ///
     /// # Errors
-    /// If nothing holds one of the first nodes.
+    /// If one of the first nodes is not supported.
     pub fn eliminate(&mut self) -> Result<(), MeshError> {
         let (size, end) = (self.size(), self.eliminated * self.freedoms);
-        let held: Vec<f64> = (0..end).map(|i| LOOSE * self.at(i, i)).collect();
+        let least: Vec<f64> = (0..end).map(|i| SMALLEST_PIVOT * self.at(i, i)).collect();
         let mut panel = vec![0.0; PANEL * size];
         for start in (0..end).step_by(PANEL) {
             let width = PANEL.min(end - start);
-            self.factor_panel(start, width, &held, &mut panel)?;
+            self.factor_panel(start, width, &least, &mut panel)?;
             self.update_rest(start + width, width, &panel);
         }
         Ok(())
     }
 
-    /// Factors columns `start .. start + width` and copies them to `panel`, each contiguous.
+    /// Factors the columns `start .. start + width` and copies them to `panel`, column by column; `least` are the
+    /// smallest pivots.
     fn factor_panel(
         &mut self,
         start: usize,
         width: usize,
-        held: &[f64],
+        least: &[f64],
         panel: &mut [f64],
     ) -> Result<(), MeshError> {
         let size = self.size();
@@ -87,7 +90,7 @@ impl Frontal {
         for q in 0..width {
             let (column, later) = panel[q * size..].split_at_mut(size);
             let pivot = column[start + q];
-            if pivot.is_nan() || pivot <= held[start + q] {
+            if pivot.is_nan() || pivot <= least[start + q] {
                 return Err(MeshError::Loose);
             }
             let scale = 1.0 / pivot.sqrt();
@@ -133,7 +136,7 @@ impl Frontal {
         }
     }
 
-    /// Returns the condensed matrix of the nodes that were not eliminated.
+    /// Returns the condensed matrix of the remaining nodes.
     pub fn rest(&self) -> Frontal {
         let mut rest = Frontal::new(self.nodes[self.eliminated..].to_vec(), 0, self.freedoms);
         let (size, small) = (self.size(), rest.size());
@@ -145,12 +148,12 @@ impl Frontal {
         rest
     }
 
-    /// Computes the displacements of the eliminated nodes from those of the others, in place.
+    /// Sets the displacements of the eliminated nodes by those of the others.
     pub fn substitute(&self, displacements: &mut [f64]) {
         let f = self.freedoms;
         let place = |i: usize| self.nodes[i / f] as usize * f + i % f;
         let mut values: Vec<f64> = (0..self.size()).map(|i| displacements[place(i)]).collect();
-        // They carry no load: L^T u = 0, from the last row up.
+        // Eliminated nodes carry no load: L^T u = 0, solved from the last row up.
         for i in (0..self.eliminated * f).rev() {
             let sum: f64 = (i + 1..self.size()).map(|k| self.at(k, i) * values[k]).sum();
             values[i] = -sum / self.at(i, i);

@@ -55,11 +55,14 @@ impl Geometry {
 
     /// Returns the outline, openings and holes through the base, mm: the solid lies left of every ring.
     pub fn rings_mm(&self) -> Vec<Vec<[f64; 2]>> {
-        let mm = |ring: &Ring| ring.iter().map(|p| [p.x / MM, p.y / MM]).collect();
-        std::iter::once(&self.outer).chain(&self.voids).chain(&self.holes()).map(mm).collect()
+        self.rings().map(|ring| ring.iter().map(|p| [p.x / MM, p.y / MM]).collect()).collect()
     }
 
-    /// Returns the holes through the held base, clockwise, m; they are no openings of the mechanics.
+    fn rings(&self) -> impl Iterator<Item = Ring> {
+        std::iter::once(&self.outer).chain(&self.voids).cloned().chain(self.holes())
+    }
+
+    /// Returns the holes through the held base, clockwise, m; the mechanical model ignores them.
     pub fn holes(&self) -> Vec<Ring> {
         let holes = self.finger.holes.as_ref().filter(|holes| holes.block.is_none());
         holes.map_or_else(Vec::new, |holes| holes.rings(&self.finger.outline))
@@ -67,14 +70,10 @@ impl Geometry {
 
     /// Returns the area of the solid profile, m2.
     pub fn area(&self) -> f64 {
-        std::iter::once(&self.outer)
-            .chain(&self.voids)
-            .chain(&self.holes())
-            .map(|ring| polygon::area(ring))
-            .sum()
+        self.rings().map(|ring| polygon::area(&ring)).sum()
     }
 
-    /// Returns the holes and the block that has them, if they do not run through the held base.
+    /// Returns the holes and their block, if they do not run through the held base.
     pub fn block(&self) -> Option<(&Holes, Block)> {
         self.finger.holes.as_ref().and_then(|holes| Some((holes, holes.block?)))
     }
@@ -85,7 +84,7 @@ impl Geometry {
     }
 }
 
-/// Returns the openings that the ribs leave of the inside, clockwise, by the number of the rib before them.
+/// Returns the openings between the ribs, clockwise, with the number of the rib before them.
 fn gaps(inside: &Ring, finger: &PrintedFinger, lines: &RibLines) -> Vec<(i64, Vec<Ring>)> {
     let half = finger.ribs.thickness / 2.0;
     let gap = |n: i64| {
@@ -184,7 +183,7 @@ fn check_rings(check: Check<'_>, finger: &PrintedFinger, outer: &Ring, inside: &
                        outline.width_mm, outline.tip_mm and notch.pad_mm";
         return check.fail("outline", problem);
     }
-    // Moved inwards by too much, sides change places and the ring crosses itself.
+    // If the inset is too large, sides change places and the ring crosses itself.
     let finite = inside.iter().all(|p| p.x.is_finite() && p.y.is_finite());
     let hollow = inside.first().is_some_and(|tip| tip.x < finger.outline.corner().x);
     if !finite || !hollow || polygon::crosses_itself(inside) || polygon::area(inside) <= 0.0 {

@@ -3,9 +3,9 @@
 use super::mesh::Mesh;
 use nalgebra::Point2;
 
-/// Halves a mesh, and each half, down to parts of at most `leaf` triangles: order of the triangles
-/// in which the parts lie one after the other, and number of triangles before each cut, in the
-/// order in which the parts are visited: the whole, its first part with all its parts, its second.
+/// Halves a mesh recursively into parts of at most `leaf` triangles. Returns the order of the triangles in which
+/// each part is contiguous, and the number of triangles before each cut: first that of the whole, then those of its
+/// first half, then those of its second half.
 pub(super) fn halve(mesh: &Mesh, leaf: usize) -> (Vec<u32>, Vec<usize>) {
     let centre = |t| mesh.corners(t).iter().fold(Point2::origin(), |sum, p| sum + p.coords / 3.0);
     let centres: Vec<_> = (0..mesh.triangles.len()).map(centre).collect();
@@ -36,7 +36,7 @@ fn ranks(centres: &[Point2<f64>], [x, y]: [f64; 2]) -> Vec<u32> {
     ranks
 }
 
-/// Sorts triangles so that halves, quarters, ... of the order share few nodes.
+/// Recursive halving of the triangles, so that the parts share few nodes.
 struct Halving {
     leaf: usize,
     corners: Vec<[u32; 3]>,
@@ -93,18 +93,14 @@ impl Halving {
 
     /// Returns the cut across which the fewest corners are shared.
     fn best(&mut self, order: &mut [u32]) -> Cut {
-        let mut best = (usize::MAX, (0, order.len() / 2));
-        for direction in 0..DIRECTIONS.len() {
-            for share in SHARES {
-                let cut = (direction, (order.len() as f64 * share) as usize);
-                self.cut(order, cut);
-                let count = self.shared(order, cut.1);
-                if count < best.0 {
-                    best = (count, cut);
-                }
-            }
-        }
-        best.1
+        let firsts = SHARES.map(|share| (order.len() as f64 * share) as usize);
+        let cuts =
+            (0..DIRECTIONS.len()).flat_map(|direction| firsts.map(|first| (direction, first)));
+        let shared = |&cut: &Cut| {
+            self.cut(order, cut);
+            self.shared(order, cut.1)
+        };
+        cuts.min_by_key(shared).unwrap_or_default()
     }
 
     /// Returns the number of corners that both parts of an order touch.

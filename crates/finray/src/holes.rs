@@ -1,5 +1,5 @@
-//! Holes for the screws that hold a finger, and the block beyond its end that has those which do not
-//! run through its depth. The gripper holds all of it rigidly: mechanics know nothing of it.
+//! Holes for the screws that hold a finger, and the block beyond its end that contains those which do not
+//! run through its depth. The gripper holds this part rigidly: the mechanical model ignores it.
 
 use super::polygon::Ring;
 use crate::outline::Outline;
@@ -24,12 +24,12 @@ pub enum Direction {
 impl Direction {
     const ALL: [Self; 3] = [Direction::Length, Direction::Width, Direction::Depth];
 
-    /// Returns both directions across it, right-handed with it.
+    /// Returns the two perpendicular directions, right-handed with this one.
     pub fn across(self) -> [Self; 2] {
         [1, 2].map(|next| Self::ALL[(self as usize + next) % 3])
     }
 
-    /// Its word in finger files.
+    /// Returns its name in finger files.
     pub fn word(self) -> &'static str {
         ["length", "width", "depth"][self as usize]
     }
@@ -48,9 +48,9 @@ pub struct Holes {
     pub spacing: f64,
     /// Diameter of a hole.
     pub diameter: f64,
-    /// Middle of the row from the middle of what carries it, along the row and across it.
+    /// Offset of the middle of the row from the middle of the base or block, along the row and across it.
     pub offset: [f64; 2],
-    /// Block that carries them; without one the held base does.
+    /// Block that contains them; if `None`, they are in the held base.
     pub block: Option<Block>,
 }
 
@@ -61,24 +61,24 @@ pub struct Block {
     pub length: f64,
     /// Width.
     pub width: f64,
-    /// Length inside the finger, so that a slicer unites both.
+    /// Length of the part inside the finger, so that a slicer merges both.
     pub overlap: f64,
 }
 
 /// Largest distance of a printed hole's flats from its circle, m.
 const FLAT: f64 = 0.01 * MM;
-/// Least wall beside a hole, printed lines.
+/// Smallest wall beside a hole, printed lines.
 const WALL_LINES: f64 = 3.0;
 /// Smallest diameter that prints open, m.
 const SMALLEST: f64 = 1.0 * MM;
-/// Most holes of a row.
+/// Largest number of holes of a row.
 const MOST: u32 = 20;
-/// Rounding of lengths, m.
+/// Tolerance of lengths for rounding errors, m.
 const EPSILON: f64 = 1e-9;
 
 impl Holes {
-    /// Returns the extent of what carries the holes: its low and its high end along each direction, m; X from the tip, Y
-    /// from the front, Z from the first layer.
+    /// Returns the low and high end along each direction of the base or block that contains the holes, m: X from the
+    /// tip, Y from the front, Z from the first layer.
     pub fn carrier(&self, outline: &Outline) -> [[f64; 2]; 3] {
         let Outline { length, width, depth, clamped, .. } = *outline;
         let (x, half, middle) = match self.block {
@@ -88,7 +88,7 @@ impl Holes {
         [x, [middle - half, middle + half], [0.0, depth]]
     }
 
-    /// Returns the middles of the holes, m; along the holes that of what carries them.
+    /// Returns the centres of the holes, m.
     pub fn middles(&self, outline: &Outline) -> Vec<[f64; 3]> {
         let centre = self.carrier(outline).map(|[low, high]| (low + high) / 2.0);
         let first = self.offset[0] - self.spacing * f64::from(self.count - 1) / 2.0;
@@ -101,8 +101,7 @@ impl Holes {
         (0..self.count).map(middle).collect()
     }
 
-    /// Returns the low and high ends of each hole along each direction, m; along the holes those of what
-    /// carries them.
+    /// Returns the low and high end of each hole along each direction, m.
     pub fn boxes(&self, outline: &Outline) -> Vec<[[f64; 2]; 3]> {
         let radius = self.diameter / 2.0;
         let boxed = |middle: [f64; 3]| {
@@ -117,7 +116,7 @@ impl Holes {
     pub fn rings(&self, outline: &Outline) -> Vec<Ring> {
         let radius = self.diameter / 2.0;
         let [u, v] = self.axis.across().map(|direction| direction as usize);
-        // Of a multiple of four, so that calipers meet corners on either axis.
+        // A multiple of four, so that calipers measure between corners along both axes.
         let flats = 4 * (PI / libm::acos(1.0 - FLAT / radius) / 4.0).ceil() as u32;
         let angle = |i: u32| -TAU * f64::from(i) / f64::from(flats);
         let ring = |middle: [f64; 3]| {
@@ -129,7 +128,7 @@ impl Holes {
         self.middles(outline).into_iter().map(ring).collect()
     }
 
-    /// Returns the place of the coordinate across holes and row.
+    /// Returns the index of the coordinate perpendicular to holes and row.
     fn beside(&self) -> usize {
         3 - self.axis as usize - self.row as usize
     }

@@ -32,17 +32,10 @@ mod tests;
 /// Error of a printed finger.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FingerError {
-    /// A number of the finger file or the design out of range, or parts that do not fit.
+    /// A number of the finger file or the design out of range, parts that do not fit, a finger that
+    /// cannot be meshed, or a stiffness that is not plausible.
     #[error(transparent)]
     Value(#[from] input::InputError),
-    /// A finger of this file that cannot be meshed, or whose stiffness is not plausible.
-    #[error("{file}: {problem}")]
-    Unfit {
-        /// Finger file.
-        file: String,
-        /// Problem, and what would be right.
-        problem: String,
-    },
     /// A task whose file couples springs that are computed.
     #[error(
         "the task `{task}`: finger.coupling goes with --finger-model paper; the springs of a \
@@ -58,15 +51,20 @@ impl input::Placed for FingerError {
     fn place(&self) -> input::Place {
         match self {
             FingerError::Value(error) => error.place(),
-            FingerError::Unfit { file, .. } => input::Place::file(file),
             FingerError::Coupled { .. } => input::Place::default().key("finger_model"),
         }
     }
 }
 
 impl FingerError {
+    /// Creates the error of a finger as a whole, of no single value.
+    pub fn finger(finger: &printed::PrintedFinger, problem: String) -> Self {
+        let file = finger.file.clone();
+        FingerError::Value(input::InputError { file, line: None, key: None, problem })
+    }
+
     fn mesh(geometry: &geometry::Geometry, problem: mesh::MeshError) -> Self {
         let problem = format!("the profile cannot be meshed: {problem}");
-        FingerError::Unfit { file: geometry.finger.file.clone(), problem }
+        FingerError::finger(&geometry.finger, problem)
     }
 }

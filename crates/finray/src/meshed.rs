@@ -1,4 +1,4 @@
-//! A finger as finite elements: its mesh, its clamped nodes, and its pad as a rigid face.
+//! Finite-element model of a finger: mesh, clamped nodes, pad as a rigid face.
 
 use super::condense::{Condensed, Element, Role, condense};
 use super::geometry::Geometry;
@@ -8,9 +8,9 @@ use crate::outline::{Outline, ring};
 use input::units::MM;
 use nalgebra::{DMatrix, Matrix3, Point2};
 
-/// Distance within which a node lies on a line, m.
+/// Distance from a line within which a node lies on it, m.
 const ON: f64 = 1e-6 * MM;
-/// Size of the triangles where the rigid part ends, and stress is singular, as a share.
+/// Size of the triangles at the ends of the rigid part, where stress is singular, as a share of the usual size.
 const FINEST: f64 = 0.3;
 
 /// Mesh of a finger without its clamped part, which does not deform.
@@ -53,7 +53,7 @@ impl MeshedFinger {
         Ok(meshed)
     }
 
-    /// Coordinates y and z of a point, from the pad's middle, m.
+    /// Returns the coordinates y and z of a point, from the middle of the pad, m.
     pub fn local(&self, point: &Point2<f64>) -> [f64; 2] {
         let from_middle = point - self.outline.pad_middle();
         [self.outline.out_of_pad(), self.outline.along_pad()].map(|axis| axis.dot(&from_middle))
@@ -67,7 +67,7 @@ impl MeshedFinger {
         on_pad || (face == RigidFace::PadAndRoof && on_roof)
     }
 
-    /// Makes a face rigid and leaves the other kept nodes free.
+    /// Returns the stiffness of a face that is rigid, with the other kept nodes free.
     ///
     /// # Errors
     /// If a part of the finger is not connected to its base.
@@ -140,7 +140,7 @@ pub struct RigidMotion {
     pub follow: DMatrix<f64>,
 }
 
-/// Divides the edges of a ring finely near some of its corners.
+/// Returns a ring whose edges are divided finely near some of its corners.
 fn graded(ring: &Ring, corners: &[Point2<f64>], size: f64) -> Ring {
     let near = |p: Point2<f64>| corners.iter().any(|corner| (p - corner).norm() < ON);
     let steps = |length: f64| -> Vec<f64> {

@@ -1,4 +1,4 @@
-//! The profile as a plate that is loaded across its plane: Mindlin's theory.
+//! The profile as a plate loaded across its plane, by Mindlin's theory.
 //!
 //! Each wall of the finger is then a deep beam that bends, shears and twists: Mindlin's plate
 //! gives a narrow wall of thickness t and depth d its E t d^3 / 12 in bending, 5/6 G t d in
@@ -44,8 +44,8 @@ impl Element for MindlinPlate {
         matrix
     }
 
-    /// The body moves along x and turns about y and z. The plate's own deflection is along
-    /// -x: its axes X, Y turn the other way than y, z.
+    /// Motions: translation along x, rotations about y and z. The deflection of the plate is along
+    /// -x, since its axes X, Y have the opposite orientation of y, z.
     fn follow(&self, outline: &Outline, [at_y, at_z]: [f64; 2]) -> Vec<[f64; 3]> {
         let (y, z) = (outline.out_of_pad(), outline.along_pad());
         // u_x = ry z - rz y

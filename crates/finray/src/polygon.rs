@@ -1,11 +1,11 @@
-//! Polygons in the plane: area, crossing, and cutting along a straight line.
+//! Polygons in the plane: area, self-intersection, and clipping by a half plane.
 
 use nalgebra::{Point2, Vector2};
 
-/// Closed ring of corners without repetition of the first; its inside is on the left.
+/// Closed polygon by its corners, the first not repeated at the end; its inside is on the left.
 pub type Ring = Vec<Point2<f64>>;
 
-/// Returns the edges of a ring, each as its two ends.
+/// Returns the edges of a ring, each by its two ends.
 pub fn edges(ring: &[Point2<f64>]) -> impl Iterator<Item = (Point2<f64>, Point2<f64>)> {
     ring.iter().copied().zip(ring.iter().copied().cycle().skip(1))
 }
@@ -20,7 +20,7 @@ pub fn perimeter(ring: &[Point2<f64>]) -> f64 {
     edges(ring).map(|(a, b)| (b - a).norm()).sum()
 }
 
-/// Returns whether two edges of a ring that do not follow one another meet.
+/// Returns whether two edges of a ring that are not neighbours meet.
 pub fn crosses_itself(ring: &[Point2<f64>]) -> bool {
     let edges: Vec<_> = edges(ring).collect();
     let neighbours = |i: usize, j: usize| j == i + 1 || (i == 0 && j == edges.len() - 1);
@@ -36,22 +36,22 @@ fn segments_meet(a: (Point2<f64>, Point2<f64>), b: (Point2<f64>, Point2<f64>)) -
     !apart(a, b.0, b.1) && !apart(b, a.0, a.1)
 }
 
-/// Half of the plane in which `normal . p >= offset`.
+/// Half plane of the points `p` with `normal . p >= offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfPlane {
     /// Unit vector into the half plane.
     pub normal: Vector2<f64>,
-    /// Distance of its edge from the origin along the normal.
+    /// Distance of its boundary from the origin along the normal.
     pub offset: f64,
 }
 
 impl HalfPlane {
-    /// Returns the distance of a point from the edge, positive inside.
+    /// Returns the distance of a point from the boundary, positive inside.
     pub fn depth(&self, point: Point2<f64>) -> f64 {
         self.normal.dot(&point.coords) - self.offset
     }
 
-    /// Returns the parts of a counter-clockwise ring in the half plane: a bent one may be cut into several.
+    /// Returns the parts of a counter-clockwise ring in the half plane; a ring that is not convex can have several.
     pub fn cut(&self, ring: &[Point2<f64>]) -> Vec<Ring> {
         let inside = |p: &Point2<f64>| self.depth(*p) >= 0.0;
         let Some(start) = ring.iter().position(|p| !inside(p)) else { return vec![ring.to_vec()] };
@@ -63,7 +63,7 @@ impl HalfPlane {
             if !before && after {
                 chains.push(vec![self.crossing(a, b)]);
             }
-            // The walk starts outside, so a chain has begun wherever it is inside.
+            // The first corner is outside, so every inside part has begun with a crossing.
             if let Some(chain) = chains.last_mut().filter(|_| before || after) {
                 chain.push(if after { b } else { self.crossing(a, b) });
             }
@@ -76,11 +76,11 @@ impl HalfPlane {
         a + (b - a) * (at_a / (at_a - at_b))
     }
 
-    /// Joins pieces that enter and leave across the edge to closed rings: in their order along
-    /// the edge, crossings bound the inside in pairs.
+    /// Joins chains into closed rings. Each chain runs from the point where the ring enters the half plane to
+    /// the point where it leaves; sorted along the boundary, these points bound the inside in pairs.
     fn close(&self, chains: Vec<Ring>) -> Vec<Ring> {
         let along = Vector2::new(-self.normal.y, self.normal.x);
-        // (place along the edge, chain, whether it is the chain's end)
+        // (place along the boundary, chain, whether it is the end of the chain)
         let mut crossings: Vec<(f64, usize, bool)> = Vec::new();
         for (i, chain) in chains.iter().enumerate() {
             for (point, end) in [(chain.first(), false), (chain.last(), true)] {
@@ -112,7 +112,7 @@ impl HalfPlane {
     }
 }
 
-/// Returns the ring without corners closer than `distance` to the one before.
+/// Returns the ring without corners that lie within `distance` of the previous one.
 pub fn without_repeats(ring: &[Point2<f64>], distance: f64) -> Ring {
     let mut kept = ring.to_vec();
     kept.dedup_by(|p, before| (*p - *before).norm() <= distance);

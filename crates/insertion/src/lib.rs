@@ -5,7 +5,7 @@
 //! ```
 //!
 //! A [`task`] is a plug, a socket and a strategy; a [`robot`] carries two fingers; the [`surrogate`]
-//! says how stiff a finger of a design is; a [`trial`] is one attempt from one start; an
+//! predicts the stiffness of the finger of a design; a [`trial`] is one attempt from one start; an
 //! [`evaluation`] is all that is measured of a design.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]

@@ -31,7 +31,7 @@ impl FailureClass {
         self as u8 + 1
     }
 
-    /// Name for texts and tables.
+    /// Returns the name for texts and tables.
     pub fn label(self) -> &'static str {
         let labels =
             ["contact loss before insertion", "plug missed", "jammed", "contact loss in insertion"];
@@ -60,20 +60,21 @@ impl TryFrom<u8> for FailureClass {
     }
 }
 
-/// Outcome of one trial.
+/// Outcome of one trial, in files `inserted`, `diverged` or the number of the failure class.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// Seated: deep enough and upright enough.
     Inserted,
-    /// Not seated, for a physical reason.
-    Failed(FailureClass),
     /// Numerical divergence of the simulation; not a property of the design.
     Diverged,
+    /// Not seated, for a physical reason.
+    #[serde(untagged)]
+    Failed(FailureClass),
 }
 
 impl Outcome {
-    /// `inserted`, `failed` or `diverged`, as files and JSON have it.
+    /// Returns `inserted`, `failed` or `diverged`, as in files and JSON.
     pub fn word(self) -> &'static str {
         match self {
             Outcome::Inserted => "inserted",
@@ -82,7 +83,7 @@ impl Outcome {
         }
     }
 
-    /// Words for readers; of a failure the name of its class.
+    /// Returns the name for texts; for a failure that of its class.
     pub fn label(self) -> &'static str {
         match self {
             Outcome::Failed(class) => class.label(),

@@ -41,7 +41,7 @@ pub const HEADER: [&str; 5] = [
     "stiffness_compliance_n_per_mm",
 ];
 
-/// Most designs of a table: the time to leave each out in turn grows with its fourth power.
+/// Largest number of designs of a table: the time to leave each out in turn grows with its fourth power.
 pub const MOST: usize = 100;
 
 /// Stiffness of one printed finger, as measured.
@@ -60,7 +60,7 @@ pub struct Measurement {
 }
 
 impl Measurement {
-    /// Stiffness along one axis, N/m.
+    /// Returns the stiffness along one axis, N/m.
     pub fn stiffness(&self, axis: Axis) -> f64 {
         match axis {
             Axis::Assembly => self.assembly,
@@ -121,12 +121,12 @@ impl Placed for SurrogateError {
 /// Reads and checks a measurement file; `file` is named in errors.
 ///
 /// # Errors
-/// If it is no such table, a value cannot be used, or a column seems to be in another unit.
+/// If it is not such a table, a value is invalid, or a column seems to be in another unit.
 pub fn parse(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
-    unit(rows(text, file)?, file)
+    check_units(rows(text, file)?, file)
 }
 
-/// Returns the designs the publication measured.
+/// Returns the designs that were measured for the publication.
 pub fn designs() -> Vec<Measurement> {
     parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap_or_default()
 }
@@ -142,7 +142,7 @@ pub fn three(mut designs: Vec<Measurement>) -> Vec<Measurement> {
 
 /// Reads a measurement file and checks each value by itself.
 fn rows(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
-    // The reader counts a line of a "\r\n" file too few.
+    // The reader counts one line too few in a "\r\n" file.
     let text = text.replace("\r\n", "\n");
     let at = |line: u64| Place::file(file).line(line as usize);
     if let Some(line) = unclosed_quote(&text) {
@@ -170,11 +170,11 @@ fn rows(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
     Ok(found)
 }
 
-/// Stiffnesses that are so many times those of the shipped fingers are in another unit.
+/// Ratio to the stiffness of the shipped fingers from which another unit is assumed.
 const OTHER_UNIT: f64 = 100.0;
 
-/// Asks about columns whose middle value is a hundred times, or a hundredth of, the shipped one.
-fn unit(found: Vec<Measurement>, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
+/// Checks that the median of no column is more than 100 times, or less than 1/100 of, the shipped one.
+fn check_units(found: Vec<Measurement>, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
     let shipped = rows(STIFFNESS[0].text, STIFFNESS[0].file)?;
     for (axis, column) in [(Axis::Assembly, HEADER[3]), (Axis::Compliance, HEADER[4])] {
         let middle = |all: &[Measurement]| {

@@ -172,11 +172,11 @@ fn what_mjcf_cannot_say_is_refused_by_name() {
     let mut off = scene("usb", "servo");
     let joint = &mut off.joints[0];
     joint.in_parent = Pose::translation(0.0, 0.0, 1e-6) * joint.in_parent;
-    assert_eq!(supports(&off).unwrap_err().lacking, "joints that start off their zero");
+    assert_eq!(supports(&off).unwrap_err().feature, "joints that start off their zero");
     let mut twice = scene("usb", "servo");
     let again = twice.joints[0].clone();
     twice.joints.push(again);
-    assert_eq!(supports(&twice).unwrap_err().lacking, "bodies on two joints");
+    assert_eq!(supports(&twice).unwrap_err().feature, "bodies on two joints");
 }
 
 #[test]

@@ -71,7 +71,7 @@ fn a_driven_body_carries_the_flange_along_and_turns_it() {
         damping_ratio: 1.0,
     };
     let mut scene = Scene::default();
-    let (command, flange) = cell::flange(&mut scene, &Flange::Servo(servo), Pose::identity());
+    let (command, flange) = cell::add_flange(&mut scene, &Flange::Servo(servo), Pose::identity());
     let mut world = Mujoco::default().world(&scene);
     let step = world.step_s();
     for i in 1..=8000 {

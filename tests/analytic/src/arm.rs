@@ -121,7 +121,7 @@ impl Loaded {
 /// Returns the scene of a flange as in a trial.
 pub fn flange(robot: &Mounted) -> Loaded {
     let mut scene = Scene::default();
-    let (_, end) = cell::flange(&mut scene, &robot.flange, Pose::identity());
+    let (_, end) = cell::add_flange(&mut scene, &robot.flange, Pose::identity());
     Loaded { scene, end, tool: Pose::identity(), centre: Point3::origin() }
 }
 
@@ -177,7 +177,7 @@ pub(super) fn t13(engine: &dyn Engine) -> Vec<CheckRow> {
 
 fn trails(engine: &dyn Engine, axis: usize, time: f64) -> Measured {
     let mut scene = Scene::default();
-    let (command, flange) = cell::flange(&mut scene, &Flange::Servo(SERVO), Pose::identity());
+    let (command, flange) = cell::add_flange(&mut scene, &Flange::Servo(SERVO), Pose::identity());
     let mut world = engine.world(&scene);
     let mut at = Vector3::zeros();
     for _ in 0..build::steps(world.as_ref(), time) {

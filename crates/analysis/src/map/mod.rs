@@ -158,15 +158,15 @@ mod tests {
     use clap::ValueEnum;
     use input::units::N_PER_MM;
     use insertion::finger::Finger;
-    use insertion::trial::Grasp;
     use insertion::trial::fake::{FakeRig, window_mm};
+    use insertion::trial::{Conditions, Grasp};
     use parameters::plan::grid::STEPS_PER_UNIT;
 
     /// A millimetre and a degree take 1 mm off both ends of the closed form's window.
     #[test]
     fn the_map_of_the_closed_form_is_the_same_on_any_number_of_threads_and_after_its_json() {
         let (rig, finger) = (FakeRig::default(), Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM));
-        let (low, high) = window_mm(&finger);
+        let (low, high) = window_mm(&finger, &Conditions::NOMINAL);
         for axes in Axes::value_variants() {
             let plane = Plane::new(&rig, Grasp::of(&finger), *axes);
             let on = |threads| {

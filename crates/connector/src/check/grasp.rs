@@ -4,7 +4,7 @@ use super::{Case, Problem, mm, pair};
 use crate::hold::{Held, SEAM, find, held};
 use input::units::MM;
 
-/// Least height of face that a pad must meet, m.
+/// Smallest height over which a pad must touch its face, m.
 const LEAST_COVER: f64 = 1.0 * MM;
 
 pub(super) fn problems(case: &Case) -> Vec<Problem> {
@@ -88,7 +88,7 @@ fn cover(case: &Case, held: &Held) -> Option<Problem> {
     })
 }
 
-/// Fault of roofs that do not rest on the plug, which they push in.
+/// Checks that the roofs rest on the plug, which they push in.
 fn roof(case: &Case, held: &Held) -> Option<Problem> {
     let shoulder = case.task.grip.shoulder_z;
     let wrong = |top: &Option<f64>| top.is_none_or(|z| (z - shoulder).abs() > SEAM);

@@ -53,11 +53,11 @@ struct Case<'a> {
     socket: ConvexBody<'a>,
 }
 
-/// Faults of a task, causes before consequences.
+/// Returns the faults of a task, causes before consequences.
 pub fn problems(task: &Task) -> Vec<Problem> {
     let case =
         Case { task, plug: ConvexBody::plug(&task.plug), socket: ConvexBody::new(&task.socket) };
-    // In a wrong unit everything else is wrong, too.
+    // With a wrong unit, all other checks would fail too.
     let mut found = parts::lengths(&case);
     if !found.is_empty() {
         return found;
@@ -79,17 +79,17 @@ fn mm(length: f64) -> String {
     format!("{}", (length / MM * 100.0).round() / 100.0 + 0.0)
 }
 
-/// Interval for a message, mm.
+/// Returns an interval for a message, mm.
 fn pair([from, to]: [f64; 2]) -> String {
     format!("[{}, {}]", mm(from), mm(to))
 }
 
-/// Key of a part, or of a field of it.
+/// Returns the key of a part, or of one of its fields.
 fn part_key(body: &str, name: &str, field: &str) -> String {
     format!("{body}.part \"{name}\" {field}").trim_end().to_owned()
 }
 
-/// Name of the field that gives a part's extent along an axis.
+/// Returns the name of the field that contains the extent of a part along an axis.
 fn field(solid: &Solid, axis: usize) -> &'static str {
     match solid {
         Solid::Box { .. } | Solid::Rounded(_) => ["x_mm", "y_mm", "z_mm"][axis],

@@ -1,16 +1,17 @@
 //! Parts of plug and socket: thickness, overlaps, gaps, latch and mass; lengths in another unit.
 
 use super::{Case, Problem, field, mm, part_key};
-use crate::body::{ConvexBody, extent, longest_side, width};
+use crate::body::{ConvexBody, Touching, extent, longest_side, width};
 use crate::hold::SEAM;
 use crate::seat::section;
+use contact::scene::Pose;
 use input::units::{GRAM, MM};
 use insertion::task::{Ending, Part, geometry};
 use nalgebra::Vector3;
 
 /// Largest overlap of joined parts, m.
 const OVERLAP: f64 = 0.5 * MM;
-/// Least thickness of a part that weighs and stops something, m.
+/// Smallest thickness of a part with a mass and a contact surface, m.
 const THIN: f64 = 0.01 * MM;
 /// Lightest and heaviest material, kg/m3: foam, tungsten.
 const DENSITIES: [f64; 2] = [100.0, 20e3];
@@ -41,8 +42,10 @@ fn thin(body: &str, part: &Part) -> Option<Problem> {
 }
 
 fn overlaps(name: &str, body: &ConvexBody) -> Vec<Problem> {
-    let deep = body.own_overlaps().into_iter().filter(|(depth, _)| *depth > OVERLAP);
-    deep.map(|(depth, parts)| {
+    let here = Pose::identity();
+    let own = body.overlaps(&here, body, &here).filter(|found| found.parts[0] < found.parts[1]);
+    let deep = own.filter(|found| found.depth > OVERLAP);
+    deep.map(|Touching { depth, parts, .. }| {
         let [i, j] = parts.map(|i| &body.parts[i]);
         let counted = if name == "plug" { ": its mass is counted twice there" } else { "" };
         Problem::new(
@@ -174,7 +177,7 @@ pub(super) fn lengths(case: &Case) -> Vec<Problem> {
     found
 }
 
-/// Fault of a length, m, that does not lie in its range, mm.
+/// Checks that a length, m, lies in its range, mm.
 fn problem(key: &str, length: f64, [low, high]: [f64; 2]) -> Option<Problem> {
     let value_mm = length / MM;
     if (low..=high).contains(&value_mm) {

@@ -7,22 +7,22 @@ use input::units::MM;
 use insertion::task::Part;
 use nalgebra::Point3;
 
-/// Depth at which the walls are looked for, m.
+/// Depth below the top at which walls are searched for, m.
 const BELOW: f64 = 0.1 * MM;
-/// Tolerance between walls and opening, m: polygons for circles, small chamfers.
-const AGREE: f64 = 0.15 * MM;
-/// Places along a side at which its wall is looked for, halfway among them: walls are slanted and round.
-const ALONG: i32 = 41;
-/// Distance from the stated edge within which the wall is looked for, and its step, m.
-const FAR: f64 = 5.0 * MM;
+/// Tolerance between a wall and the stated edge, m, for polygons that stand for circles and for small chamfers.
+const TOLERANCE: f64 = 0.15 * MM;
+/// Number of places along a side at which its wall is searched for, because walls can be slanted or round.
+const PLACES: i32 = 41;
+/// Distance from the stated edge up to which a wall is searched for, and the step of the search, m.
+const REACH: f64 = 5.0 * MM;
 const STEP: f64 = 0.0025 * MM;
-/// Compliance of the contacts, by which success may be deeper than the seat, m.
-const GIVE: f64 = 0.02 * MM;
+/// Compression of the contacts, by which the success depth may exceed the depth of the seat, m.
+const COMPRESSION: f64 = 0.02 * MM;
 
-/// Faults of the opening's sides and of the socket's height.
+/// Checks the sides of the opening and the height of the socket.
 pub(super) fn walls(case: &Case) -> Vec<Problem> {
     let [_, top] = case.socket.extent(2);
-    if top < -AGREE {
+    if top < -TOLERANCE {
         return vec![Problem::new(
             "socket.part",
             format!("the socket's highest point is at z = {} mm", mm(top)),
@@ -33,8 +33,8 @@ pub(super) fn walls(case: &Case) -> Vec<Problem> {
     sides.filter_map(|(axis, end)| side(case, axis, end)).collect()
 }
 
-/// Fault of one side of the opening, which is solid just outside halfway along, and somewhere along it
-/// free just inside. What it should be is read halfway along.
+/// Checks one side of the opening: the socket must be solid just outside the middle of the side, and the wall must begin
+/// at the stated edge somewhere along the side. The correct value is measured at the middle.
 fn side(case: &Case, axis: usize, end: usize) -> Option<Problem> {
     let opening = case.task.opening;
     let stated = opening[axis][end];
@@ -47,47 +47,47 @@ fn side(case: &Case, axis: usize, end: usize) -> Option<Problem> {
         case.socket.part_at(&point)
     };
     let begins = |i: i32| {
-        let share = f64::from(2 * i + 1) / f64::from(2 * ALONG);
+        let share = f64::from(2 * i + 1) / f64::from(2 * PLACES);
         let solid = |beyond: f64| part_at(stated + outward * beyond, share).is_some();
-        solid(AGREE) && !solid(-AGREE)
+        solid(TOLERANCE) && !solid(-TOLERANCE)
     };
     let part = |at: f64| part_at(at, 0.5);
     let solid = |beyond: f64| part(stated + outward * beyond).is_some();
-    if solid(AGREE) && (0..ALONG).any(begins) {
+    if solid(TOLERANCE) && (0..PLACES).any(begins) {
         return None;
     }
     let name = ["x", "y"][axis];
-    let steps = (FAR / STEP) as usize;
-    // The face: solid beyond it, free before it.
+    let steps = (REACH / STEP) as usize;
+    // Position of the face of the wall: free before it, solid beyond it.
     let face =
-        (0..2 * steps).map(|i| i as f64 * STEP - FAR).find(|&at| !solid(at) && solid(at + STEP));
-    let (says, far) = (mm(stated), mm(FAR));
+        (0..2 * steps).map(|i| i as f64 * STEP - REACH).find(|&at| !solid(at) && solid(at + STEP));
+    let (edge, reach) = (mm(stated), mm(REACH));
     let (problem, remedy) = match face {
         Some(at) => {
             let right = stated + outward * (at + STEP / 2.0);
             let wall = part(right + outward * STEP).map_or("", |i| &case.socket.parts[i].name);
             let right = mm(right);
             (
-                format!("says {says} mm, but `{wall}` begins at {name} = {right} mm"),
+                format!("is {edge} mm, but `{wall}` begins at {name} = {right} mm"),
                 format!("{right} mm, or move the wall: the two must agree"),
             )
         }
-        None if solid(-AGREE) => (
-            format!("at {says} mm the opening is filled: no free side within {far} mm"),
+        None if solid(-TOLERANCE) => (
+            format!("at {edge} mm the opening is filled: no free side within {reach} mm"),
             "let the opening reach from wall to wall where the socket is hollow".to_owned(),
         ),
         None => (
-            format!("no wall begins at {name} = {says} mm nor within {far} mm of it"),
+            format!("no wall begins at {name} = {edge} mm nor within {reach} mm of it"),
             "state where the walls are, or add the wall as a [[socket.part]]".to_owned(),
         ),
     };
     Some(Problem::new(format!("socket.opening_{name}_mm"), problem, remedy))
 }
 
-/// Faults of the success depth: opening too narrow, or plug stopped above it.
+/// Checks that the plug can reach the success depth.
 pub(super) fn depth(case: &Case, seat: &Seat) -> Vec<Problem> {
     let success = case.task.success.depth;
-    if success <= seat.depth + GIVE {
+    if success <= seat.depth + COMPRESSION {
         return Vec::new();
     }
     let wide: Vec<_> = (0..2).filter_map(|axis| wide(case, seat, axis)).collect();
@@ -106,7 +106,7 @@ pub(super) fn depth(case: &Case, seat: &Seat) -> Vec<Problem> {
     )]
 }
 
-/// Fault of a plug that is wider than the opening over the depth it must enter.
+/// Checks that the plug is not wider than the opening over the depth that it must enter.
 fn wide(case: &Case, seat: &Seat, axis: usize) -> Option<Problem> {
     // A shoulder that rests on the housing is not meant to go in.
     let depth = case.task.success.depth.min(seat.depth + BELOW);

@@ -1,7 +1,7 @@
 //! Commanded moves: free approach, search over the opening, deep enough push.
 
 use super::{Case, Problem, mm, pair};
-use crate::body::span;
+use crate::body::{Touching, span};
 use crate::seat::{self, Waypoint, section};
 use contact::scene::Pose;
 use input::units::MM;
@@ -21,7 +21,7 @@ pub(super) fn problems(case: &Case) -> Vec<Problem> {
     let way = seat::waypoints(case.task, &case.plug);
     let mut found: Vec<Problem> = case.task.strategy.phases.iter().filter_map(upward).collect();
     found.extend(inside(case, &way));
-    // Of moves that go up nothing else can be said.
+    // The other checks are meaningless for moves that go up.
     if found.is_empty() {
         found.extend(way.iter().filter_map(short));
         found.extend(too_shallow(case, &way));
@@ -34,7 +34,7 @@ fn key(name: &str) -> String {
     format!("strategy.phase \"{name}\" move_mm")
 }
 
-/// Fault of a touch or push that does not go down.
+/// Checks that a touch or push goes down.
 fn upward(phase: &Phase) -> Option<Problem> {
     let z = phase.displacement[2];
     let touch = matches!(phase.ending, Ending::Touch { .. });
@@ -53,11 +53,12 @@ fn upward(phase: &Phase) -> Option<Problem> {
     ))
 }
 
-/// Collision at the start or on the approach.
+/// Checks for collisions at the start and on the approach.
 fn inside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     let collision = |tcp: Vector3<f64>| {
         let pose = seat::plug_pose(case.task, tcp);
-        let (depth, [plug, socket]) = case.plug.overlap(&pose, &case.socket, &Pose::identity())?;
+        let Touching { depth, parts: [plug, socket], .. } =
+            case.plug.overlap(&pose, &case.socket, &Pose::identity())?;
         let names = [&case.plug.parts[plug].name, &case.socket.parts[socket].name];
         (depth > ROUNDING).then_some((depth, names))
     };
@@ -97,9 +98,9 @@ fn short(point: &Waypoint) -> Option<Problem> {
     ))
 }
 
-/// Fault of moves that end above the success depth.
+/// Checks that the moves reach the success depth.
 fn too_shallow(case: &Case, way: &[Waypoint]) -> Option<Problem> {
-    // Of the upright tip at the end of the path.
+    // Depth of the tip of an upright plug at the end of the path.
     let depth = way.last().map_or(0.0, |last| case.task.grip.tcp_z - last.tcp.z);
     let missing = case.task.success.depth - depth;
     let last = case.task.strategy.phases.last().filter(|_| missing > 0.0)?;
@@ -112,7 +113,7 @@ fn too_shallow(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     ))
 }
 
-/// Fault of a search that does not pass over the opening.
+/// Checks that the search passes over the opening.
 fn beside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     let [bottom, _] = case.plug.extent(2);
     let tip = section(&case.plug, bottom + AIR);

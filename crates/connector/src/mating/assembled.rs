@@ -1,14 +1,14 @@
-//! Direction in which the plug of an assembly leaves.
+//! Direction in which the plug of an assembly can be withdrawn.
 
-use super::frame::{Part, Parts, outs, turned, turns};
+use super::frame::{Part, Parts, outs, turned};
 use super::refine::{Pose, settled_areas};
 use super::search::{EFFORTS, Scene};
-use super::{Mate, MatingError, ROOMS, precise};
+use super::{MAX_PLAYS, Mate, MatingError, precise};
 use crate::mesh::Triangle;
 
-/// Finds the direction in which the plug of an assembly can be withdrawn; both in the frame of the
-/// assembly, m. Of several the one with the most facing walls beyond what interferes is taken, and of
-/// equal ones that in which the plug stands out further.
+/// Finds the direction in which the plug of an assembly can be withdrawn; both parts in the frame of the assembly, m. Among
+/// several directions it selects the one with the largest facing area less interference, and among equal ones that in which
+/// the plug protrudes further.
 ///
 /// # Errors
 /// If a part is empty, or the plug is blocked or loose in every direction.
@@ -20,19 +20,16 @@ pub fn assembled(plug: &[Triangle], socket: &[Triangle]) -> Result<Mate, MatingE
     }
     let parts = Parts { plug: Part { own, triangles: turned(plug, &own) }, socket };
     let scene = Scene::new(&parts, EFFORTS[0]);
-    let mut poses: Vec<(Pose, f64)> = Vec::new();
-    for (out, turn) in outs().iter().enumerate() {
-        // The plug turns with the socket.
-        let same = |other: &nalgebra::Rotation3<f64>| (other.matrix() - turn.matrix()).amax() < 0.5;
-        let Some(turn) = turns().iter().position(same) else { continue };
-        let pose = Pose { out, turn, ..Pose::default() };
-        poses.push(settled_areas(&scene, pose, ROOMS[0]));
-    }
+    let poses = (0..outs().len()).map(|out| {
+        // The plug is rotated like the socket, whose directions are every fourth rotation.
+        let pose = Pose { out, turn: 4 * out, ..Pose::default() };
+        settled_areas(&scene, pose, MAX_PLAYS[0])
+    });
     let value = |(pose, out): &(Pose, f64)| pose.value() * (1.0 + ASIDE * out.signum());
-    let best = poses.into_iter().max_by(|a, b| value(a).total_cmp(&value(b)));
+    let best = poses.max_by(|a, b| value(a).total_cmp(&value(b)));
     let (pose, _) = best.filter(|(pose, _)| pose.value() > 0.0).ok_or(MatingError::Blocked)?;
-    Ok(precise::mate(&parts, &scene, &pose, ROOMS[0]))
+    Ok(precise::mate(&parts, &scene, &pose, MAX_PLAYS[0]))
 }
 
-/// Preference for the direction in which the plug stands out, as a share of the engagement.
+/// Preference for the direction in which the plug protrudes, as a share of the engagement.
 const ASIDE: f64 = 0.01;

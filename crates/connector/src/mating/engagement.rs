@@ -2,13 +2,13 @@
 
 use super::map::{Map, NOWHERE};
 
-/// Width of a ledge all round that stops a plug, m: it costs as much as a square plug's walls gain.
+/// Ratio of overlapping volume to the facing area that it offsets, m.
 const LEDGE: f64 = 0.125e-3;
 
 /// Area of the plug's walls that look along +x, -x, +y and -y and face a wall of the socket, m2.
 pub type Walls = [f64; 4];
 
-/// Area on the weaker of two opposite sides, the mean of both cross axes, m2.
+/// Returns the area on the weaker of two opposite sides, the geometric mean over both lateral axes, m2.
 pub fn score(walls: &Walls) -> f64 {
     (walls[0].min(walls[1]) * walls[2].min(walls[3])).sqrt()
 }
@@ -16,10 +16,10 @@ pub fn score(walls: &Walls) -> f64 {
 /// Directions of the four sides.
 pub const SIDES: [[i32; 2]; 4] = [[1, 0], [-1, 0], [0, 1], [0, -1]];
 
-/// Strip of a side wall of the plug, one cell wide.
+/// Vertical strip of a side wall of the plug, one cell wide.
 #[derive(Debug, Clone, Copy)]
 struct Strip {
-    /// Cell of which it is a side.
+    /// Cell whose side it is.
     cell: [i32; 2],
     side: usize,
     low: f32,
@@ -34,35 +34,43 @@ pub struct Sides {
 }
 
 impl Sides {
-    /// Side walls in a map, steeper than 45 degrees.
+    /// Finds the side walls in a map that are steeper than 45 degrees.
     pub fn new(plug: &Map) -> Self {
         let mut strips = Vec::new();
-        for y in plug.first[1]..plug.first[1] + plug.count[1] as i32 {
-            for x in plug.first[0]..plug.first[0] + plug.count[0] as i32 {
-                let low = plug.at(x, y);
-                if low > NOWHERE / 2.0 {
-                    continue;
-                }
-                for (side, [dx, dy]) in SIDES.into_iter().enumerate() {
-                    // The neighbour ends higher: between both heights the plug has a wall to its side.
-                    let high = plug.at(x + dx, y + dy);
-                    if high - low > plug.step[side / 2] as f32 {
-                        strips.push(Strip { cell: [x, y], side, low, high });
-                    }
+        for [x, y] in plug.cells() {
+            let low = plug.at(x, y);
+            if low > NOWHERE / 2.0 {
+                continue;
+            }
+            for (side, [dx, dy]) in SIDES.into_iter().enumerate() {
+                // The neighbour ends higher: between both heights the plug has a wall to its side.
+                let high = plug.at(x + dx, y + dy);
+                if high - low > plug.step[side / 2] as f32 {
+                    strips.push(Strip { cell: [x, y], side, low, high });
                 }
             }
         }
         Sides { strips, step: plug.step }
     }
 
-    /// Walls of the plug shifted by whole cells, at a height, that face one of the socket.
+    /// Returns the facing walls on the weaker sides, and what both parts fill as an area, m2; `plug` is the lower
+    /// envelope of the plug without the tolerance.
+    pub fn areas(&self, socket: &Faces, plug: &Map, shift: [i32; 2], z: f32) -> [f64; 2] {
+        let walls = score(&self.facing(socket, shift, z));
+        let heights =
+            rests(socket.map, plug, shift).map(|(_, rest)| f64::from((rest - z).max(0.0)));
+        let volume = heights.sum::<f64>() * plug.step[0] * plug.step[1];
+        [walls, volume / LEDGE]
+    }
+
+    /// Returns the area of the walls that face a wall of the socket, the plug shifted by whole cells and at a height.
     pub fn facing(&self, socket: &Faces, shift: [i32; 2], z: f32) -> Walls {
         let mut sums = [0.0; 4];
         for strip in &self.strips {
             let [dx, dy] = SIDES[strip.side];
             let [x, y] = [strip.cell[0] + shift[0], strip.cell[1] + shift[1]];
             let (low, high) = (strip.low + z, strip.high + z);
-            // The socket goes through the wall: a spring or a latch, no guide.
+            // The socket penetrates the wall: a spring or a latch, not a guide.
             let into = socket.into[strip.side / 2] + 1;
             if socket.map.at(x - into * dx, y - into * dy) > low + socket.tolerance {
                 continue;
@@ -79,16 +87,16 @@ impl Sides {
 pub struct Faces<'a> {
     /// Upper envelope of the socket.
     map: &'a Map,
-    /// Highest place within reach of each side.
+    /// Largest heights within reach of each side.
     highest: [Map; 4],
-    /// Depth of harmless interference in cells along x and y.
+    /// Depth of tolerated interference in cells along x and y.
     into: [i32; 2],
     /// The same depth, m.
     tolerance: f32,
 }
 
 impl<'a> Faces<'a> {
-    /// Walls within `reach` that do not go deeper into the plug than `tolerance`, m.
+    /// Creates the walls within `reach` of the plug that penetrate it by at most `tolerance`, m.
     pub fn new(map: &'a Map, [reach, tolerance]: [f64; 2]) -> Self {
         let cells = |length: f64| map.step.map(|step| (length / step).ceil() as i32);
         let (reach, into) = (cells(reach), cells(tolerance));
@@ -104,44 +112,16 @@ impl<'a> Faces<'a> {
     }
 }
 
-/// Socket and plug in contact.
-pub struct Contact<'a> {
-    /// Walls of the socket.
-    pub socket: &'a Faces<'a>,
-    /// Lower envelope of the plug, without the tolerance.
-    pub plug: &'a Map,
-    /// Side walls of the plug.
-    pub sides: &'a Sides,
-}
-
-impl Contact<'_> {
-    /// Facing walls on the weaker sides, and what both parts fill as an area, m2.
-    pub fn areas(&self, shift: [i32; 2], z: f32) -> [f64; 2] {
-        let walls = score(&self.sides.facing(self.socket, shift, z));
-        let mut volume = 0.0;
-        let add = |_, rest: f32| volume += f64::from((rest - z).max(0.0));
-        each(self.socket.map, self.plug, shift, add);
-        [walls, volume * self.plug.step[0] * self.plug.step[1] / LEDGE]
-    }
-}
-
-/// Cells of a shifted plug at a height that the socket fills, too.
+/// Returns the cells that both a shifted plug at a height and the socket fill.
 pub fn shared(socket: &Map, plug: &Map, shift: [i32; 2], z: f32) -> Vec<[i32; 2]> {
-    let mut cells = Vec::new();
-    each(socket, plug, shift, |cell, rest| {
-        if rest > z {
-            cells.push(cell);
-        }
-    });
-    cells
+    rests(socket, plug, shift).filter(|(_, rest)| *rest > z).map(|(cell, _)| cell).collect()
 }
 
-/// Shows each cell of a shifted plug with the height at which it would rest on the socket.
-fn each(socket: &Map, plug: &Map, shift: [i32; 2], mut see: impl FnMut([i32; 2], f32)) {
-    let [nx, ny] = plug.count.map(|count| count as i32);
-    for y in plug.first[1]..plug.first[1] + ny {
-        for x in plug.first[0]..plug.first[0] + nx {
-            see([x, y], socket.at(x + shift[0], y + shift[1]) - plug.at(x, y));
-        }
-    }
+/// Returns each cell of a shifted plug with the height at which it would rest on the socket.
+fn rests<'a>(
+    socket: &'a Map,
+    plug: &'a Map,
+    shift: [i32; 2],
+) -> impl Iterator<Item = ([i32; 2], f32)> + 'a {
+    plug.cells().map(move |[x, y]| ([x, y], socket.at(x + shift[0], y + shift[1]) - plug.at(x, y)))
 }

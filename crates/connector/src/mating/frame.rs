@@ -1,19 +1,19 @@
-//! Axes of a part, and the turns between the axes of two parts.
+//! Principal axes of a part, and the rotations between the axes of two parts.
 
 use super::MatingError;
 use crate::mesh::Triangle;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
-/// Cosine of the largest angle between normals of one direction: half a degree.
+/// Cosine of the largest angle between parallel normals: half a degree.
 const PARALLEL: f64 = 0.999_96;
-/// Most directions from which axes are made.
+/// Largest number of directions that are tried as axes.
 const MOST_DIRECTIONS: usize = 12;
-/// Share of the best axes' area with which the axes of the file are kept: round parts have many as good.
+/// Share of the area of the best axes from which on the axes of the file are kept: round parts have many equally good ones.
 const KEPT: f64 = 0.6;
 
-/// Triangles of a part in axes of its own, along which its walls run.
+/// Triangles of a part in its own axes, to which its walls are parallel.
 pub struct Part {
-    /// File to own axes.
+    /// Rotation from the axes of the file to its own.
     pub own: Rotation3<f64>,
     /// Triangles in its own axes, m.
     pub triangles: Vec<Triangle>,
@@ -28,14 +28,14 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// Both parts in axes of their own.
+    /// Rotates both parts to their own axes.
     pub fn new(plug: &[Triangle], socket: &[Triangle]) -> Result<Self, MatingError> {
         Ok(Parts { plug: Part::new(plug, "plug")?, socket: Part::new(socket, "socket")? })
     }
 }
 
 impl Part {
-    /// The part in axes of its own.
+    /// Rotates a part to its own axes.
     pub fn new(triangles: &[Triangle], name: &'static str) -> Result<Self, MatingError> {
         let directions = directions(triangles);
         let own = axes(&directions).ok_or(MatingError::Empty(name))?;
@@ -43,12 +43,12 @@ impl Part {
     }
 }
 
-/// Turned triangles.
+/// Rotates triangles.
 pub fn turned(triangles: &[Triangle], turn: &Rotation3<f64>) -> Vec<Triangle> {
     triangles.iter().map(|corners| corners.map(|p| turn * p)).collect()
 }
 
-/// The 24 turns that map axes to axes.
+/// Returns the 24 rotations that map axes to axes.
 pub fn turns() -> Vec<Rotation3<f64>> {
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
     let signed = axes.iter().flat_map(|axis| [*axis, -axis]).collect::<Vec<_>>();
@@ -56,18 +56,18 @@ pub fn turns() -> Vec<Rotation3<f64>> {
     pairs.filter(|(z, x)| z.dot(x) == 0.0).map(|(z, x)| upright(z, x)).collect()
 }
 
-/// Six turns, one for each axis and sense, that map it to z.
+/// Returns six rotations, one for each axis and sense, that map it to z.
 pub fn outs() -> Vec<Rotation3<f64>> {
     turns().into_iter().step_by(4).collect()
 }
 
-/// Turn that maps `z` to z and `x` to x.
+/// Returns the rotation that maps `z` to z and `x` to x.
 fn upright(z: Vector3<f64>, x: Vector3<f64>) -> Rotation3<f64> {
     let rows = [x, z.cross(&x), z].map(|row| row.transpose());
     Rotation3::from_matrix_unchecked(Matrix3::from_rows(&rows))
 }
 
-/// Directions of the normals, either sense, with their area, the largest first.
+/// Returns the directions of the normals, of either sense, with their areas, the largest first.
 fn directions(triangles: &[Triangle]) -> Vec<(Vector3<f64>, f64)> {
     let mut normals: Vec<(Vector3<f64>, f64)> = Vec::new();
     for [a, b, c] in triangles {
@@ -90,7 +90,7 @@ fn directions(triangles: &[Triangle]) -> Vec<(Vector3<f64>, f64)> {
     found
 }
 
-/// Axes to which most of the area is square; those of the file where they are about as good.
+/// Returns the axes to which most of the area is perpendicular; those of the file if they are about as good.
 fn axes(directions: &[(Vector3<f64>, f64)]) -> Option<Rotation3<f64>> {
     let area = |turn: &Rotation3<f64>| -> f64 {
         let square = |normal: &Vector3<f64>| (turn * normal).amax() > PARALLEL;

@@ -1,12 +1,13 @@
 //! Height maps.
 
+use crate::body::extent;
 use crate::mesh::Triangle;
 use rayon::prelude::*;
 
-/// Height of what is not there, m; small enough for sums to stay finite.
+/// Height of a column without material, m; finite, so that sums stay finite.
 pub const NOWHERE: f32 = 1e6;
 
-/// Side of a part that a map shows.
+/// Side of a part whose heights a map contains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Envelope {
     /// Highest place of each column.
@@ -16,7 +17,7 @@ pub enum Envelope {
 }
 
 impl Envelope {
-    /// Height of a column without material.
+    /// Returns the height of a column without material.
     pub fn empty(self) -> f32 {
         match self {
             Envelope::Upper => -NOWHERE,
@@ -39,28 +40,25 @@ pub type Window = [[f64; 2]; 2];
 /// Heights at the middles of cells, m.
 #[derive(Debug, Clone)]
 pub struct Map {
-    /// Side shown.
+    /// Side of the part.
     pub envelope: Envelope,
     /// Size of a cell in x and y, m.
     pub step: [f64; 2],
-    /// Index of the first cell in x and y; cell i lies from i to i + 1 steps.
+    /// Index of the first cell in x and y; cell i extends from i to i + 1 steps.
     pub first: [i32; 2],
-    /// Cells in x and y.
+    /// Number of cells in x and y.
     pub count: [usize; 2],
     /// Heights, row by row.
     pub heights: Vec<f32>,
 }
 
-/// Bounds of triangles in x, y and z, m.
+/// Returns the bounds of triangles in x, y and z, m.
 pub fn bounds(triangles: &[Triangle]) -> [[f64; 2]; 3] {
-    [0, 1, 2].map(|axis| {
-        let values = triangles.iter().flatten().map(|p| p[axis]);
-        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
-    })
+    [0, 1, 2].map(|axis| extent(triangles.iter().flatten(), axis))
 }
 
 impl Map {
-    /// Envelope of triangles within a window.
+    /// Creates the envelope of triangles within a window.
     pub fn new(
         triangles: &[Triangle],
         envelope: Envelope,
@@ -83,21 +81,21 @@ impl Map {
         map
     }
 
-    /// Middle of the cell of an index.
+    /// Returns the coordinate of the centre of a cell along an axis, m.
     pub fn middle(&self, axis: usize, index: usize) -> f64 {
         (f64::from(self.first[axis]) + index as f64 + 0.5) * self.step[axis]
     }
 
     fn draw(&mut self, [a, b, c]: &Triangle) {
         let area = (b - a).xy().perp(&(c - a).xy());
-        let (low, high) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
-        let Some([from, to]) = self.cells(1, low, high) else { return };
+        let [low, high] = extent([a, b, c], 1);
+        let Some([from, to]) = self.between(1, low, high) else { return };
         if area.abs() < 1e-3 * self.step[0] * self.step[1] * 1e-3 {
             return;
         }
         let normal = (b - a).cross(&(c - a));
         let slope = [-normal.x / normal.z, -normal.y / normal.z];
-        let (bottom, top) = (a.z.min(b.z).min(c.z), a.z.max(b.z).max(c.z));
+        let [bottom, top] = extent([a, b, c], 2);
         for row in from..=to {
             let y = self.middle(1, row);
             let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -110,7 +108,7 @@ impl Map {
                     right = right.max(x).max(if q.y > p.y { x } else { q.x });
                 }
             }
-            let Some([start, end]) = self.cells(0, left, right) else { continue };
+            let Some([start, end]) = self.between(0, left, right) else { continue };
             let at = a.z + slope[1] * (y - a.y);
             for column in start..=end {
                 let z = at + slope[0] * (self.middle(0, column) - a.x);
@@ -121,15 +119,21 @@ impl Map {
         }
     }
 
-    /// Cells whose middles lie between two coordinates.
-    fn cells(&self, axis: usize, low: f64, high: f64) -> Option<[usize; 2]> {
+    /// Returns the first and the last cell whose centres lie between two coordinates along an axis.
+    fn between(&self, axis: usize, low: f64, high: f64) -> Option<[usize; 2]> {
         let first = f64::from(self.first[axis]) + 0.5;
         let from = (low / self.step[axis] - first - 1e-9).ceil().max(0.0);
         let to = (high / self.step[axis] - first + 1e-9).floor().min(self.count[axis] as f64 - 1.0);
         (from <= to).then_some([from as usize, to as usize])
     }
 
-    /// Height of a cell by its index; empty outside.
+    /// Returns the indices of the cells, row by row.
+    pub fn cells(&self) -> impl Iterator<Item = [i32; 2]> + use<> {
+        let ([x, y], [nx, ny]) = (self.first, self.count.map(|count| count as i32));
+        (y..y + ny).flat_map(move |y| (x..x + nx).map(move |x| [x, y]))
+    }
+
+    /// Returns the height of a cell; outside the map that of a column without material.
     pub fn at(&self, x: i32, y: i32) -> f32 {
         let [i, j] = [x - self.first[0], y - self.first[1]];
         let inside =
@@ -141,22 +145,22 @@ impl Map {
         }
     }
 
-    /// The map without a margin of material: each cell takes the innermost height within a radius.
+    /// Erodes the material: each cell gets the innermost height within a radius.
     pub fn eroded(&self, radius: [usize; 2]) -> Map {
         self.filtered(radius, radius, Envelope::inner)
     }
 
-    /// The map with material grown by a radius.
+    /// Dilates the material by a radius.
     pub fn dilated(&self, radius: [usize; 2]) -> Map {
         self.filtered(radius, radius, Envelope::outer)
     }
 
-    /// Each cell the innermost of itself and the cells `back` before and `on` after it.
+    /// Sets each cell to the innermost height of itself, the `back` cells before it and the `on` cells after it.
     pub fn inner(&self, back: usize, on: usize) -> Map {
         self.filtered([back; 2], [on; 2], Envelope::inner)
     }
 
-    /// Each cell the highest of those from `low` to `high` cells beside it along an axis.
+    /// Sets each cell to the largest height of the cells from `low` to `high` beside it along an axis.
     pub fn highest(&self, axis: usize, [low, high]: [i32; 2]) -> Map {
         let wide = usize::try_from(high - low + 1).unwrap_or(1);
         let (mut map, mut done) = (self.clone(), 1);
@@ -169,7 +173,7 @@ impl Map {
         map
     }
 
-    /// Each cell the higher of itself and the one `by` cells after it along an axis.
+    /// Sets each cell to the larger height of itself and the cell `by` after it along an axis.
     fn higher(&self, axis: usize, by: usize) -> Map {
         let mut map = Map { heights: Vec::new(), ..*self };
         map.first[axis] -= by as i32;
@@ -225,7 +229,7 @@ impl Map {
         map
     }
 
-    /// Coarser maps of cells of `factor` cells each: the outermost and the innermost height.
+    /// Returns maps whose cells are `factor` times as large: of the outermost and of the innermost heights.
     pub fn coarser(&self, factor: usize) -> [Map; 2] {
         let factor = factor as i32;
         let first = self.first.map(|first| first.div_euclid(factor));
@@ -235,22 +239,20 @@ impl Map {
         let count = last.map(|count| usize::try_from(count).unwrap_or(0));
         let step = self.step.map(|step| step * f64::from(factor));
         [Envelope::outer as fn(Envelope, f32, f32) -> f32, Envelope::inner].map(|take| {
-            let mut heights = vec![f32::NAN; count[0] * count[1]];
-            for y in first[1] * factor..(first[1] + count[1] as i32) * factor {
-                for x in first[0] * factor..(first[0] + count[0] as i32) * factor {
-                    let row = (y.div_euclid(factor) - first[1]) as usize;
-                    let cell =
-                        &mut heights[row * count[0] + (x.div_euclid(factor) - first[0]) as usize];
-                    let z = self.at(x, y);
-                    *cell = if cell.is_nan() { z } else { take(self.envelope, *cell, z) };
-                }
-            }
-            Map { envelope: self.envelope, step, first, count, heights }
+            let envelope = self.envelope;
+            let mut map = Map { envelope, step, first, count, heights: Vec::new() };
+            let height = |[x, y]: [i32; 2]| {
+                let cells = (0..factor * factor).map(|i| [i % factor, i / factor]);
+                let fine = cells.map(|[i, j]| self.at(x * factor + i, y * factor + j));
+                fine.reduce(|a, b| take(envelope, a, b)).unwrap_or(envelope.empty())
+            };
+            map.heights = map.cells().map(height).collect();
+            map
         })
     }
 }
 
-/// Height at which a plug shifted by whole cells rests; stops at `enough`.
+/// Returns the height at which a plug shifted by whole cells rests; stops once it reaches `enough`.
 pub fn rest(socket: &Map, plug: &Map, shift: [i32; 2], enough: f32) -> f32 {
     let ([snx, _], [pnx, pny]) = (socket.count, plug.count);
     let span = |axis: usize| {
@@ -265,7 +267,7 @@ pub fn rest(socket: &Map, plug: &Map, shift: [i32; 2], enough: f32) -> f32 {
     }
     debug_assert!(toy as usize <= pny);
     let mut highest = -NOWHERE;
-    // Rows far apart first: what does not fit is seen early.
+    // Rows far apart first, to detect a misfit early.
     for phase in 0..8 {
         for row in (fromy + phase..toy).step_by(8) {
             let plug_row = row as usize * pnx;
@@ -296,7 +298,7 @@ fn row_rest(socket: &[f32], plug: &[f32], highest: f32) -> f32 {
     lanes.iter().fold(tail, |high, z| if *z > high { *z } else { high })
 }
 
-/// Maps of several turned parts.
+/// Creates the maps of a part in several rotations.
 pub fn maps(parts: &[Vec<Triangle>], envelope: Envelope, step: f64) -> Vec<Map> {
     parts.par_iter().map(|part| Map::new(part, envelope, [step; 2], None)).collect()
 }

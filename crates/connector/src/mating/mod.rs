@@ -1,6 +1,6 @@
 //! Mated pose of two connector parts from their triangles.
 //!
-//! For a straight insertion two height maps decide: with S the upper envelope of the socket and P
+//! A straight insertion depends on two height maps only: with S the upper envelope of the socket and P
 //! the lower envelope of the plug, seen along the axis, the plug shifted by d comes to rest at
 //! z(d) = max over x of S(x) - P(x - d). Closed solids are not needed.
 
@@ -17,144 +17,114 @@ mod symmetry;
 #[cfg(test)]
 mod tests;
 
-use crate::body::span;
+use crate::body::{span, width};
 use crate::mesh::Triangle;
 pub use assembled::assembled;
 use input::units::MM;
 use nalgebra::{Isometry3, Unit, Vector3};
 pub use split::plugs;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Largest total play of a plug in its seat, m: of connectors, of toys and enlarged ones, and of the paper's usb.
-const ROOMS: [f64; 3] = [0.5 * MM, 2.0 * MM, 4.0 * MM];
+/// Limits of the total play of a plug in its seat, m: for connectors, for toys and enlarged models, and for the paper's usb.
+const MAX_PLAYS: [f64; 3] = [0.5 * MM, 2.0 * MM, 4.0 * MM];
 
-/// Share of the plug's length over which it only catches on an edge.
-const CATCH: f64 = 0.05;
+/// Engagement below which the plug is only caught on an edge, as a share of its length.
+const CAUGHT: f64 = 0.05;
 
-/// Straight mate of a plug in its socket.
+/// Mated pose of a plug in its socket, with its axis of insertion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mate {
-    /// Plug file to socket file, mated, m.
+    /// Transform from the frame of the plug file to that of the socket file, m.
     pub pose: Isometry3<f64>,
-    /// Direction in which the plug leaves, in the axes of the socket file.
+    /// Direction of withdrawal, in the axes of the socket file.
     pub out: Unit<Vector3<f64>>,
-    /// Directions across it, in the axes of the socket file, along which the play is measured.
+    /// Two lateral directions, in the axes of the socket file, along which the play is measured.
     pub across: [Unit<Vector3<f64>>; 2],
     /// Depth along the axis over which the parts engage, m.
     pub engaged_m: f64,
-    /// Total lateral play along each of `across`, m, without the faces that interfere.
+    /// Total lateral play along each of `across`, m; faces that interfere are ignored.
     pub play_m: [f64; 2],
-    /// Total play about the axis, rad; a full turn if nothing blocks it.
-    pub yaw_rad: f64,
-    /// Interference that had to be eroded for the plug to go in, m.
-    pub overlap_m: f64,
-    /// Area of the plug's side walls that face a wall of the socket, on the weaker sides, m2.
-    pub walls_m2: f64,
-    /// Whether nothing stops the plug; the pose then has its tip at the far side of the socket.
+    /// Whether the hole goes through; the tip of the plug is then placed at the far side of the socket.
     pub through: bool,
 }
 
 /// Result of the search for a mate.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Found {
-    /// One mate.
-    One(Mate),
-    /// One of several mates that are equal by symmetry, and their number.
-    Symmetric(Mate, usize),
-    /// Different mates of similar engagement, the best first.
-    Ambiguous(Vec<Mate>),
-}
-
-impl Found {
-    /// Returns whether the plug, in its own frame, does more than catch on an edge.
-    fn is_deep(&self, plug: &[Triangle]) -> bool {
-        let mates = match self {
-            Found::One(mate) | Found::Symmetric(mate, _) => std::slice::from_ref(mate),
-            Found::Ambiguous(all) => all,
-        };
-        mates.iter().any(|mate| mate.is_deep(plug))
-    }
+pub struct Found {
+    /// Mates of similar engagement, the best first.
+    pub mates: Vec<Mate>,
+    /// Number of symmetric copies of the only mate, itself included; 1 if there are several mates.
+    pub equal: usize,
 }
 
 impl Mate {
-    /// As [`Found::is_deep`].
-    fn is_deep(&self, plug: &[Triangle]) -> bool {
+    /// Returns whether the plug is inserted rather than caught on an edge; its triangles are in its own frame.
+    fn is_inserted(&self, plug: &[Triangle]) -> bool {
         let out = self.pose.inverse_transform_vector(&self.out);
-        let [low, high] = span(plug.iter().flatten().map(|p| p.coords.dot(&out)));
-        self.engaged_m >= CATCH * (high - low)
+        let length = width(span(plug.iter().flatten().map(|p| p.coords.dot(&out))));
+        self.engaged_m >= CAUGHT * length
     }
 }
 
 /// Error of a search for a mate.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum MatingError {
-    /// A part has no area.
+    /// Part without area.
     #[error("the {0} holds no triangles with an area")]
     Empty(&'static str),
-    /// No seat that encloses the plug from four sides.
+    /// No seat that encloses the plug on four sides.
     #[error(
-        "the plug fits into the socket along none of their axes: no pose is at least {least_mm} mm deep \
-         with walls on four sides at most {room_mm} mm away; if the parts do mate, give their assembly in the mated pose"
+        "the plug fits into the socket along none of their axes: no pose is at least {} mm deep \
+         with walls on four sides at most {} mm away; if the parts do mate, give their assembly in the mated pose",
+        search::LEAST / MM,
+        MAX_PLAYS[2] / MM
     )]
-    NoFit {
-        /// Least engagement, mm.
-        least_mm: f64,
-        /// Largest play, mm.
-        room_mm: f64,
-    },
-    /// The parts of an assembly are not mated, or block one another in every direction.
+    NoFit,
+    /// Assembly whose parts are not mated, or block one another in every direction.
     #[error(
         "no body of the assembly can be withdrawn along an axis between walls on four sides: are the parts mated?"
     )]
     Blocked,
-    /// Number of bodies in which no plug and socket can be told apart.
+    /// Number of bodies that is out of range for an assembly.
     #[error("has {0} bodies; plug and socket are told apart in an assembly of 2 to {most}", most = split::MOST_BODIES)]
     Bodies(usize),
-    /// Stopped by the caller.
+    /// Cancellation by the caller.
     #[error("stopped")]
     Stopped,
 }
 
-/// Progress and cancellation of a search.
-#[derive(Clone, Copy)]
-pub struct Watch<'a> {
-    /// Callback for the share that is done.
-    pub progress: &'a (dyn Fn(f64) + Sync),
-    /// Whether to stop.
-    pub stopped: &'a (dyn Fn() -> bool + Sync),
+/// Returns an error if the search was cancelled.
+fn check(stop: &AtomicBool) -> Result<(), MatingError> {
+    if stop.load(Ordering::SeqCst) { Err(MatingError::Stopped) } else { Ok(()) }
 }
 
-impl Watch<'_> {
-    /// Watch that neither shows progress nor stops.
-    pub const NONE: Watch<'static> = Watch { progress: &|_| {}, stopped: &|| false };
-
-    fn check(&self, share: f64) -> Result<(), MatingError> {
-        (self.progress)(share);
-        if (self.stopped)() { Err(MatingError::Stopped) } else { Ok(()) }
-    }
-}
-
-/// Finds the mated pose of two parts in frames of their own, m.
+/// Finds the mated poses of two parts, each in its own frame, m.
 ///
 /// # Errors
-/// If a part is empty, nothing fits, or the caller stops.
-pub fn mates(plug: &[Triangle], socket: &[Triangle], watch: &Watch) -> Result<Found, MatingError> {
+/// If a part is empty, if no pose fits, or if `stop` is set meanwhile.
+pub fn mates(
+    plug: &[Triangle],
+    socket: &[Triangle],
+    stop: &AtomicBool,
+) -> Result<Found, MatingError> {
     let parts = frame::Parts::new(plug, socket)?;
-    watch.check(0.0)?;
     let mut shallow = None;
     for effort in search::EFFORTS {
         let scene = search::Scene::new(&parts, effort);
         let pairs = symmetry::pairs(&scene);
-        let few: Vec<_> = pairs.iter().map(|(pair, _)| *pair).collect();
-        let seats = search::seats(&scene, &few, &ROOMS, watch)?;
-        // The tightest fit guides: a looser one counts only where there is none, or where the plug only catches on an
+        let representatives: Vec<_> = pairs.iter().map(|(pair, _)| *pair).collect();
+        let seats = search::seats(&scene, &representatives, stop)?;
+        // The tightest fit is preferred: a looser one is used only if there is none, or if the plug is only caught on an
         // edge.
-        for (room, seats) in ROOMS.into_iter().zip(seats) {
-            let poses = refine::refined(&scene, &seats, room, watch)?;
-            match select::select(&parts, &scene, &poses, (&pairs, room)) {
-                Some(found) if found.is_deep(plug) => return Ok(found),
+        for (max_play, seats) in MAX_PLAYS.into_iter().zip(seats) {
+            let poses = refine::refined(&scene, &seats, max_play, stop)?;
+            match select::select(&parts, &scene, &poses, (&pairs, max_play)) {
+                Some(found) if found.mates.iter().any(|mate| mate.is_inserted(plug)) => {
+                    return Ok(found);
+                }
                 found => shallow = shallow.or(found),
             }
         }
     }
-    shallow.ok_or(MatingError::NoFit { least_mm: search::LEAST / MM, room_mm: ROOMS[2] / MM })
+    shallow.ok_or(MatingError::NoFit)
 }

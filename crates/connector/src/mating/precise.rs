@@ -2,57 +2,46 @@
 
 use super::Mate;
 use super::frame::{Parts, outs, turns};
-use super::map::{Envelope, Map, Window, bounds, rest};
+use super::map::{Envelope, Map, Window, rest};
 use super::refine::{Fine, Pose};
 use super::search::Scene;
 use crate::mesh::Triangle;
 use input::units::MM;
-use nalgebra::{Isometry3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use std::collections::BTreeSet;
-use std::f64::consts::TAU;
 
 /// Cell along the direction in which play is measured, m, and most cells of a map.
 const CELL: f64 = 0.005 * MM;
 const MOST_CELLS: f64 = 1.5e6;
-/// Height above the seat at which play is measured, m: so that the stop itself does not count.
+/// Height above the seat at which play is measured, m, so that the stop does not limit it.
 const LIFT: f64 = 0.1 * MM;
-/// Margin about what interferes that is left out, m.
+/// Margin about interfering cells that is ignored too, m.
 const MARGIN: f64 = 0.1 * MM;
-/// First angle tried for the play about the axis, rad, the factor to the next, and the largest.
-const FIRST_ANGLE: f64 = 1e-3;
-const NEXT_ANGLE: f64 = 1.6;
-const MOST_ANGLE: f64 = TAU / 8.0;
-/// Halvings of the play about the axis.
-const HALVINGS: usize = 5;
-/// Times that x and y are centred.
+/// Number of times that the plug is centred in x and y.
 const ROUNDS: usize = 2;
 
-/// Parts without what interferes.
+/// Parts without the cells that interfere.
 struct Bench<'a> {
     socket: &'a [Triangle],
     plug: &'a [Triangle],
     window: Window,
-    /// Cells of the plug, of side `step`, that interfere, with a margin.
+    /// Cells of the plug, of side `step`, that interfere, and a margin about them.
     left_out: BTreeSet<[i32; 2]>,
     step: f64,
     shift: [f64; 2],
 }
 
 impl Bench<'_> {
-    fn maps(&self, step: [f64; 2], turn: f64) -> [Map; 2] {
-        let [x, y, _] = bounds(self.plug);
-        let middle = Vector3::new((x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0, 0.0);
-        let about = Rotation3::from_axis_angle(&Vector3::z_axis(), turn);
-        let by = middle + Vector3::new(self.shift[0], self.shift[1], 0.0);
-        let plug: Vec<Triangle> =
-            self.plug.iter().map(|corners| corners.map(|p| about * (p - middle) + by)).collect();
+    fn maps(&self, step: [f64; 2]) -> [Map; 2] {
+        let by = Vector3::new(self.shift[0], self.shift[1], 0.0);
+        let plug: Vec<Triangle> = self.plug.iter().map(|corners| corners.map(|p| p + by)).collect();
         let mut maps = [(self.socket, Envelope::Upper), (&plug, Envelope::Lower)]
             .map(|(part, envelope)| Map::new(part, envelope, step, Some(self.window)));
         maps.iter_mut().for_each(|map| self.without(map));
         maps
     }
 
-    /// Removes what interferes from a map.
+    /// Clears the cells that interfere from a map.
     fn without(&self, map: &mut Map) {
         if self.left_out.is_empty() {
             return;
@@ -67,7 +56,7 @@ impl Bench<'_> {
         }
     }
 
-    /// Cells, m, of which one axis is fine.
+    /// Returns the sides of the cells, m; fine along one axis.
     fn cells(&self, axis: usize) -> [f64; 2] {
         let area: f64 = self.window.iter().map(|[low, high]| high - low).product();
         let other = (area / MOST_CELLS / CELL).max(2.0 * CELL);
@@ -78,8 +67,7 @@ impl Bench<'_> {
 
     /// Centres the plug along an axis and returns its play, m.
     fn centre(&mut self, axis: usize, height: f64, most: f64) -> f64 {
-        let step = self.cells(axis);
-        let [upper, lower] = self.maps(step, 0.0);
+        let [upper, lower] = self.maps(self.cells(axis));
         let free = |offset: i32| {
             let mut shift = [0; 2];
             shift[axis] = offset;
@@ -96,42 +84,16 @@ impl Bench<'_> {
         f64::from(high - low + 1) * CELL
     }
 
-    /// Height at which the plug rests, m.
+    /// Returns the height at which the plug rests, m.
     fn rest(&self) -> f64 {
-        let step = self.cells(0);
-        let [upper, lower] = self.maps(step, 0.0);
+        let [upper, lower] = self.maps(self.cells(0));
         f64::from(rest(&upper, &lower, [0; 2], f32::MAX))
-    }
-
-    /// Play about the axis, rad.
-    fn yaw(&self, height: f64) -> f64 {
-        let area: f64 = self.window.iter().map(|[low, high]| high - low).product();
-        let step = [(area / MOST_CELLS).sqrt().max(2.0 * CELL); 2];
-        let free = |angle: f64| {
-            let [upper, lower] = self.maps(step, angle);
-            rest(&upper, &lower, [0; 2], height as f32) < height as f32
-        };
-        let side = |sign: f64| {
-            let (mut low, mut high) = (0.0, FIRST_ANGLE);
-            while free(sign * high) {
-                if high >= MOST_ANGLE {
-                    return TAU / 2.0;
-                }
-                (low, high) = (high, (high * NEXT_ANGLE).min(MOST_ANGLE));
-            }
-            for _ in 0..HALVINGS {
-                let middle = (low + high) / 2.0;
-                if free(sign * middle) { low = middle } else { high = middle }
-            }
-            low
-        };
-        side(1.0) + side(-1.0)
     }
 }
 
-/// Mate of a pose, exact.
-pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, room: f64) -> Mate {
-    let fine = Fine::new(scene, pose, room);
+/// Measures seat and play of a pose.
+pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
+    let fine = Fine::new(scene, pose, max_play);
     let margin = (MARGIN / fine.step).ceil() as i32;
     let about = move |[x, y]: [i32; 2]| {
         (-margin..=margin).flat_map(move |dy| (-margin..=margin).map(move |dx| [x + dx, y + dy]))
@@ -141,22 +103,16 @@ pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, room: f64) -> Mate {
     let mut bench =
         Bench { socket, plug, window: fine.window, left_out, step: fine.step, shift: pose.shift };
     let height = pose.z + LIFT;
-    let mut play = [0.0; 2];
+    let mut play_m = [0.0; 2];
     for _ in 0..ROUNDS {
-        play = [0, 1].map(|axis| bench.centre(axis, height, 2.0 * room));
+        play_m = [0, 1].map(|axis| bench.centre(axis, height, 2.0 * max_play));
     }
     let rest = bench.rest();
     let z = if pose.through || (rest - pose.z).abs() > LIFT { pose.z } else { rest };
-    let yaw_rad = bench.yaw(height);
-    placed(parts, &Pose { z, shift: bench.shift, ..pose.clone() }, play, yaw_rad)
-}
-
-/// Mate in the axes of the files.
-fn placed(parts: &Parts, pose: &Pose, play_m: [f64; 2], yaw_rad: f64) -> Mate {
     let back = (outs()[pose.out] * parts.socket.own).inverse();
-    let plug = turns()[pose.turn] * parts.plug.own;
-    let moved = Translation3::new(pose.shift[0], pose.shift[1], pose.z)
-        * UnitQuaternion::from_rotation_matrix(&plug);
+    let own = turns()[pose.turn] * parts.plug.own;
+    let moved = Translation3::new(bench.shift[0], bench.shift[1], z)
+        * UnitQuaternion::from_rotation_matrix(&own);
     let turned = UnitQuaternion::from_rotation_matrix(&back);
     Mate {
         pose: Isometry3::from_parts(Translation3::identity(), turned) * moved,
@@ -164,9 +120,6 @@ fn placed(parts: &Parts, pose: &Pose, play_m: [f64; 2], yaw_rad: f64) -> Mate {
         across: [Vector3::x(), Vector3::y()].map(|axis| Unit::new_normalize(back * axis)),
         engaged_m: pose.depth,
         play_m,
-        yaw_rad,
-        overlap_m: pose.overlap,
-        walls_m2: pose.walls,
         through: pose.through,
     }
 }

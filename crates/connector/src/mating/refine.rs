@@ -1,38 +1,38 @@
 //! Refinement of rough seats: shift, height, interference and engagement.
 
-use super::engagement::{Contact, Faces, SIDES, Sides, score, shared};
+use super::engagement::{Faces, SIDES, Sides, score, shared};
 use super::map::{Envelope, Map, NOWHERE, Window, bounds, rest};
 use super::search::{FINE, Scene, Seat};
-use super::{MatingError, Watch};
-use crate::mesh::Triangle;
+use super::{MatingError, check};
 use input::units::MM;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
+use std::sync::atomic::AtomicBool;
 
-/// Distance within which two walls face one another, as a share of the play.
+/// Largest distance between walls that face each other, as a share of the play.
 pub const REACH: f64 = 0.6;
-/// Interference tried, m.
+/// Interferences that are tried, m.
 const OVERLAPS: [f64; 10] =
     [0.0, 0.02e-3, 0.05e-3, 0.1e-3, 0.15e-3, 0.2e-3, 0.3e-3, 0.5e-3, 0.8e-3, 1.25e-3];
 /// Interference of faces that touch, m.
 pub const TOLERANCE: f64 = 0.02 * MM;
-/// Difference of heights of one seat, m.
+/// Largest difference between resting heights of one seat, m.
 const LEVEL: f32 = 0.02e-3;
-/// Least cell, m, and most cells of a map.
+/// Smallest cell, m, and largest number of cells of a map.
 const LEAST_CELL: f64 = 0.01 * MM;
 const MOST_CELLS: f64 = 1e6;
-/// Most times that the middle of the shifts tried moves.
+/// Largest number of moves of the search window.
 const MOST_MOVES: usize = 4;
-/// Most seats refined, and share of the best that is still refined.
+/// Largest number of seats that are refined, and the smallest share of the best facing area with which they are.
 const MOST: usize = 24;
 const SHARE: f64 = 0.4;
 
 /// Pose on the maps, refined.
 #[derive(Debug, Clone, Default)]
 pub struct Pose {
-    /// Number of the direction out of the socket.
+    /// Index of the direction out of the socket.
     pub out: usize,
-    /// Number of the plug's turn.
+    /// Index of the rotation of the plug.
     pub turn: usize,
     /// Shift of the turned plug in the turned socket, m.
     pub shift: [f64; 2],
@@ -40,36 +40,29 @@ pub struct Pose {
     pub z: f64,
     /// Whether nothing stops the plug.
     pub through: bool,
-    /// Interference, m.
-    pub overlap: f64,
     /// Area of facing walls on the weaker sides, m2.
     pub walls: f64,
-    /// What both parts fill, as an area, m2.
+    /// Volume that both parts fill, as an area, m2.
     pub jam: f64,
-    /// Climb out of the seat towards the lowest side, m.
+    /// Lift that frees the plug towards its lowest side, m.
     pub depth: f64,
 }
 
 impl Pose {
-    /// Engagement, less for interference.
+    /// Returns the facing area less a penalty for interference, m2.
     pub fn value(&self) -> f64 {
         self.walls - self.jam
     }
 
-    fn near(&self, other: &Pose, room: f64) -> bool {
+    fn near(&self, other: &Pose, max_play: f64) -> bool {
         let apart = [0, 1].map(|a| (self.shift[a] - other.shift[a]).abs());
         (self.out, self.turn) == (other.out, other.turn)
-            && apart.into_iter().all(|v| v < room)
-            && (self.z - other.z).abs() < room
+            && apart.into_iter().all(|v| v < max_play)
+            && (self.z - other.z).abs() < max_play
     }
 }
 
-/// Heights of the lowest and the highest place of a part, m.
-pub fn heights(part: &[Triangle]) -> [f64; 2] {
-    bounds(part)[2]
-}
-
-/// Height of a plug: that of its seat, or with its tip at the far side of the socket.
+/// Returns the height of a seated plug, and whether it has gone through: then its tip is at the far side of the socket.
 fn seated(z: f32, socket: [f64; 2], plug: [f64; 2]) -> (f64, bool) {
     let z = f64::from(z);
     if z + plug[1] < socket[0] {
@@ -79,7 +72,7 @@ fn seated(z: f32, socket: [f64; 2], plug: [f64; 2]) -> (f64, bool) {
     }
 }
 
-/// Shifts near a shift with the lowest rest, and that.
+/// Returns the shifts near a shift with the lowest resting height, and that height.
 fn lowest(socket: &Map, plug: &Map, about: [i32; 2], radius: i32) -> (Vec<[i32; 2]>, f32) {
     let mut low = NOWHERE;
     let mut rests = Vec::new();
@@ -96,7 +89,7 @@ fn lowest(socket: &Map, plug: &Map, about: [i32; 2], radius: i32) -> (Vec<[i32; 
     (rests.into_iter().map(|(shift, _)| shift).collect(), low)
 }
 
-/// Shift nearest to the mean of shifts.
+/// Returns the shift nearest to the mean of shifts.
 fn middle(shifts: &[[i32; 2]]) -> [i32; 2] {
     let mean = [0, 1]
         .map(|a| shifts.iter().map(|shift| f64::from(shift[a])).sum::<f64>() / shifts.len() as f64);
@@ -107,56 +100,54 @@ fn middle(shifts: &[[i32; 2]]) -> [i32; 2] {
     nearest.copied().unwrap_or_default()
 }
 
-/// Climb out of a seat towards its lowest side, m.
-fn climb(socket: &Map, plug: &Map, shift: [i32; 2], z: f64, reach: i32) -> f64 {
-    let mut least = f64::INFINITY;
-    for [dx, dy] in [[1, 0], [-1, 0], [0, 1], [0, -1]] {
+/// Returns the lift that frees the plug towards its lowest side, m.
+fn lift(socket: &Map, plug: &Map, shift: [i32; 2], z: f64, reach: i32) -> f64 {
+    let side = |[dx, dy]: [i32; 2]| {
         let path = (1..=reach)
             .map(|r| rest(socket, plug, [shift[0] + r * dx, shift[1] + r * dy], NOWHERE));
-        least = least.min(f64::from(path.fold(-NOWHERE, f32::max)) - z);
-    }
-    least.max(0.0)
+        f64::from(path.fold(-NOWHERE, f32::max)) - z
+    };
+    SIDES.map(side).into_iter().fold(f64::INFINITY, f64::min).max(0.0)
 }
 
-/// Refines seats; the best first.
+/// Refines seats into poses, the best first.
 pub fn refined(
     scene: &Scene,
     seats: &[Seat],
-    room: f64,
-    watch: &Watch,
+    max_play: f64,
+    stop: &AtomicBool,
 ) -> Result<Vec<Pose>, MatingError> {
-    watch.check(0.6)?;
-    let rough = Rough::new(scene, room);
+    check(stop)?;
+    let rough = Rough::new(scene, max_play);
     let mut poses: Vec<Pose> = seats.par_iter().filter_map(|seat| rough.pose(seat)).collect();
     poses.sort_by(|a, b| b.walls.total_cmp(&a.walls));
     let mut kept: Vec<Pose> = Vec::new();
     for pose in poses {
         let good = kept.first().is_none_or(|best| pose.walls > SHARE * best.walls);
-        if good && kept.len() < MOST && !kept.iter().any(|other| other.near(&pose, room)) {
+        if good && kept.len() < MOST && !kept.iter().any(|other| other.near(&pose, max_play)) {
             kept.push(pose);
         }
     }
-    watch.check(0.7)?;
+    check(stop)?;
     let mut fine: Vec<Pose> =
-        kept.par_iter().filter_map(|pose| Fine::new(scene, pose, room).best(pose)).collect();
+        kept.par_iter().filter_map(|pose| Fine::new(scene, pose, max_play).best(pose)).collect();
     fine.sort_by(|a, b| b.value().total_cmp(&a.value()));
-    watch.check(0.9)?;
     Ok(fine)
 }
 
-/// Areas of a given pose, and how far the middle of the plug lies outside that of the socket, m.
-pub fn settled_areas(scene: &Scene, pose: Pose, room: f64) -> (Pose, f64) {
-    let fine = Fine::new(scene, &pose, room);
+/// Returns a given pose with its areas, and the distance of the middle of the plug out of that of the socket, m.
+pub fn settled_areas(scene: &Scene, pose: Pose, max_play: f64) -> (Pose, f64) {
+    let fine = Fine::new(scene, &pose, max_play);
     let [socket, plug] = fine.heights;
-    let at = pose.shift.map(|v| (v / fine.step).round() as i32);
-    let [walls, jam] = fine.contact(&fine.faces()).areas(at, pose.z as f32 + LEVEL);
+    let at = fine.cells(&pose);
+    let [walls, jam] = fine.areas(&fine.faces(), at, pose.z as f32 + LEVEL);
     let lowest = f64::from(rest(&fine.upper, &fine.tight, at, NOWHERE));
     let through = seated(lowest.min(pose.z) as f32, socket, plug).1;
     let outside = pose.z + (plug[0] + plug[1] - socket[0] - socket[1]) / 2.0;
     (fine.measured(Pose { walls, jam, through, ..pose }), outside)
 }
 
-/// Maps for the first look at a seat.
+/// Maps for a first estimate of the pose in a seat.
 struct Rough<'a> {
     scene: &'a Scene,
     upper: Vec<[Map; 3]>,
@@ -166,13 +157,13 @@ struct Rough<'a> {
 }
 
 impl<'a> Rough<'a> {
-    fn new(scene: &'a Scene, room: f64) -> Self {
+    fn new(scene: &'a Scene, max_play: f64) -> Self {
         let radii = [0.0, 0.1 * MM, 0.2 * MM].map(|r| ((r / scene.step).round() as usize).max(1));
         let eroded = |maps: &Vec<Map>| -> Vec<[Map; 3]> {
             maps.par_iter().map(|map| radii.map(|r| map.eroded([r; 2]))).collect()
         };
         let sides = scene.lower.par_iter().map(Sides::new).collect();
-        let limits = [REACH * room, scene.step];
+        let limits = [REACH * max_play, scene.step];
         let faces = scene.upper.par_iter().map(|map| Faces::new(map, limits)).collect();
         Rough { scene, upper: eroded(&scene.upper), lower: eroded(&scene.lower), sides, faces }
     }
@@ -180,31 +171,19 @@ impl<'a> Rough<'a> {
     fn pose(&self, seat: &Seat) -> Option<Pose> {
         let step = self.scene.step;
         let (socket, plug) = (&self.scene.sockets[seat.out], &self.scene.plugs[seat.turn]);
-        let contact = Contact {
-            socket: &self.faces[seat.out],
-            plug: &self.lower[seat.turn][0],
-            sides: &self.sides[seat.turn],
-        };
-        let mut found: Vec<Pose> = Vec::new();
-        for level in [0, 1, 2] {
-            let (s, p) = (&self.upper[seat.out][level], &self.lower[seat.turn][level]);
+        let (faces, sides) = (&self.faces[seat.out], &self.sides[seat.turn]);
+        let [socket, plug] = [socket, plug].map(|part| bounds(part)[2]);
+        let (upper, lower) = (&self.upper[seat.out], &self.lower[seat.turn]);
+        let poses = upper.iter().zip(lower).map(|(s, p)| {
             let (shifts, z) = lowest(s, p, seat.shift, FINE as i32 / 2 + 1);
-            let shift = middle(&shifts);
-            let (z, through) = seated(z, heights(socket), heights(plug));
-            let [walls, jam] = contact.areas(shift, z as f32);
-            found.push(Pose {
-                out: seat.out,
-                turn: seat.turn,
-                shift: shift.map(|s| f64::from(s) * step),
-                z,
-                through,
-                overlap: 0.0,
-                walls,
-                jam,
-                depth: seat.depth,
-            });
-        }
-        found.into_iter().max_by(|a, b| a.walls.total_cmp(&b.walls))
+            let cells = middle(&shifts);
+            let (z, through) = seated(z, socket, plug);
+            let [walls, jam] = sides.areas(faces, &lower[0], cells, z as f32);
+            let shift = cells.map(|cell| f64::from(cell) * step);
+            let Seat { out, turn, depth, .. } = *seat;
+            Pose { out, turn, shift, z, through, walls, jam, depth }
+        });
+        poses.max_by(|a, b| a.walls.total_cmp(&b.walls))
     }
 }
 
@@ -220,16 +199,16 @@ pub struct Fine {
     /// Rectangle of the socket that the plug can touch, m.
     pub window: Window,
     radius: i32,
-    room: f64,
+    max_play: f64,
 }
 
 impl Fine {
-    /// Maps about a pose.
-    pub fn new(scene: &Scene, pose: &Pose, room: f64) -> Self {
+    /// Creates the maps about a pose.
+    pub fn new(scene: &Scene, pose: &Pose, max_play: f64) -> Self {
         let (socket, plug) = (&scene.sockets[pose.out], &scene.plugs[pose.turn]);
-        let ([px, py, _], [sx, sy, _]) = (bounds(plug), bounds(socket));
+        let ([px, py, pz], [sx, sy, sz]) = (bounds(plug), bounds(socket));
         let common = |p: [f64; 2], s: [f64; 2], shift: f64| {
-            [(p[0] + shift).max(s[0]) - 4.0 * room, (p[1] + shift).min(s[1]) + 4.0 * room]
+            [(p[0] + shift).max(s[0]) - 4.0 * max_play, (p[1] + shift).min(s[1]) + 4.0 * max_play]
         };
         let window = [common(px, sx, pose.shift[0]), common(py, sy, pose.shift[1])];
         let area: f64 = window.iter().map(|[low, high]| (high - low).max(0.0)).product();
@@ -239,23 +218,27 @@ impl Fine {
         let lower = Map::new(plug, Envelope::Lower, [step; 2], Some(back));
         let tight = lower.eroded([(TOLERANCE / step).ceil() as usize; 2]);
         let radius = (1.5 * scene.step / step).ceil() as i32 + 1;
-        let heights = [heights(socket), heights(plug)];
-        let sides = Sides::new(&lower);
-        Fine { step, upper, lower, tight, sides, heights, window, radius, room }
+        let (sides, heights) = (Sides::new(&lower), [sz, pz]);
+        Fine { step, upper, lower, tight, sides, heights, window, radius, max_play }
     }
 
-    fn contact<'a>(&'a self, socket: &'a Faces<'a>) -> Contact<'a> {
-        Contact { socket, plug: &self.tight, sides: &self.sides }
+    fn areas(&self, faces: &Faces, shift: [i32; 2], z: f32) -> [f64; 2] {
+        self.sides.areas(faces, &self.tight, shift, z)
     }
 
     fn faces(&self) -> Faces<'_> {
-        Faces::new(&self.upper, [REACH * self.room, TOLERANCE])
+        Faces::new(&self.upper, [REACH * self.max_play, TOLERANCE])
     }
 
-    /// Seat with as much interference as makes it best.
+    /// Returns the shift of a pose in cells.
+    fn cells(&self, pose: &Pose) -> [i32; 2] {
+        pose.shift.map(|v| (v / self.step).round() as i32)
+    }
+
+    /// Returns the pose with the amount of interference at which it is best.
     fn best(&self, pose: &Pose) -> Option<Pose> {
         let faces = self.faces();
-        let mut about = pose.shift.map(|v| (v / self.step).round() as i32);
+        let mut about = self.cells(pose);
         let (mut best, mut last): (Option<Pose>, _) = (None, None);
         for overlap in OVERLAPS {
             let cells = (overlap / self.step).round() as usize;
@@ -266,7 +249,7 @@ impl Fine {
             let p = self.lower.eroded([cells - cells / 2; 2]);
             let Some((shift, z)) = self.settled([&s, &p], &faces, about) else { continue };
             let (z, through) = seated(z, self.heights[0], self.heights[1]);
-            let [walls, jam] = self.contact(&faces).areas(shift, z as f32);
+            let [walls, jam] = self.areas(&faces, shift, z as f32);
             let at = shift.map(|v| f64::from(v) * self.step);
             let next = Pose { shift: at, z, through, walls, jam, ..*pose };
             if best.as_ref().is_none_or(|best| next.value() > best.value()) {
@@ -277,18 +260,18 @@ impl Fine {
         best.map(|best| self.measured(best))
     }
 
-    /// The pose with its interference and the climb out of it.
+    /// Returns the pose with its depth.
     fn measured(&self, best: Pose) -> Pose {
-        let shift = best.shift.map(|v| (v / self.step).round() as i32);
-        let overlap = self.interference(shift, best.z);
-        let side = ((self.room + 2.0 * overlap) / self.step).ceil() as i32;
+        let shift = self.cells(&best);
+        let overlap = self.interference(&best);
+        let side = ((self.max_play + 2.0 * overlap) / self.step).ceil() as i32;
         let free = (overlap / self.step).ceil() as usize;
         let (s, p) = (self.upper.eroded([free / 2; 2]), self.tight.eroded([free - free / 2; 2]));
-        let depth = climb(&s, &p, shift, best.z, side);
-        Pose { depth, overlap, ..best }
+        let depth = lift(&s, &p, shift, best.z, side);
+        Pose { depth, ..best }
     }
 
-    /// Lowest shift near a shift with the most facing walls, and its height.
+    /// Returns the lowest shift near a shift that has the most facing walls, and its height.
     fn settled(
         &self,
         [socket, plug]: [&Map; 2],
@@ -314,16 +297,14 @@ impl Fine {
         found
     }
 
-    /// Cells of the plug that the socket fills, too, at a pose.
+    /// Returns the cells that both parts fill at a pose.
     pub fn shared(&self, pose: &Pose) -> Vec<[i32; 2]> {
-        let shift = pose.shift.map(|v| (v / self.step).round() as i32);
-        shared(&self.upper, &self.tight, shift, pose.z as f32 + LEVEL)
+        shared(&self.upper, &self.tight, self.cells(pose), pose.z as f32 + LEVEL)
     }
 
-    /// Width of what both parts fill, m.
-    fn interference(&self, shift: [i32; 2], z: f64) -> f64 {
-        let cells = shared(&self.upper, &self.tight, shift, z as f32 + LEVEL);
-        let mut cells: BTreeSet<[i32; 2]> = cells.into_iter().collect();
+    /// Returns the width of the region that both parts fill at a pose, m.
+    fn interference(&self, pose: &Pose) -> f64 {
+        let mut cells: BTreeSet<[i32; 2]> = self.shared(pose).into_iter().collect();
         let mut width = if cells.is_empty() { 0.0 } else { TOLERANCE };
         while !cells.is_empty() {
             let inner =

@@ -1,45 +1,48 @@
-//! Rough search for seats: all axes, turns and shifts on coarse maps that bound the height of rest.
+//! Coarse search for seats over all axes, rotations and shifts, on height maps that bound the resting height.
 
+use super::engagement::SIDES;
 use super::frame::{Parts, outs, turned, turns};
 use super::map::{Envelope, Map, NOWHERE, bounds, maps, rest};
-use super::{MatingError, Watch};
+use super::{MAX_PLAYS, MatingError, check};
+use crate::body::width;
 use crate::mesh::Triangle;
 use input::units::MM;
 use rayon::prelude::*;
+use std::sync::atomic::AtomicBool;
 
-/// Least depth of a seat, m.
+/// Smallest depth of a seat, m.
 pub const LEAST: f64 = 0.4 * MM;
-/// Interference allowed for in a second pass, m: springs are drawn unloaded.
+/// Interference that the second pass tolerates, m: contact springs are drawn unloaded.
 const INTERFERENCE: f64 = 0.2 * MM;
-/// Least cell of the maps, m.
+/// Smallest cell of the coarse maps, m.
 const LEAST_CELL: f64 = 0.1 * MM;
-/// Comparisons of two cells that a search may take: a quick one, and one for thin walls, which coarse maps lose.
+/// Budgets of the search in comparisons of two cells: a fast one, and one that resolves thin walls.
 pub const EFFORTS: [f64; 2] = [10e9, 160e9];
-/// Cells of a fine map along a side of a coarse one.
+/// Number of fine cells along the side of a coarse cell.
 pub const FINE: usize = 4;
-/// Pairs of axes between two looks at the clock.
+/// Number of pairs of axes between two checks of the stop flag.
 const AT_ONCE: usize = 24;
-/// Most seats for each pair of axes: a header of two rows of 50 pins has 297, one pitch or more off and all as deep.
+/// Largest number of seats per pair of axes: a header of two rows of 50 pins has 297, shifted by whole pitches.
 const MOST_SEATS: usize = 300;
 
-/// Seat on the maps.
+/// Seat found on the coarse maps.
 #[derive(Debug, Clone, Copy)]
 pub struct Seat {
-    /// Number of the direction out of the socket.
+    /// Index of the direction out of the socket in [`outs`].
     pub out: usize,
-    /// Number of the plug's turn.
+    /// Index of the rotation of the plug in [`turns`].
     pub turn: usize,
     /// Shift of the plug in cells of the fine maps.
     pub shift: [i32; 2],
-    /// Climb out of the seat towards the lowest side, m.
+    /// Lift that frees the plug towards its lowest side, m.
     pub depth: f64,
 }
 
-/// Turned triangles of both parts, and the fine maps.
+/// Triangles of both parts in all rotations, and their fine height maps.
 pub struct Scene {
-    /// Socket, for each direction out of it.
+    /// Socket, rotated so that z is each of the directions out of it.
     pub sockets: Vec<Vec<Triangle>>,
-    /// Plug in each turn.
+    /// Plug in each rotation.
     pub plugs: Vec<Vec<Triangle>>,
     /// Cell of the fine maps, m.
     pub step: f64,
@@ -50,7 +53,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Maps of both parts for a search of so many comparisons.
+    /// Creates the maps of both parts for a search of `effort` comparisons.
     pub fn new(parts: &Parts, effort: f64) -> Self {
         let sockets: Vec<_> =
             outs().iter().map(|turn| turned(&parts.socket.triangles, turn)).collect();
@@ -63,20 +66,21 @@ impl Scene {
     }
 }
 
-/// Cell of the coarse maps with which the search takes its effort, m.
+/// Returns the cell of the coarse maps with which a search takes `effort` comparisons, m.
 fn cell(sockets: &[Vec<Triangle>], plugs: &[Vec<Triangle>], effort: f64) -> f64 {
-    let sizes = |part: &Vec<Triangle>| bounds(part).map(|[low, high]| high - low);
-    let (sockets, plugs): (Vec<_>, Vec<_>) =
-        (sockets.iter().map(sizes).collect(), plugs.iter().map(sizes).collect());
+    let sizes = |parts: &[Vec<Triangle>]| -> Vec<[f64; 3]> {
+        parts.iter().map(|part| bounds(part).map(width)).collect()
+    };
+    let (sockets, plugs) = (sizes(sockets), sizes(plugs));
     let pair = |s: &[f64; 3], p: &[f64; 3]| {
         p[0].min(s[0]) * p[1].min(s[1]) * (s[0] + p[0]) * (s[1] + p[1])
     };
     let work: f64 = sockets.iter().flat_map(|s| plugs.iter().map(move |p| pair(s, p))).sum();
-    // Two bounds, with and without interference.
+    // Two bounds in each of two passes, without and with interference.
     (4.0 * work / effort).sqrt().sqrt().max(LEAST_CELL)
 }
 
-/// Coarse maps of a part: outermost heights, and innermost heights of two cells each way.
+/// Coarse maps of a part: the outermost height of each cell, and the innermost height of blocks of two by two cells.
 struct Coarse {
     outer: Map,
     inner: Map,
@@ -93,30 +97,28 @@ impl Coarse {
     }
 }
 
-/// Seats of pairs of axes for each of some largest plays, m.
-pub fn seats<const N: usize>(
+/// Finds the seats of pairs of axes, for each of the limits of play.
+pub fn seats(
     scene: &Scene,
     pairs: &[[usize; 2]],
-    rooms: &[f64; N],
-    watch: &Watch,
-) -> Result<[Vec<Seat>; N], MatingError> {
-    let mut seats = [const { Vec::new() }; N];
-    for (pass, interference) in [0.0, INTERFERENCE].into_iter().enumerate() {
+    stop: &AtomicBool,
+) -> Result<[Vec<Seat>; MAX_PLAYS.len()], MatingError> {
+    let mut seats = [const { Vec::new() }; MAX_PLAYS.len()];
+    for interference in [0.0, INTERFERENCE] {
         let erosion = (interference / 2.0 / scene.step).round() as usize;
         let coarse = |fine: &Vec<Map>| -> Vec<Coarse> {
             fine.par_iter().map(|map| Coarse::new(map, erosion)).collect()
         };
         let (sockets, plugs) = (coarse(&scene.upper), coarse(&scene.lower));
-        for (number, few) in pairs.chunks(AT_ONCE).enumerate() {
-            let done = pass * pairs.len() + number * AT_ONCE;
-            watch.check(0.6 * done as f64 / (2 * pairs.len()) as f64)?;
+        for chunk in pairs.chunks(AT_ONCE) {
+            check(stop)?;
             let of = |pair: &[usize; 2]| {
                 let [out, turn] = *pair;
                 let passed = bounds(&scene.sockets[out])[2][0] - bounds(&scene.plugs[turn])[2][1];
-                let rests = Rests::new(&sockets[out], &plugs[turn], passed as f32);
-                rooms.map(|room| rests.enclosed(*pair, room))
+                let rests = rests(&sockets[out], &plugs[turn], passed as f32);
+                MAX_PLAYS.map(|max_play| enclosed(&rests, *pair, max_play))
             };
-            let found: Vec<[Vec<Seat>; N]> = few.par_iter().map(of).collect();
+            let found: Vec<_> = chunk.par_iter().map(of).collect();
             for of_pair in found {
                 seats.iter_mut().zip(of_pair).for_each(|(all, more)| all.extend(more));
             }
@@ -125,83 +127,54 @@ pub fn seats<const N: usize>(
     Ok(seats)
 }
 
-/// Heights of rest for each shift, from below.
-struct Rests {
-    first: [i32; 2],
-    count: [usize; 2],
-    heights: Vec<f32>,
-    /// Size of a shift, m.
-    step: f64,
-    /// Height below which the plug has gone through, m.
-    passed: f32,
+/// Returns lower bounds of the resting height for each shift of the plug; at `passed`, m, it has gone through the socket.
+fn rests(socket: &Coarse, plug: &Coarse, passed: f32) -> Map {
+    let extremes = |map: &Map, take: fn(f32, f32) -> f32| {
+        map.heights.iter().copied().fold(map.envelope.empty(), take)
+    };
+    let (s, p) = (&socket.outer, &plug.outer);
+    let highest = extremes(s, f32::max) - extremes(p, f32::min);
+    let range = [passed, highest - LEAST as f32];
+    let first = [0, 1].map(|a| s.first[a] - p.first[a] - p.count[a] as i32);
+    let count = [0, 1].map(|a| s.count[a] + p.count[a] + 1);
+    let mut map =
+        Map { envelope: Envelope::Upper, step: s.step, first, count, heights: Vec::new() };
+    let height = |shift: [i32; 2]| {
+        let one = rest(s, &plug.inner, shift, range[1]);
+        let z = if one < range[1] { one.max(rest(&socket.inner, p, shift, range[1])) } else { one };
+        z.clamp(range[0], range[1])
+    };
+    map.heights = map.cells().map(height).collect();
+    map
 }
 
-impl Rests {
-    fn new(socket: &Coarse, plug: &Coarse, passed: f32) -> Self {
-        let extremes = |map: &Map, take: fn(f32, f32) -> f32| {
-            map.heights.iter().copied().fold(map.envelope.empty(), take)
+/// Finds the seats that the plug can leave to none of four sides without a lift, with at most `max_play` of play, m.
+fn enclosed(rests: &Map, [out, turn]: [usize; 2], max_play: f64) -> Vec<Seat> {
+    // Bounds widen the play by up to two cells.
+    let radius = (max_play / rests.step[0]).ceil() as i32 + 2;
+    let lift = |[x, y]: [i32; 2]| {
+        let z = rests.at(x, y);
+        let side = |[dx, dy]: [i32; 2]| {
+            let path = (1..=radius).map(|r| rests.at(x + r * dx, y + r * dy));
+            path.fold(z, f32::max) - z
         };
-        let highest = extremes(&socket.outer, f32::max) - extremes(&plug.outer, f32::min);
-        let range = [passed, highest - LEAST as f32];
-        let (s, p) = (&socket.outer, &plug.outer);
-        let first = [0, 1].map(|a| s.first[a] - p.first[a] - p.count[a] as i32);
-        let count = [0, 1].map(|a| s.count[a] + p.count[a] + 1);
-        let height = |number: usize| {
-            let shift =
-                [first[0] + (number % count[0]) as i32, first[1] + (number / count[0]) as i32];
-            let one = rest(&socket.outer, &plug.inner, shift, range[1]);
-            let z = if one < range[1] {
-                one.max(rest(&socket.inner, &plug.outer, shift, range[1]))
-            } else {
-                one
-            };
-            z.clamp(range[0], range[1])
+        SIDES.map(side).into_iter().fold(NOWHERE, f32::min)
+    };
+    let lifts = rests.cells().map(|place| (lift(place), place));
+    let mut found: Vec<_> = lifts.filter(|(lift, _)| f64::from(*lift) >= LEAST).collect();
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut seats: Vec<(f32, [i32; 2])> = Vec::new();
+    for (depth, place) in found {
+        let near = |other: &[i32; 2]| {
+            (other[0] - place[0]).abs() <= radius / 2 && (other[1] - place[1]).abs() <= radius / 2
         };
-        let heights = (0..count[0] * count[1]).map(height).collect();
-        Rests { first, count, heights, step: s.step[0], passed }
-    }
-
-    fn at(&self, x: i32, y: i32) -> f32 {
-        let inside = x >= 0 && y >= 0 && x < self.count[0] as i32 && y < self.count[1] as i32;
-        if inside { self.heights[y as usize * self.count[0] + x as usize] } else { self.passed }
-    }
-
-    /// Seats from which the plug must climb to each of four sides, with at most `room` of play, m.
-    fn enclosed(&self, [out, turn]: [usize; 2], room: f64) -> Vec<Seat> {
-        // A bound is as wide as two cells more.
-        let radius = (room / self.step).ceil() as i32 + 2;
-        let mut found: Vec<(f32, [i32; 2])> = Vec::new();
-        for y in 0..self.count[1] as i32 {
-            for x in 0..self.count[0] as i32 {
-                let z = self.at(x, y);
-                let climb = |[dx, dy]: [i32; 2]| {
-                    let path = (1..=radius).map(|r| self.at(x + r * dx, y + r * dy));
-                    path.fold(z, f32::max) - z
-                };
-                let least = [[1, 0], [-1, 0], [0, 1], [0, -1]]
-                    .into_iter()
-                    .map(climb)
-                    .fold(NOWHERE, f32::min);
-                if f64::from(least) >= LEAST {
-                    found.push((least, [x, y]));
-                }
-            }
+        if seats.len() < MOST_SEATS && !seats.iter().any(|(_, other)| near(other)) {
+            seats.push((depth, place));
         }
-        found.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut seats: Vec<(f32, [i32; 2])> = Vec::new();
-        for (depth, place) in found {
-            let near = |other: &[i32; 2]| {
-                (other[0] - place[0]).abs() <= radius / 2
-                    && (other[1] - place[1]).abs() <= radius / 2
-            };
-            if seats.len() < MOST_SEATS && !seats.iter().any(|(_, other)| near(other)) {
-                seats.push((depth, place));
-            }
-        }
-        let seat = |(depth, place): (f32, [i32; 2])| {
-            let shift = [0, 1].map(|a| (place[a] + self.first[a]) * FINE as i32 + FINE as i32 / 2);
-            Seat { out, turn, shift, depth: f64::from(depth) }
-        };
-        seats.into_iter().map(seat).collect()
     }
+    let seat = |(depth, place): (f32, [i32; 2])| {
+        let shift = place.map(|cell| cell * FINE as i32 + FINE as i32 / 2);
+        Seat { out, turn, shift, depth: f64::from(depth) }
+    };
+    seats.into_iter().map(seat).collect()
 }

@@ -7,27 +7,27 @@ use super::search::{LEAST, Scene};
 use super::{Found, precise};
 use input::units::MM;
 
-/// Share of the best engagement that is similar: the maps know it within some hundredths.
+/// Share of the best engagement from which on another one is similar, given the resolution of the maps.
 const SIMILAR: f64 = 0.97;
-/// Difference of depth of equal mates, m.
+/// Largest difference in depth between equal mates, m.
 const SAME: f64 = 0.05 * MM;
-/// Share of the plug's outline that walls must face over the least depth.
+/// Share of the outline of the plug that walls must face over the least depth.
 const GUIDED: f64 = 0.25;
 
-/// Width of the rim about a plug in which a socket surrounds it, m.
+/// Width of the rim about the plug within which the height of the socket is measured, m.
 const RIM: f64 = 2.0 * MM;
 
-/// Choice among poses, the best first; none if no pose guides the plug.
+/// Selects the mates among poses that are sorted, the best first; `None` if no pose guides the plug.
 pub fn select(
     parts: &Parts,
     scene: &Scene,
     poses: &[Pose],
-    (pairs, room): (&[([usize; 2], usize)], f64),
+    (pairs, max_play): (&[([usize; 2], usize)], f64),
 ) -> Option<Found> {
     let guided = |pose: &&Pose| {
         let [x, y, z] = bounds(&scene.plugs[pose.turn]);
         let size = ((x[1] - x[0]) * (y[1] - y[0])).sqrt();
-        // What sinks in wholly has fallen, and nobody could hold it; a ring on a longer post has not.
+        // A plug that sinks in entirely could not be held; a ring on a longer post can.
         let held = pose.depth < z[1] - z[0] || z[1] + pose.z > beside(scene, pose, [x, y]);
         pose.depth >= LEAST && held && pose.walls >= LEAST * GUIDED * size
     };
@@ -41,18 +41,13 @@ pub fn select(
     let (equal, others): (Vec<&&Pose>, Vec<&&Pose>) = similar.partition(|pose| {
         (pose.depth - best.depth).abs() < SAME && pose.walls > SIMILAR * best.walls
     });
-    let mate = |pose: &Pose| precise::mate(parts, scene, pose, room);
-    if others.is_empty() {
-        let count = equal.iter().map(|pose| number(pose)).sum();
-        let mate = mate(best);
-        return Some(if count > 1 { Found::Symmetric(mate, count) } else { Found::One(mate) });
-    }
-    Some(Found::Ambiguous(
-        [*best].into_iter().chain(others.into_iter().copied()).map(mate).collect(),
-    ))
+    let mate = |pose: &Pose| precise::mate(parts, scene, pose, max_play);
+    let equal = if others.is_empty() { equal.iter().map(|pose| number(pose)).sum() } else { 1 };
+    let mates = [*best].into_iter().chain(others.into_iter().copied()).map(mate).collect();
+    Some(Found { mates, equal })
 }
 
-/// Height of the socket just outside the bounds of a plug in x and y, m.
+/// Returns the height of the socket just outside the bounds of a plug in x and y, m.
 fn beside(scene: &Scene, pose: &Pose, plug: [[f64; 2]; 2]) -> f64 {
     let map = &scene.upper[pose.out];
     let cell = |length: f64, axis: usize| (length / map.step[axis]).floor() as i32;

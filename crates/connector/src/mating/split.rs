@@ -1,12 +1,13 @@
-//! Which bodies of an assembly are the plug: those that leave together along an axis, past walls of the others that face
-//! them with clearance, and that touch the others least.
+//! Separation of an assembly into plug and socket: the plug is the set of bodies that can be withdrawn together along an axis
+//! between facing walls of the others, and that touches the others least.
 
 use super::engagement::{SIDES, Walls, score};
 use super::frame::{Part, outs, turned};
 use super::map::{Envelope, Map, NOWHERE, bounds, rest};
 use super::refine::{REACH, TOLERANCE};
 use super::search::LEAST;
-use super::{MatingError, ROOMS};
+use super::{MAX_PLAYS, MatingError};
+use crate::body::{span, width};
 use crate::mesh::Triangle;
 use input::units::MM;
 use nalgebra::{Point3, Vector3};
@@ -16,28 +17,28 @@ use rapier3d_f64::parry;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Least cell of the maps, m, and most cells along a side.
+/// Smallest cell of the maps, m, and largest number of cells along a side.
 const LEAST_CELL: f64 = 0.05 * MM;
 const MOST_CELLS: f64 = 400.0;
-/// Interference through which bodies may leave, m: springs are drawn unloaded.
+/// Interferences that are tolerated in a withdrawal, m: contact springs are drawn unloaded.
 const INTERFERENCES: [f64; 3] = [0.0, 0.2 * MM, 0.6 * MM];
-/// Distance of faces that touch, m.
+/// Largest distance between faces that touch, m.
 const TOUCHING: f64 = 5e-3 * MM;
-/// Weight of contact across the axis, as of a seat, against that beside it, as of a press fit.
+/// Weight of contact areas perpendicular to the axis (a seat) relative to those parallel to it (a press fit).
 const SEATED: f64 = 0.1;
-/// Share of the best value that is similar.
+/// Share of the best value from which on another one is similar.
 const SIMILAR: f64 = 0.8;
-/// Share within which values are equal.
+/// Share of the best value from which on another one is equal.
 const EQUAL: f64 = 0.97;
-/// Most neighbours that are tried at a time.
+/// Largest number of neighbours that are tried at a time.
 const MOST_TRIED: usize = 6;
-/// Most bodies.
+/// Largest number of bodies.
 pub const MOST_BODIES: usize = 100;
 
 /// Set of bodies.
 type Set = BTreeSet<usize>;
 
-/// Bodies that leave along an axis.
+/// Bodies that can be withdrawn along an axis.
 struct Leaving {
     bodies: Set,
     value: f64,
@@ -69,7 +70,7 @@ pub fn plugs(bodies: &[Vec<Triangle>]) -> Result<Vec<Vec<usize>>, MatingError> {
         })
         .collect();
     let mut found: Vec<Leaving> = axes.into_iter().flatten().collect();
-    // Of equal ones that with the fewest bodies: loose ones stay where they are.
+    // Among equal ones the set with the fewest bodies, so that loose bodies stay with the socket.
     found.sort_by(|a, b| b.value.total_cmp(&a.value));
     let Some(best) = found.first().map(|best| best.value) else { return Err(MatingError::Blocked) };
     let equal = found.partition_point(|of| of.value >= EQUAL * best);
@@ -88,7 +89,7 @@ pub fn plugs(bodies: &[Vec<Triangle>]) -> Result<Vec<Vec<usize>>, MatingError> {
     Ok(plugs)
 }
 
-/// Areas of the faces of each two bodies that touch, by the axis along which they look, m2.
+/// Returns the contact areas of each pair of bodies that touch, by the axis of their normals, m2.
 fn contacts(bodies: &[Vec<Triangle>]) -> BTreeMap<[usize; 2], [f64; 3]> {
     let around = |points: &[Point3<f64>]| {
         Aabb::from_points(points.iter().map(|p| (p.coords / MM).into())).loosened(TOUCHING / MM)
@@ -114,7 +115,7 @@ fn contacts(bodies: &[Vec<Triangle>]) -> BTreeMap<[usize; 2], [f64; 3]> {
     found.into_iter().filter(|(_, areas)| areas.iter().any(|area| *area > 0.0)).collect()
 }
 
-/// Axis along which two triangles that touch look at one another, and the area of the smaller one's part in the other, m2.
+/// Returns the axis of the normals of two triangles that touch, and the area that they share, m2.
 fn common(face: &Triangle, other: &Triangle) -> (usize, f64) {
     let normals = [face, other].map(|[a, b, c]| (b - a).cross(&(c - a)));
     let [Some(n), Some(m)] = normals.map(|normal| normal.try_normalize(f64::MIN_POSITIVE)) else {
@@ -125,7 +126,7 @@ fn common(face: &Triangle, other: &Triangle) -> (usize, f64) {
     if n.dot(&m) > -0.99 || face.iter().any(apart) {
         return (axis, 0.0);
     }
-    // What of the face lies within the other one's sides.
+    // Part of the face within the sides of the other one.
     let mut piece = face.to_vec();
     for i in 0..3 {
         let outward = (other[(i + 1) % 3] - other[i]).cross(&m);
@@ -136,24 +137,21 @@ fn common(face: &Triangle, other: &Triangle) -> (usize, f64) {
     (axis, fan.sum())
 }
 
-/// Bodies seen along an axis.
+/// Height maps of the bodies along an axis.
 struct Axis {
     step: f64,
     upper: Vec<Map>,
     lower: Vec<Map>,
     bounds: Vec<[[f64; 2]; 3]>,
     contact: BTreeMap<[usize; 2], f64>,
-    /// Walls of the first body that face the second.
+    /// Areas of the walls of the first body that face the second.
     walls: BTreeMap<[usize; 2], Walls>,
 }
 
 impl Axis {
     fn new(bodies: &[Vec<Triangle>], contact: BTreeMap<[usize; 2], f64>) -> Self {
         let bounds: Vec<_> = bodies.iter().map(|body| bounds(body)).collect();
-        let side = |axis: usize| {
-            let [low, high] = crate::body::span(bounds.iter().flat_map(|of| of[axis]));
-            high - low
-        };
+        let side = |axis: usize| width(span(bounds.iter().flat_map(|of| of[axis])));
         let step = (side(0).max(side(1)) / MOST_CELLS).max(LEAST_CELL);
         let maps = |envelope| -> Vec<Map> {
             bodies.iter().map(|body| Map::new(body, envelope, [step; 2], None)).collect()
@@ -162,10 +160,10 @@ impl Axis {
         Axis { step, upper, lower, bounds, contact, walls: BTreeMap::new() }
     }
 
-    /// Sets of bodies that leave upward, with the least interference and the tightest fit with which any does.
+    /// Returns the sets of bodies that can be withdrawn upward, at the tightest fit and the least interference that allow any.
     fn leaving(&mut self) -> Vec<Leaving> {
-        for room in ROOMS {
-            self.face(REACH * room);
+        for max_play in MAX_PLAYS {
+            self.face(REACH * max_play);
             for interference in INTERFERENCES {
                 let found = self.leaving_through(interference);
                 if !found.is_empty() {
@@ -247,7 +245,7 @@ impl Axis {
         }
     }
 
-    /// Area of facing walls of a set and the rest, less that where they touch, m2; `None` without a rest.
+    /// Returns the area of the facing walls of a set and the rest, less their contact area, m2; `None` without a rest.
     fn value(&self, set: &Set) -> Option<f64> {
         let parted = |[i, j]: &[usize; 2]| set.contains(i) && !set.contains(j);
         let mut walls = [0.0; 4];
@@ -260,29 +258,25 @@ impl Axis {
         (set.len() < self.upper.len()).then(|| score(&walls) - touching)
     }
 
-    /// Whether a set is narrower than the rest at the heights that both have.
+    /// Returns whether a set is narrower than the rest at the heights that both have.
     fn is_inner(&self, set: &Set) -> bool {
-        let heights = |of: bool| {
-            let own = self.bounds.iter().enumerate().filter(|(i, _)| set.contains(i) == of);
-            crate::body::span(own.flat_map(|(_, bounds)| bounds[2]))
-        };
-        let ([a, b], [c, d]) = (heights(true), heights(false));
+        let [own, rest] = [true, false].map(|inside| -> Vec<[[f64; 2]; 3]> {
+            let bodies = (0..self.bounds.len()).filter(|i| set.contains(i) == inside);
+            bodies.map(|i| self.bounds[i]).collect()
+        });
+        let heights = |bodies: &[[[f64; 2]; 3]]| span(bodies.iter().flat_map(|of| of[2]));
+        let ([a, b], [c, d]) = (heights(&own), heights(&rest));
         let middle = (a.max(c) + b.min(d)) / 2.0;
-        let area = |of: bool| {
-            let at = |bounds: &&[[f64; 2]; 3]| bounds[2][0] < middle && middle < bounds[2][1];
-            let own = self.bounds.iter().enumerate().filter(|(i, _)| set.contains(i) == of);
-            let own: Vec<_> = own.map(|(_, bounds)| bounds).filter(at).collect();
-            let side = |axis: usize| {
-                let [low, high] = crate::body::span(own.iter().flat_map(|bounds| bounds[axis]));
-                high - low
-            };
+        let area = |bodies: &[[[f64; 2]; 3]]| {
+            let at = |of: &&[[f64; 2]; 3]| of[2][0] < middle && middle < of[2][1];
+            let side = |axis| width(span(bodies.iter().filter(at).flat_map(|of| of[axis])));
             side(0) * side(1)
         };
-        area(true) <= area(false)
+        area(&own) <= area(&rest)
     }
 }
 
-/// The set with all bodies that `above` names for one of it.
+/// Adds to a set all bodies that block one of its bodies, and those that block them.
 fn closure(mut set: Set, above: &[Set]) -> Set {
     let mut todo: Vec<usize> = set.iter().copied().collect();
     while let Some(i) = todo.pop() {
@@ -291,8 +285,8 @@ fn closure(mut set: Set, above: &[Set]) -> Set {
     set
 }
 
-/// Area of the walls of a body, by their side, that face one of another within a reach, m2; both by their lower and upper
-/// envelope.
+/// Returns the areas of the walls of a body, by their side, that face a wall of another within a reach, m2; each body is given
+/// by its lower and upper envelope.
 fn walls([lower, upper]: [&Map; 2], other: [&Map; 2], reach: f64) -> Walls {
     let reach = (reach / lower.step[0]).ceil() as i32;
     let heights = |[lower, upper]: [&Map; 2], x: i32, y: i32| {
@@ -300,21 +294,19 @@ fn walls([lower, upper]: [&Map; 2], other: [&Map; 2], reach: f64) -> Walls {
         (low < NOWHERE).then(|| [low, upper.at(x, y)])
     };
     let mut sums = [0.0; 4];
-    for y in lower.first[1]..lower.first[1] + lower.count[1] as i32 {
-        for x in lower.first[0]..lower.first[0] + lower.count[0] as i32 {
-            let Some([low, high]) = heights([lower, upper], x, y) else { continue };
-            for (side, [dx, dy]) in SIDES.into_iter().enumerate() {
-                // What the next cell does not cover.
-                let [low, high] = match heights([lower, upper], x + dx, y + dy) {
-                    Some([next, _]) if next > low => [low, next.min(high)],
-                    Some([_, next]) => [next.max(low), high],
-                    None => [low, high],
-                };
-                let faced = (1..=reach).filter_map(|r| heights(other, x + r * dx, y + r * dy));
-                let faced = faced.map(|[a, b]| f64::from(b.min(high) - a.max(low)));
-                if high > low {
-                    sums[side] += faced.fold(0.0, f64::max) * lower.step[1 - side / 2];
-                }
+    for [x, y] in lower.cells() {
+        let Some([low, high]) = heights([lower, upper], x, y) else { continue };
+        for (side, [dx, dy]) in SIDES.into_iter().enumerate() {
+            // Heights that the next cell does not cover.
+            let [low, high] = match heights([lower, upper], x + dx, y + dy) {
+                Some([next, _]) if next > low => [low, next.min(high)],
+                Some([_, next]) => [next.max(low), high],
+                None => [low, high],
+            };
+            let faced = (1..=reach).filter_map(|r| heights(other, x + r * dx, y + r * dy));
+            let faced = faced.map(|[a, b]| f64::from(b.min(high) - a.max(low)));
+            if high > low {
+                sums[side] += faced.fold(0.0, f64::max) * lower.step[1 - side / 2];
             }
         }
     }

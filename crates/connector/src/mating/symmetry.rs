@@ -1,4 +1,4 @@
-//! Turns of the parts that are equal by their own symmetry.
+//! Rotations of the parts that are equivalent by their symmetry.
 
 use super::frame::{outs, turned, turns};
 use super::map::{Envelope, Map, bounds};
@@ -8,13 +8,13 @@ use input::units::MM;
 use nalgebra::{Rotation3, Vector3};
 use rayon::prelude::*;
 
-/// Difference of heights of equal parts, m.
+/// Largest difference between heights of equal parts, m.
 const SAME: f32 = 0.05e-3;
-/// One in so many cells may differ.
+/// Number of cells of which one may differ.
 const RARE: usize = 1000;
 
-/// Pairs of a direction out of the socket and a turn of the plug, one for all that are equal, and
-/// how many are.
+/// Returns a representative of each class of equivalent pairs of a direction out of the socket and a rotation of the plug,
+/// and the size of the class.
 pub fn pairs(scene: &Scene) -> Vec<([usize; 2], usize)> {
     let (turns, count) = (turns(), turns().len());
     let step = 2.0 * scene.step;
@@ -55,20 +55,16 @@ fn maps(parts: &[Vec<Triangle>], envelope: Envelope, step: f64) -> Vec<Map> {
     parts.par_iter().map(centred).collect()
 }
 
-/// Pairs of maps that show the same, both ways.
+/// Returns the pairs of maps that are equal, in both orders.
 fn alike(maps: &[Map]) -> Vec<(usize, usize)> {
     let ranges: Vec<[Map; 2]> =
         maps.par_iter().map(|map| [map.eroded([1; 2]), map.dilated([1; 2])]).collect();
     let within = |a: &Map, [inner, outer]: &[Map; 2]| {
-        let [nx, ny] = a.count.map(|count| count as i32);
-        let mut others = 0;
-        for y in a.first[1]..a.first[1] + ny {
-            for x in a.first[0]..a.first[0] + nx {
-                let (z, one, two) = (a.at(x, y), inner.at(x, y), outer.at(x, y));
-                others += usize::from(z < one.min(two) - SAME || z > one.max(two) + SAME);
-            }
-        }
-        others * RARE <= a.heights.len()
+        let differs = |[x, y]: &[i32; 2]| {
+            let (z, one, two) = (a.at(*x, *y), inner.at(*x, *y), outer.at(*x, *y));
+            z < one.min(two) - SAME || z > one.max(two) + SAME
+        };
+        a.cells().filter(differs).count() * RARE <= a.heights.len()
     };
     let near = |a: &Map, b: &Map| {
         (0..2).all(|i| a.count[i].abs_diff(b.count[i]) <= 1 && (a.first[i] - b.first[i]).abs() <= 1)

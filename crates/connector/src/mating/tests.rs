@@ -4,6 +4,8 @@ use super::frame::turns;
 use super::*;
 use nalgebra::{Point3, Translation3, UnitQuaternion};
 
+static NEVER: AtomicBool = AtomicBool::new(false);
+
 /// Position and play known within, m.
 const CLOSE: f64 = 0.02e-3;
 
@@ -56,15 +58,13 @@ fn hidden(mesh: &Mesh, number: usize) -> (Mesh, Isometry3<f64>) {
 /// are equal.
 fn found(plug: &Mesh, socket: &Mesh, number: usize) -> (Mate, usize) {
     let ((plug, p), (socket, s)) = (hidden(plug, number), hidden(socket, 3 * number + 1));
-    let (mate, count) = match mates(&plug, &socket, &Watch::NONE).expect("mates") {
-        Found::One(mate) => (mate, 1),
-        Found::Symmetric(mate, count) => (mate, count),
-        Found::Ambiguous(all) => panic!("ambiguous: {all:#?}"),
-    };
+    let Found { mut mates, equal } = mates(&plug, &socket, &NEVER).expect("mates");
+    assert_eq!(mates.len(), 1, "ambiguous: {mates:#?}");
+    let mate = mates.remove(0);
     let back = s.inverse();
     let out = Unit::new_normalize(back * mate.out.into_inner());
     let across = mate.across.map(|axis| Unit::new_normalize(back * axis.into_inner()));
-    (Mate { pose: back * mate.pose * p, out, across, ..mate }, count)
+    (Mate { pose: back * mate.pose * p, out, across, ..mate }, equal)
 }
 
 /// Asserts that the mate leaves a point of the plug, mm, where it was drawn, and its play, mm.
@@ -95,7 +95,7 @@ fn peg_rests_in_its_hole() {
     close(&mate, [0.0, 0.0, 2.0], [0.1, 0.16]);
     assert_eq!(count, 2);
     assert!((mate.engaged_m - 4.0 * MM).abs() < CLOSE, "{mate:?}");
-    assert!(!mate.through && mate.overlap_m == 0.0, "{mate:?}");
+    assert!(!mate.through, "{mate:?}");
 }
 
 #[test]
@@ -135,7 +135,7 @@ fn deep_bore_counts_more_than_a_tight_recess() {
 }
 
 #[test]
-fn key_leaves_no_yaw_and_a_through_hole_no_stop() {
+fn a_through_hole_has_no_stop() {
     let socket =
         ring(&rectangle([0.0; 2], [7.0, 6.0]), &rectangle([0.0; 2], [3.1, 2.1]), [0.0, 4.0]);
     let (mate, _) = found(&block([0.0; 2], [3.0, 2.0], [0.0, 12.0]), &socket, 2);
@@ -143,7 +143,6 @@ fn key_leaves_no_yaw_and_a_through_hole_no_stop() {
     // Either side is as good.
     assert!((mate.out.z.abs() - 1.0).abs() < 1e-6);
     assert!((mate.engaged_m - 4.0 * MM).abs() < CLOSE, "{mate:?}");
-    assert!(mate.yaw_rad > 0.02 && mate.yaw_rad < 0.1, "{mate:?}");
 }
 
 #[test]
@@ -234,18 +233,17 @@ fn spline_mates_in_its_teeth() {
     let plug = [solid(&spline(0.0), [0.0, 5.0]), block([0.0; 2], [8.0, 9.0], [5.0, 9.0])].concat();
     let (mate, _) = found(&plug, &socket, 6);
     let off = (mate.pose * mm(0.0, 0.0, 0.0) - mm(0.0, 0.0, 0.0)).norm();
-    assert!(off < CLOSE && mate.yaw_rad < 0.2, "{off} {mate:?}");
+    assert!(off < CLOSE, "{off} {mate:?}");
 }
 
 #[test]
-fn interfering_springs_are_measured_and_do_not_count_as_play() {
+fn interfering_springs_do_not_count_as_play() {
     let mut socket = hole([7.0, 6.0], [4.1, 3.1], 4.0);
     for x in [-1.0, 1.0] {
         socket.extend(block([x, 1.45], [0.4, 0.4], [1.0, 2.0]));
     }
     let (mate, _) = found(&peg([4.0, 3.0]), &socket, 8);
     close(&mate, [0.0, 0.0, 2.0], [0.1, 0.1]);
-    assert!((mate.overlap_m - 0.25 * MM).abs() < 0.1 * MM, "{mate:?}");
 }
 
 #[test]
@@ -289,11 +287,11 @@ fn parts_that_do_not_fit_are_refused() {
     let refused = mates(
         &block([0.0; 2], [5.0, 4.0], [0.0, 6.0]),
         &block([0.0; 2], [6.0; 2], [0.0, 3.0]),
-        &Watch::NONE,
+        &NEVER,
     );
-    assert!(matches!(refused, Err(MatingError::NoFit { .. })), "{refused:?}");
-    assert_eq!(mates(&[], &peg([2.0; 2]), &Watch::NONE), Err(MatingError::Empty("plug")));
-    let stop = Watch { stopped: &|| true, ..Watch::NONE };
+    assert_eq!(refused, Err(MatingError::NoFit));
+    assert_eq!(mates(&[], &peg([2.0; 2]), &NEVER), Err(MatingError::Empty("plug")));
+    let stop = AtomicBool::new(true);
     let stopped = mates(&peg([2.0; 2]), &hole([5.0; 2], [2.1; 2], 4.0), &stop);
     assert_eq!(stopped, Err(MatingError::Stopped));
 }
@@ -322,12 +320,10 @@ fn random_sockets_of_one_to_three_holes() {
         plug.extend(block([middle, 0.0], [4.5 * count as f64 + 1.0, 5.5], [0.0, 3.0]));
         socket.extend(block([middle, 0.0], [4.5 * count as f64, 5.0], [-depth - 1.0, -depth]));
         let ((moved, p), (other, s)) = (hidden(&plug, number), hidden(&socket, 5 * number + 2));
-        let mate = match mates(&moved, &other, &Watch::NONE) {
-            Ok(Found::One(mate) | Found::Symmetric(mate, _)) => mate,
-            other => {
-                missed.push(format!("{number}: {other:?}"));
-                continue;
-            }
+        let found = mates(&moved, &other, &NEVER);
+        let Ok([mate]) = found.as_ref().map(|found| &found.mates[..]) else {
+            missed.push(format!("{number}: {found:?}"));
+            continue;
         };
         let off =
             (s.inverse() * mate.pose * p * mm(middle, 0.0, 0.0) - mm(middle, 0.0, 0.0)).norm();

@@ -2,7 +2,6 @@
 
 use clap::ValueEnum;
 use input::units::MM;
-use nalgebra::{Matrix3, Vector3};
 
 /// Unit of length of a mesh file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -49,34 +48,6 @@ pub enum Along {
     MinusZ,
 }
 
-impl Along {
-    fn vector(self) -> Vector3<f64> {
-        match self {
-            Along::PlusX => Vector3::x(),
-            Along::MinusX => -Vector3::x(),
-            Along::PlusY => Vector3::y(),
-            Along::MinusY => -Vector3::y(),
-            Along::PlusZ => Vector3::z(),
-            Along::MinusZ => -Vector3::z(),
-        }
-    }
-
-    /// Axes across this direction along which jaws can close, the preferred one first.
-    pub fn across(self) -> [Jaws; 2] {
-        match self {
-            Along::PlusX | Along::MinusX => [Jaws::Y, Jaws::Z],
-            Along::PlusY | Along::MinusY => [Jaws::X, Jaws::Z],
-            Along::PlusZ | Along::MinusZ => [Jaws::Y, Jaws::X],
-        }
-    }
-
-    /// Rotation of this direction to -z, and of the jaws' axis, which lies across it, to y.
-    pub fn turn(self, jaws: Jaws) -> Matrix3<f64> {
-        let (y, z) = (jaws.vector(), -self.vector());
-        Matrix3::from_rows(&[y.cross(&z), y, z].map(|row| row.transpose()))
-    }
-}
-
 /// Axis of the files along which the jaws close.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Jaws {
@@ -88,17 +59,7 @@ pub enum Jaws {
     Z,
 }
 
-impl Jaws {
-    fn vector(self) -> Vector3<f64> {
-        match self {
-            Jaws::X => Vector3::x(),
-            Jaws::Y => Vector3::y(),
-            Jaws::Z => Vector3::z(),
-        }
-    }
-}
-
-/// Name of a value on the command line.
+/// Returns the name of a value on the command line.
 pub fn value(of: impl ValueEnum) -> String {
     of.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned())
 }

@@ -7,9 +7,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Widest gap that is closed, m.
 pub const GAP: f64 = 0.1 * MM;
-/// Most corners on open edges: each is compared with each.
+/// Largest number of corners on open edges, all pairs of which are compared.
 const MOST: usize = 4000;
-/// Most rounds in which edges are split: an edge has so many corners in its middle.
+/// Largest number of rounds in which edges are split, and so of corners that lie on one edge.
 const ROUNDS: usize = 16;
 
 /// Joins corners of open edges that are near to one another, and splits open edges at corners near to
@@ -71,7 +71,7 @@ fn open(faces: &[[usize; 3]]) -> BTreeMap<[usize; 2], usize> {
     odd.map(|(edge, (_, face))| (edge, face)).collect()
 }
 
-/// Distance of a corner from the inside of an edge, m, if it is near.
+/// Returns the distance of a corner from an edge, m, if it is close to the edge and between its ends.
 fn beside(points: &[Point3<f64>], [a, b]: [usize; 2], corner: usize) -> Option<f64> {
     if corner == a || corner == b {
         return None;

@@ -1,4 +1,4 @@
-//! Plug and socket from triangle meshes: read, mated, covered with convex parts, checked.
+//! Import of plug and socket from triangle meshes: reading, cleaning, convex parts and their check.
 
 pub mod axes;
 pub mod mated;
@@ -9,26 +9,18 @@ pub mod skin;
 mod solid;
 mod surface;
 
-use input::{Place, Placed};
 pub use read::{Body, Triangle, is_step, pick, read, separate};
 pub use reduce::{TOLERANCE, reduced};
 pub use surface::{SIZES, Surface};
 
-/// Names of the files of plug and socket, for messages.
+/// File names of plug and socket for messages.
 pub type Files<'a> = [&'a str; 2];
 
-impl Placed for MeshError {
-    fn place(&self) -> Place {
-        match self {
-            MeshError::File(file, _) => Place::file(file),
-        }
+/// Returns the root of an element in a union-find forest, and shortens the path to it.
+fn root(parent: &mut [usize], mut of: usize) -> usize {
+    while parent[of] != of {
+        parent[of] = parent[parent[of]];
+        of = parent[of];
     }
-}
-
-/// Error of an import.
-#[derive(Debug, thiserror::Error, PartialEq)]
-pub enum MeshError {
-    /// File and its fault, with advice.
-    #[error("{0}: {1}")]
-    File(String, String),
+    of
 }

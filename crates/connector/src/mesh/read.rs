@@ -1,8 +1,9 @@
 //! Triangles of STL (binary and text) and OBJ files.
 
-use super::MeshError;
+use super::root;
 use earcut::Earcut;
 use earcut::utils3d::project3d_to_2d;
+use input::{Fault, Place};
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -28,28 +29,26 @@ const RECORD: usize = 50;
 const STEP: &str =
     "is a STEP file, which the Python package reads: pip install 'finger_opt[step]'; or export STL";
 
-/// Whether a file is STEP, by its content or its name.
+/// Returns whether a file is STEP, by its content or its name.
 pub fn is_step(bytes: &[u8], file: &str) -> bool {
     let named = Path::new(file).extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
     bytes.trim_ascii_start().starts_with(b"ISO-10303-21")
         || named.is_some_and(|named| ["step", "stp"].contains(&named.as_str()))
 }
 
-/// Bodies of a file; the content decides on the format, `file` is named in errors.
+/// Reads the bodies of a file whose format follows from its content; `file` is its name in errors.
 ///
 /// # Errors
 /// If the bytes are neither STL nor OBJ, or name no finite triangles.
-pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Body>, MeshError> {
+pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Body>, Fault> {
     let step = is_step(bytes, file);
     let fail = |problem: &str| {
         let neither = || format!("is neither an STL nor an OBJ file: {problem}");
-        MeshError::File(file.to_owned(), if step { STEP.to_owned() } else { neither() })
+        Place::file(file).fault(if step { STEP.to_owned() } else { neither() })
     };
-    // A binary STL may begin with "solid", too: its length tells.
-    let bodies = match binary_count(bytes) {
-        Some(count) => {
-            vec![Body { name: String::new(), triangles: binary(&bytes[HEADER..], count) }]
-        }
+    // A binary STL can begin with "solid" too, so its length decides.
+    let bodies = match binary(bytes) {
+        Some(triangles) => vec![Body { name: String::new(), triangles }],
         None => {
             let text = std::str::from_utf8(bytes);
             let text = text.map_err(|_| fail("a binary file of odd length"))?;
@@ -67,24 +66,29 @@ pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Body>, MeshError> {
     Ok(bodies)
 }
 
-fn binary_count(bytes: &[u8]) -> Option<usize> {
+/// Returns the triangles of a binary STL; `None` if the length of the file does not match their number.
+fn binary(bytes: &[u8]) -> Option<Vec<Triangle>> {
     let count = u32::from_le_bytes(bytes.get(80..HEADER)?.try_into().ok()?) as usize;
-    (count.checked_mul(RECORD)?.checked_add(HEADER)? == bytes.len()).then_some(count)
-}
-
-fn binary(records: &[u8], count: usize) -> Vec<Triangle> {
+    let records = &bytes[HEADER..];
+    if count.checked_mul(RECORD)? != records.len() {
+        return None;
+    }
     let number = |bytes: &[u8]| {
         bytes.try_into().map_or(f64::NAN, |four| f64::from(f32::from_le_bytes(four)))
     };
     let triangle = |record: &[u8]| {
-        // The first three numbers are a normal, which the corners' order says, too.
+        // The first three numbers are the normal, which also follows from the order of the corners.
         let values: Vec<f64> = record[12..48].chunks_exact(4).map(number).collect();
         std::array::from_fn(|i| Point3::new(values[3 * i], values[3 * i + 1], values[3 * i + 2]))
     };
-    records.chunks_exact(RECORD).take(count).map(triangle).collect()
+    Some(records.chunks_exact(RECORD).map(triangle).collect())
 }
 
-fn point<'a>(mut words: impl Iterator<Item = &'a str>, line: usize) -> Result<Point3<f64>, String> {
+/// Parses the three coordinates on a line.
+fn coordinates<'a>(
+    mut words: impl Iterator<Item = &'a str>,
+    line: usize,
+) -> Result<Point3<f64>, String> {
     let mut next = || words.next().and_then(|word| word.parse::<f64>().ok());
     match (next(), next(), next()) {
         (Some(x), Some(y), Some(z)) => Ok(Point3::new(x, y, z)),
@@ -92,13 +96,13 @@ fn point<'a>(mut words: impl Iterator<Item = &'a str>, line: usize) -> Result<Po
     }
 }
 
-/// Bodies of a text file, an STL or else an OBJ.
+/// Parses the bodies of a text file, an STL or else an OBJ.
 fn parsed(text: &str, stl: bool) -> Result<Vec<Body>, String> {
     let mut points = Vec::new();
     let mut bodies: Vec<Body> = Vec::new();
     let mut triangles = Vec::new();
     let mut name = String::new();
-    let mut keep = |name: &str, triangles: Vec<Triangle>| match bodies
+    let mut add = |name: &str, triangles: Vec<Triangle>| match bodies
         .iter_mut()
         .find(|body| body.name == name)
     {
@@ -109,30 +113,30 @@ fn parsed(text: &str, stl: bool) -> Result<Vec<Body>, String> {
     for (number, line) in (1..).zip(text.lines()) {
         let mut words = line.split_whitespace();
         match (stl, words.next()) {
-            (true, Some("vertex")) | (false, Some("v")) => points.push(point(words, number)?),
+            (true, Some("vertex")) | (false, Some("v")) => points.push(coordinates(words, number)?),
             (true, Some("endfacet")) => {
                 let three = Triangle::try_from(std::mem::take(&mut points));
                 let three = three.map_err(|_| format!("line {number}: a facet has three vertices"));
                 triangles.push(three?);
             }
             (false, Some("f")) => {
-                let face: Option<Vec<_>> = words.map(|word| corner(word, &points)).collect();
+                let face: Option<Vec<_>> = words.map(|word| vertex(word, &points)).collect();
                 let missing = || format!("line {number}: a face names a vertex that is not there");
                 let face = face.ok_or_else(missing)?;
                 triangles.extend(polygon(&face));
             }
             (true, Some("solid")) | (false, Some("o" | "g")) => {
-                keep(&name, std::mem::take(&mut triangles));
+                add(&name, std::mem::take(&mut triangles));
                 name = words.collect::<Vec<_>>().join(" ");
             }
             _ => {}
         }
     }
-    keep(&name, triangles);
+    add(&name, triangles);
     Ok(bodies)
 }
 
-/// Triangles of a polygon: a fan, as viewers draw it, or ears if a fan would leave a concave one.
+/// Triangulates a polygon: as a fan, like viewers do, or by ear clipping if it is concave.
 fn polygon(corners: &[Point3<f64>]) -> Vec<Triangle> {
     let fan: Vec<Triangle> =
         (2..corners.len()).map(|i| [corners[0], corners[i - 1], corners[i]]).collect();
@@ -154,15 +158,11 @@ fn polygon(corners: &[Point3<f64>]) -> Vec<Triangle> {
     ears.map(outward).collect()
 }
 
-/// Triangles of the bodies of these names, or of the shells of these numbers, counted from 1; and all others.
+/// Returns the triangles of the bodies of these names, or of the shells of these numbers, counted from 1; and all others.
 ///
 /// # Errors
 /// If the file lacks one of them; the text names those that it has.
-pub fn pick(
-    bodies: &[Body],
-    names: &[String],
-    file: &str,
-) -> Result<[Vec<Triangle>; 2], MeshError> {
+pub fn pick(bodies: &[Body], names: &[String], file: &str) -> Result<[Vec<Triangle>; 2], Fault> {
     let named = |name: &String| bodies.iter().position(|body| body.name == *name);
     let of: Vec<Body> = match names.iter().all(|name| named(name).is_some()) {
         true => bodies.to_vec(),
@@ -176,7 +176,7 @@ pub fn pick(
             known.join(", "),
             of.len()
         );
-        return Err(MeshError::File(file.to_owned(), problem));
+        return Err(Place::file(file).fault(problem));
     }
     for body in of {
         picked[usize::from(!names.contains(&body.name))].extend(body.triangles);
@@ -184,23 +184,16 @@ pub fn pick(
     Ok(picked)
 }
 
-/// Bodies of a file, or, if it has but one, the shells of that.
+/// Returns the bodies of a file, or the shells of its only body.
 pub fn separate(bodies: Vec<Body>) -> Vec<Body> {
     if bodies.len() > 1 { bodies } else { shells(&bodies) }
 }
 
-/// Sets of triangles that share corners, in the order of the file, called by their number from 1.
+/// Returns the sets of triangles that are connected by corners, in the order of the file, named by their number from 1.
 fn shells(bodies: &[Body]) -> Vec<Body> {
     let triangles: Vec<_> = bodies.iter().flat_map(|body| body.triangles.iter().copied()).collect();
     let mut at: BTreeMap<[u64; 3], usize> = BTreeMap::new();
     let mut parent: Vec<usize> = (0..triangles.len()).collect();
-    fn root(parent: &mut [usize], mut i: usize) -> usize {
-        while parent[i] != i {
-            parent[i] = parent[parent[i]];
-            i = parent[i];
-        }
-        i
-    }
     for (i, corner) in triangles.iter().enumerate().flat_map(|(i, t)| t.map(|p| (i, p))) {
         let first =
             *at.entry([corner.x, corner.y, corner.z].map(|v| (v + 0.0).to_bits())).or_insert(i);
@@ -215,8 +208,8 @@ fn shells(bodies: &[Body]) -> Vec<Body> {
     (1..).zip(found.into_values()).map(named).collect()
 }
 
-/// Corner by its number, `7`, `7/1` or `7//3`, counted from 1, or from the end if negative.
-fn corner(word: &str, points: &[Point3<f64>]) -> Option<Point3<f64>> {
+/// Returns a vertex by its index, `7`, `7/1` or `7//3`, counted from 1, or from the end if negative.
+fn vertex(word: &str, points: &[Point3<f64>]) -> Option<Point3<f64>> {
     let number: i64 = word.split('/').next()?.parse().ok()?;
     let count = i64::try_from(points.len()).ok()?;
     let index = if number < 0 { count + number } else { number - 1 };

@@ -14,16 +14,16 @@ pub const TOLERANCE: f64 = 0.01 * MM;
 const MANY_FACES: usize = 2000;
 /// Error of a collapse on a flat side, pm: that of files with 32-bit numbers.
 const FLAT: u64 = 1_000_000;
-/// Most faces about a corner that goes: the pole of a fine dome has hundreds.
+/// Largest number of faces about a corner that is removed: the pole of a fine dome has hundreds.
 const MOST_ABOUT: usize = 64;
-/// Least cosine between the normals of a face before and after.
+/// Smallest cosine between the normals of a face before and after a collapse.
 const LEAST_COSINE: f64 = 0.5;
 
 struct Collapsing {
     points: Vec<Point3<f64>>,
     faces: Vec<[usize; 3]>,
     about: Vec<Vec<usize>>,
-    /// How far the faces about a corner may be from the corners that have gone, m.
+    /// Bound on the distance between the faces about a corner and the removed corners, m.
     error: Vec<f64>,
     /// Counts the changes about a corner: a queued collapse of an earlier count is out of date.
     version: Vec<u32>,
@@ -46,7 +46,7 @@ pub fn reduced(surface: Surface) -> Surface {
     (0..count).for_each(|corner| mesh.queue(corner, &mut queue));
     let mut left = mesh.faces.len();
     while let Some(Reverse((cost, [from, to], versions))) = queue.pop() {
-        // What is flat costs nothing. More would bend faces that are few enough.
+        // Collapses on flat sides cause no error; others are made only as long as there are too many faces.
         if left <= MANY_FACES && cost > FLAT {
             break;
         }
@@ -184,7 +184,7 @@ struct Facet {
 }
 
 impl Facet {
-    /// Facet whose first edge leaves `at`; a normal of zero without an area.
+    /// Creates the facet whose first edge begins at `at`; its normal is zero if it has no area.
     fn new(corners: [Point3<f64>; 3], at: Point3<f64>) -> Self {
         let [a, b, c] = &corners;
         let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
@@ -194,18 +194,18 @@ impl Facet {
         Facet { corners, normal, samples: [half, middle] }
     }
 
-    /// Distance of the sample of some facets that is farthest from others, m.
+    /// Returns the largest distance of the samples of facets from other facets, m.
     fn farthest(of: &[Facet], from: &[Facet]) -> f64 {
         let samples = of.iter().flat_map(|facet| &facet.samples);
         samples.map(|place| Facet::distance(from, place)).fold(0.0, f64::max)
     }
 
-    /// Distance of a point from the nearest of some facets, m.
+    /// Returns the distance of a point from the nearest of some facets, m.
     fn distance(facets: &[Facet], point: &Point3<f64>) -> f64 {
         facets.iter().map(|facet| facet.away(point)).fold(f64::INFINITY, f64::min)
     }
 
-    /// Distance of a point (Ericson 2005, Real-time collision detection, 5.1.5), m.
+    /// Returns the distance of a point (Ericson 2005, Real-time collision detection, 5.1.5), m.
     fn away(&self, point: &Point3<f64>) -> f64 {
         let [a, b, c] = &self.corners;
         let beyond = |from: &Point3<f64>, to: &Point3<f64>| {

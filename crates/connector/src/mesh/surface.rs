@@ -7,12 +7,12 @@ use insertion::task::geometry::surface_moments;
 use nalgebra::Point3;
 use std::collections::BTreeMap;
 
-/// Grid on which corners are welded, m: files have 32-bit numbers.
-const GRID: f64 = 1e-4 * MM;
-/// Least and largest size of a connector, m.
+/// Grid on which corners lie, m: that of lengths in task files. Mesh files have 32-bit numbers.
+pub const GRID: f64 = 1e-4 * MM;
+/// Smallest and largest size of a connector, m.
 pub const SIZES: [f64; 2] = [3.0 * MM, 300.0 * MM];
 
-/// Least volume that a body encloses, m3: less has a sign by chance.
+/// Smallest volume of a body, m3: the sign of a smaller one is a rounding error.
 const LEAST_VOLUME: f64 = 1.0 * MM * MM * MM;
 
 /// Closed triangle mesh, m.
@@ -50,14 +50,14 @@ impl Surface {
         self.faces.iter().map(|face| face.map(|corner| self.points[corner])).collect()
     }
 
-    /// Enclosed volume, m3.
+    /// Returns the enclosed volume, m3.
     pub fn volume(&self) -> f64 {
         surface_moments(&self.points, &self.faces).0
     }
 }
 
-/// Coordinate rounded to the grid.
-fn snap(value: f64) -> f64 {
+/// Returns a length on the grid.
+pub fn snap(value: f64) -> f64 {
     (value / GRID).round() * GRID
 }
 
@@ -76,7 +76,7 @@ pub fn weld(triangles: &[Triangle], unit: f64) -> (Vec<Point3<f64>>, Vec<[usize;
     let mut faces = Vec::with_capacity(triangles.len());
     for triangle in triangles {
         let face = [index(&triangle[0]), index(&triangle[1]), index(&triangle[2])];
-        // What has shrunk to a line on the grid holds nothing; its neighbours still meet.
+        // A face that has become a line on the grid encloses nothing, and its neighbours still meet.
         if face[0] != face[1] && face[1] != face[2] && face[2] != face[0] {
             faces.push(face);
         }
@@ -84,7 +84,7 @@ pub fn weld(triangles: &[Triangle], unit: f64) -> (Vec<Point3<f64>>, Vec<[usize;
     (points, without_films(faces))
 }
 
-/// Without pairs of faces that cover one another back to back: they hold nothing.
+/// Removes pairs of coincident faces of opposite orientation, which enclose nothing.
 fn without_films(faces: Vec<[usize; 3]>) -> Vec<[usize; 3]> {
     // The same face begins with the same corner.
     let turned = |face: [usize; 3]| {

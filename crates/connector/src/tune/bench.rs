@@ -14,10 +14,10 @@ use insertion::trial::{Conditions, Grasp, Trial};
 use rayon::prelude::*;
 use std::sync::atomic::AtomicBool;
 
-/// Least window to either side of the start that counts as enough, mm.
+/// Smallest sufficient window on either side of the start, mm.
 pub const ENOUGH_MM: f64 = 0.5;
 
-/// Share of the limit of force at which a slower push aims.
+/// Target force of a slower push, as a share of the limit.
 const SLOWER: f64 = 0.9;
 
 /// Setup in which strategies for a task are tried.
@@ -42,7 +42,7 @@ pub struct Bench<'a> {
 pub struct Measured {
     /// The window.
     pub window: Window,
-    /// How clearly its nominal start fails, below 0; 0 if it inserts.
+    /// Margin by which its nominal start fails, below 0; 0 if it inserts.
     pub margin: f64,
     /// Largest force of its insertions, N.
     pub force_n: f64,
@@ -147,7 +147,7 @@ impl<'a> Bench<'a> {
             }
             Err(nearest) => {
                 strategy.start[1] += offset(nearest.by);
-                // Below whatever inserts with the medium finger.
+                // Below the score of any strategy that inserts with the medium finger.
                 let score = nearest.trial.margin.min(0.0) - 1.0;
                 let nearest = Some(Box::new(nearest.trial));
                 Ok(Tried { strategy, windows: Vec::new(), force_n: 0.0, score, nearest, cost: 1 })

@@ -10,8 +10,8 @@ use insertion::task::{Ending, Stage, Strategy, Task};
 use parameters::Parameter;
 
 /// Values of a knob: an odd number, so that the present one is among them.
-const LEVELS: u32 = 31;
-/// Most tilt, degrees: the larger published one and the shift that `priors/levers.toml` allows.
+pub const LEVELS: u32 = 31;
+/// Largest tilt, degrees: the larger published tilt plus the shift that `priors/levers.toml` allows.
 const MOST_TILT_DEG: f64 = 15.0;
 
 /// Number of a strategy, with the row of `priors/` that bounds it: from its lower bound by the present
@@ -33,7 +33,7 @@ enum Sets {
 
 /// Returns the knobs of a strategy, each with its bounds' source.
 pub fn knobs(strategy: &Strategy) -> Result<Vec<Knob>, InputError> {
-    let mut rows = Priors::parse(LEVERS.text, LEVERS.file)?.parameters;
+    let mut rows = Priors::parse(LEVERS[0].text, LEVERS[0].file)?.parameters;
     rows.extend(Priors::parse(PRIORS[0].text, PRIORS[0].file)?.parameters);
     let of = |(i, phase): (usize, &insertion::task::Phase)| {
         let [x, y, _] = phase.displacement;
@@ -52,11 +52,6 @@ pub fn knobs(strategy: &Strategy) -> Result<Vec<Knob>, InputError> {
         Some(Knob { sets, row })
     };
     Ok(all.filter_map(with).collect())
-}
-
-/// Levels of each knob.
-pub fn levels(knobs: &[Knob]) -> Vec<u32> {
-    vec![LEVELS; knobs.len()]
 }
 
 impl Knob {

@@ -59,14 +59,8 @@ pub struct Step {
     pub what: String,
     /// Result.
     pub tried: Tried,
-    /// Least range of another finger with the socket turned either way, mm, if that was checked.
+    /// Smallest range of another finger with the socket turned in either direction, mm, if that was checked.
     pub turned_mm: Option<f64>,
-}
-
-impl Step {
-    fn new(stage: Stage, what: impl Into<String>, tried: Tried) -> Self {
-        Step { stage, what: what.into(), tried, turned_mm: None }
-    }
 }
 
 /// Robustness of the recommended strategy to a change: smallest range of three other fingers, mm; 0 if
@@ -109,30 +103,19 @@ pub struct Effort<'a> {
 /// # Errors
 /// If the task cannot be simulated as it is.
 pub fn tune(bench: &Bench, effort: &Effort) -> Result<Tuned, Impossible> {
-    let own = &bench.task.strategy;
-    let first = Step::new(Stage::AsItIs, "as it is", bench.given(own)?);
     let mut tuned = Tuned { steps: Vec::new(), best: 0, kept: Vec::new(), windows: 0 };
-    tuned.add(first, effort);
+    let given = bench.given(&bench.task.strategy)?;
+    tuned.add(Stage::AsItIs, [("as it is".to_owned(), given)], effort);
     for stage in [Stage::Start, Stage::Families, Stage::Search] {
         let stopped = bench.stop.load(std::sync::atomic::Ordering::SeqCst);
-        let enough = stage > Stage::Start && tuned.best().tried.is_enough();
-        let enough = effort.until_enough && enough;
+        let tried = stage > Stage::Start && effort.until_enough;
+        let enough = tried && tuned.best().tried.is_enough();
         if stage > effort.last || enough || stopped {
             break;
         }
         match stage {
             Stage::AsItIs => {}
-            Stage::Start => {
-                let tried = bench.taught(own)?;
-                let by = (tried.strategy.start[1] - own.start[1]) / MM;
-                let what = format!("start taught, {by:+.1} mm in y");
-                for (what, tried) in bench.with_slower_push(what, tried) {
-                    tuned.add(Step::new(stage, what, tried), effort);
-                }
-                if own.tilt == 0.0 && effort.until_enough && !has_core(bench.task) {
-                    tuned.tilted(bench, effort)?;
-                }
-            }
+            Stage::Start => tuned.start(bench, effort)?,
             Stage::Families => tuned.families(bench, effort),
             Stage::Search => tuned.search(bench, effort)?,
         }
@@ -161,31 +144,46 @@ impl Tuned {
         tried.map(|tried| tried.force_n).filter(|force| *force > 0.0).min_by(f64::total_cmp)
     }
 
-    /// A step of a later stage must be better by what matters; of the same stage, or of two that fail, at
-    /// all.
-    fn add(&mut self, step: Step, effort: &Effort) {
-        self.windows += step.tried.cost;
-        (effort.tell)(&step.what, step.tried.cost, self.windows, MOST_WINDOWS);
-        self.steps.push(step);
-        let [best, last] = [self.best, self.steps.len() - 1].map(|i| &self.steps[i].tried);
-        let own = self.steps[self.best].stage == self.steps[self.steps.len() - 1].stage;
-        let margin = if best.inserts() && !own { INDIFFERENCE_MM } else { 0.0 };
-        // A middle is worth more than a start near the end of as wide a window.
-        let centred = self.steps.len() == 2
-            && last.side_mm() >= best.side_mm() + INDIFFERENCE_MM
-            && last.score >= best.score - INDIFFERENCE_MM;
-        if last.score > best.score + margin || centred {
-            self.best = self.steps.len() - 1;
+    /// Adds strategies that were tried. To become the best, one of a later stage must be better by [`INDIFFERENCE_MM`]; any
+    /// improvement is enough within a stage, or if the best one fails.
+    fn add(
+        &mut self,
+        stage: Stage,
+        tried: impl IntoIterator<Item = (String, Tried)>,
+        effort: &Effort,
+    ) {
+        for (what, last) in tried {
+            self.windows += last.cost;
+            (effort.tell)(&what, last.cost, self.windows, MOST_WINDOWS);
+            let second = self.steps.len() == 1;
+            let better = self.steps.get(self.best).is_some_and(|best| {
+                let (own, best) = (best.stage == stage, &best.tried);
+                let margin = if best.inserts() && !own { INDIFFERENCE_MM } else { 0.0 };
+                // A middle is worth more than a start near the end of as wide a window.
+                let centred = second
+                    && last.side_mm() >= best.side_mm() + INDIFFERENCE_MM
+                    && last.score >= best.score - INDIFFERENCE_MM;
+                last.score > best.score + margin || centred
+            });
+            if better {
+                self.best = self.steps.len();
+            }
+            self.steps.push(Step { stage, what, tried: last, turned_mm: None });
         }
     }
 
-    /// Tries a tilted tip beside an upright sweep: about one opening it finds the seat from farther away.
-    fn tilted(&mut self, bench: &Bench, effort: &Effort) -> Result<(), Impossible> {
-        let family = Family::Key;
-        let Some(strategy) = family.of(bench.task) else { return Ok(()) };
-        let tried = bench.taught(&strategy)?;
-        for (what, tried) in bench.with_slower_push(family.name(), tried) {
-            self.add(Step::new(Stage::Start, what, tried), effort);
+    /// Tries a taught start and, beside an upright sweep, a tilted tip: about one opening it finds the seat from farther
+    /// away.
+    fn start(&mut self, bench: &Bench, effort: &Effort) -> Result<(), Impossible> {
+        let own = &bench.task.strategy;
+        let tried = bench.taught(own)?;
+        let what =
+            format!("start taught, {:+.1} mm in y", (tried.strategy.start[1] - own.start[1]) / MM);
+        self.add(Stage::Start, bench.with_slower_push(what, tried), effort);
+        let upright = own.tilt == 0.0 && effort.until_enough && !has_core(bench.task);
+        if upright && let Some(strategy) = Family::Key.of(bench.task) {
+            let tried = bench.taught(&strategy)?;
+            self.add(Stage::Start, bench.with_slower_push(Family::Key.name(), tried), effort);
         }
         Ok(())
     }
@@ -199,16 +197,14 @@ impl Tuned {
                 Some(bench.with_slower_push(family.name(), tried))
             })
             .collect();
-        for (what, tried) in tried.into_iter().flatten().flatten() {
-            self.add(Step::new(Stage::Families, what, tried), effort);
-        }
+        self.add(Stage::Families, tried.into_iter().flatten().flatten(), effort);
     }
 
     fn search(&mut self, bench: &Bench, effort: &Effort) -> Result<(), InputError> {
         let from = self.best().tried.strategy.clone();
         let task = Task { strategy: from, limits: bench.limits, ..bench.task.clone() };
         let knobs = knobs::knobs(&task.strategy)?;
-        let grid = Grid::new(knobs::levels(&knobs));
+        let grid = Grid::new(vec![knobs::LEVELS; knobs.len()]);
         let mut optimizer = ask_tell::build(OptimizerKind::Gp, grid.clone(), effort.seed);
         let limit = MOST_WINDOWS - Self::CHECKS - EACH;
         let middle = grid.snap(&vec![0.5; knobs.len()]);
@@ -232,10 +228,8 @@ impl Tuned {
                 .map(|(point, (_, tried))| Observation::new(point, score(tried)))
                 .collect();
             optimizer.tell(&told);
-            for (what, tried) in tried {
-                let Some(tried) = tried else { continue };
-                self.add(Step::new(Stage::Search, what, tried), effort);
-            }
+            let tried = tried.into_iter().filter_map(|(what, tried)| Some((what, tried?)));
+            self.add(Stage::Search, tried, effort);
         }
         Ok(())
     }
@@ -322,7 +316,7 @@ impl Tuned {
             let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
             let here = phase.poses.plug.inverse() * contact.point;
             let name = |body: &ConvexBody, point| {
-                let at = body.near(point, TOUCHING).next();
+                let at = body.near(point, TOUCHING).min();
                 at.map_or(String::new(), |i| body.parts[i].name.clone())
             };
             [name(&plug, &here), name(&socket, &contact.point)]
@@ -343,7 +337,7 @@ const TOUCHING: f64 = 0.05 * MM;
 /// End of the trial with the largest margin, if all failed.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Stopped {
-    /// How it failed.
+    /// Kind of failure.
     pub outcome: &'static str,
     /// Phase in which the trial ended.
     pub phase: String,

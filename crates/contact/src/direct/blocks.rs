@@ -16,7 +16,7 @@ const NONE: usize = usize::MAX;
 pub(super) struct Blocks {
     /// Number of bodies.
     size: usize,
-    /// Number of bodies, the first, that are eliminated.
+    /// Number of the first bodies, which are eliminated.
     pub eliminated: usize,
     /// Place in `blocks` of a block (row >= column).
     index: Vec<usize>,
@@ -25,7 +25,7 @@ pub(super) struct Blocks {
 }
 
 impl Blocks {
-    /// Creates a zero matrix with the blocks of the pairs, and those that the elimination fills in.
+    /// Creates a zero matrix with the blocks of the pairs and the fill-in of the elimination.
     pub fn new(size: usize, eliminated: usize, pairs: &[(usize, usize)]) -> Self {
         let mut present = vec![false; size * size];
         for (a, b) in (0..size).map(|i| (i, i)).chain(pairs.iter().copied()) {
@@ -62,7 +62,7 @@ impl Blocks {
         self.blocks.get(self.index[row * self.size + column])
     }
 
-    /// Eliminates; None if the matrix is not positive definite (or not finite).
+    /// Eliminates the first bodies; returns `None` if the matrix is not positive definite (or not finite).
     pub fn eliminate(&mut self) -> Option<()> {
         self.factors.clear();
         for k in 0..self.eliminated {
@@ -92,7 +92,7 @@ impl Blocks {
         Some(())
     }
 
-    /// Carries the right-hand sides of the eliminated bodies over to the others.
+    /// Eliminates the first bodies from the right-hand side.
     pub fn reduce(&self, rhs: &mut [Vector6]) {
         for (k, factor) in self.factors.iter().enumerate() {
             factor.l_dirty().solve_lower_triangular_mut(&mut rhs[k]);
@@ -105,7 +105,7 @@ impl Blocks {
         }
     }
 
-    /// Solves for the eliminated bodies, once the solution of the others is in place.
+    /// Solves for the eliminated bodies; `rhs` holds the solution of the others.
     pub fn expand(&self, rhs: &mut [Vector6]) {
         for (k, factor) in self.factors.iter().enumerate().rev() {
             for i in k + 1..self.size {
@@ -118,7 +118,7 @@ impl Blocks {
         }
     }
 
-    /// Copies the remaining matrix, dense, row by row, both halves.
+    /// Copies the remaining matrix into a dense one, row by row, with both halves.
     pub fn remainder(&self, dense: &mut [Six]) {
         let sixes = self.size - self.eliminated;
         dense.fill([0.0; 6]);

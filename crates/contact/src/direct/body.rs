@@ -4,14 +4,14 @@ use super::blocks::Vector6;
 use crate::scene::{Body, Inertia, Motion, Pose};
 use nalgebra::{Matrix3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
 
-/// Origin of a body's velocity.
+/// Motion of a body in the solver.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Kind {
     /// No velocity.
     Fixed,
-    /// Velocity to this pose within the step.
+    /// Velocity that reaches this pose at the end of the step.
     Driven(Pose),
-    /// Velocity from the solver; the index is the body's place in the system.
+    /// Velocity from the solver; the index is the place of the body in the system.
     Dynamic(usize),
 }
 
@@ -22,15 +22,15 @@ pub(super) struct MovingBody {
     /// Body frame in the world.
     pub pose: Pose,
     motion: Motion,
-    /// Zero without a mass that is the same in all directions.
+    /// Zero for a body that does not move freely and for a mechanism.
     inertia: Inertia,
     /// Centre of mass in the world, m; the body frame's origin if it has no mass.
     pub centre: Point3<f64>,
-    /// Of the centre of mass (m/s) and angular (rad/s), world axes.
+    /// Velocity of the centre of mass, m/s, and angular velocity, rad/s, world axes.
     pub velocity: Vector6,
     /// Momentum and angular momentum about the centre of mass at the start of the step, N s,
-    /// N m s, world axes. They, not the velocities, are carried from step to step: that is the
-    /// gyroscopic term, to first order in the step (negligible in an insertion anyway).
+    /// N m s, world axes. They are carried from step to step instead of the velocities, which includes the
+    /// gyroscopic term to first order in the step (negligible in an insertion).
     pub momentum: Vector6,
     /// Inertia about the centre of mass, world axes, kg m2.
     tensor: Matrix3<f64>,
@@ -64,17 +64,14 @@ impl MovingBody {
         if let Kind::Dynamic(place) = self.kind { Some(place) } else { None }
     }
 
-    /// Puts the body elsewhere, at rest.
+    /// Moves a fixed body to a pose.
     pub fn put(&mut self, pose: Pose) {
         self.pose = pose;
-        if let Kind::Driven(target) = &mut self.kind {
-            *target = pose;
-        }
         self.refresh();
     }
 
-    /// Returns the mass matrix about the centre of mass, world axes. That of a mechanism turns with its end;
-    /// its change with the mechanism's pose is left out.
+    /// Returns the mass matrix about the centre of mass, world axes. That of a mechanism rotates with its end;
+    /// its dependence on the configuration of the mechanism is neglected.
     pub fn mass(&self) -> Matrix6<f64> {
         if let Motion::Mechanism(mass) = &self.motion {
             let axes = self.pose.rotation.to_rotation_matrix().into_inner();
@@ -98,7 +95,7 @@ impl MovingBody {
         all
     }
 
-    /// Gives a driven body the velocity that takes it to its target.
+    /// Sets the velocity of a driven body so that it reaches its target.
     pub fn steer(&mut self, step: f64) {
         let Kind::Driven(target) = self.kind else { return };
         let moved = target.translation.vector - self.pose.translation.vector;
@@ -107,7 +104,7 @@ impl MovingBody {
         self.velocity.fixed_rows_mut::<3>(3).copy_from(&(turned / step));
     }
 
-    /// Moves the body with its velocity; the turn is the exponential of it.
+    /// Moves the body by its velocity; the rotation is the exponential of the angular velocity.
     pub fn advance(&mut self, step: f64) {
         match self.kind {
             Kind::Fixed => return,

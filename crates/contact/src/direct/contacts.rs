@@ -1,5 +1,5 @@
-//! Collision detection: the points at which bodies of the listed pairs touch or are about to. While
-//! two shapes hardly move against one another their points stay, and only the gaps are renewed.
+//! Collision detection: the points at which bodies of the listed pairs touch or are about to touch. While
+//! two shapes hardly move relative to one another, their points are reused and only the gaps are updated.
 
 mod lines;
 mod near;
@@ -11,7 +11,8 @@ use super::body::MovingBody;
 use crate::scene::{Friction, Geom, GeomPair, Pose, Scene, Shape};
 use crate::shapes;
 use nalgebra::{Matrix3, Point3, Vector3};
-use near::{NearList, NearPair, tree};
+use near::{NearList, tree};
+use parry::bounding_volume::{Aabb, BoundingVolume};
 use parry::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
 use parry::shape::{Cuboid, SharedShape, SupportMap};
 use rapier3d_f64::parry;
@@ -20,20 +21,20 @@ use std::sync::Arc;
 /// Units of length of the shapes in a metre: some of parry's tolerances are absolute and made for
 /// parts of 1 m (in metres it drops the crossing of edges of 1 mm at less than a degree).
 const MILLIMETRES: f64 = 1e3;
-/// Distance from a surface at which a neighbour covers it, m.
+/// Distance from a surface within which a neighbouring shape covers it, m.
 const COVER: f64 = 20e-6;
-/// Tolerance for a neighbour, m: more than contacts sink, less than any gap.
+/// Tolerance of that test, m: more than the penetration of a contact, less than any gap.
 const SEAM: f64 = 2e-6;
-/// Way that two shapes may move against one another before their points are found anew, m: a
-/// hundredth of the offset grid, a twentieth of the gap at which contacts are foreseen.
-const STILL: f64 = 10e-6;
-/// ... and of round shapes, as a share of their radius: the turn of the normal, rad.
-const ROLL: f64 = 2e-3;
+/// Relative displacement of two shapes up to which their contact points are reused, m: a hundredth of the
+/// offset grid, a twentieth of the prediction distance.
+const REUSE: f64 = 10e-6;
+/// The same for round shapes, as a share of their radius: the rotation of the normal, rad.
+const ROUND_REUSE: f64 = 2e-3;
 
-/// Pairs of shapes of two bodies from which on only those gaps are foreseen that may close in a step: of a drawn
-/// surface hundreds of facets lie within the prediction, and all are sought anew in each step.
+/// Number of pairs of shapes of two bodies above which only contacts whose gap may close within a step are predicted: an
+/// imported surface has hundreds of facets within the prediction distance, and all would be tested in each step.
 const MANY_PAIRS: usize = 2_000;
-/// Least gap that is foreseen then, m.
+/// Smallest prediction distance then, m.
 const NEAR: f64 = 20e-6;
 
 /// Point of contact between two bodies.
@@ -41,7 +42,7 @@ const NEAR: f64 = 20e-6;
 pub(super) struct Touch {
     /// Number of its pair of bodies in the scene.
     pub pair: usize,
-    /// Number of its patch, that of its first pair of geoms; the points of a patch follow one another.
+    /// Number of its first pair of geoms, which identifies its patch; the points of a patch are consecutive.
     pub geoms: usize,
     /// Midway between the two surfaces, world, m.
     pub point: Point3<f64>,
@@ -69,8 +70,7 @@ struct Solid {
     frame: Pose,
     half: Vector3<f64>,
     /// Enclosing box in the world's axes, m.
-    low: Vector3<f64>,
-    high: Vector3<f64>,
+    boxed: Aabb,
     /// Pose of the body for which these were computed.
     enclosed_at: Option<Pose>,
     /// Axes and centre of the enclosing box in the world.
@@ -86,8 +86,7 @@ struct Solid {
 struct Neighbour {
     solid: usize,
     /// Box about it and all that it may cover, body frame, m.
-    low: Vector3<f64>,
-    high: Vector3<f64>,
+    boxed: Aabb,
 }
 
 /// Pair of shapes that may touch.
@@ -95,8 +94,8 @@ struct Neighbour {
 struct Candidate {
     pair: GeomPair,
     manifold: ContactManifold<(), ()>,
-    /// Pose of the second shape in the frame of the first when the points were found.
-    found_at: Option<Pose>,
+    /// Pose of the second shape in the frame of the first for which the points were computed.
+    computed_at: Option<Pose>,
     /// Normal, in the frame of the first shape.
     axis: Vector3<f64>,
     /// Points on the surfaces of both, in the frame of each, m.
@@ -110,11 +109,12 @@ pub(super) struct Detector {
     /// Pairs of bodies, in the order of the scene.
     lists: Vec<NearList>,
     prediction: f64,
-    round: bool,
+    /// Whether a shape has round edges.
+    pub has_round_shapes: bool,
 }
 
 impl Detector {
-    /// Detector that foresees contacts up to a gap of `prediction`, m.
+    /// Creates a detector that predicts contacts up to a gap of `prediction`, m.
     pub fn new(scene: &Scene, prediction: f64) -> Self {
         let mut solids: Vec<Solid> = Vec::new();
         let mut bodies = Vec::new();
@@ -125,18 +125,14 @@ impl Detector {
         }
         for i in 0..solids.len() {
             let (own, (range, tree)) = (&solids[i], &bodies[solids[i].body]);
-            let boxed = own.enclosing(2.0 * COVER);
+            let boxed = own.boxed.loosened(2.0 * COVER);
             let found = tree.intersect_aabb(&boxed);
             let mut near: Vec<_> = found.map(|leaf| range.start + leaf as usize).collect();
             near.retain(|&j| j != i && !own.apart(&solids[j], COVER));
             near.sort_unstable();
-            let margin = Vector3::repeat(4.0 * SEAM);
-            let neighbour = |solid: usize| {
-                let Solid { low, high, .. } = &solids[solid];
-                Neighbour { solid, low: low - margin, high: high + margin }
-            };
-            let near: Vec<Neighbour> = near.into_iter().map(neighbour).collect();
-            solids[i].neighbours = near.into();
+            let neighbour =
+                |solid: usize| Neighbour { solid, boxed: solids[solid].boxed.loosened(4.0 * SEAM) };
+            solids[i].neighbours = near.into_iter().map(neighbour).collect();
         }
         let mut from = 0;
         let list = |(number, pair): (usize, &crate::scene::ContactPair)| {
@@ -147,13 +143,8 @@ impl Detector {
             list
         };
         let lists = scene.contacts.iter().enumerate().map(list).collect();
-        let round = solids.iter().any(|solid| solid.round.is_some());
-        Detector { lists, solids, prediction, round }
-    }
-
-    /// Returns whether a shape has round edges.
-    pub fn has_round_shapes(&self) -> bool {
-        self.round
+        let has_round_shapes = solids.iter().any(|solid| solid.round.is_some());
+        Detector { lists, solids, prediction, has_round_shapes }
     }
 
     /// Finds the contacts at the bodies' poses.
@@ -174,22 +165,13 @@ impl Detector {
             if many {
                 list.choose(&relative, &self.solids, prediction);
             }
-            for &NearPair { number, candidate, solids } in
-                if many { &list.close } else { &list.near }
-            {
-                let [first, second] = solids.map(|solid| &self.solids[solid]);
+            for pair in if many { &list.close } else { &list.near } {
+                let [first, second] = pair.solids.map(|solid| &self.solids[solid]);
                 if first.apart(second, prediction) || first.separated(second, prediction) {
                     continue;
                 }
-                let pair = [first, second];
-                list.candidates[candidate].find(
-                    number,
-                    pair,
-                    bodies,
-                    &self.solids,
-                    prediction,
-                    found,
-                );
+                let Some(candidate) = list.candidates.get_mut(&pair.number) else { continue };
+                candidate.find(pair.number, bodies, &self.solids, prediction, found);
             }
         }
         patches::join(found);
@@ -215,8 +197,7 @@ impl Solid {
             pose: geom.pose * turn,
             frame: geom.pose * Pose::translation(centre.x, centre.y, centre.z),
             half,
-            low: Vector3::zeros(),
-            high: Vector3::zeros(),
+            boxed: Aabb::new_invalid(),
             enclosed_at: None,
             axes: Matrix3::identity(),
             centre: Vector3::zeros(),
@@ -227,7 +208,7 @@ impl Solid {
         solid
     }
 
-    /// Core, in parry's frame, and radius, mm; a sharp shape is its own.
+    /// Returns the core, in parry's frame, and the radius, mm; the core of a sharp shape is the shape itself.
     fn core(&self) -> Option<(&dyn SupportMap, f64)> {
         match &self.round {
             Some((core, radius)) => Some((core, *radius)),
@@ -235,6 +216,7 @@ impl Solid {
         }
     }
 
+    /// Updates the enclosing box in the world's axes.
     fn enclose(&mut self, body: &Pose) {
         if self.enclosed_at.as_ref() == Some(body) {
             return;
@@ -244,11 +226,10 @@ impl Solid {
         self.axes = frame.rotation.to_rotation_matrix().into_inner();
         self.centre = frame.translation.vector;
         let reach = self.axes.abs() * self.half;
-        self.low = self.centre - reach;
-        self.high = self.centre + reach;
+        self.boxed = Aabb::from_half_extents(self.centre.into(), reach.into());
     }
 
-    /// Whether a face of one of the enclosing boxes separates them.
+    /// Returns whether the enclosing boxes are farther apart than a margin, m, along a face normal of one of them.
     fn separated(&self, other: &Solid, margin: f64) -> bool {
         let apart = self.centre - other.centre;
         let turn = self.axes.tr_mul(&other.axes);
@@ -257,19 +238,20 @@ impl Solid {
         own.max() > margin || its.max() > margin
     }
 
+    /// Returns whether the enclosing boxes in the world's axes are farther apart than a margin, m.
     fn apart(&self, other: &Solid, margin: f64) -> bool {
-        (0..3).any(|i| self.low[i] > other.high[i] + margin || other.low[i] > self.high[i] + margin)
+        !self.boxed.loosened(margin).intersects(&other.boxed)
     }
 
-    /// Whether a neighbour covers a place on the surface, in parry's frame of the shape, m.
+    /// Returns whether a neighbour covers a place on the surface, given in parry's frame of the shape, m.
     fn covered(&self, place: &Vector3<f64>, outward: &Vector3<f64>, solids: &[Solid]) -> bool {
         let outside = self.pose * Point3::from(place + outward * COVER);
-        self.neighbours.iter().any(|&Neighbour { solid: j, low, high }| {
-            if (0..3).any(|i| outside[i] < low[i] || outside[i] > high[i]) {
+        self.neighbours.iter().any(|&Neighbour { solid: j, boxed }| {
+            if !boxed.contains_local_point(outside.coords.into()) {
                 return false;
             }
-            let boxed = solids[j].frame.inverse_transform_point(&outside).coords.abs();
-            if (0..3).any(|i| boxed[i] > solids[j].half[i] + 2.0 * SEAM) {
+            let inside = solids[j].frame.inverse_transform_point(&outside).coords.abs();
+            if (0..3).any(|i| inside[i] > solids[j].half[i] + 2.0 * SEAM) {
                 return false;
             }
             let local = solids[j].pose.inverse_transform_point(&outside).coords * MILLIMETRES;
@@ -277,7 +259,7 @@ impl Solid {
         })
     }
 
-    /// Returns the distance of a point, in parry's frame, mm; 0 inside. Beyond `SEAM` it may be less.
+    /// Returns the distance of a point, in parry's frame, mm; 0 inside. Above `SEAM` it is a lower bound.
     fn distance(&self, place: &Vector3<f64>) -> f64 {
         if let Some((core, radius)) = &self.round {
             let beside = place.abs() - Vector3::from(core.half_extents);
@@ -305,45 +287,55 @@ fn faces(shape: &SharedShape) -> Vec<(Vector3<f64>, f64)> {
     normals.map(|normal| (normal, farthest(&normal))).collect()
 }
 
+/// Returns whether no point within `reach`, m, of the origin has moved by `distance`, m, since a pose.
+fn has_stayed(before: Option<&Pose>, now: &Pose, reach: f64, distance: f64) -> bool {
+    before.is_some_and(|before| {
+        let moved = (now.translation.vector - before.translation.vector).norm();
+        // Half the angle, if it is small; of a quaternion that changed its sign about 2.
+        let turned = now.rotation.coords - before.rotation.coords;
+        moved + 2.0 * turned.norm() * reach < distance
+    })
+}
+
 impl Candidate {
     fn new(pair: GeomPair) -> Self {
         let (manifold, points) = (ContactManifold::new(), Vec::new());
-        Candidate { pair, manifold, found_at: None, axis: Vector3::zeros(), points }
+        Candidate { pair, manifold, computed_at: None, axis: Vector3::zeros(), points }
     }
 
-    /// Appends the points at the bodies' poses, found anew if the shapes have moved.
+    /// Appends the points at the bodies' poses, computed again if the shapes have moved.
     fn find(
         &mut self,
         geoms: usize,
-        [first, second]: [&Solid; 2],
         bodies: &[MovingBody],
         solids: &[Solid],
         prediction: f64,
         found: &mut Vec<Touch>,
     ) {
+        let [first, second] = [self.pair.first, self.pair.second].map(|solid| &solids[solid]);
         let pose = bodies[first.body].pose * first.pose;
         let other = bodies[second.body].pose * second.pose;
         let relative = pose.inv_mul(&other);
         let round = [first, second].map(|solid| solid.round.map_or(0.0, |(_, radius)| radius));
-        let way = match round[0] + round[1] {
-            0.0 => STILL,
-            radius => STILL.min(ROLL * radius / MILLIMETRES),
+        let reuse = match round[0] + round[1] {
+            0.0 => REUSE,
+            radius => REUSE.min(ROUND_REUSE * radius / MILLIMETRES),
         };
-        if !self.still(&relative, second.reach, way) {
+        if !has_stayed(self.computed_at.as_ref(), &relative, second.reach, reuse) {
             self.compute(&relative, (first, second), prediction);
             self.drop_covered(solids);
             self.choose(prediction);
-            self.found_at = Some(relative);
+            self.computed_at = Some(relative);
         }
         self.report(geoms, &pose, &relative, found);
     }
 
     /// Computes the manifold from scratch.
     fn compute(&mut self, relative: &Pose, solids: (&Solid, &Solid), prediction: f64) {
-        // With points left in it parry would only move them along.
+        // parry would only update points that are still in the manifold.
         self.manifold.points.clear();
         let relative = shapes::pose(relative, MILLIMETRES);
-        // No error is reached: every shape that a scene can hold is convex.
+        // There is no error: all shapes of a scene are convex.
         let _ = DefaultQueryDispatcher.contact_manifold_convex_convex(
             &relative,
             &*solids.0.shape,
@@ -358,8 +350,8 @@ impl Candidate {
         }
     }
 
-    /// Drops the points on faces that another shape of the same body covers: at a seam of flush
-    /// parts the hidden end face of the next one would stop a sliding edge, 0.1 um deep.
+    /// Removes the points on faces that another shape of the same body covers: at a seam of flush
+    /// parts, an edge that has sunk by 0.1 um would catch on the hidden end face of the next part.
     fn drop_covered(&mut self, solids: &[Solid]) {
         let manifold = &mut self.manifold;
         let outward = [manifold.local_n1, manifold.local_n2].map(Vector3::from);
@@ -371,17 +363,6 @@ impl Candidate {
             let places = [point.local_p1, point.local_p2].map(Vector3::from);
             (0..2).all(|i| !sides[i].covered(&(places[i] / MILLIMETRES), &outward[i], solids))
         });
-    }
-
-    /// Whether no point of the second shape, which reaches so far, m, has moved against the first
-    /// since the points were found.
-    fn still(&self, relative: &Pose, reach: f64, way: f64) -> bool {
-        self.found_at.as_ref().is_some_and(|before| {
-            let moved = (relative.translation.vector - before.translation.vector).norm();
-            // Half the angle, if it is small; of a quaternion that changed its sign about 2.
-            let turned = relative.rotation.coords - before.rotation.coords;
-            moved + 2.0 * turned.norm() * reach < way
-        })
     }
 
     /// Keeps the manifold's extreme points.

@@ -1,18 +1,18 @@
-//! Small dense symmetric systems, row by row, in sixes. Every inner loop runs along a row without
-//! carrying a sum, so that no addition waits for the last, and over six at a time, unrolled.
+//! Small dense symmetric systems, stored row by row in blocks of six numbers. Inner loops run along a row and are
+//! unrolled; each of their additions is independent of the previous one, so that they run in parallel.
 
-/// Six neighbours in a row of a matrix, or the velocity or impulse of a body.
+/// Six consecutive numbers in a row of a matrix, or the velocity or impulse of a body.
 pub(super) type Six = [f64; 6];
 
-/// Calls a function of a matrix that is compiled for the usual numbers of sixes to a row.
+/// Calls a function with the number of blocks in a row, as a constant for small numbers so that its loops are unrolled.
 macro_rules! unrolled {
-    ($sixes:expr, $function:ident($($argument:expr),*)) => {
-        match $sixes {
+    ($blocks:expr, $function:ident($($argument:expr),*)) => {
+        match $blocks {
             1 => $function($($argument,)* 1),
             2 => $function($($argument,)* 2),
             3 => $function($($argument,)* 3),
             4 => $function($($argument,)* 4),
-            sixes => $function($($argument,)* sixes),
+            blocks => $function($($argument,)* blocks),
         }
     };
 }
@@ -27,36 +27,36 @@ fn add(to: &mut Six, factor: f64, from: Six) {
 
 /// `result = matrix * vector` for a symmetric matrix with both halves.
 pub(super) fn multiply(matrix: &[Six], vector: &[Six], result: &mut [Six]) {
-    unrolled!(vector.len(), product(matrix, vector, result));
+    unrolled!(vector.len(), multiply_unrolled(matrix, vector, result));
 }
 
 #[inline(always)]
-fn product(matrix: &[Six], vector: &[Six], result: &mut [Six], sixes: usize) {
-    let result = &mut result[..sixes];
+fn multiply_unrolled(matrix: &[Six], vector: &[Six], result: &mut [Six], blocks: usize) {
+    let result = &mut result[..blocks];
     result.fill([0.0; 6]);
-    // The rows serve as columns.
-    for (k, &factor) in vector[..sixes].as_flattened().iter().enumerate() {
-        let row = &matrix[k * sixes..][..sixes];
-        for s in 0..sixes {
+    // The matrix is symmetric: row k is column k.
+    for (k, &factor) in vector[..blocks].as_flattened().iter().enumerate() {
+        let row = &matrix[k * blocks..][..blocks];
+        for s in 0..blocks {
             add(&mut result[s], factor, row[s]);
         }
     }
 }
 
-/// Computes the Cholesky factorisation `U^T U` of a matrix with so many sixes to a row, in place of the upper
-/// half, the diagonal holding the reciprocals of `U`'s; None if the matrix is not positive
-/// definite (or not finite). What is left in the lower half means nothing.
-pub(super) fn factor(matrix: &mut [Six], sixes: usize) -> Option<()> {
-    unrolled!(sixes, factored(matrix))
+/// Computes the Cholesky factorization `U^T U` of a matrix with this number of blocks in a row; returns `None` if the
+/// matrix is not positive definite (or not finite). `U` replaces the upper half, with the reciprocals of its diagonal;
+/// the lower half is undefined afterwards.
+pub(super) fn factor(matrix: &mut [Six], blocks: usize) -> Option<()> {
+    unrolled!(blocks, factor_unrolled(matrix))
 }
 
 #[inline(always)]
-fn factored(matrix: &mut [Six], sixes: usize) -> Option<()> {
-    for (first, at) in (0..sixes).flat_map(|first| (0..6).map(move |at| (first, at))) {
-        let (above, row) = matrix.split_at_mut((6 * first + at) * sixes);
-        for s in first..sixes {
+fn factor_unrolled(matrix: &mut [Six], blocks: usize) -> Option<()> {
+    for (first, at) in (0..blocks).flat_map(|first| (0..6).map(move |at| (first, at))) {
+        let (above, row) = matrix.split_at_mut((6 * first + at) * blocks);
+        for s in first..blocks {
             let mut sum = row[s];
-            for above in above.chunks_exact(sixes) {
+            for above in above.chunks_exact(blocks) {
                 add(&mut sum, -above[first][at], above[s]);
             }
             row[s] = sum;
@@ -66,7 +66,7 @@ fn factored(matrix: &mut [Six], sixes: usize) -> Option<()> {
             return None;
         }
         let scale = 1.0 / pivot.sqrt();
-        for part in &mut row[first..sixes] {
+        for part in &mut row[first..blocks] {
             *part = part.map(|value| value * scale);
         }
         row[first][at] = scale;
@@ -74,14 +74,14 @@ fn factored(matrix: &mut [Six], sixes: usize) -> Option<()> {
     Some(())
 }
 
-/// Solves with the factor, in place.
+/// Solves a factored system, in place.
 pub(super) fn solve(factor: &[Six], vector: &mut [Six]) {
-    unrolled!(vector.len(), solved(factor.as_flattened(), vector.as_flattened_mut()));
+    unrolled!(vector.len(), solve_unrolled(factor.as_flattened(), vector.as_flattened_mut()));
 }
 
 #[inline(always)]
-fn solved(factor: &[f64], vector: &mut [f64], sixes: usize) {
-    let n = 6 * sixes;
+fn solve_unrolled(factor: &[f64], vector: &mut [f64], blocks: usize) {
+    let n = 6 * blocks;
     let (factor, vector) = (&factor[..n * n], &mut vector[..n]);
     for k in 0..n {
         let mut value = vector[k];

@@ -11,20 +11,20 @@ use crate::ContactForce;
 use crate::scene::Pose;
 use nalgebra::Vector3;
 
-/// Parts of a step that is divided.
+/// Number of parts of a divided step.
 const PARTS: usize = 8;
-/// Number of steps that an impact divides: that of the impact and three more.
+/// Number of steps that are divided after an impact begins: that of the impact and three more.
 const DIVIDED: usize = 4;
-/// Speed of approach that is an impact, m/s: at 5 mm/s a contact sinks by 1 um.
+/// Least speed of approach of an impact, m/s: at 5 mm/s a contact sinks by 1 um.
 const IMPACT: f64 = 5e-3;
 
 impl DirectWorld {
-    /// Returns whether the next step has to be divided; the contacts have been detected.
-    pub(super) fn is_divided(&mut self) -> bool {
-        if !self.detector.has_round_shapes() {
+    /// Returns whether the next step, whose contacts have been detected, is divided, and counts it.
+    pub(super) fn divides_step(&mut self) -> bool {
+        if !self.detector.has_round_shapes {
             return false;
         }
-        if self.meets() {
+        if self.has_impact() {
             self.divided = DIVIDED;
         }
         let divided = self.divided > 0;
@@ -33,7 +33,7 @@ impl DirectWorld {
     }
 
     /// Returns whether two surfaces meet at speed within the step.
-    fn meets(&self) -> bool {
+    fn has_impact(&self) -> bool {
         self.touches.iter().any(|touch| {
             let pair = &self.pairs[touch.pair];
             let [first, second] = [pair.first, pair.second].map(|body| {
@@ -49,7 +49,7 @@ impl DirectWorld {
     /// Takes a step in parts; the forces are the means over them.
     pub(super) fn divided_step(&mut self) -> Option<()> {
         let whole = self.settings.step_s;
-        let ways: Vec<Option<[Pose; 2]>> = self.bodies.iter().map(way).collect();
+        let paths: Vec<Option<[Pose; 2]>> = self.bodies.iter().map(start_and_target).collect();
         let mut forces = vec![ContactForce::default(); self.forces.len()];
         self.settings.step_s = whole / PARTS as f64;
         let done = (1..=PARTS).try_for_each(|part| {
@@ -57,8 +57,8 @@ impl DirectWorld {
                 let step = self.settings.step_s;
                 self.detector.detect(&self.bodies, step, &mut self.touches);
             }
-            for (body, way) in self.bodies.iter_mut().zip(&ways) {
-                if let Some([from, to]) = way {
+            for (body, path) in self.bodies.iter_mut().zip(&paths) {
+                if let Some([from, to]) = path {
                     let share = part as f64 / PARTS as f64;
                     let pose = from.try_lerp_slerp(to, share, f64::EPSILON).unwrap_or(*to);
                     body.kind = Kind::Driven(pose);
@@ -77,10 +77,7 @@ impl DirectWorld {
     }
 }
 
-/// Returns the pose of a driven body and the one that it is driven to.
-fn way(body: &MovingBody) -> Option<[Pose; 2]> {
-    match body.kind {
-        Kind::Driven(to) => Some([body.pose, to]),
-        Kind::Fixed | Kind::Dynamic(_) => None,
-    }
+/// Returns the pose of a driven body and its target.
+fn start_and_target(body: &MovingBody) -> Option<[Pose; 2]> {
+    if let Kind::Driven(to) = body.kind { Some([body.pose, to]) } else { None }
 }

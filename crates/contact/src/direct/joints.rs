@@ -95,8 +95,8 @@ impl SprungJoint {
         })
     }
 
-    /// Sets the largest friction along z, N, whose sticking is damped, N s/m.
-    pub fn rub(&mut self, limit: f64, damping: f64) {
+    /// Sets the largest friction along z, N, and the damping of sticking, N s/m.
+    pub fn set_friction(&mut self, limit: f64, damping: f64) {
         let damper = Spring { limit, ..Spring::new(0.0, damping) };
         self.set(ALONG, if limit > 0.0 { damper } else { Spring::new(0.0, 0.0) });
     }
@@ -112,7 +112,7 @@ impl SprungJoint {
         bodies[self.joint.parent.0].pose.rotation * Vector3::z() * force
     }
 
-    /// Replaces the spring of an axis, if any; a servo stays at its limit till the next step.
+    /// Replaces the spring of an axis of springs that are not coupled; a servo remains at its limit until the next step.
     pub fn set(&mut self, axis: usize, spring: Spring) {
         let Springs::Axes(axes) = &mut self.joint.springs else { return };
         axes[axis] = Some(spring);
@@ -196,7 +196,7 @@ impl SprungJoint {
             + self.by_parent * bodies[self.joint.parent.0].velocity
     }
 
-    /// Sets the servos that are at their limits; whether the last solution assumed the same.
+    /// Determines the servos at their limits; returns whether the last solution assumed the same ones.
     pub fn update_limits(&mut self, bodies: &[MovingBody], step: f64) -> bool {
         let Springs::Axes(axes) = &self.joint.springs else { return true };
         if axes.iter().flatten().all(|spring| spring.limit.is_infinite()) {
@@ -208,10 +208,10 @@ impl SprungJoint {
             let &Spring { stiffness, damping, target, limit } = spring;
             let end = self.position[i] + step * rate[i];
             let force = -stiffness * (end - target) - damping * rate[i];
-            // A margin, lest rounding flips it for ever.
+            // With a margin, so that rounding errors cannot alternate between both.
             let beyond = force.abs() > limit * (1.0 + 1e-9);
             let sign = if beyond { force.signum() } else { 0.0 };
-            // A friction that would turn over sticks first, or it would never do so.
+            // A friction whose sign would change sticks first; otherwise it would never stick.
             let turns = stiffness == 0.0 && sign == -before[i];
             self.saturated[i] = if turns { 0.0 } else { sign };
         }

@@ -14,17 +14,18 @@
 use crate::scene::Pose;
 use nalgebra::{Point3, Vector3};
 
-/// Contact patch: where the friction of a contact acts.
+/// Contact patch, which determines where the friction of its contact points acts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Patch {
-    /// Centre of pressure in the frame that its points were given in, m.
+    /// Centre of pressure in the frame of the given points, m.
     centre: Point3<f64>,
-    /// Distance of the points' friction from there, as a share of the points' own.
+    /// Distance from there at which the friction of a point acts, as a share of the distance of the point.
     share: f64,
 }
 
 impl Patch {
-    /// Creates a patch of the points of a contact, in the normal's frame, by their loads; if none, evenly.
+    /// Creates a patch of contact points with their loads; without any load, all points bear the same. Points and normal
+    /// are given in one frame.
     pub fn new(points: &[(Point3<f64>, f64)], normal: &Vector3<f64>) -> Self {
         let total: f64 = points.iter().map(|(_, load)| load).sum();
         let part = |load: f64| if total > 0.0 { load / total } else { 1.0 / points.len() as f64 };
@@ -39,15 +40,15 @@ impl Patch {
         Patch { centre, share }
     }
 
-    /// Returns the vector from a point to where its friction acts, m, outside of the patch's `frame`.
+    /// Returns the vector, m, from a point to the place where its friction acts; `frame` is the pose of the patch's frame.
     pub fn aside(&self, frame: &Pose, point: &Point3<f64>, normal: &Vector3<f64>) -> Vector3<f64> {
         let inward = (frame * self.centre - point) * (1.0 - self.share);
         inward - normal * inward.dot(normal)
     }
 }
 
-/// Returns half the sides of the pressed rectangle about the centre of pressure, m. The points are corners
-/// of a rectangle, so that the way from one to the nearest is along an edge.
+/// Returns the half sides of the pressed rectangle about the centre of pressure, m. The points are corners
+/// of a rectangle, so that the line from one to the nearest is an edge.
 fn pressed(points: &[(Point3<f64>, f64)], centre: &Point3<f64>, normal: &Vector3<f64>) -> [f64; 2] {
     let ways = points[1..].iter().map(|(point, _)| point - points[0].0);
     let nearest = ways.min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));

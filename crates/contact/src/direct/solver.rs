@@ -12,19 +12,19 @@ use super::cone::{Cone, Pull, State};
 use super::dense::{self, Six};
 use nalgebra::{Matrix4, Matrix4x3, Vector3, Vector4};
 
-/// Least out-of-balance force at which iterations end, N (N per 10 mm for moments).
+/// Out-of-balance force at which the iterations always end, N (for moments N per 10 mm).
 const FORCE_TOLERANCE: f64 = 1e-4;
 /// ... and as a share of the largest normal force.
 const FORCE_SHARE: f64 = 1e-3;
 /// Arm by which moments are compared with forces, m.
 const ARM: f64 = 0.01;
-/// Most Newton iterations in a step.
+/// Largest number of Newton iterations in a step.
 const ITERATIONS: usize = 60;
-/// Error of the sliding term that is ignored, m/s: 0.1 um in a step of 0.1 ms.
+/// Accepted error of the sliding term, m/s: 0.1 um in a step of 0.1 ms.
 const SLIDING_TOLERANCE: f64 = 1e-3;
-/// Most trials along a line.
+/// Largest number of evaluations of a line search.
 const SEARCHES: usize = 30;
-/// Most rounds of the fixed point.
+/// Largest number of fixed-point iterations.
 const ROUNDS: usize = 6;
 
 /// Returns the velocity of a point at `arm` from the centre of mass, m, by the angular velocity `w`: `w x arm`
@@ -36,7 +36,8 @@ pub(super) fn lever(arm: &Vector3<f64>, patch: &Vector3<f64>) -> Matrix4x3<f64> 
     lever
 }
 
-/// Returns the lever where friction acts `aside` of the point, m: it feels the turn about the normal there.
+/// Returns the lever for friction that acts at a distance `aside` from the point, m: rotation about the normal moves
+/// that place, not the point.
 pub(super) fn moved_aside(
     lever: &Matrix4x3<f64>,
     aside: &Vector3<f64>,
@@ -56,15 +57,15 @@ pub(super) fn relative(lever: &Matrix4x3<f64>, v: &Six) -> Vector4<f64> {
 /// Contact of the solver. Velocities and impulses have the four components of [`super::cone`].
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Contact {
-    /// Places of the first and second body in the reduced system, if they move freely.
+    /// Places of the first and second body in the reduced system; `None` for a fixed or driven body.
     pub place: [Option<usize>; 2],
     /// Relative velocity by the angular velocity of each body, m; see [`lever`].
     pub lever: [Matrix4x3<f64>; 2],
     /// Unit normal from the first to the second; its fourth component is 0.
     pub normal: Vector4<f64>,
-    /// Relative velocity by the bodies whose motion is given, m/s.
+    /// Relative velocity due to driven bodies, m/s.
     pub drift: Vector4<f64>,
-    /// Least approach velocity that the gap allows, `gap / h`, m/s.
+    /// Largest approach velocity that the gap allows, `gap / h`, m/s.
     pub bias: f64,
     /// Law of contact.
     pub cone: Cone,
@@ -148,7 +149,7 @@ impl Solver {
         }
         for _ in 0..ROUNDS {
             while iterations < ITERATIONS {
-                // A NaN goes on, and is found when the matrix is factored.
+                // A NaN passes this test; the factorization then fails.
                 let slope = self.slope(contacts);
                 let pressed = contacts.iter().map(|c| c.impulse.dot(&c.normal)).fold(0.0, f64::max);
                 if slope < (step * FORCE_TOLERANCE).max(FORCE_SHARE * pressed) {
@@ -188,7 +189,7 @@ impl Solver {
         }
     }
 
-    /// Computes the gradient; its largest component, N s.
+    /// Computes the gradient; returns its largest component, N s.
     fn slope(&mut self, contacts: &mut [Contact]) -> f64 {
         dense::multiply(&self.system, &self.velocities, &mut self.gradient);
         let rhs = self.rhs.as_flattened();
@@ -217,7 +218,7 @@ impl Solver {
             let largest = |part: &[f64]| Vector3::from_column_slice(part).amax();
             largest(&g[..3]).max(largest(&g[3..]) / ARM)
         };
-        // NaN must not pass for small: `max` would drop it.
+        // `f64::max` would ignore a NaN.
         self.gradient.iter().map(scaled).fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
     }
 
@@ -242,7 +243,7 @@ impl Solver {
         Some(())
     }
 
-    /// Returns the share of the direction to go: 1, or less if the potential rises again before.
+    /// Returns the step length along the direction: 1, or less if the potential rises before.
     fn search(&mut self, contacts: &[Contact]) -> f64 {
         let dot = |a: &[Six], b: &[Six]| {
             a.iter().zip(b).map(|(a, b)| Vector6::from(*a).dot(&Vector6::from(*b))).sum::<f64>()
@@ -268,7 +269,7 @@ impl Solver {
             if value.abs() < 0.1 * first.abs() {
                 return at;
             }
-            // Illinois: an end that stays counts half, lest the other creeps up to it.
+            // Illinois rule: the value of the end that stays is halved, which avoids slow convergence.
             if value < 0.0 {
                 low = (at, value);
                 high.1 *= 0.5;
@@ -285,7 +286,7 @@ impl Solver {
 /// `K` is symmetric, so `(K lever)^T` is `lever^T K`.
 fn add_stiffness(hessian: &mut [Six], bodies: usize, contact: &Contact, k: &Matrix4<f64>) {
     let [first, second] = contact.place;
-    let across = contact.lever.map(|lever| k * lever);
+    let across = [k * contact.lever[0], k * contact.lever[1]];
     let mut add = |sides: [usize; 2], [i, j]: [usize; 2]| {
         let sign = if i == j { 1.0 } else { -1.0 };
         let [left, right] = sides.map(|side| &across[side]);

@@ -14,16 +14,16 @@ use crate::scene::{
 use crate::{ContactForce, ContactPoint, Diverged, World};
 use nalgebra::{Vector3, Vector4};
 
-/// Most tries at finding the servos that are at their limits.
+/// Largest number of solutions of a step, to find the servos that are at their limits.
 const TRIES: usize = 5;
 
-/// Scene in motion; a clone continues with the same bits.
+/// Simulation of a scene; a clone continues bit for bit as the original does.
 #[derive(Clone)]
 pub(super) struct DirectWorld {
     pub settings: Direct,
     gravity: Vector3<f64>,
     pub bodies: Vec<MovingBody>,
-    /// Those of the scene, then that of the friction along an axis, if any.
+    /// Joints of the scene, then that of the axial friction, if any.
     joints: Vec<SprungJoint>,
     axial_friction: Option<AxialFriction>,
     /// Pairs of bodies that may touch.
@@ -38,12 +38,12 @@ pub(super) struct DirectWorld {
     pushes: Vec<Vector6>,
     solver: Solver,
     pub touches: Vec<Touch>,
-    /// Steps that are still to be divided.
+    /// Number of following steps that are divided.
     pub divided: usize,
     contacts: Vec<Contact>,
-    /// Whether a friction has patches.
+    /// Whether contacts have patches.
     patched: bool,
-    /// Contact patches, each with the number of its pair of geoms.
+    /// Contact patches, each with its number ([`Touch::geoms`]).
     patches: Vec<(usize, Patch)>,
 }
 
@@ -87,7 +87,7 @@ impl DirectWorld {
         let share = spring / (spring + self.settings.contact_damping);
         let normal = share / (spring * step);
         let tangent = 1.0 / (self.settings.stick_damping * step);
-        self.press(None);
+        self.add_patches();
         for touch in &self.touches {
             let pair = &self.pairs[touch.pair];
             let ends = [&self.bodies[pair.first.0], &self.bodies[pair.second.0]];
@@ -121,18 +121,16 @@ impl DirectWorld {
         self.patches.iter().find(|(at, _)| *at == geoms).map(|(_, patch)| patch)
     }
 
-    /// Sets the patches as these contacts load them; without contacts the new ones, evenly.
-    fn press(&mut self, contacts: Option<&[Contact]>) {
+    /// Adds the patches that are missing, as their contacts load them; before the contacts are set, evenly.
+    fn add_patches(&mut self) {
         if !self.patched {
             return;
         }
         let mut from = 0;
         for touches in self.touches.chunk_by(|a, b| a.geoms == b.geoms) {
             let Touch { geoms, pair, normal, friction, .. } = touches[0];
-            let load = |i: usize| contacts.map_or(0.0, |all| all[i].impulse.dot(&all[i].normal));
-            if friction.torsion == Torsion::Patch
-                && (contacts.is_some() || self.patch(geoms).is_none())
-            {
+            let load = |i: usize| self.contacts.get(i).map_or(0.0, |c| c.impulse.dot(&c.normal));
+            if friction.torsion == Torsion::Patch && self.patch(geoms).is_none() {
                 let frame = self.bodies[self.pairs[pair].first.0].pose.inverse();
                 let loaded = |(i, touch): (usize, &Touch)| (frame * touch.point, load(from + i));
                 let points: Vec<_> = touches.iter().enumerate().map(loaded).collect();
@@ -142,7 +140,7 @@ impl DirectWorld {
         }
     }
 
-    /// Solves for the velocities at the end of the step, with the servos as they are assumed.
+    /// Solves for the velocities at the end of the step, with the servos that are assumed to be at their limits.
     fn solve(&mut self) -> Option<()> {
         let step = self.settings.step_s;
         self.system.clear();
@@ -185,13 +183,13 @@ impl DirectWorld {
         }
     }
 
-    /// Sets the largest friction along an axis at the present poses.
-    fn rub(&mut self) {
+    /// Sets the limit of the axial friction at the present poses.
+    fn update_axial_friction(&mut self) {
         let (Some(along), Some(joint)) = (&self.axial_friction, self.joints.last_mut()) else {
             return;
         };
         let [parent, child] = [along.parent, along.child].map(|body| &self.bodies[body.0].pose);
-        joint.rub(along.largest(parent, child), self.settings.stick_damping);
+        joint.set_friction(along.largest(parent, child), self.settings.stick_damping);
     }
 
     /// Takes a step with the detected contacts.
@@ -208,7 +206,7 @@ impl DirectWorld {
         for joint in &mut self.joints {
             joint.locate(&self.bodies);
         }
-        self.rub();
+        self.update_axial_friction();
         self.set_contacts();
         for _ in 0..TRIES {
             self.solve()?;
@@ -225,9 +223,7 @@ impl DirectWorld {
         }
         self.add_forces();
         self.patches.clear();
-        let contacts = std::mem::take(&mut self.contacts);
-        self.press(Some(&contacts));
-        self.contacts = contacts;
+        self.add_patches();
         for body in &mut self.bodies {
             body.advance(step);
         }
@@ -235,8 +231,8 @@ impl DirectWorld {
     }
 }
 
-/// Returns the place of each dynamic body in the system, the number of those eliminated before contacts, and
-/// their number. Those that touch nothing come first, by number of joints: little fill-in.
+/// Returns the place of each dynamic body in the system, the number of bodies that are eliminated, and the number of
+/// dynamic bodies. Bodies without contacts come first, in the order of their number of joints: little fill-in.
 fn places(scene: &Scene) -> (Vec<usize>, usize, usize) {
     let dynamic = |i: &usize| !matches!(scene.bodies[*i].motion, Motion::Fixed | Motion::Driven);
     let touching = |i: &usize| scene.contacts.iter().any(|pair| pair.has(BodyId(*i)));
@@ -255,7 +251,7 @@ fn places(scene: &Scene) -> (Vec<usize>, usize, usize) {
 impl World for DirectWorld {
     fn step(&mut self) -> Result<(), Diverged> {
         self.detector.detect(&self.bodies, self.settings.step_s, &mut self.touches);
-        let done = if self.is_divided() { self.divided_step() } else { self.try_step() };
+        let done = if self.divides_step() { self.divided_step() } else { self.try_step() };
         done.ok_or(Diverged)
     }
 

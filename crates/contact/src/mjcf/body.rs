@@ -62,7 +62,7 @@ fn inside(scene: &Scene, body: usize, names: &[Vec<String>]) -> Vec<Element> {
     list
 }
 
-/// Returns the ends of the tendon that rubs along an axis which are on a body.
+/// Returns the ends of the tendon with the axial friction that are on a body.
 fn sites(along: &AxialFriction, body: BodyId) -> impl Iterator<Item = Element> {
     let ends = [(along.parent, ANCHOR, -FAR), (along.child, RUBBING, 0.0)];
     let own = ends.into_iter().filter(move |(of, ..)| *of == body);
@@ -83,14 +83,14 @@ fn element(Body { name, motion, .. }: &Body, pose: &Pose) -> Element {
 fn placed(element: Element, pose: &Pose) -> Element {
     let (at, q) = (pose.translation.vector, pose.rotation.coords);
     let placed = element.numbers("pos", [at.x, at.y, at.z]);
-    // The identity, as mostly, is left out.
+    // The identity is omitted.
     if q.xyz() == Vector3::zeros() { placed } else { placed.numbers("quat", [q.w, q.x, q.y, q.z]) }
 }
 
 fn inertial(motion: &Motion) -> Option<Element> {
     let inertia = match motion {
         Motion::Fixed | Motion::Mechanism(_) => return None,
-        // Nothing that it touches moves it.
+        // So heavy that no contact moves it.
         Motion::Driven => {
             Inertia { mass: HEAVY, centre: Point3::origin(), moments: Vector3::repeat(HEAVY) }
         }
@@ -101,9 +101,9 @@ fn inertial(motion: &Motion) -> Option<Element> {
     Some(element.numbers("diaginertia", inertia.moments.iter().copied()))
 }
 
-/// First the slides, so that their axes are the parent's.
+/// Returns the slides and hinges of a joint; the slides come first, so that their axes are those of the parent.
 fn joints(tie: &Joint) -> Vec<Element> {
-    // Coupled springs are refused before.
+    // `supports` rejects coupled springs.
     let Springs::Axes(axes) = &tie.springs else { return Vec::new() };
     let element = |(i, axis): (usize, &Option<Spring>)| {
         let spring = axis.as_ref()?;
@@ -180,7 +180,7 @@ pub(super) fn margin(shape: &Shape) -> f64 {
     }
 }
 
-/// Meshes of the hulls and cores.
+/// Returns the meshes of the hulls and cores.
 pub(super) fn assets(scene: &Scene) -> Element {
     let names = geom_names(scene);
     let geoms = scene.bodies.iter().flat_map(|body| &body.geoms).zip(names.iter().flatten());

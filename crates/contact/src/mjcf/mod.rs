@@ -1,18 +1,18 @@
-//! A scene as MJCF, the model format of MuJoCo (<https://mujoco.readthedocs.io>): for its
-//! viewer, and for the engine `mujoco`.
+//! Export of scenes as MJCF, the model format of MuJoCo (<https://mujoco.readthedocs.io>), for its
+//! viewer and for the engine `mujoco`.
 //!
 //! | scene | MJCF |
 //! | --- | --- |
-//! | fixed body | `mocap` body, so that it can be put elsewhere |
+//! | fixed body | `mocap` body, so that it can be moved |
 //! | driven body | a heavy body on three slides and three hinges, with position actuators |
 //! | free, carried body | free joint; `gravcomp` if its weight is carried |
 //! | joint | the child inside the parent, a slide or hinge for each axis that is not locked |
 //! | spring, servo | the joint's own stiffness and damping; a `position` actuator with its limit |
-//! | contacts of two bodies | a `pair` for each two of their geoms, and no others |
+//! | contacts of two bodies | a `pair` for each pair of their geoms, and no others |
 //! | friction along an axis | a tendon, whose `frictionloss` has to be set in each step |
 //!
-//! Rotations are turned one after the other (about x, then y, then z), where the
-//! scene has a rotation vector: the same for one axis, and to first order for all.
+//! The rotations of a joint are successive rotations about x, y and z, where those of a scene are a
+//! rotation vector: both agree for rotation about one axis, and to first order in general.
 
 mod body;
 mod contact;
@@ -26,8 +26,8 @@ use xml::Element;
 /// Step and stiffness of the simulation in MuJoCo.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct MjcfSettings {
-    /// Length of a step, s: the published one. In MuJoCo a contact begins once the surfaces
-    /// overlap; at twice the step a light plug under a sudden 70 N has sunk too far (check T10).
+    /// Length of a step, s: the published one. In MuJoCo a contact begins when the surfaces
+    /// overlap; with twice the step, a light plug under a sudden 70 N penetrates too far (check T10).
     pub step_s: f64,
     /// Stiffness of a contact point, N/m: that of the engine `direct`.
     pub contact_stiffness: f64,
@@ -35,12 +35,12 @@ pub struct MjcfSettings {
     pub contact_damping: f64,
     /// Damping of a sticking point, N s/m: that of the engine `direct`.
     pub stick_damping: f64,
-    /// Mass that a contact adds to the bodies that it brakes, kg: so little that T10 holds. With
-    /// less its damper would be too stiff for a step, beyond about `damping * step / mass = 1`.
+    /// Mass that a contact adds to its bodies, kg: small enough for check T10. With
+    /// less, its damper would be too stiff for a step, beyond about `damping * step / mass = 1`.
     pub contact_mass: f64,
-    /// Rate at which the friction of plug and socket brakes a point that is to stick, 1/s. The
-    /// higher it is, the higher a sliding point floats (see `contact.rs`, check T12); the lower,
-    /// the more of the contact's sinking is taken for sliding (T10).
+    /// Rate at which the friction of plug and socket stops a sticking point, 1/s. A higher rate increases the
+    /// height at which a sliding point floats (see `contact.rs`, check T12); with a lower one, more of the
+    /// penetration of the contact appears as sliding (T10).
     pub friction_rate: f64,
     /// Tolerance of MuJoCo's solver.
     pub tolerance: f64,
@@ -72,12 +72,12 @@ const VIEWER_FREQUENCY: f64 = 100.0;
 
 /// Feature of a scene that MJCF lacks.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{part}` cannot be written as MJCF: it has no {lacking}")]
+#[error("`{part}` cannot be written as MJCF: it has no {feature}")]
 pub struct NotMjcf {
     /// Body or joint of the scene.
     pub part: String,
     /// Missing feature.
-    pub lacking: &'static str,
+    pub feature: &'static str,
 }
 
 /// Checks that a scene can be written.
@@ -85,9 +85,9 @@ pub struct NotMjcf {
 /// # Errors
 /// If it has a feature that MJCF lacks.
 pub fn supports(scene: &Scene) -> Result<(), NotMjcf> {
-    let refuse = |part: &str, lacking| Err(NotMjcf { part: part.to_owned(), lacking });
-    if let Some((part, lacking)) = lacking(scene).next_back() {
-        return refuse(part, lacking);
+    let refuse = |part: &str, feature| Err(NotMjcf { part: part.to_owned(), feature });
+    if let Some((part, feature)) = lacking(scene).next_back() {
+        return refuse(part, feature);
     }
     for (i, joint) in scene.joints.iter().enumerate() {
         let child = &scene.bodies[joint.child.0];
@@ -111,7 +111,7 @@ pub fn supports(scene: &Scene) -> Result<(), NotMjcf> {
 pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<String, NotMjcf> {
     supports(scene)?;
     let g = scene.gravity;
-    // A diverged state must stay visible, not be reset.
+    // A diverged state must remain visible and not be reset.
     let flags = Element::new("flag").with("autoreset", "disable");
     let flags = match settings.multiccd {
         true => flags,
@@ -149,13 +149,13 @@ pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<Strin
     Ok(units.to_owned() + &model.text(0))
 }
 
-/// Name of the tendon that rubs along an axis, and of its site on the plug.
+/// Name of the tendon with the axial friction, and of its site on the plug.
 pub(crate) const RUBBING: &str = "mating force";
 /// Name of the site at the other end of that tendon.
 const ANCHOR: &str = "anchor of the mating force";
-/// Distance of that site below the socket's origin, m: a tendon that is 1 mm askew pulls aside by 0.1 promille.
+/// Distance of that site below the socket's origin, m: a lateral offset of 1 mm inclines the tendon by 0.1 mrad.
 const FAR: f64 = 10.0;
-/// Impedance of a friction that sticks: the largest that MuJoCo takes.
+/// Impedance of sticking friction: the largest that MuJoCo accepts.
 const STICKING: f64 = 0.9999;
 
 /// Returns the tendon of a friction along an axis and, as custom numbers, its largest force by depth: MJCF has no
@@ -166,7 +166,7 @@ fn tendon(along: &AxialFriction, step_s: f64) -> [Element; 2] {
         .with("name", RUBBING)
         .numbers("rgba", [0.0; 4])
         .with("frictionloss", 0)
-        // The stiffest that a step allows, as a point of contact sticks.
+        // As stiff as the step allows, like a sticking contact point.
         .numbers("solreffriction", [2.0 * step_s, 1.0])
         .numbers("solimpfriction", [STICKING, STICKING, 1e-3])
         .holding([site(ANCHOR), site(RUBBING)]);

@@ -1,14 +1,14 @@
 //! A second, independent engine: MuJoCo, confined to this module.
 //!
-//! MuJoCo reads the scene as MJCF ([`crate::mjcf`]). The rest of a trial goes into the model's
-//! numbers: the force on a driven body before each step, the gains of a servo with its spring.
+//! MuJoCo reads the scene as MJCF ([`crate::mjcf`]). During a trial, numbers of the model are changed:
+//! the force on a driven body before each step, the gains of a servo when its spring is replaced.
 
-// `world` cannot fail: a scene that `supports` was not asked about may end here, with MuJoCo's message.
+// `world` returns no error: it panics with MuJoCo's message on a scene that `supports` would reject.
 #![allow(clippy::panic)]
 
 mod world;
 
-use super::mjcf::{self, MjcfSettings};
+use super::mjcf::{self, MjcfSettings, NotMjcf};
 use super::{Engine, Unsupported, World};
 use crate::scene::Scene;
 use mujoco_rs::prelude::{MjModel, MjtObjBase};
@@ -25,8 +25,8 @@ impl Mujoco {
     /// Returns the model of the scene.
     fn model(&self, scene: &Scene) -> Result<MjModel, Unsupported> {
         let text = mjcf::write(scene, "scene", &self.settings).map_err(|error| {
-            let (part, lacking) = (error.part, error.lacking);
-            Unsupported::Lacking { engine: self.version(), part, lacking }
+            let NotMjcf { part, feature } = error;
+            Unsupported::Lacking { engine: self.version(), part, feature }
         })?;
         MjModel::from_xml_string(&text).map_err(|error| {
             let reason = error.to_string().trim_end().to_owned();

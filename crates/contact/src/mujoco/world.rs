@@ -2,7 +2,7 @@
 
 use crate::mjcf::{HEAVY, RUBBING, axis_name, driven_axis_name, geom_names, servo};
 use crate::scene::{
-    AxialFriction, Body, BodyId, ContactPair, Joint, JointId, Motion, Pose, Scene, Spring, Springs,
+    AxialFriction, Body, BodyId, ContactPair, Joint, JointId, Motion, Pose, Scene, Spring,
 };
 use crate::{ContactForce, Diverged, World};
 use mujoco_rs::prelude::{MjData, MjModel, MjtObjBase};
@@ -18,7 +18,8 @@ pub(super) struct MujocoWorld {
     /// State, and model, which snapshots share until a spring is replaced.
     data: MjData<Arc<MjModel>>,
     bodies: Vec<BodyPlaces>,
-    joints: Vec<[AxisPlace; 6]>,
+    /// Servos by joint and axis.
+    servos: Vec<[Option<Servo>; 6]>,
     /// Body of the scene that a geom belongs to.
     owners: Vec<BodyId>,
     pairs: Vec<ContactPair>,
@@ -36,8 +37,6 @@ struct Rubbing {
     velocity: usize,
     /// By pair: 1 if its force acts on the child or on what hangs on it, -1 if so does its reaction.
     signs: Vec<f64>,
-    /// Largest force now, N.
-    limit: f64,
 }
 
 /// Places of a body in MuJoCo's arrays.
@@ -55,26 +54,16 @@ struct Driven {
     /// Places of its six joints in MuJoCo's positions and velocities.
     position: [usize; 6],
     velocity: [usize; 6],
-    now: [f64; 6],
+    /// Positions at the end of the next step.
     next: [f64; 6],
 }
 
-/// Axis of a joint in MuJoCo's arrays.
+/// Actuator of a servo, with its constant gain.
 #[derive(Clone, Copy)]
-enum AxisPlace {
-    Locked,
-    /// Spring of the joint itself.
-    Passive {
-        joint: usize,
-        position: usize,
-        velocity: usize,
-    },
-    /// Actuator, with its constant gain.
-    Servo {
-        actuator: usize,
-        gain: f64,
-        spring: Spring,
-    },
+struct Servo {
+    actuator: usize,
+    gain: f64,
+    spring: Spring,
 }
 
 impl MujocoWorld {
@@ -90,8 +79,8 @@ impl MujocoWorld {
             }
         }
         let bodies = scene.bodies.iter().map(|body| body_places(&model, body)).collect();
-        let places = |joint| std::array::from_fn(|axis| axis_place(&model, joint, axis));
-        let joints = scene.joints.iter().map(places).collect();
+        let servos = |joint| std::array::from_fn(|axis| servo_of(&model, joint, axis));
+        let servos = scene.joints.iter().map(servos).collect();
         let mut owners = vec![BodyId(usize::MAX); model.geom_bodyid().len()];
         for (body, names) in geom_names(scene).iter().enumerate() {
             for name in names {
@@ -106,32 +95,29 @@ impl MujocoWorld {
             let own = |body| body == along.child || scene.joints.iter().any(|j| hangs(j, body));
             let sign = |body| f64::from(u8::from(own(body)));
             let signs = scene.contacts.iter().map(|pair| sign(pair.second) - sign(pair.first));
-            Rubbing { tendon, velocity, signs: signs.collect(), limit: 0.0, along }
+            Rubbing { tendon, velocity, signs: signs.collect(), along }
         });
         let mut data = MjData::new(Arc::new(model));
         data.kinematics();
         let forces = vec![ContactForce::default(); scene.contacts.len()];
         let pairs = scene.contacts.clone();
-        MujocoWorld { data, bodies, joints, owners, pairs, forces, axial_friction }
+        MujocoWorld { data, bodies, servos, owners, pairs, forces, axial_friction }
     }
 
-    /// Sets the largest friction along an axis at the present poses.
-    fn rub(&mut self) {
-        let Some(Rubbing { along, tendon, limit: old, .. }) = &self.axial_friction else { return };
+    /// Sets the limit of the axial friction at the present poses.
+    fn update_axial_friction(&mut self) {
+        let Some(Rubbing { along, tendon, .. }) = &self.axial_friction else { return };
         let limit = along.largest(&self.pose(along.parent), &self.pose(along.child));
-        let (tendon, changes) = (*tendon, limit != *old);
-        if changes {
+        let tendon = *tendon;
+        if self.data.model().tendon_frictionloss()[tendon] != limit {
             self.change(|model| model.tendon_frictionloss_mut()[tendon] = limit);
         }
-        self.axial_friction.iter_mut().for_each(|rubbing| rubbing.limit = limit);
     }
 
     /// Adds the friction along an axis: what constrains the child beside its contacts and those of what hangs on it.
     fn add_axial_friction(&mut self) {
-        let Some(Rubbing { along, velocity, signs, limit, .. }) = &self.axial_friction else {
-            return;
-        };
-        if *limit == 0.0 {
+        let Some(Rubbing { along, tendon, velocity, signs }) = &self.axial_friction else { return };
+        if self.data.model().tendon_frictionloss()[*tendon] == 0.0 {
             return;
         }
         let axis = self.pose(along.parent).rotation * Vector3::z();
@@ -153,7 +139,8 @@ impl MujocoWorld {
         let step = self.step_s();
         for driven in self.bodies.iter().filter_map(|body| body.driven.as_ref()) {
             for axis in 0..6 {
-                let rate = (driven.next[axis] - driven.now[axis]) / step;
+                let now = self.data.qpos()[driven.position[axis]];
+                let rate = (driven.next[axis] - now) / step;
                 let dof = driven.velocity[axis];
                 let push = HEAVY * (rate - self.data.qvel()[dof]) / step;
                 self.data.qfrc_applied_mut()[dof] = push;
@@ -163,10 +150,9 @@ impl MujocoWorld {
 
     /// Sets the driven bodies' coordinates without rounding.
     fn arrive(&mut self) {
-        for driven in self.bodies.iter_mut().filter_map(|body| body.driven.as_mut()) {
-            driven.now = driven.next;
-            for axis in 0..6 {
-                self.data.qpos_mut()[driven.position[axis]] = driven.now[axis];
+        for driven in self.bodies.iter().filter_map(|body| body.driven.as_ref()) {
+            for (position, next) in driven.position.into_iter().zip(driven.next) {
+                self.data.qpos_mut()[position] = next;
             }
         }
     }
@@ -202,7 +188,7 @@ impl MujocoWorld {
 impl World for MujocoWorld {
     fn step(&mut self) -> Result<(), Diverged> {
         self.steer();
-        self.rub();
+        self.update_axial_friction();
         self.data.step();
         self.add_forces();
         self.add_axial_friction();
@@ -238,32 +224,22 @@ impl World for MujocoWorld {
     }
 
     /// # Panics
-    /// If a plain spring, without a limit from the start, is given one.
+    /// If the axis is not a servo.
     fn set_spring(&mut self, joint: JointId, axis: usize, spring: Spring) {
-        match self.joints[joint.0][axis] {
-            AxisPlace::Locked => {}
-            AxisPlace::Passive { joint, position, velocity } => {
-                assert!(spring.limit.is_infinite(), "a plain spring has no limit");
-                self.change(|model| {
-                    model.jnt_stiffness_mut()[joint] = spring.stiffness;
-                    model.dof_damping_mut()[velocity] = spring.damping;
-                    model.qpos_spring_mut()[position] = spring.target;
-                });
-            }
-            AxisPlace::Servo { actuator, gain, spring: old } => {
-                if (Spring { target: old.target, ..spring }) != old {
-                    self.change(|model| {
-                        let bias = &mut model.actuator_biasprm_mut()[actuator];
-                        (bias[1], bias[2]) = (-spring.stiffness, -spring.damping);
-                        model.actuator_forcerange_mut()[actuator] = [-spring.limit, spring.limit];
-                        model.actuator_forcelimited_mut()[actuator] = spring.limit.is_finite();
-                    });
-                    self.joints[joint.0][axis] = AxisPlace::Servo { actuator, gain, spring };
-                }
-                // force = gain * control - stiffness * position - damping * rate
-                self.data.ctrl_mut()[actuator] = spring.stiffness / gain * spring.target;
-            }
+        let Some(Servo { actuator, gain, spring: old }) = self.servos[joint.0][axis] else {
+            panic!("axis {axis} of joint {} is not a servo", joint.0)
+        };
+        if (Spring { target: old.target, ..spring }) != old {
+            self.change(|model| {
+                let bias = &mut model.actuator_biasprm_mut()[actuator];
+                (bias[1], bias[2]) = (-spring.stiffness, -spring.damping);
+                model.actuator_forcerange_mut()[actuator] = [-spring.limit, spring.limit];
+                model.actuator_forcelimited_mut()[actuator] = spring.limit.is_finite();
+            });
+            self.servos[joint.0][axis] = Some(Servo { actuator, gain, spring });
         }
+        // force = gain * control - stiffness * position - damping * rate
+        self.data.ctrl_mut()[actuator] = spring.stiffness / gain * spring.target;
     }
 
     fn push(&mut self, body: BodyId, force: Vector3<f64>, moment: Vector3<f64>) {
@@ -299,29 +275,16 @@ fn body_places(model: &MjModel, body: &Body) -> BodyPlaces {
             start: body.pose,
             position: joints.map(|joint| model.jnt_qposadr()[joint] as usize),
             velocity: joints.map(|joint| model.jnt_dofadr()[joint] as usize),
-            now: [0.0; 6],
             next: [0.0; 6],
         }
     });
     BodyPlaces { id: index, mocap: usize::try_from(model.body_mocapid()[index]).ok(), driven }
 }
 
-fn axis_place(model: &MjModel, joint: &Joint, axis: usize) -> AxisPlace {
-    let Springs::Axes(axes) = &joint.springs else { return AxisPlace::Locked };
-    if axes[axis].is_none() {
-        return AxisPlace::Locked;
-    }
-    let name = axis_name(joint, axis);
-    if let Some(&spring) = servo(joint, axis) {
-        let actuator = id(model, MjtObjBase::mjOBJ_ACTUATOR, &name);
-        return AxisPlace::Servo { actuator, gain: model.actuator_gainprm()[actuator][0], spring };
-    }
-    let joint = id(model, MjtObjBase::mjOBJ_JOINT, &name);
-    AxisPlace::Passive {
-        joint,
-        position: model.jnt_qposadr()[joint] as usize,
-        velocity: model.jnt_dofadr()[joint] as usize,
-    }
+fn servo_of(model: &MjModel, joint: &Joint, axis: usize) -> Option<Servo> {
+    let spring = *servo(joint, axis)?;
+    let actuator = id(model, MjtObjBase::mjOBJ_ACTUATOR, &axis_name(joint, axis));
+    Some(Servo { actuator, gain: model.actuator_gainprm()[actuator][0], spring })
 }
 
 /// Returns the translations, and the angles of turns about x, then y, then z.

@@ -53,13 +53,13 @@ impl Engine for Rapier {
         format!("rapier3d-f64 {}", rapier3d_f64::VERSION)
     }
 
-    fn turns_with_friction(&self) -> bool {
+    fn has_torsional_friction(&self) -> bool {
         false
     }
 
     fn supports(&self, scene: &Scene) -> Result<(), Unsupported> {
-        let Some((part, lacking)) = lacking(scene).next() else { return Ok(()) };
-        Err(Unsupported::Lacking { engine: self.version(), part: part.to_owned(), lacking })
+        let Some((part, feature)) = lacking(scene).next() else { return Ok(()) };
+        Err(Unsupported::Lacking { engine: self.version(), part: part.to_owned(), feature })
     }
 
     /// # Panics

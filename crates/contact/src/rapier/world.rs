@@ -11,10 +11,10 @@ use rapier3d_f64::prelude as rp;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Units of length in a metre: parry keeps the points and the normal of two shapes until they have slid by
-/// 0.001 units, which in metres is as much as an edge is round. Masses and times are SI.
+/// Units of length in a metre: parry reuses the points and the normal of two shapes until they have slid by
+/// 0.001 units, which in metres is as large as the radius of an edge. Masses and times are in SI units.
 const LENGTH: f64 = 1e3;
-/// Units of a moment, and of a moment of inertia, in SI's.
+/// Units of a moment, and of a moment of inertia, in the SI unit.
 const MOMENT: f64 = LENGTH * LENGTH;
 
 pub(super) struct RapierWorld {
@@ -65,8 +65,8 @@ impl RapierWorld {
         RapierWorld { world, bodies, joints, frictions, axial_friction }
     }
 
-    /// Sets the largest friction along an axis at the present poses.
-    fn rub(&mut self) {
+    /// Sets the limit of the axial friction at the present poses.
+    fn update_axial_friction(&mut self) {
         let Some((along, joint)) = &self.axial_friction else { return };
         let limit = along.largest(&self.pose(along.parent), &self.pose(along.child));
         if let Some(joint) = self.world.impulse_joints.get_mut(*joint, true) {
@@ -90,9 +90,9 @@ impl RapierWorld {
 
 impl World for RapierWorld {
     fn step(&mut self) -> Result<(), Diverged> {
-        self.rub();
+        self.update_axial_friction();
         self.world.step_with_events(&*self.frictions, &());
-        // rapier freezes a body that left the finite numbers and reports it for one step only.
+        // rapier freezes a body whose state is not finite, and reports it in one step only.
         if self.world.quarantine().is_empty() { Ok(()) } else { Err(Diverged) }
     }
 
@@ -175,7 +175,7 @@ fn add_pair(
             (Some(a), Some(b)) if (a, b) == (second, first) => -1.0,
             _ => continue,
         };
-        // A point that is not active this time keeps what it bore when it last was.
+        // A point that is not active keeps the impulse of the last step in which it was.
         let active = || {
             let solved = manifold.data.solver_contacts.iter();
             solved.map(|contact| &manifold.points[contact.contact_indices()[0] as usize].data)
@@ -236,7 +236,7 @@ fn insert_body(
     group: rp::InteractionGroups,
 ) -> rp::RigidBodyHandle {
     let builder = match &body.motion {
-        // A mechanism's end is refused before; see `supports`.
+        // `supports` rejects mechanisms.
         Motion::Fixed | Motion::Mechanism(_) => rp::RigidBodyBuilder::fixed(),
         Motion::Driven => rp::RigidBodyBuilder::kinematic_position_based(),
         Motion::Free(inertia) | Motion::Carried(inertia) => {
@@ -278,7 +278,7 @@ fn generic_joint(joint: &Joint) -> rp::GenericJoint {
     made.set_local_frame1(shapes::pose(&joint.in_parent, LENGTH));
     made.set_local_frame2(shapes::pose(&joint.in_child, LENGTH));
     made.set_contacts_enabled(false);
-    // Coupled springs are refused before; see `supports`.
+    // `supports` rejects coupled springs.
     let Springs::Axes(axes) = &joint.springs else { return made };
     for (axis, spring) in JOINT_AXES.into_iter().zip(axes) {
         match spring {

@@ -1,8 +1,8 @@
-//! A printed finger for the printer: a closed solid, its profile, a sheet to print it by, and
-//! settings for slicers that fill its outline themselves.
+//! Files for printing a finger: a closed solid, its profile, a print sheet, and settings for slicers
+//! that fill the outline with their own infill.
 //!
-//! Files are in millimetres: X from the tip to the base, Y from back (0) to front side, Z the
-//! depth, in which the profile is printed layer by layer.
+//! Files are in millimetres: X from the tip to the base, Y from the back (0) to the front side, Z along
+//! the depth, in which the layers of the print follow one another.
 
 pub mod prism;
 pub mod profile;

@@ -13,7 +13,7 @@ use zip::CompressionMethod;
 use zip::result::ZipResult;
 use zip::write::{SimpleFileOptions, ZipWriter};
 
-/// Closed surface, its corners rounded as in files, so that the checks hold for those.
+/// Closed surface; its corners are rounded as in files, so that the checks apply to the files.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prism {
     /// Corners, mm.
@@ -54,7 +54,7 @@ impl Prism {
         Prism::new(&outer, &voids, geometry.finger.outline.depth / MM)?.with_block(geometry)
     }
 
-    /// Returns the surface of the finger without openings, for slicers that fill it with their own infill.
+    /// Returns the checked surface of the finger without openings, for slicers that fill it with their own infill.
     ///
     /// # Errors
     /// As of [`Prism::finger`].
@@ -76,10 +76,10 @@ impl Prism {
         Prism::new(&block.map(Point2::from).to_vec(), &[], outline.depth / MM)?.with_block(geometry)
     }
 
-    /// Adds the block that has the finger's holes, if there is one: a closed surface of its own that
-    /// overlaps the finger's. What lies in either is solid (3MF Core Specification 1.3, 4.1: the
-    /// positive fill rule), and slicers read STL files so, too.
-    fn with_block(mut self, geometry: &Geometry) -> Result<Self, PrismError> {
+    /// Adds the block with the finger's holes, if there is one: a separate closed surface that
+    /// overlaps the finger. The inside of either is solid (3MF Core Specification 1.3, 4.1: the
+    /// positive fill rule); slicers read STL files in the same way.
+    fn with_block(self, geometry: &Geometry) -> Result<Self, PrismError> {
         let Some((holes, block)) = geometry.block() else { return Ok(self) };
         let outline = &geometry.finger.outline;
         let [u, v] = holes.axis.across().map(|direction| direction as usize);
@@ -94,18 +94,16 @@ impl Prism {
         let rings: Vec<Ring> =
             rings.map(|ring| ring.iter().map(|p| placed(p.x, p.y)).collect()).collect();
         let [start, end] = ends[axis].map(|end| end / MM + origin[axis]);
-        let block = Prism::new(&outer.map(|[x, y]| placed(x, y)).to_vec(), &rings, end - start)?;
-        let first = self.corners.len() as u32;
-        self.corners.extend(block.corners.iter().map(|&[x, y, z]| {
-            let mut corner = [0.0; 3];
+        let outer = outer.map(|[x, y]| placed(x, y)).to_vec();
+        let mut block = Prism::new(&outer, &rings, end - start)?;
+        for corner in &mut block.corners {
+            let [x, y, z] = *corner;
             (corner[u], corner[v], corner[axis]) = (x, y, z + start as f32);
-            corner
-        }));
-        self.triangles.extend(block.triangles.iter().map(|t| t.map(|corner| corner + first)));
-        self.closed()
+        }
+        self.and(&block).closed()
     }
 
-    /// Extrudes a ring less holes (clockwise) from 0 to `depth`, mm.
+    /// Extrudes a ring minus its holes (clockwise) from 0 to `depth`, mm.
     fn new(outer: &Ring, holes: &[Ring], depth: f64) -> Result<Self, PrismError> {
         let mesh = Mesh::coarsest(outer, holes).map_err(|error| {
             PrismError(format!("the profile cannot be divided into triangles: {error}"))
@@ -139,23 +137,19 @@ impl Prism {
         Ok(prism)
     }
 
+    /// Returns the surface if each edge belongs to two triangles, once in each direction. Corners are identified by
+    /// their positions, as in a file without numbers of corners.
     fn closed(self) -> Result<Self, PrismError> {
-        match self.open_edges() {
-            0 => Ok(self),
-            open => Err(PrismError(format!("{open} edges do not belong to exactly two triangles"))),
-        }
-    }
-
-    /// Returns the number of edges that are not met exactly twice, once each way; corners are told apart by
-    /// their places alone, as in a file without numbers of corners.
-    fn open_edges(&self) -> usize {
         let place = |corner: u32| self.corners[corner as usize].map(f32::to_bits);
         let mut met: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
         for [a, b] in self.triangles.iter().flat_map(sides) {
             *met.entry([place(a), place(b)]).or_default() += 1;
         }
         let twice = |[a, b]: &[[u32; 3]; 2]| met[&[*a, *b]] == 1 && met.get(&[*b, *a]) == Some(&1);
-        met.keys().filter(|edge| !twice(edge)).count()
+        match met.keys().filter(|edge| !twice(edge)).count() {
+            0 => Ok(self),
+            open => Err(PrismError(format!("{open} edges do not belong to exactly two triangles"))),
+        }
     }
 
     /// Returns the volume that the surface encloses, mm3.
@@ -215,7 +209,7 @@ pub(super) fn three_mf(parts: &[&Prism], title: &str, more: &[(&str, &str)]) -> 
         ("_rels/.rels", RELATIONS),
         ("3D/3dmodel.model", &*model(parts, title)),
     ];
-    // No clock: the entries carry the format's first date.
+    // The entries have the first date of the format, so that equal contents give equal files.
     let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
     for &(name, text) in files.iter().chain(more) {
         zip.start_file(name, options)?;
@@ -224,7 +218,7 @@ pub(super) fn three_mf(parts: &[&Prism], title: &str, more: &[(&str, &str)]) -> 
     Ok(zip.finish()?.into_inner())
 }
 
-/// Returns the number of the object that is built of this many surfaces.
+/// Returns the number of the object that consists of this number of surfaces.
 pub(super) fn object(parts: usize) -> usize {
     if parts == 1 { 1 } else { parts + 1 }
 }

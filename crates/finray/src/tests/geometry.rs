@@ -1,4 +1,4 @@
-//! The profile: where ribs lie, its area, and what cannot be built.
+//! Profile: positions of the ribs, area, mesh, and combinations of parts that are rejected.
 
 use super::{finray9, infill};
 use crate::geometry::Geometry;
@@ -12,9 +12,9 @@ use input::units::{GRAM, MM};
 
 const MIDDLE: Design = Design { density_percent: 20.0, direction_deg: 20.0, phase_mm: None };
 
-/// The CAD's ribs at 10 %, 0 degrees: centres at X = 4.143 + 3.81 n mm.
+/// In the CAD, ribs at 10 % and 0 degrees have their centre lines at X = 4.143 + 3.81 n mm.
 #[test]
-fn ribs_lie_where_the_cad_has_them() {
+fn ribs_have_the_positions_of_the_cad() {
     let geometry = infill(10.0, 0.0);
     let span = |void: &Ring| {
         let x = void.iter().map(|p| p.x / MM);
@@ -29,9 +29,8 @@ fn ribs_lie_where_the_cad_has_them() {
     }
 }
 
-/// Ribs that lean lean their front end towards the base.
 #[test]
-fn a_positive_direction_leans_the_front_end_to_the_base() {
+fn a_positive_direction_tilts_the_front_ends_of_the_ribs_towards_the_base() {
     let geometry = infill(20.0, 30.0);
     let edges = polygon::edges(&geometry.voids[8]).map(|(a, b)| b - a);
     let long = edges.max_by(|a, b| a.norm().total_cmp(&b.norm())).unwrap();
@@ -39,7 +38,7 @@ fn a_positive_direction_leans_the_front_end_to_the_base() {
 }
 
 #[test]
-fn mesh_and_profile_have_the_same_area_and_every_ring_its_solid_to_the_left() {
+fn mesh_and_profile_have_the_same_area_and_the_solid_is_left_of_every_ring() {
     for (density, direction) in [(10.0, 0.0), (15.0, 30.0), (25.0, 40.0), (30.0, -20.0)] {
         let geometry = infill(density, direction);
         let Geometry { outer, voids, .. } = &geometry;
@@ -54,17 +53,17 @@ fn mesh_and_profile_have_the_same_area_and_every_ring_its_solid_to_the_left() {
     }
 }
 
-/// The outline of the CAD, its arc exact, less its openings, times depth and density.
+/// The mass is the area of the profile times depth and density.
 #[test]
-fn the_finger_weighs_some_grams() {
+fn the_finger_has_a_mass_of_some_grams() {
     let geometry = infill(20.0, 20.0);
     assert!((4.0..6.0).contains(&(geometry.mass() / GRAM)), "{} g", geometry.mass() / GRAM);
     assert_eq!(geometry.mass(), geometry.area() * 12.0 * MM * 1270.0);
 }
 
-/// At any phase and direction, in fine steps: no sliver stops the mesh.
+/// Phases and directions in fine steps: narrow openings do not make the mesh fail.
 #[test]
-fn every_phase_meshes() {
+fn every_phase_can_be_meshed() {
     for step in 0..40 {
         let phase_mm = Some(1.905 * f64::from(step) / 40.0);
         let design = Design { phase_mm, direction_deg: f64::from(step), ..MIDDLE };
@@ -75,7 +74,7 @@ fn every_phase_meshes() {
 }
 
 #[test]
-fn design_parameters_move_what_they_name() {
+fn shape_parameters_change_stiffness_and_area() {
     let middle = |change: fn(&mut PrintedFinger)| {
         let mut finger = finray9();
         change(&mut finger);
@@ -95,7 +94,7 @@ fn design_parameters_move_what_they_name() {
 }
 
 #[test]
-fn parts_that_do_not_fit_are_refused_by_their_key() {
+fn errors_about_parts_that_do_not_fit_name_the_key() {
     type Change = fn(&mut PrintedFinger);
     let cases: [(&str, Design, Change); 12] = [
         ("ribs.thickness_mm", MIDDLE, |finger| finger.ribs.thickness = 2.0 * MM),
@@ -120,7 +119,7 @@ fn parts_that_do_not_fit_are_refused_by_their_key() {
 }
 
 #[test]
-fn a_picture_shows_every_opening_at_rest_and_bent() {
+fn a_picture_shows_every_opening_at_rest_and_under_load() {
     let geometry = infill(20.0, 20.0);
     let svg = picture::svg(&geometry, [-2.0, 0.0]).unwrap();
     assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));

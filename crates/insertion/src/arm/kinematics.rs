@@ -10,11 +10,12 @@ use nalgebra::{
 
 /// Damping `l` far from the target, m: steps near a singular pose stay bounded.
 const DAMPING: f64 = 0.02;
-/// Steps at most; a start near home takes fewer than twenty.
+/// Largest number of steps; a start near home takes fewer than twenty.
 const STEPS: usize = 200;
+/// Largest error of a solution, m and rad.
 const EXACT: f64 = 1e-10;
 
-/// The arm at some joint angles, base frame.
+/// Posture of an arm at some joint angles, base frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Posture {
     /// Frames of the links, turned with their joints.
@@ -26,7 +27,7 @@ pub struct Posture {
 }
 
 impl Arm {
-    /// Link frames, joint axes and TCP at these angles.
+    /// Returns link frames, joint axes and TCP at these angles.
     pub fn at(&self, angles: &Angles) -> Posture {
         let mut links = [Pose::identity(); JOINTS];
         let mut axes = [Vector3::zeros(); JOINTS];
@@ -41,7 +42,8 @@ impl Arm {
         Posture { links, axes, tcp: frame * self.tool }
     }
 
-    /// `M(q)` of the kinetic energy `q' M q' / 2`, kg m2: `m Jv^T Jv + Jw^T I Jw` over the links.
+    /// Returns the mass matrix `M(q)` of the kinetic energy `q' M q' / 2`, kg m2: the sum of `m Jv^T Jv + Jw^T I Jw` over
+    /// the links.
     pub fn mass(&self, posture: &Posture) -> Matrix6<f64> {
         (0..JOINTS)
             .map(|i| {
@@ -55,7 +57,7 @@ impl Arm {
             .sum()
     }
 
-    /// Angles near home that bring the TCP to a pose in the base frame.
+    /// Returns the angles near home that bring the TCP to a pose in the base frame.
     ///
     /// # Errors
     /// If the pose is out of reach or singular.
@@ -69,7 +71,7 @@ impl Arm {
                 return Ok(angles);
             }
             let jacobian = posture.tcp_jacobian();
-            // The damping goes with the error, so that the last steps are Newton's.
+            // The damping is proportional to the error, so that the last steps are Newton steps.
             let damping = (DAMPING * error.norm().min(1.0)).powi(2);
             let square = jacobian * jacobian.transpose() + Matrix6::from_diagonal_element(damping);
             let step = square.cholesky().ok_or(ArmError::Singular)?.solve(&error);
@@ -81,8 +83,8 @@ impl Arm {
 }
 
 impl Posture {
-    /// Velocity (rows 0..3) and angular velocity (rows 3..6) in base axes of a point
-    /// that is fixed to a link, by the joint rates: 6x6, m and 1.
+    /// Returns the Jacobian of a point that is fixed to a link: velocity (rows 0..3, m) and angular velocity (rows
+    /// 3..6) in base axes by the joint rates.
     pub fn jacobian(&self, point: &Point3<f64>, link: usize) -> Matrix6<f64> {
         let mut jacobian = Matrix6::zeros();
         for i in 0..=link {
@@ -99,7 +101,7 @@ impl Posture {
     }
 }
 
-/// Translation, and rotation vector, from one pose to another, base axes.
+/// Returns translation and rotation vector from one pose to another, base axes.
 pub fn displacement(from: &Pose, to: &Pose) -> Vector6<f64> {
     let moved = to.translation.vector - from.translation.vector;
     let turned = (to.rotation * from.rotation.inverse()).scaled_axis();

@@ -64,13 +64,13 @@ pub struct Joint {
 /// Error of an arm that cannot work at a pose.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ArmError {
-    /// The inverse kinematics ends so far away, mm and degrees.
+    /// The start is out of reach; remaining error of the inverse kinematics, mm and degrees.
     #[error(
         "the arm does not reach the start from its home_deg: it misses by {0:.1} mm and {1:.1} \
          degrees; give home_deg near the start, with the tool pointing down"
     )]
     Unreachable(f64, f64),
-    /// A direction in which no joint moves the TCP.
+    /// There is a direction in which no joint moves the TCP.
     #[error("the arm is in a singular pose at the start: choose another home_deg")]
     Singular,
 }

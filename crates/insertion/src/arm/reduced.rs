@@ -50,7 +50,7 @@ impl Arm {
     /// Returns the arm at some joint angles, its TCP upright; `task` turns task axes into base axes.
     ///
     /// # Errors
-    /// If a direction is left in which no joint moves the TCP.
+    /// If there is a direction in which no joint moves the TCP.
     pub fn reduced(
         &self,
         angles: &Angles,
@@ -64,7 +64,7 @@ impl Arm {
         }
         let tcp_axes = both(&posture.tcp.rotation.inverse());
         let inverse = (tcp_axes * jacobian).try_inverse().ok_or(ArmError::Singular)?;
-        // Symmetric but for rounding, which must not drive the engine.
+        // Rounding errors would make it asymmetric, and add energy to the simulation.
         let at_tcp = |joints: &Matrix6<f64>| {
             let matrix = inverse.tr_mul(&(joints * inverse));
             (matrix + matrix.transpose()) * 0.5
@@ -73,6 +73,7 @@ impl Arm {
             Matrix6::from_diagonal(&Angles::from_iterator(self.joints.iter().map(of)))
         };
         let linear = (both(&task.inverse()) * jacobian).fixed_rows::<3>(0).into_owned();
+        let time_constants = self.joints.iter().map(|joint| joint.damping / joint.stiffness);
         let soft = diagonal(|joint| 1.0 / joint.stiffness);
         Ok(Reduced {
             stiffness: at_tcp(&diagonal(|joint| joint.stiffness)),
@@ -80,11 +81,7 @@ impl Arm {
             mass: at_tcp(&self.mass(&posture)),
             tilt: 0.0,
             feed_forward: self.feed_forward,
-            time_constant: self
-                .joints
-                .iter()
-                .map(|joint| joint.damping / joint.stiffness)
-                .fold(0.0, f64::max),
+            time_constant: time_constants.fold(0.0, f64::max),
             assembly_force: self.assembly_force,
             compliance: linear * soft * linear.transpose(),
             torques: linear.transpose(),
@@ -94,19 +91,19 @@ impl Arm {
 }
 
 impl Reduced {
-    /// Spring and damper between the command and the flange.
+    /// Returns spring and damper between the command and the flange.
     pub fn servo(&self) -> Springs {
         let damping = if self.feed_forward { self.damping } else { Matrix6::zeros() };
         Springs::Coupled { stiffness: self.stiffness, damping }
     }
 
-    /// Damper between the flange and the world, if the flange's own speed is damped.
+    /// Returns the damper between the flange and the world, if the flange's own speed is damped.
     pub fn brake(&self) -> Option<Springs> {
         let brake = Springs::Coupled { stiffness: Matrix6::zeros(), damping: self.damping };
         (!self.feed_forward).then_some(brake)
     }
 
-    /// Returns whether a force at the TCP (task axes, N) asks more of a joint than it has.
+    /// Returns whether a force at the TCP (task axes, N) exceeds the torque limit of a joint.
     pub fn overloaded(&self, force: &Vector3<f64>) -> bool {
         let torques = self.torques * force;
         torques.iter().zip(self.limits).any(|(torque, limit)| torque.abs() > limit)

@@ -11,8 +11,7 @@ use super::template::{Impossible, Template};
 use super::tolerance::Search;
 use super::{Evaluation, OffsetStep};
 use crate::finger::Finger;
-use crate::finger::computed::AtPad;
-use crate::finger::model::{CentreFrom, FingerSource, Made};
+use crate::finger::model::{CentreFrom, FingerSource, RCC_KEY};
 use crate::outcome::Outcome;
 use crate::robot::Robot;
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
@@ -75,10 +74,19 @@ pub struct Specimen {
     pub design: Design,
     /// Finger of the design.
     pub finger: Finger,
-    /// Source of the finger's remote centre.
-    pub centre: CentreFrom,
     /// Stiffness of the finger, with its error.
     pub stiffness: Prediction,
+}
+
+impl Specimen {
+    /// Returns the source of the finger's remote centre.
+    pub fn centre_from(&self) -> CentreFrom {
+        match (self.design.get(RCC_KEY), self.task.finger.rcc) {
+            (Some(_), _) => CentreFrom::Design,
+            (None, Some(_)) => CentreFrom::TaskFile,
+            (None, None) => CentreFrom::Model,
+        }
+    }
 }
 
 /// Evaluation of one design on all tasks.
@@ -144,10 +152,9 @@ impl Evaluator {
             numbers::check(DESIGN, key, axis.mean / N_PER_MM)?;
             DESIGN.not_negative(key, axis.sd / N_PER_MM)?;
         }
-        let at_pad = AtPad::of(&stiffness);
         let set = self.completed(Some(template), design, rows);
-        let (task, Made { finger, centre }) = template.apply(&set, &self.fingers, at_pad)?;
-        let mut specimen = Specimen { task, design: design.clone(), finger, centre, stiffness };
+        let (task, finger) = template.apply(&set, &self.fingers, &stiffness)?;
+        let mut specimen = Specimen { task, design: design.clone(), finger, stiffness };
         for (row, value) in rows.iter().filter(|(row, _)| design.get(&row.path).is_none()) {
             change(row, *value, &mut specimen);
         }

@@ -1,7 +1,7 @@
-//! The one form of an evaluation outside the program: the keys of JSON, journal and tables.
+//! Serialized form of an evaluation: the keys of JSON, journal and tables.
 
 use super::{OffsetStep, RobustRange, SuccessRate, Window, grid_mm};
-use crate::outcome::{FailureClass, Outcome};
+use crate::outcome::Outcome;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 #[derive(Serialize, Deserialize)]
@@ -9,36 +9,10 @@ pub(super) struct WindowRow {
     range_mm: f64,
     negative_mm: f64,
     positive_mm: f64,
-    /// Outcome without its class: that is at either end.
+    /// Outcome without its failure class, which both ends contain.
     nominal: String,
-    failure_negative: Option<End>,
-    failure_positive: Option<End>,
-}
-
-/// Outcome that ended the search at one side: the failure class, 1 to 4, or `diverged`.
-#[derive(Serialize, Deserialize)]
-#[serde(untagged)]
-enum End {
-    Class(FailureClass),
-    Other(Outcome),
-}
-
-impl From<Outcome> for End {
-    fn from(outcome: Outcome) -> Self {
-        match outcome {
-            Outcome::Failed(class) => End::Class(class),
-            other => End::Other(other),
-        }
-    }
-}
-
-impl From<End> for Outcome {
-    fn from(end: End) -> Self {
-        match end {
-            End::Class(class) => Outcome::Failed(class),
-            End::Other(outcome) => outcome,
-        }
-    }
+    failure_negative: Option<Outcome>,
+    failure_positive: Option<Outcome>,
 }
 
 impl From<Window> for WindowRow {
@@ -48,8 +22,8 @@ impl From<Window> for WindowRow {
             negative_mm: window.negative_mm(),
             positive_mm: window.positive_mm(),
             nominal: window.nominal.word().to_owned(),
-            failure_negative: window.end_negative.map(End::from),
-            failure_positive: window.end_positive.map(End::from),
+            failure_negative: window.end_negative,
+            failure_positive: window.end_positive,
         }
     }
 }
@@ -58,31 +32,31 @@ impl TryFrom<WindowRow> for Window {
     type Error = String;
 
     fn try_from(row: WindowRow) -> Result<Self, String> {
-        let end_negative = row.failure_negative.map(Outcome::from);
         let nominal = match &*row.nominal {
             "inserted" => Outcome::Inserted,
             "diverged" => Outcome::Diverged,
-            // A window that is empty ends as its nominal start does.
-            "failed" => end_negative.ok_or("a nominal failure without its class")?,
+            // Both ends of an empty window have the outcome of the nominal start.
+            "failed" => row.failure_negative.ok_or("a nominal failure without its class")?,
             other => return Err(format!("`{other}` is not inserted, failed or diverged")),
         };
         Ok(Window {
             nominal,
             negative_steps: steps(row.negative_mm),
             positive_steps: steps(row.positive_mm),
-            end_negative,
-            end_positive: row.failure_positive.map(Outcome::from),
+            end_negative: row.failure_negative,
+            end_positive: row.failure_positive,
         })
     }
 }
 
-/// Steps that no window has, and that sums of a few of them can hold.
+/// Largest number of grid steps that is read: beyond any window, and small enough for sums.
 const MOST_STEPS: f64 = 1e8;
 
 fn steps(mm: f64) -> OffsetStep {
     (mm / grid_mm(1)).round().clamp(-MOST_STEPS, MOST_STEPS) as OffsetStep
 }
 
+/// Serializes grid steps as mm.
 pub(super) fn taught_mm<S: Serializer>(
     taught: &Option<OffsetStep>,
     to: S,
@@ -90,30 +64,32 @@ pub(super) fn taught_mm<S: Serializer>(
     taught.map(grid_mm).serialize(to)
 }
 
+/// Deserializes mm as grid steps.
 pub(super) fn taught_steps<'de, D: Deserializer<'de>>(
     from: D,
 ) -> Result<Option<OffsetStep>, D::Error> {
     Ok(Option::deserialize(from)?.map(steps))
 }
 
-/// Writes shares with 0 for NaN, which JSON could not hold.
+/// Serializes shares, NaN as 0, since JSON has no NaN.
 pub(super) fn finite<S: Serializer>(shares: &[f64; 2], to: S) -> Result<S::Ok, S::Error> {
     shares.map(|share| if share.is_finite() { share } else { 0.0 }).serialize(to)
 }
 
-/// Success rate with its interval, for readers outside, and the counts they follow from.
+/// Success rate and its interval, and the counts from which they are computed.
 #[derive(Serialize)]
 struct SuccessRow<'a> {
     success_rate: Option<f64>,
     success_low: Option<f64>,
     success_high: Option<f64>,
-    /// Upper bound of a raced rate, which has neither value nor interval, and the draws it had.
+    /// Upper bound of a raced rate, which has neither value nor interval, and the number of its draws.
     success_at_most: Option<f64>,
     raced_draws: Option<u32>,
     #[serde(flatten)]
     counts: &'a SuccessRate,
 }
 
+/// Serializes counts together with their rate and interval.
 pub(super) fn with_rate<S: Serializer>(
     success: &Option<SuccessRate>,
     to: S,
@@ -139,6 +115,7 @@ struct RobustRow<'a> {
     ranges: &'a RobustRange,
 }
 
+/// Serializes ranges together with their mean and standard deviation.
 pub(super) fn with_spread<S: Serializer>(
     robust: &Option<RobustRange>,
     to: S,
@@ -159,6 +136,7 @@ mod tests {
     use super::*;
     use crate::evaluation::Evaluation;
     use crate::evaluation::tests::{ranges, success};
+    use crate::outcome::FailureClass;
     use serde_json::Value;
 
     fn evaluation() -> Evaluation {
@@ -180,14 +158,14 @@ mod tests {
         }
     }
 
-    fn again(evaluation: &Evaluation) -> Evaluation {
+    fn round_trip(evaluation: &Evaluation) -> Evaluation {
         serde_json::from_str(&serde_json::to_string(evaluation).unwrap()).unwrap()
     }
 
     #[test]
     fn an_evaluation_reads_back_as_the_same_bits() {
         let plain = evaluation();
-        assert_eq!(again(&plain), plain);
+        assert_eq!(round_trip(&plain), plain);
         let missed = Some(Outcome::Failed(FailureClass::PlugMissed));
         let mut full = evaluation();
         full.window.nominal = Outcome::Failed(FailureClass::PlugMissed);
@@ -195,18 +173,18 @@ mod tests {
         (full.window.end_negative, full.window.end_positive) = (missed, missed);
         full.success = Some(success(3, 2));
         full.robust = Some(RobustRange { diverged: 2, trials: 7, ..ranges(vec![1.1]) });
-        assert_eq!(again(&full), full);
+        assert_eq!(round_trip(&full), full);
         full.taught = Some(-13);
-        assert_eq!(again(&full), full);
+        assert_eq!(round_trip(&full), full);
         let raced = SuccessRate { spared: 95, failed_draws: vec![2, 7], ..success(3, 2) };
         full.success = Some(raced);
-        assert_eq!(again(&full), full);
+        assert_eq!(round_trip(&full), full);
         let value = serde_json::to_value(&full).unwrap();
         assert_eq!((&value["success_rate"], &value["success_high"]), (&Value::Null, &Value::Null));
         assert_eq!((&value["success_at_most"], &value["raced_draws"]), (&0.98.into(), &8.into()));
         let mut limit = evaluation();
         (limit.window.end_negative, limit.window.end_positive) = (None, None);
-        assert_eq!(again(&limit), limit);
+        assert_eq!(round_trip(&limit), limit);
     }
 
     #[test]
@@ -219,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn what_contradicts_itself_is_refused() {
+    fn a_failure_without_its_class_is_rejected() {
         let mut value = serde_json::to_value(evaluation()).unwrap();
         value["nominal"] = "failed".into();
         value["failure_negative"] = serde_json::Value::Null;

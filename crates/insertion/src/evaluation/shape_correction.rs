@@ -51,13 +51,13 @@ pub fn predict(
     })
 }
 
-/// Computed stiffness in the compliance and in the assembly direction, N/m.
+/// Returns the computed stiffness in the compliance and in the assembly direction, N/m.
 fn springs(computed: &FingerStiffness) -> [f64; 2] {
     [computed.pad_and_roof.in_compliance(), computed.pad_and_roof.in_assembly()]
 }
 
-/// Standard deviation of ln(measured / computed) over the measured fingers, by axis; of fewer
-/// than two there is none, and the whole of the change counts as error.
+/// Returns the standard deviation of ln(measured / computed) over the measured fingers, by axis; 1 for
+/// fewer than two fingers.
 fn scatter(fingers: &ComputedFingers, measured: &[Measurement]) -> Result<[f64; 2], FingerError> {
     let ratios = measured.iter().map(|m| {
         let [density, direction] = m.infill();

@@ -22,34 +22,34 @@ const FARTHEST: OffsetStep = 100;
 pub struct Taught {
     /// Shift of the start, in grid steps.
     pub by: OffsetStep,
-    /// The window about it.
+    /// Tolerance window around it.
     pub window: Window,
-    /// Largest force of its insertions, N.
+    /// Largest contact force over the inserted trials of the window search, N.
     pub peak_force_n: f64,
 }
 
-/// Start with the largest margin if all starts fail.
+/// Failing start with the largest margin, if no start inserts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Nearest {
     /// Shift of the start, in grid steps.
     pub by: OffsetStep,
-    /// The trial from there.
+    /// Trial from this start.
     pub trial: Trial,
 }
 
-/// Teaches the start; worthless once `stop` is set.
+/// Searches the taught start. The result is invalid once `stop` is set.
 ///
 /// # Errors
 /// If no start inserts.
 pub fn teach(rig: &dyn Rig, finger: &Finger, stop: &AtomicBool) -> Result<Taught, Box<Nearest>> {
     let grasp = Grasp { stop, ..Grasp::of(finger) };
     let grasped = rig.hold(grasp);
-    let found = first(&*grasped)?;
+    let found = first_inserting(&*grasped)?;
     let moved = Moved { rig, by: found };
     let Evaluation { mut window, peak_force_n, .. } =
         tolerance::evaluate_in(&moved, grasp, Search::Strides);
     let both = window.negative_steps + window.positive_steps;
-    // Towards zero.
+    // The division rounds towards zero.
     let middle = both.clamp(-OFFSET_LIMIT_STEPS, OFFSET_LIMIT_STEPS) / 2;
     let by = found + middle;
     if grasped.trial(offset(by)).outcome != Outcome::Inserted {
@@ -61,7 +61,7 @@ pub fn teach(rig: &dyn Rig, finger: &Finger, stop: &AtomicBool) -> Result<Taught
 }
 
 /// Returns the first start that inserts, outward from the task's own.
-fn first(grasped: &dyn Grasped) -> Result<OffsetStep, Box<Nearest>> {
+fn first_inserting(grasped: &dyn Grasped) -> Result<OffsetStep, Box<Nearest>> {
     let outward = (1..=FARTHEST / STRIDE).flat_map(|n| [n * STRIDE, -n * STRIDE]);
     let mut nearest = Nearest { by: 0, trial: grasped.trial(0.0) };
     if nearest.trial.outcome == Outcome::Inserted {
@@ -79,7 +79,7 @@ fn first(grasped: &dyn Grasped) -> Result<OffsetStep, Box<Nearest>> {
     Err(Box::new(nearest))
 }
 
-/// A rig, or a grasped part, whose start is moved.
+/// Rig or grasped part with a shifted start.
 pub struct Moved<R> {
     /// Rig or grasped part.
     pub rig: R,
@@ -98,12 +98,8 @@ impl<R: Deref<Target: Rig> + Send + Sync> Rig for Moved<R> {
 }
 
 impl Grasped for Moved<Box<dyn Grasped + '_>> {
-    fn sampled(&self, shift: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
-        self.rig.sampled(shift + offset(self.by), every_s)
-    }
-
-    fn logged(&self, shift: f64, every_s: f64) -> (Trial, Vec<Sample>) {
-        self.rig.logged(shift + offset(self.by), every_s)
+    fn run(&self, shift: f64, every_s: Option<f64>, rest_s: f64) -> (Trial, Vec<Sample>) {
+        self.rig.run(shift + offset(self.by), every_s, rest_s)
     }
 }
 

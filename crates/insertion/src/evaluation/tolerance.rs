@@ -13,7 +13,7 @@ pub const OFFSET_LIMIT_STEPS: OffsetStep = 150;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Search {
-    /// Step by step outward to the first failure: the paper's way.
+    /// Step by step outward to the first failure, as in the paper.
     Walk,
     /// In strides of 0.5 mm outward to the first failure, then by bisection: a third of the trials.
     /// The result is the end of the walk unless a gap in the window is narrower than a stride: on 43 of the
@@ -39,7 +39,7 @@ pub fn evaluate(rig: &dyn Rig, finger: &Finger, search: Search) -> Evaluation {
     evaluate_in(rig, Grasp::of(finger), search)
 }
 
-/// As [`evaluate`], of any grasp; ends early, with a worthless result, once that is to stop.
+/// Measures a grasp as [`evaluate`] does. The result is invalid once the stop flag of the grasp is set.
 pub fn evaluate_in(rig: &dyn Rig, grasp: Grasp, search: Search) -> Evaluation {
     let grasped = rig.hold(grasp);
     let nominal = [grasped.trial(0.0)];
@@ -75,7 +75,7 @@ struct End {
     share: f64,
 }
 
-/// One end, looked for from the nominal start, of that margin, outward; and the trials made.
+/// Searches one end outward from the nominal start; returns it with the trials.
 fn find_end(
     grasped: &dyn Grasped,
     nominal_margin: f64,

@@ -1,14 +1,14 @@
-//! A computed finger: springs about its remote centre that make it as stiff at the pad as measured.
+//! Computed finger: springs about its remote centre that reproduce the measured stiffness at the pad.
 //!
-//! A spring at a centre that lies `s` below and `c` in front of the pad's middle is seen from
-//! there with the tilting spring `k_t` in series, so
+//! A force at the pad's middle deflects a spring at a centre `s` below and `c` in front of it, and
+//! also the tilting spring `k_t`. The two are in series, so
 //!
 //! ```text
 //! 1/k_y,centre = 1/k_y - s^2/k_t,   1/k_z,centre = 1/k_z - c^2/k_t
 //! ```
 //!
-//! Across the plane (x, ry, rz) the plate's 3 x 3 stiffness at the pad is carried over to the same
-//! joint whole, with its coupling of x to ry and rz.
+//! Across the plane (x, ry, rz) the full 3 x 3 stiffness of the plate at the pad, with its coupling of
+//! x to ry and rz, is transformed to the same centre.
 
 use super::{Finger, Pad};
 use crate::surrogate::Prediction;
@@ -20,29 +20,13 @@ use finray::stiffness::PlanarStiffness;
 use input::units::{MM, N_PER_MM};
 use nalgebra::{Matrix3, Matrix6};
 
-/// Values of a task file or a design in place of the computed ones.
+/// Values from a task file or a design that replace computed ones.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Given {
+pub(super) struct Overrides {
     /// Distance of the remote centre below the TCP, m.
     pub rcc: Option<f64>,
     /// Tilting stiffness, N m/rad.
     pub tilting: Option<f64>,
-}
-
-/// Stiffness of one finger at its pad in y and z, N/m: measured, or predicted from measurements.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AtPad {
-    /// In the compliance direction.
-    pub compliance: f64,
-    /// In the assembly direction.
-    pub assembly: f64,
-}
-
-impl AtPad {
-    /// Returns the means of a prediction.
-    pub fn of(predicted: &Prediction) -> Self {
-        AtPad { compliance: predicted.compliance.mean, assembly: predicted.assembly.mean }
-    }
 }
 
 impl Pad {
@@ -52,24 +36,27 @@ impl Pad {
     }
 }
 
-/// Returns the finger that is so stiff at the pad, from the stiffness computed in its `plane` and, of x,
-/// ry and rz at the pad's middle, `across` it; the part's `shoulder` lies so far above the TCP, m.
+/// Returns the finger with a given stiffness at the pad in y and z.
+///
+/// `plane` is the stiffness computed in the plane of the finger, `across` that of x, ry and rz at the
+/// pad's middle. The part's `shoulder` is this height above the TCP, m.
 ///
 /// # Errors
-/// If turning about the centre alone gives way by more than that.
+/// If the rotation about the centre alone is softer than the stiffness at the pad.
 pub(super) fn finger(
     printed: &PrintedFinger,
     plane: PlanarStiffness,
     across: Matrix3<f64>,
     shoulder: f64,
-    at_pad: AtPad,
-    given: Given,
+    at_pad: &Prediction,
+    overrides: Overrides,
 ) -> Result<Finger, FingerError> {
+    let [compliance, assembly] = [at_pad.compliance.mean, at_pad.assembly.mean];
     let pad = Pad::of(&printed.outline);
     let middle = pad.middle(shoulder);
-    let rcc = given.rcc.unwrap_or(plane.centre_below_pad() - middle);
+    let rcc = overrides.rcc.unwrap_or(plane.centre_below_pad() - middle);
     let (below, ahead) = (rcc + middle, plane.centre_in_front());
-    let tilting = given.tilting.unwrap_or(plane.tilting());
+    let tilting = overrides.tilting.unwrap_or(plane.tilting());
     // Compliances at the centre, m/N.
     let at_centre = |name, stiffness: f64, lever: f64| {
         let centre = 1.0 / stiffness - lever * lever / tilting;
@@ -83,10 +70,10 @@ pub(super) fn finger(
              finger.rcc_mm nearer to the pad, or use --finger-model paper",
             lever / MM
         );
-        Err(FingerError::Unfit { file: printed.file.clone(), problem })
+        Err(FingerError::finger(printed, problem))
     };
-    let in_y = at_centre("compliance", at_pad.compliance, below)?;
-    let in_z = at_centre("assembly", at_pad.assembly, ahead)?;
+    let in_y = at_centre("compliance", compliance, below)?;
+    let in_z = at_centre("assembly", assembly, ahead)?;
     // x at the pad = x at the centre + ry below + rz ahead.
     let to_pad = Matrix3::new(1.0, below, ahead, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
     let across = to_pad.transpose() * across * to_pad;
@@ -107,11 +94,11 @@ pub(super) fn finger(
         ahead,
         pad,
         coupling: Coupling::of(&matrix),
-        ..Finger::new(at_pad.compliance, at_pad.assembly)
+        ..Finger::new(compliance, assembly)
     })
 }
 
-/// Places of x, ry and rz among the six axes.
+/// Indices of x, ry and rz among the six axes.
 const ACROSS: [usize; 3] = [0, 4, 5];
 
 #[cfg(test)]
@@ -120,9 +107,9 @@ mod tests {
     use nalgebra::Vector3;
 
     const SHOULDER: f64 = 3.5 * MM;
-    const AT_PAD: AtPad = AtPad { compliance: 2.6e3, assembly: 45e3 };
+    const AT_PAD: [f64; 2] = [2.6e3, 45e3];
 
-    /// Springs that sit so far below and in front of the pad, and a plate.
+    /// Returns the stiffness of springs at a centre below and in front of the pad, and of a plate.
     fn stiffness(below: f64, ahead: f64, tilting: f64) -> (PlanarStiffness, Matrix3<f64>) {
         let to_centre = Matrix3::new(1.0, 0.0, below, 0.0, 1.0, ahead, 0.0, 0.0, 1.0);
         let springs = Matrix3::from_diagonal(&Vector3::new(9e3, 9e4, tilting));
@@ -131,15 +118,18 @@ mod tests {
         (plane, across)
     }
 
-    fn finger(at_pad: AtPad, given: Given) -> Result<Finger, FingerError> {
+    fn finger(
+        [compliance, assembly]: [f64; 2],
+        overrides: Overrides,
+    ) -> Result<Finger, FingerError> {
         let (plane, across) = stiffness(8.0 * MM, -2.0 * MM, 2.5);
         super::finger(
             &crate::fixtures::finger_file().finger,
             plane,
             across,
             SHOULDER,
-            at_pad,
-            given,
+            &Prediction::exact(compliance, assembly),
+            overrides,
         )
     }
 
@@ -154,15 +144,15 @@ mod tests {
     }
 
     #[test]
-    fn at_the_pad_a_finger_is_as_stiff_as_measured_and_turns_as_computed() {
-        let finger = finger(AT_PAD, Given::default()).unwrap();
+    fn a_finger_has_the_measured_stiffness_at_the_pad_and_the_computed_tilting_stiffness() {
+        let finger = finger(AT_PAD, Overrides::default()).unwrap();
         let compliance = at_pad_middle(&finger);
         for (axis, stiffness) in [(1, 2.6e3), (2, 45e3), (3, 2.5)] {
             let found = 1.0 / compliance[(axis, axis)];
             assert!((found / stiffness - 1.0).abs() < 1e-12, "{axis}: {found}");
         }
         // The pad's middle lies 0.95 mm below the TCP of the keys.
-        assert!((finger.rcc - 8.95 * MM).abs() < 1e-12 && finger.compliance > AT_PAD.compliance);
+        assert!((finger.rcc - 8.95 * MM).abs() < 1e-12 && finger.compliance > AT_PAD[0]);
         assert_eq!(finger.pad.height, 9.0 * MM);
         let plate = stiffness(0.0, 0.0, 1.0).1.try_inverse().unwrap();
         for (i, row) in ACROSS.into_iter().enumerate() {
@@ -174,21 +164,25 @@ mod tests {
     }
 
     #[test]
-    fn a_given_centre_takes_the_computed_ones_place() {
-        let given = Given { rcc: Some(5.0 * MM), tilting: Some(3.0) };
-        let finger = finger(AT_PAD, given).unwrap();
+    fn a_given_centre_replaces_the_computed_one() {
+        let overrides = Overrides { rcc: Some(5.0 * MM), tilting: Some(3.0) };
+        let finger = finger(AT_PAD, overrides).unwrap();
         assert_eq!((finger.rcc, finger.rotation[0]), (5.0 * MM, 3.0));
         assert!((1.0 / at_pad_middle(&finger)[(1, 1)] / 2.6e3 - 1.0).abs() < 1e-12);
     }
 
     #[test]
-    fn a_centre_too_far_for_the_stiffness_is_refused() {
-        let given = Given { rcc: Some(40.0 * MM), tilting: None };
-        let error = finger(AT_PAD, given).unwrap_err().to_string();
+    fn a_centre_too_far_away_for_the_stiffness_is_rejected() {
+        let overrides = Overrides { rcc: Some(40.0 * MM), tilting: None };
+        let error = finger(AT_PAD, overrides).unwrap_err().to_string();
         for part in ["finray9", "2.60 N/mm", "compliance", "39.0 mm", "2.50 N m/rad", "rcc_mm"] {
             assert!(error.contains(part), "{error}");
         }
-        let stiff = AtPad { assembly: 1e6, ..AT_PAD };
-        assert!(finger(stiff, Given::default()).unwrap_err().to_string().contains("assembly"));
+        assert!(
+            finger([AT_PAD[0], 1e6], Overrides::default())
+                .unwrap_err()
+                .to_string()
+                .contains("assembly")
+        );
     }
 }

@@ -14,17 +14,17 @@ use input::{Document, InputError};
 pub struct FingerFile {
     /// Numbers of the file, by their keys.
     pub numbers: NumberFile,
-    /// The finger as the file has it.
+    /// Finger of the file, unchanged.
     pub finger: PrintedFinger,
 }
 
-/// Returns whether a key sets a number of a finger file: in a table, as no number of its springs is.
+/// Returns whether a key sets a number of a finger file: one in a table, unlike the numbers of the springs.
 pub fn is_shape(key: &str) -> bool {
     key.strip_prefix("finger.").is_some_and(|path| path.contains('.'))
 }
 
-/// Returns the infill that a finger of a design is printed with, its first rib at `phase_mm`, else where
-/// the finger file has it; NaN of what the design does not name, which no finger has.
+/// Returns the infill of a design, with the first rib at `phase_mm`, by default as in the finger file. Numbers
+/// that the design does not set are NaN, which is invalid in a finger.
 pub fn infill(design: &Design, phase_mm: Option<f64>) -> infill::Design {
     let value = |key| design.get(key).unwrap_or(f64::NAN);
     infill::Design {
@@ -38,17 +38,17 @@ impl FingerFile {
     /// Reads and checks a finger file; `file` is named in errors.
     ///
     /// # Errors
-    /// As of [`PrintedFinger::parse`].
+    /// Same as for [`PrintedFinger::parse`].
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         let document = Document::parse(text, file)?;
         let finger = PrintedFinger::read(&document)?;
         Ok(FingerFile { numbers: NumberFile::read("finger", &document)?, finger })
     }
 
-    /// Returns the finger with the numbers that a design sets; keys of anything else are left alone.
+    /// Returns the finger with the numbers that a design sets; other keys are ignored.
     ///
     /// # Errors
-    /// If a key sets nothing, or a value cannot be used.
+    /// If a key does not exist, or a value is invalid.
     pub fn with(&self, design: &Design) -> Result<PrintedFinger, InputError> {
         if !design.0.keys().any(|key| is_shape(key)) {
             return Ok(self.finger.clone());

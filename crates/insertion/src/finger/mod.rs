@@ -11,7 +11,7 @@ use input::units::{GRAM, MM, N_PER_MM};
 use nalgebra::{Matrix6, Point3, Vector3};
 use parameters::numbers::{self, CENTRE};
 
-/// One finger, in SI units; both fingers of a gripper are alike.
+/// One finger, in SI units; both fingers of a gripper are equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finger {
     /// Spring in y at the RCC, the direction in which the jaws close, N/m.
@@ -39,12 +39,12 @@ pub struct Finger {
 }
 
 /// Rotational spring about x, N m/rad: the upper end of the range in the paper's Table "Simulation
-/// Inputs" (0.5 .. 2), of which the paper itself used 1; why is in `docs/notes/calibration.md`.
+/// Inputs" (0.5 .. 2), of which the paper itself used 1; see `docs/notes/calibration.md`.
 const TILTING: f64 = 2.0;
 
 impl Finger {
     /// Returns the number of a path (`finger.rcc_mm`) and the SI value of its unit. Compliance and
-    /// assembly stiffness are not among them: the infill decides those.
+    /// assembly stiffness are not among them: the infill determines them.
     pub fn number(&mut self, path: &str) -> Option<(&mut f64, f64)> {
         let [x, y, z] = &mut self.rotation;
         Some(match path {
@@ -77,7 +77,7 @@ impl Finger {
         }
     }
 
-    /// Returns the finger with what a task file says of it, the infill in this direction, degrees.
+    /// Returns the finger with the properties that a task file sets, for an infill in this direction, degrees.
     pub fn shaped(self, model: &FingerModel, direction_deg: f64) -> Self {
         let rcc = model.rcc.map_or(Rcc::PAPER_DISTANCE, |rcc| rcc.at(direction_deg));
         Finger { rcc, coupling: model.coupling, ..self }
@@ -100,12 +100,12 @@ impl Pad {
     /// Dimensions of the published simulation.
     pub const PAPER: Pad = Pad { width: 12.0 * MM, height: 8.4 * MM, roof: 2.5 * MM };
 
-    /// Height of its middle above the TCP, m; `shoulder` as of [`Pad::geoms`].
+    /// Returns the height of its middle above the TCP, m; `shoulder` as in [`Pad::geoms`].
     pub fn middle(&self, shoulder: f64) -> f64 {
         shoulder + ROOF_GAP - self.height / 2.0
     }
 
-    /// Pad and roof in the finger frame: origin on the pad's face at the height of
+    /// Returns pad and roof in the finger frame: origin on the pad's face at the height of
     /// the TCP, `side` -1 for the finger at -y, +1 for the one at +y; `shoulder` is
     /// the height of the part's shoulder above the TCP, m.
     pub fn geoms(&self, shoulder: f64, side: f64) -> Vec<Geom> {
@@ -127,7 +127,7 @@ impl Pad {
 const PAD_THICKNESS: f64 = 4.0 * MM;
 /// Thickness of the roof (not decisive), m.
 const ROOF_THICKNESS: f64 = 3.0 * MM;
-/// Gap between roof and shoulder at the grasp, m: closed when the part is first pushed up.
+/// Gap between roof and shoulder at the grasp, m: closed by the first push on the part.
 pub const ROOF_GAP: f64 = 0.05 * MM;
 
 impl Finger {
@@ -140,12 +140,12 @@ impl Finger {
         [x, y, z, rx, ry, rz]
     }
 
-    /// Place of the RCC in the finger frame, m; `side` as of [`Pad::geoms`].
+    /// Returns the position of the RCC in the finger frame, m; `side` as in [`Pad::geoms`].
     pub fn centre(&self, side: f64) -> Point3<f64> {
         Point3::new(0.0, -side * self.ahead, -self.rcc)
     }
 
-    /// Springs between finger and jaw at the RCC; `side` as of [`Pad::geoms`].
+    /// Returns the springs between finger and jaw at the RCC; `side` as in [`Pad::geoms`].
     pub fn mounted(&self, side: f64) -> Springs {
         let springs = self.springs();
         match &self.coupling {
@@ -161,9 +161,9 @@ impl Finger {
 /// Radius of gyration of a finger about its centre of mass, m: that of a rod of 70 mm.
 const GYRATION: f64 = 20.0 * MM;
 
-/// Mass properties of a finger, in its frame. The centre of mass is put on its axis at the RCC: 2 g
+/// Returns the mass properties of a finger, in its frame. The centre of mass is placed on its axis at the RCC: 2 g
 /// do not matter, but a centre far from the joint would couple the springs in the engine and slow
-/// its convergence. `side` as of [`Pad::geoms`].
+/// its convergence. `side` as in [`Pad::geoms`].
 pub fn inertia(finger: &Finger, side: f64) -> Inertia {
     Inertia {
         mass: finger.mass,

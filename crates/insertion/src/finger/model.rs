@@ -1,11 +1,12 @@
 //! Models of the springs of a finger that were not measured: of the paper, or computed from the ribs.
 
 use super::Finger;
-use super::computed::{self, AtPad, Given};
+use super::computed::{self, Overrides};
 use crate::finger::file::{FingerFile, infill, is_shape};
 use crate::space::{DIRECTION_KEY, Design};
+use crate::surrogate::Prediction;
 use crate::task::Task;
-use crate::task::finger::{Coupling, Rcc};
+use crate::task::finger::Coupling;
 use finray::FingerError;
 use finray::mechanics::{FingerStiffness, StiffnessCache};
 use input::units::MM;
@@ -33,7 +34,7 @@ impl FingerModelKind {
     }
 }
 
-/// Makes the fingers of designs.
+/// Source of the fingers of designs.
 #[derive(Debug)]
 pub enum FingerSource {
     /// As the paper models them: the measured springs sit at one remote centre.
@@ -50,15 +51,6 @@ pub struct ComputedFingers {
     cache: StiffnessCache,
 }
 
-/// A finger, and where its remote centre comes from.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Made {
-    /// Finger with its springs.
-    pub finger: Finger,
-    /// Source of its remote centre.
-    pub centre: CentreFrom,
-}
-
 /// Source of a finger's remote centre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CentreFrom {
@@ -71,7 +63,7 @@ pub enum CentreFrom {
 }
 
 impl FingerSource {
-    /// Name of the source.
+    /// Returns the name of the source.
     pub fn kind(&self) -> FingerModelKind {
         match self {
             FingerSource::Paper => FingerModelKind::Paper,
@@ -79,37 +71,35 @@ impl FingerSource {
         }
     }
 
-    /// Returns the finger of a design on a task, so stiff at its pad (or, in the paper, at its centre).
-    /// Its other numbers, but for remote centre and tilting stiffness, are set by the caller.
+    /// Returns the finger of a design on a task with the predicted stiffness at its pad (of the paper's model, at
+    /// its centre).
+    /// The caller sets its other numbers, except remote centre and tilting stiffness.
     ///
     /// # Errors
-    /// If the printed finger cannot be, or cannot be so stiff.
-    pub fn make(&self, at_pad: AtPad, design: &Design, task: &Task) -> Result<Made, FingerError> {
-        let (set, by_file) = (design.get(RCC_KEY), task.finger.rcc);
-        let centre = match (set, by_file) {
-            (Some(_), _) => CentreFrom::Design,
-            (None, Some(_)) => CentreFrom::TaskFile,
-            (None, None) => CentreFrom::Model,
-        };
+    /// If the finger cannot be printed, or cannot have this stiffness.
+    pub fn make(
+        &self,
+        at_pad: &Prediction,
+        design: &Design,
+        task: &Task,
+    ) -> Result<Finger, FingerError> {
+        let rcc = design.get(RCC_KEY).map(|mm| mm * MM);
         let direction = design.get(DIRECTION_KEY).unwrap_or_default();
-        let finger = match self {
+        match self {
             FingerSource::Paper => {
-                let finger = Finger::new(at_pad.compliance, at_pad.assembly);
+                let finger = Finger::new(at_pad.compliance.mean, at_pad.assembly.mean);
                 let finger = finger.shaped(&task.finger, direction);
-                Finger { rcc: set.map_or(finger.rcc, |mm| mm * MM), ..finger }
+                Ok(Finger { rcc: rcc.unwrap_or(finger.rcc), ..finger })
             }
             FingerSource::Computed(fingers) => {
-                let given = Given {
-                    rcc: set.map(|mm| mm * MM).or(by_file.map(|rcc: Rcc| rcc.at(direction))),
-                    tilting: design.get(TILTING_KEY),
-                };
-                fingers.finger(at_pad, design, task, given)?
+                let rcc = rcc.or(task.finger.rcc.map(|rcc| rcc.at(direction)));
+                let overrides = Overrides { rcc, tilting: design.get(TILTING_KEY) };
+                fingers.finger(at_pad, design, task, overrides)
             }
-        };
-        Ok(Made { finger, centre })
+        }
     }
 
-    /// Returns a finger of this kind, for asking whether an engine can simulate such.
+    /// Returns an example of such a finger, to check whether an engine supports it.
     pub fn any(&self, task: &Task) -> Finger {
         let finger = Finger::new(1.0, 1.0).shaped(&task.finger, 0.0);
         match self {
@@ -120,25 +110,25 @@ impl FingerSource {
 }
 
 impl ComputedFingers {
-    /// Fingers of a file, with its rib phase.
+    /// Creates the fingers of a file, with its rib phase.
     pub fn new(file: FingerFile) -> Self {
         ComputedFingers { file, cache: StiffnessCache::default() }
     }
 
-    /// Returns the stiffness of a design from its ribs, computed once; NaN of the infill is refused.
+    /// Returns the stiffness of a design computed from its ribs, each once. An infill of NaN is an error.
     ///
     /// # Errors
-    /// If the printed finger cannot be.
+    /// If the finger cannot be printed.
     pub fn stiffness(&self, design: &Design) -> Result<FingerStiffness, FingerError> {
         self.cache.stiffness(&self.file.with(design)?, &infill(design, None))
     }
 
     fn finger(
         &self,
-        at_pad: AtPad,
+        at_pad: &Prediction,
         design: &Design,
         task: &Task,
-        given: Given,
+        overrides: Overrides,
     ) -> Result<Finger, FingerError> {
         if task.finger.coupling.is_some() {
             return Err(FingerError::Coupled { task: task.name.clone() });
@@ -147,10 +137,10 @@ impl ComputedFingers {
         // Pad and roof are glued to the part: `docs/notes/finger.md`.
         let mut plane = computed.pad_and_roof;
         if design.0.keys().any(|key| is_shape(key)) {
-            // Not measured: the ratio of others may not make their centre impossible.
-            plane = plane.corrected(at_pad.compliance, at_pad.assembly).unwrap_or(plane);
+            // It was not measured: the correction by measured fingers must not make its centre impossible.
+            plane = plane.corrected(at_pad.compliance.mean, at_pad.assembly.mean).unwrap_or(plane);
         }
         let (printed, across) = (&self.file.with(design)?, computed.cross.matrix);
-        computed::finger(printed, plane, across, task.grip.shoulder(), at_pad, given)
+        computed::finger(printed, plane, across, task.grip.shoulder(), at_pad, overrides)
     }
 }

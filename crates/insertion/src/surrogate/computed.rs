@@ -32,14 +32,14 @@ impl Computed {
         if let Some(found) = known().get(&key) {
             return Ok(found.clone());
         }
-        // Not under the lock: others may compute meanwhile.
+        // Computed without the lock, so that other threads need not wait.
         let found = over_phases(&self.finger, infill[0], infill[1])?;
         known().insert(key, found.clone());
         Ok(found)
     }
 
-    /// Stiffness along an axis, N/m: geometric mean over the phases. In the assembly
-    /// direction pad and roof carry, which leave-one-out prefers to the pad alone.
+    /// Returns the stiffness along an axis, N/m: geometric mean over the phases. In the assembly direction
+    /// it is that of pad and roof, which has a smaller leave-one-out error than that of the pad alone.
     ///
     /// # Errors
     /// If the finger cannot be made.
@@ -53,11 +53,13 @@ impl Computed {
     }
 }
 
-/// How the logarithms of measured / computed stiffness scatter over the eleven shipped designs:
-/// what is expected of another material before its own scatter is known.
+/// Standard deviation of ln(measured / computed) over the eleven shipped designs, assumed for another
+/// material as long as its own is not known.
 pub(super) const SCATTER: [(Axis, f64); 2] = [(Axis::Compliance, 0.17), (Axis::Assembly, 0.30)];
+/// Degrees of freedom of that standard deviation.
 pub(super) const FREEDOM: f64 = 10.0;
 
+/// Lognormal ratio of measured and computed stiffness.
 #[derive(Debug)]
 pub(super) struct Scale {
     log: f64,

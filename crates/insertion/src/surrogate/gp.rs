@@ -32,12 +32,12 @@ const NUGGETS: [f64; 5] = [1e-6, 1e-3, 1e-1, 1.0, 10.0];
 /// Readings have two or three digits: 25 N/mm is 25 +- 0.3, about 1 %. No
 /// prediction claims less, even where the data happen to lie on the mean.
 pub(super) const READING_SD: f64 = 0.01;
-/// Densities below this are taken as this, percent: the law diverges at 0.
+/// Smallest density that is used, percent: the law diverges at 0.
 const LEAST_DENSITY: f64 = 1.0;
 
 #[derive(Debug, Clone, Copy)]
 struct Setting {
-    /// Of the density in the feature.
+    /// Exponent of the density in the feature.
     exponent: f64,
     theta: f64,
     nugget: f64,
@@ -48,24 +48,24 @@ struct Setting {
 pub(super) struct PhysicalProcess<const P: usize> {
     link: Link,
     setting: Setting,
-    /// Of the feature and of the inputs.
+    /// Standardisation of the feature and of the inputs.
     scales: [Standard; 3],
-    /// Of the values on the scale of the link.
+    /// Standardisation of the values on the scale of the link.
     target: Standard,
     places: Vec<Place>,
-    /// Of the standardised values, in units of the process variance.
+    /// Process of the standardised values, in units of the process variance.
     process: Process<P>,
 }
 
 /// Inputs of the process, in correlation lengths.
 type Place = [f64; 2];
 
-/// Correlation of two places: a product over the axes.
+/// Returns the correlation of two places, a product over the axes.
 fn correlation(a: &Place, b: &Place) -> f64 {
     a.iter().zip(b).map(|(a, b)| matern52((a - b) * (a - b))).product()
 }
 
-/// Feature of the mean, then the inputs of the process.
+/// Returns the feature of the mean, then the inputs of the process.
 fn inputs(infill: Infill, exponent: f64) -> [f64; 3] {
     let density = infill[0].max(LEAST_DENSITY);
     let lamina = libm::cos(infill[1] * DEG).powi(4);
@@ -104,7 +104,7 @@ fn fit_about<const P: usize>(
 }
 
 impl<const P: usize> PhysicalProcess<P> {
-    /// `None` of so few designs that nothing is left to the process.
+    /// Fits the process; `None` if the designs are too few.
     fn new(link: Link, setting: Setting, measured: &Measured) -> Option<Self> {
         let rows: Vec<[f64; 3]> =
             infills(measured).map(|infill| inputs(infill, setting.exponent)).collect();

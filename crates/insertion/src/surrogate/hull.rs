@@ -32,7 +32,7 @@ impl Hull {
         hull
     }
 
-    /// Distance in units of the spans; 0 inside and on the edge.
+    /// Returns the distance in units of the spans; 0 inside and on the edge.
     pub fn distance(&self, point: Infill) -> f64 {
         let p = self.scale(point);
         let edges =
@@ -47,15 +47,13 @@ impl Hull {
     }
 }
 
+/// Returns the distance of `p` from the segment from `a` to `b`.
 fn to_segment(a: Point2<f64>, b: Point2<f64>, p: Point2<f64>) -> f64 {
-    let along = [b[0] - a[0], b[1] - a[1]];
-    let length2 = along[0] * along[0] + along[1] * along[1];
-    let t = if length2 == 0.0 {
-        0.0
-    } else {
-        (((p[0] - a[0]) * along[0] + (p[1] - a[1]) * along[1]) / length2).clamp(0.0, 1.0)
-    };
-    libm::hypot(p[0] - a[0] - t * along[0], p[1] - a[1] - t * along[1])
+    let (along, from_a) = (b - a, p - a);
+    let squared = along.norm_squared();
+    let share = if squared == 0.0 { 0.0 } else { from_a.dot(&along) / squared };
+    let off = from_a - along * share.clamp(0.0, 1.0);
+    libm::hypot(off.x, off.y)
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Links: in which quantity a model is linear, kept positive everywhere.
+//! Link functions: the quantity in which a model is linear, positive everywhere.
 
 /// The quantity that a model adds up.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,7 +19,7 @@ pub(super) enum Sum {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Link {
     pub sum: Sum,
-    /// `None`: no bend at all (the plain linear reference).
+    /// `None` for no bend at all (the plain linear reference).
     pub scale: Option<f64>,
 }
 
@@ -34,6 +34,7 @@ impl Link {
 
     pub const IDENTITY: Link = Link { sum: Sum::Parallel, scale: None };
 
+    /// Returns the value on the linear scale for a stiffness, N/m.
     pub fn forward(self, stiffness: f64) -> f64 {
         let q = match self.sum {
             Sum::Parallel => stiffness,
@@ -44,12 +45,12 @@ impl Link {
         self.scale.map_or(q, |s| q + s * libm::log1p(-libm::exp(-q / s)))
     }
 
-    /// From the linear scale to stiffness (N/m), and its slope there.
+    /// Returns the stiffness, N/m, and its slope for a value on the linear scale.
     pub fn backward(self, g: f64) -> (f64, f64) {
         let (q, slope) = match self.scale {
             None => (g, 1.0),
             Some(s) => {
-                // Beyond e^-50 the inverse of q would overflow, and nobody cares.
+                // Limited because the inverse of q would overflow.
                 let x = (g / s).max(-50.0);
                 // max(x, 0) + ln(1 + exp(-|x|)) does not overflow.
                 let excess = libm::log1p(libm::exp(-x.abs()));

@@ -60,7 +60,7 @@ impl Prediction {
         Prediction { compliance: exact(compliance), assembly: exact(assembly), hull_distance: 0.0 }
     }
 
-    /// Mean and standard deviation across the pad and along it, N/m.
+    /// Returns mean and standard deviation across the pad and along it, N/m.
     pub fn at_pad(&self) -> [[f64; 2]; 2] {
         [self.compliance, self.assembly].map(|Estimate { mean, sd }| [mean, sd])
     }
@@ -95,14 +95,14 @@ struct StiffnessRow {
     inside_hull: bool,
 }
 
-/// JSON has no NaN: it is written as null.
+/// Reads null as NaN, which JSON does not have.
 pub(crate) fn null_is_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }
 
 impl From<Prediction> for StiffnessRow {
     fn from(stiffness: Prediction) -> Self {
-        // To a millionth of a N/mm, so that what is read back is written alike.
+        // Rounded to 1e-6 N/mm, so that values do not change in a round trip.
         let n_per_mm = |n_per_m: f64| (n_per_m / N_PER_MM * 1e6).round() / 1e6;
         StiffnessRow {
             compliance_n_per_mm: n_per_mm(stiffness.compliance.mean),
@@ -137,21 +137,23 @@ fn infills(measured: &Measured) -> impl Iterator<Item = Infill> {
     measured.records().rows().into_iter().map(|row| [row[0], row[1]])
 }
 
+/// Fitted model of the stiffness along one axis.
 trait Fitted: std::fmt::Debug + Send + Sync {
-    /// Mean and standard deviation for a finger yet to be printed.
+    /// Returns mean and standard deviation for a finger yet to be printed.
     fn predict(&self, infill: Infill) -> Estimate;
 
+    /// Returns the parameters of the model as text.
     fn describe(&self) -> String;
 }
 
-/// Each design predicted by a model of the others; no numbers where there is no model.
+/// Returns the prediction of each design by a model of the others; NaN if there is no model.
 fn left_out(
     measured: &Measured,
     predict: impl Fn(&Measured, Infill) -> Option<Estimate> + Sync,
 ) -> Vec<Estimate> {
     let nothing = Estimate { mean: f64::NAN, sd: f64::NAN };
     let count = measured.targets().len();
-    // Without one of one there is nothing to fit to.
+    // A single design leaves none to fit to.
     let folds = if count > 1 { measured.fold(count) } else { Vec::new() };
     let one = |(others, one): (Measured, Measured)| predict(&others, infills(&one).next()?);
     // Collected by index: the thread count changes nothing.
@@ -166,12 +168,12 @@ fn left_out(
 struct Standard {
     /// Mean of the values.
     pub mean: f64,
-    /// Their standard deviation; 1 of values that are all alike.
+    /// Their standard deviation; 1 if all values are equal.
     pub sd: f64,
 }
 
 impl Standard {
-    /// Of these values, their variance the sum of squares over as many less `lost`.
+    /// Returns shift and scale of values; their variance is the sum of squares over the count minus `lost`.
     pub fn of(values: &[f64], lost: usize) -> Self {
         let Moments { count, mean, squares } = Moments::of(values);
         let variance = squares / (count - lost as f64);

@@ -13,8 +13,8 @@ use input::units::N_PER_MM;
 /// A model of one axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ModelKind {
-    /// `k = a + b density + c direction` by least squares: what the others are
-    /// measured against. Never chosen, since it turns negative outside the data.
+    /// `k = a + b density + c direction` by least squares: the
+    /// reference. Never chosen, since it turns negative outside the data.
     Linear,
     /// The same terms with a ridge penalty, through a link that stays positive.
     RidgeLinear,
@@ -85,6 +85,7 @@ pub struct Loo {
     pub chosen: bool,
 }
 
+/// Measurements along one axis.
 struct Data {
     axis: Axis,
     /// Stiffness, N/m; of computed kinds measured / computed.
@@ -94,7 +95,7 @@ struct Data {
 }
 
 impl Data {
-    /// Of these measurements, in units of each.
+    /// Returns the data of an axis, in the unit of each measurement.
     fn new(axis: Axis, measurements: &[Measurement], units: Vec<f64>) -> Self {
         let infills: Vec<_> = measurements.iter().map(Measurement::infill).collect();
         let values = measurements.iter().zip(&units).map(|(m, unit)| m.stiffness(axis) / unit);
@@ -144,13 +145,13 @@ pub struct Model {
     chosen: [Chosen; 2],
     /// Leave-one-out errors: one row per axis and model, assembly first.
     pub loo: Vec<Loo>,
-    /// The fingers as their ribs have them, each computed once.
+    /// Stiffness of the fingers computed from their ribs, each once.
     computed: Computed,
     /// Whether the models are of ratios to the computed stiffness, which takes some 0.2 s a finger.
     pub ratios: bool,
 }
 
-/// The model of one axis and the factor on its standard deviation.
+/// Chosen model of one axis and the factor on its standard deviation.
 #[derive(Debug)]
 struct Chosen {
     fitted: Box<dyn Fitted>,
@@ -195,7 +196,7 @@ fn choose(
 ) -> Result<(Chosen, Vec<Loo>), SurrogateError> {
     let mut loo: Vec<Loo> = kinds.iter().map(|&kind| data.leave_one_out(kind)).collect();
     let unfittable = SurrogateError::Unfittable(axis.label());
-    // A single finger leaves no error, and no choice.
+    // A single finger has no leave-one-out error.
     let eligible = |row: &&mut Loo| match row.model {
         ModelKind::Linear => false,
         ModelKind::ComputedScale => true,
@@ -214,12 +215,12 @@ fn choose(
 }
 
 impl Model {
-    /// Stiffness of one finger, N/m, for any density (percent; below 1 counts
+    /// Returns the stiffness of one finger, N/m, for any density (percent; below 1 counts
     /// as 1) and direction (degrees). The standard deviation is that of a
     /// finger yet to be printed: model error and scatter together.
     ///
     /// # Errors
-    /// If the model rests on the computed stiffness and the finger cannot be computed.
+    /// If the model uses the computed stiffness and the finger cannot be computed.
     pub fn predict(
         &self,
         density_percent: f64,
@@ -239,7 +240,7 @@ impl Model {
         })
     }
 
-    /// Returns how many fingers it rests on, in words.
+    /// Returns the number of measured designs as text.
     pub fn counted(&self) -> String {
         match self.measurements.len() {
             1 => "1 measured design".to_owned(),
@@ -257,7 +258,7 @@ impl Model {
         self.chosen[axis as usize].fitted.describe()
     }
 
-    /// Factor by which the predicted standard deviation of an axis was widened
+    /// Returns the factor by which the predicted standard deviation of an axis was widened
     /// so that the leave-one-out errors fit it; 1 if it fitted already.
     pub fn widening(&self, axis: Axis) -> f64 {
         self.chosen[axis as usize].widen

@@ -3,8 +3,8 @@
 //! Terms and target are standardised, then fitted by `linfa-elasticnet` with an L1 share of 0. The
 //! penalty has the smallest leave-one-out error of the designs given.
 //!
-//! The terms are turned into their principal axes first. A rotation leaves the ridge penalty
-//! as it is, and along axes that are orthogonal one sweep of coordinate descent is exact.
+//! The terms are turned into their principal axes first. A rotation does not change the ridge
+//! penalty, and along axes that are orthogonal one sweep of coordinate descent is exact.
 
 use super::link::Link;
 use super::{Estimate, Fitted, Measured, Standard, infills, left_out};
@@ -32,7 +32,7 @@ pub(super) struct Ridge {
 }
 
 fn terms(infill: Infill, degree: u8) -> Vec<f64> {
-    // About the middle of the printable range, so that terms are less alike.
+    // Centred on the printable range, so that the terms are less correlated.
     let (u, v) = (infill[0] / 20.0 - 1.0, infill[1] / 20.0 - 1.0);
     match degree {
         1 => vec![u, v],
@@ -68,7 +68,7 @@ fn fit_one(measured: &Measured, degree: u8, link: Link, penalty: f64) -> Option<
     let x = DMatrix::from_fn(n, count, |i, j| scales[j].apply(rows[i][j]));
     let y: Array1<f64> = raw.iter().map(|&g| target.apply(g)).collect();
     let design = x.clone().insert_column(0, 1.0);
-    // None where the designs do not tell the terms apart.
+    // `None` if the designs do not distinguish the terms.
     let spread = design.tr_mul(&design).cholesky()?.inverse();
     let axes = x.tr_mul(&x).symmetric_eigen().eigenvectors;
     let turned = &x * &axes;

@@ -31,7 +31,7 @@ fn percent(model: &Model, axis: Axis, kind: ModelKind) -> f64 {
 }
 
 #[test]
-fn the_linear_reference_is_the_published_measure_and_the_choice_beats_it() {
+fn the_linear_model_has_the_published_error_and_the_chosen_model_a_smaller_one() {
     let model = model();
     for (axis, reference) in [(Axis::Assembly, 1.6), (Axis::Compliance, 10.0)] {
         let linear = percent(&model, axis, ModelKind::Linear);
@@ -41,9 +41,9 @@ fn the_linear_reference_is_the_published_measure_and_the_choice_beats_it() {
     }
 }
 
-/// Made by egobox-gp 0.37.1, an implementation of its own, of the shipped measurements.
+/// The expected values are those of egobox-gp 0.37.1, an independent implementation, for the shipped measurements.
 #[test]
-fn the_processes_are_those_of_another_library() {
+fn predictions_agree_with_another_library() {
     let model = model();
     for (infill, expected) in [
         ([10.0, 0.0], [5.2407564e+04, 5.3508625e+02, 1.1803913e+03, 9.8741280e+01]),
@@ -70,7 +70,7 @@ fn the_uncertainty_fits_the_errors_on_designs_left_out() {
         let raw = model.chosen(axis).unwrap().standardised_rms;
         let calibrated = raw / model.widening(axis);
         assert!((0.4..=1.0 + 1e-12).contains(&calibrated), "{axis:?}: {raw} -> {calibrated}");
-        assert!(raw < 1.5, "{axis:?}: the model itself is too sure: {raw}");
+        assert!(raw < 1.5, "{axis:?}: the model is overconfident: {raw}");
     }
 }
 
@@ -139,7 +139,7 @@ fn the_fit_is_bit_identical_for_every_thread_count() {
 }
 
 #[test]
-fn each_bad_line_of_a_file_is_named_with_what_would_be_right() {
+fn errors_name_the_line_and_what_is_accepted() {
     for (from, to, words) in [
         ("design,", "Design,", vec!["line 1", "header must be exactly `design,infill"]),
         ("4,20,0,65,1.95", "4,20,0,65", vec!["line: 5", "4 fields"]),
@@ -200,9 +200,9 @@ fn exact_or_one_dimensional_data_give_a_model_or_an_error_but_no_panic() {
     }
 }
 
-/// Fingers of a material half as stiff: one of them tells all of them, to the last digit.
+/// Fingers of a material with half the stiffness: one measurement determines the stiffness of all others.
 #[test]
-fn one_finger_of_another_material_gives_the_scale_of_all() {
+fn one_finger_of_another_material_determines_the_scale() {
     let soft = |design, density_percent, direction_deg| {
         let infill = [density_percent, direction_deg];
         let half = |axis| 0.5 * computed().stiffness(axis, infill).unwrap();
@@ -232,16 +232,16 @@ fn a_density_that_cannot_be_printed_is_named() {
     assert!(error.contains("finray9.toml") && error.contains("density"), "{error}");
 }
 
-/// The scatter expected of another material is that of the shipped one.
+/// The scatter assumed for another material is that of the shipped fingers.
 #[test]
-fn the_shipped_fingers_scatter_about_the_computed_ones_as_said() {
-    for (axis, said) in super::computed::SCATTER {
+fn the_assumed_scatter_is_that_of_the_shipped_fingers() {
+    for (axis, assumed) in super::computed::SCATTER {
         let shipped = shipped();
         let log = |m: &Measurement| {
             libm::log(m.stiffness(axis) / computed().stiffness(axis, m.infill()).unwrap())
         };
         let logs: Vec<f64> = shipped.iter().map(log).collect();
         let scatter = (Moments::of(&logs).squares / super::computed::FREEDOM).sqrt();
-        assert!((scatter - said).abs() < 0.005, "{axis:?}: {scatter}");
+        assert!((scatter - assumed).abs() < 0.005, "{axis:?}: {scatter}");
     }
 }

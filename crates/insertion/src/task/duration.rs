@@ -1,12 +1,12 @@
-//! How long a trial takes at most, in simulated time.
+//! Largest duration of a trial, in simulated time.
 
 use super::{Ending, Phase, Strategy};
 
 /// Longest trial that is accepted, s.
 pub const LONGEST_TRIAL_S: f64 = 60.0;
-/// Shortest move, s: a tiny displacement is not made in one jerk.
+/// Shortest duration of a move, s, so that a tiny displacement does not jerk.
 pub const SHORTEST_MOVE_S: f64 = 0.02;
-/// A tolerance-based move that is not there by then is stuck, s after its command ended.
+/// Time after the end of its command at which a move with a tolerance counts as stuck, s.
 pub const TOLERANCE_TIMEOUT_S: f64 = 1.0;
 /// Time to close the jaws and for the fingers to come to rest, s.
 pub const GRASP_S: f64 = 0.3;
@@ -14,7 +14,7 @@ pub const GRASP_S: f64 = 0.3;
 pub const CARRY_S: f64 = 0.2;
 
 impl Phase {
-    /// Longest time of the phase with `lead` metres more, on a robot that needs `settling` seconds.
+    /// Returns the longest time of the phase, its move longer by `lead`, m, on a robot that settles in `settling` s.
     fn longest_s(&self, lead: f64, settling: f64) -> f64 {
         let [x, y, z] = self.displacement;
         let length = libm::hypot(libm::hypot(x, y), z) + lead;
@@ -36,7 +36,7 @@ impl Strategy {
         let seconds = |phase: &Phase| phase.longest_s(lead(phase), settling);
         let all: f64 = self.phases.iter().map(seconds).sum();
         let all = GRASP_S + CARRY_S + settling + all;
-        // Written so that what is no number is too long.
+        // Written so that NaN is too long.
         if all <= LONGEST_TRIAL_S {
             return None;
         }

@@ -7,7 +7,7 @@ use input::units::MM;
 use nalgebra::{Matrix3, Point3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
-/// Corners nearer to one another are one, m.
+/// Distance below which two corners are the same, m.
 pub const SAME: f64 = 1e-6 * MM;
 
 /// A face of a box: its axis, and which end of it.
@@ -20,9 +20,9 @@ pub struct Face {
 /// Cut along an edge, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Cut {
-    /// A flat at 45 degrees, so far along either face.
+    /// Flat at 45 degrees with this leg along both faces.
     Chamfer(f64),
-    /// An arc that is tangent to both faces.
+    /// Arc with this radius, tangent to both faces.
     Radius(f64),
 }
 
@@ -38,7 +38,7 @@ impl Cut {
 /// An edge by its two faces.
 pub type Edge = [Face; 2];
 
-/// Edges of that name: the four of a face ("-z"), or the one between two ("+x-z"); `None` if bad.
+/// Returns the edges with a name: the four of a face ("-z"), or the one between two ("+x-z"); `None` if invalid.
 pub fn named(text: &str) -> Option<Vec<Edge>> {
     let face = |text: &str| {
         let axis = ["x", "y", "z"].iter().position(|name| text.get(1..) == Some(name))?;
@@ -55,6 +55,7 @@ pub fn named(text: &str) -> Option<Vec<Edge>> {
     Some(sides.map(|side| [first, side]).collect())
 }
 
+/// Returns whether two edges are the same, in either order of their faces.
 pub fn same(a: &Edge, b: &Edge) -> bool {
     a == b || *a == [b[1], b[0]]
 }
@@ -103,7 +104,7 @@ pub fn cut(
     }
 }
 
-/// Returns the half-spaces of a box whose edges are cut, an arc by so many chords.
+/// Returns the half-spaces of a box with cut edges; `chords` returns the number of chords of an arc.
 pub(super) fn spaces(
     min: &Vector3<f64>,
     max: &Vector3<f64>,
@@ -123,14 +124,15 @@ pub(super) fn spaces(
 }
 
 impl Solid {
-    /// Returns a box with a chamfer along the edges of that name; `None` where there is none to be made.
+    /// Returns a box with a chamfer along the edges of that name; `None` if it
+    /// does not fit.
     pub fn chamfered(min: &Vector3<f64>, max: &Vector3<f64>, at: &str, leg: f64) -> Option<Self> {
         let edges: Vec<_> = named(at)?.into_iter().map(|edge| (edge, Cut::Chamfer(leg))).collect();
         cut(min, max, &edges).ok()
     }
 }
 
-/// Returns whether the cuts of each face leave one another room on it.
+/// Returns whether the cuts at opposite edges of each face fit on it.
 fn fit(size: &Vector3<f64>, edges: &[(Edge, Cut)]) -> bool {
     let reach = |edge: Edge| {
         let cut = edges.iter().find(|(other, _)| same(other, &edge));
@@ -143,8 +145,8 @@ fn fit(size: &Vector3<f64>, edges: &[(Edge, Cut)]) -> bool {
     edges.iter().all(|([a, b], _)| room(*a, *b) && room(*b, *a))
 }
 
-/// Adds the planes that a cut puts in place of the edge between the faces with these outward normals:
-/// of an arc, through its chords.
+/// Adds the planes that replace an edge, given the outward normals of its faces: one for a chamfer, one
+/// for each chord of an arc.
 fn flats(
     spaces: &mut Vec<HalfSpace>,
     [a, b]: [Vector3<f64>; 2],
@@ -197,17 +199,17 @@ fn meeting(planes: [&HalfSpace; 3]) -> Option<Point3<f64>> {
     normals.try_inverse().map(|inverse| Point3::from(inverse * distances))
 }
 
-/// Boxes that begin so near to the plug's tip lead in, m.
+/// Largest distance from the plug's tip at which a box that leads in begins, m.
 const LEAD: f64 = 2.0 * MM;
 /// Largest radius, as a share of a box's smallest side: sheet metal is round at its edge.
 const MOST: f64 = 0.49;
-/// A wall that is so near to the opening is its wall, m.
+/// Largest distance from the opening at which a face counts as its wall, m.
 const BESIDE: f64 = 0.15 * MM;
 
 impl Task {
-    /// The same with a radius, m, on the edges that lead in: those at the bottom of the plug's boxes
-    /// at its tip, and those of the socket's boxes along the opening; of a thin box, what its
-    /// thickness allows. What is no box stays as it is.
+    /// Returns the task with a radius, m, on the edges that lead in: those at the bottom of the plug's boxes
+    /// at its tip, and those of the socket's boxes along the opening. The radius of a thin box is limited
+    /// by its thickness. Parts that are not boxes do not change.
     pub fn rounded(&self, radius: f64) -> Task {
         let mut task = self.clone();
         let corners = self.plug.parts.iter().flat_map(|part| part.solid.corners());
@@ -220,8 +222,8 @@ impl Task {
         task
     }
 
-    /// The same with a chamfer, m along either face, on the edges of the socket's boxes along the
-    /// opening; of a thin box, what its thickness allows. What is no box stays as it is.
+    /// Returns the task with a chamfer, m along either face, on the edges of the socket's boxes along the
+    /// opening. The chamfer of a thin box is limited by its thickness. Parts that are not boxes do not change.
     pub fn chamfered(&self, leg: f64) -> Task {
         let mut task = self.clone();
         task.cut_opening(leg, Cut::Chamfer);
@@ -246,7 +248,7 @@ impl Task {
     }
 }
 
-/// Cuts the edges of a box that `which` finds by its smallest and largest corner.
+/// Cuts the edges of a box that `which` returns for its smallest and largest corner.
 fn lead_in(
     part: &mut Part,
     size: f64,

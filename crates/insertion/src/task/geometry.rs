@@ -101,15 +101,12 @@ impl Solid {
                 Vector3::new(centre[0], centre[1], (z[0] + z[1]) / 2.0),
             ),
             Solid::Prism { .. } | Solid::Hull { .. } | Solid::Rounded(_) => {
-                let corners = self.corners();
-                let middle =
-                    corners.iter().map(|p| p.coords).sum::<Vector3<f64>>() / corners.len() as f64;
-                (Shape::Hull { points: corners.iter().map(|p| p - middle).collect() }, middle)
+                centred(&self.corners())
             }
         }
     }
 
-    /// Corners in the part's frame (see [`Shape::corners`]).
+    /// Returns the corners in the part's frame (see [`Shape::corners`]).
     pub fn corners(&self) -> Vec<Point3<f64>> {
         match self {
             Solid::Prism { axis, outline, span } => {
@@ -148,12 +145,18 @@ impl Solid {
             }
             Solid::Prism { axis, outline, span } => prism_moments(*axis, outline, *span),
             Solid::Hull { .. } | Solid::Rounded(_) => {
-                // The task file's checks leave no flat hull.
+                // The checks of the task file exclude flat hulls.
                 let (corners, faces) = hull(&self.corners()).unwrap_or_default();
                 surface_moments(&corners, &faces)
             }
         }
     }
+}
+
+/// Returns the hull of points about their mean, and the mean.
+pub(super) fn centred(points: &[Point3<f64>]) -> (Shape, Vector3<f64>) {
+    let middle = points.iter().map(|p| p.coords).sum::<Vector3<f64>>() / points.len().max(1) as f64;
+    (Shape::Hull { points: points.iter().map(|p| p - middle).collect() }, middle)
 }
 
 /// Returns the two axes that are not `axis`, in the order x, y, z.
@@ -165,12 +168,12 @@ pub(crate) fn other_axes(axis: usize) -> (usize, usize) {
     }
 }
 
-/// Convex hull of points in a plane, counter-clockwise, by Andrew's monotone chain.
+/// Returns the convex hull of points in a plane, counter-clockwise, by Andrew's monotone chain.
 pub fn convex_outline(points: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
     outline_by(points, |p| *p)
 }
 
-/// As [`convex_outline`], of points whose place in the plane `at` tells.
+/// Returns the convex hull, as [`convex_outline`], of items at positions `at` in a plane.
 pub fn outline_by<P: Copy + PartialEq>(
     mut points: Vec<P>,
     at: impl Fn(&P) -> Point2<f64>,
@@ -200,12 +203,12 @@ pub fn outline_by<P: Copy + PartialEq>(
     corners
 }
 
-/// Twice the signed area of the triangle; positive if `p` is left of `a -> b`.
+/// Returns twice the signed area of the triangle; positive if `p` is left of `a -> b`.
 pub(crate) fn cross(a: Point2<f64>, b: Point2<f64>, p: Point2<f64>) -> f64 {
     (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x)
 }
 
-/// Volume of a solid, m3.
+/// Returns the volume of a solid, m3.
 pub fn volume(solid: &Solid) -> f64 {
     solid.moments().0
 }
@@ -240,10 +243,10 @@ fn prism_moments(axis: usize, outline: &[[f64; 2]], span: [f64; 2]) -> Moments {
     (volume, middle, tensor)
 }
 
-/// Corners, and triangles of them that look outward.
+/// Corners, and triangles of them with outward normals.
 pub type Triangles = (Vec<Point3<f64>>, Vec<[usize; 3]>);
 
-/// Corners and outward triangles of a convex hull; none of points that lie nearly in a plane.
+/// Returns corners and outward triangles of the convex hull; `None` if the points lie nearly in a plane.
 pub fn hull(points: &[Point3<f64>]) -> Option<Triangles> {
     let scaled: Vec<_> = points.iter().map(|p| Vector::new(p.x / MM, p.y / MM, p.z / MM)).collect();
     let (corners, faces) = try_convex_hull(&scaled).ok()?;
@@ -252,10 +255,10 @@ pub fn hull(points: &[Point3<f64>]) -> Option<Triangles> {
     (surface_moments(&corners, &faces).0 > FLAT).then_some((corners, faces))
 }
 
-/// A hull of less volume is flat, m3.
+/// Volume below which a hull counts as flat, m3.
 pub const FLAT: f64 = 1e-7 * MM * MM * MM;
 
-/// Volume, centroid and second moments about it within a closed surface of outward triangles.
+/// Returns volume, centroid and second moments about it of a closed surface of outward triangles.
 pub fn surface_moments(corners: &[Point3<f64>], faces: &[[usize; 3]]) -> Moments {
     let (mut volume, mut first, mut second) = (0.0, Vector3::zeros(), Matrix3::zeros());
     for face in faces {
@@ -274,7 +277,7 @@ pub fn surface_moments(corners: &[Point3<f64>], faces: &[[usize; 3]]) -> Moments
     (volume, centre, second - centre * centre.transpose() * volume)
 }
 
-/// Mass properties of parts of one density with the given total mass (kg). The
+/// Returns the mass properties of parts of one density with the given total mass (kg). The
 /// products of inertia are left out: they are zero or small for these plugs.
 pub fn inertia<'a>(parts: impl IntoIterator<Item = &'a Part>, mass: f64) -> Inertia {
     let moments: Vec<_> = parts.into_iter().map(|part| part.solid.moments()).collect();

@@ -168,16 +168,21 @@ fn patch<'de, D: Deserializer<'de>>(from: D) -> Result<(), D::Error> {
 }
 
 /// Search strategy: start and moves.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Strategy {
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Strategy<P = Phase> {
     /// Tilt of the plug about x during the search, rad.
+    #[serde(rename = "tilt_deg", deserialize_with = "deg")]
     pub tilt: f64,
     /// TCP at the nominal start, m.
+    #[serde(rename = "start_mm", deserialize_with = "mm")]
     pub start: [f64; 3],
     /// Rule for the nominal start.
+    #[serde(rename = "start", default)]
     pub rule: StartRule,
     /// Moves, each from the target of the previous one.
-    pub phases: Vec<Phase>,
+    #[serde(rename = "phase")]
+    pub phases: Vec<P>,
 }
 
 /// Rule for the nominal start.

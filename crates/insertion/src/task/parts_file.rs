@@ -5,7 +5,6 @@ use input::shipped::Source;
 use input::{Check, InputError};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
-use std::fmt::Write;
 use std::path::Path;
 use toml::Table;
 
@@ -24,10 +23,7 @@ pub struct PartsFile {
 
 /// SHA-256 of a text, hexadecimal.
 pub fn sha256(text: &str) -> String {
-    Sha256::digest(text).iter().fold(String::new(), |mut hex, byte| {
-        let _ = write!(hex, "{byte:02x}");
-        hex
-    })
+    format!("{:x}", Sha256::digest(text))
 }
 
 /// Returns a task file with the parts of its parts file appended, if it names one: the text is then
@@ -39,7 +35,7 @@ pub fn with_parts(source: Source) -> Result<Source, InputError> {
     if !source.text.contains("[parts]") || source.text.contains(APPENDED) {
         return Ok(source);
     }
-    // What is no TOML is told by the parser of the task.
+    // The parser of the task reports invalid TOML.
     let Ok(mut table) = source.text.parse::<Table>() else { return Ok(source) };
     let named = table.remove("parts").and_then(|named| named.try_into::<PartsFile>().ok());
     let Some(named) = named else { return Ok(source) };

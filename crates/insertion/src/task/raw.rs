@@ -1,4 +1,4 @@
-//! Task file as read, and its conversion to a [`Task`].
+//! Raw contents of a task file, and their conversion to a [`Task`].
 
 use super::finger::{RawFinger, finger};
 use super::latch::{RawLatch, latch};
@@ -6,8 +6,7 @@ use super::mating_force::{RawMatingForce, mating_force};
 use super::parts_file::PartsFile;
 use super::raw_part::{RawPart, interval, parts};
 use super::{
-    Ending, Friction, Grip, Limits, PadTorsion, Phase, Plug, Sensed, Stage, StartRule, Strategy,
-    Success, Task,
+    Ending, Friction, Grip, Limits, PadTorsion, Phase, Plug, Sensed, Stage, Strategy, Success, Task,
 };
 use input::units::MM;
 use input::units::read::{deg, gram, mm};
@@ -30,7 +29,7 @@ struct RawTask {
     friction: Friction,
     #[serde(default)]
     finger: RawFinger,
-    strategy: RawStrategy,
+    strategy: Strategy<RawPhase>,
     success: Success,
     #[serde(default)]
     limits: Limits,
@@ -61,18 +60,6 @@ struct RawSocket {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RawStrategy {
-    #[serde(rename = "tilt_deg", deserialize_with = "deg")]
-    tilt: f64,
-    #[serde(rename = "start_mm", deserialize_with = "mm")]
-    start: [f64; 3],
-    #[serde(rename = "start", default)]
-    rule: StartRule,
-    phase: Vec<RawPhase>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
 struct RawPhase {
     name: String,
     stage: Stage,
@@ -99,7 +86,7 @@ enum RawMotion {
 }
 
 const MAX_PHASES: usize = 100;
-/// Largest radius of the contact patch that torsional friction stands for, mm.
+/// Largest radius of the contact patch that the torsional friction may represent, mm.
 const LARGEST_PATCH_MM: f64 = 100.0;
 
 impl Task {
@@ -114,25 +101,25 @@ impl Task {
     /// Reads and checks the task of a parsed file.
     ///
     /// # Errors
-    /// As of [`Task::parse`].
+    /// Same as for [`Task::parse`].
     pub fn read(document: &Document<'_>) -> Result<Self, InputError> {
         let raw = document.read()?;
         numbers::check_file("task", &document.read()?, document.file())?;
-        checked(raw, document.file())
+        convert(raw, document.file())
     }
 
-    /// Checks a task file that was read as TOML already; `file` is named in errors.
+    /// Converts and checks a task file that is already parsed as TOML; `file` is named in errors.
     ///
     /// # Errors
-    /// As of [`Task::parse`].
+    /// Same as for [`Task::parse`].
     pub fn from_table(table: Table, file: &str) -> Result<Self, InputError> {
         numbers::check_file("task", &table, file)?;
-        checked(table.try_into().map_err(|error| syntax(file, "", &error))?, file)
+        convert(table.try_into().map_err(|error| syntax(file, "", &error))?, file)
     }
 }
 
-/// Converts a task whose numbers are within the bounds of the table of numbers.
-fn checked(raw: RawTask, file: &str) -> Result<Task, InputError> {
+/// Converts a task whose numbers have been checked against the table of numbers.
+fn convert(raw: RawTask, file: &str) -> Result<Task, InputError> {
     let (check, RawSocket { opening_x, opening_y, part }) = (Check { file }, raw.socket);
     let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     if raw.name.is_empty() || !raw.name.chars().all(plain) {
@@ -141,8 +128,8 @@ fn checked(raw: RawTask, file: &str) -> Result<Task, InputError> {
     if let (true, Some(PartsFile { file, .. })) = (part.is_empty(), &raw.parts) {
         return check.fail("parts.file", format!("{file} must lie beside the task file"));
     }
-    let held = parts(check, "plug.part", raw.plug.part)?;
-    let latch = raw.plug.latch.map(|raw| latch(check, &raw, &held)).transpose()?;
+    let plug_parts = parts(check, "plug.part", raw.plug.part)?;
+    let latch = raw.plug.latch.map(|raw| latch(check, &raw, &plug_parts)).transpose()?;
     interval(check, "grip.faces_y_mm", raw.grip.faces_y)?;
     if raw.grip.shoulder_z <= raw.grip.tcp_z {
         return check.fail("grip.shoulder_z_mm", "must be above grip.tcp_z_mm");
@@ -154,7 +141,7 @@ fn checked(raw: RawTask, file: &str) -> Result<Task, InputError> {
         name: raw.name,
         description: raw.description,
         turn: raw.turn,
-        plug: Plug { latch, parts: held, mass: raw.plug.mass },
+        plug: Plug { latch, parts: plug_parts, mass: raw.plug.mass },
         socket: parts(check, "socket.part", part)?,
         opening: [
             interval(check, "socket.opening_x_mm", opening_x)?,
@@ -173,7 +160,7 @@ fn checked(raw: RawTask, file: &str) -> Result<Task, InputError> {
 /// Checks that no phase is faster than the connector allows.
 fn check_speed(check: Check<'_>, strategy: &Strategy, limits: Limits) -> Result<(), InputError> {
     let Some(most) = limits.speed else { return Ok(()) };
-    // A phase may have the very speed of the limit, which was converted to SI as well.
+    // Speed and limit are converted to SI alike, so a phase may have exactly the speed of the limit.
     let Some(fast) = strategy.phases.iter().find(|phase| phase.speed > most) else { return Ok(()) };
     let [speed, most] = [fast.speed, most].map(|speed| shown(speed / MM));
     let problem = format!("is {speed}; limits.speed_mm_per_s allows at most {most}");
@@ -198,9 +185,9 @@ fn check_torsion(check: Check<'_>, friction: &Friction) -> Result<(), InputError
     check.fail("friction.finger_plug_torsion_mm", problem)
 }
 
-fn strategy(check: Check<'_>, raw: RawStrategy) -> Result<Strategy, InputError> {
+fn strategy(check: Check<'_>, raw: Strategy<RawPhase>) -> Result<Strategy, InputError> {
     let key = "strategy.phase";
-    let RawStrategy { tilt, start, rule, phase: raw } = raw;
+    let Strategy { tilt, start, rule, phases: raw } = raw;
     if raw.len() > MAX_PHASES {
         return check.fail(key, format!("there are {}; the maximum is {MAX_PHASES}", raw.len()));
     }

@@ -1,5 +1,5 @@
 //! Box with round edges, as convex shapes that are flush with one another: a core with the radius
-//! along each round edge, a sharp hull of all flats, and at each corner that is no part of a ball a
+//! along each round edge, a sharp hull of all flats, and at each corner that is not part of a ball a
 //! hull that follows the arcs within 1 um.
 //!
 //! Arcs that meet at a corner are mitred, as cylinders that cut one another; three of one radius
@@ -30,7 +30,7 @@ pub struct Rounded {
 }
 
 impl Rounded {
-    /// Creates the box; `None` of cuts that are too fine for a hull.
+    /// Creates the box; `None` if the cuts are too fine for a hull.
     pub(super) fn new(
         min: &Vector3<f64>,
         max: &Vector3<f64>,
@@ -81,7 +81,7 @@ impl Rounded {
         let all =
             self.edges.len() == 12 && self.edges.iter().all(|(_, cut)| *cut == Cut::Radius(radius));
         let core = self.size / 2.0 - Vector3::repeat(radius);
-        // Of half the thickness nothing is left but for rounding.
+        // A radius of half the thickness leaves rounding errors only.
         let core = core.map(|half| if half < SAME { 0.0 } else { half });
         all.then_some((Shape::RoundBox { core, radius }, self.size / 2.0))
     }
@@ -95,7 +95,7 @@ impl Rounded {
         if points.len() != flats.len() {
             return None;
         }
-        found.push(centred(points));
+        found.push(geometry::centred(&points));
         found.extend(
             self.ends().filter(|end| self.ball(end).is_none()).filter_map(|end| self.corner(&end)),
         );
@@ -155,7 +155,7 @@ impl Rounded {
         all.then(|| (shape, Vector3::new(at(a), at(b), at(c))))
     }
 
-    /// Returns the hull of a corner, as far as the cores of its edges do not reach.
+    /// Returns the hull of a corner, where the cores of its edges do not reach.
     fn corner(&self, faces: &[Face; 3]) -> Option<(Shape, Vector3<f64>)> {
         let near = |edge: &Edge| edge.iter().all(|face| faces.contains(face));
         let chords = |edge: &Edge| match self.cut(*edge) {
@@ -177,7 +177,7 @@ impl Rounded {
             let from_low = if end.high { self.size[end.axis] - reach } else { reach };
             bounds.push(far_side(*end, from_low));
         }
-        Some(centred(corners(&bounds))).filter(|(shape, _)| shape.corners().len() > 3)
+        Some(geometry::centred(&corners(&bounds))).filter(|(shape, _)| shape.corners().len() > 3)
     }
 }
 
@@ -185,11 +185,6 @@ impl Rounded {
 fn far_side(end: Face, at: f64) -> HalfSpace {
     let inward = -end.outward();
     (inward, inward[end.axis] * at)
-}
-
-fn centred(points: Vec<Point3<f64>>) -> (Shape, Vector3<f64>) {
-    let middle = points.iter().map(|p| p.coords).sum::<Vector3<f64>>() / points.len().max(1) as f64;
-    (Shape::Hull { points: points.iter().map(|p| p - middle).collect() }, middle)
 }
 
 #[cfg(test)]

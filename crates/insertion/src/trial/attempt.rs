@@ -4,8 +4,9 @@ use super::cell::{self, Hand, WorkCell};
 use super::classify::{Facts, Placement, classify};
 use super::motion::{Move, Tcp};
 use super::record::{Frame, Recorder, Sample, Trace};
+use super::run::Watched;
 use super::watch::{LeadingEdge, Watch};
-use super::{Conditions, NEVER, PhaseEnd, Poses, Trial};
+use super::{Conditions, PhaseEnd, Poses, Trial};
 use crate::outcome::Outcome;
 use crate::robot::Mounted;
 use crate::task::duration::{CARRY_S, GRASP_S, TOLERANCE_TIMEOUT_S};
@@ -22,7 +23,7 @@ pub mod commanded;
 mod descent;
 pub mod driven;
 
-/// Rest after a move that has none of its own, s.
+/// Default rest after a move, s.
 const REST: f64 = 0.03;
 /// Length of a step in the grasp and in rests, in steps of the engine.
 const COARSE: f64 = 2.0;
@@ -42,7 +43,7 @@ impl From<Diverged> for Stop {
     }
 }
 
-/// State of an attempt; a clone continues bit for bit alike.
+/// State of an attempt. A clone continues with identical bits.
 #[derive(Clone)]
 pub(super) struct Attempt<'a> {
     robot: Arc<Mounted>,
@@ -52,7 +53,7 @@ pub(super) struct Attempt<'a> {
     pub world: Box<dyn World>,
     target: Tcp,
     stage: Stage,
-    /// First phase of the search, as far as it has been made already.
+    /// First phase of the search, if a part of it has been simulated.
     begun: Option<Begun>,
     pub conditions: Conditions,
     pub socket: Pose,
@@ -97,38 +98,12 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// Returns the attempt without its stop flag.
-    pub fn unstoppable(self) -> Attempt<'static> {
-        let Attempt { robot, task, cell, world, target, stage, begun, conditions, socket, .. } =
-            self;
-        let Attempt { time, grasp, watch, edge, phases, trace, recorder, .. } = self;
-        Attempt {
-            robot,
-            stop: &NEVER,
-            task,
-            cell,
-            world,
-            target,
-            stage,
-            begun,
-            conditions,
-            socket,
-            time,
-            grasp,
-            watch,
-            edge,
-            phases,
-            trace,
-            recorder,
-        }
-    }
-
     /// Returns a copy with the start shifted by `offset` metres along y, and as the conditions say along
     /// x.
     pub fn shifted(&self, offset: f64) -> Attempt<'a> {
         let mut shifted = self.clone();
-        // Shifting the start is shifting the socket the other way: the part has
-        // touched nothing of it yet. So all offsets share grasp and approach.
+        // The socket is shifted the other way instead of the start. The part has not
+        // touched it yet, so all offsets share grasp and approach.
         let Conditions { yaw, start_across, .. } = self.conditions;
         let socket = Pose::translation(-start_across, -offset, 0.0) * turned(yaw);
         shifted.socket = turned(-yaw) * Pose::translation(start_across, offset, 0.0);
@@ -136,7 +111,7 @@ impl<'a> Attempt<'a> {
         shifted
     }
 
-    /// Grasp, lift, tilt, carry to the start, and the approach through the air.
+    /// Grasps the part, carries it to the start and makes the phases of the approach.
     pub fn prepare(&mut self) -> Result<(), Stop> {
         let task = Arc::clone(&self.task);
         self.grasp()?;
@@ -160,9 +135,9 @@ impl<'a> Attempt<'a> {
         Ok(())
     }
 
-    /// Lifts the part, tilts it and carries it there.
+    /// Lifts the part, tilts it and carries it to a target.
     fn carry(&mut self, to: Tcp) -> Result<(), Stop> {
-        self.make(Move::lasting(self.target, to, CARRY_S), self.rest_time())?;
+        self.make(Move::with_duration(self.target, to, CARRY_S), self.rest_time())?;
         self.end_phase("carry");
         Ok(())
     }
@@ -180,6 +155,7 @@ impl<'a> Attempt<'a> {
         Ok(())
     }
 
+    /// Makes the phases of search and assembly.
     pub fn search_and_assemble(&mut self) -> Result<(), Stop> {
         let task = Arc::clone(&self.task);
         for phase in task.strategy.phases.iter().filter(|p| p.stage != Stage::Approach) {
@@ -189,13 +165,7 @@ impl<'a> Attempt<'a> {
     }
 
     fn phase(&mut self, phase: &Phase) -> Result<(), Stop> {
-        if phase.stage == Stage::Assembly
-            && self.stage != Stage::Assembly
-            && self.task.grip.hold == Hold::Assembly
-        {
-            self.hold();
-        }
-        self.stage = phase.stage;
+        self.enter(phase.stage);
         let begun = self.begun.take().unwrap_or(Begun { motion: self.motion(phase), steps: 0 });
         let motion = begun.motion;
         let end = match phase.ending {
@@ -205,6 +175,15 @@ impl<'a> Attempt<'a> {
         };
         self.end_phase(&phase.name);
         end
+    }
+
+    /// Begins a stage; the jaws may be held from the assembly on.
+    fn enter(&mut self, stage: Stage) {
+        let assembly = stage == Stage::Assembly && self.stage != stage;
+        if assembly && self.task.grip.hold == Hold::Assembly {
+            self.hold();
+        }
+        self.stage = stage;
     }
 
     fn motion(&self, phase: &Phase) -> Move {
@@ -234,7 +213,7 @@ impl<'a> Attempt<'a> {
         self.rest(rest)
     }
 
-    /// Waits, s.
+    /// Rests for a time, s.
     pub fn rest(&mut self, time: f64) -> Result<(), Stop> {
         self.with_coarse_step(|attempt| (0..attempt.steps(time)).try_for_each(|_| attempt.step()))
     }
@@ -269,7 +248,7 @@ impl<'a> Attempt<'a> {
         speed: f64,
     ) -> Result<(), Stop> {
         let (start, end) = (motion.at(0.0), motion.at(f64::INFINITY));
-        // A robot that trails its command touches after it has ended.
+        // A robot that lags its command may touch after the command has ended.
         let steps = self.steps(motion.duration + self.robot.settling());
         let mut left = self.steps(sensed.latency);
         let mut felt = false;
@@ -283,7 +262,7 @@ impl<'a> Attempt<'a> {
             left -= usize::from(felt);
         }
         let along = (end.position - start.position).normalize();
-        // From where the TCP is: the lag of a soft flange would come on top of the preload.
+        // From the actual TCP: otherwise the lag of a soft flange would add to the preload.
         let reached = along.dot(&(self.tcp() - start.position));
         let to = start.moved(along * (reached + preload));
         self.make(Move::new(self.target, to, speed), self.rest_time())
@@ -298,7 +277,7 @@ impl<'a> Attempt<'a> {
         let dt = self.world.step_s();
         self.time += dt;
         let contact = self.socket_force();
-        self.watch.see_force(&contact.net, dt);
+        self.watch.update_force(&contact.net, dt);
         self.record(dt);
         self.watch_grasp(dt)?;
         if self.stage == Stage::Search {
@@ -311,7 +290,7 @@ impl<'a> Attempt<'a> {
         if self.robot.stops(&self.watch.force) { Err(Stop::ForceLimit) } else { Ok(()) }
     }
 
-    /// State of the trial, with the net force of the socket on the plug, world axes, N.
+    /// Returns the state of the trial, with the net force of the socket on the plug, world axes, N.
     fn sample(&self, force: &Vector3<f64>) -> Sample {
         let placement = self.placement();
         let flange = self.pose(self.cell.flange);
@@ -329,11 +308,11 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// Points at which a body presses the plug or its latch, task frame.
+    /// Returns the points at which a body presses the plug or its latch, task frame.
     fn presses(&self, body: BodyId) -> impl Iterator<Item = ContactPoint> {
         let parts = [self.cell.plug].into_iter().chain(self.cell.latch);
         let points = parts.flat_map(move |part| self.world.contact_points(body, part));
-        points.map(|point| point.seen(&self.socket))
+        points.map(|point| point.transformed(&self.socket))
     }
 
     fn socket_force(&self) -> ContactForce {
@@ -378,12 +357,12 @@ impl<'a> Attempt<'a> {
             return Ok(());
         }
         let pressed = |hand: Hand| self.world.contact(hand.finger, self.cell.plug).normal_sum;
-        self.watch.see_fingers(self.cell.hands.map(pressed), dt);
+        self.watch.update_fingers(self.cell.hands.map(pressed), dt);
         let slipped = !self.phases.is_empty() && self.slip() > self.task.grip.slip_limit;
         if self.watch.dropped() || slipped { Err(Stop::Lost) } else { Ok(()) }
     }
 
-    /// Returns a body in the task frame: as if the start, not the socket, were shifted and turned.
+    /// Returns the pose of a body in the task frame, as if the start and not the socket were shifted and turned.
     fn pose(&self, body: BodyId) -> Pose {
         self.socket * self.world.pose(body)
     }
@@ -434,24 +413,27 @@ impl<'a> Attempt<'a> {
         self.phases.push(end);
     }
 
-    /// Whether the leading edge was inside the opening, and the plug is not beside its mated pose.
-    pub fn entered(&self) -> bool {
-        self.watch.entered && !self.placement().astray(&self.task)
-    }
-
-    pub fn result(self, end: Result<(), Stop>) -> Trial {
-        let placement = self.placement();
-        // At rest, or where a bottomed part stopped the robot: what passes by may tip on.
-        let held = matches!(end, Ok(()) | Err(Stop::ForceLimit));
-        let facts = Facts {
-            seated: held && self.stage == Stage::Assembly && placement.seated(&self.task),
+    /// Returns the outcome of an attempt that ended so, with the part seated or not.
+    fn outcome(&self, end: Result<(), Stop>, seated: bool) -> Outcome {
+        if matches!(end, Err(Stop::Diverged | Stop::Interrupted)) {
+            return Outcome::Diverged;
+        }
+        classify(Facts {
+            seated,
             gripped: self.watch.gripped(),
             lost_in: (end == Err(Stop::Lost)).then_some(self.stage),
-            entered: self.entered(),
-        };
-        let diverged = matches!(end, Err(Stop::Diverged | Stop::Interrupted));
-        let outcome = if diverged { Outcome::Diverged } else { classify(facts) };
-        Trial {
+            entered: self.watch.entered && !self.placement().astray(&self.task),
+        })
+    }
+
+    /// Returns the trial that ended so, its samples and its frames.
+    pub fn result(self, end: Result<(), Stop>) -> Watched {
+        let placement = self.placement();
+        // The part is at rest, or bottomed and stopped the robot. A part in motion may still tip.
+        let held = matches!(end, Ok(()) | Err(Stop::ForceLimit));
+        let seated = held && self.stage == Stage::Assembly && placement.seated(&self.task);
+        let outcome = self.outcome(end, seated);
+        let trial = Trial {
             outcome,
             margin: placement.margin(&self.task, outcome),
             depth_mm: -placement.tip.z / MM,
@@ -461,7 +443,9 @@ impl<'a> Attempt<'a> {
             simulated_s: self.time,
             phases: self.phases,
             retried: false,
-        }
+        };
+        let samples = self.trace.map_or_else(Vec::new, |trace| trace.samples);
+        (trial, samples, self.recorder.map_or_else(Vec::new, |recorder| recorder.frames))
     }
 }
 

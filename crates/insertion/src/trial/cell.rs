@@ -17,7 +17,8 @@ use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 /// Height of the pick-up pose above the start pose, m.
 const PICK_UP_HEIGHT: f64 = 10.0 * MM;
 /// Gap between each pad and the plug before the grasp, m.
-const OPENING: f64 = 0.5 * MM;
+const PAD_GAP: f64 = 0.5 * MM;
+/// Mass of a jaw, kg.
 const JAW_MASS: f64 = 0.05;
 /// Gain of the jaw's position servo, N/m (paper, Table "Simulation Inputs").
 const JAW_GAIN: f64 = 1000.0;
@@ -27,9 +28,9 @@ const JAW_DAMPING: f64 = 30.0;
 const CLOSING_SPEED: f64 = 0.1;
 /// Farthest target, m: the softest finger's deflection and the servo's own.
 const CLOSING_STROKE: f64 = 0.02;
-/// Damping of a latch, as a share of critical: it snaps, and is at rest before the next move.
+/// Damping ratio of a latch: low enough to snap, and at rest before the next move.
 const LATCH_DAMPING: f64 = 0.1;
-/// A held jaw does not give: a non-backdrivable gear, N/m.
+/// Stiffness of a held jaw, N/m: a non-backdrivable gear.
 const HOLD_GAIN: f64 = 1e7;
 
 /// A scene and the handles that a trial needs.
@@ -43,9 +44,9 @@ pub struct WorkCell {
     pub flange: BodyId,
     /// The hand at -y and the hand at +y.
     pub hands: [Hand; 2],
-    /// The plug, but for its latch.
+    /// Plug without its latch.
     pub plug: BodyId,
-    /// The plug's latch, if it has one that springs.
+    /// Latch of the plug, if it has one.
     pub latch: Option<BodyId>,
     /// Fixed connector half.
     pub socket: BodyId,
@@ -72,13 +73,13 @@ pub fn build(task: &Task, robot: &Mounted, finger: &Finger) -> WorkCell {
     let [x, y, z] = task.strategy.start;
     let tcp = Pose::translation(x, y, z + PICK_UP_HEIGHT);
     let plug_pose = tcp * Pose::translation(0.0, 0.0, -task.grip.tcp_z);
-    let (command, flange) = flange(&mut scene, &robot.flange, tcp);
+    let (command, flange) = add_flange(&mut scene, &robot.flange, tcp);
     let plug = scene.body(plug_body(task, plug_pose));
     let geoms = task.socket.iter().flat_map(Part::geoms).collect();
     let socket = scene.body(body("socket", Motion::Fixed, Pose::identity(), geoms));
     let stand = scene.body(stand_body(task, plug_pose));
-    let hands = [-1.0, 1.0].map(|side| hand(&mut scene, task, finger, flange, tcp, side));
-    let latch = task.plug.latch.as_ref().map(|latch| sprung(&mut scene, task, latch, plug));
+    let hands = [-1.0, 1.0].map(|side| add_hand(&mut scene, task, finger, flange, tcp, side));
+    let latch = task.plug.latch.as_ref().map(|latch| add_latch(&mut scene, task, latch, plug));
     let hard = Friction::hard(task.friction.plug_socket);
     scene.contact(plug, socket, hard);
     scene.contact(plug, stand, hard);
@@ -98,21 +99,21 @@ pub fn build(task: &Task, robot: &Mounted, finger: &Finger) -> WorkCell {
     WorkCell { command, flange, hands, plug, latch, socket, stand, scene }
 }
 
-/// Returns the servo setting of a jaw, 0 at -y, that has been closing for `time` seconds. The target
-/// runs ahead until the servo is at its limit; a jump there would let the jaw run into its stop.
+/// Returns the servo setting of a jaw (0 at -y, 1 at +y) that has been closing for `time` seconds. The target moves
+/// at constant speed until the servo is at its limit; a step of the target would drive the jaw into its stop.
 pub fn closing(side: usize, force: f64, time: f64) -> Spring {
     let inward = if side == 0 { 1.0 } else { -1.0 };
     let target = inward * (time * CLOSING_SPEED).min(CLOSING_STROKE);
     Spring { stiffness: JAW_GAIN, damping: JAW_DAMPING, target, limit: force }
 }
 
-/// Returns the servo setting that holds a jaw where it is.
+/// Returns the servo setting that holds a jaw at a position.
 pub fn holding(position: f64) -> Spring {
     Spring { stiffness: HOLD_GAIN, damping: 1e4, target: position, limit: f64::INFINITY }
 }
 
-/// Returns the commanded body, and the flange that follows it (the same if it does so exactly).
-pub fn flange(scene: &mut Scene, model: &Flange, tcp: Pose) -> (BodyId, BodyId) {
+/// Adds the commanded body and the flange that follows it; both are one body if it follows exactly.
+pub fn add_flange(scene: &mut Scene, model: &Flange, tcp: Pose) -> (BodyId, BodyId) {
     let command = scene.body(body("command", Motion::Driven, tcp, Vec::new()));
     let (motion, springs) = match model {
         Flange::Ideal => return (command, command),
@@ -122,13 +123,13 @@ pub fn flange(scene: &mut Scene, model: &Flange, tcp: Pose) -> (BodyId, BodyId) 
     let flange = scene.body(body("flange", motion, tcp, Vec::new()));
     scene.joint(joint("servo", [command, flange], [Pose::identity(); 2], springs));
     if let Flange::Arm(arm) = model {
-        brake(scene, arm, flange, tcp);
+        add_brake(scene, arm, flange, tcp);
     }
     (command, flange)
 }
 
-/// Damper between flange and world, if not the error's rate is damped; axes of the tilted TCP.
-fn brake(scene: &mut Scene, arm: &Reduced, flange: BodyId, tcp: Pose) {
+/// Adds the damper between flange and world of an arm without velocity feed-forward; axes of the tilted TCP.
+fn add_brake(scene: &mut Scene, arm: &Reduced, flange: BodyId, tcp: Pose) {
     let Some(damper) = arm.brake() else { return };
     let base = scene.body(body("base", Motion::Fixed, tcp, Vec::new()));
     let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), arm.tilt);
@@ -177,8 +178,8 @@ fn latch_mass(task: &Task) -> f64 {
     task.plug.mass * (sprung / task.plug.parts.iter().map(volume).sum::<f64>())
 }
 
-/// Returns the latch on its hinge: a body of its own, whose frame is the plug's until it is bent.
-fn sprung(scene: &mut Scene, task: &Task, latch: &Latch, plug: BodyId) -> BodyId {
+/// Adds the latch on its hinge: a separate body, whose frame equals that of the plug while the latch is not bent.
+fn add_latch(scene: &mut Scene, task: &Task, latch: &Latch, plug: BodyId) -> BodyId {
     let inertia = geometry::inertia(task.plug.sprung(), latch_mass(task));
     let pose = scene.bodies[plug.0].pose;
     let geoms = task.plug.sprung().flat_map(Part::geoms).collect();
@@ -208,8 +209,8 @@ fn stand_body(task: &Task, plug: Pose) -> Body {
     body("stand", Motion::Fixed, pose, vec![geom])
 }
 
-/// Returns a jaw on its slide and a finger on its six springs; `side` is -1 or +1.
-fn hand(
+/// Adds a jaw on its slide and a finger on its six springs; `side` is -1 or +1.
+fn add_hand(
     scene: &mut Scene,
     task: &Task,
     finger: &Finger,
@@ -220,7 +221,7 @@ fn hand(
     let label = if side < 0.0 { "-y" } else { "+y" };
     let face = if side < 0.0 { task.grip.faces_y[0] } else { task.grip.faces_y[1] };
     // Jaw and finger frames lie on the pad's surface at the height of the TCP.
-    let zero_y = face + side * OPENING;
+    let zero_y = face + side * PAD_GAP;
     let in_flange = Pose::translation(0.0, zero_y, 0.0);
     let inertia =
         Inertia { mass: JAW_MASS, centre: Point3::origin(), moments: Vector3::repeat(1e-4) };

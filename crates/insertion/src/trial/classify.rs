@@ -4,9 +4,9 @@
 //!    by both fingers at rest after the assembly push, or where the force limit ended
 //!    it: inserted.
 //! 2. The part left the grasp (both fingers off, or slipped beyond the task's
-//!    limit) before the search began: class 1; later: class 4. So does a part that is
-//!    seated, but that one finger has let go of: pushed aside by more than twice the
-//!    grasp force, it stands where it is driven by the other finger alone.
+//!    limit) before the search began: class 1; later: class 4. A seated
+//!    part without contact to one finger is class 4, too: pushed aside by more than twice
+//!    the grasp force, it is held by the other finger alone.
 //! 3. Its leading edge is not inside the opening when the search ends, or it ends beside its mated
 //!    pose: class 2, "a failed search phase in which the plug is missed" (paper, Sec. "Failure Cases").
 //! 4. Otherwise it entered and is not seated, whether fingers still touch it or not: class 3.
@@ -35,7 +35,7 @@ impl Placement {
 
     pub fn seated(&self, task: &Task) -> bool {
         let [x, y] = task.opening;
-        // Deep beside the socket is not inserted.
+        // A plug beside the socket can be deep without being inserted.
         let inside = match &task.success.mated {
             Some(mated) => mated.aside(&self.tip) <= mated.lateral,
             None => within(self.tip.x, x) && within(self.tip.y, y),
@@ -43,13 +43,13 @@ impl Placement {
         inside && -self.tip.z >= task.success.depth && self.tilt <= task.success.tilt
     }
 
-    /// Whether the plug is beside the place in which it mates, as one pitch of its pins aside.
+    /// Returns whether the plug is beside its mated position, for example by one pitch of its pins.
     pub fn astray(&self, task: &Task) -> bool {
         let mated = task.success.mated.as_ref();
         mated.is_some_and(|mated| mated.aside(&self.tip) > mated.lateral + ASTRAY)
     }
 
-    /// Margin of this outcome; see [`super::Trial::margin`].
+    /// Returns the margin of this outcome; see [`super::Trial::margin`].
     pub fn margin(&self, task: &Task, outcome: Outcome) -> f64 {
         let success = task.success;
         let deep = (-self.tip.z - success.depth) / success.depth;
@@ -57,7 +57,7 @@ impl Placement {
         let margin = deep.min(upright).clamp(-1.0, 1.0);
         match outcome {
             Outcome::Inserted => margin.max(0.0),
-            // Lost before it came to the socket: nothing is nearer to success for being deeper.
+            // Lost before the socket: its depth is no measure of the distance from success.
             Outcome::Failed(FailureClass::ContactLossBeforeSearch) => -1.0,
             Outcome::Failed(_) => margin.min(0.0),
             Outcome::Diverged => 0.0,

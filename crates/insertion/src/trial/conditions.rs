@@ -50,7 +50,7 @@ impl Conditions {
             *moment *= self.friction_finger;
         }
         task.friction.plug_socket *= self.friction_socket;
-        // What the pads press keeps its own: that is friction of the finger.
+        // Parts under the pads keep their friction, which is that of the finger.
         let pads = task.grip.shoulder_z + ROOF_GAP - Pad::PAPER.height;
         let below = |part: &&mut Part| part.solid.corners().iter().all(|corner| corner.z < pads);
         for part in task.plug.parts.iter_mut().filter(below).chain(&mut task.socket) {
@@ -79,7 +79,7 @@ impl Conditions {
     }
 }
 
-/// On which side of the middle of the opening a part lies: -1, +1, or 0 if it lies across.
+/// Returns the side of the opening's middle on which a part lies: -1, +1, or 0 if it lies across.
 fn side(part: &Part, axis: usize, middle: f64) -> f64 {
     let corners = part.solid.corners();
     let along = || corners.iter().map(|corner| corner[axis]);

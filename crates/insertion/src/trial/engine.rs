@@ -29,7 +29,7 @@ pub enum EngineKind {
     Fake,
 }
 
-/// An engine as a study records it: whatever changes here may change results.
+/// Engine and settings as recorded with a study; any difference may change results.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EngineRecord {
@@ -59,8 +59,8 @@ impl EngineKind {
         <EngineKind as clap::ValueEnum>::from_str(name, false).ok()
     }
 
-    /// Returns the engine at `factor` times its step, and its settings; nobody asks the closed
-    /// formula's.
+    /// Returns the engine with its production step times `factor`, and its settings; those of the closed formula are
+    /// not used.
     fn configured(self, factor: f64) -> (Box<dyn Engine>, toml::Table) {
         // Settings are flat structs of numbers, which TOML can always hold.
         macro_rules! scaled {
@@ -81,21 +81,21 @@ impl EngineKind {
         }
     }
 
-    /// Returns the engine with its production step times `factor`; of one that
+    /// Returns the engine with its production step times `factor`; it must be one that
     /// [simulates](Self::simulates).
     pub fn build(self, factor: f64) -> Box<dyn Engine> {
         self.configured(factor).0
     }
 
-    /// Returns whether it simulates, as opposed to the closed formula.
+    /// Returns whether it is a simulation and not the closed formula.
     pub fn simulates(self) -> bool {
         self.name() != "fake"
     }
 
-    /// Returns where trials of one task, robot and pair of fingers run, at `step_factor` times the step.
+    /// Returns the rig for trials of one task, robot and pair of fingers, with `step_factor` times the time step.
     ///
     /// # Errors
-    /// If they do not go together.
+    /// If the robot or the engine does not support the task.
     pub fn rig(
         self,
         task: &Task,
@@ -110,7 +110,7 @@ impl EngineKind {
         Ok(Box::new(EngineRig::with(task.clone(), robot, finger, self.build(step_factor))?))
     }
 
-    /// Returns the engine as a study records it.
+    /// Returns the record of the engine for a study.
     pub fn record(self) -> EngineRecord {
         let name = self.name().to_owned();
         if !self.simulates() {
@@ -127,7 +127,7 @@ mod tests {
     use clap::ValueEnum;
 
     #[test]
-    fn every_engine_is_recorded_under_its_own_version_with_its_settings() {
+    fn every_engine_is_recorded_with_its_version_and_settings() {
         for kind in EngineKind::value_variants() {
             assert_eq!(EngineKind::from_name(kind.name()), Some(*kind));
             let record = kind.record();

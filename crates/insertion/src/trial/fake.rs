@@ -10,7 +10,7 @@ use super::{Conditions, Grasp, Grasped, Rig, Sample, Trial};
 use crate::finger::Finger;
 use crate::outcome::{FailureClass, Outcome};
 use input::units::{DEG, MM, N_PER_MM};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 /// The rig with the closed-form window.
 #[derive(Debug, Clone, Copy, Default)]
@@ -23,7 +23,7 @@ pub struct FakeRig {
 const DELAY: &str = "FINGER_OPT_FAKE_DELAY_US";
 
 impl FakeRig {
-    /// With the delay that the environment asks for.
+    /// Creates the rig with the delay of the environment variable.
     pub fn from_environment() -> Self {
         let delay = std::env::var(DELAY).ok().and_then(|text| text.parse().ok());
         FakeRig { delay: std::time::Duration::from_micros(delay.unwrap_or(0)) }
@@ -32,18 +32,12 @@ impl FakeRig {
 
 impl Rig for FakeRig {
     fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
-        let (low, high) = window_in_mm(&grasp.finger, &grasp.conditions);
-        Box::new(FakeGrasp { low, high, delay: self.delay, stop: grasp.stop })
+        Box::new(FakeGrasp { delay: self.delay, grasp })
     }
 }
 
 /// Returns the window's ends in mm: `(most negative, most positive)` inserting offset.
-pub fn window_mm(finger: &Finger) -> (f64, f64) {
-    window_in_mm(finger, &Conditions::NOMINAL)
-}
-
-/// Returns the window's ends under these conditions, mm.
-pub fn window_in_mm(finger: &Finger, conditions: &Conditions) -> (f64, f64) {
+pub fn window_mm(finger: &Finger, conditions: &Conditions) -> (f64, f64) {
     let compliance = finger.compliance / N_PER_MM;
     let assembly = finger.assembly / N_PER_MM;
     let rcc = finger.rcc / MM;
@@ -57,15 +51,14 @@ pub fn window_in_mm(finger: &Finger, conditions: &Conditions) -> (f64, f64) {
 }
 
 struct FakeGrasp<'a> {
-    low: f64,
-    high: f64,
     delay: std::time::Duration,
-    stop: &'a AtomicBool,
+    grasp: Grasp<'a>,
 }
 
 impl Grasped for FakeGrasp<'_> {
-    fn sampled(&self, offset: f64, _every_s: Option<f64>) -> (Trial, Vec<Sample>) {
-        let stopped = self.stop.load(Ordering::Relaxed);
+    fn run(&self, offset: f64, _: Option<f64>, _: f64) -> (Trial, Vec<Sample>) {
+        let (low, high) = window_mm(&self.grasp.finger, &self.grasp.conditions);
+        let stopped = self.grasp.stop.load(Ordering::Relaxed);
         if !stopped {
             std::thread::sleep(self.delay);
         }
@@ -73,15 +66,15 @@ impl Grasped for FakeGrasp<'_> {
         let offset_mm = (offset / MM * 1e6).round() / 1e6;
         let outcome = if stopped {
             Outcome::Diverged
-        } else if offset_mm < self.low {
+        } else if offset_mm < low {
             Outcome::Failed(FailureClass::Jammed)
-        } else if offset_mm > self.high {
+        } else if offset_mm > high {
             Outcome::Failed(FailureClass::PlugMissed)
         } else {
             Outcome::Inserted
         };
         // Distance in mm to the nearer end.
-        let margin = (offset_mm - self.low).min(self.high - offset_mm).clamp(-1.0, 1.0);
+        let margin = (offset_mm - low).min(high - offset_mm).clamp(-1.0, 1.0);
         let trial = Trial {
             outcome,
             margin,
@@ -112,7 +105,7 @@ impl<F: Fn(&Grasp, f64, Trial) -> Trial + Send + Sync> Rig for Altered<F> {
 }
 
 impl<F: Fn(&Grasp, f64, Trial) -> Trial + Send + Sync> Grasped for AlteredGrasp<'_, F> {
-    fn sampled(&self, offset: f64, _every_s: Option<f64>) -> (Trial, Vec<Sample>) {
+    fn run(&self, offset: f64, _: Option<f64>, _: f64) -> (Trial, Vec<Sample>) {
         let trial = FakeRig::default().hold(self.grasp).trial(offset);
         ((self.alter)(&self.grasp, offset, trial), Vec::new())
     }

@@ -65,8 +65,8 @@ pub struct Poses {
 pub struct Trial {
     /// Outcome of the trial.
     pub outcome: Outcome,
-    /// How clearly, from -1 to 1: what it has beyond the success criterion that it meets
-    /// least, as a share of that criterion; below 0 if it failed, 0 if it diverged.
+    /// Margin, -1 to 1: the smallest excess over a success criterion, as a share of that criterion;
+    /// below 0 if it failed, 0 if it diverged.
     pub margin: f64,
     /// Depth of the plug's tip below the socket's top at the end, mm.
     pub depth_mm: f64,
@@ -80,7 +80,7 @@ pub struct Trial {
     pub phases: Vec<PhaseEnd>,
     /// Simulated time of the trial, s.
     pub simulated_s: f64,
-    /// Whether it diverged at first and was run again at half the step.
+    /// Whether it diverged at first and was repeated at half the step.
     pub retried: bool,
 }
 
@@ -117,46 +117,55 @@ pub enum Course<'a> {
 /// A trial and its samples.
 pub type Followed = (Trial, Vec<Sample>);
 
-/// A place where trials are run: one task, one robot, one engine.
+/// Setup in which trials are run: one task, one robot, one engine.
 pub trait Rig: Send + Sync {
-    /// Grasps the part: once for all offsets, which differ from the approach on.
+    /// Grasps the part, once for all offsets.
     fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a>;
 
-    /// Grasps for trials that nobody stops, in the world as the task file has it.
+    /// Grasps under the conditions of the task file, without a stop flag.
     fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_> {
         self.hold(Grasp::of(finger))
     }
 
-    /// Returns the trial of a grasp, its start shifted by `offset` metres along y, filmed if it can be.
+    /// Returns the trial of a grasp, its start shifted by `offset` metres along y, with its
+    /// frames; `None` if it is not simulated.
     fn record(&self, _grasp: Grasp<'_>, _offset: f64) -> Option<Recording> {
         None
     }
 
-    /// Samples of such a grasp along that course, each `every_s` seconds from its start: one series for
+    /// Returns the trials of a grasp along a course, sampled each `every_s` seconds from its start: one for
     /// each path; empty if it is not simulated.
     fn follow(&self, _grasp: Grasp<'_>, _course: Course<'_>, _every_s: f64) -> Vec<Followed> {
         Vec::new()
     }
 
-    /// Returns the trial of such a grasp whose moves the caller commands, once it is made whatever
-    /// becomes of the grasp's flag, if it is simulated.
-    fn driven(&self, _grasp: Grasp<'_>) -> Option<Driven> {
+    /// Returns the trial of these fingers whose moves the caller commands, if it is simulated.
+    fn driven(&self, _finger: &Finger) -> Option<Driven> {
         None
     }
 }
 
+/// Rest before a logged trial, and once more as the first part of its log, s.
+const ZEROED_S: f64 = 0.2;
+
 /// A part held and tilted, ready for a trial at any offset.
 pub trait Grasped: Send + Sync {
-    /// One trial with the start shifted by `offset` metres along y; sampled each `every_s` seconds.
-    fn sampled(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>);
+    /// Runs a trial with the start shifted by `offset` metres along y: after a rest of `rest_s` seconds, sampled each
+    /// `every_s` seconds from there on, and a second rest.
+    fn run(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> (Trial, Vec<Sample>);
 
-    /// The same after a rest in which a robot zeroes its sensor, sampled from there on: what it logs.
+    /// Returns the trial from the search on, with its samples.
+    fn sampled(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
+        self.run(offset, every_s, 0.0)
+    }
+
+    /// Returns the trial with the rest in which a robot zeroes its sensor, sampled as the robot logs it.
     fn logged(&self, offset: f64, every_s: f64) -> (Trial, Vec<Sample>) {
-        self.sampled(offset, Some(every_s))
+        self.run(offset, Some(every_s), ZEROED_S)
     }
 
     /// Returns the trial alone.
     fn trial(&self, offset: f64) -> Trial {
-        self.sampled(offset, None).0
+        self.run(offset, None, 0.0).0
     }
 }

@@ -7,18 +7,20 @@ use nalgebra::{Translation3, UnitQuaternion, Vector3};
 /// A TCP target: position, m, and tilt about x, rad.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tcp {
-    /// Place, m.
+    /// Position, m.
     pub position: Vector3<f64>,
     /// Tilt about x, rad.
     pub tilt: f64,
 }
 
 impl Tcp {
+    /// Returns the pose of the TCP.
     pub(super) fn pose(&self) -> Pose {
         let rotation = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), self.tilt);
         Pose::from_parts(Translation3::from(self.position), rotation)
     }
 
+    /// Returns the target displaced by a vector, m.
     pub(super) fn moved(&self, by: Vector3<f64>) -> Tcp {
         Tcp { position: self.position + by, tilt: self.tilt }
     }
@@ -33,12 +35,14 @@ pub struct Move {
 }
 
 impl Move {
+    /// Returns the move at this mean speed, m/s.
     pub fn new(from: Tcp, to: Tcp, speed: f64) -> Self {
         let duration = ((to.position - from.position).norm() / speed).max(SHORTEST_MOVE_S);
         Move { from, to, duration }
     }
 
-    pub fn lasting(from: Tcp, to: Tcp, duration: f64) -> Self {
+    /// Returns the move with this duration, s.
+    pub fn with_duration(from: Tcp, to: Tcp, duration: f64) -> Self {
         Move { from, to, duration: duration.max(SHORTEST_MOVE_S) }
     }
 

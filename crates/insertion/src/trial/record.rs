@@ -11,6 +11,7 @@ use input::units::{DEG, MM};
 use nalgebra::Vector3;
 use serde::Serialize;
 
+/// Interval of the frames, s.
 const INTERVAL: f64 = 1e-3;
 
 /// One moment of a trial; task frame.
@@ -35,22 +36,22 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Depth of the plug's tip below the socket's top, mm.
+    /// Returns the depth of the plug's tip below the socket's top, mm.
     pub fn depth_mm(&self) -> f64 {
         -self.poses.plug.translation.z / MM
     }
 
-    /// Pose of the latch; that of the plug, if it has none that springs.
+    /// Returns the pose of the latch, or that of the plug without one.
     pub fn latch(&self) -> Pose {
         self.poses.latch.unwrap_or(self.poses.plug)
     }
 
-    /// Angle between the plug's axis and z, degrees.
+    /// Returns the angle between the plug's axis and z, degrees.
     pub fn tilt_deg(&self) -> f64 {
         Placement::new(&self.poses.plug).tilt / DEG
     }
 
-    /// Returns how far a finger, by its place, is bent from where its jaw would have it, mm; jaw axes.
+    /// Returns the deflection of a finger, by its index, relative to its jaw, mm; jaw axes.
     pub fn deflection_mm(&self, finger: usize) -> [f64; 3] {
         let bent = self.jaws[finger].inverse() * self.poses.fingers[finger];
         (bent.translation.vector / MM).into()
@@ -63,7 +64,7 @@ impl Frame {
             *pose = from * *pose;
         }
         for point in self.contacts.iter_mut().chain(&mut self.grips) {
-            *point = point.seen(from);
+            *point = point.transformed(from);
         }
         self.force = from * self.force;
     }
@@ -76,7 +77,7 @@ pub struct Recording {
     pub trial: Trial,
     /// Moments in their order, about a millisecond apart.
     pub frames: Vec<Frame>,
-    /// When its outcome was decided, s: of a plug that missed at the push, else at the end.
+    /// Time at which the outcome was decided, s: the start of the push if the plug missed, otherwise the end.
     pub decided_s: f64,
 }
 
@@ -84,14 +85,14 @@ impl Recording {
     pub(super) fn new(trial: Trial, frames: Vec<Frame>) -> Self {
         let push = frames.iter().find(|frame| frame.stage == Stage::Assembly);
         let missed = trial.outcome == Outcome::Failed(FailureClass::PlugMissed);
-        // Not after the last frame, which may lie before the last step: nobody would see it.
+        // Limited to the last frame, which may be before the last step.
         let end = frames.last().map_or(trial.simulated_s, |frame| frame.time_s);
         let decided_s = push.filter(|_| missed).map_or(end, |frame| frame.time_s);
         Recording { trial, frames, decided_s }
     }
 }
 
-/// Takes in every so many steps.
+/// Recorder of one frame per interval.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Recorder {
     steps: usize,
@@ -99,7 +100,7 @@ pub(super) struct Recorder {
 }
 
 impl Recorder {
-    /// Returns whether this step, `step_s` long, is to be taken in.
+    /// Returns whether this step, `step_s` long, is to be recorded.
     pub fn wants(&mut self, step_s: f64) -> bool {
         let every = ((INTERVAL / step_s).round() as usize).max(1);
         self.steps += 1;
@@ -138,7 +139,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Between two samples, a `share` of the way; the phase is that of the later.
+    /// Interpolates between two samples; the phase is that of the later one.
     fn between(before: &Sample, after: &Sample, share: f64) -> Sample {
         let number = |a: f64, b: f64| a + share * (b - a);
         let vector = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|i| number(a[i], b[i]));
@@ -157,12 +158,12 @@ impl Sample {
     }
 }
 
-/// Least time between two samples, s: no engine steps faster.
+/// Smallest interval of samples, s: no engine has a shorter step.
 const LEAST_INTERVAL: f64 = 5e-5;
-/// By how much the end of a step may miss the time of a sample and still be that sample, s.
+/// Largest difference between the end of a step and a sample time for which no interpolation is needed, s.
 const SAME_TIME: f64 = 1e-9;
 
-/// Samples at even times, between the ends of steps where those are longer or begin elsewhere.
+/// Samples at equal intervals, interpolated between the ends of steps.
 #[derive(Debug, Clone)]
 pub(super) struct Trace {
     every_s: f64,
@@ -171,12 +172,12 @@ pub(super) struct Trace {
 }
 
 impl Trace {
-    /// Returns a sample each `every_s` seconds of simulated time, from the end of the first step on.
+    /// Creates a trace with a sample each `every_s` seconds of simulated time, from the end of the first step on.
     pub fn new(every_s: f64) -> Self {
         Trace { every_s: every_s.max(LEAST_INTERVAL), last: None, samples: Vec::new() }
     }
 
-    /// Takes in the end of a step.
+    /// Records the state at the end of a step.
     pub fn see(&mut self, now: Sample) {
         let Some(last) = self.last.replace(now) else {
             self.samples.push(now);

@@ -13,40 +13,40 @@ use input::units::N_PER_MM;
 use nalgebra::Vector3;
 use std::sync::{Arc, OnceLock};
 
-/// A task, a robot in place for it, and an engine that can simulate both.
+/// Task, robot at its start, and an engine that supports both.
 pub struct EngineRig {
-    /// Task that the robot is in place for.
+    /// Task at whose start the robot is.
     pub task: Task,
     robot: Arc<Mounted>,
     engine: Box<dyn Engine>,
 }
 
-/// Error of task, robot and engine that do not go together.
+/// Error of a robot or an engine that does not support a task.
 #[derive(Debug, thiserror::Error)]
 pub enum RigError {
-    /// Names of robot and task, and why the robot cannot do it, or not in time.
+    /// Names of robot and task, and why the robot does not support it.
     #[error("the robot `{0}` on the task `{1}`: {2}")]
     Robot(String, String, String),
-    /// The engine cannot simulate the two.
+    /// The engine does not support them.
     #[error(transparent)]
     Engine(#[from] Unsupported),
 }
 
 impl EngineRig {
-    /// Puts the robot in place for the paper's fingers.
+    /// Creates the rig for the paper's fingers.
     ///
     /// # Errors
-    /// If robot or engine cannot do the task.
+    /// If the robot or the engine does not support the task.
     pub fn new(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<Self, RigError> {
-        // What a scene needs does not depend on how stiff its fingers are.
+        // Whether a scene is supported does not depend on the stiffness of the fingers.
         let any = Finger::new(N_PER_MM, N_PER_MM).shaped(&task.finger, 0.0);
         Self::with(task, robot, &any, engine)
     }
 
-    /// Puts the robot in place for such fingers.
+    /// Creates the rig for fingers like this one.
     ///
     /// # Errors
-    /// If robot or engine cannot do the task.
+    /// If the robot or the engine does not support the task.
     pub fn with(
         task: Task,
         robot: &Robot,
@@ -92,8 +92,6 @@ impl EngineRig {
     }
 }
 
-/// Rest before a logged attempt, and once more as the first part of its log, s.
-const ZEROED_S: f64 = 0.2;
 /// Half of the width of the plate that is probed, m: no plug gets near its rim.
 const PLATE: f64 = 0.1;
 
@@ -117,9 +115,9 @@ impl Rig for EngineRig {
 
     fn follow(&self, grasp: Grasp<'_>, course: Course<'_>, every_s: f64) -> Vec<Followed> {
         let engine = &*self.engine;
-        let ended = |mut attempt: Attempt<'_>, end| {
-            let samples = attempt.sampled();
-            (attempt.result(end), samples)
+        let ended = |attempt: Attempt<'_>, end| {
+            let (trial, samples, _) = attempt.result(end);
+            (trial, samples)
         };
         match course {
             Course::Paths(paths) => {
@@ -140,13 +138,13 @@ impl Rig for EngineRig {
         }
     }
 
-    fn driven(&self, grasp: Grasp<'_>) -> Option<Driven> {
-        let ready = self.prepare(&*self.engine, grasp, false);
+    fn driven(&self, finger: &Finger) -> Option<Driven> {
+        let ready = self.prepare(&*self.engine, Grasp::of(finger), false);
         Some(Driven::new(ready.attempt, ready.end))
     }
 }
 
-/// An attempt stopped right before the search, and what it takes to begin it again.
+/// Attempt stopped right before the search, and the inputs to repeat it.
 struct Ready<'a> {
     rig: &'a EngineRig,
     grasp: Grasp<'a>,
@@ -157,19 +155,14 @@ struct Ready<'a> {
 }
 
 impl Grasped for Ready<'_> {
-    fn sampled(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
-        let (trial, samples, _) = self.watched(offset, every_s, 0.0);
-        (trial, samples)
-    }
-
-    fn logged(&self, offset: f64, every_s: f64) -> (Trial, Vec<Sample>) {
-        let (trial, samples, _) = self.watched(offset, Some(every_s), ZEROED_S);
+    fn run(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> (Trial, Vec<Sample>) {
+        let (trial, samples, _) = self.watched(offset, every_s, rest_s);
         (trial, samples)
     }
 }
 
-/// A trial, samples from the search on, and frames from the grasp on; both if asked for.
-type Watched = (Trial, Vec<Sample>, Vec<Frame>);
+/// A trial, samples from the search on, and frames from the grasp on; both empty unless requested.
+pub(super) type Watched = (Trial, Vec<Sample>, Vec<Frame>);
 
 impl Ready<'_> {
     fn watched(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> Watched {
@@ -184,16 +177,16 @@ impl Ready<'_> {
     }
 }
 
-/// An attempt stopped right before the search; every offset starts from a copy.
+/// Attempt stopped right before the search; every offset starts from a copy.
 struct Prepared<'a> {
     attempt: Attempt<'a>,
     end: Result<(), Stop>,
-    /// The attempt after its way through the air, where that is the same for every offset.
+    /// Attempt after the shared descent, if there is one.
     descended: OnceLock<Option<Attempt<'a>>>,
 }
 
 impl<'a> Prepared<'a> {
-    /// Common start of all offsets, where nobody looks at the way through the air.
+    /// Returns the common start of all offsets after the shared descent, if there is one.
     fn descended(&self) -> Option<&Attempt<'a>> {
         self.end.ok()?;
         self.descended.get_or_init(|| self.attempt.descended()).as_ref()
@@ -211,9 +204,7 @@ impl<'a> Prepared<'a> {
         }
         let end = end.and_then(|()| attempt.rest(rest_s));
         let end = end.and_then(|()| attempt.search_and_assemble());
-        let samples = attempt.trace.take().map_or_else(Vec::new, |trace| trace.samples);
-        let frames = attempt.recorder.take().map_or_else(Vec::new, |recorder| recorder.frames);
-        (attempt.result(end), samples, frames)
+        attempt.result(end)
     }
 }
 
@@ -267,7 +258,6 @@ mod tests {
         let after_the_grasp = grasped.trial(0.0);
         assert!(after_the_grasp.simulated_s < 1.5, "nothing but grasp and approach");
         assert_eq!(rig.record(grasp, 0.0).unwrap().trial.simulated_s, 0.0);
-        assert_eq!(rig.driven(grasp).unwrap().start(0.0).outcome, Some(Outcome::Diverged));
     }
 
     #[test]

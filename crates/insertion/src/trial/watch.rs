@@ -9,11 +9,12 @@ use nalgebra::{Point3, Vector3};
 
 /// Time constant of the force filter, s, as of a wrist sensor: a step's impact is numerics.
 const FORCE_FILTER: f64 = 0.005;
-/// A finger that is off for this long has let go, s: longer than a bounce.
+/// Time without contact after which a finger has lost the part, s: longer than a bounce.
 const LOSS_TIME: f64 = 0.02;
-/// A finger that presses with less is off, N.
+/// Force below which a finger has no contact, N.
 const LOSS_FORCE: f64 = 0.01;
 
+/// Filtered force and finger contacts.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Watch {
     pub force: Vector3<f64>,
@@ -21,40 +22,44 @@ pub(super) struct Watch {
     pub phase_peak: f64,
     /// Whether the leading edge is inside the opening; as it was when the search ended.
     pub entered: bool,
-    /// For how long each finger has been off, s.
+    /// Time for which each finger has had no contact, s.
     loose_for: [f64; 2],
 }
 
 impl Watch {
-    pub fn see_force(&mut self, net: &Vector3<f64>, dt: f64) {
+    /// Updates the filtered force and its peaks by the net force over a step, N.
+    pub fn update_force(&mut self, net: &Vector3<f64>, dt: f64) {
         self.force += (net - self.force) * (dt / FORCE_FILTER);
         self.peak_force = self.peak_force.max(self.force.norm());
         self.phase_peak = self.phase_peak.max(self.force.norm());
     }
 
-    /// Takes in what each finger presses the plug with over a step, N.
-    pub fn see_fingers(&mut self, pressed: [f64; 2], dt: f64) {
+    /// Updates the contact of each finger by its force on the plug over a step, N.
+    pub fn update_fingers(&mut self, pressed: [f64; 2], dt: f64) {
         for (pressed, loose_for) in pressed.into_iter().zip(&mut self.loose_for) {
             *loose_for = if pressed < LOSS_FORCE { *loose_for + dt } else { 0.0 };
         }
     }
 
+    /// Returns whether both fingers have lost the part.
     pub fn dropped(&self) -> bool {
         self.loose_for.iter().all(|&time| time > LOSS_TIME)
     }
 
+    /// Returns whether both fingers hold the part.
     pub fn gripped(&self) -> bool {
         self.loose_for.iter().all(|&time| time <= LOSS_TIME)
     }
 }
 
-/// Corners of a plug of which only those of the hull count.
+/// Number of corners above which only those of their hull are checked.
 const MANY: usize = 500;
 /// Depth of an edge that is inside, m: more than contacts sink, less than any preload.
 const DEPTH: f64 = 0.15 * MM;
 /// Overlap of an edge that leans on a wall, m: more than contacts sink, less than a clearance.
 const LEANING: f64 = 0.02 * MM;
 
+/// Corners of a plug that can enter the opening first.
 #[derive(Debug, Clone)]
 pub(super) struct LeadingEdge {
     /// Plug frame: z from the tip.
@@ -64,10 +69,10 @@ pub(super) struct LeadingEdge {
 
 impl LeadingEdge {
     pub fn new(task: &Task) -> Self {
-        // A latch gives way, and leads nothing.
+        // A latch yields and does not guide the plug.
         let corners = task.plug.rigid().flat_map(|part| part.solid.corners());
         let corners: Vec<_> = corners.filter(|corner| corner.z < task.success.depth).collect();
-        // Of many corners those of the hull are looked at in every step.
+        // The corners are checked in every step.
         let few = if corners.len() > MANY { hull(&corners) } else { None };
         LeadingEdge {
             corners: few.map_or(corners, |(corners, _)| corners),

@@ -261,9 +261,7 @@ fn robot((task, order): &(&str, Order)) -> Line {
         "robot",
         format!(
             "on {task} {} ranked {} printed fingers with Spearman {:+.2} to the bench{chance}",
-            order.source.words(),
-            order.fingers,
-            order.spearman
+            order.source, order.fingers, order.spearman
         ),
     )
 }

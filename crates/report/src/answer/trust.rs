@@ -128,9 +128,9 @@ fn ranges(fingers: &[Measured]) -> String {
 pub(super) fn published(task: &str) -> Vec<(Measured, Measurement)> {
     let bench = of_task(task, Origin::Bench);
     let one = |measurement: Measurement| {
-        let found = bench.iter().find(|found| found.design == measurement.design)?;
         let design = Design::infill(measurement.density_percent, measurement.direction_deg);
-        Some((Measured { design, range_mm: found.tolerable_range_mm? }, measurement))
+        let range_mm = bench.iter().find(|found| found.design == design)?.range_mm?;
+        Some((Measured { design, range_mm }, measurement))
     };
     designs().into_iter().filter_map(one).collect()
 }

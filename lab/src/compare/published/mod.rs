@@ -13,12 +13,12 @@ use insertion::evaluation::Window;
 use insertion::evaluation::taught::{Moved, teach};
 use insertion::evaluation::template::Impossible;
 use insertion::evaluation::tolerance::{self, Search};
-use insertion::finger::computed::AtPad;
 use insertion::finger::model::FingerSource;
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::stiffness::Measurement;
+use insertion::surrogate::Prediction;
 use insertion::task::{StartRule, Task};
 use insertion::trial::NEVER;
 use insertion::trial::engine::EngineKind;
@@ -71,12 +71,13 @@ impl TaskTable {
     pub fn new(task: &str, windows: impl IntoIterator<Item = (Measurement, Window)>) -> Self {
         let published = [Origin::Simulation, Origin::Bench].map(|of| published::of_task(task, of));
         let row = |(design, window): (Measurement, Window)| {
+            let infill = Design::infill(design.density_percent, design.direction_deg);
             let [simulation, bench] = published.each_ref().map(|rows| {
-                let row = rows.iter().find(|row| row.design == design.design)?;
+                let row = rows.iter().find(|row| row.design == infill)?;
                 Some(Reading {
-                    range_mm: row.tolerable_range_mm,
-                    failure_negative: row.failure_negative_offset,
-                    failure_positive: row.failure_positive_offset,
+                    range_mm: row.range_mm,
+                    failure_negative: row.failure_negative,
+                    failure_positive: row.failure_positive,
                 })
             });
             let readings = [Some(Reading::from(&window)), simulation, bench];
@@ -167,7 +168,7 @@ pub fn windows(
     let window = |task: &Task, design: &Measurement| {
         let Measurement { compliance, assembly, density_percent, direction_deg, .. } = *design;
         let infill = Design::infill(density_percent, direction_deg);
-        let finger = fingers.make(AtPad { compliance, assembly }, &infill, task)?.finger;
+        let finger = fingers.make(&Prediction::exact(compliance, assembly), &infill, task)?;
         let rig = engine.rig(task, robot, &finger, 1.0)?;
         let taught = match task.strategy.rule {
             StartRule::Given => None,

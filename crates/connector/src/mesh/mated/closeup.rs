@@ -1,6 +1,7 @@
 //! Picture of a place at which parts and drawing differ.
 
 use crate::mesh::Triangle;
+use crate::picture::VIEWS;
 use contact::scene::Pose;
 use drawing::{Drawing, Font, Style, View};
 use input::units::MM;
@@ -12,12 +13,6 @@ const PANEL: f64 = 460.0;
 const INSIDE: f64 = PANEL - 10.0;
 /// Distance from the place to the sides of a panel, m.
 const AROUND: f64 = 1.0 * MM;
-/// Panels: title, axes to the right and up, and the axis across.
-const SECTIONS: [(&str, [usize; 2], usize); 3] = [
-    ("from the side: y to the right, z up", [1, 2], 0),
-    ("from the front: x to the right, z up", [0, 2], 1),
-    ("from above: y to the right, x up", [1, 0], 2),
-];
 const DRAWN: [Style; 2] = [Style::line("#8a5a10", 2.0), Style::line("#56657d", 2.0)];
 const PARTS: [Style; 2] =
     [Style::line("#e8a33d", 1.0).dashed(), Style::line("#1c5fb0", 1.0).dashed()];
@@ -39,7 +34,8 @@ pub fn svg(
         let (corners, faces) = geometry::hull(&part.solid.corners()).unwrap_or_default();
         faces.iter().map(|face| face.map(|corner| corners[corner])).collect::<Vec<_>>()
     };
-    for (column, (title, axes, across)) in SECTIONS.into_iter().enumerate() {
+    for (column, (title, axes)) in VIEWS.into_iter().enumerate() {
+        let across = 3 - axes[0] - axes[1];
         let corner = Point2::new(column as f64 * PANEL + 5.0, 50.0);
         drawing.text(corner, title, Font::new(13.0));
         let scale = INSIDE / (2.0 * AROUND);
@@ -66,7 +62,7 @@ pub fn svg(
     let legend =
         "lines: drawn plug (brown) and socket (grey); dashed: their convex parts; red: the place";
     drawing.text(Point2::new(10.0, PANEL + 75.0), legend, Font::new(13.0));
-    drawing.svg([SECTIONS.len() as f64 * PANEL, PANEL + 90.0], "")
+    drawing.svg([VIEWS.len() as f64 * PANEL, PANEL + 90.0], "")
 }
 
 /// Ends of the line in which a triangle crosses a plane, if it does.

@@ -15,14 +15,14 @@ use rapier3d_f64::parry;
 use rayon::prelude::*;
 
 /// Poses that are compared.
-pub const POSES: u32 = 1000;
+const POSES: u32 = 1000;
 /// Gap beyond which gaps count as equal, m.
 const WIDE: f64 = 0.1 * MM;
-/// Way beyond the play by which poses differ, m.
+/// Deviation of poses beyond the play, m.
 const BEYOND: f64 = 0.1 * MM;
 /// Heights above the seat, m: those of every other pose, and what the rest go beyond the depth.
 const HEIGHTS: [f64; 3] = [0.03 * MM, 1.0 * MM, 0.5 * MM];
-/// Least arm of a turn, m.
+/// Smallest lever arm of a rotation, m.
 const ARM: f64 = 2.0 * MM;
 /// Irrational steps of a sequence that fills six dimensions evenly (Roberts 2018).
 const STEPS: [f64; 6] =
@@ -52,7 +52,7 @@ pub struct Bodies<'a> {
 }
 
 /// Returns the pose at which the gaps differ most, if they do; what was left out does not count.
-pub fn difference(of: &Bodies, left_out: &[Interference], poses: u32) -> Option<Difference> {
+pub fn difference(of: &Bodies, left_out: &[Interference]) -> Option<Difference> {
     let [plug, socket] = of.drawn.map(Faces::new);
     let parts = of.parts.map(ConvexBody::new);
     let at = |number: u32| {
@@ -69,15 +69,16 @@ pub fn difference(of: &Bodies, left_out: &[Interference], poses: u32) -> Option<
         let place = if gaps[0] < gaps[1] { place.or(other) } else { other.or(place) }?;
         // About what was left out a place of the one may count where that of the other does not.
         let differs = differ(gaps) && beyond(&place, 4.0 * BEYOND);
-        // Where the drawn faces meet, parts that overlap may name a place far along them.
+        // If the drawn faces touch, the place found for overlapping parts can be elsewhere along them.
         let both = || {
             let own = pose.inverse_transform_point(&place);
-            parts[0].reaches(&own, TOLERANCE) && parts[1].reaches(&place, TOLERANCE)
+            let near = |body: usize, at| parts[body].near(at, TOLERANCE).next().is_some();
+            near(0, &own) && near(1, &place)
         };
         let differs = differs && !(gaps[0] <= 0.0 && both());
         differs.then_some(Difference { pose, place, gaps })
     };
-    let found = (0..poses).into_par_iter().filter_map(at).collect::<Vec<_>>();
+    let found = (0..POSES).into_par_iter().filter_map(at).collect::<Vec<_>>();
     let off = |of: &Difference| (of.gaps[0] - of.gaps[1]).abs();
     found.into_iter().max_by(|a, b| off(a).total_cmp(&off(b)))
 }
@@ -89,7 +90,7 @@ fn differ(gaps: [f64; 2]) -> bool {
     high - low > 2.0 * TOLERANCE || (low <= 0.0 && high > TOLERANCE)
 }
 
-/// A pose about the mated one and the way to it.
+/// Returns a pose near the mated one or near the path to it.
 fn pose(number: u32, of: &Bodies) -> Pose {
     let [x, y, high, about_x, about_y, about_z] =
         STEPS.map(|step| (0.5 + f64::from(number + 1) * step).fract());
@@ -221,7 +222,7 @@ mod tests {
             depth: 5.0 * MM,
             play,
         };
-        assert_eq!(difference(&bodies, &[], 1000), None);
+        assert_eq!(difference(&bodies, &[]), None);
         // A wall that is 0.05 mm off, and one that is not there.
         let moved: Vec<Triangle> = socket.iter().map(|face| face.map(|p| p * 1.025)).collect();
         let wrong = task(&Pair { drawn: [&plug, &moved], ..pair }, &request);
@@ -231,7 +232,7 @@ mod tests {
         let far = |part: &&Part| part.solid.corners().iter().all(|p| p.x < 1.95 * MM);
         let few: Vec<Part> = made.task.socket.iter().filter(far).cloned().collect();
         let bare = Bodies { drawn: [&raised, &socket], parts: [bodies.parts[0], &few], ..bodies };
-        let off = difference(&bare, &[], POSES).unwrap();
+        let off = difference(&bare, &[]).unwrap();
         assert!(off.gaps[0] + TOLERANCE < off.gaps[1], "{off:?}");
     }
 }

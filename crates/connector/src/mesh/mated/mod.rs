@@ -8,13 +8,14 @@ mod reach;
 pub mod verify;
 
 use super::Triangle;
-use super::skin::{WRITTEN, skin};
+use super::skin::skin;
+use super::surface::snap;
 use crate::body::{clipped, extent, span, width};
 use crate::{draft, plan};
 use contact::scene::Pose;
 pub use grip::Grasp;
 use input::units::MM;
-use insertion::task::{Mated, Part, Solid, Success, Task};
+use insertion::task::{Mated, Part, Solid, Success, Task, geometry};
 use nalgebra::{Matrix3, Point3, Vector3};
 pub use overlap::{GAP, Interference};
 use reach::Reach;
@@ -27,7 +28,7 @@ pub const HANDLE: [f64; 3] = [12.0 * MM, 10.0 * MM, 20.0 * MM];
 const TIP: f64 = 1.0 * MM;
 /// Allowance for the lateral place of a mated plug beyond its play, m.
 pub(crate) const ASIDE: f64 = 0.1 * MM;
-/// Least play assumed between plug and opening, m.
+/// Smallest play assumed between plug and opening, m.
 const LEAST_PLAY: f64 = 0.02 * MM;
 
 /// Pair in its mated pose.
@@ -69,7 +70,7 @@ pub struct Made {
     pub held: f64,
     /// Whether the plug is held by a handle that its drawing lacks.
     pub handle: bool,
-    /// What was left out.
+    /// Interference that was removed from the parts.
     pub interference: Vec<Interference>,
     /// Worst place at which the parts of a body (0 plug, 1 socket) are not as drawn, task frame, plug mated, if any.
     pub deviation: Option<(usize, Deviation)>,
@@ -125,9 +126,8 @@ impl Placed {
 
 /// Returns the task of a pair in its mated pose.
 pub fn task(pair: &Pair, request: &Request) -> Made {
-    // On the grid of files, so that corners stay on it.
-    let engaged = (pair.engaged / WRITTEN).round() * WRITTEN;
-    let pair = &Pair { engaged, ..*pair };
+    // Rounded to the grid of files, so that corners stay on it.
+    let pair = &Pair { engaged: snap(pair.engaged), ..*pair };
     let first = pair.jaws.first().copied().unwrap_or_else(Vector3::y);
     let high = |placed: &Placed| extent(placed.socket.iter().flatten(), 2)[1].max(0.0);
     let held = |jaws: &Vector3<f64>| {
@@ -151,7 +151,7 @@ pub fn task(pair: &Pair, request: &Request) -> Made {
         gaps::Bodies { drawn, parts: [&plug, &socket], depth: pair.engaged, play: placed.play };
     let difference = match deviation {
         Some(_) => None,
-        None => gaps::difference(&bodies, &interference, gaps::POSES),
+        None => gaps::difference(&bodies, &interference),
     };
     let mated = Pose::translation(0.0, 0.0, -pair.engaged);
     let place = deviation.map(|(_, off)| (mated, off.place));
@@ -159,7 +159,7 @@ pub fn task(pair: &Pair, request: &Request) -> Made {
     let closeup = place.map(|(pose, place)| closeup::svg(drawn, bodies.parts, &pose, place));
     plug.push(grasp.part.clone());
     let mut task = draft::blank(request.name, request.like);
-    task.plug.mass = draft::DENSITY * volume(&placed.plug).max(grasp_volume(&grasp));
+    task.plug.mass = draft::DENSITY * volume(&placed.plug).max(geometry::volume(&grasp.part.solid));
     (task.plug.parts, task.socket) = (plug, socket);
     let play = placed.play.map(|play| play.max(LEAST_PLAY));
     task.opening = opening(&placed.plug, pair.engaged, play);
@@ -167,7 +167,7 @@ pub fn task(pair: &Pair, request: &Request) -> Made {
     let mated = Mated { tip: [0.0, 0.0, -pair.engaged], lateral };
     task.success = Success { mated: Some(mated), ..Success::default() };
     (task.grip.shoulder_z, task.grip.faces_y) = (grasp.shoulder, grasp.faces);
-    let mut task = plan::mated(task);
+    let mut task = plan::mated(&task);
     let like = request.like.map(|like| plan::Family::Like(Box::new(like.clone())));
     if let Some(strategy) = like.and_then(|family| family.of(&task)) {
         task.strategy = strategy;
@@ -199,8 +199,8 @@ fn checked(
 ) -> (Vec<Part>, Option<Deviation>) {
     let drawn = Drawn::new(triangles);
     let solids = skin(triangles, &reached, |solid| drawn.trimmed(solid));
-    let part = |(i, solid)| Part { name: format!("{name} {i}"), solid, friction: None };
-    let parts: Vec<Part> = (1..).zip(solids).map(part).collect();
+    let parts = (1..).zip(solids).map(|(i, solid)| draft::part(&format!("{name} {i}"), solid));
+    let parts: Vec<Part> = parts.collect();
     let normal = |[a, b, c]: &Triangle| (b - a).cross(&(c - a)).try_normalize(0.0);
     let kept = triangles.iter().filter(|t| normal(t).is_some_and(|normal| reached(t, &normal)));
     let kept: Vec<Triangle> = kept.copied().collect();
@@ -229,7 +229,7 @@ fn raised(solid: Solid, by: f64) -> Solid {
     }
 }
 
-/// Opening that leaves the plug its play, m: about all of the plug that goes below the top, without a shoulder that
+/// Returns the opening that leaves the plug its play, m, about all of the plug that goes below the top, without a shoulder that
 /// rests on it.
 fn opening(plug: &[Triangle], depth: f64, play: [f64; 2]) -> [[f64; 2]; 2] {
     let below = [f64::NEG_INFINITY, depth - plan::BELOW_TOP];
@@ -243,8 +243,4 @@ fn opening(plug: &[Triangle], depth: f64, play: [f64; 2]) -> [[f64; 2]; 2] {
 fn volume(triangles: &[Triangle]) -> f64 {
     let of = |[a, b, c]: &Triangle| a.coords.dot(&b.coords.cross(&c.coords)) / 6.0;
     triangles.iter().map(of).sum()
-}
-
-fn grasp_volume(grasp: &Grasp) -> f64 {
-    insertion::task::geometry::volume(&grasp.part.solid)
 }

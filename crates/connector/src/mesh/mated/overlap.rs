@@ -18,7 +18,7 @@ const FIT: f64 = 0.1 * MM;
 /// Gap of the faces of a press fit, m: rigid walls stand for ones that yield, and a play of 0.05 mm is the
 /// least with which strategies are known to insert.
 pub const GAP: f64 = 0.025 * MM;
-/// Least overlap that counts, m.
+/// Smallest overlap that is considered, m.
 const LEAST: f64 = 1e-3 * MM;
 /// Step along the way, m.
 const STEP: f64 = 0.2 * MM;
@@ -87,7 +87,7 @@ fn left_out(
         let (left, kept): (Vec<_>, Vec<_>) = all.partition(|(_, depth)| **depth > 0.0);
         *parts = kept.into_iter().map(|(part, _)| part).collect();
         let left = left.into_iter().map(|(part, &deep)| (deep, part.solid)).collect();
-        gone.extend(listed(left, body, depth));
+        gone.extend(grouped(left, body, false, depth));
     }
     gone
 }
@@ -108,60 +108,36 @@ fn cut_back(
     let mut pairs: Vec<[usize; 2]> = met.map(|touch| touch.parts).collect();
     pairs.sort_unstable();
     pairs.dedup();
-    let mut bodies = [&plug[..], &socket[..]].map(Yielding::new);
+    let mut left = [&*plug, &*socket].map(|parts| -> Vec<Option<Solid>> {
+        parts.iter().map(|part| Some(part.solid.clone())).collect()
+    });
+    // Deepest overlap of each part that was cut, m.
+    let mut cut = [BTreeMap::new(), BTreeMap::new()];
     for [i, j] in pairs {
-        let [Some(own), Some(its)] = [bodies[0].solid(i), bodies[1].solid(j)] else { continue };
+        let [Some(own), Some(its)] = [&left[0][i], &left[1][j]] else { continue };
         let fit = Fit::new(own, its, depth);
         let Some(fit) = fit.filter(|fit| (-room..FIT).contains(&fit.depth)) else { continue };
-        match geometry::volume(own) < geometry::volume(its) {
-            true => bodies[0].cut(i, &fit, fit.faces[1] - GAP, fit.way),
-            false => bodies[1].cut(j, &fit, fit.faces[0] + GAP, -fit.way),
-        }
+        let below = |solid, at: f64, normal| cut_below(solid, &Point3::from(fit.way * at), &normal);
+        let (body, part, rest) = match geometry::volume(own) < geometry::volume(its) {
+            true => (0, i, below(own, fit.faces[1] - GAP, fit.way)),
+            false => (1, j, below(its, fit.faces[0] + GAP, -fit.way)),
+        };
+        left[body][part] = rest;
+        let deepest = cut[body].entry(part).or_insert(0.0_f64);
+        *deepest = deepest.max(fit.depth);
     }
-    let deepest = bodies.iter().flat_map(|body| body.cut.values()).map(|(deep, _)| *deep);
-    if deepest.fold(0.0, f64::max) <= ROUNDING && !tight {
+    let deepest = cut.iter().flat_map(BTreeMap::values).copied().fold(0.0, f64::max);
+    if deepest <= ROUNDING && !tight {
         return Vec::new();
     }
     let mut gone = Vec::new();
-    let cuts = bodies.map(|body| body.cut);
-    for (body, (parts, mut cut)) in [plug, socket].into_iter().zip(cuts).enumerate() {
-        let left = cut.iter().map(|(&i, (deep, _))| (*deep, parts[i].solid.clone())).collect();
-        gone.extend(listed(left, body, depth).map(|of| Interference { cut_back: true, ..of }));
-        *parts = std::mem::take(parts)
-            .into_iter()
-            .enumerate()
-            .filter_map(|(i, part)| match cut.remove(&i) {
-                Some((_, solid)) => Some(Part { solid: solid?, ..part }),
-                None => Some(part),
-            })
-            .collect();
+    for (body, parts) in [plug, socket].into_iter().enumerate() {
+        let cut = cut[body].iter().map(|(&i, &deep)| (deep, parts[i].solid.clone()));
+        gone.extend(grouped(cut.collect(), body, true, depth));
+        let rest = std::mem::take(parts).into_iter().zip(std::mem::take(&mut left[body]));
+        *parts = rest.filter_map(|(part, solid)| Some(Part { solid: solid?, ..part })).collect();
     }
     gone
-}
-
-/// Parts of a body and what is left of those that were cut.
-struct Yielding<'a> {
-    parts: &'a [Part],
-    /// Deepest overlap, m, and what is left of each part that was cut.
-    cut: BTreeMap<usize, (f64, Option<Solid>)>,
-}
-
-impl<'a> Yielding<'a> {
-    fn new(parts: &'a [Part]) -> Self {
-        Yielding { parts, cut: BTreeMap::new() }
-    }
-
-    fn solid(&self, part: usize) -> Option<&Solid> {
-        self.cut.get(&part).map_or(Some(&self.parts[part].solid), |(_, solid)| solid.as_ref())
-    }
-
-    /// Cuts a part below a plane at a distance along the way of a fit, m, that looks along a normal.
-    fn cut(&mut self, part: usize, fit: &Fit, at: f64, normal: Vector3<f64>) {
-        let plane = Point3::from(fit.way * at);
-        let left = self.solid(part).and_then(|solid| cut_below(solid, &plane, &normal));
-        let (deepest, solid) = self.cut.entry(part).or_default();
-        (*deepest, *solid) = (deepest.max(fit.depth), left);
-    }
 }
 
 /// Overlap of a part of the plug and one of the socket across the axis, in the direction in which it is shallowest.
@@ -175,7 +151,7 @@ struct Fit {
 }
 
 impl Fit {
-    /// Overlap of solids, the plug mated `depth` below the top, m; `None` if one has no outline.
+    /// Measures the overlap of solids, the plug mated `depth` below the top, m; `None` if one has no outline.
     fn new(plug: &Solid, socket: &Solid, depth: f64) -> Option<Self> {
         let own = plug.corners();
         let [low, _] = extent(&own, 2);
@@ -196,16 +172,31 @@ impl Fit {
     }
 }
 
-/// Parts of a body that gave way, in groups, with their overlap, m.
-fn listed(parts: Vec<(f64, Solid)>, body: usize, depth: f64) -> impl Iterator<Item = Interference> {
+/// Returns the parts of a body that gave way, each with its overlap, m, as one interference for each set of parts that lie
+/// near to one another.
+fn grouped(parts: Vec<(f64, Solid)>, body: usize, cut_back: bool, depth: f64) -> Vec<Interference> {
+    let mut groups: Vec<Interference> = Vec::new();
+    for (depth, solid) in parts {
+        let corners = solid.corners();
+        let ranges = [0, 1, 2].map(|axis| extent(&corners, axis));
+        let bounds = [0, 1].map(|end| Point3::from(ranges.map(|range| range[end])));
+        let mut own = Interference { body, cut_back, parts: 1, depth, bounds };
+        let near = 0.5 * longest_side(&corners).max(0.5 * MM);
+        let apart = |a: &Interference, b: &Interference| {
+            let ([low, high], [from, to]) = (a.bounds, b.bounds);
+            (0..3).any(|axis| from[axis] > high[axis] + near || low[axis] > to[axis] + near)
+        };
+        while let Some(i) = groups.iter().position(|other| !apart(other, &own)) {
+            let other = groups.swap_remove(i);
+            own.parts += other.parts;
+            own.depth = own.depth.max(other.depth);
+            own.bounds = [own.bounds[0].inf(&other.bounds[0]), own.bounds[1].sup(&other.bounds[1])];
+        }
+        groups.push(own);
+    }
     let shift = [Vector3::new(0.0, 0.0, -depth), Vector3::zeros()][body];
-    groups(parts).into_iter().map(move |(parts, depth, bounds)| Interference {
-        body,
-        cut_back: false,
-        parts,
-        depth,
-        bounds: bounds.map(|corner| corner + shift),
-    })
+    groups.iter_mut().for_each(|of| of.bounds = of.bounds.map(|corner| corner + shift));
+    groups
 }
 
 /// Overlaps by more than `least`, m, on the way down that are not those of the stop, the plug aside by so much, m.
@@ -215,39 +206,12 @@ fn met(plug: &[Part], socket: &[Part], depth: f64, least: f64, [x, y]: [f64; 2])
     let at = |i: usize| {
         let above = i as f64 * STEP;
         let pose = Pose::translation(x, y, above - depth);
-        let mut found = plug.overlaps(&pose, &socket, &Pose::identity());
-        found.retain(|touch| touch.depth > least && (above > STOP || touch.normal.z.abs() < ALONG));
-        found
+        let counts = |touch: &Touching| {
+            touch.depth > least && (above > STOP || touch.normal.z.abs() < ALONG)
+        };
+        plug.overlaps(&pose, &socket, &Pose::identity()).filter(counts).collect::<Vec<_>>()
     };
     (0..=steps).into_par_iter().map(at).collect::<Vec<_>>().concat()
-}
-
-/// Number of parts, deepest overlap and bounds of the sets of parts that lie near to one another.
-fn groups(parts: Vec<(f64, Solid)>) -> Vec<(usize, f64, [Point3<f64>; 2])> {
-    let mut groups: Vec<(usize, f64, [Point3<f64>; 2])> = Vec::new();
-    for (depth, solid) in parts {
-        let corners = solid.corners();
-        let ranges = [0, 1, 2].map(|axis| span(corners.iter().map(|p| p[axis])));
-        let mut own = (1, depth, [0, 1].map(|end| Point3::from(ranges.map(|range| range[end]))));
-        let near = 0.5 * longest_side(&corners).max(0.5 * MM);
-        let mut i = 0;
-        while i < groups.len() {
-            let (count, deep, [low, high]) = groups[i];
-            let apart = (0..3).any(|axis| {
-                own.2[0][axis] > high[axis] + near || low[axis] > own.2[1][axis] + near
-            });
-            if apart {
-                i += 1;
-                continue;
-            }
-            groups.swap_remove(i);
-            let bounds = [own.2[0].inf(&low), own.2[1].sup(&high)];
-            own = (own.0 + count, own.1.max(deep), bounds);
-            i = 0;
-        }
-        groups.push(own);
-    }
-    groups
 }
 
 #[cfg(test)]
@@ -291,7 +255,7 @@ mod tests {
         let [pin, hole] = [&plug, &socket].map(|parts| ConvexBody::new(parts));
         let deep = |x: f64, y: f64| {
             let at = Pose::translation(x * MM, y * MM, -3.99 * MM);
-            pin.overlap(&at, &hole, &Pose::identity()).map_or(0.0, |(depth, _)| depth)
+            pin.overlap(&at, &hole, &Pose::identity()).map_or(0.0, |found| found.depth)
         };
         for [x, y] in [[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]] {
             let near = 0.024;

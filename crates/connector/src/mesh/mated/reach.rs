@@ -7,18 +7,18 @@ use nalgebra::Vector3;
 
 /// Side of a cell of the height maps, m.
 const CELL: f64 = 0.12 * MM;
-/// Way in front of a face, of tilt and misfit, within which the other body must pass beyond its play, m.
+/// Distance in front of a face within which the other body must pass, m: an allowance for tilt and misfit beyond the play.
 const ASIDE: f64 = 0.6 * MM;
 /// Allowance in height, m.
 const ABOVE: f64 = 0.6 * MM;
 /// Height of the plug's tip and of the socket's rim that meet in the search, m.
 const SEARCHED: f64 = 1.5 * MM;
-/// Way of the search about the opening, m.
+/// Largest distance of the search moves from the opening, m.
 const SEARCH: f64 = 4.0 * MM;
 /// Sine of the slope from which on a face looks away from the other body: one that moves along the axis, tilted, does
 /// not come from behind.
 const AWAY: f64 = 0.35;
-/// Most cells of a map along one side.
+/// Largest number of cells along one side of a map.
 const MOST_CELLS: f64 = 2000.0;
 
 /// Heights of the highest triangles over the cells of a grid.
@@ -30,7 +30,7 @@ struct Envelope {
 }
 
 impl Envelope {
-    /// Upper envelope of triangles whose heights are counted in the direction of `sign`.
+    /// Creates the upper envelope of triangles whose heights are counted in the direction of `sign`.
     fn new(triangles: &[Triangle], sign: f64) -> Self {
         let ranges = [0, 1].map(|axis| extent(triangles.iter().flatten(), axis));
         let longest = ranges.iter().map(|[low, high]| high - low).fold(0.0, f64::max);
@@ -88,13 +88,13 @@ pub struct Reach {
     socket: Envelope,
     plug: Envelope,
     tip: f64,
-    /// Way in front of a face, m.
+    /// Distance in front of a face within which the other body must pass, m.
     aside: f64,
     about: [[f64; 2]; 2],
 }
 
 impl Reach {
-    /// Reach of a plug in its mated pose, which has so much play, m, and its socket.
+    /// Creates the reach of a plug in its mated pose, with a play, m, and of its socket.
     pub fn new(plug: &[Triangle], socket: &[Triangle], play: f64) -> Self {
         let [tip, _] = extent(plug.iter().flatten(), 2);
         let low = plug.iter().flatten().filter(|p| p.z < tip + SEARCHED);

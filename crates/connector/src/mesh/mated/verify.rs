@@ -1,4 +1,5 @@
-//! Check of convex parts against the drawn surface that they stand for, by signed samples both ways.
+//! Comparison of convex parts with the drawn body that they approximate: samples of its faces must lie near a part, and the
+//! corners of the parts must not lie outside it.
 
 use crate::body::ConvexBody;
 use crate::mesh::Triangle;
@@ -12,13 +13,13 @@ use parry::shape::TriMesh;
 use rapier3d_f64::parry;
 use rayon::prelude::*;
 
-/// Largest distance between parts and drawing, m.
+/// Largest accepted distance between parts and drawing, m.
 pub const TOLERANCE: f64 = 0.02 * MM;
-/// Share of a triangle's sides by which samples keep off its corners, where neighbours meet.
-const INSIDE: f64 = 0.1;
+/// Margin between the samples of a triangle and its edges, as a share of its size.
+const MARGIN: f64 = 0.1;
 /// Spacing of samples, m.
 const SPACING: f64 = 0.5 * MM;
-/// Most samples along the side of a triangle.
+/// Largest number of samples along the side of a triangle.
 const MOST_SAMPLES: usize = 12;
 
 /// Place where parts and drawing differ.
@@ -26,92 +27,88 @@ const MOST_SAMPLES: usize = 12;
 pub struct Deviation {
     /// Place, m.
     pub place: Point3<f64>,
-    /// Distance by which a part stands out of the drawn body, m; `None` where the drawn surface lacks a part.
+    /// Distance by which a part protrudes from the drawn body, m; `None` where a drawn face has no part.
     pub out: Option<f64>,
 }
 
-/// Drawn body that parts are compared with.
+/// Drawn body with which parts are compared.
 pub struct Drawn<'a> {
     triangles: &'a [Triangle],
     mesh: Option<TriMesh>,
 }
 
 impl<'a> Drawn<'a> {
-    /// Body of triangles that look outward, m.
+    /// Creates the body enclosed by outward triangles, m.
     pub fn new(triangles: &'a [Triangle]) -> Self {
         let points = triangles.iter().flatten().map(|p| (p.coords / MM).into()).collect();
         let faces = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         Drawn { triangles, mesh: TriMesh::new(points, faces).ok() }
     }
 
-    /// Returns by how much a place lies outside of the body, m, if by more than the tolerance.
-    fn outside(&self, place: &Point3<f64>) -> Option<f64> {
+    /// Returns the nearest point of the surface and its distance, m; `None` for a place that is inside the body or outside by
+    /// no more than the tolerance.
+    fn outside(&self, place: &Point3<f64>) -> Option<(Point3<f64>, f64)> {
         let point: Vector = (place.coords / MM).into();
-        let near = self.mesh.as_ref()?.project_local_point(point, false);
-        let distance = (near.point - point).length() * MM;
-        (distance > TOLERANCE && winding(self.triangles, place) < 0.5).then_some(distance)
+        let near = self.mesh.as_ref()?.project_local_point(point, false).point;
+        let distance = (near - point).length() * MM;
+        (distance > TOLERANCE && winding(self.triangles, place) < 0.5)
+            .then(|| (Point3::from(Vector3::from(near) * MM), distance))
     }
 
-    /// Returns a slab whose corners outside of the body are moved to its surface, unless faces still stand out: behind a
-    /// narrow edge the material may end askew.
+    /// Moves the corners of a slab that are outside the body to its surface; `None` if the slab still protrudes, as it can
+    /// behind a sharp edge.
     pub fn trimmed(&self, solid: Solid) -> Option<Solid> {
         let corners = solid.corners();
-        let moved: Vec<_> = corners.iter().map(|place| self.inside(place)).collect();
+        let moved =
+            |place: &Point3<f64>| self.outside(place).map_or(*place, |(nearest, _)| nearest);
+        let moved: Vec<_> = corners.iter().map(moved).collect();
         let solid = if moved == corners { solid } else { written(&moved)? };
-        self.stands_out(&solid).is_none().then_some(solid)
+        self.protrusion(&solid).is_none().then_some(solid)
     }
 
-    /// Returns a place, or the nearest one of the surface if it is outside of the body.
-    fn inside(&self, place: &Point3<f64>) -> Point3<f64> {
-        let Some(mesh) = self.mesh.as_ref().filter(|_| self.outside(place).is_some()) else {
-            return *place;
-        };
-        let near = mesh.project_local_point((place.coords / MM).into(), false);
-        Point3::from(Vector3::from(near.point) * MM)
-    }
-
-    /// Returns a corner or the middle of a face of a convex part that is outside of the body.
-    fn stands_out(&self, solid: &Solid) -> Option<Deviation> {
+    /// Returns the first corner or face centre of a convex part that is outside the body.
+    fn protrusion(&self, solid: &Solid) -> Option<Deviation> {
         let (corners, faces) = geometry::hull(&solid.corners())?;
         let middles = faces.iter().map(|face| {
             let [a, b, c] = face.map(|corner| corners[corner].coords);
             Point3::from((a + b + c) / 3.0)
         });
         let off = |place: Point3<f64>| {
-            self.outside(&place).map(|out| Deviation { place, out: Some(out) })
+            self.outside(&place).map(|(_, out)| Deviation { place, out: Some(out) })
         };
         corners.iter().copied().chain(middles).find_map(off)
     }
 
-    /// Returns the places of the faces that were to be kept where no part is near, and those of parts outside the body.
+    /// Returns the samples of the faces to be covered that have no part nearby, and the places at which parts protrude.
     pub fn deviations(&self, kept: &[Triangle], parts: &[Part]) -> Vec<Deviation> {
         let body = ConvexBody::new(parts);
-        let lacks = |triangle: &Triangle| -> Vec<Deviation> {
-            let bare = samples(triangle).into_iter().filter(|p| !body.reaches(p, TOLERANCE));
+        let uncovered = |triangle: &Triangle| -> Vec<Deviation> {
+            let bare =
+                samples(triangle).into_iter().filter(|p| body.near(p, TOLERANCE).next().is_none());
             bare.map(|place| Deviation { place, out: None }).collect()
         };
-        let mut found: Vec<Deviation> = kept.par_iter().flat_map_iter(lacks).collect();
-        let out = |part: &Part| self.stands_out(&part.solid);
+        let mut found: Vec<Deviation> = kept.par_iter().flat_map_iter(uncovered).collect();
+        let out = |part: &Part| self.protrusion(&part.solid);
         found.par_extend(parts.par_iter().filter_map(out));
         found
     }
 }
 
-/// Points inside a triangle.
+/// Returns evenly spaced points inside a triangle.
 fn samples([a, b, c]: &Triangle) -> Vec<Point3<f64>> {
     let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
     let steps = ((longest / SPACING).ceil() as usize).clamp(1, MOST_SAMPLES);
     let mut found = Vec::new();
     for i in 0..=steps {
         for j in 0..=steps - i {
-            let inside = |k: usize| INSIDE / 3.0 + (1.0 - INSIDE) * k as f64 / steps as f64;
+            let inside = |k: usize| MARGIN / 3.0 + (1.0 - MARGIN) * k as f64 / steps as f64;
             found.push(a + (b - a) * inside(i) + (c - a) * inside(j));
         }
     }
     found
 }
 
-/// Generalized winding number of oriented triangles about a point (Jacobson et al. 2013): 1 inside, 0 outside.
+/// Returns the generalized winding number of oriented triangles about a point (Jacobson et al. 2013): 1 inside, 0 outside.
 fn winding(triangles: &[Triangle], place: &Point3<f64>) -> f64 {
     let angle = |triangle: &Triangle| {
         let [a, b, c] = triangle.map(|p| p - place);
@@ -143,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_that_stands_out_and_a_bare_face_are_found() {
+    fn a_part_that_protrusion_and_a_bare_face_are_found() {
         let drawn = cube();
         let whole = part([0.0; 3], [4.0; 3]);
         assert_eq!(Drawn::new(&drawn).deviations(&drawn, &[whole]), []);

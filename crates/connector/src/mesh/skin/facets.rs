@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 /// Largest distance of the corners of a face from its plane, m.
 const FLAT: f64 = 4e-3 * MM;
-/// Least cosine between the normals of a face's triangles.
+/// Smallest cosine between the normals of the triangles of a face.
 const ALIKE: f64 = 0.97;
 /// Height below which a triangle has no area, m.
 pub const NARROW: f64 = 5e-4 * MM;

@@ -6,6 +6,7 @@ mod polygons;
 
 use super::Triangle;
 use super::solid::solid_of;
+use super::surface::snap;
 use crate::body::{extent, width};
 use facets::Facets;
 use input::units::MM;
@@ -19,23 +20,21 @@ use rapier3d_f64::parry;
 /// Largest thickness of a slab, m: more than the gap at which contacts are foreseen, so that a body that comes along a
 /// face towards its edge meets the side of the slab, not its edge.
 const THICK: f64 = 0.25 * MM;
-/// Least thickness, m.
+/// Smallest thickness of a slab, m.
 const THIN: f64 = 10e-3 * MM;
 /// Length of a side from which on a polygon is cut in pieces, m.
 const LEAST_PIECE: f64 = 0.2 * MM;
-/// Least size of a solid along an axis, m.
+/// Smallest size of a solid along an axis, m.
 const LEAST_SIZE: f64 = 2e-3 * MM;
-/// Least volume of a solid, m3: rounding in a file may take from it.
+/// Smallest volume of a solid, m3, with a margin for the rounding in files.
 const LEAST_VOLUME: f64 = 10.0 * FLAT;
-/// Resolution of lengths in files, m.
-pub const WRITTEN: f64 = 1e-4 * MM;
 /// Distance from the sides of a polygon within which what is behind it does not count, m.
 const BESIDE: f64 = 5e-3 * MM;
 /// Depth below which a face that is met is the polygon's own, m.
 const BEHIND: f64 = 5e-3 * MM;
 /// Tolerance of a convex body, m.
 const CONVEX: f64 = 2e-3 * MM;
-/// Most corners of a convex body that is one part.
+/// Largest number of corners of a convex body that becomes one part.
 const MOST_CORNERS: usize = 400;
 /// Cosine between the normals of a film's two sides, which do not cut one another.
 const FILM: f64 = 0.9999;
@@ -222,7 +221,7 @@ fn halves(corners: &[Point3<f64>]) -> Option<[Vec<Point3<f64>>; 2]> {
     Some([b - a, a - b].map(|way| cut(corners.to_vec(), &middle, &way)))
 }
 
-/// Solid of a polygon and the same polygon deeper, below the planes of faces at sharp edges.
+/// Extrudes a polygon into the material, below the planes of faces at sharp edges.
 fn extruded(
     corners: &[Point3<f64>],
     deeper: &Vector3<f64>,
@@ -243,25 +242,20 @@ pub fn cut_below(solid: &Solid, origin: &Point3<f64>, normal: &Vector3<f64>) -> 
 
 /// Returns the hull of points on the grid of files; `None` if it holds no volume.
 pub fn written(points: &[Point3<f64>]) -> Option<Solid> {
-    let points: Vec<_> = points.iter().map(|p| Point3::from(p.coords.map(rounded))).collect();
+    let points: Vec<_> = points.iter().map(|p| Point3::from(p.coords.map(snap))).collect();
     solid_of(&points).filter(is_thick)
 }
 
-/// Whether a solid has a size along each axis and a volume that files can have.
+/// Returns whether the size of a solid along each axis and its volume are large enough for files.
 fn is_thick(solid: &Solid) -> bool {
     (0..3).all(|axis| width(extent(solid.corners(), axis)) >= LEAST_SIZE)
         && volume(solid) >= LEAST_VOLUME
 }
 
-/// Box about points in millimetres, for which parry's tolerances are made.
+/// Returns the bounding box of points in millimetres, for which parry's tolerances are made.
 fn around(points: &[Point3<f64>]) -> Aabb {
     let points = points.iter().map(|p| (p.coords / MM).into());
     Aabb::from_points(points).loosened(1e-3)
-}
-
-/// Length as files have it.
-fn rounded(length: f64) -> f64 {
-    (length / WRITTEN).round() * WRITTEN
 }
 
 /// Returns the polygon below a plane.
@@ -296,7 +290,7 @@ fn below(
     let crossings: Vec<_> =
         kept.iter().flat_map(|p| beyond.iter().map(move |q| crossing(p, q))).collect();
     kept.extend(crossings);
-    // Without those inside, repeated cuts do not multiply corners.
+    // Corners inside the hull are dropped, so that repeated cuts do not multiply them.
     if kept.len() < MANY { kept } else { hull(&kept).map_or(kept, |(corners, _)| corners) }
 }
 

@@ -2,6 +2,7 @@
 //! result is convex.
 
 use super::facets::{Facets, NARROW};
+use crate::mesh::root;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -21,12 +22,12 @@ pub fn polygons(facets: &Facets, flat: &[usize], normal: &Vector3<f64>) -> Vec<V
     }
     edges.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     let mut loops: Vec<Vec<usize>> = flat.iter().map(|&face| facets.faces[face].to_vec()).collect();
-    let mut root: Vec<usize> = (0..flat.len()).collect();
+    let mut parent: Vec<usize> = (0..flat.len()).collect();
     // An edge may be in the way of another: as long as one is joined, the rest may be.
     loop {
         let before = edges.len();
         edges.retain(|(_, ends, faces)| {
-            let [a, b] = faces.map(|face| find(&mut root, face));
+            let [a, b] = faces.map(|face| root(&mut parent, face));
             if a == b {
                 return false;
             }
@@ -34,7 +35,7 @@ pub fn polygons(facets: &Facets, flat: &[usize], normal: &Vector3<f64>) -> Vec<V
             if !convex(facets, &both, normal) {
                 return true;
             }
-            (root[b], loops[a]) = (a, both);
+            (parent[b], loops[a]) = (a, both);
             loops[b].clear();
             false
         });
@@ -44,14 +45,6 @@ pub fn polygons(facets: &Facets, flat: &[usize], normal: &Vector3<f64>) -> Vec<V
     }
     loops.retain(|polygon| !polygon.is_empty() && has_area(facets, polygon, normal));
     loops
-}
-
-fn find(root: &mut [usize], mut of: usize) -> usize {
-    while root[of] != of {
-        root[of] = root[root[of]];
-        of = root[of];
-    }
-    of
 }
 
 /// Returns two polygons as one without the edge that the first runs through from `from` to `to`.
@@ -67,7 +60,7 @@ fn joined(first: &[usize], second: &[usize], [from, to]: [usize; 2]) -> Option<V
     // From `to` round to `from`, then all of the second between them.
     let mut both = round(first, i + 1);
     both.extend(&round(second, j + 2)[..second.len() - 2]);
-    // Where they share a second edge, the line runs there and back.
+    // Along a second common edge the outline runs back and forth.
     while both.len() > 2 {
         let count = both.len();
         let Some(tip) = (0..count).find(|&k| both[k] == both[(k + 2) % count]) else { break };

@@ -1,5 +1,5 @@
-//! Ends of a line or face of contact of a round shape. parry clips the faces of the cores, whatever
-//! the normal: of two edges that touch along a line it often finds one point, somewhere on it.
+//! Ends of the line or face along which a round shape touches another. parry clips the faces of the cores, whatever
+//! the normal: where two edges touch along a line it often finds a single point, anywhere on the line.
 
 use super::patches::NARROW;
 use super::{MILLIMETRES, Solid};
@@ -10,10 +10,10 @@ use parry::query::{ContactManifold, TrackedContact};
 use parry::shape::PackedFeatureId;
 use rapier3d_f64::parry;
 
-/// Angle by which one shape is turned to find an end, rad: along 10 mm, the gap foreseen.
+/// Angle by which one shape is rotated to find an end, rad: over a length of 10 mm it opens the prediction distance.
 const TURN: f64 = 0.02;
 
-/// Adds the points at which the shapes touch if one is turned a little, each way.
+/// Adds the points at which the shapes touch if one is rotated slightly, in each of four directions.
 pub(super) fn add_ends(
     manifold: &mut ContactManifold<(), ()>,
     relative: &pm::Pose,
@@ -26,12 +26,11 @@ pub(super) fn add_ends(
         return;
     };
     let about = first.local_p1;
-    let axes = normal.any_orthonormal_pair();
-    let axes = [axes.0, axes.1];
-    // Farther by what the turn takes them apart.
+    let (u, v) = normal.any_orthonormal_pair();
+    // Doubled below, since the rotation moves the shapes apart.
     let reach = prediction * MILLIMETRES + own + other;
     for (i, j) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
-        let turn = pm::Rotation::from_scaled_axis((axes[0] * i + axes[1] * j) * TURN);
+        let turn = pm::Rotation::from_scaled_axis((u * i + v * j) * TURN);
         let turned = pm::Pose::from_parts(
             about + turn * (relative.translation - about),
             turn * relative.rotation,

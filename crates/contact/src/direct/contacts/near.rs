@@ -1,30 +1,28 @@
-//! Neighbour lists (Verlet 1967, Phys. Rev. 159:98): the shapes of two bodies that may touch before
-//! the bodies have moved by a margin against one another. Only these are looked at in a step.
+//! Neighbour lists (Verlet 1967, Phys. Rev. 159:98): the pairs of shapes of two bodies that may touch before
+//! the bodies have moved by a margin relative to one another. Only these are tested in a step.
 
 use super::super::body::MovingBody;
-use super::{Candidate, Solid};
+use super::{Candidate, Solid, has_stayed};
 use crate::scene::{Friction, GeomPair, Pose};
 use nalgebra::Vector3;
-use parry::bounding_volume::Aabb;
+use parry::bounding_volume::{Aabb, BoundingVolume};
 use parry::partitioning::{Bvh, BvhBuildStrategy};
 use rapier3d_f64::parry;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Way that two bodies may move against one another before their list is made anew, m.
+/// Relative displacement of two bodies up to which their list is valid, m.
 const MARGIN: f64 = 0.5e-3;
 
-/// ... and before those of many pairs that are looked at in a step are chosen from the list, m.
+/// Relative displacement up to which the close pairs of a long list are valid, m.
 const CLOSE: f64 = 0.12e-3;
 
 /// Pair of shapes that may touch.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct NearPair {
     /// Number, counted through all pairs of the scene.
     pub number: usize,
-    /// Index in `candidates`.
-    pub candidate: usize,
     /// Shapes of the first and the second body.
     pub solids: [usize; 2],
 }
@@ -36,12 +34,12 @@ pub(super) struct NearList {
     pub bodies: [usize; 2],
     /// Pairs that may touch.
     pub near: Vec<NearPair>,
-    /// Those of them that are nearer still, of many pairs.
+    /// Closest of them, the only ones tested in a step if there are many.
     pub close: Vec<NearPair>,
     /// Shapes of these pairs.
     pub solids: Vec<usize>,
-    /// All pairs that were near once: they keep their points.
-    pub candidates: Vec<Candidate>,
+    /// All pairs that have been near, by their numbers, with their contact points.
+    pub candidates: BTreeMap<usize, Candidate>,
     number: usize,
     friction: Friction,
     /// Number of the first pair.
@@ -52,31 +50,22 @@ pub(super) struct NearList {
     tree: Arc<Bvh>,
     /// Farthest point of the second body's shapes from its origin, m.
     reach: f64,
-    index: BTreeMap<usize, usize>,
-    /// Pose of the second body in the frame of the first when the list was made.
+    /// Pose of the second body in the frame of the first for which the list was made.
     made_at: Option<Pose>,
-    /// ... and when those nearer still were chosen.
+    /// The same for the close pairs.
     chosen_at: Option<Pose>,
-    /// Gap up to which they were chosen, m.
+    /// Largest gap of the close pairs, m.
     chosen_for: f64,
 }
 
 /// Returns the hierarchy of the boxes of a body's shapes in its frame.
 pub(super) fn tree(solids: &[Solid]) -> Bvh {
-    let boxes: Vec<_> = solids.iter().map(|solid| solid.enclosing(0.0)).collect();
+    let boxes: Vec<_> = solids.iter().map(|solid| solid.boxed).collect();
     Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
 }
 
-impl Solid {
-    /// Box in the axes in which it was enclosed last, larger by a margin on all sides, m.
-    pub(super) fn enclosing(&self, margin: f64) -> Aabb {
-        let margin = Vector3::repeat(margin);
-        Aabb::new((self.low - margin).into(), (self.high + margin).into())
-    }
-}
-
 impl NearList {
-    /// List of the pair of bodies of a number in the scene; its pairs of shapes are counted `from` there on.
+    /// Creates the list of the pair of bodies with this number in the scene; its first pair of shapes is number `from`.
     pub fn new(
         number: usize,
         friction: Friction,
@@ -92,8 +81,7 @@ impl NearList {
             near: Vec::new(),
             close: Vec::new(),
             solids: Vec::new(),
-            candidates: Vec::new(),
-            index: BTreeMap::new(),
+            candidates: BTreeMap::new(),
             made_at: None,
             chosen_at: None,
             chosen_for: 0.0,
@@ -107,7 +95,7 @@ impl NearList {
         }
     }
 
-    /// Number of pairs of shapes.
+    /// Returns the number of pairs of shapes.
     pub fn pairs(&self) -> usize {
         self.first.len() * self.second.len()
     }
@@ -122,75 +110,57 @@ impl NearList {
         linear + turned + angular * self.reach
     }
 
-    /// Makes the list anew if the bodies have moved; `relative` is the second one's pose in the first's frame.
+    /// Renews the list if the bodies have moved; `relative` is the pose of the second one in the frame of the first.
     pub fn renew(&mut self, relative: &Pose, solids: &[Solid], prediction: f64) {
-        if self.within(self.made_at.as_ref(), relative, MARGIN) {
+        if has_stayed(self.made_at.as_ref(), relative, self.reach, MARGIN) {
             return;
         }
         (self.made_at, self.chosen_at) = (Some(*relative), None);
-        let mut found: Vec<(usize, [usize; 2])> = Vec::new();
+        self.near.clear();
         for second in self.second.clone() {
             let frame = relative * solids[second].frame;
             let turn = frame.rotation.to_rotation_matrix().into_inner();
             let half = turn.abs() * solids[second].half + Vector3::repeat(prediction + MARGIN);
             let middle = frame.translation.vector;
-            let boxed = Aabb::new((middle - half).into(), (middle + half).into());
+            let boxed = Aabb::from_half_extents(middle.into(), half.into());
             let ends = self.tree.intersect_aabb(&boxed).map(|leaf| leaf as usize);
             let (wide, own) = (self.second.len(), second - self.second.start);
-            let pair =
-                |leaf: usize| (self.from + leaf * wide + own, [self.first.start + leaf, second]);
-            found.extend(ends.map(pair));
+            self.near.extend(ends.map(|leaf| NearPair {
+                number: self.from + leaf * wide + own,
+                solids: [self.first.start + leaf, second],
+            }));
         }
-        found.sort_unstable();
-        self.solids = found.iter().flat_map(|(_, pair)| *pair).collect();
+        self.near.sort_unstable();
+        self.solids = self.near.iter().flat_map(|pair| pair.solids).collect();
         self.solids.sort_unstable();
         self.solids.dedup();
-        self.near.clear();
-        for (key, [first, second]) in found {
-            let candidates = &mut self.candidates;
-            let at = *self.index.entry(key).or_insert_with(|| {
+        for &NearPair { number, solids: [first, second] } in &self.near {
+            self.candidates.entry(number).or_insert_with(|| {
                 let own = [first, second].map(|solid| solids[solid].friction);
                 let friction = self.friction.of_geoms(own);
-                candidates.push(Candidate::new(GeomPair {
-                    bodies: self.number,
-                    first,
-                    second,
-                    friction,
-                }));
-                candidates.len() - 1
+                Candidate::new(GeomPair { bodies: self.number, first, second, friction })
             });
-            self.near.push(NearPair { number: key, candidate: at, solids: [first, second] });
         }
     }
 
-    /// Chooses the pairs that may touch in the next steps; the shapes are enclosed where they are.
+    /// Selects the pairs that may touch in the next steps by the present enclosing boxes.
     pub fn choose(&mut self, relative: &Pose, solids: &[Solid], prediction: f64) {
-        if prediction <= self.chosen_for && self.within(self.chosen_at.as_ref(), relative, CLOSE) {
+        let stayed = has_stayed(self.chosen_at.as_ref(), relative, self.reach, CLOSE);
+        if stayed && prediction <= self.chosen_for {
             return;
         }
-        // Speeds change: not for every larger one anew.
+        // With a margin, so that not every increase of the speed requires a new selection.
         (self.chosen_at, self.chosen_for) = (Some(*relative), 1.5 * prediction);
         let first = self.solids.first().copied().unwrap_or(0);
         let count = self.solids.last().map_or(0, |last| last + 1 - first);
-        let mut dense = vec![[Vector3::zeros(); 2]; count];
-        // Close together in memory: a shape has much else.
-        self.solids.iter().for_each(|&i| dense[i - first] = [solids[i].low, solids[i].high]);
-        let margin = Vector3::repeat(self.chosen_for + CLOSE);
+        let mut dense = vec![Aabb::new_invalid(); count];
+        // Copied so that they are contiguous in memory: a shape has many other fields.
+        self.solids.iter().for_each(|&i| dense[i - first] = solids[i].boxed);
+        let margin = self.chosen_for + CLOSE;
         self.close.clear();
         self.close.extend(self.near.iter().filter(|pair| {
-            let [[low, high], [from, to]] = pair.solids.map(|i| dense[i - first]);
-            let gap = (low - to).sup(&(from - high));
-            gap.x <= margin.x && gap.y <= margin.y && gap.z <= margin.z
+            let [own, other] = pair.solids.map(|i| dense[i - first]);
+            own.loosened(margin).intersects(&other)
         }));
-    }
-
-    /// Returns whether no point of the second body has moved by `way`, m, against the first since a pose.
-    fn within(&self, before: Option<&Pose>, relative: &Pose, way: f64) -> bool {
-        before.is_some_and(|before| {
-            let moved = (relative.translation.vector - before.translation.vector).norm();
-            // Half the angle, if it is small; of a quaternion that changed its sign about 2.
-            let turned = relative.rotation.coords - before.rotation.coords;
-            moved + 2.0 * turned.norm() * self.reach < way
-        })
     }
 }

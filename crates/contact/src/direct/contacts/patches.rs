@@ -1,12 +1,12 @@
-//! Flat patches: the contact points of two bodies that share a plane, whatever shapes found them.
-//! Each is reduced to its extreme points, so that stiffness and friction do not depend on the
-//! number of facets: every corner of a patch bears with the stiffness of a point, a face with that
-//! of four, an edge of two.
+//! Flat patches: the contact points of two bodies that lie in one plane, whichever shapes they belong to.
+//! Each patch is reduced to its extreme points, so that stiffness and friction do not depend on the
+//! number of facets: every corner of a patch has the stiffness of a point, a face that of four points, an edge
+//! that of two.
 
 use super::Touch;
 use nalgebra::{Matrix3, Vector3};
 
-/// Most points of a patch.
+/// Largest number of points of a patch.
 pub(super) const POINTS: usize = 4;
 /// Cosine of the largest angle between the normals of a patch, 2.5 degrees.
 const ALIKE: f64 = 0.999;
@@ -16,11 +16,11 @@ const TILT: f64 = 0.05;
 const FLAT: f64 = 5e-6;
 /// Gaps that differ by less are equal, m.
 const EQUAL: f64 = 2e-6;
-/// Points nearer to one another, or to the line between two others, are one, m: a rounded edge and
-/// the face that ends at it touch a wall side by side.
+/// Distance of points from one another, or from the line between two others, below which they are merged, m: a
+/// rounded edge and the adjacent face touch a wall side by side.
 pub(super) const NARROW: f64 = 0.1e-3;
 
-/// Joins the manifolds of each patch and keeps their extreme points.
+/// Joins the manifolds of each patch and reduces the patch to its extreme points.
 pub(super) fn join(touches: &mut Vec<Touch>) {
     let manifolds: Vec<_> = touches.chunk_by(|a, b| a.geoms == b.geoms).collect();
     // Close together in memory: most patches differ in their normals.
@@ -61,14 +61,14 @@ fn alike(a: &Touch, b: &Touch) -> bool {
     a.pair == b.pair && a.normal.dot(&b.normal) > ALIKE && a.friction == b.friction
 }
 
-/// A patch that grows: its touches, sums over them, and the line of their gaps.
+/// Patch under construction: its touches, sums over them, and a linear fit of their gaps.
 struct Patch {
     touches: Vec<Touch>,
     sums: Sums,
     line: Line,
 }
 
-/// Sums over touches of place, from a first one, and gap: what a line of the gap follows from.
+/// Sums over touches for a linear fit of the gap; positions are relative to the first touch.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     count: f64,
@@ -76,11 +76,11 @@ struct Sums {
     gap: f64,
     squares: Matrix3<f64>,
     product: Vector3<f64>,
-    /// Largest distance from the first.
+    /// Largest distance from the first touch.
     reach: f64,
 }
 
-/// Gap that is linear in the place from a first touch, and what it is off at most.
+/// Linear fit of the gap over the position relative to the first touch, and its largest error.
 #[derive(Clone, Copy)]
 struct Line {
     level: f64,
@@ -113,7 +113,7 @@ impl Sums {
 }
 
 impl Line {
-    /// Returns what it is off at most for these touches.
+    /// Returns its largest error for these touches.
     fn off(&self, first: &Touch, touches: &[Touch]) -> f64 {
         let off = |touch: &Touch| {
             (touch.gap - self.level - self.slope.dot(&(touch.point - first.point))).abs()
@@ -129,7 +129,7 @@ impl Patch {
         Patch { touches: touches.to_vec(), sums, line }
     }
 
-    /// Adds a manifold that lies in the plane of the patch, with a gap that is linear over both; returns whether it does.
+    /// Adds a manifold if it lies in the plane of the patch and the gap is linear over both; returns whether it was added.
     fn take(&mut self, manifold: &[Touch]) -> bool {
         let first = &self.touches[0];
         let coplanar = |touch: &Touch| {
@@ -145,7 +145,7 @@ impl Patch {
         if new >= FLAT {
             return false;
         }
-        // Of hundreds of touches each would be compared with the line of each manifold, half the time of a trial.
+        // A bound first: with hundreds of touches, the errors of all for each manifold take half the time of a trial.
         let moved = (line.level - self.line.level).abs()
             + (line.slope - self.line.slope).norm() * self.sums.reach;
         let bound = self.line.off + moved;
@@ -160,7 +160,7 @@ impl Patch {
     }
 }
 
-/// Returns at most four points of a patch, the deepest among them, that span it.
+/// Returns at most four points that span a patch, the deepest among them.
 pub(super) fn extremes(
     count: usize,
     place: impl Fn(usize) -> Vector3<f64>,

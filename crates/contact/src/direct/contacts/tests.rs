@@ -1,4 +1,4 @@
-//! Contacts kept by the detector, compared with a fresh detection.
+//! Detector: reused contact points against newly computed ones, patches, and scenes of many parts.
 
 use super::*;
 use crate::scene::{Body, BodyId, Motion, Shape};
@@ -29,11 +29,11 @@ fn at(x: f64, y: f64, z: f64, turn: Vector3<f64>) -> Pose {
 }
 
 #[test]
-fn points_that_are_carried_on_have_the_gaps_of_points_found_anew() {
+fn reused_points_have_the_gaps_of_new_points() {
     let turned = |x: f64| Vector3::new(x, 0.5e-4, 0.3);
     let start = at(0.0, 0.0, 10.05e-3, turned(1e-4));
     for (pose, along, across) in [
-        (at(3e-6, 2e-6, 10.047e-3, turned(3e-4)), 1e-8, STILL),
+        (at(3e-6, 2e-6, 10.047e-3, turned(3e-4)), 1e-8, REUSE),
         (at(30e-6, 2e-6, 10.047e-3, turned(3e-4)), 1e-12, 1e-12),
     ] {
         let mut carried = cubes(start);
@@ -49,7 +49,7 @@ fn points_that_are_carried_on_have_the_gaps_of_points_found_anew() {
 }
 
 #[test]
-fn boxes_apart_along_the_face_of_one_are_told_at_once() {
+fn boxes_separated_by_a_face_of_one_are_recognized() {
     let turn = Vector3::z() * std::f64::consts::FRAC_PI_4;
     // Along the diagonal the first reaches 7.07 mm, the second 5 mm.
     for (side, apart) in [(8.5e-3, false), (8.7e-3, true)] {
@@ -61,7 +61,7 @@ fn boxes_apart_along_the_face_of_one_are_told_at_once() {
     }
 }
 
-/// Touches of two bodies with these gaps at these places of a plane, each of its own geoms.
+/// Returns touches of two bodies at points of a plane, given as x, y and gap, each of another pair of geoms.
 fn touches(points: &[[f64; 3]]) -> Vec<Touch> {
     let touch = |(geoms, [x, y, gap]): (usize, &[f64; 3])| {
         let (point, normal) = (Point3::new(*x, *y, 0.5 * gap), Vector3::z());
@@ -77,19 +77,19 @@ fn joined(points: &[[f64; 3]]) -> Vec<[f64; 3]> {
 }
 
 #[test]
-fn a_patch_keeps_the_corners_that_span_it() {
+fn a_patch_is_reduced_to_the_corners_that_span_it() {
     let grid = (0..25).map(|i| [f64::from(i % 5) * 1e-3, f64::from(i / 5) * 1e-3]);
     let tilted: Vec<_> = grid.map(|[x, y]| [x, y, -1e-6 + 2e-3 * x - 1e-3 * y]).collect();
     let found = joined(&tilted);
     let expected = [0, 4, 20, 24].map(|i| tilted[i]);
     assert_eq!(found, expected);
-    // A row is an edge, points side by side a corner.
+    // Points in a row are reduced to the two ends, points close together to one.
     assert_eq!(joined(&tilted[..5]), [tilted[0], tilted[4]]);
     assert_eq!(joined(&[[0.0; 3], [5e-5, 0.0, 0.0], [0.0, 5e-5, 0.0]]).len(), 1);
 }
 
 #[test]
-fn faces_of_different_height_friction_or_direction_are_no_patch() {
+fn faces_of_different_height_friction_or_direction_are_not_joined() {
     let square = [[0.0, 0.0], [2e-3, 0.0], [0.0, 2e-3], [2e-3, 2e-3]];
     let face = |gap: f64, shift: f64| square.map(|[x, y]| [x + shift, y, gap]);
     let count = |gap, shift| joined(&[face(0.0, 0.0), face(gap, shift)].concat()).len();
@@ -112,9 +112,9 @@ fn faces_of_different_height_friction_or_direction_are_no_patch() {
 /// Point and gap of each touch.
 type Gaps = Vec<(Point3<f64>, f64)>;
 
-/// Touches of a socket of `count` x `count` boxes of 1 mm with a cube of 2 mm that moves over it, and the number of
-/// pairs that were looked at.
-fn over_tiles(count: i32, way: &[Pose]) -> (Vec<Gaps>, usize) {
+/// Returns the touches of a cube of 2 mm at each of these poses with a socket of `count` x `count` boxes of 1 mm, and
+/// the number of candidate pairs.
+fn touches_of_tiles(count: i32, poses: &[Pose]) -> (Vec<Gaps>, usize) {
     let cube = |half: f64, x: f64, y: f64, z: f64| {
         let shape = Shape::Box { half: Vector3::repeat(half) };
         Geom { name: String::new(), shape, pose: Pose::translation(x, y, z), friction: None }
@@ -132,21 +132,21 @@ fn over_tiles(count: i32, way: &[Pose]) -> (Vec<Gaps>, usize) {
     let mut bodies: Vec<_> = scene.bodies.iter().map(|body| MovingBody::new(body, 0)).collect();
     let mut detector = Detector::new(&scene, 0.2e-3);
     let mut touched = Vec::new();
-    for pose in way {
+    for pose in poses {
         bodies[1].put(*pose);
         let mut found = Vec::new();
         detector.detect(&bodies, 5e-4, &mut found);
-        // Between many shapes wider gaps are not foreseen, as long as they do not close.
+        // Of many pairs of shapes, contacts with wider gaps are omitted unless the gap closes within the step.
         let near = found.iter().filter(|touch| touch.gap < NEAR);
         touched.push(near.map(|touch| (touch.point, touch.gap)).collect());
     }
     (touched, detector.lists[0].candidates.len())
 }
 
-/// A socket of 3 000 parts has the contacts of one of 25 about the plug, and only these are looked at.
+/// A socket of 3 000 parts has the same contacts as one of the 25 parts around the plug.
 #[test]
-fn parts_far_away_change_no_contact_and_are_not_looked_at() {
-    let way: Vec<_> = (0..40)
+fn distant_parts_change_no_contact_and_are_no_candidates() {
+    let poses: Vec<_> = (0..40)
         .map(|i| {
             at(
                 0.02e-3 * f64::from(i),
@@ -156,9 +156,9 @@ fn parts_far_away_change_no_contact_and_are_not_looked_at() {
             )
         })
         .collect();
-    let (few, _) = over_tiles(5, &way);
-    let (many, looked_at) = over_tiles(55, &way);
+    let (few, _) = touches_of_tiles(5, &poses);
+    let (many, candidates) = touches_of_tiles(55, &poses);
     assert!(few.iter().all(|touches| touches.len() >= 4), "{few:?}");
     assert_eq!(few, many);
-    assert!(looked_at <= 40, "{looked_at} of 3025");
+    assert!(candidates <= 40, "{candidates} of 3025");
 }

@@ -3,7 +3,6 @@
 use super::Priors;
 use crate::evaluation::evaluator::{Evaluator, Specimen};
 use crate::evaluation::template::{Impossible, Template};
-use crate::finger::computed::AtPad;
 use crate::finger::file::is_shape;
 use crate::finger::model::FingerSource;
 use crate::robot::{Drive, Robot};
@@ -131,7 +130,7 @@ impl Evaluator {
     /// Checks the values of the evaluator's cell on each task; `file` is named in errors.
     ///
     /// # Errors
-    /// The first row with an invalid value, or as of [`Evaluator::check_paths`].
+    /// The first row with an invalid value, or same as for [`Evaluator::check_paths`].
     pub fn check_cell(&self, file: &str) -> Result<(), InputError> {
         let Some(cell) = &self.cell else { return Ok(()) };
         self.check_paths(cell, file)?;
@@ -140,8 +139,8 @@ impl Evaluator {
                 let value = self.number(template, &row.path).filter(|_| !is_shape(&row.path));
                 let Some(value) = value else { continue };
                 let design = Design::infill(0.0, 0.0).with(&row.path, value);
-                let at_pad = AtPad { compliance: 1.0, assembly: 1.0 };
-                if let Err(error) = template.apply(&design, &FingerSource::Paper, at_pad) {
+                let any = Prediction::exact(1.0, 1.0);
+                if let Err(error) = template.apply(&design, &FingerSource::Paper, &any) {
                     return Check { file }.fail(&row.name, error.to_string());
                 }
             }

@@ -33,7 +33,7 @@ impl Priors {
     /// Reads and checks a file; `file` is named in errors.
     ///
     /// # Errors
-    /// If the text cannot be parsed, or as of [`Priors::checked`].
+    /// If the text cannot be parsed, or same as for [`Priors::checked`].
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         read::<Priors>(text, file)?.checked(file)
     }
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn every_shipped_row_has_bounds_and_a_source() {
-        for file in PRIORS.iter().chain([&LEVERS]) {
+        for file in PRIORS.iter().chain(LEVERS) {
             let rows = Priors::parse(file.text, file.file).unwrap().parameters;
             assert!(rows.len() >= 7);
             for row in &rows {

@@ -58,7 +58,7 @@ impl Constraint {
             Bound::AtLeast => self.limit - value,
         };
         let share = if self.limit == 0.0 { beyond } else { beyond / self.limit.abs() };
-        // A limit next to 0 would make it infinite.
+        // The share could overflow with a limit near 0.
         share.clamp(f64::MIN, f64::MAX)
     }
 }
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn constraints_read_back_and_bad_ones_are_answered_with_what_would_be_right() {
+    fn constraints_survive_a_round_trip_and_errors_name_what_is_accepted() {
         for text in ["peak-force<=30", "success-rate>=0.95"] {
             assert_eq!(text.parse::<Constraint>().unwrap().to_string(), text);
         }

@@ -147,7 +147,7 @@ mod tests {
     use crate::evaluation::grid_mm;
     use crate::evaluation::tests::ranges;
     use crate::fixtures::{finger, predicted};
-    use crate::trial::fake::{FakeRig, window_in_mm};
+    use crate::trial::fake::{FakeRig, window_mm};
     use input::shipped::UNCERTAINTIES;
     use input::units::MM;
 
@@ -168,7 +168,7 @@ mod tests {
         let found = success_rate(&drawn, &typical.success, None);
         let (mut below, mut above) = (0, 0);
         for (_, grasp, offset) in &drawn {
-            let (low, high) = window_in_mm(&grasp.finger, &grasp.conditions);
+            let (low, high) = window_mm(&grasp.finger, &grasp.conditions);
             let offset = offset / MM;
             // A window that errors closed jams on the whole of its lower side.
             below += u32::from(offset < low);
@@ -198,7 +198,7 @@ mod tests {
         let expected: Vec<f64> = drawn
             .iter()
             .map(|(_, grasp, _)| {
-                let (low, high) = window_in_mm(&grasp.finger, &grasp.conditions);
+                let (low, high) = window_mm(&grasp.finger, &grasp.conditions);
                 if low > 0.0 || high < 0.0 {
                     return 0.0;
                 }

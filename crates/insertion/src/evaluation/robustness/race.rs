@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Race {
-    /// Success rate to be reached, 0 to 1. With several tasks it holds on each of them: the worst
-    /// counts.
+    /// Success rate to be reached, 0 to 1. With several tasks, each must
+    /// reach it.
     pub bar_share: f64,
     /// Number of draws.
     pub draws: u32,
@@ -25,15 +25,10 @@ pub struct Race {
 impl Race {
     /// Returns the order of this number of draws.
     pub fn order(&self, draws: u32) -> Vec<u32> {
-        let mut place = vec![usize::MAX; draws as usize];
-        for (at, &draw) in self.first.iter().enumerate() {
-            if let Some(place) = place.get_mut(draw as usize) {
-                *place = at;
-            }
-        }
+        let place = |draw: &u32| self.first.iter().rposition(|first| first == draw);
         let mut order: Vec<u32> = (0..draws).collect();
         // Stable: the others stay in their order.
-        order.sort_by_key(|&draw| place[draw as usize]);
+        order.sort_by_cached_key(|draw| place(draw).unwrap_or(usize::MAX));
         order
     }
 

@@ -61,26 +61,8 @@ impl<'a> Repeats<'a> {
     }
 
     pub(super) fn inserts(&self, run: usize, step: OffsetStep) -> bool {
-        let trial = |(grasped, shift): &(Box<dyn Grasped + 'a>, f64)| {
-            grasped.trial(tolerance::offset(step) + shift).outcome
-        };
-        self.runs.get(run).map(trial) == Some(Outcome::Inserted)
-    }
-
-    /// Returns whether every repeat ends within `allowed` grid steps of this end; `sign` is its direction, -1 or 1.
-    /// Only the end's neighbourhood is tried.
-    pub fn end_within(&self, allowed: OffsetStep, sign: OffsetStep, end: OffsetStep) -> bool {
-        let (inner, outer) = ((end - allowed).max(0), end + allowed + 1);
-        let ends = |run: usize| {
-            self.inserts(run, sign * inner)
-                && (inner + 1..=outer).rev().any(|step| !self.inserts(run, sign * step))
-        };
-        (0..self.count()).all(ends)
-    }
-
-    /// Returns whether no repeat inserts from the nominal start.
-    pub fn fail_at_nominal(&self) -> bool {
-        self.inserted(0) == 0
+        let (grasped, shift) = &self.runs[run];
+        grasped.trial(tolerance::offset(step) + shift).outcome == Outcome::Inserted
     }
 
     fn inserted(&self, step: OffsetStep) -> usize {

@@ -2,7 +2,7 @@
 //!
 //! A key of a space is `infill_density_percent`, `infill_direction_deg`, or a path to one number:
 //!
-//! - `task.`, then the path in the task file as of [`NumberFile`]
+//! - `task.`, then the path in the task file as described at [`NumberFile`]
 //!   (`task.strategy.phase.side.speed_mm_per_s`, `task.strategy.phase.side.move_mm.y`);
 //! - `finger.`, then a number of the finger that the files make (`finger.rcc_mm`).
 //!
@@ -13,10 +13,11 @@ mod space;
 
 pub use space::within_limits;
 
-use crate::finger::computed::AtPad;
+use crate::finger::Finger;
 use crate::finger::file::is_shape;
-use crate::finger::model::{FingerSource, Made};
+use crate::finger::model::FingerSource;
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use crate::surrogate::Prediction;
 use crate::task::Task;
 use crate::trial::run::RigError;
 use finray::FingerError;
@@ -30,7 +31,7 @@ use parameters::numbers::{self, Kind, paths};
 pub struct Template {
     /// Numbers of the file, by their keys.
     pub numbers: NumberFile,
-    /// The task as the file has it.
+    /// Task of the file, unchanged.
     pub task: Task,
 }
 
@@ -66,7 +67,7 @@ impl Template {
     /// Reads and checks a task file; `file` is named in errors.
     ///
     /// # Errors
-    /// As of [`Task::parse`].
+    /// Same as for [`Task::parse`].
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         let document = Document::parse(text, file)?;
         let task = Task::read(&document)?;
@@ -81,8 +82,8 @@ impl Template {
         &self,
         design: &Design,
         fingers: &FingerSource,
-        at_pad: AtPad,
-    ) -> Result<(Task, Made), Impossible> {
+        at_pad: &Prediction,
+    ) -> Result<(Task, Finger), Impossible> {
         let (of_finger, of_task): (Vec<_>, Vec<_>) = design
             .0
             .iter()
@@ -103,13 +104,13 @@ impl Template {
         for (key, value) in &of_finger {
             numbers::check(DESIGN, key, *value)?;
         }
-        let mut made = fingers.make(at_pad, design, &task)?;
+        let mut finger = fingers.make(at_pad, design, &task)?;
         for (key, value) in of_finger {
-            if let Some((number, unit)) = made.finger.number(key) {
+            if let Some((number, unit)) = finger.number(key) {
                 *number = value * unit;
             }
         }
-        Ok((task, made))
+        Ok((task, finger))
     }
 
     fn changed(&self, of_task: &[(&str, f64)]) -> Result<Task, InputError> {
@@ -139,16 +140,18 @@ mod tests {
         Template::parse(file.text, file.file).unwrap()
     }
 
-    const AT_PAD: AtPad = AtPad { compliance: 2e3, assembly: 4e4 };
+    fn at_pad() -> Prediction {
+        Prediction::exact(2e3, 4e4)
+    }
 
     fn finger() -> Finger {
-        Finger::new(AT_PAD.compliance, AT_PAD.assembly)
+        Finger::new(2e3, 4e4)
     }
 
     fn apply(values: &[(&str, f64)]) -> Result<(Task, Finger), Impossible> {
         let values = values.iter().map(|&(key, value)| (key.to_owned(), value));
         let design = Design(BTreeMap::from_iter(values));
-        usb().apply(&design, &FingerSource::Paper, AT_PAD).map(|(task, made)| (task, made.finger))
+        usb().apply(&design, &FingerSource::Paper, &at_pad())
     }
 
     #[test]
@@ -186,7 +189,7 @@ mod tests {
             let values = keys.map(|key| (key.clone(), template.numbers.number(&key).unwrap()));
             let design = Design(values.collect());
             assert!(design.0.len() > 50, "{}", file.name);
-            let (task, _) = template.apply(&design, &FingerSource::Paper, AT_PAD).unwrap();
+            let (task, _) = template.apply(&design, &FingerSource::Paper, &at_pad()).unwrap();
             assert_eq!(&task, &template.task);
         }
     }
@@ -216,8 +219,9 @@ mod tests {
         let text = task_file("usb").text.replace("name = \"front\"", "name = \"back\"");
         let template = Template::parse(&text, "my.toml").unwrap();
         let key = "task.strategy.phase.back.settle_s".to_owned();
-        let error =
-            template.apply(&Design([(key, 0.1)].into()), &FingerSource::Paper, AT_PAD).unwrap_err();
+        let error = template
+            .apply(&Design([(key, 0.1)].into()), &FingerSource::Paper, &at_pad())
+            .unwrap_err();
         assert!(error.to_string().contains("same name"), "{error}");
     }
 }

@@ -3,7 +3,6 @@
 use super::space::{each_corner, each_extreme};
 use super::{Impossible, is_infill};
 use crate::evaluation::evaluator::Evaluator;
-use crate::finger::computed::AtPad;
 use crate::finger::file::{FingerFile, infill, is_shape};
 use crate::finger::model::{FingerSource, RCC_KEY, TILTING_KEY};
 use crate::space::{Design, Space, Variable};
@@ -30,8 +29,8 @@ pub fn check(space: &Space, file: &str, finger: &FingerFile) -> Result<(), Input
 }
 
 /// Checks that a space read from `file` that sets the remote centre or tilting stiffness of computed fingers has
-/// springs for each. A centre may be so far away that turning about it alone is softer than measured, the more
-/// so the farther and the softer; so the extreme values are tried, also of the infill.
+/// springs for each. Turning about a distant centre alone can be softer than the measured finger, so all
+/// combinations of extreme values are tried, including those of the infill.
 ///
 /// # Errors
 /// The first combination without springs.
@@ -49,9 +48,8 @@ pub fn check_springs(evaluator: &Evaluator, space: &Space, file: &str) -> Result
 
 fn springs(evaluator: &Evaluator, design: &Design) -> Result<(), Impossible> {
     let stiffness = evaluator.predict(design)?;
-    let at_pad = AtPad::of(&stiffness);
     for template in &evaluator.templates {
-        evaluator.fingers.make(at_pad, design, &template.task)?;
+        evaluator.fingers.make(&stiffness, design, &template.task)?;
     }
     Ok(())
 }

@@ -1,10 +1,10 @@
 //! Checks that every design of a space can be simulated, before the first one is.
 
 use super::{Impossible, Template, is_infill};
-use crate::finger::computed::AtPad;
 use crate::finger::file::is_shape;
 use crate::finger::model::FingerSource;
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space, Variable, corners, is_of_task};
+use crate::surrogate::Prediction;
 use crate::task::Task;
 use crate::trial::run::RigError;
 use input::units::MM;
@@ -106,8 +106,7 @@ impl Template {
         // The checks do not depend on the stiffness.
         let mut design = design.clone();
         design.0.entry(DIRECTION_KEY.to_owned()).or_insert(0.0);
-        let at_pad = AtPad { compliance: 1.0, assembly: 1.0 };
-        let (task, _) = self.apply(&design, &FingerSource::Paper, at_pad)?;
+        let (task, _) = self.apply(&design, &FingerSource::Paper, &Prediction::exact(1.0, 1.0))?;
         Ok(fits(&task)?)
     }
 }

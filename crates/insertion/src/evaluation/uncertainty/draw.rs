@@ -44,36 +44,29 @@ fn draw(errors: &Errors, seed: u64, index: u64) -> Draw {
     let [finger, socket, clearance] = std::array::from_fn(|_| random.random_range(-1.0..1.0));
     let low = random.random::<f64>();
     let start_across: f64 = stream(seed, index, PURPOSE_ACROSS).sample(StandardNormal);
-    let factor = |centred: f64| 1.0 + errors.friction_half_width * centred;
+    let factor = |centred: f64| 1.0 + errors.friction.half_width * centred;
     Draw {
-        offset: offset * errors.offset_sd,
+        offset: offset * errors.offset.sd,
         conditions: Conditions {
-            yaw: yaw * errors.yaw_sd,
-            start_across: start_across * errors.across_sd,
+            yaw: yaw * errors.yaw.sd,
+            start_across: start_across * errors.offset.across_sd,
             start_tilt: 0.0,
             friction_finger: factor(finger),
             friction_socket: factor(socket),
-            clearance: clearance * errors.clearance_half_width,
-            grasp_across: across * errors.grasp_across_sd,
-            grasp_low: low * errors.grasp_low_max,
+            clearance: clearance * errors.clearance.half_width,
+            grasp_across: across * errors.grasp.across_sd,
+            grasp_low: low * errors.grasp.low_max,
         },
         stiffness: [compliance, assembly],
-        stiffness_sd_factor: errors.stiffness_sd_factor,
+        stiffness_sd_factor: errors.stiffness.sd_factor,
     }
 }
 
 impl Draw {
-    /// An insertion without any error.
-    const NOMINAL: Draw = Draw {
-        offset: 0.0,
-        conditions: Conditions::NOMINAL,
-        stiffness: [0.0; 2],
-        stiffness_sd_factor: 1.0,
-    };
-
     /// Returns the insertion under these errors of the cell, each in the unit of its path, and no others.
     pub fn under<'a>(errors: impl IntoIterator<Item = (&'a str, f64)>) -> Self {
-        let mut draw = Draw::NOMINAL;
+        let (conditions, stiffness) = (Conditions::NOMINAL, [0.0; 2]);
+        let mut draw = Draw { offset: 0.0, conditions, stiffness, stiffness_sd_factor: 1.0 };
         errors.into_iter().for_each(|(path, value)| draw.set(path, value));
         draw
     }
@@ -123,21 +116,21 @@ impl Errors {
     /// deviations to either side. The shift along y is not varied: a window spans it.
     pub fn parameters(&self) -> Vec<Parameter> {
         let normal = |sd: f64, unit: f64| NORMAL_WIDTH_SD * sd / unit;
-        let friction = 100.0 * self.friction_half_width;
-        let stiffness = NORMAL_WIDTH_SD * self.stiffness_sd_factor;
+        let friction = 100.0 * self.friction.half_width;
+        let stiffness = NORMAL_WIDTH_SD * self.stiffness.sd_factor;
         let varied = |(path, half_width): (&str, f64)| {
             let low = if path == GRASP_LOW { 0.0 } else { -half_width };
             let varied = Parameter::uniform(Path::new(path).ok()?, [low, half_width]);
             Some(varied).filter(|one| one.low < one.high)
         };
         let half_widths = [
-            (SOCKET_YAW, normal(self.yaw_sd, DEG)),
-            (START_ACROSS, normal(self.across_sd, MM)),
+            (SOCKET_YAW, normal(self.yaw.sd, DEG)),
+            (START_ACROSS, normal(self.offset.across_sd, MM)),
             ("cell.friction_finger_percent", friction),
             ("cell.friction_socket_percent", friction),
-            ("cell.clearance_mm", self.clearance_half_width / MM),
-            ("cell.grasp_across_mm", normal(self.grasp_across_sd, MM)),
-            (GRASP_LOW, self.grasp_low_max / MM),
+            ("cell.clearance_mm", self.clearance.half_width / MM),
+            ("cell.grasp_across_mm", normal(self.grasp.across_sd, MM)),
+            (GRASP_LOW, self.grasp.low_max / MM),
             ("cell.compliance_error_sd", stiffness),
             ("cell.assembly_error_sd", stiffness),
         ];
@@ -155,7 +148,7 @@ fn lognormal(relative: f64, z: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluation::uncertainty::Uncertainty;
+    use crate::evaluation::uncertainty::{Uncertainty, YawSpread};
     use crate::fixtures::predicted;
     use ask_tell::statistics::Moments;
     use input::shipped::UNCERTAINTIES;
@@ -207,13 +200,15 @@ mod tests {
         assert_eq!(few, many[..5]);
         assert_ne!(few, draws(&errors(), 2, 5));
         assert!(few.iter().all(|draw| draw.conditions.start_across == 0.0));
-        let across = draws(&Errors { across_sd: MM, ..errors() }, 1, 5);
+        let mut changed = errors();
+        changed.offset.across_sd = MM;
+        let across = draws(&changed, 1, 5);
         for (a, b) in across.iter().zip(&few) {
             assert_ne!(a.conditions.start_across, 0.0);
             let conditions = Conditions { start_across: 0.0, ..a.conditions };
             assert_eq!(Draw { conditions, ..*a }, *b);
         }
-        let still = draws(&Errors { yaw_sd: 0.0, ..errors() }, 1, 5);
+        let still = draws(&Errors { yaw: YawSpread::default(), ..errors() }, 1, 5);
         for (a, b) in still.iter().zip(&few) {
             assert_eq!((a.offset, a.conditions.clearance), (b.offset, b.conditions.clearance));
             assert_eq!(a.conditions.yaw, 0.0);
@@ -224,17 +219,17 @@ mod tests {
     fn every_error_of_the_table_of_numbers_is_set_by_its_path_alone() {
         let paths = paths(Kind::Error);
         assert_eq!(paths.len(), 11);
-        assert_eq!(Draw::under(paths.iter().map(|path| (&**path, 0.0))), Draw::NOMINAL);
+        assert_eq!(Draw::under(paths.iter().map(|path| (&**path, 0.0))), Draw::under([]));
         let set: Vec<Draw> = paths.iter().map(|path| Draw::under([(&**path, 1.0)])).collect();
         for (i, draw) in set.iter().enumerate() {
-            assert_ne!(*draw, Draw::NOMINAL, "{}", paths[i]);
+            assert_ne!(*draw, Draw::under([]), "{}", paths[i]);
             assert!(!set[..i].contains(draw), "{}", paths[i]);
         }
     }
 
     #[test]
     fn what_is_certain_does_not_vary() {
-        let varied = Errors { yaw_sd: 0.0, ..errors() }.parameters();
+        let varied = Errors { yaw: YawSpread::default(), ..errors() }.parameters();
         assert!(varied.iter().all(|one| one.path != SOCKET_YAW));
         let clearance = varied.iter().find(|one| one.path == "cell.clearance_mm").unwrap();
         assert!((clearance.low + 0.03).abs() < 1e-12 && (clearance.high - 0.03).abs() < 1e-12);

@@ -31,25 +31,21 @@ pub struct Uncertainty {
     pub cell: Option<Priors>,
 }
 
-/// Spread of each error; 0 for none.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+/// Spread of each error, with the source of the values; 0 for none.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Errors {
-    /// Start along y, normal: standard deviation, m.
-    pub offset_sd: f64,
-    /// Start along x, normal: standard deviation, m.
-    pub across_sd: f64,
-    /// Rotation of the socket about z, normal: standard deviation, rad.
-    pub yaw_sd: f64,
-    /// Both coefficients of friction, uniform: half the width, as a share.
-    pub friction_half_width: f64,
-    /// Both stiffnesses, lognormal: standard deviations of the stiffness model.
-    pub stiffness_sd_factor: f64,
-    /// Width of the opening, uniform: half the width, m.
-    pub clearance_half_width: f64,
-    /// Position of the part in the gripper along x, normal: standard deviation, m.
-    pub grasp_across_sd: f64,
-    /// Downward shift of the part in the gripper, uniform from 0: largest, m.
-    pub grasp_low_max: f64,
+    /// Start of the insertion.
+    pub offset: OffsetSpread,
+    /// Rotation of the socket.
+    pub yaw: YawSpread,
+    /// Both coefficients of friction.
+    pub friction: FrictionSpread,
+    /// Both stiffnesses.
+    pub stiffness: StiffnessSpread,
+    /// Width of the opening.
+    pub clearance: ClearanceSpread,
+    /// Position of the part in the gripper.
+    pub grasp: GraspSpread,
 }
 
 /// Settings of a success-rate measurement.
@@ -89,64 +85,78 @@ pub enum Statistic {
 struct RawUncertainty {
     name: String,
     description: String,
-    offset: RawOffset,
-    yaw: RawYaw,
-    friction: RawFriction,
-    stiffness: RawStiffness,
-    clearance: RawClearance,
-    grasp: RawGrasp,
+    offset: OffsetSpread,
+    yaw: YawSpread,
+    friction: FrictionSpread,
+    stiffness: StiffnessSpread,
+    clearance: ClearanceSpread,
+    grasp: GraspSpread,
     success_rate: SuccessSettings,
     robust_range: RawRobust,
 }
 
-#[derive(Deserialize)]
+/// Spread of the start.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RawOffset {
+pub struct OffsetSpread {
+    /// Standard deviation along y, normal, m.
     #[serde(rename = "sd_mm", deserialize_with = "mm")]
-    sd: f64,
+    pub sd: f64,
+    /// Standard deviation along x, normal, m.
     #[serde(rename = "across_sd_mm", default, deserialize_with = "mm")]
-    across_sd: f64,
+    pub across_sd: f64,
     source: String,
 }
 
-#[derive(Deserialize)]
+/// Spread of the rotation of the socket about z.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RawYaw {
+pub struct YawSpread {
+    /// Standard deviation, normal, rad.
     #[serde(rename = "sd_deg", deserialize_with = "deg")]
-    sd: f64,
+    pub sd: f64,
     source: String,
 }
 
-#[derive(Deserialize)]
+/// Spread of both coefficients of friction, each uniform.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RawFriction {
+pub struct FrictionSpread {
+    /// Half the width, as a share.
     #[serde(rename = "half_width_percent", deserialize_with = "percent")]
-    half_width: f64,
+    pub half_width: f64,
     source: String,
 }
 
-#[derive(Deserialize)]
+/// Spread of both stiffnesses, each lognormal.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RawStiffness {
-    sd_factor: f64,
+pub struct StiffnessSpread {
+    /// Standard deviations of the stiffness model.
+    pub sd_factor: f64,
     source: String,
 }
 
-#[derive(Deserialize)]
+/// Spread of the width of the opening, uniform.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RawClearance {
+pub struct ClearanceSpread {
+    /// Half the width, m.
     #[serde(rename = "half_width_mm", deserialize_with = "mm")]
-    half_width: f64,
+    pub half_width: f64,
     source: String,
 }
 
-#[derive(Deserialize)]
+/// Spread of the position of the part in the gripper.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RawGrasp {
+pub struct GraspSpread {
+    /// Standard deviation along x, normal, m.
     #[serde(rename = "across_sd_mm", deserialize_with = "mm")]
-    across_sd: f64,
+    pub across_sd: f64,
+    /// Largest downward shift, uniform from 0, m.
     #[serde(rename = "low_max_mm", deserialize_with = "mm")]
-    low_max: f64,
+    pub low_max: f64,
     source: String,
 }
 
@@ -182,7 +192,7 @@ impl Uncertainty {
         }
         let raw: RawUncertainty = document.read()?;
         numbers::check_file("uncertainty", &table, file)?;
-        let RawUncertainty { offset, yaw, friction, stiffness, clearance, grasp, .. } = &raw;
+        let RawUncertainty { offset, yaw, friction, stiffness, clearance, grasp, .. } = raw;
         for (key, source) in [
             ("offset.source", &offset.source),
             ("yaw.source", &yaw.source),
@@ -196,16 +206,7 @@ impl Uncertainty {
             }
         }
         Ok(Uncertainty {
-            errors: Errors {
-                offset_sd: offset.sd,
-                across_sd: offset.across_sd,
-                yaw_sd: yaw.sd,
-                friction_half_width: friction.half_width,
-                stiffness_sd_factor: stiffness.sd_factor,
-                clearance_half_width: clearance.half_width,
-                grasp_across_sd: grasp.across_sd,
-                grasp_low_max: grasp.low_max,
-            },
+            errors: Errors { offset, yaw, friction, stiffness, clearance, grasp },
             success: raw.success_rate,
             robust: raw.robust_range.settings(Check { file })?,
             name: raw.name,
@@ -237,15 +238,12 @@ impl RawRobust {
         let statistic = match (self.statistic, self.sd_factor, self.tail) {
             (RawStatistic::MeanMinusSd, Some(factor), None) => Statistic::MeanMinusSd(factor),
             (RawStatistic::LowerTail, None, Some(share)) => Statistic::LowerTail(share),
-            (statistic, ..) => {
-                let problem = match statistic {
-                    RawStatistic::MeanMinusSd => {
-                        "\"mean-minus-sd\" requires sd_factor and excludes tail_percent"
-                    }
-                    RawStatistic::LowerTail => {
-                        "\"lower-tail\" requires tail_percent and excludes sd_factor"
-                    }
-                };
+            (RawStatistic::MeanMinusSd, ..) => {
+                let problem = "\"mean-minus-sd\" requires sd_factor and excludes tail_percent";
+                return check.fail("robust_range.statistic", problem);
+            }
+            (RawStatistic::LowerTail, ..) => {
+                let problem = "\"lower-tail\" requires tail_percent and excludes sd_factor";
                 return check.fail("robust_range.statistic", problem);
             }
         };
@@ -263,8 +261,8 @@ mod tests {
         let file = UNCERTAINTIES[0];
         let typical = Uncertainty::parse(file.text, file.file).unwrap();
         assert_eq!(typical.name, "typical");
-        assert!((typical.errors.offset_sd - 2e-3).abs() < 1e-15);
-        assert!((typical.errors.friction_half_width - 0.2).abs() < 1e-15);
+        assert!((typical.errors.offset.sd - 2e-3).abs() < 1e-15);
+        assert!((typical.errors.friction.half_width - 0.2).abs() < 1e-15);
         assert_eq!(typical.robust.statistic, Statistic::MeanMinusSd(1.0));
     }
 

@@ -1,36 +1,36 @@
 //! Trial along the commanded path of a log; and the friction probe.
 
 use super::{Attempt, Stop};
-use crate::task::{Hold, Stage};
+use crate::task::Stage;
 use crate::trial::motion::{Move, Tcp};
-use crate::trial::record::{Sample, Trace};
+use crate::trial::record::Trace;
 use input::units::MM;
 use nalgebra::Vector3;
 
-/// A commanded path of the TCP, task frame: places at times that rise.
+/// Commanded path of the TCP, task frame: targets at increasing times.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Path {
     times: Vec<f64>,
     places: Vec<Tcp>,
 }
 
-/// How far the command has to go down in one piece to be the push, m: more than a search dips.
+/// Shortest continuous descent that counts as the push, m: longer than any in a search.
 const PUSH: f64 = 3.0 * MM;
 
 impl Path {
-    /// From times, s, and places; `None` unless there are two and the times rise.
+    /// Creates a path from times, s, and targets; `None` unless there are at least two and the times increase.
     pub fn new(moments: impl IntoIterator<Item = (f64, Tcp)>) -> Option<Self> {
         let (times, places): (Vec<f64>, Vec<Tcp>) = moments.into_iter().unzip();
         let rise = times.windows(2).all(|pair| pair[0] < pair[1]);
         (times.len() > 1 && rise).then_some(Path { times, places })
     }
 
-    /// Duration, s.
+    /// Returns the duration, s.
     pub fn duration(&self) -> f64 {
         self.times[self.times.len() - 1] - self.times[0]
     }
 
-    /// Returns the command so long after the start, s; stays at the end after it.
+    /// Returns the command at a time after the start, s; constant after the end.
     fn at(&self, time: f64) -> Tcp {
         let time = self.times[0] + time;
         let after = self.times.partition_point(|&t| t <= time);
@@ -45,12 +45,12 @@ impl Path {
         }
     }
 
-    /// Time from the start to the push, s: the last descent, if it is far enough; else the end.
+    /// Returns the time from the start to the push, s: the last descent, if it is long enough; otherwise the end.
     pub fn push(&self) -> f64 {
         let heights: Vec<f64> = self.places.iter().map(|place| place.position.z).collect();
         let last = heights.len() - 1;
         let rises = |i: &usize| heights[*i] <= heights[*i + 1];
-        // At its end the command may rest.
+        // The command may rest at the end.
         let end = (0..last).rev().find(|i| !rises(i)).map_or(0, |i| i + 1);
         let begin = (0..end).rev().find(rises).map_or(0, |i| i + 1);
         let far = heights[begin] - heights[end] > PUSH;
@@ -77,34 +77,31 @@ impl Probe {
     pub const USUAL: Probe = Probe { force: 5.0, stroke: 8.0 * MM, speed: 5.0 * MM, slides: 4 };
 }
 
-/// From how far above the face the probe comes down, m.
+/// Height above the face from which the probe descends, m.
 const ABOVE: f64 = 2.0 * MM;
-/// How far it comes down at most, m: even the softest robot presses by then.
+/// Largest descent, m: enough for the softest robot to press.
 const DEEPEST: f64 = 20.0 * MM;
-/// Rest in the air before the probe and after it, s: both say what the sensor shows without a contact.
+/// Rest in the air before the probe and after it, s: reference of the sensor without contact.
 const SETTLED: f64 = 0.2;
-/// How fast the command gives way to a force, m/s to the N: it follows within 0.1 s on a stiff robot, and never
-/// so fast that it swings.
+/// Admittance of the command, m/s per N: a stiff robot reaches the force within 0.1 s, and the control does not
+/// oscillate.
 const YIELDING: f64 = 2e-4;
 /// Speed at which it is lifted off, m/s.
 const LIFTING: f64 = 0.02;
 
 impl Attempt<'_> {
-    /// Carries the grasped part to where the path begins, and follows it; sampled from there on.
+    /// Carries the grasped part to the start of the path and follows the path; samples begin there.
     pub fn follow(&mut self, path: &Path, every_s: f64) -> Result<(), Stop> {
         self.carry(path.at(0.0))?;
         self.trace = Some(Trace::new(every_s));
         self.stage = Stage::Search;
         let push = path.push();
-        // The first sample is at the end of the first step, and has the path's first place.
+        // The first sample is at the end of the first step, and has the first target of the path.
         for i in 0..=self.steps(path.duration()) {
             let time = i as f64 * self.world.step_s();
             if time > push && self.stage == Stage::Search {
                 self.end_phase("search");
-                self.stage = Stage::Assembly;
-                if self.task.grip.hold == Hold::Assembly {
-                    self.hold();
-                }
+                self.enter(Stage::Assembly);
             }
             self.target = path.at(time);
             self.step()?;
@@ -113,7 +110,7 @@ impl Attempt<'_> {
         Ok(())
     }
 
-    /// Probes the face that this attempt's socket is with the grasped part.
+    /// Probes the face that replaces the socket with the grasped part.
     pub fn probe(&mut self, probe: &Probe, every_s: f64) -> Result<(), Stop> {
         let z = self.task.grip.tcp_z + ABOVE;
         self.carry(Tcp { position: Vector3::new(0.0, -0.5 * probe.stroke, z), tilt: 0.0 })?;
@@ -145,10 +142,5 @@ impl Attempt<'_> {
     fn press(&mut self, velocity: Vector3<f64>) -> Result<(), Stop> {
         self.target = self.target.moved(velocity * self.world.step_s());
         self.step()
-    }
-
-    /// Samples so far, which are taken out.
-    pub fn sampled(&mut self) -> Vec<Sample> {
-        self.trace.take().map_or_else(Vec::new, |trace| trace.samples)
     }
 }

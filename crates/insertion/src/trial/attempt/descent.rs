@@ -6,11 +6,12 @@ use crate::trial::motion::Move;
 use contact::scene::BodyId;
 use input::units::MM;
 
-/// The way down is shared while the plug is this far above the socket, m.
+/// Clearance above the socket down to which all offsets share the descent, m.
 const CLEAR: f64 = 0.3 * MM;
-/// ... and was, if it is still this far above at its end, m: a fast move may come nearer.
+/// Clearance that must remain at the end of the shared descent, m: a fast move may overshoot.
 const UNTOUCHED: f64 = 0.25 * MM;
 
+/// Search move that has been simulated up to a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Begun {
     pub motion: Move,
@@ -18,9 +19,9 @@ pub(super) struct Begun {
 }
 
 impl<'a> Attempt<'a> {
-    /// Returns a copy, right before the search, that has gone down as far as nothing can touch the
-    /// socket however it is shifted or turned about z: from there on every start goes its own way. None
-    /// if the search does not begin with a touch, fails in the air or comes down too fast.
+    /// Returns a copy that has descended as far as nothing can touch the socket, however it is shifted or
+    /// turned about z. `None` if the search does not begin with a touch, fails in the air or descends too
+    /// fast.
     pub fn descended(&self) -> Option<Attempt<'a>> {
         let phase =
             self.task.strategy.phases.iter().find(|phase| phase.stage != Stage::Approach)?;
@@ -40,7 +41,7 @@ impl<'a> Attempt<'a> {
         (copy.clearance() > UNTOUCHED).then_some(copy)
     }
 
-    /// From the top of the socket to the lowest corner of the plug with its latch, along z, m.
+    /// Returns the distance from the top of the socket to the lowest corner of the plug with its latch, along z, m.
     fn clearance(&self) -> f64 {
         let plug = [self.cell.plug].into_iter().chain(self.cell.latch);
         let lowest = plug.flat_map(|body| self.heights(body)).fold(f64::INFINITY, f64::min);

@@ -1,24 +1,23 @@
-//! A trial whose moves are commanded from outside: for learning a search.
+//! Trial with moves commanded by the caller, for learning a search strategy.
 
 use super::{Attempt, REST, Stop};
 use crate::outcome::Outcome;
-use crate::task::{Hold, Stage};
-use crate::trial::classify::{Facts, classify};
+use crate::task::Stage;
 use input::units::{DEG, MM};
 use nalgebra::Vector3;
 
-/// For how long a command holds, s.
+/// Duration of a command, s.
 pub const CONTROL_S: f64 = 1e-3;
 
-/// A part that is held at the start of the search, and waits for commands.
+/// Trial of a held part at the start of the search, moved by commands.
 pub struct Driven {
-    /// Right before the search; every start is a copy of it.
+    /// State right before the search; each start is a copy.
     ready: Attempt<'static>,
-    /// Whether grasp and approach came so far.
+    /// Result of grasp and approach.
     prepared: Result<(), Stop>,
     attempt: Attempt<'static>,
     end: Result<(), Stop>,
-    /// For how long the part has been seated and held, s.
+    /// Time for which the part has been seated and held, s.
     seated_s: f64,
 }
 
@@ -27,9 +26,9 @@ pub struct Driven {
 pub struct State {
     /// Simulated time since the start of the search, s.
     pub time_s: f64,
-    /// The TCP as the robot measures it, mm: from where it believes the opening's middle to be.
+    /// TCP as measured by the robot, relative to the assumed middle of the opening, mm.
     pub tcp_mm: [f64; 3],
-    /// Turn of the flange about x, y and z, degrees; the tilt for the search counts.
+    /// Turn of the flange about x, y and z, degrees; it includes the tilt of the search.
     pub turn_deg: [f64; 3],
     /// Net force of the socket on the plug as a wrist sensor filters it, N.
     pub force_n: [f64; 3],
@@ -39,22 +38,21 @@ pub struct State {
     pub tilt_deg: f64,
     /// Slip of the part in the grasp since the grasp, mm.
     pub slip_mm: f64,
-    /// From the tip to where it counts as inserted, mm.
+    /// Distance of the tip from where it counts as inserted, mm.
     pub distance_mm: f64,
     /// Outcome, once it has ended.
     pub outcome: Option<Outcome>,
 }
 
 impl Driven {
-    pub(in crate::trial) fn new(ready: Attempt<'_>, prepared: Result<(), Stop>) -> Self {
-        let ready = ready.unstoppable();
+    pub(in crate::trial) fn new(ready: Attempt<'static>, prepared: Result<(), Stop>) -> Self {
         let attempt = ready.clone();
         let mut driven = Driven { ready, prepared, attempt, end: Ok(()), seated_s: 0.0 };
         driven.start(0.0);
         driven
     }
 
-    /// Begins anew, with the start shifted by `offset` metres along y.
+    /// Restarts, with the start shifted by `offset` metres along y.
     pub fn start(&mut self, offset: f64) -> State {
         self.attempt = self.ready.shifted(offset);
         self.end = self.prepared;
@@ -78,14 +76,11 @@ impl Driven {
         self.state()
     }
 
-    /// Detects what a strategy knows by its phases: the begin of the push, and the part at rest.
+    /// Detects the start of the push and the part at rest, which a strategy defines by its phases.
     fn watch(&mut self, dt: f64) {
         let attempt = &mut self.attempt;
         if attempt.watch.entered && attempt.stage == Stage::Search {
-            attempt.stage = Stage::Assembly;
-            if attempt.task.grip.hold == Hold::Assembly {
-                attempt.hold();
-            }
+            attempt.enter(Stage::Assembly);
         }
         let seated = attempt.placement().seated(&attempt.task) && attempt.watch.gripped();
         self.seated_s = if seated { self.seated_s + dt } else { 0.0 };
@@ -94,13 +89,10 @@ impl Driven {
     fn outcome(&self) -> Option<Outcome> {
         match self.end {
             Ok(()) => (self.seated_s >= REST).then_some(Outcome::Inserted),
-            Err(Stop::Diverged | Stop::Interrupted) => Some(Outcome::Diverged),
-            Err(stop) => Some(classify(Facts {
-                seated: stop == Stop::ForceLimit && self.seated_s > 0.0,
-                gripped: self.attempt.watch.gripped(),
-                lost_in: (stop == Stop::Lost).then_some(self.attempt.stage),
-                entered: self.attempt.entered(),
-            })),
+            Err(stop) => {
+                let seated = stop == Stop::ForceLimit && self.seated_s > 0.0;
+                Some(self.attempt.outcome(self.end, seated))
+            }
         }
     }
 
@@ -109,7 +101,7 @@ impl Driven {
         let flange = attempt.world.pose(attempt.cell.flange);
         let placement = attempt.placement();
         let seat = placement.tip + Vector3::z() * attempt.task.success.depth;
-        // Deeper is not farther.
+        // Depth beyond the seat does not count as distance.
         let away = Vector3::new(seat.x, seat.y, seat.z.max(0.0));
         State {
             time_s: attempt.time - self.ready.time,
@@ -130,10 +122,10 @@ mod tests {
     use super::*;
     use crate::fixtures::{finger, rig, task};
     use crate::outcome::FailureClass;
-    use crate::trial::{Grasp, Rig};
+    use crate::trial::Rig;
 
     fn driven() -> Driven {
-        rig(task("ket8")).driven(Grasp::of(&finger(2.6, 45.0))).unwrap()
+        rig(task("ket8")).driven(&finger(2.6, 45.0)).unwrap()
     }
 
     #[test]

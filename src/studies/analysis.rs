@@ -139,7 +139,8 @@ fn robots(
         let (stiffness_n_per_mm, _) = felt(robot, start)?;
         Ok::<_, Failure>(UnderRobot { robot: robot.name.clone(), stiffness_n_per_mm, measured })
     };
-    let known = answer.shown().and_then(|(_, tasks)| tasks.first().copied().cloned());
+    let known =
+        answer.finger_and_evaluations().and_then(|(_, tasks)| tasks.first().copied().cloned());
     let Some(known) = known else { return Ok(Vec::new()) };
     let own = under(&setup.evaluator.robot, known)?;
     let compliant = own.stiffness_n_per_mm.is_some_and(|[_, y, _]| y < COMPLIANT_N_PER_MM);

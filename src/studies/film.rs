@@ -28,7 +28,8 @@ pub(crate) fn boundary(
     stop: &AtomicBool,
 ) -> Result<(), Failure> {
     // A front has no single finger to show.
-    let found = answer.record.config.objective.single().and_then(|_| answer.shown());
+    let found =
+        answer.record.config.objective.single().and_then(|_| answer.finger_and_evaluations());
     for (at, template) in setup.evaluator.templates.iter().enumerate() {
         for (end, outward) in ENDS {
             let files = [pair_file(at, end), poster_file(at, end)].map(|file| dir.join(file));

@@ -2,10 +2,10 @@
 //! hypervolume.
 
 use super::ReportError;
-use super::chart::{Area, Drawn, around, axes, legend, message, sheet, words};
+use super::chart::{Area, Drawn, around, axes, legend, sheet, words};
 use super::drawn::{PLOTTED, drawn, note, turning};
 use super::elements::figure;
-use super::marks::{PointMark, dashed, line, points, stairs};
+use super::marks::{PointMark, dashed, label, line, points, stairs};
 use super::theme::{BLUE, GREEN, MUTED, ORANGE, RED};
 use crate::answer::words::{settled, volume_unit};
 use insertion::evaluation::objective::Measure;
@@ -79,35 +79,33 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
     let (bottom, top) = (range.start.max(0.0), range.end);
     let last = count.max(2) as f64 - 1.0;
     let x = ("evaluation", -0.02 * last..1.02 * last);
-    let (label, name) = match objectives.single() {
+    let (y_label, name) = match objectives.single() {
         Some(measure) => (measure.label(), "best so far"),
         None => (format!("hypervolume ({})", volume_unit(objectives)), "hypervolume so far"),
     };
-    let mut chart = axes(area, "", x, (&label, range))?;
+    let mut chart = axes(area, "", x, (&y_label, range))?;
     if count == 0 {
         let style = words(17, MUTED, HPos::Center, VPos::Center);
-        let note = Text::new("no evaluations yet", (0.5, 0.5), style);
-        return chart.draw_series([note]).map(|_| ()).map_err(message);
+        return label(&mut chart, (0.5, 0.5), (0, 0), "no evaluations yet", &style);
     }
     if record.settled {
         dashed(&mut chart, [bottom, top].map(|value| (last, value)))?;
     }
+    let marked = drawn(record, &record.evaluations, PLOTTED);
     if objectives.single().is_some() {
-        let (raced, full): (Vec<&Recorded>, Vec<&Recorded>) =
-            drawn(record, &record.evaluations, PLOTTED).into_iter().partition(|r| r.raced());
-        let bounds = raced.into_iter().filter_map(at);
-        points(&mut chart, bounds, PointMark::ring(BLUE, 3, 1), "at most (raced)")?;
-        let (inside, outside): (Vec<&Recorded>, Vec<&Recorded>) =
+        let (raced, full): (Vec<_>, Vec<_>) = marked.iter().copied().partition(|r| r.raced());
+        let (inside, outside): (Vec<_>, Vec<_>) =
             full.into_iter().partition(|r| r.feasible().is_some());
-        let (inside, outside) =
-            (inside.into_iter().filter_map(at), outside.into_iter().filter_map(at));
-        points(&mut chart, inside, PointMark::dot(BLUE, 3), "each evaluation")?;
-        points(&mut chart, outside, PointMark::ring(MUTED, 3, 1), "violates a constraint")?;
+        for (evaluations, mark, name) in [
+            (raced, PointMark::ring(BLUE, 3, 1), "at most (raced)"),
+            (inside, PointMark::dot(BLUE, 3), "each evaluation"),
+            (outside, PointMark::ring(MUTED, 3, 1), "violates a constraint"),
+        ] {
+            points(&mut chart, evaluations.into_iter().filter_map(at), mark, name)?;
+        }
         points(&mut chart, confirmed, PointMark::disc(GREEN, 5), "confirmed")?;
     }
-    let lost =
-        drawn(record, &record.evaluations, PLOTTED).into_iter().filter(|r| r.score.is_none());
-    let lost = lost.map(|r| (r.index as f64, bottom));
+    let lost = marked.iter().filter(|r| r.score.is_none()).map(|r| (r.index as f64, bottom));
     points(&mut chart, lost, PointMark::cross(RED, 4), "no value")?;
     line(&mut chart, stairs(turning(best)), ORANGE.rgb().stroke_width(3), name)?;
     let corner = match objectives.single() {

@@ -1,6 +1,6 @@
 //! Elements drawn in plots: marked points, lines, stairs.
 
-use super::chart::{Chart, Drawn, message};
+use super::chart::{Chart, Drawn};
 use super::theme::{Colour, MUTED};
 use plotters::prelude::*;
 
@@ -49,7 +49,7 @@ pub(super) fn points<'a, 'b: 'a>(
     if elements.peek().is_none() {
         return Ok(());
     }
-    let series = chart.draw_series(elements).map_err(message)?;
+    let series = chart.draw_series(elements)?;
     if !label.is_empty() {
         series.label(label).legend(move |(x, y)| mark.at((x + 10, y)));
     }
@@ -66,8 +66,7 @@ pub(super) fn line(
     if points.is_empty() {
         return Ok(());
     }
-    let (series, label) =
-        (chart.draw_series(LineSeries::new(points, style)).map_err(message)?, label.into());
+    let (series, label) = (chart.draw_series(LineSeries::new(points, style))?, label.into());
     if !label.is_empty() {
         series.label(label).legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], style));
     }
@@ -75,8 +74,8 @@ pub(super) fn line(
 }
 
 pub(super) fn dashed(chart: &mut Chart<'_, '_>, ends: [(f64, f64); 2]) -> Drawn {
-    let line = DashedLineSeries::new(ends, 5, 4, MUTED.rgb().stroke_width(1));
-    chart.draw_series(line).map(|_| ()).map_err(message)
+    chart.draw_series(DashedLineSeries::new(ends, 5, 4, MUTED.rgb().stroke_width(1)))?;
+    Ok(())
 }
 
 /// Draws a bar between two values of x and two of y.
@@ -86,8 +85,8 @@ pub(super) fn bar(
     y: [f64; 2],
     style: impl Into<ShapeStyle>,
 ) -> Drawn {
-    let bar = Rectangle::new([(x[0], y[0]), (x[1], y[1])], style);
-    chart.draw_series([bar]).map(|_| ()).map_err(message)
+    chart.draw_series([Rectangle::new([(x[0], y[0]), (x[1], y[1])], style)])?;
+    Ok(())
 }
 
 /// Writes words at a point, shifted by pixels.
@@ -98,8 +97,8 @@ pub(super) fn label(
     words: &str,
     style: &TextStyle<'static>,
 ) -> Drawn {
-    let words = EmptyElement::at(at) + Text::new(words.to_owned(), by, style);
-    chart.draw_series([words]).map(|_| ()).map_err(message)
+    chart.draw_series([EmptyElement::at(at) + Text::new(words.to_owned(), by, style)])?;
+    Ok(())
 }
 
 /// Returns the corners of a step function through points.

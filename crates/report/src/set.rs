@@ -14,7 +14,7 @@ const LISTED: usize = 8;
 pub(super) fn section(answer: &Answer) -> Option<Markup> {
     answer.verdict.finger()?;
     let found = answer.recommended.as_ref()?.ties.as_ref()?;
-    let named = answer.named()?.index;
+    let named = answer.design_to_print()?.index;
     let mut designs = found.designs.clone();
     // The recommended one first, then by increasing loss.
     designs
@@ -23,16 +23,14 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
     let row = |(recorded, loss): &(&Recorded, f64)| {
         let loss = if millimetres { mm(loss.max(0.0)) } else { String::new() };
         let force = answer.record.measure(recorded, Measure::PeakForce);
-        let robot = answer.measured.iter().find(|found| found.design == recorded.design);
-        let cells = [
+        vec![
             design(&recorded.design),
             reasons(found, recorded, named),
             loss,
             force.map_or(String::new(), |force| format!("{force:.0} N")),
             stiffness(recorded.stiffness.compliance),
-            robot.map_or(String::new(), |robot| mm(robot.range_mm)),
-        ];
-        cells.map(|cell| html! { (cell) }).to_vec()
+            answer.on_robot(&recorded.design).map_or(String::new(), mm),
+        ]
     };
     let head =
         ["finger", "reason to choose it", "expected loss", "largest force", ACROSS, "measured"];

@@ -1,6 +1,6 @@
 //! Levers of a task and a robot, with their bounds.
 
-use super::question::{Cell, Question};
+use super::measure::{Cell, Question};
 use connector::body::{ConvexBody, width};
 use connector::seat::section;
 use input::shipped::{LEVERS, PRIORS};

@@ -111,6 +111,11 @@ impl Trust {
     }
 }
 
+/// Returns the range of a finger, mm, if it is among the measured ones.
+pub(super) fn range_mm(measured: &[Measured], finger: &Design) -> Option<f64> {
+    measured.iter().find(|measured| measured.design == *finger).map(|found| found.range_mm)
+}
+
 /// Returns the ranges in words: `4.7 and 4.9 mm`.
 fn ranges(fingers: &[Measured]) -> String {
     let mut mm: Vec<String> =

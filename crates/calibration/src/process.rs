@@ -18,26 +18,26 @@ use ask_tell::process::{Process, distance2, matern52};
 use ask_tell::statistics::normal_log_cdf;
 use nalgebra::{DMatrix, DVector};
 
-/// A finger's place: its standardised `1 / ky` and `kz`.
+/// Place of a finger: its standardised `1 / ky` and `kz`.
 pub type Place = [f64; 2];
 
 /// Linear terms: offset, share of the simulated differences, `1 / ky`, `kz`.
 pub const TERMS: usize = 4;
 
-/// Coordinates of the sampler that make the hyperparameters.
+/// Number of coordinates of the sampler from which the hyperparameters follow.
 pub const COORDINATES: usize = 5;
 
-/// Standard deviation of the offset: how far simulated and measured windows differ on the whole.
+/// Standard deviation of the offset between simulated and measured windows.
 const OFFSET_SD: f64 = 0.5;
-/// Standard deviation of `r`: a simulation may also say nothing, or the contrary.
+/// Standard deviation of `r`: simulated differences may also be irrelevant or opposite to measured ones.
 const SHARE_SD: f64 = 1.0;
 /// Median and logarithmic standard deviation of the standard deviation of a trend.
 const TREND: (f64, f64) = (0.1, 1.0);
-/// The same of the process.
+/// Median and logarithmic standard deviation of the standard deviation of the process.
 const PROCESS: (f64, f64) = (0.05, 0.7);
-/// The same of its length.
+/// Median and logarithmic standard deviation of its length.
 const LENGTH: (f64, f64) = (1.5, 0.4);
-/// The same of the noise: two windows of one finger differ by some steps of 0.1 mm.
+/// Median and logarithmic standard deviation of the noise: two windows of one finger differ by some steps of 0.1 mm.
 const NOISE: (f64, f64) = (0.05, 0.7);
 
 /// Standard deviations in units of the task's scale.
@@ -51,7 +51,7 @@ pub struct Hyperparameters {
 }
 
 impl Hyperparameters {
-    /// From standard normal coordinates; `emulator` is the simulation's own error.
+    /// Returns the hyperparameters at standard normal coordinates; `emulator` is the error of the emulator.
     pub fn from_coordinates(z: &[f64], emulator: f64) -> Self {
         let at = |i: usize, (median, sd): (f64, f64)| median * libm::exp(sd * z[i]);
         Hyperparameters {
@@ -70,7 +70,7 @@ impl Hyperparameters {
     }
 }
 
-/// A finger as simulated, in units of the task's scale.
+/// Finger with its simulated range, in units of the task's scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finger {
     pub place: Place,
@@ -83,22 +83,22 @@ impl Finger {
     }
 }
 
-/// The bench, conditioned on its measurements.
+/// Bench conditioned on its measurements.
 #[derive(Debug, Clone)]
 pub struct Conditioned {
     pub hyperparameters: Hyperparameters,
     pub fingers: Vec<Finger>,
-    /// Fingers whose range is this or more.
+    /// Fingers with a lower bound of their range.
     pub bounds: Vec<(Finger, f64)>,
-    /// Of what they departed from the simulation; the linear terms are in its kernel.
+    /// Process of the discrepancies from the simulation; its kernel includes the linear terms.
     process: Process<0>,
     /// Standard deviation of each measured value's noise.
     pub noises: Vec<f64>,
 }
 
 impl Conditioned {
-    /// On fingers with their measured values and the number of measurements of each, and on fingers
-    /// with lower bounds; `None` if their covariance is not positive definite.
+    /// Conditions on fingers with their measured values and the number of measurements of each, and on fingers with
+    /// lower bounds; `None` if their covariance is not positive definite.
     pub fn new(
         hyperparameters: Hyperparameters,
         known: &[(Finger, f64, f64)],
@@ -120,7 +120,7 @@ impl Conditioned {
         Some(Conditioned { hyperparameters, fingers, bounds, process, noises })
     }
 
-    /// Logarithm of the likelihood of what was measured, less a constant.
+    /// Returns the log-likelihood of the measurements up to a constant.
     pub fn log_likelihood(&self) -> f64 {
         let bound = |(finger, bound): &(Finger, f64)| {
             let (mean, sd) = self.predict(finger);
@@ -134,7 +134,7 @@ impl Conditioned {
         DVector::from_iterator(self.fingers.len(), self.fingers.iter().map(to))
     }
 
-    /// Mean and standard deviation of what the bench would give on average.
+    /// Returns mean and standard deviation of the true range of a finger.
     pub fn predict(&self, finger: &Finger) -> (f64, f64) {
         let k = self.towards(finger);
         let own = self.hyperparameters.covariance(finger, finger);
@@ -142,9 +142,9 @@ impl Conditioned {
         (mean, self.process.variance(&k, &[], own).sqrt())
     }
 
-    /// The values at `fingers` that a draw of the prior becomes under the measurements
-    /// (Matheron's rule; Wilson et al. 2020, arXiv 2002.09309); `prior` holds the draw's departure
-    /// from the simulation at `fingers`, `known` at the measured ones, with their noise.
+    /// Conditions a draw of the prior on the measurements and returns its values at `fingers` (Matheron's rule; Wilson
+    /// et al. 2020, arXiv 2002.09309). `prior` is the draw's discrepancy from the simulation at `fingers`, `known` that
+    /// at the measured ones with their noise.
     pub fn update(&self, fingers: &[Finger], prior: &[f64], known: &[f64]) -> Vec<f64> {
         let known = DVector::from_column_slice(known);
         let weights = self.process.weights() - self.process.solve(&known);

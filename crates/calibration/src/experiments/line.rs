@@ -1,4 +1,4 @@
-//! One line of a measurement file: its cells, and what they must say together.
+//! One line of a measurement file: its cells, and the checks of their combination.
 
 use super::{Experiment, NOT_MEASURABLE, problem};
 use csv::StringRecord;
@@ -10,10 +10,10 @@ use jiff::civil::Date;
 use jiff::tz::TimeZone;
 use std::time::{Duration, SystemTime};
 
-/// A range and the window beside it may differ by this, mm: both are rounded to 0.1.
+/// Largest difference between a range and its window, mm: both are rounded to 0.1.
 const ROUNDING_MM: f64 = 0.151;
 
-/// The cells of one line, and what was wrong with those read so far.
+/// Cells of one line, and the problems found so far.
 pub(crate) struct Cells<'a> {
     pub(super) header: &'a StringRecord,
     pub(super) record: &'a StringRecord,
@@ -22,13 +22,13 @@ pub(crate) struct Cells<'a> {
 }
 
 impl<'a> Cells<'a> {
-    /// The text of a column; empty if the file does not have it.
+    /// Returns the text of a column; empty if the file does not have it.
     pub(crate) fn text(&self, column: &str) -> &'a str {
         let at = self.header.iter().position(|other| other == column);
         at.and_then(|at| self.record.get(at)).unwrap_or("")
     }
 
-    /// The value of a column; what is wrong with it is kept.
+    /// Parses the value of a column; a problem is recorded.
     pub(crate) fn read<T>(
         &mut self,
         column: &str,
@@ -37,7 +37,7 @@ impl<'a> Cells<'a> {
         value(self.text(column)).map_err(|words| self.problem(column, &words)).ok()
     }
 
-    /// The same, of a column that may be empty.
+    /// Parses the value of a column that may be empty.
     pub(crate) fn known<T>(
         &mut self,
         column: &str,
@@ -50,7 +50,7 @@ impl<'a> Cells<'a> {
         self.problems.push(problem(self.line, column, words));
     }
 
-    /// The infill, and what else columns of a space file set.
+    /// Parses the infill and the columns that are keys of a space file.
     pub(crate) fn design(&mut self) -> Design {
         let density = self.read(DENSITY_KEY, density).unwrap_or_default();
         let direction = self.read(DIRECTION_KEY, direction).unwrap_or_default();
@@ -62,12 +62,12 @@ impl<'a> Cells<'a> {
     }
 }
 
-/// Whether a column is a key of a space file.
+/// Returns whether a column is a key of a space file.
 pub(super) fn is_of_space(name: &str) -> bool {
     name.starts_with("task.") || name.starts_with("finger.")
 }
 
-/// The experiment of a line; what is wrong with it is kept in `cells`.
+/// Parses and checks a line; problems are recorded in `cells`.
 pub(super) fn experiment(cells: &mut Cells<'_>, before: &[Experiment]) -> Experiment {
     let task = cells.text("task").to_owned();
     if task.is_empty() {
@@ -99,7 +99,7 @@ pub(super) fn experiment(cells: &mut Cells<'_>, before: &[Experiment]) -> Experi
     experiment
 }
 
-/// A window holds the start from which it is measured, and is as wide as the range.
+/// Checks that the window contains the start from which it is measured and is as wide as the range.
 fn check_window(cells: &mut Cells<'_>, experiment: &Experiment) {
     let &Experiment { negative_mm, positive_mm, range_mm, .. } = experiment;
     for (column, end, right) in [
@@ -135,7 +135,7 @@ fn check_window(cells: &mut Cells<'_>, experiment: &Experiment) {
     }
 }
 
-/// The same finger on the same task and day as on an earlier line.
+/// Returns a fault if an earlier line has the same finger, task and day.
 fn twice(new: &Experiment, before: &[Experiment]) -> Option<Fault> {
     let same = |old: &&Experiment| {
         old.task == new.task && old.design == new.design && old.date == new.date
@@ -149,11 +149,11 @@ fn twice(new: &Experiment, before: &[Experiment]) -> Option<Fault> {
     Some(problem(new.line, "task", &words))
 }
 
-/// Largest length that is taken for millimetres: no connector tolerates more.
+/// Largest length that is accepted as millimetres: no connector tolerates more.
 pub const LARGEST_LENGTH_MM: f64 = 100.0;
-/// Smallest that is not 0: a start is not set finer.
+/// Smallest length other than 0, mm: starts are not set more finely.
 const LEAST_MM: f64 = 0.02;
-/// Largest force that is taken for newtons.
+/// Largest force that is accepted as newtons.
 pub const LARGEST_FORCE_N: f64 = 5000.0;
 
 fn number(text: &str) -> Result<f64, String> {
@@ -196,7 +196,7 @@ pub(crate) fn length(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A range, mm, or the words that there is none.
+/// Parses a range, mm; `None` if it is not measurable.
 fn range(text: &str) -> Result<Option<f64>, String> {
     if text == NOT_MEASURABLE {
         return Ok(None);
@@ -213,7 +213,7 @@ pub(crate) fn failure(text: &str) -> Result<FailureClass, String> {
     class.ok_or_else(|| format!("`{text}` is no failure class; there are {}", known.join(", ")))
 }
 
-/// Number of measurements that the values are the mean of.
+/// Parses the number of measurements averaged into the values.
 fn repeats(text: &str) -> Result<u32, String> {
     match text.parse() {
         Ok(count @ 1..=10_000) => Ok(count),
@@ -232,7 +232,7 @@ fn force(text: &str) -> Result<f64, String> {
 }
 
 fn date(text: &str) -> Result<String, String> {
-    // One day more: clocks and time zones differ.
+    // One day is added, since clocks and time zones differ.
     let tomorrow = Timestamp::try_from(SystemTime::now() + Duration::from_secs(86_400));
     let last = tomorrow.map_or(Date::MAX, |tomorrow| tomorrow.to_zoned(TimeZone::UTC).date());
     match text.parse::<Date>() {

@@ -1,12 +1,13 @@
-//! A robot with the stiffness that the logs tell.
+//! Robot with the stiffness identified from the logs.
 
 use super::formulas::Flange;
 use input::units::N_PER_MM;
 use insertion::robot::{Drive, Robot, Servo};
 
-/// How much the axes of a flange differ from the robot file's proportions, as a share.
+/// Relative deviation of the axes of a flange from the proportions of the robot file.
 const ALIKE: f64 = 0.2;
-/// A flange that all axes are told of: what is left is a wrist and a gripper, as of `robots/servo.toml`.
+/// Flange if all axes are identified but the robot file has no servo; masses and rotations are those of
+/// `robots/servo.toml`.
 const SOFT: Servo = Servo {
     stiffness: [10.0 * N_PER_MM; 3],
     rotational_stiffness: [400.0; 3],
@@ -15,8 +16,8 @@ const SOFT: Servo = Servo {
     damping_ratio: 1.0,
 };
 
-/// The robot with what the logs tell of its axes: each is the robot file's times a factor, and the
-/// factors of axes that are told badly follow the others. Rotations follow all of them.
+/// Returns the robot with the identified stiffness, and the smallest relative standard deviation of an axis. Each axis
+/// is that of the robot file times a factor; uncertain factors are drawn towards the common one, which rotations have.
 pub fn told(own: &Robot, flange: &[Option<Flange>; 3]) -> (Robot, Option<f64>) {
     let told = flange.iter().flatten().count();
     let base = match own.drive {

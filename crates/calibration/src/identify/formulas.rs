@@ -7,15 +7,15 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use serde::Serialize;
 use std::ops::Range;
 
-/// Points to either side that are averaged before anything is differentiated: 10 ms.
+/// Number of points on either side over which curves are averaged before differentiation: 10 ms.
 const REACH: usize = 5;
-/// Delays of the force that are tried, points: up to 30 ms.
+/// Largest delay of the force, points: 30 ms.
 const DELAYS: usize = 15;
-/// Least standard deviation that is believed, as a share: a robot is no ideal spring.
+/// Smallest relative standard deviation of a stiffness: a robot is no ideal spring.
 const FLOOR: f64 = 0.04;
 
-/// One axis of a soft flange: F = -k e - c e' + m a, with e how far the TCP is behind its target and m
-/// its mass less that which the sensor carries.
+/// One axis of a compliant flange: F = -k e - c e' + m a, with the lag e of the TCP behind its target and the mass m
+/// without that carried by the sensor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flange {
     /// k, N/m.
@@ -24,14 +24,14 @@ pub struct Flange {
     pub damping: f64,
     /// m, kg.
     pub mass: f64,
-    /// Delay of the force behind the pose that fits best, s.
+    /// Best-fitting delay of the force behind the pose, s.
     pub delay_s: f64,
-    /// Share of the variance of the force that it explains, 0 to 1.
+    /// Explained share of the variance of the force, 0 to 1.
     pub explained: f64,
 }
 
-/// The flange along an axis of the tool, 0 x to 2 z, by least squares over attempts; its error is that of leaving out
-/// one attempt at a time. `None` without targets, or where no force moves the robot.
+/// Fits the flange along an axis of the tool, 0 x to 2 z, by least squares over attempts, with its jackknife error.
+/// `None` without targets, or if no force moves the robot.
 pub fn flange(all: &[Curves], axis: usize) -> Option<Flange> {
     let all: Vec<Curves> = all.iter().map(Curves::in_tool).collect();
     let fits = (0..=DELAYS).filter_map(|delay| {
@@ -69,7 +69,7 @@ pub(super) fn explained(all: &[Curves]) -> f64 {
     (0..3).map(along).sum()
 }
 
-/// A column less its line: the bias of the sensor, and its drift.
+/// Subtracts a straight line from a column: bias and drift of the sensor.
 fn level(column: DVector<f64>) -> DVector<f64> {
     let count = column.len() as f64;
     let middle = 0.5 * (count - 1.0);
@@ -78,7 +78,7 @@ fn level(column: DVector<f64>) -> DVector<f64> {
     column.add_scalar(-mean) - times * slope
 }
 
-/// Sums of products over one attempt, each column less its line.
+/// Sums of products over one attempt, with bias and drift removed.
 struct Sums {
     products: DMatrix<f64>,
     with_force: DVector<f64>,
@@ -131,7 +131,7 @@ fn solve<'a>(sums: impl Iterator<Item = &'a Sums>) -> Option<Fit> {
     Some(Fit { terms: [0, 1, 2].map(|i| terms[i] / scale[i]), explained })
 }
 
-/// Preload, m: from where the TCP was when the target was stopped by the touch to where it was sent.
+/// Returns the preload, m: distance from the TCP at the touch to the target after it.
 pub fn preload(all: &[Curves]) -> Option<Estimate> {
     let of = |one: &Curves| {
         let (stopped, target) = (one.stopped()?, one.target.as_ref()?);
@@ -153,13 +153,13 @@ fn estimate(values: &[f64]) -> Option<Estimate> {
 /// One slide of a probe.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Slide {
-    /// Whether it goes along y rather than back.
+    /// Whether it goes along +y.
     #[serde(skip)]
     pub forth: bool,
     /// Tangential force over normal force while sliding.
     #[serde(rename = "tangential_over_normal")]
     pub ratio: f64,
-    /// Whether the ratio kept rising: then the part turned in the grasp and slid little or not at all.
+    /// Whether the ratio kept rising, because the part turned in the grasp instead of sliding.
     pub rising: bool,
 }
 
@@ -171,20 +171,21 @@ pub struct Friction {
     pub coefficient: Option<Estimate>,
 }
 
-/// How far above the face the part has left it, m.
+/// Height above the face from which on the part is in the air, m.
 const LIFTED: f64 = 1e-3;
-/// Share of the highest speed along y from which on it slides.
+/// Share of the largest speed along y above which the part slides.
 const MOVING: f64 = 0.4;
-/// Least part of a slide, s.
+/// Shortest slide, s.
 const SLIDE_S: f64 = 0.3;
 /// Normal force below which there is no contact, N.
 const CONTACT_N: f64 = 1.5;
-/// A ratio that grows by this share over the last part of a slide has not settled.
+/// Relative increase over the last part of a slide above which a ratio has not settled.
 const RISING: f64 = 0.12;
-/// Least standard deviation of a coefficient, as a share: a contact is no Coulomb law.
+/// Smallest relative standard deviation of a coefficient: contacts deviate from Coulomb's law.
 const FRICTION_FLOOR: f64 = 0.04;
 
-/// Friction from a probe along y, with the drift of the sensor taken out by the air before and after it.
+/// Returns the friction from a probe along y; the drift of the sensor is removed by the force in the air before and
+/// after it.
 pub fn friction(probe: &Curves) -> Option<Friction> {
     let moved = probe.target.as_ref().unwrap_or(&probe.tcp);
     let speed: Vec<f64> = rates(&smoothed(moved, REACH)).iter().map(|rate| rate.y).collect();
@@ -205,7 +206,7 @@ pub fn friction(probe: &Curves) -> Option<Friction> {
         let settled = slides.iter().filter(|slide| !slide.rising);
         estimate(&settled.map(|slide| libm::atan(slide.ratio)).collect::<Vec<_>>())
     };
-    // A face that is not level adds its angle one way and takes it the other.
+    // The angle of a face that is not level is added in one direction and subtracted in the other.
     let both = angle(&forth).zip(angle(&back));
     let coefficient = both.map(|(a, b)| {
         let mean = libm::tan(0.5 * (a.mean + b.mean));
@@ -216,8 +217,8 @@ pub fn friction(probe: &Curves) -> Option<Friction> {
     (!slides.is_empty()).then_some(Friction { slides, coefficient })
 }
 
-/// The force less a line through what the sensor shows in the air before and after the contact: where
-/// the TCP is higher than where it slides.
+/// Subtracts from the force a line through its means in the air before and after the contact, where the TCP is higher
+/// than during the slides.
 fn undrifted(probe: &Curves, sliding: impl Fn(usize) -> bool) -> Option<Vec<Vector3<f64>>> {
     let face = mean((0..probe.tcp.len()).filter(|&i| sliding(i)).map(|i| probe.tcp[i].z))?;
     let in_air = |i: &usize| probe.tcp[*i].z > face + LIFTED;

@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 pub const FEWEST: usize = 50;
 /// Most moments: half an hour at 500 Hz, 0.1 GB.
 pub const MOST: usize = 1_000_000;
-/// Longest log, s: curves are made of it at even times, however far apart its moments are.
+/// Longest log, s: it is interpolated at regular times, however far apart its moments are.
 pub const LONGEST_S: f64 = 600.0;
 
 /// Header of [`Log::csv`] without targets: time, TCP and force on the tool, in the task's frame.
@@ -23,7 +23,7 @@ pub const TARGETS: [&str; 3] = ["target_x_mm", "target_y_mm", "target_z_mm"];
 /// One moment of a log, in the task's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moment {
-    /// Its line in the file, from 1.
+    /// Line in the file, counted from 1.
     pub line: usize,
     /// Time on the recorder's clock, s.
     pub time_s: f64,
@@ -37,7 +37,7 @@ pub struct Moment {
     pub force: Vector3<f64>,
 }
 
-/// A recorded attempt or probe: all finite, time increasing, all moments with a target or none.
+/// Recorded attempt or probe: finite numbers, increasing times, a target in all moments or in none.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Log {
     /// The file as given.
@@ -49,20 +49,20 @@ pub struct Log {
 /// How an attempt ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ended {
-    /// It inserted.
+    /// The plug was inserted.
     Inserted,
-    /// It did not.
+    /// The attempt failed.
     Failed(FailureClass),
-    /// It was none: slow motions on a flat face of the socket.
+    /// The log is of a probe: slow motions on a flat face of the socket.
     Probe,
 }
 
-/// A log and what is known of it.
+/// Log with its row of the table of runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
     /// Recorded log.
     pub log: Log,
-    /// The finger's infill, and what else its columns set.
+    /// Infill of the finger, and other numbers that the columns set.
     pub design: Design,
     /// Shift of the start along y, m; 0 for a probe that has none.
     pub offset: f64,
@@ -106,7 +106,7 @@ impl Log {
         Ok(Log { file: file.to_owned(), moments })
     }
 
-    /// Its text with the columns [`COLUMNS`] and, with targets, [`TARGETS`]: lengths to 1e-5 mm,
+    /// Returns its text with the columns [`COLUMNS`] and, with targets, [`TARGETS`]: lengths to 1e-5 mm,
     /// tilt to 1e-5 degrees, force to 1e-4 N, time to 1e-6 s. Moment `i` stands in line `i + 2`.
     /// A commanded tilt is not kept.
     pub fn csv(&self) -> String {
@@ -141,10 +141,10 @@ impl Moment {
     }
 }
 
-/// The log that a robot with a perfect sensor would write of a simulated attempt.
+/// Returns the log that a robot with a perfect sensor would record of a simulated attempt.
 ///
 /// # Errors
-/// As of [`Log::new`]: if the attempt ended before there was much to write.
+/// That of [`Log::new`], if the attempt was too short.
 pub fn of_samples(file: &str, samples: &[Sample]) -> Result<Log, Fault> {
     let start = samples.first().map_or(0.0, |sample| sample.time_s);
     let moment = |(i, sample): (usize, &Sample)| Moment {

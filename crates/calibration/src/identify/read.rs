@@ -1,4 +1,4 @@
-//! Logs from text: `t_s,x_mm,..` in the task's frame, or what an RTDE recorder writes in the base's.
+//! Parsing of logs: `t_s,x_mm,..` in the task's frame, or the columns of an RTDE recorder in the base's.
 
 use super::frame::Frame;
 use super::log::{COLUMNS, Log, MOST, Moment, TARGETS};
@@ -12,13 +12,13 @@ use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use std::path::Path;
 
-/// Most bytes of a log: ten minutes at 500 Hz.
+/// Largest size of a log, bytes: ten minutes at 500 Hz.
 pub const LARGEST_LOG: u64 = 64 << 20;
-/// No robot reaches so far, m.
+/// Largest plausible coordinate, m.
 const FARTHEST: f64 = 10.0;
-/// A TCP stays not so near to the opening all the time, mm.
+/// Smallest plausible maximum of the coordinates, mm.
 const NEAREST_MM: f64 = 1.0;
-/// Nothing is recorded so seldom, s.
+/// Largest plausible median time between moments, s.
 const SLOWEST_S: f64 = 0.5;
 
 /// Reads the text of a log.
@@ -31,7 +31,7 @@ pub fn text(path: &Path) -> Result<String, Fault> {
     files::read_text(path, LARGEST_LOG).map_err(cannot)
 }
 
-/// Reads and checks a log's text; one in the base's frame needs `frame`; `file` is named in errors. Lines that begin with `#` are none.
+/// Reads and checks a log's text; one in the base's frame needs `frame`; `file` is named in errors. Lines that begin with `#` are comments.
 ///
 /// # Errors
 /// If it has no known header, a cell cannot be used or looks like one in another unit, or
@@ -81,12 +81,12 @@ fn check_units(log: &Log) -> Result<(), String> {
     Ok(())
 }
 
-/// Median time between two moments, s.
+/// Returns the median time between two moments, s.
 pub(super) fn median_gap(log: &Log) -> f64 {
     median(log.moments.windows(2).map(|w| w[1].time_s - w[0].time_s)).unwrap_or(0.0)
 }
 
-/// The columns of a log: time, TCP, force; then the commanded TCP, if there is one.
+/// Columns of a log: time, TCP, force, and the commanded TCP if there is one.
 struct Table<'a> {
     /// Frame, if the log is in the robot's base, as RTDE recorders write it.
     rtde: Option<&'a Frame>,
@@ -97,7 +97,7 @@ struct Table<'a> {
     targets: Vec<usize>,
 }
 
-/// The cells of a line, without quotes.
+/// Returns the cells of a line, without quotes.
 fn cells(line: &str, commas: bool) -> impl Iterator<Item = &str> {
     let cells = line.split(move |c: char| if commas { c == ',' } else { c.is_whitespace() });
     let cells = cells.filter(move |cell| commas || !cell.is_empty());
@@ -215,7 +215,7 @@ impl<'a> Table<'a> {
     }
 }
 
-/// A pose of six numbers, m and rad in the base.
+/// Converts a pose of six numbers, m and rad in the base.
 fn of_base(frame: &Frame, pose: &[f64]) -> Result<Tcp, String> {
     let (place, turn) = pose.split_at(3);
     if let Some(far) = place.iter().find(|m| m.abs() > FARTHEST) {

@@ -1,39 +1,39 @@
-//! Where a log's tool first touches, and the force in the air before that.
+//! First touch of the tool in a log, and the force in the air before it.
 
 use super::log::{Log, Moment};
 use nalgebra::Vector3;
 
-/// A log begins with at least so long in the air, s, or its touch is not found.
+/// Shortest time in the air at the beginning of a log, s; a touch before is not detected.
 const FIRST_AIR_S: f64 = 0.05;
-/// Forces are averaged over this time, s, against the noise, and over three moments at least.
+/// Time over which forces are averaged against noise, s; at least three moments.
 const MEAN_S: f64 = 0.01;
-/// A touch lasts at least so long, s: longer than the starts and stops of a quick move.
+/// Shortest touch, s: longer than the starts and stops of a quick move.
 const LASTS_S: f64 = 0.06;
-/// Air from which the noise and bias next to the touch are taken, s, and its distance from it, s.
+/// Beginning and end of the interval before the touch that gives noise and bias, s before it.
 const NEAR_AIR_S: [f64; 2] = [0.3, 0.02];
-/// Least force of a touch, N; and least multiple of the noise of a mean.
+/// Smallest force of a touch, N, and its smallest multiple of the noise of a mean.
 const LEAST: [f64; 2] = [1.5, 5.0];
-/// A mean force within this is none, without noise, too, N.
+/// Largest mean force that counts as zero without noise, N.
 const LEFT_N: f64 = 0.05;
 
-/// The mean force in the air before the touch, N; of the whole log, if nothing is touched.
+/// Returns the mean force in the air before the touch, N; that of the whole log if nothing is touched.
 pub fn bias(log: &Log) -> Vector3<f64> {
     Air::of(air(log, touch(log))).bias
 }
 
-/// The moments in the air, without those next to the touch; never empty.
+/// Returns the moments in the air, without those next to the touch; never empty.
 pub(super) fn air(log: &Log, touch: Option<usize>) -> &[Moment] {
     let end = touch.map_or(log.moments.len(), |at| before(log, at, NEAR_AIR_S[1]).max(1));
     &log.moments[..end]
 }
 
-/// Index of the moment at which the tool touches: the force along z, less the bias, rises from there
-/// to 1.5 N and 5 times its noise, and stays. `None` if it never does.
+/// Returns the index of the touch: from there the force along z without bias rises to 1.5 N and 5 times its noise,
+/// and stays there. `None` if there is none.
 pub fn touch(log: &Log) -> Option<usize> {
     onset(log, |force| force.z)
 }
 
-/// Index of the moment from which a force of any direction stays.
+/// Returns the index from which on there is a lasting force in any direction.
 pub(super) fn any_touch(log: &Log) -> Option<usize> {
     onset(log, |force| force.norm())
 }
@@ -45,7 +45,7 @@ pub(super) struct Air {
 }
 
 impl Air {
-    /// The noise is that of differences from one moment to the next, which no drift changes.
+    /// Estimates both; the noise is that of differences between successive moments, which drift does not affect.
     pub fn of(moments: &[Moment]) -> Self {
         let square = |w: &[Moment]| (w[1].force - w[0].force).map(|step| step * step);
         let squares: Vector3<f64> = moments.windows(2).map(square).sum();
@@ -54,18 +54,18 @@ impl Air {
     }
 }
 
-/// Mean force, N.
+/// Returns the mean force, N.
 pub(super) fn mean(moments: &[Moment]) -> Vector3<f64> {
     moments.iter().map(|moment| moment.force).sum::<Vector3<f64>>() / moments.len().max(1) as f64
 }
 
-/// Index of the moment `seconds` before that of an index.
+/// Returns the index of the moment `seconds` before another.
 fn before(log: &Log, at: usize, seconds: f64) -> usize {
     let since = log.moments[at].time_s - seconds;
     log.moments[..at].partition_point(|moment| moment.time_s < since)
 }
 
-/// Index of the moment `seconds` after that of an index; of the end, if there is none.
+/// Returns the index of the moment `seconds` after another; that of the end if there is none.
 pub(super) fn after(log: &Log, at: usize, seconds: f64) -> usize {
     let until = log.moments[at].time_s + seconds;
     at + log.moments[at..].partition_point(|moment| moment.time_s < until)
@@ -87,7 +87,7 @@ fn onset(log: &Log, size: fn(Vector3<f64>) -> f64) -> Option<usize> {
     };
     let found = (0..moments.len().saturating_sub(3)).find(touches)?;
     let found = after(log, found, MEAN_S).max(found + 3) - 1;
-    // Back to where it left the noise of the air that is next to it: the bias may drift until then.
+    // Goes back to where the force left the noise just before the touch, since the bias may have drifted until then.
     let mut touch = found;
     for _ in 0..3 {
         let near = before(log, touch, NEAR_AIR_S[1]);

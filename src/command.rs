@@ -28,7 +28,7 @@ pub trait Request: Args {
 }
 
 /// Result of a command, serialized for `--json` and Python, displayed for a terminal.
-pub trait Response: Serialize + fmt::Display {
+pub trait Response: Serialize + fmt::Display + Sized {
     /// Returns an SVG or a page that shows the result, if there is one.
     ///
     /// # Errors
@@ -41,7 +41,7 @@ pub trait Response: Serialize + fmt::Display {
     ///
     /// # Errors
     /// If the result is a failure, for example a task that does not insert.
-    fn verdict(&self) -> Result<(), Failure> {
+    fn verdict(self) -> Result<(), Failure> {
         Ok(())
     }
 }

@@ -8,6 +8,7 @@ use common::memory::{self, Memory};
 use common::{Studies, read, sealed};
 use insertion::evaluation::evaluator::{Evaluate, Measured};
 use insertion::evaluation::objective::Score;
+use insertion::evaluation::robustness::race::Race;
 use insertion::evaluation::template::{Impossible, Template};
 use insertion::evaluation::tolerance::{Search, evaluate};
 use insertion::evaluation::{Evaluation, RobustRange, SuccessRate, Window};
@@ -195,7 +196,7 @@ impl Optimizer for Walk {
 struct ClosedForm;
 
 impl Evaluate for ClosedForm {
-    fn evaluate(&self, design: &Design) -> Result<Measured, Impossible> {
+    fn evaluate(&self, design: &Design, _: Option<&Race>) -> Result<Measured, Impossible> {
         let of = |key| Estimate { mean: 1e3 * design.get(key).unwrap_or(0.0) + 1e3, sd: 1.0 };
         let [compliance, assembly] = ["infill_direction_deg", "infill_density_percent"].map(of);
         let finger = Finger::new(compliance.mean, assembly.mean);
@@ -250,7 +251,7 @@ fn whichever_write_fails_the_journal_stays_whole_and_the_study_goes_on() {
 struct NotAll;
 
 impl Evaluate for NotAll {
-    fn evaluate(&self, design: &Design) -> Result<Measured, Impossible> {
+    fn evaluate(&self, design: &Design, _: Option<&Race>) -> Result<Measured, Impossible> {
         let usb = include_str!("../tasks/usb.toml");
         let template = Template::parse(usb, "usb.toml").unwrap();
         let tilt = (design.get("infill_density_percent") == Some(13.0)).then_some(90.0);
@@ -286,7 +287,7 @@ fn a_design_that_cannot_be_stops_the_study_and_is_named() {
 struct Panics;
 
 impl Evaluate for Panics {
-    fn evaluate(&self, _: &Design) -> Result<Measured, Impossible> {
+    fn evaluate(&self, _: &Design, _: Option<&Race>) -> Result<Measured, Impossible> {
         panic!("a defect")
     }
 }

@@ -51,12 +51,8 @@ impl Table {
 }
 
 impl Evaluate for Table {
-    fn evaluate(&self, design: &Design) -> Result<Measured, Impossible> {
-        Ok(self.measured(design, None))
-    }
-
-    fn race(&self, design: &Design, race: &Race) -> Result<Measured, Impossible> {
-        Ok(self.measured(design, Some(race)))
+    fn evaluate(&self, design: &Design, race: Option<&Race>) -> Result<Measured, Impossible> {
+        Ok(self.measured(design, race))
     }
 }
 

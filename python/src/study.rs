@@ -112,7 +112,7 @@ impl Asked {
             _ => parse(&words).map(AnyStudy::asked),
         };
         let study = read.map_err(raise)?;
-        let (run, verbose) = study.how();
+        let (run, verbose) = study.run_options();
         let (executor, shown) = (run.executor.clone(), Shown { json, verbose });
         Ok(Asked { study, executor, quiet, shown })
     }

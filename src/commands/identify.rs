@@ -123,7 +123,7 @@ impl command::Request for Request {
 
 impl Serialize for Done {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        shown::Output::new(&self.done).serialize(serializer)
+        shown::json(&self.done).serialize(serializer)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::setup::bench::{BenchRequest, HowCalibrated, Prepared};
 use crate::setup::measured;
 use ask_tell::stream::stream;
 use calibration::bench::sampled;
-use calibration::next::{Fingers, advise};
+use calibration::next::{Advice, Fingers, advise};
 use input::shipped::Source;
 use insertion::space::Design;
 use insertion::stiffness::designs;
@@ -69,33 +69,8 @@ pub struct Advised {
     /// Fingers that were printed and insert from no start.
     not_measurable: Vec<Design>,
     measurements_missing: bool,
-    best_known_mm: Option<f64>,
-    next: Vec<Print>,
-    choice: Option<Choice>,
-    stop: bool,
-}
-
-/// Finger with the largest expected range: the one to use if nothing more is printed.
-#[derive(Serialize)]
-struct Choice {
     #[serde(flatten)]
-    design: Design,
-    expected_mm: f64,
-    measured: bool,
-}
-
-/// Finger to print.
-#[derive(Serialize)]
-struct Print {
-    #[serde(flatten)]
-    design: Design,
-    expected_mm: f64,
-    low_mm: f64,
-    high_mm: f64,
-    expected_gain_mm: f64,
-    /// Whether it has to be printed; else only the strategy changes.
-    needs_print: bool,
-    reason: String,
+    advice: Advice,
 }
 
 impl command::Request for Request {
@@ -132,36 +107,23 @@ impl command::Request for Request {
             }
         };
         let failed = subject.not_measurable();
-        let printed = subject.printed();
-        let fingers = Fingers { among: &among, failed: &failed, printed: &printed };
+        let fingers = Fingers {
+            designs: &subject.designs,
+            among: &among,
+            failed: &failed,
+            printed: &subject.printed(),
+        };
         let mut random = stream(settings.seed, 0, "next");
         let posterior = sampled(&benches, layout.dimension(), &settings, &mut random);
         let (count, cost_mm) = (usize::from(self.count), self.print_cost_mm);
         let advice = advise(bench, &posterior, fingers, count, cost_mm, &mut random);
         context.check()?;
-        let print = |print: calibration::next::Print| Print {
-            design: subject.designs[print.finger].clone(),
-            expected_mm: print.expected_mm,
-            low_mm: print.low_mm,
-            high_mm: print.high_mm,
-            expected_gain_mm: print.expected_gain_mm,
-            needs_print: !printed.contains(&print.finger),
-            reason: print.reason,
-        };
-        let choice = |choice: calibration::next::Choice| Choice {
-            design: subject.designs[choice.finger].clone(),
-            expected_mm: choice.expected_mm,
-            measured: choice.measured,
-        };
         let value = Advised {
             task: subject.task.clone(),
             measured: subject.measured().len() - failed.len(),
             not_measurable: failed.iter().map(|&number| subject.designs[number].clone()).collect(),
             measurements_missing: missing,
-            best_known_mm: advice.best_known_mm,
-            next: advice.next.into_iter().map(print).collect(),
-            choice: advice.choice.map(choice),
-            stop: advice.stop,
+            advice,
         };
         Ok(Output { text: value.text(file, cost_mm), value, picture: None })
     }
@@ -169,9 +131,9 @@ impl command::Request for Request {
 
 impl Advised {
     fn text(&self, measurements: &str, print_cost_mm: f64) -> String {
-        let Advised { task, measured, measurements_missing, .. } = self;
+        let Advised { task, measured, measurements_missing, advice, .. } = self;
         let file = measurements_missing.then(|| format!(" ({measurements} does not exist)"));
-        let mut lines = vec![match self.best_known_mm {
+        let mut lines = vec![match advice.best_known_mm {
             Some(best) => format!(
                 "{task}: {measured} fingers measured, the best of them expected at {best:.1} mm"
             ),
@@ -184,7 +146,7 @@ impl Advised {
             let fingers = self.not_measurable.iter().map(design).collect::<Vec<_>>().join("; ");
             lines.push(format!("printed, not measurable: {fingers}"));
         }
-        for (i, print) in self.next.iter().enumerate() {
+        for (i, print) in advice.next.iter().enumerate() {
             lines.push(format!("{}. {}", i + 1, design(&print.design)));
             lines.push(format!(
                 "   expected {:.1} mm (80 %: {:.1} to {:.1}): {}",
@@ -201,12 +163,12 @@ impl Advised {
                 print.expected_gain_mm
             ));
         }
-        if self.stop {
+        if advice.stop {
             let gain = format!("more than {print_cost_mm} mm");
             lines
                 .push(format!("stop: no print is expected to improve the chosen finger by {gain}"));
         }
-        if let Some(choice) = self.choice.as_ref().filter(|_| self.stop || *measured > 0) {
+        if let Some(choice) = advice.choice.as_ref().filter(|_| advice.stop || *measured > 0) {
             let known = if choice.measured { "measured" } else { "not measured" };
             let (finger, mm) = (design(&choice.design), choice.expected_mm);
             lines.push(format!(

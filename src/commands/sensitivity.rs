@@ -100,7 +100,7 @@ impl Request {
         })?;
         Ok(Found {
             task: template.task.name.clone(),
-            objective: self.objective,
+            objective: self.objective.to_string(),
             evaluations: values.len(),
             diverged: values.iter().filter(|value| value.is_none()).count(),
             nominal_start_fails: values.iter().filter(|value| **value == Some(0.0)).count(),

@@ -70,7 +70,7 @@ impl Serialize for Fitted {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match &self.predicted {
             Some(predicted) => predicted.serialize(serializer),
-            None => shown::Output::new(&self.model).serialize(serializer),
+            None => shown::json(&self.model).serialize(serializer),
         }
     }
 }

@@ -23,8 +23,8 @@ use std::ffi::OsStr;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use study::{
-    Confirmation, INDIFFERENCES_MM, IfChanged, LARGEST_BATCH, LARGEST_BUDGET, Study, StudyConfig,
-    has_begun, read_config, study_name,
+    Confirmation, INDIFFERENCES_MM, LARGEST_BATCH, LARGEST_BUDGET, Study, StudyConfig, has_begun,
+    read_config, study_name,
 };
 
 /// Range of seeds, limited by the integers of TOML.
@@ -131,22 +131,10 @@ impl Request {
     pub fn open(&self, workers: Option<u64>) -> Result<OpenStudy, Failure> {
         let (setup, config, dir) = self.planned(workers)?;
         let more = measured::more(&dir, &setup);
-        let if_changed = more.map_or(self.run.if_changed(), |_| IfChanged::NewSegment);
-        let study = Study::create_or_continue(&dir, &config, &setup.inputs, if_changed)?;
+        let accept_changed = self.run.accept_changed || more.is_some();
+        let study = Study::create_or_continue(&dir, &config, &setup.inputs, accept_changed)?;
         let open = OpenStudy::new(study, setup, self.run.clone())?;
         Ok(OpenStudy { new_measurements: more.unwrap_or(0), ..open })
-    }
-
-    /// Returns what [`Request::look`] does, with the batch; without one that of a new study is `workers`.
-    fn planned(&self, workers: Option<u64>) -> Result<(Setup, StudyConfig, PathBuf), Failure> {
-        let (setup, mut config, dir) = self.look()?;
-        if self.batch.is_none() {
-            // A study that goes on keeps its own.
-            let keeps = workers.is_none() || has_begun(&dir);
-            let kept = read_config(&dir).ok().filter(|_| keeps).map(|found| found.batch);
-            config.batch = kept.or(workers).unwrap_or(DEFAULT_BATCH).clamp(1, LARGEST_BATCH);
-        }
-        Ok((setup, config, dir))
     }
 
     /// Writes the study without measuring and returns its folder; a study that is there stays as it is.
@@ -156,8 +144,9 @@ impl Request {
         Ok(dir)
     }
 
-    /// Returns setup, configuration and folder of the study, checked, without writing anything.
-    pub(crate) fn look(&self) -> Result<(Setup, StudyConfig, PathBuf), Failure> {
+    /// Returns setup, configuration and folder of the study, checked, without writing anything; without a batch
+    /// that of a new study is `workers`.
+    fn planned(&self, workers: Option<u64>) -> Result<(Setup, StudyConfig, PathBuf), Failure> {
         within("--indifference-mm", self.indifference_mm, &INDIFFERENCES_MM)?;
         if self.priors.is_some() && self.measurements.is_none() {
             return Err(Failure::usage("--priors needs --measurements"));
@@ -192,6 +181,12 @@ impl Request {
             on_bench::check(&config)?;
         }
         let dir = self.out.clone().unwrap_or_else(|| self.default_folder(&config));
+        if self.batch.is_none() {
+            // A study that goes on keeps its own.
+            let keeps = workers.is_none() || has_begun(&dir);
+            let kept = read_config(&dir).ok().filter(|_| keeps).map(|found| found.batch);
+            config.batch = kept.or(workers).unwrap_or(DEFAULT_BATCH).clamp(1, LARGEST_BATCH);
+        }
         Ok((setup, config, dir))
     }
 

@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::progress::{Part, cost};
 use calibration::bench::Settings;
 use calibration::calibrate::Layout;
-use calibration::emulator::{CalibrationError, Emulator, Set};
+use calibration::emulator::{CalibrationError, Emulator};
 use calibration::experiments::Experiment;
 use calibration::simulation::Simulation;
 use calibration::subject::Subject;
@@ -135,12 +135,6 @@ pub(crate) struct CalibrationContext<'a> {
 }
 
 impl<'a> CalibrationContext<'a> {
-    fn simulation(&self, template: &'a Template) -> Simulation<'a> {
-        let evaluator = &self.setup.evaluator;
-        let parameters = self.priors.of(&template.task.name);
-        Simulation::new(evaluator, template, parameters, self.cache.clone(), self.context.stop)
-    }
-
     /// Returns the fingers of the tasks and their parameters; `measurements` is the name of the file.
     pub fn subjects(
         &self,
@@ -157,9 +151,11 @@ impl<'a> CalibrationContext<'a> {
                 let what = format!("{task}: simulations");
                 self.context.part(&Part { what, done, of: count, cost: cost::SIMULATION });
             };
-            let set = Set { task, count, seed: self.seed };
-            let emulator = Emulator::new(&self.simulation(template), space, set, &done)?;
-            Subject::new(evaluator, template, space, emulator, experiments, more)
+            let (parameters, cache) = (self.priors.of(task), self.cache.clone());
+            let simulation =
+                Simulation::new(evaluator, template, parameters, cache, self.context.stop);
+            let emulator = Emulator::new(&simulation, space, count, self.seed, &done)?;
+            Subject::new(&simulation, space, emulator, experiments, more)
         };
         let subjects = evaluator.templates.iter().map(subject).collect::<Result<Vec<_>, _>>();
         self.context.check()?;
@@ -168,10 +164,7 @@ impl<'a> CalibrationContext<'a> {
             CalibrationError::Impossible(_) => Failure::input(error),
             CalibrationError::Measured(..) => Failure::usage(format!("{measurements}: {error}")),
         })?;
-        let of_task = |template: &'a Template| {
-            (template.task.name.clone(), self.simulation(template).parameters)
-        };
-        let of_tasks: Vec<_> = evaluator.templates.iter().map(of_task).collect();
-        Ok((subjects, Layout::new(&of_tasks)))
+        let layout = Layout::new(&subjects);
+        Ok((subjects, layout))
     }
 }

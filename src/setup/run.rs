@@ -3,13 +3,13 @@
 use super::Setup;
 use crate::failure::Failure;
 use crate::failure::wide;
-use calibration::bench::{Effort, Settings};
+use calibration::bench::Settings;
 use input::shipped::nearest;
 use rayon::ThreadPool;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
-use study::{BenchEffort, Cache, Conclusion, IfChanged};
+use study::{BenchEffort, Cache, Conclusion};
 
 const CACHE: &str = "results/.cache";
 const THREADS: RangeInclusive<u16> = 1..=1024;
@@ -71,8 +71,8 @@ impl EffortRequest {
 }
 
 pub(crate) fn settings(effort: BenchEffort, seed: u64, stop: &AtomicBool) -> Settings<'_> {
-    let effort = Effort { warm_up: WARM_UP, samples: usize::from(effort.samples), thin: THIN };
-    Settings { effort, seed, stop, done: &|_| () }
+    let samples = usize::from(effort.samples);
+    Settings { warm_up: WARM_UP, samples, thin: THIN, seed, stop, done: &|_| () }
 }
 
 /// Options of the run of a study that change no evaluation.
@@ -123,11 +123,6 @@ fn executor(text: &str) -> Result<String, String> {
 }
 
 impl RunRequest {
-    /// Returns what to do if the provenance differs.
-    pub(crate) fn if_changed(&self) -> IfChanged {
-        if self.accept_changed { IfChanged::NewSegment } else { IfChanged::Refuse }
-    }
-
     /// Returns the settings of the analyses after a study; `effort` is that of its bench prediction so far.
     pub(crate) fn conclusion(&self, setup: &Setup, effort: Option<BenchEffort>) -> Conclusion {
         let bench = setup.measured.as_ref().map(|_| self.effort.or(effort));

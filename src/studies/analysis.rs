@@ -30,7 +30,7 @@ use study::{Provenance, read_analysis, write_analysis};
 const LEVERS: &str = "levers.json";
 const MAPS: &str = "maps.json";
 const ROBOTS: &str = "robots.json";
-/// Axes of the maps beside the error along y.
+/// Axes of the maps: the error along y and a second one.
 const MAPPED: [Axes; 2] = [Axes::YX, Axes::YYaw];
 /// Stiffness along y below which a robot counts as compliant: above `servo`, below `ur5e_position`.
 const COMPLIANT_N_PER_MM: f64 = 20.0;
@@ -44,7 +44,7 @@ struct Stored<T> {
     found: T,
 }
 
-/// Provenance and design of the analyses.
+/// Provenance and design for which the analyses are valid.
 type Subject = Stored<()>;
 
 impl Subject {
@@ -72,7 +72,7 @@ pub(crate) fn read(dir: &Path, answer: &Answer) -> PostAnalysis {
     let Some(subject) = Subject::of(answer) else { return PostAnalysis::default() };
     let levers: Option<Levers> = subject.read(dir, LEVERS);
     PostAnalysis {
-        // The span of the infill is that of all evaluations so far.
+        // The influence of the infill is the span of the ranges of all evaluations so far.
         levers: levers
             .map(|found| Levers { infill: answer.spread_mm.unwrap_or(found.infill), ..found }),
         maps: subject.read(dir, MAPS).unwrap_or_default(),
@@ -98,6 +98,9 @@ impl Ended {
         let engine = &subject.provenance.engine.name;
         let mut setup = Setup::from_inputs(&record.inputs(dir)?, engine)?;
         let design = &subject.design;
+        let stiffness = setup.evaluator.predict(design).map_err(Failure::input)?;
+        let specimen = setup.evaluator.specimen(setup.only_task()?, design, stiffness);
+        let specimen = &specimen.map_err(Failure::input)?;
         self.run.pool()?.install(|| {
             if levers_missing {
                 let span = answer.spread_mm;
@@ -106,14 +109,13 @@ impl Ended {
                 found.levers = Some(levers);
             }
             if maps_missing {
-                let specimen = specimen(&setup, design)?;
-                let taught = setup.evaluator.taught(&specimen, stop).map_err(Failure::input)?;
-                let map = |axes| map_of(&setup, (&specimen, design), taught, axes, stop);
+                let taught = setup.evaluator.taught(specimen, stop).map_err(Failure::input)?;
+                let map = |axes| map_of(&setup, (specimen, design), taught, axes, stop);
                 found.maps = MAPPED.into_iter().map(map).collect::<Result<_, _>>()?;
                 subject.write(dir, MAPS, &found.maps)?;
             }
             if robots_missing {
-                found.robots = robots(&mut setup, answer, design, stop)?;
+                found.robots = robots(&mut setup, answer, specimen, stop)?;
                 subject.write(dir, ROBOTS, &found.robots)?;
             }
             Ok::<_, Failure>(())
@@ -123,34 +125,28 @@ impl Ended {
     }
 }
 
-fn specimen(setup: &Setup, design: &Design) -> Result<Specimen, Failure> {
-    let evaluator = &setup.evaluator;
-    let stiffness = evaluator.predict(design).map_err(Failure::input)?;
-    evaluator.specimen(setup.only_task()?, design, stiffness).map_err(Failure::input)
-}
-
-/// Returns the known window of the recommended finger and its window under a different robot, which the
-/// setup then has: the position-controlled arm if the study's robot is compliant, else the compliant
-/// flange.
+/// Returns the windows of the recommended finger with the study's robot and with a second one: the
+/// position-controlled arm if the study's robot is compliant, else the compliant flange. The second robot
+/// replaces that of the setup.
 fn robots(
     setup: &mut Setup,
     answer: &Answer,
-    design: &Design,
+    specimen: &Specimen,
     stop: &AtomicBool,
 ) -> Result<Vec<UnderRobot>, Failure> {
-    let specimen = specimen(setup, design)?;
     let start = [specimen.task.turn, specimen.task.strategy.tilt];
     let under = |robot: &Robot, measured: Evaluation| {
         let (stiffness_n_per_mm, _) = felt(robot, start)?;
         Ok::<_, Failure>(UnderRobot { robot: robot.name.clone(), stiffness_n_per_mm, measured })
     };
-    let known = answer.shown().and_then(|(_, tasks)| tasks.first().copied().cloned());
+    let known =
+        answer.finger_and_evaluations().and_then(|(_, tasks)| tasks.first().copied().cloned());
     let Some(known) = known else { return Ok(Vec::new()) };
     let own = under(&setup.evaluator.robot, known)?;
     let compliant = own.stiffness_n_per_mm.is_some_and(|[_, y, _]| y < COMPLIANT_N_PER_MM);
     setup.evaluator.robot = robot(if compliant { "ur5e_position" } else { "servo" })?;
     let (evaluator, plan) = (&setup.evaluator, &Plan::WINDOW);
-    let found = evaluator.measure_or_teach(&specimen, Search::Walk, plan, stop);
+    let found = evaluator.measure_or_teach(specimen, Search::Walk, plan, stop);
     let found = found.map_err(Failure::input)?;
     not_stopped(stop)?;
     Ok(vec![own, under(&evaluator.robot, found)?])

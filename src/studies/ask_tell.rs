@@ -1,13 +1,13 @@
 //! Study whose designs are measured by the caller: a process pool, a cluster.
 
-use super::open::{Ended, OpenStudy, hint, resume_hint, with_confirmer};
+use super::open::{Ended, OpenStudy, confirmer, hint, resume_hint, simulated};
+use super::optimizer::optimizer;
 use super::standing::Standing;
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::setup::Setup;
 use ask_tell::Optimizer;
 use insertion::evaluation::objective::Measure;
-use insertion::evaluation::tolerance::Search;
 use insertion::trial::NEVER;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -53,7 +53,7 @@ impl AskTellStudy {
     /// # Errors
     /// If the optimizer cannot be created.
     pub fn new(open: OpenStudy) -> Result<Self, Failure> {
-        let optimizer = open.optimizer()?;
+        let optimizer = optimizer(&open.setup, &open.study.config)?;
         let (scheduler, standing) = (Scheduler::new(&open.study), Standing::new(&open.study));
         let log = ConfirmationLog::open(&open.study);
         let measuring = BTreeMap::new();
@@ -72,10 +72,8 @@ impl AskTellStudy {
                 Next::CheckGain(told) => {
                     let (pool, context) = (self.open.run.pool()?, Context::silent(stop));
                     let OpenStudy { study, setup, cache, .. } = &self.open;
-                    let setup = (setup, cache.as_ref());
-                    let stagnant = with_confirmer(setup, study, &pool, &context, |confirmer| {
-                        confirmer.stagnates(study, &self.log, told)
-                    })?;
+                    let confirmer = confirmer(setup, cache.as_ref(), &pool, &context);
+                    let stagnant = confirmer.stagnates(study, &mut self.log, told)?;
                     not_stopped(stop)?;
                     self.scheduler.record_stagnation(stagnant);
                 }
@@ -94,12 +92,16 @@ impl AskTellStudy {
         }
     }
 
+    /// Returns the evaluator of designs with its cache.
+    fn simulated(&self) -> Simulated<'_> {
+        let OpenStudy { setup, cache, plan, .. } = &self.open;
+        simulated(setup, cache.as_ref(), plan, &NEVER)
+    }
+
     /// Takes the evaluation of a design from the cache; returns false if it is not there.
     fn recall(&mut self, Proposal { number, design, race }: &Proposal) -> Result<bool, Failure> {
-        let (known, timing) =
-            Timing::of(|| self.open.simulated(&NEVER).known(design, race.as_ref()));
+        let (known, timing) = Timing::of(|| self.simulated().known(design, race.as_ref()));
         let Some(measured) = known else { return Ok(false) };
-        let timing = Timing { cached: measured.cached.clone(), ..timing };
         self.accept(ProposalResult { number: *number, measured, timing })
     }
 
@@ -129,7 +131,7 @@ impl AskTellStudy {
         let impossible = |error| RejectedResult::Failed(Failure::input(error));
         let stiffness = self.open.setup.evaluator.predict(design).map_err(impossible)?;
         let result = work.check(result, stiffness).map_err(RejectedResult::Refused)?;
-        self.open.simulated(&NEVER).keep(design, race.as_ref(), &result.measured);
+        self.simulated().keep(design, race.as_ref(), &result.measured);
         let taken = self.accept(result).map_err(RejectedResult::Failed)?;
         self.measuring.remove(&number);
         Ok(taken)
@@ -160,7 +162,7 @@ impl AskTellStudy {
     /// If a design cannot be simulated or a file cannot be written; if `stop` is set meanwhile.
     pub fn finish(&mut self, ending: Ending, stop: &AtomicBool) -> Result<Ended, Failure> {
         let pool = self.open.run.pool()?;
-        self.open.conclude(ending, &self.log, &pool, &Context::silent(stop))
+        self.open.conclude(ending, &mut self.log, &pool, &Context::silent(stop))
     }
 
     /// Returns the number of threads for measurements in this process; 0 for one per processor.
@@ -206,10 +208,8 @@ pub fn perform(bytes: &[u8], worker: &str, stop: &AtomicBool) -> Result<Vec<u8>,
             Measure::RobustRange => work.robust_range,
             _ => false,
         })?;
-        let (evaluator, search) = (&setup.evaluator, Search::default());
-        let simulated = Simulated { evaluator, search, plan: &plan, cache: None, stop };
-        let (measured, timing) = work.proposal.measure(&simulated)?;
+        let result = work.proposal.measure(&simulated(&setup, None, &plan, stop))?;
         not_stopped(stop)?;
-        work.result(measured, &timing).map_err(|error| Failure::running(error.to_string()))
+        work.result(result).map_err(|error| Failure::running(error.to_string()))
     })
 }

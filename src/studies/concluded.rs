@@ -11,7 +11,6 @@ use report::answer::Answer;
 use serde::Serialize;
 use serde_json::Value;
 use std::fmt;
-use std::sync::{Mutex, PoisonError};
 
 /// Output of a study.
 #[derive(Serialize)]
@@ -23,7 +22,7 @@ pub struct Concluded {
     rest: String,
     /// Error of the analyses, or reason for which the study has no result.
     #[serde(skip)]
-    failure: Mutex<Option<Failure>>,
+    failure: Option<Failure>,
 }
 
 /// Runs the study to its end, shows its progress, and prints its answer before the analyses of the
@@ -51,7 +50,7 @@ pub fn run(open: OpenStudy, context: &Context<'_>, all: bool) -> Result<Conclude
     };
     let (summary, rest) = (summary(&ended, &answer, &found), text::analyses(&found));
     let failure = failure.or_else(|| ended.unusable.take());
-    Ok(Concluded { summary, rest, failure: Mutex::new(failure) })
+    Ok(Concluded { summary, rest, failure })
 }
 
 impl fmt::Display for Concluded {
@@ -61,8 +60,7 @@ impl fmt::Display for Concluded {
 }
 
 impl command::Response for Concluded {
-    fn verdict(&self) -> Result<(), Failure> {
-        let failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner).take();
-        failure.map_or(Ok(()), Err)
+    fn verdict(self) -> Result<(), Failure> {
+        self.failure.map_or(Ok(()), Err)
     }
 }

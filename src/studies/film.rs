@@ -3,10 +3,11 @@
 use crate::failure::Failure;
 use crate::setup::Setup;
 use crate::setup::film::{film, shifted};
-use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::template::Template;
 use insertion::evaluation::tolerance::offset;
 use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
 use insertion::outcome::Outcome;
+use insertion::space::Design;
 use insertion::trial::{Grasp, picture};
 use rayon::ThreadPool;
 use report::answer::Answer;
@@ -27,19 +28,16 @@ pub(crate) fn boundary(
     stop: &AtomicBool,
 ) -> Result<(), Failure> {
     // A front has no single finger to show.
-    let found = answer.record.config.objective.single().and_then(|_| answer.shown());
+    let found =
+        answer.record.config.objective.single().and_then(|_| answer.finger_and_evaluations());
     for (at, template) in setup.evaluator.templates.iter().enumerate() {
         for (end, outward) in ENDS {
             let files = [pair_file(at, end), poster_file(at, end)].map(|file| dir.join(file));
             let on_task = found.as_ref().and_then(|(design, tasks)| Some((design, tasks.get(at)?)));
             let texts = match on_task {
                 None => None,
-                Some((design, task)) => {
-                    let evaluator = &setup.evaluator;
-                    let stiffness = evaluator.predict(design).map_err(Failure::input)?;
-                    let specimen =
-                        evaluator.specimen(template, design, stiffness).map_err(Failure::input)?;
-                    pair(setup, &specimen, task, (end, outward), (pool, stop))?
+                Some((design, measured)) => {
+                    pair(setup, (template, design), measured, (end, outward), (pool, stop))?
                 }
             };
             // After cancellation trials may have been skipped.
@@ -66,7 +64,7 @@ pub(crate) fn boundary(
 /// engine records nothing.
 fn pair(
     setup: &Setup,
-    specimen: &Specimen,
+    (template, design): (&Template, &Design),
     measured: &Evaluation,
     (end, outward): (&str, OffsetStep),
     (pool, stop): (&ThreadPool, &AtomicBool),
@@ -79,7 +77,10 @@ fn pair(
     if window.nominal != Outcome::Inserted || failed.is_none() {
         return Ok(None);
     }
-    let rig = setup.evaluator.rig(specimen, measured.taught, 1.0).map_err(Failure::input)?;
+    let evaluator = &setup.evaluator;
+    let stiffness = evaluator.predict(design).map_err(Failure::input)?;
+    let specimen = &evaluator.specimen(template, design, stiffness).map_err(Failure::input)?;
+    let rig = evaluator.rig(specimen, measured.taught, 1.0).map_err(Failure::input)?;
     let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
     let record = |step| rig.record(grasp, offset(step));
     let (inside, outside) =

@@ -11,7 +11,7 @@ use calibration::simulation::Simulation;
 use calibration::table::{self, by_range, on_bench};
 use insertion::evaluation::objective::{Measure, Objectives};
 use rayon::ThreadPool;
-use study::{Study, StudyConfig, write_own_file};
+use study::{BENCH_FILE, Study, StudyConfig, write_analysis, write_own_file};
 
 /// Table of the predictions of all fingers of the space.
 const TABLE: &str = "bench_predictions.csv";
@@ -62,14 +62,14 @@ pub(crate) fn predict(
         let nothing = || Failure::running("the space has no finger to predict");
         let one = subjects.first().zip(calibration.tasks.first());
         let (subject, result) = one.ok_or_else(nothing)?;
-        let best = by_range(result).first().map(|best| best.finger).ok_or_else(nothing)?;
+        let best = by_range(result).first().copied().ok_or_else(nothing)?;
         let (task, cache) = (setup.only_task()?, known.cache.clone());
         let simulation = Simulation::new(&setup.evaluator, task, [].iter(), cache, context.stop);
-        let simulated = simulation.window(&subject.designs[best], &[]).map_err(Failure::input)?;
+        let simulated = simulation.window(&best.design, &[]).map_err(Failure::input)?;
         context.check()?;
         let found = on_bench(subject, result, simulated, provenance, effort);
         Ok::<_, Failure>((found, table::predictions_csv(subject, result)))
     })?;
     write_own_file(&study.dir().join(TABLE), &predictions)?;
-    Ok(study.keep_on_bench(&found)?)
+    Ok(write_analysis(study.dir(), BENCH_FILE, &found)?)
 }

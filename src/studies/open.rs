@@ -1,6 +1,7 @@
 //! Open studies, and the run of a study on the threads of this process.
 
-use super::{film, on_bench, optimizer, printable, report, unusable};
+use super::optimizer::optimizer;
+use super::{film, on_bench, printable, report, unusable};
 use crate::context::Context;
 use crate::failure::{Failure, bad_config};
 use crate::progress::{Part, cost};
@@ -10,7 +11,6 @@ use crate::setup::task::nominal_start;
 use ::report::answer::Answer;
 use ::report::answer::command::mend;
 use ::report::answer::words::outcome;
-use ask_tell::Optimizer;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::Template;
@@ -23,8 +23,8 @@ use rayon::ThreadPool;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use study::{
-    Cache, ConfirmationLog, Confirmed, Confirmer, Ending, Recorded, Runner, Simulated, Study,
-    StudyConfig, StudyError, StudyRecord,
+    Cache, ConfirmationLog, ConfirmationStep, Confirmer, Ending, Recorded, Runner, Simulated,
+    Study, StudyConfig, StudyError, StudyRecord,
 };
 
 /// Study that is open; no other process can open it.
@@ -67,45 +67,9 @@ impl OpenStudy {
         Ok(OpenStudy { study, setup, run, plan, cache, new_measurements: 0 })
     }
 
-    /// Returns a new optimizer of the study.
-    pub(super) fn optimizer(&self) -> Result<Box<dyn Optimizer + Send>, Failure> {
-        optimizer::optimizer(&self.setup, &self.study.config)
-    }
-
-    /// Returns the evaluator of designs with its cache.
-    pub(super) fn simulated<'a>(&'a self, stop: &'a AtomicBool) -> Simulated<'a> {
-        simulated((&self.setup, self.cache.as_ref()), &self.plan, stop)
-    }
-
-    /// Returns a line for each task to which a part of the cell does not apply, and, before the first
-    /// evaluation, for each whose given nominal start fails with the finger of medium stiffness.
-    ///
-    /// # Errors
-    /// If that cannot be simulated.
-    fn warnings(&self) -> Result<Vec<String>, Failure> {
-        let (mut warnings, record) = (Vec::new(), self.study.record());
-        let Evaluator { templates, robot, engine, .. } = &self.setup.evaluator;
-        for (place, Template { task, .. }) in templates.iter().enumerate() {
-            warnings.extend(
-                self.setup.evaluator.cell.iter().filter_map(|cell| cell.remark(&task.name)),
-            );
-            let given = task.strategy.rule == StartRule::Given;
-            if given
-                && record.evaluations.is_empty()
-                && let (_, trial) = nominal_start(task, robot, *engine, &NEVER)?
-                && trial.outcome != Outcome::Inserted
-            {
-                let (name, ends) = (&task.name, outcome(trial.outcome));
-                let (command, why) = mend(&record, self.study.dir(), place);
-                warnings.push(format!(
-                    "{name}: with the medium finger the nominal start ends with {ends}; {command} {why}"
-                ));
-            }
-        }
-        Ok(warnings)
-    }
-
-    /// Shows new measurements and warnings before the study starts.
+    /// Shows new measurements and warnings before the study starts: for each task to which a part of the
+    /// cell does not apply, and, before the first evaluation, for each whose given nominal start fails with the
+    /// finger of medium stiffness.
     ///
     /// # Errors
     /// If the nominal start cannot be simulated.
@@ -114,8 +78,25 @@ impl OpenStudy {
             let plural = if self.new_measurements == 1 { "" } else { "s" };
             context.note(&format!("{} new measurement{plural}", self.new_measurements));
         }
-        let warnings = self.warnings()?;
-        warnings.iter().for_each(|warning| context.note(&format!("warning: {warning}")));
+        let record = self.study.record();
+        let warn = |text: &str| context.note(&format!("warning: {text}"));
+        let Evaluator { templates, robot, engine, cell, .. } = &self.setup.evaluator;
+        for (place, Template { task, .. }) in templates.iter().enumerate() {
+            let remark = cell.as_ref().and_then(|cell| cell.remark(&task.name));
+            remark.iter().for_each(|remark| warn(remark));
+            let given = task.strategy.rule == StartRule::Given;
+            if given
+                && record.evaluations.is_empty()
+                && let (_, trial) = nominal_start(task, robot, *engine, &NEVER)?
+                && trial.outcome != Outcome::Inserted
+            {
+                let (name, ends) = (&task.name, outcome(trial.outcome));
+                let (command, why) = mend(&record, self.study.dir(), place);
+                warn(&format!(
+                    "{name}: with the medium finger the nominal start ends with {ends}; {command} {why}"
+                ));
+            }
+        }
         Ok(())
     }
 
@@ -126,32 +107,29 @@ impl OpenStudy {
     /// If a design cannot be simulated or a file cannot be written; if `stop` is set meanwhile.
     pub fn run(mut self, context: &Context<'_>) -> Result<Ended, Failure> {
         let pool = self.run.pool()?;
-        let mut optimizer = self.optimizer()?;
-        let log = ConfirmationLog::open(&self.study);
+        let mut optimizer = optimizer(&self.setup, &self.study.config)?;
+        let mut log = ConfirmationLog::open(&self.study);
         let OpenStudy { study, setup, plan, cache, .. } = &mut self;
-        let (stop, cache) = (context.stop, cache.as_ref());
-        let evaluator = simulated((setup, cache), plan, stop);
-        let stagnates = |study: &Study, told: usize| {
-            with_confirmer((setup, cache), study, &pool, context, |confirmer| {
-                confirmer.stagnates(study, &log, told)
-            })
-        };
-        let runner = Runner { evaluator: &evaluator, pool: &pool, stop, stagnates: &stagnates };
+        let cache = cache.as_ref();
+        let evaluator = &simulated(setup, cache, plan, context.stop);
+        let confirmer = || confirmer(setup, cache, &pool, context);
+        let mut stagnates = |study: &_, told| confirmer().stagnates(study, &mut log, told);
+        let runner = Runner { evaluator, pool: &pool, stop: context.stop };
         let mut progress = |recorded: &_| context.evaluated(recorded);
-        let ended = runner.run(study, &mut *optimizer, &mut progress);
+        let ended = runner.run(study, &mut *optimizer, &mut stagnates, &mut progress);
         if let Some(problem) = cache.and_then(Cache::problem) {
             let what = "evaluations are not stored for other studies";
             context.note(&format!("warning: {what}: {problem}"));
         }
         let ending = ended.map_err(|error| hint(error, study))?;
-        self.conclude(ending, &log, &pool, context)
+        self.conclude(ending, &mut log, &pool, context)
     }
 
     /// Confirms the recommended design of a study that has ended and writes its report.
     pub(super) fn conclude(
         &mut self,
         ending: Ending,
-        log: &ConfirmationLog,
+        log: &mut ConfirmationLog,
         pool: &ThreadPool,
         context: &Context<'_>,
     ) -> Result<Ended, Failure> {
@@ -161,9 +139,8 @@ impl OpenStudy {
         let interrupted = || ending == Ending::Interrupted || stop.load(Ordering::SeqCst);
         let settled = ending == Ending::Settled;
         if ending != Ending::Interrupted && (settled || !study.config.conclusion.no_confirm) {
-            let known = (&*setup, cache.as_ref());
-            with_confirmer(known, study, pool, context, |it| it.confirm(study, log, settled))
-                .map_err(|error| hint(error, study))?;
+            let confirmer = confirmer(setup, cache.as_ref(), pool, context);
+            confirmer.confirm(study, log, settled).map_err(|error| hint(error, study))?;
         }
         study.check_journal()?;
         if !interrupted() {
@@ -192,7 +169,8 @@ impl OpenStudy {
 
 /// Returns the evaluator of a study's designs with its cache.
 pub(super) fn simulated<'a>(
-    (setup, cache): (&'a Setup, Option<&'a Cache>),
+    setup: &'a Setup,
+    cache: Option<&'a Cache>,
     plan: &'a Plan,
     stop: &'a AtomicBool,
 ) -> Simulated<'a> {
@@ -200,28 +178,24 @@ pub(super) fn simulated<'a>(
     Simulated { evaluator, search, plan, cache, stop }
 }
 
-/// Calls `what` with the confirmer of a study.
-pub(super) fn with_confirmer<T>(
-    (setup, cache): (&Setup, Option<&Cache>),
-    study: &Study,
-    pool: &ThreadPool,
-    context: &Context<'_>,
-    what: impl FnOnce(&Confirmer) -> T,
-) -> T {
-    let done = |phase, recorded: &Recorded, [done, of]: [usize; 2]| {
+/// Returns the confirmer of a study's best designs.
+pub(super) fn confirmer<'a>(
+    setup: &'a Setup,
+    cache: Option<&'a Cache>,
+    pool: &'a ThreadPool,
+    context: &'a Context<'_>,
+) -> Confirmer<'a> {
+    let done = move |phase, recorded: &Recorded, [done, of]: [usize; 2]| {
         let (word, cost) = match phase {
-            Confirmed::Repeated => ("confirming", cost::REPEATED),
-            Confirmed::Walked => ("walking", cost::WALKED),
+            ConfirmationStep::Repeated => ("confirming", cost::REPEATED),
+            ConfirmationStep::Walked => ("walking", cost::WALKED),
         };
         let what = format!("{word} {}", short(recorded));
         context.part(&Part { what, done, of, cost });
     };
-    let (stop, no_confirm) = (context.stop, study.config.conclusion.no_confirm);
-    let (evaluator, search, plan) = (&setup.evaluator, Search::Walk, &Plan::WINDOW);
-    let walker = &Simulated { evaluator, search, plan, cache, stop };
-    let by_ribs = setup.by_ribs();
-    let by_ribs = by_ribs.as_ref();
-    what(&Confirmer { walker, by_ribs, evaluator, pool, stop, no_confirm, done: &done })
+    let walker = simulated(setup, cache, &Plan::WINDOW, context.stop);
+    let walker = Simulated { search: Search::Walk, ..walker };
+    Confirmer { walker, by_ribs: setup.by_ribs(), pool, done: Box::new(done) }
 }
 
 /// Returns the parameters of a design, `10 %, 26°`, or its number if there are more than two.

@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, bad_config};
 use crate::setup::Setup;
-use ask_tell::{Grid, GridPoint, Informed, Optimizer, OptimizerKind, Polished};
+use ask_tell::{Grid, GridPoint, Optimizer, OptimizerKind, Polished, SeededOptimizer};
 use insertion::finger::file::is_shape;
 use insertion::finger::model::FingerSource;
 use insertion::space::{Design, Variable};
@@ -25,7 +25,7 @@ pub(crate) fn optimizer(
     let search = match points {
         points if kind == OptimizerKind::Gp && !points.is_empty() => {
             let own = setup.space.parameters.len() + 1;
-            Box::new(Informed::new(search, own, points)) as Box<dyn Optimizer + Send>
+            Box::new(SeededOptimizer::new(search, own, points)) as Box<dyn Optimizer + Send>
         }
         _ => search,
     };

@@ -9,7 +9,7 @@ use report::answer::Answer;
 use report::replay::{ENDS, pair_file, poster_file};
 use report::{self, Beside, printer};
 use std::path::Path;
-use study::{StudyRecord, write_evaluations_csv, write_own_file};
+use study::{EVALUATIONS_CSV, StudyRecord, evaluations_csv, write_own_file};
 
 /// Writes tables, plots and page of the study in a folder again; returns its record.
 ///
@@ -30,7 +30,7 @@ const FILE: (u32, u32) = (880, 480);
 /// Writes table, plots and page of a study into its folder.
 pub(crate) fn write(dir: &Path, answer: &Answer, model: &Model) -> Result<(), Failure> {
     let record = answer.record;
-    write_evaluations_csv(dir, record)?;
+    write_own_file(&dir.join(EVALUATIONS_CSV), &evaluations_csv(dir, record)?)?;
     write_own_file(&dir.join("convergence.svg"), &report::convergence_svg(record, FILE)?)?;
     if let Some(front) = report::front_svg(record, FILE)? {
         write_own_file(&dir.join("front.svg"), &front)?;
@@ -52,11 +52,10 @@ fn beside(dir: &Path, answer: &Answer) -> Beside {
     };
     // The film shown first comes first: a page has no room for the films of many tasks.
     let shown = report::preferred(answer);
-    let (first, others): (Vec<_>, Vec<_>) =
-        ENDS.into_iter().map(|(end, _)| end).partition(|end| *end == shown);
-    for (task, end) in (0..answer.record.config.tasks.len())
-        .flat_map(|task| first.iter().chain(&others).map(move |&end| (task, end)))
-    {
+    let mut ends = ENDS.map(|(end, _)| end);
+    ends.sort_by_key(|end| *end != shown);
+    let tasks = 0..answer.record.config.tasks.len();
+    for (task, end) in tasks.flat_map(|task| ends.map(|end| (task, end))) {
         if let Some(page) = read(&pair_file(task, end)) {
             beside.add(task, end, &page, read(&poster_file(task, end)));
         }

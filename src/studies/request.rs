@@ -22,7 +22,7 @@ impl AnyStudy {
     }
 
     /// Returns the options of the run, and whether all numbers of the answer are printed.
-    pub fn how(&self) -> (&RunRequest, bool) {
+    pub fn run_options(&self) -> (&RunRequest, bool) {
         match self {
             AnyStudy::Asked(request) => (&request.run, request.verbose),
             AnyStudy::Resumed(request) => (&request.run, request.verbose),

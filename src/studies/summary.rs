@@ -2,54 +2,13 @@
 
 use super::open::Ended;
 use super::recommended::{advice, recommendation, values};
-use insertion::evaluation::objective::{Aggregate, Constraint, Objectives};
 use report::PostAnalysis;
-use report::answer::{Answer, UnderRobot};
-use serde::Serialize;
+use report::answer::Answer;
 use serde_json::{Value, json};
-use std::path::Path;
-use study::{Ending, Recorded, Segment, StudyRecord};
+use study::{Recorded, StudyRecord};
 
 /// Version of the output; raised when a key changes its meaning or is removed.
 const SCHEMA_VERSION: u32 = 1;
-
-#[derive(Serialize)]
-struct Summary<'a> {
-    schema_version: u32,
-    task: String,
-    space: &'a str,
-    robot: &'a str,
-    engine: Option<&'a str>,
-    optimizer: &'a str,
-    objective: &'a Objectives,
-    seed: u64,
-    budget: u64,
-    polish: u64,
-    evaluations: usize,
-    settled: bool,
-    cached: u64,
-    ending: Ending,
-    best: Option<Value>,
-    #[serde(flatten)]
-    recommendation: Value,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    walked: Vec<Value>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    segments: Option<&'a [Segment]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    constraints: Option<&'a [Constraint]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    feasible: Option<usize>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    aggregate: Option<&'a Aggregate>,
-    #[serde(flatten)]
-    front: Option<Value>,
-    answer: Value,
-    levers: Option<Value>,
-    maps: Vec<Value>,
-    robots: &'a [UnderRobot],
-    study: &'a Path,
-}
 
 /// Returns the output of a study as JSON.
 pub fn summary(ended: &Ended, answer: &Answer, analyses: &PostAnalysis) -> Value {
@@ -75,45 +34,55 @@ pub fn summary(ended: &Ended, answer: &Answer, analyses: &PostAnalysis) -> Value
         json
     });
     let maps = analyses.maps.iter().map(|map| {
-        let axes = map.axes.each_ref().map(|axis| axis.name.as_ref());
-        let axes: [&str; 2] = axes;
         json!({
-            "axes": axes,
+            "axes": map.axes.each_ref().map(|axis| &axis.name),
             "area": map.area,
             "area_unit": map.area_unit,
             "trials": map.trials,
         })
     });
-    let constrained = !config.constraints.is_empty();
-    json!(Summary {
-        schema_version: SCHEMA_VERSION,
-        task: config.task_name(),
-        space: &config.space.name,
-        robot: &config.robot,
-        engine: record.segments.last().map(|segment| &*segment.provenance.engine.name),
-        optimizer: &config.optimizer,
-        objective: &config.objective,
-        seed: config.seed,
-        budget: config.budget,
-        polish: config.polish,
-        evaluations: record.evaluations.len(),
-        settled: record.settled,
-        cached: ended.known,
-        ending: ended.ending,
-        best: record.best().filter(|_| answer.front.is_none()).map(evaluated),
-        recommendation: recommendation(answer),
-        walked: walked.collect(),
-        segments: (record.segments.len() > 1).then_some(&record.segments[..]),
-        constraints: constrained.then_some(&config.constraints[..]),
-        feasible: constrained.then_some(answer.feasible),
-        aggregate: config.aggregate.as_ref(),
-        front,
-        answer: advice(answer, &ended.dir),
-        levers,
-        maps: maps.collect(),
-        robots: &analyses.robots,
-        study: &ended.dir,
-    })
+    let best = record.best().filter(|_| answer.front.is_none());
+    let mut json = json!({
+        "schema_version": SCHEMA_VERSION,
+        "task": config.task_name(),
+        "space": config.space.name,
+        "robot": config.robot,
+        "engine": record.segments.last().map(|segment| &segment.provenance.engine.name),
+        "optimizer": config.optimizer,
+        "objective": config.objective,
+        "seed": config.seed,
+        "budget": config.budget,
+        "polish": config.polish,
+        "evaluations": record.evaluations.len(),
+        "settled": record.settled,
+        "cached": ended.known,
+        "ending": ended.ending,
+        "best": best.map(evaluated),
+    });
+    extend(&mut json, recommendation(answer));
+    if !answer.walked.is_empty() {
+        json["walked"] = walked.collect();
+    }
+    if record.segments.len() > 1 {
+        json["segments"] = json!(record.segments);
+    }
+    if !config.constraints.is_empty() {
+        json["constraints"] = json!(config.constraints);
+        json["feasible"] = json!(answer.feasible);
+    }
+    if let Some(aggregate) = &config.aggregate {
+        json["aggregate"] = json!(aggregate);
+    }
+    extend(&mut json, front.unwrap_or_default());
+    let rest = json!({
+        "answer": advice(answer, &ended.dir),
+        "levers": levers,
+        "maps": maps.collect::<Vec<_>>(),
+        "robots": analyses.robots,
+        "study": ended.dir,
+    });
+    extend(&mut json, rest);
+    json
 }
 
 /// Returns a design with all its measurements.

@@ -62,7 +62,7 @@ fn verbose(answer: &Answer, ending: Ending, known: u64) -> String {
         text += "by simulation alone:\n";
     }
     // If none is recommended, the headline gives the reason.
-    let found = answer.recommended.as_ref().filter(|_| answer.named().is_some());
+    let found = answer.recommended.as_ref().filter(|_| answer.design_to_print().is_some());
     text += &found.map_or(String::new(), |found| match &answer.front {
         Some(front) => front_text(record, front),
         None => layout::lines(lines::recommended(answer, found)),

@@ -61,7 +61,7 @@ pub fn run(
     let mut optimizer = optimizer(Grid::new(study.config.space.levels()));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let stop = &AtomicBool::new(false);
-    let runner = Runner { evaluator, pool: &pool, stop, stagnates: &|_, _| Ok(false) };
-    let ending = runner.run(&mut study, &mut *optimizer, &mut |_| ())?;
+    let runner = Runner { evaluator, pool: &pool, stop };
+    let ending = runner.run(&mut study, &mut *optimizer, &mut |_, _| Ok(false), &mut |_| ())?;
     Ok((ending, study.record()))
 }

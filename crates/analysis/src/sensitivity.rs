@@ -1,4 +1,5 @@
-//! Inputs of a sensitivity analysis: the keys of a space and the errors of a cell.
+//! Inputs of a sensitivity analysis (the keys of a space and the errors of a cell), and the evaluation that they
+//! determine.
 
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::Evaluator;
@@ -27,8 +28,8 @@ pub fn inputs(space: &Space, errors: Option<&Errors>) -> Result<Vec<Parameter>, 
     Ok(of_space.chain(errors.map(Errors::parameters).unwrap_or_default()).collect())
 }
 
-/// Returns the evaluation of the insertion at a point of the unit cube of these inputs, by the
-/// coarse-to-fine search. The result is invalid once `stop` is set.
+/// Evaluates the insertion at a point of the unit cube of these inputs, by the coarse-to-fine
+/// search. The result is invalid once `stop` is set.
 ///
 /// # Errors
 /// If the point's design, specimen or rig cannot be built.

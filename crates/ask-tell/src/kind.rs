@@ -24,9 +24,9 @@ pub enum OptimizerKind {
     Grid,
 }
 
-/// Each kind with its name on the command line, in the order in which help texts list them, and the
-/// most parameters that it copes with: its model, its covariance or its points must neither fill the
-/// memory nor take minutes.
+/// Each kind with its name on the command line, in the order in which help texts list them, and its
+/// largest number of parameters, with which its model, covariance matrix or points neither exhaust the memory
+/// nor take minutes.
 const KINDS: [(OptimizerKind, &str, usize); 5] = [
     (OptimizerKind::Gp, "gp", 100),
     (OptimizerKind::CmaEs, "cma-es", 200),
@@ -36,23 +36,23 @@ const KINDS: [(OptimizerKind, &str, usize); 5] = [
 ];
 
 impl OptimizerKind {
-    /// All kinds, in the order in which help texts list them.
+    /// Returns all kinds, in the order in which help texts list them.
     pub fn all() -> impl Iterator<Item = Self> {
         KINDS.into_iter().map(|(kind, ..)| kind)
     }
 
-    /// The name as written on the command line.
+    /// Returns the name on the command line.
     pub fn name(self) -> &'static str {
         KINDS[self as usize].1
     }
 
-    /// Most parameters that it copes with.
+    /// Returns the largest number of parameters.
     pub fn most_parameters(self) -> usize {
         KINDS[self as usize].2
     }
 
-    /// Whether it can look for a front of several objectives: it models each of them, or
-    /// looks everywhere alike.
+    /// Returns whether it can search for a Pareto front of several objectives: it has a model of each of
+    /// them, or its points do not depend on values.
     pub fn takes_several_objectives(self) -> bool {
         self != Self::CmaEs
     }
@@ -75,13 +75,13 @@ impl FromStr for OptimizerKind {
     }
 }
 
-/// The optimizer of that kind over `grid`, with its default settings.
+/// Returns the optimizer of this kind over `grid`, with its default settings.
 pub fn build(kind: OptimizerKind, grid: Grid, seed: u64) -> Box<dyn Optimizer + Send> {
     build_for(kind, grid, seed, &[DEFAULT_NOISE_FLOOR])
 }
 
-/// The same for objectives of which rounding or the like makes so much noise: a standard
-/// deviation each, in the objective's unit.
+/// Like [`build`], with the least standard deviation of the noise of each objective (for example from
+/// rounding), in its unit.
 pub fn build_for(
     kind: OptimizerKind,
     grid: Grid,

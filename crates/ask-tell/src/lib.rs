@@ -7,7 +7,6 @@
 
 pub mod cmaes;
 pub mod gp;
-mod informed;
 mod kind;
 mod lattice;
 mod nelder_mead;
@@ -17,14 +16,15 @@ mod polish;
 pub mod process;
 mod proposed;
 pub mod protocol;
+mod seeded;
 mod sequence;
 mod sobol;
 pub mod statistics;
 pub mod stream;
 
-pub use informed::Informed;
 pub use kind::{OptimizerKind, build, build_for};
 pub use polish::Polished;
+pub use seeded::SeededOptimizer;
 pub use sobol::SobolSequence;
 
 use serde::{Deserialize, Serialize};

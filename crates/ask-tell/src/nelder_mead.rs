@@ -1,4 +1,4 @@
-//! Nelder-Mead about the best point told, on a grid.
+//! Nelder-Mead on a grid, from the best known point.
 
 use super::{Grid, GridPoint, Observation};
 use crate::proposed::Costs;
@@ -6,33 +6,34 @@ use argmin::core::{CostFunction, Error, Executor};
 use argmin::solver::neldermead;
 use std::cell::RefCell;
 
-/// Edge of the first simplex, in edges of the cube; each run begins with half of it.
+/// Edge of the first simplex, in edges of the cube; each further run halves it.
 const EDGE: f64 = 0.1;
-/// Iterations of a run. On recorded values one takes microseconds; a simplex has long collapsed then.
+/// Largest number of iterations of a run, far more than a simplex needs to collapse. With recorded values an
+/// iteration takes microseconds.
 const MAX_ITERATIONS: u64 = 1000;
-/// Runs in a row without a new point after which there is nothing more to propose.
+/// Consecutive runs without a new point after which the search has converged.
 const BARREN_RUNS: u32 = 3;
 
-/// Nelder-Mead of argmin by ask and tell. It minimises the negated merits.
+/// Nelder-Mead of argmin with an ask-and-tell interface. It minimises the negated merits.
 ///
-/// - Each ask repeats the current run on the values told and proposes the first point without one. The
-///   batch is filled with points that the run needs next, should that one fail or succeed.
-/// - Coordinates beyond a face of the cube are reflected, and snapped to the nearest level.
-/// - A run that needs no new value has converged. The next one begins at the best point with
-///   half the simplex, because a simplex can collapse short of an optimum.
+/// - Each ask repeats the current run with the known values and proposes the first point without one. The
+///   rest of the batch are points that the run needs next if that one fails or succeeds.
+/// - Points outside the cube are reflected at its faces; all are snapped to the nearest grid point.
+/// - A run that needs no new value has converged. The next one starts at the best point with half
+///   the edge, because a simplex can collapse before it reaches an optimum.
 #[derive(Debug, Clone)]
 pub(super) struct NelderMead {
     pub costs: Costs,
-    /// Asked and not told.
+    /// Points whose results are pending.
     pending: Vec<GridPoint>,
-    /// First simplex of the run: vertices on the free axes; empty if nothing told has a value.
+    /// First simplex of the run: vertices on the free axes; empty if no observation has a value.
     simplex: Vec<Vec<f64>>,
     runs: i32,
     barren_runs: u32,
 }
 
 impl NelderMead {
-    /// Starts at the best of what others have `told`.
+    /// Creates a search that starts at the best of the observations `told`.
     pub fn new(grid: Grid, told: &[Observation]) -> Self {
         let costs = Costs::new(grid, 0);
         let (pending, simplex) = (Vec::new(), Vec::new());
@@ -58,10 +59,10 @@ impl NelderMead {
         Vec::new()
     }
 
-    /// Takes in the values of the points asked.
+    /// Accepts the results of the last points asked.
     pub fn tell(&mut self, observations: &[Observation]) {
         self.costs.tell(observations);
-        // A run would need for ever what was asked and not told.
+        // Without a value for a point asked, every run would end there.
         for point in self.pending.drain(..) {
             self.costs.of.entry(point).or_insert(f64::INFINITY);
         }
@@ -70,7 +71,7 @@ impl NelderMead {
     /// Builds a simplex about the best point: its vertices lie along each free axis, on the side
     /// with more room, at least one level away.
     fn restart(&mut self) {
-        let grid = self.costs.proposed.grid();
+        let grid = &self.costs.proposed.grid;
         let Some(start) = self.costs.best() else { return };
         let edge = EDGE * 0.5f64.powi(self.runs);
         self.simplex = vec![start.clone()];
@@ -83,8 +84,8 @@ impl NelderMead {
         self.runs += 1;
     }
 
-    /// Returns up to `n` points whose values the run needs: in turn those for a failure and those for a
-    /// success of the points before.
+    /// Returns up to `n` points whose values the run needs, alternately if the points before them fail and if
+    /// they succeed.
     fn missing(&self, n: usize) -> Vec<GridPoint> {
         let [failure, success] = [f64::INFINITY, f64::NEG_INFINITY].map(|cost| self.run(cost, n));
         let longest = failure.len().max(success.len());
@@ -97,8 +98,8 @@ impl NelderMead {
         missing
     }
 
-    /// Repeats the run with this cost of points that have none, and returns at least the first `n` of them
-    /// if there are so many.
+    /// Repeats the run with an assumed cost of points without one, and returns these points: at least the
+    /// first `n` of them, if there are so many.
     fn run(&self, assumed: f64, n: usize) -> Vec<GridPoint> {
         // argmin unwraps the costs of the first simplex.
         let most = n.max(self.simplex.len());
@@ -106,13 +107,13 @@ impl NelderMead {
         let solver = neldermead::NelderMead::new(self.simplex.clone()).with_sd_tolerance(0.0);
         let Ok(solver) = solver else { return Vec::new() };
         let run = Executor::new(&recorded, solver).timer(false);
-        // It ends by an error when enough points are missing.
+        // The run ends with an error once enough points are missing.
         let _ = run.configure(|state| state.max_iters(MAX_ITERATIONS)).run();
         recorded.missing.into_inner()
     }
 }
 
-/// Costs of the points told, and the points that were needed beside them.
+/// Known costs, and the points without a cost that a run evaluated.
 struct Recorded<'a> {
     costs: &'a Costs,
     assumed: f64,
@@ -125,7 +126,7 @@ impl CostFunction for &Recorded<'_> {
     type Output = f64;
 
     fn cost(&self, x: &Vec<f64>) -> Result<f64, Error> {
-        let point = self.costs.proposed.grid().folded(x);
+        let point = self.costs.proposed.grid.folded(x);
         if let Some(cost) = self.costs.of.get(&point) {
             return Ok(*cost);
         }

@@ -62,11 +62,13 @@ pub fn undominated(points: &[Vec<f64>], reference: &[f64]) -> Vec<Cell> {
     slices(&above(points, reference), reference)
 }
 
+/// Returns the points that exceed the reference in every component.
 fn above<'a>(points: &'a [Vec<f64>], reference: &[f64]) -> Vec<&'a [f64]> {
     let above = |point: &&Vec<f64>| point.iter().zip(reference).all(|(p, r)| p > r);
     points.iter().filter(above).map(Vec::as_slice).collect()
 }
 
+/// Returns the cells of the region that the points do not dominate, sliced along the last component.
 fn slices(points: &[&[f64]], reference: &[f64]) -> Vec<Cell> {
     let Some((&floor, lower)) = reference.split_last() else {
         // No components left: one cell, unless a point already covers it.
@@ -95,6 +97,7 @@ fn cuts(points: &[&[f64]], axis: usize, floor: f64) -> Vec<f64> {
     cuts
 }
 
+/// Returns the points of at least this value along an axis.
 fn reaching<'a>(points: &[&'a [f64]], axis: usize, high: f64) -> Vec<&'a [f64]> {
     points.iter().filter(|point| point[axis] >= high).copied().collect()
 }
@@ -104,6 +107,7 @@ pub fn hypervolume(points: &[Vec<f64>], reference: &[f64]) -> f64 {
     volume(&above(points, reference), reference)
 }
 
+/// Returns the dominated volume, by slices along the last component.
 fn volume(points: &[&[f64]], reference: &[f64]) -> f64 {
     let Some((&floor, lower)) = reference.split_last() else {
         return if points.is_empty() { 0.0 } else { 1.0 };

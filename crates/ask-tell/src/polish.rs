@@ -3,17 +3,17 @@
 use super::nelder_mead::NelderMead;
 use super::{Grid, GridPoint, Observation, Optimizer, StopReason};
 
-/// Asks another optimizer for a number of points, then Nelder-Mead for up to a number of
-/// points more, which starts at the best of them and stays about it.
+/// Optimizer that takes a number of points from another optimizer and then polishes the best of them by
+/// Nelder-Mead with up to a second number of points.
 ///
-/// It may propose fewer points than it is asked for: where the one ends and the other
-/// begins, and in the polish, where only points that Nelder-Mead wants are proposed.
+/// It may propose fewer points than requested: at the end of the search, and in the polish, which only
+/// proposes the points that Nelder-Mead needs.
 pub struct Polished {
     inner: Box<dyn Optimizer + Send>,
     grid: Grid,
-    /// Points that `inner` is still to be asked for.
+    /// Remaining points of the search by `inner`.
     search_left: u64,
-    /// Points that the polish may still have.
+    /// Remaining points of the polish.
     polish_left: u64,
     told: Vec<Observation>,
     polish: Option<NelderMead>,
@@ -21,7 +21,8 @@ pub struct Polished {
 }
 
 impl Polished {
-    /// `inner`, new, over `grid` for `search` points, then a polish of up to `polish` points.
+    /// Creates the optimizer from a new `inner` one over `grid` for `search` points, and a polish of up to
+    /// `polish` points.
     pub fn new(inner: Box<dyn Optimizer + Send>, grid: Grid, search: u64, polish: u64) -> Self {
         Polished {
             inner,

@@ -11,22 +11,18 @@ const DRAWS: usize = 64;
 /// Set of proposed points, to prevent duplicates.
 #[derive(Debug, Clone)]
 pub(crate) struct Proposed {
-    grid: Grid,
-    seed: u64,
+    pub grid: Grid,
+    pub seed: u64,
     points: BTreeSet<GridPoint>,
     /// Every point before this one in lexicographic order is in `points`.
     cursor: Option<GridPoint>,
 }
 
 impl Proposed {
-    /// Creates an empty set; `seed` is for the random stream of [`next_unseen`](Self::next_unseen).
+    /// Creates an empty set; `seed` is that of the random streams of its optimizer.
     pub fn new(grid: Grid, seed: u64) -> Self {
         let cursor = grid.points().next();
         Proposed { grid, seed, points: BTreeSet::new(), cursor }
-    }
-
-    pub fn grid(&self) -> &Grid {
-        &self.grid
     }
 
     pub fn len(&self) -> u64 {

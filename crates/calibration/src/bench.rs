@@ -1,4 +1,4 @@
-//! The benches of one or several tasks: simulated, measured, and what follows from both.
+//! Benches of one or several tasks: simulation, measurements, and samples of the posterior.
 
 use super::process::{COORDINATES, Conditioned, Finger, Hyperparameters, Place};
 use ask_tell::normal::StandardNormal;
@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Simulated ranges as a function of the uncertain parameters.
 pub trait Simulator: Sync {
-    /// Ranges of these fingers, by their numbers, mm; `shares` are those of the priors, 0 to 1.
+    /// Returns the ranges of fingers, mm; `shares` are the quantiles of the parameters' priors, 0 to 1.
     fn ranges_mm(&self, fingers: &[usize], shares: &[f64]) -> Vec<f64>;
 }
 
@@ -18,7 +18,7 @@ pub struct Observation {
     pub finger: usize,
     pub range_mm: f64,
     pub at_least: bool,
-    /// Measurements that this is the mean of.
+    /// Number of measurements averaged into the range.
     pub repeats: u32,
 }
 
@@ -27,13 +27,13 @@ pub struct Bench<'a> {
     pub simulator: &'a dyn Simulator,
     pub places: &'a [Place],
     pub observations: Vec<Observation>,
-    /// mm to one unit of the process.
+    /// Unit of the process, mm.
     pub scale_mm: f64,
-    /// Error of the simulator's stand-in, mm: a difference that no parameter explains.
+    /// Error of the emulator, mm: a discrepancy that no parameter explains.
     pub error_mm: f64,
-    /// Coordinates of a sample that are the simulator's parameters.
+    /// Coordinates of the simulator's parameters in a sample.
     pub parameters: Vec<usize>,
-    /// Its first coordinate of the hyperparameters.
+    /// First coordinate of its hyperparameters in a sample.
     pub first: usize,
 }
 
@@ -60,13 +60,13 @@ impl Bench<'_> {
         self.observations.iter().map(|observation| observation.finger).collect()
     }
 
-    /// The bench at a sample; `None` where the process cannot be computed.
+    /// Returns the bench at a sample; `None` if its covariance is not positive definite.
     pub fn at(&self, state: &[f64]) -> Option<Conditioned> {
         let ranges_mm = self.simulator.ranges_mm(&self.measured(), &self.shares(state));
         self.conditioned(state, &ranges_mm)
     }
 
-    /// The same with the measured fingers' simulated ranges.
+    /// Returns the same, given the simulated ranges of the measured fingers.
     fn conditioned(&self, state: &[f64], ranges_mm: &[f64]) -> Option<Conditioned> {
         let (mut known, mut bounds) = (Vec::new(), Vec::new());
         for (observation, &simulated) in self.observations.iter().zip(ranges_mm) {
@@ -81,7 +81,7 @@ impl Bench<'_> {
     }
 }
 
-/// Samples of parameters and hyperparameters: `dimension` standard normal coordinates each.
+/// Returns samples of parameters and hyperparameters: `dimension` coordinates each, whose prior is standard normal.
 pub fn sampled(
     benches: &[Bench<'_>],
     dimension: usize,
@@ -93,7 +93,7 @@ pub fn sampled(
         let own = bench.first..bench.first + COORDINATES;
         bench.parameters.iter().copied().chain(own).for_each(|c| parts[c].push(part));
     }
-    // Most coordinates leave the simulated ranges as they were.
+    // Most coordinates do not change the simulated ranges.
     let known: Vec<RefCell<(Vec<f64>, Vec<f64>)>> =
         benches.iter().map(|_| RefCell::default()).collect();
     let log_likelihood = |part: usize, state: &[f64]| {
@@ -109,51 +109,48 @@ pub fn sampled(
     sample(&parts, &log_likelihood, settings, random)
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Effort {
-    /// Sweeps over all coordinates before the first sample is kept.
-    pub warm_up: usize,
-    pub samples: usize,
-    /// Sweeps from one to the next.
-    pub thin: usize,
-}
-
+/// Settings of the sampler.
 #[derive(Clone, Copy)]
 pub struct Settings<'a> {
-    pub effort: Effort,
+    /// Sweeps over all coordinates before the first sample is kept.
+    pub warm_up: usize,
+    /// Number of samples.
+    pub samples: usize,
+    /// Sweeps from one sample to the next.
+    pub thin: usize,
     pub seed: u64,
-    /// Set when it is to end: what it gives is then worthless.
+    /// Cancellation flag; once it is set, results are invalid.
     pub stop: &'a AtomicBool,
-    /// Told of each calibration with fingers left out, how many are done, and of how many.
+    /// Progress callback of the leave-one-out calibrations: how many are done, and of how many.
     pub done: &'a (dyn Fn([usize; 2]) + Sync),
 }
 
-/// Sweeps after which the steps adapt.
+/// Number of sweeps between adaptations of the step sizes.
 const BATCH: usize = 25;
-/// Share of accepted steps that is aimed at: the best for one coordinate.
+/// Target acceptance rate, optimal for a single coordinate.
 const ACCEPTED: f64 = 0.44;
 
-/// Metropolis sampling, one coordinate at a time, with steps that adapt while it warms up (Metropolis
-/// et al. 1953; Roberts and Rosenthal 2009, doi:10.1198/jcgs.2009.06134).
+/// Draws Metropolis samples, one coordinate at a time, with step sizes that adapt during the warm-up (Metropolis et
+/// al. 1953; Roberts and Rosenthal 2009, doi:10.1198/jcgs.2009.06134).
 ///
-/// Samples of a density over coordinates whose prior is standard normal. The likelihood is a
-/// sum over parts; `parts[c]` names those that coordinate `c` touches.
+/// The prior of each coordinate is standard normal. The log-likelihood is a sum over parts; `parts[c]` lists those
+/// that depend on coordinate `c`.
 fn sample(
     parts: &[Vec<usize>],
     log_likelihood: &dyn Fn(usize, &[f64]) -> f64,
     settings: &Settings<'_>,
     random: &mut impl Rng,
 ) -> Vec<Vec<f64>> {
-    let effort = settings.effort;
+    let Settings { warm_up, samples, thin, stop, .. } = *settings;
     let dimension = parts.len();
     let count = parts.iter().flatten().max().map_or(0, |last| last + 1);
     let mut state = vec![0.0; dimension];
     let mut current: Vec<f64> = (0..count).map(|part| log_likelihood(part, &state)).collect();
     let mut step = vec![1.0_f64; dimension];
     let mut accepted = vec![0_usize; dimension];
-    let mut kept = Vec::with_capacity(effort.samples);
-    for sweep in 0..effort.warm_up + effort.samples * effort.thin {
-        if settings.stop.load(Ordering::SeqCst) {
+    let mut kept = Vec::with_capacity(samples);
+    for sweep in 0..warm_up + samples * thin {
+        if stop.load(Ordering::SeqCst) {
             return vec![state];
         }
         for c in 0..dimension {
@@ -171,14 +168,14 @@ fn sample(
                 state[c] = old;
             }
         }
-        if sweep < effort.warm_up && (sweep + 1).is_multiple_of(BATCH) {
+        if sweep < warm_up && (sweep + 1).is_multiple_of(BATCH) {
             for (step, accepted) in step.iter_mut().zip(&mut accepted) {
                 let share = *accepted as f64 / BATCH as f64;
                 *step = (*step * libm::exp(1.5 * (share - ACCEPTED))).clamp(0.05, 4.0);
                 *accepted = 0;
             }
         }
-        if sweep >= effort.warm_up && (sweep - effort.warm_up + 1).is_multiple_of(effort.thin) {
+        if sweep >= warm_up && (sweep - warm_up + 1).is_multiple_of(thin) {
             kept.push(state.clone());
         }
     }

@@ -1,13 +1,16 @@
-//! All tasks together: which coordinate is what, the posterior, and how far to trust it.
+//! Calibration of all tasks together: meaning of the coordinates, posterior, leave-one-out validation.
 
 use super::bench::{Bench, Settings, sampled};
-use super::predict::{Of, Predicted, draws, predict};
+use super::predict::{IntervalKind, Predicted, draws, predict};
 use super::process::COORDINATES;
 use super::subject::Subject;
 use ask_tell::statistics::{mean, spearman};
 use ask_tell::stream::stream;
+use insertion::outcome::FailureClass;
+use insertion::space::Design;
 use parameters::Parameter;
 use rayon::prelude::*;
+use serde::Serialize;
 use std::collections::BTreeSet;
 use std::slice;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -19,7 +22,7 @@ const DRAWS: usize = 3;
 #[derive(Debug, Clone)]
 pub struct Coordinate {
     pub parameter: Parameter,
-    /// The task it belongs to; `None` if they share it.
+    /// Task of the parameter; `None` if all tasks share it.
     pub task: Option<String>,
 }
 
@@ -32,8 +35,8 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Of the tasks and the parameters that each of them has.
-    pub fn new(tasks: &[(String, Vec<&Parameter>)]) -> Self {
+    /// Returns the layout for these tasks with their parameters.
+    pub fn new(subjects: &[Subject]) -> Self {
         let mut coordinates: Vec<Coordinate> = Vec::new();
         let mut number = |parameter: &Parameter, task: &str| {
             let task = (!parameter.shared).then(|| task.to_owned());
@@ -43,10 +46,10 @@ impl Layout {
                 coordinates.len() - 1
             })
         };
-        let of_task = tasks
-            .iter()
-            .map(|(task, parameters)| parameters.iter().map(|p| number(p, task)).collect())
-            .collect();
+        let numbers = |Subject { task, parameters, .. }: &Subject| {
+            parameters.iter().map(|parameter| number(parameter, task)).collect()
+        };
+        let of_task = subjects.iter().map(numbers).collect();
         Layout { coordinates, of_task }
     }
 
@@ -69,12 +72,20 @@ pub struct TaskResult {
     pub left_out: Vec<LeftOut>,
 }
 
-#[derive(Debug, Clone, Copy)]
+/// Predicted range of a finger, by the keys of `--json`.
+#[derive(Debug, Clone, Serialize)]
 pub struct Prediction {
-    pub finger: usize,
-    pub range: Predicted,
+    #[serde(flatten)]
+    pub design: Design,
+    pub range_mm: f64,
+    pub low_mm: f64,
+    pub high_mm: f64,
     /// Probability of its being the best of the space, 0 to 1.
-    pub best: f64,
+    pub probability_best: f64,
+    /// Range by simulation alone, averaged over the posterior.
+    pub simulated_mm: f64,
+    pub failure_negative: Option<FailureClass>,
+    pub failure_positive: Option<FailureClass>,
 }
 
 pub struct Calibration {
@@ -93,26 +104,35 @@ impl Calibration {
         let task = |(i, subject): (usize, &Subject)| {
             let mut random = stream(settings.seed, i as u64, "draws");
             let fingers: Vec<usize> = (0..subject.of_space).collect();
-            let ranges = predict(&benches[i], &posterior, &fingers, Of::Truth);
-            // Stopped, what follows is worthless.
+            let ranges = predict(&benches[i], &posterior, &fingers, IntervalKind::Truth);
+            // After cancellation the result is not used.
             let goes_on = |_: &&Vec<f64>| !settings.stop.load(Ordering::SeqCst);
             let of =
                 |state| draws(&benches[i], slice::from_ref(state), &fingers, DRAWS, &mut random);
             let drawn: Vec<Vec<f64>> = posterior.iter().take_while(goes_on).flat_map(of).collect();
+            let prediction = |(finger, (range, probability_best)): (usize, (Predicted, f64))| {
+                let [failure_negative, failure_positive] = subject.failures(finger);
+                Prediction {
+                    design: subject.designs[finger].clone(),
+                    range_mm: range.mean_mm,
+                    low_mm: range.low_mm,
+                    high_mm: range.high_mm,
+                    probability_best,
+                    simulated_mm: range.simulated_mm,
+                    failure_negative,
+                    failure_positive,
+                }
+            };
             let each = ranges.into_iter().zip(shares_best(&drawn, fingers.len())).enumerate();
-            TaskResult {
-                predictions: each
-                    .map(|(finger, (range, best))| Prediction { finger, range, best })
-                    .collect(),
-                left_out: leave_one_out(&benches, i, dimension, settings),
-            }
+            let left_out = leave_one_out((&benches, i), &subject.designs, dimension, settings);
+            TaskResult { predictions: each.map(prediction).collect(), left_out }
         };
         let tasks = subjects.iter().enumerate().map(task).collect();
         Calibration { layout, posterior, tasks }
     }
 }
 
-/// Share of the draws in which each finger is the best, 0 to 1.
+/// Returns the share of the draws in which each finger is the best, 0 to 1.
 fn shares_best(drawn: &[Vec<f64>], fingers: usize) -> Vec<f64> {
     let mut counts = vec![0_u32; fingers];
     for draw in drawn {
@@ -123,33 +143,34 @@ fn shares_best(drawn: &[Vec<f64>], fingers: usize) -> Vec<f64> {
     counts.iter().map(|&count| f64::from(count) / drawn.len().max(1) as f64).collect()
 }
 
-/// A measured finger, predicted without it.
-#[derive(Debug, Clone, Copy)]
+/// Measured finger and the range of one more measurement as predicted without it, by the keys of `--json`.
+#[derive(Debug, Clone, Serialize)]
 pub struct LeftOut {
-    pub finger: usize,
+    #[serde(flatten)]
+    pub design: Design,
     /// Its measured range, mm: the mean, if it was measured several times.
     pub measured_mm: f64,
-    /// The range predicted for one more measurement.
-    pub predicted: Predicted,
+    pub range_mm: f64,
+    pub low_mm: f64,
+    pub high_mm: f64,
 }
 
 impl LeftOut {
     pub fn inside(&self) -> bool {
-        (self.predicted.low_mm..=self.predicted.high_mm).contains(&self.measured_mm)
+        (self.low_mm..=self.high_mm).contains(&self.measured_mm)
     }
 }
 
 impl TaskResult {
-    /// Accuracy of the predictions of left-out fingers, made with an emulator of this error. One that
-    /// does not insert at all has no deviation in percent.
+    /// Returns the accuracy of the leave-one-out predictions, with the error of the emulator. A finger with a
+    /// measured range of 0 has no deviation in percent.
     pub fn trust(&self, emulator_error_mm: f64) -> LeaveOneOut {
         let left_out = &self.left_out;
         let wide = left_out.iter().filter(|one| one.measured_mm > 0.0);
-        let percent = |one: &LeftOut| {
-            100.0 * (one.predicted.mean_mm - one.measured_mm).abs() / one.measured_mm
-        };
+        let percent =
+            |one: &LeftOut| 100.0 * (one.range_mm - one.measured_mm).abs() / one.measured_mm;
         let pairs: Vec<(f64, f64)> =
-            left_out.iter().map(|one| (one.predicted.mean_mm, one.measured_mm)).collect();
+            left_out.iter().map(|one| (one.range_mm, one.measured_mm)).collect();
         LeaveOneOut {
             fingers: left_out.len(),
             mean_deviation_percent: mean(wide.map(percent)),
@@ -160,13 +181,13 @@ impl TaskResult {
     }
 }
 
-/// Most times that a calibration is repeated with fingers left out.
+/// Largest number of leave-one-out calibrations.
 const MOST_FOLDS: usize = 20;
 
 /// Predicts the measured fingers of one bench without them, at most `MOST_FOLDS` times.
-pub fn leave_one_out(
-    benches: &[Bench<'_>],
-    task: usize,
+fn leave_one_out(
+    (benches, task): (&[Bench<'_>], usize),
+    designs: &[Design],
     dimension: usize,
     settings: &Settings<'_>,
 ) -> Vec<LeftOut> {
@@ -180,11 +201,13 @@ pub fn leave_one_out(
         benches[task].observations.retain(|one| !fold.contains(&one.finger));
         let mut random = stream(settings.seed, fold[0] as u64, "leave one out");
         let posterior = sampled(&benches, dimension, settings, &mut random);
-        let predicted = predict(&benches[task], &posterior, fold, Of::Measurement);
+        let predicted = predict(&benches[task], &posterior, fold, IntervalKind::Measurement);
         let left_out = |(&finger, predicted): (&usize, Predicted)| {
             let own = known().filter(|one| one.finger == finger).map(|one| one.range_mm);
             let measured_mm = mean(own)?;
-            Some(LeftOut { finger, measured_mm, predicted })
+            let (design, range_mm) = (designs[finger].clone(), predicted.mean_mm);
+            let Predicted { low_mm, high_mm, .. } = predicted;
+            Some(LeftOut { design, measured_mm, range_mm, low_mm, high_mm })
         };
         (settings.done)([count.fetch_add(1, Ordering::Relaxed) + 1, folds]);
         fold.iter().zip(predicted).filter_map(left_out).collect()

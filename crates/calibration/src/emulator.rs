@@ -1,10 +1,11 @@
-//! The simulator as a function that is quick to ask: a Gaussian process over design and
-//! parameters, from a designed set of simulations (Sacks et al. 1989,
-//! doi:10.1214/ss/1177012413), its error measured on simulations that it has not seen.
+//! Emulator of the simulator: a Gaussian process over design and parameters, fitted to a designed set
+//! of simulations (Sacks et al. 1989, doi:10.1214/ss/1177012413). Its error is measured on held-out
+//! simulations.
 
 use super::simulation::Simulation;
 use ask_tell::SobolSequence;
 use ask_tell::gp::{FitEffort, Gp, fit_until};
+use ask_tell::process::distance2;
 use ask_tell::statistics::Moments;
 use insertion::evaluation::template::Impossible;
 use insertion::outcome::{FailureClass, Outcome};
@@ -12,7 +13,7 @@ use insertion::space::{Design, Space, Variable};
 use rayon::prelude::*;
 use std::sync::atomic::Ordering;
 
-/// One simulation in this many is kept to measure the error.
+/// One simulation in this many is held out to measure the error.
 const FRESH: usize = 8;
 /// A window's ends stand on a grid of 0.1 mm: the standard deviation of its width's rounding.
 const ROUNDING_MM: f64 = 0.04;
@@ -50,30 +51,25 @@ pub enum CalibrationError {
     Measured(u64, String),
 }
 
-/// A designed set of simulations.
-#[derive(Debug, Clone, Copy)]
-pub struct Set<'a> {
-    pub task: &'a str,
-    pub count: usize,
-    pub seed: u64,
-}
-
 impl Emulator {
-    /// From `count` simulations, of which one in eight measures the error; `done` is told of each.
+    /// Runs `count` simulations and fits the emulator to seven in eight of them; the others measure its error.
+    /// `done` is called after each simulation.
     pub fn new(
         simulation: &Simulation<'_>,
         space: &Space,
-        Set { task, count, seed }: Set<'_>,
+        count: usize,
+        seed: u64,
         done: &(dyn Fn() + Sync),
     ) -> Result<Self, CalibrationError> {
         let dimension = space.parameters.len() + simulation.parameters.len();
         let points: Vec<Vec<f64>> =
             SobolSequence::new(dimension, seed, 0, "emulator").take(count).collect();
         let simulations = count - count / FRESH;
-        let no_fit = || CalibrationError::NoFit(task.to_owned(), simulations);
+        let task = &simulation.template.task.name;
+        let no_fit = || CalibrationError::NoFit(task.clone(), simulations);
         let run = |at: Vec<f64>| {
             if simulation.stop.load(Ordering::SeqCst) {
-                // Worthless: whoever has set it does not look at what follows.
+                // The caller that set the flag ignores this error.
                 return Err(no_fit());
             }
             let (of_space, shares) = at.split_at(space.parameters.len());
@@ -87,10 +83,7 @@ impl Emulator {
             let evaluation = simulation.window(&design, shares)?;
             done();
             let window = &evaluation.window;
-            let class = |end: Option<Outcome>| match end {
-                Some(Outcome::Failed(class)) => Some(class),
-                _ => None,
-            };
+            let class = |end: Option<Outcome>| FailureClass::try_from(end?.failure()?).ok();
             Ok(Run {
                 range_mm: window.range_mm(),
                 failures: [class(window.end_negative), class(window.end_positive)],
@@ -128,22 +121,21 @@ impl Emulator {
         Some(emulator)
     }
 
-    /// The simulated range at shares of the space and of the parameters' priors, mm.
+    /// Returns the simulated range, mm, at shares of the space and quantiles of the parameters' priors.
     pub fn range_mm(&self, at: &[f64]) -> f64 {
         (self.mean_mm + self.sd_mm * self.process.mean(at)).max(0.0)
     }
 
-    /// The failure class at each end that most of the `count` simulations nearest to a design met.
+    /// Returns the most frequent failure class at each end among the `count` simulations nearest to a design.
     pub fn failures(&self, design: &[f64], count: usize) -> [Option<FailureClass>; 2] {
-        let distance =
-            |run: &Run| -> f64 { run.at.iter().zip(design).map(|(a, b)| (a - b).powi(2)).sum() };
+        let distance = |run: &Run| distance2(&run.at, design);
         let mut nearest: Vec<&Run> = self.runs.iter().collect();
         nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
         [0, 1].map(|end| most(nearest.iter().take(count).filter_map(|run| run.failures[end])))
     }
 }
 
-/// The class that occurs most often, the lower of equals.
+/// Returns the most frequent class, of equally frequent ones the lowest.
 pub(super) fn most(classes: impl Iterator<Item = FailureClass>) -> Option<FailureClass> {
     let mut counts = [0_usize; 4];
     classes.for_each(|class| counts[usize::from(class.number()) - 1] += 1);

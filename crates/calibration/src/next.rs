@@ -10,34 +10,42 @@ use super::bench::Bench;
 use super::predict::{INTERVAL, draws};
 use super::process::Place;
 use ask_tell::statistics::{mean, normal_cdf, normal_pdf, quantile, sorted};
+use insertion::space::Design;
 use rand::Rng;
 use rayon::prelude::*;
+use serde::Serialize;
 use std::collections::BTreeSet;
 
-#[derive(Debug, Clone, PartialEq)]
+/// Finger to print, by the keys of `--json`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Print {
-    pub finger: usize,
+    #[serde(flatten)]
+    pub design: Design,
     pub expected_mm: f64,
     pub low_mm: f64,
     pub high_mm: f64,
     /// Expected gain of the largest expected range of all fingers by this print.
     pub expected_gain_mm: f64,
+    /// Whether it has to be printed; else only the strategy changes.
+    pub needs_print: bool,
     pub reason: String,
 }
 
-/// Finger with the largest expected range.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Finger with the largest expected range, by the keys of `--json`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Choice {
-    pub finger: usize,
+    #[serde(flatten)]
+    pub design: Design,
     pub expected_mm: f64,
     pub measured: bool,
 }
 
-#[derive(Debug, Clone, PartialEq)]
+/// Recommended prints, by the keys of `--json`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Advice {
-    pub next: Vec<Print>,
     /// Expected range of the best measured finger, mm; `None` if none was measured.
     pub best_known_mm: Option<f64>,
+    pub next: Vec<Print>,
     /// The finger to use if nothing more is printed; `None` without fingers.
     pub choice: Option<Choice>,
     /// Whether no print is expected to gain as much as it costs.
@@ -50,6 +58,8 @@ const DRAWS: usize = 4;
 /// Fingers to choose from.
 #[derive(Debug, Clone, Copy)]
 pub struct Fingers<'a> {
+    /// Designs of all fingers, by their numbers.
+    pub designs: &'a [Design],
     /// Fingers that may be printed.
     pub among: &'a [usize],
     /// Fingers that were printed and insert from no start: a range of 0 mm, which no window was measured of.
@@ -63,7 +73,7 @@ pub struct Fingers<'a> {
 pub fn advise(
     bench: &Bench<'_>,
     posterior: &[Vec<f64>],
-    Fingers { among, failed, printed: at_hand }: Fingers<'_>,
+    Fingers { designs, among, failed, printed: at_hand }: Fingers<'_>,
     count: usize,
     cost_mm: f64,
     random: &mut impl Rng,
@@ -86,7 +96,7 @@ pub fn advise(
     let best_known_mm = best(&printed[..measured.len()]).map(|column| told.means[column]);
     let insert = (0..measured.len()).chain(known.len()..all.len());
     let choice = best(&insert.collect::<Vec<_>>()).map(|column| Choice {
-        finger: all[column],
+        design: designs[all[column]].clone(),
         expected_mm: told.means[column].max(0.0),
         measured: column < measured.len(),
     });
@@ -94,9 +104,9 @@ pub fn advise(
     let mut stop = true;
     while next.len() < count {
         let gains = ranges.gains(&printed);
-        let net = |gain: &Gain| {
-            gain.value_mm - if at_hand.contains(&all[gain.column]) { 0.0 } else { cost_mm }
-        };
+        let needs_print = |column: usize| !at_hand.contains(&all[column]);
+        let net =
+            |gain: &Gain| gain.value_mm - if needs_print(gain.column) { cost_mm } else { 0.0 };
         let first = gains.iter().rev().max_by(|a, b| net(a).total_cmp(&net(b)));
         let Some(&Gain { column, choice_mm, .. }) = first else { break };
         stop &= !next.is_empty() || gains.iter().all(|gain| gain.choice_mm < cost_mm);
@@ -106,18 +116,26 @@ pub fn advise(
         let (low_mm, high_mm) = (tail((1.0 - INTERVAL) / 2.0), tail((1.0 + INTERVAL) / 2.0));
         let expected_mm = told.means[column].max(0.0);
         let tried: Vec<Place> = printed.iter().map(|&column| bench.places[all[column]]).collect();
-        let reason = match choice {
-            Some(widest) if tried.is_empty() && widest.finger != all[column] => {
+        let design = designs[all[column]].clone();
+        let reason = match &choice {
+            Some(widest) if tried.is_empty() && widest.design != design => {
                 "its range tells most of the others".to_owned()
             }
             _ => reason(bench.places[all[column]], &tried, expected_mm, high_mm, best_known_mm),
         };
-        let (finger, expected_gain_mm) = (all[column], choice_mm);
-        next.push(Print { finger, expected_mm, low_mm, high_mm, expected_gain_mm, reason });
+        next.push(Print {
+            design,
+            expected_mm,
+            low_mm,
+            high_mm,
+            expected_gain_mm: choice_mm,
+            needs_print: needs_print(column),
+            reason,
+        });
         ranges.condition(column);
         printed.push(column);
     }
-    Advice { next, best_known_mm, choice, stop }
+    Advice { best_known_mm, next, choice, stop }
 }
 
 /// Joint distribution of the fingers' true ranges, mm.

@@ -1,12 +1,11 @@
-//! How far our simulation ranks the fingers of a task as the bench does.
+//! Rank correlation of simulated and measured ranges.
 
-use crate::published::{Origin, Published, of_task};
+use crate::experiments::Experiment;
+use crate::published::{Origin, of_task};
 use ask_tell::statistics::{mean, spearman};
 use input::shipped::TASKS;
 use insertion::evaluation::objective::Measure;
 use insertion::finger::model::FingerModelKind;
-use insertion::space::Design;
-use insertion::stiffness::designs;
 use serde::Deserialize;
 use study::StudyRecord;
 
@@ -19,27 +18,8 @@ pub struct Order {
     /// Spearman's, +1 for the same order, -1 for the opposite one.
     pub spearman: f64,
     pub fingers: usize,
-    pub source: OrderSource,
-}
-
-/// Whose simulated ranges are held against the bench.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum OrderSource {
-    Study,
-    /// Those of the committed validation, with the study's finger model and robot.
-    Validation,
-    /// Those of the committed validation, which has another finger model or another robot.
-    OtherRig,
-}
-
-impl OrderSource {
-    pub fn words(self) -> &'static str {
-        match self {
-            OrderSource::Study => "this study",
-            OrderSource::Validation => "our validation",
-            OrderSource::OtherRig => "our validation, though of paper fingers on servo,",
-        }
-    }
+    /// Source of the simulated ranges, in words.
+    pub source: &'static str,
 }
 
 /// The robot of the committed validation; its fingers are the paper's.
@@ -56,22 +36,19 @@ struct Validated {
 pub fn order_on_bench(record: &StudyRecord, task: usize) -> Option<Order> {
     let name = record.config.tasks().nth(task)?;
     let bench = of_task(name, Origin::Bench);
-    let measured = designs();
-    let pair = |bench: &Published| {
-        let m = measured.iter().find(|m| m.design == bench.design)?;
-        let infill = Design::infill(m.density_percent, m.direction_deg);
-        let found = record.current().iter().find(|recorded| recorded.design == infill)?;
-        Some((Measure::Range.value(found.on(task)?)?, bench.tolerable_range_mm?))
+    let pair = |bench: &Experiment| {
+        let found = record.current().iter().find(|recorded| recorded.design == bench.design)?;
+        Some((Measure::Range.value(found.on(task)?)?, bench.range_mm?))
     };
     let own: Vec<(f64, f64)> = bench.iter().filter_map(pair).collect();
-    let all = bench.iter().filter(|bench| bench.tolerable_range_mm.is_some()).count();
+    let all = bench.iter().filter(|bench| bench.range_mm.is_some()).count();
     let config = &record.config;
     let like_validation =
         config.finger_model == FingerModelKind::Paper && config.robot == VALIDATION_ROBOT;
     let (pairs, source) = match (own.len() == all, like_validation) {
-        (true, _) => (own, OrderSource::Study),
-        (false, true) => (validated(name), OrderSource::Validation),
-        (false, false) => (validated(name), OrderSource::OtherRig),
+        (true, _) => (own, "this study"),
+        (false, true) => (validated(name), "our validation"),
+        (false, false) => (validated(name), "our validation, though of paper fingers on servo,"),
     };
     Some(Order { spearman: spearman(&pairs)?, fingers: pairs.len(), source })
 }

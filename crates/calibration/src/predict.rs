@@ -8,18 +8,18 @@ use ask_tell::stream::stream;
 use rand::{Rng, RngExt};
 use rayon::prelude::*;
 
-/// Share of the truths that an interval is to hold.
+/// Nominal coverage of the intervals.
 pub const INTERVAL: f64 = 0.8;
-/// Share beyond either end.
+/// Probability beyond either end.
 const TAIL: f64 = (1.0 - INTERVAL) / 2.0;
-/// Waves that make up a draw of the process.
-const WAVES: usize = 64;
-/// Draws tried until one keeps to the ranges that are known from below.
+/// Number of random Fourier features of a draw of the process.
+const FEATURES: usize = 64;
+/// Largest number of draws until one satisfies the lower bounds of measured ranges.
 const TRIES: usize = 20;
 /// Degrees of freedom of the Matern 5/2 kernel's spectrum, a Student t.
 const FREEDOM: f64 = 5.0;
-/// Draws per sample where there is no closed formula.
-const EACH: usize = 5;
+/// Draws per sample of the posterior where there is no closed form.
+const DRAWS_PER_SAMPLE: usize = 5;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Predicted {
@@ -30,22 +30,24 @@ pub struct Predicted {
     pub simulated_mm: f64,
 }
 
-/// Quantity that an interval is of.
+/// Quantity that an interval covers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Of {
+pub enum IntervalKind {
     /// The range that many measurements would give on average.
     Truth,
+    /// The range of one more measurement, with its noise.
     Measurement,
 }
 
+/// Returns mean and interval of the range of each finger over the posterior.
 pub fn predict(
     bench: &Bench<'_>,
     posterior: &[Vec<f64>],
     numbers: &[usize],
-    of: Of,
+    kind: IntervalKind,
 ) -> Vec<Predicted> {
     if bench.observations.iter().any(|observation| observation.at_least) {
-        return from_draws(bench, posterior, numbers, of);
+        return from_draws(bench, posterior, numbers, kind);
     }
     let states: Vec<(&Vec<f64>, Conditioned)> =
         posterior.iter().filter_map(|state| Some((state, bench.at(state)?))).collect();
@@ -53,9 +55,9 @@ pub fn predict(
         let part = |(state, at): &(&Vec<f64>, Conditioned)| {
             let finger = bench.fingers(&[*number], state)[0];
             let (mean, sd) = at.predict(&finger);
-            let noise = match of {
-                Of::Truth => 0.0,
-                Of::Measurement => at.hyperparameters.noise,
+            let noise = match kind {
+                IntervalKind::Truth => 0.0,
+                IntervalKind::Measurement => at.hyperparameters.noise,
             };
             [mean, libm::hypot(sd, noise), finger.simulated].map(|value| value * bench.scale_mm)
         };
@@ -71,17 +73,18 @@ pub fn predict(
     numbers.par_iter().map(one).collect()
 }
 
-/// The same from draws: ranges that are known from below leave no closed formula.
+/// Returns the same from joint draws: with lower bounds of ranges there is no closed form.
 fn from_draws(
     bench: &Bench<'_>,
     posterior: &[Vec<f64>],
     numbers: &[usize],
-    of: Of,
+    kind: IntervalKind,
 ) -> Vec<Predicted> {
     let mut random = stream(0, numbers.len() as u64, "predict from draws");
-    let mut drawn = draws(bench, posterior, numbers, EACH, &mut random);
-    if of == Of::Measurement {
-        let states = posterior.iter().flat_map(|state| std::iter::repeat_n(state, EACH));
+    let mut drawn = draws(bench, posterior, numbers, DRAWS_PER_SAMPLE, &mut random);
+    if kind == IntervalKind::Measurement {
+        let states =
+            posterior.iter().flat_map(|state| std::iter::repeat_n(state, DRAWS_PER_SAMPLE));
         for (draw, state) in drawn.iter_mut().zip(states) {
             let noise = bench.hyperparameters(state).noise * bench.scale_mm;
             for value in draw {
@@ -108,7 +111,7 @@ fn from_draws(
     numbers.iter().enumerate().map(one).collect()
 }
 
-/// The value that a mixture of normal distributions stays below with this probability.
+/// Returns a quantile of a mixture of normal distributions, by bisection.
 fn quantile(parts: &[[f64; 3]], probability: f64) -> f64 {
     let wide = |sign: f64| parts.iter().map(move |[mean, sd, _]| mean + sign * 8.0 * sd);
     let mut low = wide(-1.0).fold(f64::INFINITY, f64::min);
@@ -123,7 +126,7 @@ fn quantile(parts: &[[f64; 3]], probability: f64) -> f64 {
     (low + high) / 2.0
 }
 
-/// Joint draws of the fingers' true ranges, mm, a vector each: as many for every sample.
+/// Returns joint draws of the fingers' true ranges, mm: `each` vectors per sample of the posterior.
 pub fn draws(
     bench: &Bench<'_>,
     posterior: &[Vec<f64>],
@@ -154,9 +157,9 @@ pub fn draws(
     all
 }
 
-/// One draw given the measurements: one of the prior, moved to them.
+/// Draws from the posterior: a draw of the prior, conditioned on the measurements.
 fn draw(at: &Conditioned, fingers: &[Finger], random: &mut impl Rng) -> Vec<f64> {
-    let prior = Departure::drawn(&at.hyperparameters, random);
+    let prior = Discrepancy::drawn(&at.hyperparameters, random);
     let measured = at.fingers.iter().zip(&at.noises);
     let known: Vec<f64> = measured
         .map(|(finger, noise)| {
@@ -168,38 +171,38 @@ fn draw(at: &Conditioned, fingers: &[Finger], random: &mut impl Rng) -> Vec<f64>
     at.update(fingers, &prior, &known)
 }
 
-/// A draw of the departure from the simulation: trends, and waves whose numbers are drawn from
-/// the kernel's spectrum (Rahimi and Recht 2007, Random features for large-scale kernel machines).
-struct Departure {
+/// Prior draw of the discrepancy between bench and simulation: linear trends, and random Fourier features of the
+/// kernel (Rahimi and Recht 2007, Random features for large-scale kernel machines).
+struct Discrepancy {
     terms: [f64; TERMS],
     amplitude: f64,
     /// Wave number along each axis, and phase.
-    waves: Vec<[f64; 3]>,
+    features: Vec<[f64; 3]>,
 }
 
-impl Departure {
+impl Discrepancy {
     fn drawn(hyperparameters: &Hyperparameters, random: &mut impl Rng) -> Self {
         let terms = hyperparameters.terms.map(|sd| {
             let normal: f64 = random.sample(StandardNormal);
             sd * normal
         });
-        let mut wave = || {
+        let mut feature = || {
             let [a, b]: [f64; 2] = std::array::from_fn(|_| random.sample(StandardNormal));
             let stretch = (chi_squared(FREEDOM, random) / FREEDOM).sqrt();
             let length = hyperparameters.length * stretch;
             [a / length, b / length, random.random::<f64>() * std::f64::consts::TAU]
         };
-        Departure {
+        Discrepancy {
             terms,
-            amplitude: hyperparameters.process * (2.0 / WAVES as f64).sqrt(),
-            waves: (0..WAVES).map(|_| wave()).collect(),
+            amplitude: hyperparameters.process * (2.0 / FEATURES as f64).sqrt(),
+            features: (0..FEATURES).map(|_| feature()).collect(),
         }
     }
 
     fn at(&self, finger: &Finger) -> f64 {
         let [x, y] = finger.place;
         let linear: f64 = self.terms.iter().zip(finger.terms()).map(|(a, b)| a * b).sum();
-        let wave = |[a, b, phase]: &[f64; 3]| libm::cos(a * x + b * y + phase);
-        linear + self.amplitude * self.waves.iter().map(wave).sum::<f64>()
+        let feature = |[a, b, phase]: &[f64; 3]| libm::cos(a * x + b * y + phase);
+        linear + self.amplitude * self.features.iter().map(feature).sum::<f64>()
     }
 }

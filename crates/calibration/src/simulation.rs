@@ -1,4 +1,4 @@
-//! Simulated windows under values of what nobody measured.
+//! Simulated tolerance windows for given values of the unmeasured parameters.
 
 use input::units::MM;
 use insertion::evaluation::Evaluation;
@@ -15,22 +15,23 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use study::Cache;
 
-/// Starts tried where the task's own does not insert, mm from it: a person teaches one that does.
-const TAUGHT_MM: [f64; 4] = [1.0, -1.0, 2.0, -2.0];
+/// Shifts of the start, mm, tried in turn if the task's own does not insert: an operator would teach one that does.
+const SHIFTS_MM: [f64; 4] = [1.0, -1.0, 2.0, -2.0];
 
+/// Simulation of one task with some of its parameters set.
 pub struct Simulation<'a> {
-    evaluator: &'a Evaluator,
-    template: &'a Template,
+    pub(super) evaluator: &'a Evaluator,
+    pub(super) template: &'a Template,
     /// The parameters that the task and the robot have, in order.
     pub parameters: Vec<&'a Parameter>,
-    /// Where windows are kept, if they are.
+    /// Folder of the cache, if windows are cached.
     cache: Option<PathBuf>,
-    /// Set when it is to end: windows are then worthless, and none is kept.
+    /// Cancellation flag; once it is set, windows are invalid and not cached.
     pub stop: &'a AtomicBool,
 }
 
 impl<'a> Simulation<'a> {
-    /// With those of the parameters that this task and robot have.
+    /// Returns a simulation with those of the parameters that the task and the robot have.
     pub fn new(
         evaluator: &'a Evaluator,
         template: &'a Template,
@@ -42,7 +43,8 @@ impl<'a> Simulation<'a> {
         Simulation { evaluator, template, parameters, cache, stop }
     }
 
-    /// The window of a design at these shares of the priors; without shares as in the files.
+    /// Simulates the window of a design with the parameters at these quantiles of their priors; without them, as in
+    /// the files.
     pub fn window(&self, design: &Design, shares: &[f64]) -> Result<Evaluation, Impossible> {
         let values = self.parameters.iter().zip(shares).map(|(p, &share)| (*p, p.at(share)));
         let values: Vec<_> = values.collect();
@@ -52,7 +54,7 @@ impl<'a> Simulation<'a> {
         if inserts(&own) {
             return Ok(own);
         }
-        for shift in TAUGHT_MM {
+        for shift in SHIFTS_MM {
             let mut specimen = specimen.clone();
             specimen.task.strategy.start[1] += shift * MM;
             let evaluation = self.measure(&specimen, &robot)?;

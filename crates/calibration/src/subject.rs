@@ -3,21 +3,22 @@
 use super::bench::{Bench, Observation, Simulator};
 use super::emulator::{CalibrationError, Emulator, most};
 use super::process::Place;
+use super::simulation::Simulation;
 use crate::experiments::Experiment;
-use ask_tell::GridPoint;
-use ask_tell::SobolSequence;
+use ask_tell::process::distance2;
 use ask_tell::statistics::Moments;
-use insertion::evaluation::evaluator::Evaluator;
+use ask_tell::{Grid, GridPoint, SobolSequence};
 use insertion::evaluation::template::Template;
 use insertion::outcome::FailureClass;
 use insertion::space::{Design, Space, Variable, is_of_task};
-use std::collections::{BTreeMap, BTreeSet};
+use parameters::Parameter;
+use std::collections::BTreeSet;
 
-/// Most fingers of a space that are predicted; of a larger space it is a designed set.
+/// Largest space of which all fingers are predicted; of a larger one a designed set is.
 const MOST_FINGERS: u64 = 4000;
-/// Most strategies of printed fingers that are predicted.
+/// Number of predicted strategies, over all printed fingers.
 const STRATEGIES: usize = 500;
-/// Measured fingers, or simulations, near a finger that say how it fails.
+/// Number of nearest measured fingers from which the failure of a finger is predicted.
 const NEAR: usize = 3;
 
 pub struct Subject {
@@ -26,23 +27,25 @@ pub struct Subject {
     pub designs: Vec<Design>,
     pub of_space: usize,
     pub emulator: Emulator,
-    /// Measurements on this task, with the number of the finger.
+    /// Measurements on this task, each with the number of its finger.
     pub experiments: Vec<(usize, Experiment)>,
     places: Vec<Place>,
     /// Shares of the space, as the emulator takes them.
     shares: Vec<Vec<f64>>,
+    /// Parameters of its simulation, in order.
+    pub parameters: Vec<Parameter>,
 }
 
 impl Subject {
-    /// The fingers of a space on a task, those of `more` and those measured.
+    /// Returns the fingers of a space, those measured and those of `more` on a task.
     pub fn new(
-        evaluator: &Evaluator,
-        template: &Template,
+        simulation: &Simulation<'_>,
         space: &Space,
         emulator: Emulator,
         experiments: &[Experiment],
         more: &[Design],
     ) -> Result<Self, CalibrationError> {
+        let Simulation { evaluator, template, .. } = simulation;
         let task = template.task.name.clone();
         let lines = experiments.iter().filter(|line| line.task == task);
         let lines = lines.map(|line| Ok((whole(space, template, line)?, line)));
@@ -56,10 +59,8 @@ impl Subject {
                 designs.len() - 1
             })
         };
-        let mut measured = Vec::new();
-        for (design, line) in lines {
-            measured.push((numbered(design), line.clone()));
-        }
+        let lines = lines.into_iter().map(|(design, line)| (numbered(design), line.clone()));
+        let experiments = lines.collect();
         for design in more {
             numbered(design.clone());
         }
@@ -71,7 +72,8 @@ impl Subject {
             designs.iter().map(stiffness).collect::<Result<Vec<_>, CalibrationError>>()?;
         let shares = designs.iter().map(|design| shares(space, design)).collect();
         let places = standardised(&stiffness, of_space);
-        Ok(Subject { task, designs, of_space, emulator, experiments: measured, places, shares })
+        let parameters = simulation.parameters.iter().copied().cloned().collect();
+        Ok(Subject { task, designs, of_space, emulator, experiments, places, shares, parameters })
     }
 
     pub fn finger(&self, design: &Design) -> Option<usize> {
@@ -84,14 +86,12 @@ impl Subject {
 
     /// Returns the designs whose finger was printed: they differ from a measured one by numbers of the task alone.
     pub fn printed(&self) -> BTreeSet<usize> {
-        let finger = |number: usize| {
-            self.designs[number].0.iter().filter(|(key, _)| !is_of_task(key)).collect::<Vec<_>>()
-        };
-        let known: Vec<_> = self.measured().into_iter().map(finger).collect();
-        (0..self.designs.len()).filter(|&number| known.contains(&finger(number))).collect()
+        let shape = |number: usize| shape(&self.designs[number]);
+        let known: Vec<Design> = self.measured().into_iter().map(shape).collect();
+        (0..self.designs.len()).filter(|&number| known.contains(&shape(number))).collect()
     }
 
-    /// Returns the fingers whose lines tell no range: they insert from no start.
+    /// Returns the measured fingers without a range: they insert from no start.
     pub fn not_measurable(&self) -> BTreeSet<usize> {
         let told = |number: &usize| {
             self.experiments.iter().any(|(of, line)| of == number && line.extent().is_some())
@@ -99,7 +99,8 @@ impl Subject {
         self.measured().into_iter().filter(|number| !told(number)).collect()
     }
 
-    /// Its bench, with the coordinates of its parameters and hyperparameters.
+    /// Returns its bench; `parameters` are the coordinates of its parameters, `first` is the first one of its
+    /// hyperparameters.
     pub fn bench(&self, parameters: Vec<usize>, first: usize) -> Bench<'_> {
         let observation = |&(finger, ref line): &(usize, Experiment)| {
             let (range_mm, at_least) = line.extent()?;
@@ -116,22 +117,19 @@ impl Subject {
         }
     }
 
-    /// Failure at either end: as of most of the nearest measured fingers, else of simulated ones.
+    /// Returns the failure at either end: the most frequent of the nearest measured fingers, else of the nearest
+    /// simulations.
     pub fn failures(&self, finger: usize) -> [Option<FailureClass>; 2] {
-        let here = self.places[finger];
-        let distance = |number: usize| {
-            let there = self.places[number];
-            (here[0] - there[0]).powi(2) + (here[1] - there[1]).powi(2)
+        let distance = |(number, _): &(usize, Experiment)| {
+            distance2(&self.places[finger], &self.places[*number])
         };
+        let mut nearest: Vec<_> = self.experiments.iter().collect();
+        nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
         let simulated = self.emulator.failures(&self.shares[finger], 4 * NEAR);
         [0, 1].map(|end| {
-            let mut known: Vec<(f64, FailureClass)> = self
-                .experiments
-                .iter()
-                .filter_map(|(number, line)| Some((distance(*number), line.failures[end]?)))
-                .collect();
-            known.sort_by(|a, b| a.0.total_cmp(&b.0));
-            most(known.into_iter().take(NEAR).map(|(_, class)| class)).or(simulated[end])
+            let class = |line: &Experiment| [line.failure_negative, line.failure_positive][end];
+            let known = nearest.iter().filter_map(|(_, line)| class(line));
+            most(known.take(NEAR)).or(simulated[end])
         })
     }
 }
@@ -144,64 +142,50 @@ impl Simulator for Subject {
     }
 }
 
-/// The designs of a space, or of a large one a designed set.
+/// Returns the designs of a space, or of a large one a designed set.
 fn fingers(space: &Space) -> Vec<Design> {
-    let levels = space.levels();
-    let size = levels.iter().fold(1_u64, |size, &n| size.saturating_mul(u64::from(n)));
-    let point = |levels: Vec<u32>| space.design(&GridPoint(levels));
-    if size > MOST_FINGERS {
-        let set = SobolSequence::new(levels.len(), 0, 0, "fingers").take(MOST_FINGERS as usize / 2);
-        return set.map(|shares| design_at(space, &levels, shares)).collect();
+    // Reversed, so that the first parameter changes first.
+    let grid = Grid::new(space.levels().into_iter().rev().collect());
+    if grid.size() > MOST_FINGERS {
+        return designed(space, MOST_FINGERS as usize / 2, "fingers");
     }
-    let number = |mut rest: u64| {
-        let level = |&n: &u32| {
-            let level = (rest % u64::from(n)) as u32;
-            rest /= u64::from(n);
-            level
-        };
-        levels.iter().map(level).collect()
-    };
-    (0..size).map(|rest| point(number(rest))).collect()
+    let design = |point: GridPoint| space.design(&GridPoint(point.0.into_iter().rev().collect()));
+    grid.points().map(design).collect()
 }
 
-/// Strategies for each printed finger, if the space changes the task: a designed set.
+/// Returns strategies for each printed finger, if the space changes the task: a designed set.
 fn strategies<'a>(space: &Space, printed: impl Iterator<Item = &'a Design>) -> Vec<Design> {
     if !space.changes_task() {
         return Vec::new();
     }
-    let mut fingers: Vec<BTreeMap<String, f64>> = Vec::new();
-    for design in printed {
-        let shape = design.0.iter().filter(|(key, _)| !is_of_task(key));
-        let shape = shape.map(|(key, value)| (key.clone(), *value)).collect();
+    let mut fingers: Vec<Design> = Vec::new();
+    for shape in printed.map(shape) {
         if !fingers.contains(&shape) {
             fingers.push(shape);
         }
     }
-    let levels = space.levels();
-    let per_finger = STRATEGIES / fingers.len().max(1);
-    let set: Vec<Design> = SobolSequence::new(levels.len(), 0, 0, "strategies")
-        .take(per_finger)
-        .map(|shares| design_at(space, &levels, shares))
-        .collect();
-    let with = |(shape, design): (&BTreeMap<String, f64>, &Design)| {
-        let mut design = design.clone();
-        design.0.extend(shape.clone());
+    let set = designed(space, STRATEGIES / fingers.len().max(1), "strategies");
+    let with = |shape: &Design, mut design: Design| {
+        design.0.extend(shape.0.clone());
         design
     };
-    fingers
-        .iter()
-        .flat_map(|shape| set.iter().map(move |design| (shape, design)))
-        .map(with)
-        .collect()
+    fingers.iter().flat_map(|shape| set.iter().cloned().map(move |one| with(shape, one))).collect()
 }
 
-/// Returns the design at these shares of the levels.
-fn design_at(space: &Space, levels: &[u32], shares: Vec<f64>) -> Design {
-    let level = |(share, &n): (f64, &u32)| (share * f64::from(n)) as u32;
-    space.design(&GridPoint(shares.into_iter().zip(levels).map(level).collect()))
+/// Returns a design without its numbers of the task.
+fn shape(design: &Design) -> Design {
+    let of_finger = design.0.iter().filter(|(key, _)| !is_of_task(key));
+    Design(of_finger.map(|(key, value)| (key.clone(), *value)).collect())
 }
 
-/// A measured design with all parameters of the space, by default as in the task file.
+/// Returns a designed set of `count` designs; `purpose` names its random stream.
+fn designed(space: &Space, count: usize, purpose: &str) -> Vec<Design> {
+    let grid = Grid::new(space.levels());
+    let set = SobolSequence::new(grid.dimension(), 0, 0, purpose).take(count);
+    set.map(|shares| space.design(&grid.cell(&shares))).collect()
+}
+
+/// Returns a measured design with all parameters of the space; missing ones are as in the task file.
 pub fn whole(
     space: &Space,
     template: &Template,
@@ -239,7 +223,7 @@ fn shares(space: &Space, design: &Design) -> Vec<f64> {
     space.parameters.iter().map(share).collect()
 }
 
-/// Less the mean, over the standard deviation, of the first `reference` rows.
+/// Standardises rows by mean and standard deviation of the first `reference` ones.
 fn standardised(rows: &[[f64; 2]], reference: usize) -> Vec<Place> {
     let scale = [0, 1].map(|axis| {
         let moments = Moments::of(rows.iter().take(reference).map(|row| row[axis]));

@@ -1,12 +1,10 @@
 //! A calibration as JSON, as CSV, and as a study keeps it.
 
 use super::calibrate::{Calibration, Coordinate, LeftOut, Prediction, TaskResult};
-use super::predict::Predicted;
 use super::subject::Subject;
 use crate::experiments::Experiment;
 use ask_tell::statistics::{Moments, normal_cdf, pearson, quantile, sorted};
 use insertion::evaluation::Evaluation;
-use insertion::outcome::FailureClass;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use serde::Serialize;
 use study::{BenchEffort, BenchFinger, OnBench, Provenance};
@@ -110,52 +108,6 @@ pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
     lines
 }
 
-/// Predicted range of a finger, by the keys of `--json`.
-#[derive(Serialize)]
-struct PredictedFinger<'a> {
-    #[serde(flatten)]
-    design: &'a Design,
-    range_mm: f64,
-    low_mm: f64,
-    high_mm: f64,
-    probability_best: f64,
-    simulated_mm: f64,
-    failure_negative: Option<FailureClass>,
-    failure_positive: Option<FailureClass>,
-}
-
-fn predictions<'a>(
-    subject: &'a Subject,
-    result: &'a TaskResult,
-) -> impl Iterator<Item = PredictedFinger<'a>> {
-    result.predictions.iter().map(|Prediction { finger, range, best }| {
-        let Predicted { mean_mm: range_mm, low_mm, high_mm, simulated_mm } = *range;
-        let [failure_negative, failure_positive] = subject.failures(*finger);
-        let (design, probability_best) = (&subject.designs[*finger], *best);
-        PredictedFinger {
-            design,
-            range_mm,
-            low_mm,
-            high_mm,
-            probability_best,
-            simulated_mm,
-            failure_negative,
-            failure_positive,
-        }
-    })
-}
-
-/// A measured finger and its range as predicted without it, by the keys of `--json`.
-#[derive(Serialize)]
-struct LeftOutFinger<'a> {
-    #[serde(flatten)]
-    design: &'a Design,
-    measured_mm: f64,
-    range_mm: f64,
-    low_mm: f64,
-    high_mm: f64,
-}
-
 /// Result of one task, by the keys of `--json`.
 #[derive(Serialize)]
 struct CalibratedTask<'a> {
@@ -168,8 +120,8 @@ struct CalibratedTask<'a> {
     fresh_simulations: usize,
     emulator_error_mm: f64,
     warnings: Vec<String>,
-    leave_one_out: Vec<LeftOutFinger<'a>>,
-    predictions: Vec<PredictedFinger<'a>>,
+    leave_one_out: &'a [LeftOut],
+    predictions: &'a [Prediction],
 }
 
 impl<'a> CalibratedTask<'a> {
@@ -177,13 +129,6 @@ impl<'a> CalibratedTask<'a> {
         let emulator = &subject.emulator;
         let accuracy = result.trust(emulator.error_mm);
         let inside = || 100.0 * accuracy.inside as f64 / accuracy.fingers as f64;
-        let left_out = |one: &LeftOut| LeftOutFinger {
-            design: &subject.designs[one.finger],
-            measured_mm: one.measured_mm,
-            range_mm: one.predicted.mean_mm,
-            low_mm: one.predicted.low_mm,
-            high_mm: one.predicted.high_mm,
-        };
         CalibratedTask {
             task: &subject.task,
             designs: accuracy.fingers,
@@ -194,8 +139,8 @@ impl<'a> CalibratedTask<'a> {
             fresh_simulations: emulator.fresh,
             emulator_error_mm: emulator.error_mm,
             warnings: warnings(subject, result),
-            leave_one_out: result.left_out.iter().map(left_out).collect(),
-            predictions: predictions(subject, result).collect(),
+            leave_one_out: &result.left_out,
+            predictions: &result.predictions,
         }
     }
 }
@@ -232,7 +177,7 @@ pub fn predictions_csv(subject: &Subject, result: &TaskResult) -> String {
         "task,{},range_mm,low_mm,high_mm,probability_best,simulated_mm,failure_negative,failure_positive\n",
         keys.join(",")
     );
-    for one in predictions(subject, result) {
+    for one in &result.predictions {
         let values: Vec<String> = keys.iter().map(|key| one.design.0[*key].to_string()).collect();
         let [below, above] = [one.failure_negative, one.failure_positive]
             .map(|end| end.map_or(String::new(), |class| class.number().to_string()));
@@ -255,17 +200,17 @@ pub fn left_out_csv(calibration: &Calibration, subjects: &[Subject]) -> String {
     let head =
         format!("task,{DENSITY_KEY},{DIRECTION_KEY},measured_mm,range_mm,low_mm,high_mm,inside\n");
     let line = |subject: &Subject, one: &LeftOut| {
-        let design = &subject.designs[one.finger];
-        let value = |key: &str| design.get(key).map_or(String::new(), |value| value.to_string());
+        let value =
+            |key: &str| one.design.get(key).map_or(String::new(), |value| value.to_string());
         format!(
             "{},{},{},{:.2},{:.3},{:.3},{:.3},{}\n",
             subject.task,
             value(DENSITY_KEY),
             value(DIRECTION_KEY),
             one.measured_mm,
-            one.predicted.mean_mm,
-            one.predicted.low_mm,
-            one.predicted.high_mm,
+            one.range_mm,
+            one.low_mm,
+            one.high_mm,
             one.inside()
         )
     };
@@ -303,7 +248,7 @@ const KEPT: usize = 5;
 /// Returns the fingers of the space by their predicted ranges, best first.
 pub fn by_range(result: &TaskResult) -> Vec<&Prediction> {
     let mut order: Vec<&Prediction> = result.predictions.iter().collect();
-    order.sort_by(|a, b| b.range.mean_mm.total_cmp(&a.range.mean_mm));
+    order.sort_by(|a, b| b.range_mm.total_cmp(&a.range_mm));
     order
 }
 
@@ -315,17 +260,17 @@ pub fn on_bench(
     provenance: Provenance,
     effort: BenchEffort,
 ) -> OnBench {
-    let finger = |prediction: &&Prediction| BenchFinger {
-        design: subject.designs[prediction.finger].clone(),
-        range_mm: prediction.range.mean_mm,
-        low_mm: prediction.range.low_mm,
-        high_mm: prediction.range.high_mm,
-        probability_best: prediction.best,
-        failures: subject.failures(prediction.finger),
+    let finger = |one: &&Prediction| BenchFinger {
+        design: one.design.clone(),
+        range_mm: one.range_mm,
+        low_mm: one.low_mm,
+        high_mm: one.high_mm,
+        probability_best: one.probability_best,
+        failures: [one.failure_negative, one.failure_positive],
     };
     let lines = subject.experiments.iter().map(|(finger, line)| (&subject.designs[*finger], line));
-    let known = |(design, line): (&Design, &Experiment)| Some((design.clone(), line.range_mm()?));
-    let others = lines.clone().filter(|(_, line)| line.range_mm().is_none());
+    let known = |(design, line): (&Design, &Experiment)| Some((design.clone(), line.range_mm?));
+    let others = lines.clone().filter(|(_, line)| line.range_mm.is_none());
     let bound = |(design, line): (&Design, &Experiment)| {
         (design.clone(), line.extent().map(|(least_mm, _)| least_mm))
     };

@@ -1,7 +1,7 @@
 //! Made-up benches, whose truth is known.
 
-use super::bench::{Bench, Effort, Observation, Settings, Simulator, sampled};
-use super::predict::{Of, Predicted, draws, predict};
+use super::bench::{Bench, Observation, Settings, Simulator, sampled};
+use super::predict::{IntervalKind, Predicted, draws, predict};
 use super::process::{COORDINATES, Place};
 use ask_tell::normal::StandardNormal;
 use ask_tell::statistics::{Moments, normal_cdf};
@@ -11,12 +11,8 @@ use rand::{Rng, RngExt};
 
 const FINGERS: usize = 20;
 const SCALE_MM: f64 = 5.0;
-const SETTINGS: Settings<'_> = Settings {
-    effort: Effort { warm_up: 200, samples: 150, thin: 3 },
-    seed: 0,
-    stop: &NEVER,
-    done: &|_| (),
-};
+const SETTINGS: Settings<'_> =
+    Settings { warm_up: 200, samples: 150, thin: 3, seed: 0, stop: &NEVER, done: &|_| () };
 
 /// A simulator of two parameters, the first of which turns the order of the fingers.
 struct MadeUp {
@@ -91,7 +87,7 @@ fn calibrated(number: u64, discrepancy: f64, noise: f64) -> Outcome {
     let bench = simulator.bench(observations);
     let posterior = posterior(&bench, &mut stream(number, 1, "posterior"));
     let rest: Vec<usize> = all.into_iter().filter(|i| !measured(i)).collect();
-    let predicted = predict(&bench, &posterior, &rest, Of::Truth);
+    let predicted = predict(&bench, &posterior, &rest, IntervalKind::Truth);
     let predicted = rest.into_iter().zip(predicted).collect();
     Outcome { hidden, posterior, truth, predicted }
 }
@@ -159,7 +155,7 @@ fn pure_noise_narrows_nothing() {
         let posterior = posterior(&bench, &mut stream(number, 3, "posterior"));
         spreads.extend((0..2).map(|i| moments(posterior.iter().map(|s| s[i])).1));
         let (_, scatter) = moments(bench.observations.iter().map(|one| one.range_mm));
-        let interval = predict(&bench, &posterior, &[7], Of::Truth)[0];
+        let interval = predict(&bench, &posterior, &[7], IntervalKind::Truth)[0];
         let least = 0.9 * 2.0 * 1.28 * scatter / 10_f64.sqrt();
         assert!(interval.high_mm - interval.low_mm > least, "{interval:?}");
     }
@@ -177,7 +173,7 @@ fn a_range_known_from_below_lifts_its_finger_and_draws_keep_to_it() {
         let bench =
             simulator.bench([vec![known(0, 5.0, false), known(4, 5.2, false)], more].concat());
         let posterior = posterior(&bench, &mut stream(0, 0, "bound"));
-        *mean = predict(&bench, &posterior, &[12], Of::Truth)[0].mean_mm;
+        *mean = predict(&bench, &posterior, &[12], IntervalKind::Truth)[0].mean_mm;
         let drawn = draws(&bench, &posterior, &[12], 1, &mut stream(0, 1, "bound"));
         let (average, _) = moments(drawn.iter().map(|draw| draw[0]));
         if bench.observations.len() == 3 {

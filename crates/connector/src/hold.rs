@@ -71,7 +71,7 @@ fn cover(pieces: &[Vec<Point3<f64>>], face: f64, side: usize) -> f64 {
     width(span(reaching.flatten())).max(0.0)
 }
 
-/// Returns the highest point of the plug in the column of a roof, from the pads' middle up.
+/// Returns the height of the highest point of the plug under or in a roof, above the middle of the pads.
 fn under_roof(plug: &ConvexBody, shoulder: f64, face: f64, side: usize) -> Option<f64> {
     // Narrowed by the tolerance, so that a part beside the roof does not count.
     let column = match side {

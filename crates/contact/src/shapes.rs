@@ -20,7 +20,7 @@ pub fn surface(shape: &Shape) -> (Vec<Point3<f64>>, Vec<[u32; 3]>) {
     (points.into_iter().map(|p| Point3::from(Vector3::from(p) * MM)).collect(), triangles)
 }
 
-/// Returns the shape of parry, and the turn from its frame to ours.
+/// Returns the shape of parry, and the pose of its frame in ours.
 pub fn shared(shape: &Shape, scale: f64) -> (SharedShape, Pose) {
     match shape {
         Shape::Box { half } => {
@@ -36,7 +36,7 @@ pub fn shared(shape: &Shape, scale: f64) -> (SharedShape, Pose) {
         }
         Shape::Hull { points } => {
             let points: Vec<_> = points.iter().map(|p| (p.coords * scale).into()).collect();
-            // The task file's checks leave no degenerate hull; a ball would be seen at once.
+            // The checks of a task file reject degenerate hulls; a ball of radius 0 would be noticed.
             let hull = SharedShape::convex_hull(&points);
             (hull.unwrap_or_else(|| SharedShape::ball(0.0)), Pose::identity())
         }

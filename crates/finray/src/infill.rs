@@ -15,7 +15,7 @@ pub struct Design {
     pub phase_mm: Option<f64>,
 }
 
-/// Narrowest opening that does not close in printing, as its area over half its perimeter, m.
+/// Width of the narrowest opening that remains open in a print, as its area over half its perimeter, m.
 pub(super) const NARROWEST_VOID: f64 = 0.05 * MM;
 
 /// Centre lines of the ribs: straight lines at `first + n pitch` along `across`.
@@ -23,7 +23,7 @@ pub(super) const NARROWEST_VOID: f64 = 0.05 * MM;
 pub struct RibLines {
     /// Unit vector across the ribs.
     pub across: Vector2<f64>,
-    /// Distance of the first rib from the point that the finger file counts from, m.
+    /// Distance of the first rib from the origin of the ribs in the finger file, m.
     pub phase: f64,
     /// Distance of the first centre line from the finger's origin, m.
     pub first: f64,
@@ -32,7 +32,7 @@ pub struct RibLines {
 }
 
 impl RibLines {
-    /// Creates the centre lines by the rule of the finger file.
+    /// Returns the centre lines by the rule of the finger file.
     pub fn new(finger: &PrintedFinger, design: &Design) -> Self {
         let (sin, cos) = libm::sincos(design.direction_deg * DEG);
         let across = Vector2::new(cos, -sin);
@@ -47,7 +47,7 @@ impl RibLines {
         self.first + n as f64 * self.pitch
     }
 
-    /// Returns the first and last of the lines that bound gaps with anything of a ring in them.
+    /// Returns the numbers of the lines whose gaps contain a part of a ring.
     pub(super) fn range(&self, ring: &[Point2<f64>]) -> std::ops::RangeInclusive<i64> {
         let places = ring.iter().map(|p| (self.across.dot(&p.coords) - self.first) / self.pitch);
         let span = |(low, high): (f64, f64), n: f64| (low.min(n), high.max(n));

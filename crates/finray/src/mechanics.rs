@@ -18,39 +18,39 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-/// Length of a triangle's side, m: halving it changes no entry of a stiffness matrix by
+/// Side length of the triangles, m: half of it changes no entry of a stiffness matrix by
 /// more than 2 % of the springs it couples.
 pub const SIZE: f64 = 0.4 * MM;
-/// Length of a triangle's side across the plane, m: walls are deep beams there, and need fewer.
+/// Side length of the triangles for loads across the plane, m: the walls are deep beams then, and need fewer.
 pub const CROSS_SIZE: f64 = 1.2 * MM;
 /// Compliance stiffness of a finger for a hand-sized gripper, N/mm.
 const PLAUSIBLE: std::ops::RangeInclusive<f64> = 0.05..=100.0;
-/// Number of phases looked at, evenly over one pitch from the finger file's.
+/// Number of evaluated phases, evenly spaced over one pitch, starting at that of the finger file.
 const PHASES: usize = 8;
 
-/// Computed stiffness of a finger at its file's modulus.
+/// Computed stiffness of a finger with the modulus of its file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FingerStiffness {
-    /// In the plane, the part touching the pad alone.
+    /// In the plane, with the part touching the pad only.
     pub pad: PlanarStiffness,
-    /// In the plane, the part touching pad and roof.
+    /// In the plane, with the part touching pad and roof.
     pub pad_and_roof: PlanarStiffness,
-    /// Across the plane, the part touching the pad.
+    /// Across the plane, with the part touching the pad.
     pub cross: CrossStiffness,
 }
 
 /// Computes the stiffness of a finger.
 ///
 /// # Errors
-/// If the profile cannot be meshed or hangs in the air, or its stiffness is not that of a
-/// finger, as when a length or the modulus is in other units than its key says.
+/// If the profile cannot be meshed or is not connected to its base, or its stiffness is not that of a
+/// finger, for example because a length or the modulus is given in a wrong unit.
 pub fn compute(geometry: &Geometry) -> Result<FingerStiffness, FingerError> {
     let [pad, pad_and_roof] = planar(geometry, SIZE)?;
     Ok(FingerStiffness { pad, pad_and_roof, cross: cross(geometry, CROSS_SIZE)? })
 }
 
-/// Returns the stiffness in the plane, of the part touching the pad alone, then of it touching pad and
-/// roof; `size` is the length of a triangle's side, m.
+/// Returns the stiffness in the plane with the part touching the pad only, and with it touching pad and
+/// roof; `size` is the side length of the triangles, m.
 ///
 /// # Errors
 /// As of [`compute`].
@@ -73,10 +73,10 @@ pub fn planar(geometry: &Geometry, size: f64) -> Result<[PlanarStiffness; 2], Fi
     Ok([pad, stiffness(held[1])?])
 }
 
-/// Returns the stiffness across the plane; `size` is the length of a triangle's side, m.
+/// Returns the stiffness across the plane; `size` is the side length of the triangles, m.
 ///
 /// # Errors
-/// If the profile cannot be meshed or hangs in the air.
+/// If the profile cannot be meshed or is not connected to its base.
 pub fn cross(geometry: &Geometry, size: f64) -> Result<CrossStiffness, FingerError> {
     let fails = |problem| FingerError::mesh(geometry, problem);
     let element = MindlinPlate(Slab::of(&geometry.finger));
@@ -84,8 +84,8 @@ pub fn cross(geometry: &Geometry, size: f64) -> Result<CrossStiffness, FingerErr
     CrossStiffness::new(held).ok_or_else(|| fails(MeshError::Limp))
 }
 
-/// Returns the stiffness in the plane ([`planar`]) at every choice that a slicer has for the first rib: at
-/// 8 phases, evenly over one pitch.
+/// Returns the stiffness in the plane ([`planar`]) for the positions of the first rib that a slicer can choose: at
+/// 8 phases, evenly spaced over one pitch.
 ///
 /// # Errors
 /// If the finger cannot be made.
@@ -95,7 +95,7 @@ pub fn over_phases(
     direction_deg: f64,
 ) -> Result<Vec<[PlanarStiffness; 2]>, FingerError> {
     let design = Design { density_percent, direction_deg, phase_mm: None };
-    // A density of 0 has no pitch: the first geometry returns the error.
+    // A density of 0 has no finite pitch: the first geometry returns the error.
     let pitch = RibLines::new(finger, &design).pitch;
     let at = |share: f64| {
         let phase = finger.ribs.phase + share * pitch;

@@ -1,4 +1,4 @@
-//! Triangles with six nodes that fill a polygon with holes.
+//! Meshes of a polygon with holes: triangles with six nodes.
 
 use super::polygon::Ring;
 use nalgebra::Point2;
@@ -8,11 +8,11 @@ use spade::{
 };
 use std::collections::BTreeSet;
 
-/// Smallest angle of a triangle, degrees; above 30 the refinement may not end.
+/// Smallest angle of a triangle, degrees; above 30 the refinement may not terminate.
 const SMALLEST_ANGLE_DEG: f64 = 25.0;
-/// Most nodes of a profile that can be printed.
+/// Largest number of nodes; a profile that can be printed needs fewer.
 const MOST_VERTICES: usize = 100_000;
-/// Triangles below this share of the wanted area are not divided for their angles.
+/// Share of the requested area below which a triangle is not divided to improve its angles.
 const SMALLEST_SHARE: f64 = 1e-3;
 
 /// Straight-sided triangles with nodes at their corners and mid-sides.
@@ -20,7 +20,7 @@ const SMALLEST_SHARE: f64 = 1e-3;
 pub struct Mesh {
     /// Positions of the nodes, m.
     pub nodes: Vec<Point2<f64>>,
-    /// Nodes of each, counter-clockwise: corners, then the middles of the sides 01, 12 and 20.
+    /// Nodes of each triangle, counter-clockwise: corners, then the middles of the sides 01, 12 and 20.
     pub triangles: Vec<[u32; 6]>,
 }
 
@@ -30,10 +30,10 @@ pub enum MeshError {
     /// Rings that cross or touch.
     #[error("its edges cross or touch one another")]
     Crossing,
-    /// Details far below the size of the triangles.
+    /// Details much smaller than the triangles.
     #[error("it takes more than {MOST_VERTICES} triangles: a wall or gap is too thin")]
     TooFine,
-    /// Nodes that nothing holds.
+    /// Nodes that are not supported.
     #[error("a part of the finger is not connected to its base")]
     Loose,
     /// A stiffness matrix that is not positive definite.
@@ -42,10 +42,10 @@ pub enum MeshError {
 }
 
 impl Mesh {
-    /// Fills an outer ring less its holes with triangles of sides of about `size`, m.
+    /// Meshes an outer ring minus its holes, with triangle sides of about `size`, m.
     ///
     /// # Errors
-    /// If rings cross, or details are so small that the mesh would be huge.
+    /// If rings cross, or details are so small that the mesh would be too large.
     pub fn new(outer: &Ring, holes: &[Ring], size: f64) -> Result<Mesh, MeshError> {
         let area = 0.433 * size * size;
         let parameters = RefinementParameters::new()
@@ -56,7 +56,7 @@ impl Mesh {
         Mesh::fill(outer, holes, parameters)
     }
 
-    /// Fills an outer ring less its holes with triangles that have no corners but the rings'.
+    /// Meshes an outer ring minus its holes, with triangles whose corners are those of the rings.
     ///
     /// # Errors
     /// If rings cross.
@@ -106,7 +106,8 @@ impl Mesh {
         })))
     }
 
-    /// Returns the mesh of triangles, given as number, number of the side to the next, and position of corners.
+    /// Creates a mesh from triangles. Each corner is given by its number, the number of the side to the next corner,
+    /// and its position.
     fn quadratic(faces: impl Iterator<Item = [(usize, usize, Point2<f64>); 3]>) -> Mesh {
         let mut mesh = Mesh { nodes: Vec::new(), triangles: Vec::new() };
         let mut known: Vec<Option<u32>> = Vec::new();
@@ -137,7 +138,7 @@ impl Mesh {
         [a, b, c].map(|node| self.nodes[node as usize])
     }
 
-    /// Returns the nodes around the solid and around each opening, in their order along it.
+    /// Returns the nodes on the boundary of the solid and of each opening, in order.
     pub fn boundary(&self) -> Vec<Vec<usize>> {
         let sides = || {
             let of = |&[a, b, c, ab, bc, ca]: &[u32; 6]| [(a, ab, b), (b, bc, c), (c, ca, a)];

@@ -105,8 +105,8 @@ tables! {
 }
 
 impl PrintedFinger {
-    /// Reads and checks a finger; `file` is named in errors. Whether the parts fit one
-    /// another is checked with each design: see [`crate::geometry::Geometry::new`].
+    /// Reads and checks a finger; `file` is named in errors. Whether its parts fit together
+    /// depends on the design: see [`crate::geometry::Geometry::new`].
     ///
     /// # Errors
     /// If the text is not such a file, or a value cannot be used.
@@ -122,7 +122,7 @@ impl PrintedFinger {
         PrintedFinger::checked(document.read()?, document.file())
     }
 
-    /// [`PrintedFinger::parse`] of a file that was read as TOML already.
+    /// Checks the finger of a file that has already been read as TOML.
     ///
     /// # Errors
     /// As of [`PrintedFinger::parse`].
@@ -170,11 +170,11 @@ impl PrintedFinger {
     }
 }
 
-/// Longest length, mm: beyond it the units are wrong.
+/// Largest length, mm; above it the unit is wrong.
 const LONGEST_MM: f64 = 500.0;
 /// Moduli, GPa: silicone has about 0.001, steel 210.
 const MODULI_GPA: std::ops::RangeInclusive<f64> = 1e-4..=500.0;
-/// Largest angle, degrees: beyond it the notch is no notch.
+/// Largest angle, degrees; above it there is no notch.
 const STEEPEST_DEG: f64 = 60.0;
 
 fn length(check: Check<'_>, key: &str, value: f64) -> Result<f64, InputError> {

@@ -19,9 +19,9 @@ impl PlanarStiffness {
         Some(PlanarStiffness { stiffness, compliance })
     }
 
-    /// Returns the finger with these free stiffnesses in y and z, N/m, and the same against tilting. The
-    /// correlations of the compliances stay, so it is positive definite, too: the centre's
-    /// distances change by the roots of new over old compliance.
+    /// Returns a stiffness with these free stiffnesses in y and z, N/m, and the same against tilting. The
+    /// correlations of the compliances are kept, so that it is positive definite; the distances of the
+    /// centre change by the square roots of new over old compliance.
     pub fn corrected(&self, compliance: f64, assembly: f64) -> Option<Self> {
         let free = [self.in_compliance() / compliance, self.in_assembly() / assembly, 1.0];
         let roots = Matrix3::from_diagonal(&Vector3::from(free.map(f64::sqrt)));
@@ -43,7 +43,7 @@ impl PlanarStiffness {
         1.0 / self.compliance[(1, 1)]
     }
 
-    /// Returns the stiffness against turning about the remote centre, y and z free, N m/rad.
+    /// Returns the stiffness against rotation about the remote centre, y and z free, N m/rad.
     pub fn tilting(&self) -> f64 {
         1.0 / self.compliance[(2, 2)]
     }
@@ -59,7 +59,8 @@ impl PlanarStiffness {
         -self.compliance[(1, 2)] / self.compliance[(2, 2)]
     }
 
-    /// Returns the correlation of the compliances in y and z, -1 .. 1; above 0 a pad pushed up nears the part.
+    /// Returns the correlation of the compliances in y and z, -1 .. 1; if positive, a pad that is pushed up approaches the
+    /// part.
     pub fn coupling_yz(&self) -> f64 {
         let c = &self.compliance;
         c[(0, 1)] / (c[(0, 0)] * c[(1, 1)]).sqrt()
@@ -73,9 +74,9 @@ pub struct CrossStiffness {
     pub matrix: Matrix3<f64>,
     /// Stiffness in x, ry and rz free, N/m.
     pub in_depth: f64,
-    /// Stiffness against turning about y, x and rz free, N m/rad.
+    /// Stiffness against rotation about y, x and rz free, N m/rad.
     pub about_y: f64,
-    /// Stiffness against turning about z, x and ry free, N m/rad.
+    /// Stiffness against rotation about z, x and ry free, N m/rad.
     pub about_z: f64,
 }
 

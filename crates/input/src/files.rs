@@ -18,7 +18,7 @@ pub const LARGEST_JOURNAL: u64 = 2 << 30;
 
 /// Prefix and suffix of a temporary file's name, around process and number.
 const TEMPORARY: [&str; 2] = [".optimize-", ".new"];
-/// Age at which a temporary file is taken to be left by a killed process.
+/// Age from which a temporary file is assumed to have been left by a killed process.
 const ABANDONED: Duration = Duration::from_secs(3600);
 
 /// Returns the text of a file.
@@ -82,7 +82,7 @@ fn write_whole(path: &Path, content: &[u8], mode: Option<Permissions>) -> io::Re
     let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty());
     let (temporary, mut file) = temporary(folder.unwrap_or(Path::new(".")))?;
     let written = (|| {
-        // Before it has any content.
+        // Set before the file has any content.
         mode.map_or(Ok(()), |mode| file.set_permissions(mode))?;
         file.write_all(content)?;
         file.sync_all()?;
@@ -101,7 +101,8 @@ pub struct Table {
     file: File,
     path: PathBuf,
     text: String,
-    made: bool,
+    /// Whether this process created the file.
+    created: bool,
 }
 
 impl Table {
@@ -111,7 +112,7 @@ impl Table {
     /// If it cannot be read and written, is not UTF-8 or is longer than `limit` bytes.
     pub fn open(path: &Path, limit: u64) -> io::Result<Self> {
         loop {
-            let made = !path.try_exists()?;
+            let created = !path.try_exists()?;
             let file = File::options().read(true).append(true).create(true).open(path)?;
             let found = file.metadata()?;
             if !found.is_file() {
@@ -124,7 +125,7 @@ impl Table {
             // The previous owner of the lock may have removed or replaced the file.
             if fs::metadata(path).is_ok_and(|now| is_open_file(&now, &file).unwrap_or(false)) {
                 let text = text(read_up_to(&file, limit)?)?;
-                return Ok(Table { file, path: path.to_owned(), text, made });
+                return Ok(Table { file, path: path.to_owned(), text, created });
             }
         }
     }
@@ -141,7 +142,7 @@ impl Table {
     pub fn replace(&mut self, new: &str) -> io::Result<()> {
         let appends = new.starts_with(&self.text);
         let kept = if appends { self.text.len() } else { 0 };
-        let copy = if appends { None } else { Some(self.copied()?) };
+        let copy = if appends { None } else { Some(self.back_up()?) };
         let written = self.rewrite(kept, new);
         let whole = written.is_ok() || self.rewrite(kept, &self.text).is_ok();
         if let (Some(copy), true) = (copy, whole) {
@@ -150,9 +151,9 @@ impl Table {
         written.map(|()| new.clone_into(&mut self.text))
     }
 
-    /// Makes a copy for the case that the process is killed while the file is rewritten. An existing file is
-    /// not overwritten.
-    fn copied(&self) -> io::Result<PathBuf> {
+    /// Makes a copy in case the process is killed while the file is rewritten. An existing file is not
+    /// overwritten.
+    fn back_up(&self) -> io::Result<PathBuf> {
         let mut name = self.path.file_name().unwrap_or_default().to_owned();
         name.push(".before");
         let copy = self.path.with_file_name(name);
@@ -183,7 +184,7 @@ impl Table {
 impl Drop for Table {
     /// Removes a new file to which nothing was added.
     fn drop(&mut self) {
-        if self.made && self.text.is_empty() {
+        if self.created && self.text.is_empty() {
             let _ = fs::remove_file(&self.path);
         }
     }
@@ -233,7 +234,7 @@ pub fn is_open_file(found: &Metadata, open: &File) -> io::Result<bool> {
     Ok(found.is_file() == open.is_file())
 }
 
-/// Escapes control characters, which terminals obey, and those that change the direction of writing as
+/// Escapes control characters, which terminals interpret, and those that change the text direction, as
 /// `\u001b`, so that JSON stays valid.
 pub fn visible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
@@ -312,15 +313,18 @@ mod tests {
     }
 
     #[test]
-    fn a_table_is_written_anew_beside_a_copy_that_is_nobodys() {
+    fn rewriting_a_table_overwrites_no_existing_backup() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("table.csv");
         fs::write(&path, "a line\n").unwrap();
         let mut table = Table::open(&path, LARGEST_INPUT).unwrap();
         let other = dir.path().join("table.csv.before");
-        fs::write(&other, "somebody's").unwrap();
-        assert!(table.replace("another beginning\n").is_err(), "a neighbour is not written over");
-        assert_eq!(fs::read_to_string(&other).unwrap(), "somebody's");
+        fs::write(&other, "older").unwrap();
+        assert!(
+            table.replace("another beginning\n").is_err(),
+            "an existing backup is not overwritten"
+        );
+        assert_eq!(fs::read_to_string(&other).unwrap(), "older");
         fs::remove_file(other).unwrap();
         table.replace("another beginning\n").unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "another beginning\n");

@@ -65,11 +65,7 @@ pub const UNCERTAINTIES: &[Shipped] = shipped! { "typical": "uncertainties/typic
 pub const PRIORS: &[Shipped] = shipped! { "bench": "priors/bench.toml" };
 
 /// Adjustable parameters of a cell beside the infill, for `levers`.
-pub const LEVERS: Shipped = Shipped {
-    name: "levers",
-    file: "priors/levers.toml",
-    text: include_str!("../../../priors/levers.toml"),
-};
+pub const LEVERS: &[Shipped] = shipped! { "levers": "priors/levers.toml" };
 
 /// Measured stiffness of printed fingers.
 pub const STIFFNESS: &[Shipped] = shipped! { "measured": "data/measured_stiffness.csv" };

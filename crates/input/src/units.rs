@@ -19,7 +19,7 @@ pub const GRAM: f64 = 1e-3;
 /// One percent, as a share.
 pub const PERCENT: f64 = 0.01;
 
-/// Number, array or list of numbers that a unit multiplies.
+/// Number, array, list or option of numbers that a factor converts.
 pub trait Quantity<'de>: Deserialize<'de> {
     /// Multiplies its numbers by a factor.
     fn times(self, factor: f64) -> Self;
@@ -88,7 +88,7 @@ pub mod read {
     }
 }
 
-/// Writes a length in mm, to a micrometre.
+/// Formats a length in mm, rounded to a micrometre.
 pub fn mm(length: f64) -> String {
     format!("{}", (length / MM * 1e3).round() / 1e3)
 }

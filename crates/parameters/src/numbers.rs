@@ -257,62 +257,42 @@ pub fn check(check: Check<'_>, path: &str, value: f64) -> Result<(), InputError>
 /// # Errors
 /// The first number that is out of bounds: with the bounds.
 pub fn check_file(root: &str, table: &toml::Table, file: &str) -> Result<(), InputError> {
-    let rows: Vec<Row> = NUMBERS
-        .iter()
-        .filter_map(|number| Some((number, number.pattern.strip_prefix(root)?.strip_prefix('.')?)))
-        .collect();
-    check_table(Check { file }, "", table, &rows)
+    check_table(Check { file }, (root, ""), table)
 }
 
-/// Row of the table with the rest of its pattern, from where a walk through a file has come.
-type Row = (&'static Number, &'static str);
-
-/// Returns the rows whose patterns go on with a word that fits.
-fn next(rows: &[Row], fits: impl Fn(&str) -> bool) -> Vec<Row> {
-    let after = |(number, rest): &Row| {
-        let (word, rest) = rest.split_once('.').unwrap_or((rest, ""));
-        word.split('|').any(&fits).then_some((*number, rest))
-    };
-    rows.iter().filter_map(after).collect()
-}
-
+/// Checks the numbers of a table; `path` is that of the table, and `key` names it in errors.
 fn check_table(
     check: Check<'_>,
-    key: &str,
+    (path, key): (&str, &str),
     table: &toml::Table,
-    rows: &[Row],
 ) -> Result<(), InputError> {
     let name = table.get("name").and_then(Value::as_str).filter(|_| !key.is_empty());
-    for (word, value) in table {
-        let rows = next(rows, |one| one == word);
-        if !rows.is_empty() {
-            let key = match name {
-                Some(name) => format!("{key} \"{name}\" {word}"),
-                None if key.is_empty() => word.clone(),
-                None => format!("{key}.{word}"),
-            };
-            check_value(check, &key, value, &rows)?;
-        }
-    }
-    Ok(())
+    table.iter().try_for_each(|(word, value)| {
+        let key = match name {
+            Some(name) => format!("{key} \"{name}\" {word}"),
+            None if key.is_empty() => word.clone(),
+            None => format!("{key}.{word}"),
+        };
+        check_value(check, (&format!("{path}.{word}"), &key), value)
+    })
 }
 
-fn check_value(check: Check<'_>, key: &str, value: &Value, rows: &[Row]) -> Result<(), InputError> {
-    match value {
-        Value::Table(table) => check_table(check, key, table, rows),
-        Value::Array(items) => {
-            let mut below = next(rows, |one| one == "*");
+fn check_value(
+    check: Check<'_>,
+    (path, key): (&str, &str),
+    value: &Value,
+) -> Result<(), InputError> {
+    let number = value.as_float().or(value.as_integer().map(|whole| whole as f64));
+    match (value, number) {
+        (Value::Table(table), _) => check_table(check, (path, key), table),
+        (Value::Array(items), _) => items.iter().enumerate().try_for_each(|(i, item)| {
             // The numbers of a list that vary together have one path.
-            below.extend(rows.iter().filter(|(_, rest)| rest.is_empty()));
-            items.iter().try_for_each(|item| check_value(check, key, item, &below))
-        }
-        Value::Integer(_) | Value::Float(_) => {
-            let number = value.as_float().or(value.as_integer().map(|whole| whole as f64));
-            match (number, rows.iter().find(|(_, rest)| rest.is_empty())) {
-                (Some(value), Some((row, _))) => out_of_bounds(value, row.bounds)
-                    .map_or(Ok(()), |problem| check.fail(key, problem)),
-                _ => Ok(()),
-            }
+            let below = format!("{path}.{i}");
+            let own = NUMBERS.iter().any(|number| fits(number.pattern, path));
+            check_value(check, (if own { path } else { &below }, key), item)
+        }),
+        (_, Some(number)) => {
+            problem(path, number).map_or(Ok(()), |problem| check.fail(key, problem))
         }
         _ => Ok(()),
     }

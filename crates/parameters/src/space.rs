@@ -1,8 +1,8 @@
 //! Search spaces: named, bounded, stepped parameters, and the designs in them.
 
+use crate::numbers::Kind;
 pub use crate::numbers::{DENSITY as DENSITY_KEY, DIRECTION as DIRECTION_KEY};
-use crate::numbers::{Kind, NUMBERS};
-use crate::{Parameter, Path, Scale};
+use crate::{Parameter, Path, Scale, numbers};
 use ask_tell::GridPoint;
 use input::{Check, InputError, read, shown};
 use serde::{Deserialize, Serialize};
@@ -174,14 +174,9 @@ impl Design {
         direction_deg: f64,
         given: &str,
     ) -> Result<Self, InputError> {
-        let infill = NUMBERS.iter().filter(|number| number.kind == Kind::Infill);
-        for (number, value) in infill.zip([density_percent, direction_deg]) {
-            let [least, most] = number.bounds;
-            // `contains` is false for NaN.
-            let inside = (least..=most).contains(&value);
-            let must = format!("lie in {least} .. {most}");
-            Check { file: given }.require(number.pattern, value, inside, &must)?;
-        }
+        let check = Check { file: given };
+        numbers::check(check, DENSITY_KEY, density_percent)?;
+        numbers::check(check, DIRECTION_KEY, direction_deg)?;
         Ok(Design::infill(density_percent, direction_deg))
     }
 

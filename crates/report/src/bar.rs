@@ -1,7 +1,7 @@
 //! The window of the recommended finger as bars over the start's offset: simulated, firm, computed from
 //! its ribs, and measured on a robot.
 
-use crate::answer::words::{design, end, ends_mm, interval, mm, span};
+use crate::answer::words::{design, end, ends_mm, interval, mm, on, span};
 use crate::answer::{Answer, Measured, OnTask, Recommended, Trust, UnderRobot, Verdict, lines};
 use crate::glossary::explained;
 use insertion::evaluation::Window;
@@ -55,9 +55,9 @@ impl Bar {
 /// recommended.
 pub(super) fn section(answer: &Answer, robots: &[UnderRobot]) -> Option<Markup> {
     answer.verdict.finger()?;
-    let drawn = |on: &str, mut rows: Vec<Bar>| {
+    let drawn = |task: &str, mut rows: Vec<Bar>| {
         rows.extend(robots.iter().map(on_robot));
-        bars(on, &rows)
+        bars(task, &rows)
     };
     if let Some(bench) = &answer.record.on_bench {
         return Some(drawn("", on_bench(answer, bench)));
@@ -65,7 +65,7 @@ pub(super) fn section(answer: &Answer, robots: &[UnderRobot]) -> Option<Markup> 
     let found = answer.recommended.as_ref()?;
     Some(html! {
         @for (at, task) in found.tasks.iter().enumerate() {
-            (drawn(&found.on(task), rows(answer, found, (at, task))))
+            (drawn(&on(&answer.record.config, task.name), rows(answer, found, (at, task))))
         }
     })
 }
@@ -80,7 +80,7 @@ fn on_robot(robot: &UnderRobot) -> Bar {
 
 fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> Vec<Bar> {
     // The safe choice was not confirmed itself.
-    let other = answer.named().filter(|named| named.index != found.design.index);
+    let other = answer.design_to_print().filter(|named| named.index != found.design.index);
     let mut rows = vec![match other.and_then(|named| named.on(at)) {
         Some(other) => Bar::simulated(&other.window, None),
         None => Bar::simulated(&task.measured.window, task.firm.and_then(|firm| firm.window_mm())),

@@ -31,14 +31,13 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
             100.0 * INTERVAL
         );
     }
-    let best = by_range(result).into_iter().take(LISTED).map(|prediction| {
-        let range = &prediction.range;
+    let best = by_range(result).into_iter().take(LISTED).map(|one| {
         [
-            design(&subject.designs[prediction.finger]),
-            format!("{:.1}", range.mean_mm),
-            format!("{:.1} to {:.1}", range.low_mm, range.high_mm),
-            format!("{:.1} %", 100.0 * prediction.best),
-            format!("{:.1}", range.simulated_mm),
+            design(&one.design),
+            format!("{:.1}", one.range_mm),
+            format!("{:.1} to {:.1}", one.low_mm, one.high_mm),
+            format!("{:.1} %", 100.0 * one.probability_best),
+            format!("{:.1}", one.simulated_mm),
         ]
     });
     let head = ["best on the bench", "range mm", "80 % interval", "is the best", "simulated"];

@@ -2,6 +2,8 @@
 
 use super::ReportError;
 use super::theme::{Colour, INK, LINES, MUTED, PAPER};
+use crate::answer::words::extent;
+use analysis::levers::plain;
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -12,7 +14,9 @@ use std::ops::Range;
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 pub(super) type Chart<'a, 'b> =
     ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-pub(super) type Drawn = Result<(), String>;
+/// Error of the drawing library, or of what computes a curve.
+pub(super) type Problem = Box<dyn std::error::Error>;
+pub(super) type Drawn = Result<(), Problem>;
 
 /// Draws on a blank canvas of `size` pixels and returns the SVG.
 pub(super) fn sheet(
@@ -21,20 +25,14 @@ pub(super) fn sheet(
     draw: impl FnOnce(&Area<'_>) -> Drawn,
 ) -> Result<String, ReportError> {
     let mut svg = String::new();
-    let drawn = {
-        let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
-        area.fill(&PAPER.rgb())
-            .map_err(message)
-            .and_then(|()| draw(&area))
-            .and_then(|()| area.present().map_err(message))
+    let canvas = |svg| -> Drawn {
+        let area = SVGBackend::with_string(svg, size).into_drawing_area();
+        area.fill(&PAPER.rgb())?;
+        draw(&area)?;
+        Ok(area.present()?)
     };
-    drawn.map_err(|problem| ReportError { plot, problem })?;
+    canvas(&mut svg).map_err(|problem| ReportError { plot, problem: problem.to_string() })?;
     Ok(svg)
-}
-
-/// Converts an error of the drawing library to text.
-pub(super) fn message(error: impl std::fmt::Display) -> String {
-    error.to_string()
 }
 
 /// Axis: label with unit, and range.
@@ -46,7 +44,7 @@ pub(super) fn axes<'a, 'b>(
     title: &str,
     x: Axis<'_>,
     y: Axis<'_>,
-) -> Result<Chart<'a, 'b>, String> {
+) -> Result<Chart<'a, 'b>, Problem> {
     framed(area, title, x, y, 62, true)
 }
 
@@ -58,7 +56,7 @@ pub(super) fn rows<'a, 'b>(
     x: Axis<'_>,
     count: usize,
     left: u32,
-) -> Result<Chart<'a, 'b>, String> {
+) -> Result<Chart<'a, 'b>, Problem> {
     framed(area, title, x, ("", -(count.max(1) as f64)..0.0), left, false)
 }
 
@@ -69,13 +67,13 @@ fn framed<'a, 'b>(
     y: Axis<'_>,
     left: u32,
     y_grid: bool,
-) -> Result<Chart<'a, 'b>, String> {
+) -> Result<Chart<'a, 'b>, Problem> {
     let mut builder = ChartBuilder::on(area);
     builder.margin(10).margin_right(18).x_label_area_size(48).y_label_area_size(left);
     if !title.is_empty() {
         builder.caption(title, font(19).color(&INK.rgb()));
     }
-    let mut chart = builder.build_cartesian_2d(x.1, y.1).map_err(message)?;
+    let mut chart = builder.build_cartesian_2d(x.1, y.1)?;
     let mut mesh = chart.configure_mesh();
     if !y_grid {
         mesh.disable_y_mesh().disable_y_axis();
@@ -84,20 +82,19 @@ fn framed<'a, 'b>(
         .y_desc(y.0)
         .x_labels(7)
         .y_labels(7)
-        .x_label_formatter(&|v| tick(*v))
-        .y_label_formatter(&|v| tick(*v))
+        .x_label_formatter(&|v| plain(*v))
+        .y_label_formatter(&|v| plain(*v))
         .axis_style(MUTED.rgb())
         .bold_line_style(LINES.rgb())
         .light_line_style(TRANSPARENT)
         .label_style(font(15).color(&INK.rgb()))
         .axis_desc_style(font(16).color(&INK.rgb()))
-        .draw()
-        .map_err(message)?;
+        .draw()?;
     Ok(chart)
 }
 
 pub(super) fn legend<'a, 'b: 'a>(chart: &mut Chart<'a, 'b>, corner: SeriesLabelPosition) -> Drawn {
-    chart
+    let legend = chart
         .configure_series_labels()
         .position(corner)
         .margin(8)
@@ -105,8 +102,8 @@ pub(super) fn legend<'a, 'b: 'a>(chart: &mut Chart<'a, 'b>, corner: SeriesLabelP
         .label_font(font(15).color(&INK.rgb()))
         .background_style(PAPER.rgb().mix(0.85))
         .border_style(LINES.rgb())
-        .draw()
-        .map_err(message)
+        .draw();
+    Ok(legend?)
 }
 
 /// Returns the viewer's default sans-serif font.
@@ -118,19 +115,8 @@ pub(super) fn words(size: u32, colour: Colour, h: HPos, v: VPos) -> TextStyle<'s
     font(size).color(&colour.rgb()).pos(Pos::new(h, v))
 }
 
-/// Formats a tick label without rounding noise: 0.30000000000000004 becomes 0.3.
-pub(super) fn tick(value: f64) -> String {
-    let rounded = (value * 1e3).round() / 1e3;
-    // Adding 0 turns -0 into 0.
-    format!("{}", rounded + 0.0)
-}
-
 pub(super) fn around(values: impl Iterator<Item = f64>, room: f64) -> Range<f64> {
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for value in values.filter(|v| v.is_finite()) {
-        low = low.min(value);
-        high = high.max(value);
-    }
+    let [low, high] = extent(values.filter(|v| v.is_finite()));
     if low > high {
         return 0.0..1.0;
     }

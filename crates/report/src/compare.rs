@@ -1,6 +1,6 @@
 //! Studies of the same problem beside each other: optimizers against evaluations.
 
-use super::chart::{Area, Drawn, around, axes, legend, message, sheet};
+use super::chart::{Area, Drawn, around, axes, legend, sheet};
 use super::convergence::best_so_far;
 use super::elements::{document, figure, table};
 use super::marks::{line, stairs};
@@ -266,8 +266,7 @@ fn draw(area: &Area<'_>, comparison: &Comparison, title: &str) -> Drawn {
         let mut outline = quartile(group, 0);
         outline.extend(quartile(group, 2).into_iter().rev());
         if !outline.is_empty() {
-            let band = Polygon::new(outline, colour.rgb().mix(0.16).filled());
-            chart.draw_series([band]).map_err(message)?;
+            chart.draw_series([Polygon::new(outline, colour.rgb().mix(0.16).filled())])?;
         }
     }
     let several =

@@ -2,10 +2,10 @@
 //! hypervolume.
 
 use super::ReportError;
-use super::chart::{Area, Drawn, around, axes, message, sheet, words};
+use super::chart::{Area, Drawn, around, axes, sheet, words};
 use super::drawn::{PLOTTED, drawn, note, turning};
 use super::elements::figure;
-use super::marks::{PointMark, Series, dashed, key, line, points, stairs};
+use super::marks::{PointMark, Series, dashed, key, label, line, points, stairs};
 use super::theme::{BLUE, GREEN, MUTED, ORANGE, RED};
 use crate::answer::words::{settled, volume_unit};
 use insertion::evaluation::objective::Measure;
@@ -79,15 +79,14 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
     let (bottom, top) = (range.start.max(0.0), range.end);
     let last = count.max(2) as f64 - 1.0;
     let x = ("evaluation", -0.02 * last..1.02 * last);
-    let (label, name) = match objectives.single() {
+    let (y_label, name) = match objectives.single() {
         Some(measure) => (measure.label(), "best so far"),
         None => (format!("hypervolume ({})", volume_unit(objectives)), "hypervolume so far"),
     };
     if count == 0 {
-        let mut chart = axes(area, "", x, (&label, range))?;
+        let mut chart = axes(area, "", x, (&y_label, range))?;
         let style = words(17, MUTED, HPos::Center, VPos::Center);
-        let note = Text::new("no evaluations yet", (0.5, 0.5), style);
-        return chart.draw_series([note]).map(|_| ()).map_err(message);
+        return label(&mut chart, (0.5, 0.5), (0, 0), "no evaluations yet", &style);
     }
     let shown = drawn(record, &record.evaluations, PLOTTED);
     let of = |which: &dyn Fn(&Recorded) -> bool| -> Vec<(f64, f64)> {
@@ -119,7 +118,7 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
     series.retain(|(points, ..)| !points.is_empty());
     let best_line = ORANGE.rgb().stroke_width(3);
     let area = key(area, &series, (best_line, name))?;
-    let mut chart = axes(&area, "", x, (&label, range))?;
+    let mut chart = axes(&area, "", x, (&y_label, range))?;
     if record.settled {
         dashed(&mut chart, [bottom, top].map(|value| (last, value)))?;
     }

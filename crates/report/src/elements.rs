@@ -1,9 +1,9 @@
 //! Building blocks of the page's sections.
 
 use super::theme::{inline, variables};
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 
-/// Returns a page without external resources.
+/// Returns a page without external resources, in the style of the report.
 pub(super) fn document(title: &str, body: Markup) -> String {
     let (light, dark) = (variables(false), variables(true));
     let style = format!(
@@ -13,7 +13,7 @@ pub(super) fn document(title: &str, body: Markup) -> String {
     styled(title, &style, body)
 }
 
-/// Returns a page without external resources in a given style.
+/// Returns a page without external resources, with a given style sheet.
 pub(super) fn styled(title: &str, style: &str, body: Markup) -> String {
     let policy =
         "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
@@ -33,13 +33,14 @@ pub(super) fn styled(title: &str, style: &str, body: Markup) -> String {
     page.into_string()
 }
 
-/// Returns an SVG from a file as the address of an image, in which scripts do not run.
-pub(super) fn inert(svg: &str) -> String {
-    let marks = [('%', "%25"), ('#', "%23"), ('<', "%3C"), ('>', "%3E"), ('"', "%22")];
-    let svg = marks.iter().fold(svg.to_owned(), |svg, (mark, code)| svg.replace(*mark, code));
+/// Returns an SVG as a `data:` URL for an image element, in which its scripts do not run.
+pub(super) fn data_url(svg: &str) -> String {
+    let escapes = [('%', "%25"), ('#', "%23"), ('<', "%3C"), ('>', "%3E"), ('"', "%22")];
+    let svg = escapes.iter().fold(svg.to_owned(), |svg, (sign, code)| svg.replace(*sign, code));
     format!("data:image/svg+xml,{svg}")
 }
 
+/// Returns names and their values as a definition list.
 pub(super) fn definitions(pairs: &[(String, String)]) -> Markup {
     html! {
         dl { @for (name, value) in pairs { dt { (name) } dd { (value) } } }
@@ -59,7 +60,7 @@ pub(super) fn table(head: &[&str], rows: &[Vec<String>]) -> Markup {
 }
 
 /// Returns a table whose cells are stacked with their headings on a phone.
-pub(super) fn stacked(head: &[&str], rows: &[Vec<Markup>]) -> Markup {
+pub(super) fn stacked(head: &[&str], rows: &[Vec<impl Render>]) -> Markup {
     html! {
         table.stacked {
             thead { tr { @for name in head { th { (name) } } } }

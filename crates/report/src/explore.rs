@@ -3,16 +3,16 @@
 
 use super::drawn::{LISTED, drawn};
 use super::elements::table;
-use super::surface::{self, Surface};
-use crate::answer::words::{self, end, ends_mm, mm, span, success};
+use super::surface;
+use crate::answer::words::{self, end, ends_mm, mm, rounded, span, success};
 use crate::answer::{Answer, command};
 use input::units::N_PER_MM;
 use insertion::evaluation::Window;
 use insertion::evaluation::objective::Measure;
 use insertion::outcome::Outcome;
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY, label};
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Variable, label};
 use maud::{Markup, PreEscaped, html};
-use serde::Serialize;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::Path;
 use study::{Recorded, StudyRecord};
@@ -24,7 +24,7 @@ pub(super) fn section(answer: &Answer, dir: &Path) -> Option<Markup> {
     let record = answer.record;
     record.best()?;
     let model = surface::Model::of(record);
-    let data = Data::new(answer, model.as_ref(), dir);
+    let data = data(answer, model.as_ref(), dir);
     Some(html! {
         p.muted {
             "Values of the search"
@@ -67,11 +67,10 @@ fn best(answer: &Answer) -> Markup {
         all.into_iter().filter_map(|found| Some((found, found.feasible()?))).collect();
     // Stable, so that equals stay in their order.
     best.sort_by(|a, b| goals.order(b.1, a.1));
-    let named = answer.named().map(|named| named.index);
+    let named = answer.design_to_print().map(|named| named.index);
     best.sort_by_key(|(found, _)| Some(found.index) != named);
     best.truncate(SHOWN);
-    let on_robot =
-        |found: &Recorded| answer.measured.iter().find(|measured| measured.design == found.design);
+    let on_robot = |found: &Recorded| answer.on_robot(&found.design);
     let any_measured = best.iter().any(|(found, _)| on_robot(found).is_some());
     let row = |(found, values): &(&Recorded, &[f64])| {
         let window = &found.on(0)?.window;
@@ -83,7 +82,7 @@ fn best(answer: &Answer) -> Markup {
             ends(window).join(" | "),
         ];
         if any_measured {
-            cells.push(on_robot(found).map_or(String::new(), |measured| mm(measured.range_mm)));
+            cells.push(on_robot(found).map_or(String::new(), mm));
         }
         Some(cells)
     };
@@ -97,94 +96,50 @@ fn ends(window: &Window) -> [String; 2] {
 }
 
 /// Returns JSON for a script element, which ends at the first `</`.
-pub(super) fn embedded(data: &impl Serialize) -> String {
-    // Strings, numbers and lists of them always serialize.
-    serde_json::to_string(data).unwrap_or_default().replace('<', "\\u003c")
+pub(super) fn embedded(data: &Value) -> String {
+    data.to_string().replace('<', "\\u003c")
 }
 
-/// Data of the explorer.
-#[derive(Serialize)]
-struct Data<'a> {
-    parameters: Vec<Axis<'a>>,
-    measure: Objective,
-    robot: BTreeMap<u64, f64>,
-    raced: BTreeMap<u64, String>,
-    confirmed: BTreeMap<u64, f64>,
-    evaluations: Vec<Row>,
-    outcomes: Vec<String>,
-    on: String,
-    best: Option<u64>,
-    command: String,
-    model: Option<Surface>,
-}
-
-#[derive(Serialize)]
-struct Axis<'a> {
-    label: String,
-    unit: &'a str,
-    low: f64,
-    high: f64,
-    option: String,
-}
-
-#[derive(Serialize)]
-struct Objective {
-    label: String,
-    name: &'static str,
-    unit: &'static str,
-    sense: f64,
-}
-
-/// Evaluation, as a list to keep it short: number, parameters, value, whether it is feasible (1 or 0), both
-/// ends (mm), the outcomes there (as indices of `outcomes`), largest force (N) and compliance (N/mm).
-#[derive(Serialize)]
-struct Row(u64, Vec<f64>, Option<f64>, u8, Option<[f64; 2]>, Option<Vec<usize>>, Option<f64>, f64);
-
-impl<'a> Data<'a> {
-    fn new(answer: &'a Answer, model: Option<&surface::Model>, dir: &Path) -> Self {
-        let (record, config) = (answer.record, &answer.record.config);
-        let measure = config.objective.first();
-        let parameter = |p: &'a insertion::space::Variable| {
-            let (label, unit) = label(&p.key);
-            let option = match p.key.as_str() {
-                DENSITY_KEY => "--density ".to_owned(),
-                DIRECTION_KEY => "--direction ".to_owned(),
-                key => format!("--set {key}="),
-            };
-            Axis { label, unit, low: p.low, high: p.high, option }
+/// Returns the data of the explorer.
+fn data(answer: &Answer, model: Option<&surface::Model>, dir: &Path) -> Value {
+    let (record, config) = (answer.record, &answer.record.config);
+    let measure = config.objective.first();
+    let parameter = |p: &Variable| {
+        let (label, unit) = label(&p.key);
+        let option = match p.key.as_str() {
+            DENSITY_KEY => "--density ".to_owned(),
+            DIRECTION_KEY => "--direction ".to_owned(),
+            key => format!("--set {key}="),
         };
-        let shown = drawn(record, record.current(), LISTED);
-        let robot = |found: &&Recorded| {
-            let mut measured = answer.measured.iter();
-            let measured = measured.find(|measured| measured.design == found.design)?;
-            Some((found.index, measured.range_mm))
-        };
-        let finger = answer.verdict.finger();
-        let best = record.current().iter().find(|found| Some(&found.design) == finger);
-        let raced = |found: &&Recorded| Some((found.index, bound(found)?));
-        let mut outcomes = Vec::new();
-        let row = |found: &&Recorded| Row::new(record, found, &mut outcomes);
-        let evaluations = shown.iter().map(row).collect();
-        let on = config.tasks().next().filter(|_| config.several_tasks());
-        Data {
-            parameters: config.space.parameters.iter().map(parameter).collect(),
-            measure: Objective {
-                label: measure.label(),
-                name: measure.name(),
-                unit: measure.unit(),
-                sense: measure.sense(),
-            },
-            robot: shown.iter().filter_map(robot).collect(),
-            raced: shown.iter().filter_map(raced).collect(),
-            confirmed: answer.walked.iter().map(|(found, mm)| (found.index, *mm)).collect(),
-            evaluations,
-            outcomes,
-            on: on.map_or(String::new(), |task| format!(" on {task}")),
-            best: best.map(|best| best.index),
-            command: command::trial(record, dir),
-            model: model.and_then(|model| surface::of(record, model)),
-        }
-    }
+        json!({"label": label, "unit": unit, "low": p.low, "high": p.high, "option": option})
+    };
+    let shown = drawn(record, record.current(), LISTED);
+    let robot = |found: &&Recorded| Some((found.index, answer.on_robot(&found.design)?));
+    let confirmed = answer.walked.iter().map(|(found, mm)| (found.index, *mm));
+    let finger = answer.verdict.finger();
+    let best = record.current().iter().find(|found| Some(&found.design) == finger);
+    let raced = |found: &&Recorded| Some((found.index, bound(found)?));
+    let mut outcomes = Vec::new();
+    let row = |found: &&Recorded| row(record, found, &mut outcomes);
+    let evaluations: Value = shown.iter().map(row).collect();
+    json!({
+        "parameters": config.space.parameters.iter().map(parameter).collect::<Value>(),
+        "measure": {
+            "label": measure.label(),
+            "name": measure.name(),
+            "unit": measure.unit(),
+            "sense": measure.sense(),
+        },
+        "robot": shown.iter().filter_map(robot).collect::<BTreeMap<_, _>>(),
+        "raced": shown.iter().filter_map(raced).collect::<BTreeMap<_, _>>(),
+        "confirmed": confirmed.collect::<BTreeMap<_, _>>(),
+        "evaluations": evaluations,
+        "outcomes": outcomes,
+        "on": words::on(config, config.tasks().next().unwrap_or_default()),
+        "best": best.map(|best| best.index),
+        "command": command::trial(record, dir),
+        "model": model.and_then(|model| surface::of(record, model)),
+    })
 }
 
 /// Returns the upper bound of the success rate in words; `None` if the design was not raced.
@@ -194,30 +149,30 @@ fn bound(found: &Recorded) -> Option<String> {
     rates.reduce(|all, one| format!("{all}; {one}"))
 }
 
-impl Row {
-    fn new(record: &StudyRecord, found: &Recorded, outcomes: &mut Vec<String>) -> Self {
-        let parameters = record.config.space.parameters.iter();
-        let window = found.on(0).map(|found| &found.window);
-        let inserts = window.filter(|window| window.nominal == Outcome::Inserted);
-        let mut index = |word: String| {
-            outcomes.iter().position(|other| *other == word).unwrap_or_else(|| {
-                outcomes.push(word);
-                outcomes.len() - 1
-            })
-        };
-        let tenth = |value: f64| (10.0 * value).round() / 10.0;
-        Row(
-            found.index,
-            parameters.filter_map(|p| found.design.get(&p.key)).collect(),
-            found.known_value().map(|value| (1e3 * value).round() / 1e3),
-            u8::from(found.feasible().is_some()),
-            inserts.map(|window| ends_mm(window).map(tenth)),
-            window.map(|window| match inserts {
-                Some(_) => ends(window).map(&mut index).to_vec(),
-                None => vec![index(words::outcome(window.nominal))],
-            }),
-            found.on(0).and_then(|found| Measure::PeakForce.value(found)).map(tenth),
-            (100.0 * found.stiffness.compliance.mean / N_PER_MM).round() / 100.0,
-        )
-    }
+/// Returns an evaluation, as a list to keep it short: number, parameters, value, whether it is feasible (1 or 0), both
+/// ends (mm), the outcomes there (as indices of `outcomes`), largest force (N) and compliance (N/mm).
+fn row(record: &StudyRecord, found: &Recorded, outcomes: &mut Vec<String>) -> Value {
+    let parameters = record.config.space.parameters.iter();
+    let window = found.on(0).map(|found| &found.window);
+    let inserts = window.filter(|window| window.nominal == Outcome::Inserted);
+    let mut index = |word: String| {
+        outcomes.iter().position(|other| *other == word).unwrap_or_else(|| {
+            outcomes.push(word);
+            outcomes.len() - 1
+        })
+    };
+    let tenth = |value: f64| rounded(value, 1);
+    json!([
+        found.index,
+        parameters.filter_map(|p| found.design.get(&p.key)).collect::<Vec<_>>(),
+        found.known_value().map(|value| (1e3 * value).round() / 1e3),
+        u8::from(found.feasible().is_some()),
+        inserts.map(|window| ends_mm(window).map(tenth)),
+        window.map(|window| match inserts {
+            Some(_) => ends(window).map(&mut index).to_vec(),
+            None => vec![index(words::outcome(window.nominal))],
+        }),
+        found.on(0).and_then(|found| Measure::PeakForce.value(found)).map(tenth),
+        (100.0 * found.stiffness.compliance.mean / N_PER_MM).round() / 100.0,
+    ])
 }

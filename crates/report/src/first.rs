@@ -2,12 +2,12 @@
 //! and the next command.
 
 use super::beside::{Beside, Film};
-use super::elements::{figure, inert};
+use super::elements::{data_url, figure};
 use super::glossary::explained;
 use super::printer::{self, recommended};
-use super::replay::{ENDS, pair_file};
+use super::replay::{ENDS, pair_file, viewer};
 use super::{bar, explore};
-use crate::answer::words::{design, evaluated, outcome, remedy};
+use crate::answer::words::{design, evaluated, on, outcome, remedy};
 use crate::answer::{Answer, Verdict, command, expectation, lines};
 use finray::export::sheet;
 use insertion::evaluation::Evaluation;
@@ -35,7 +35,7 @@ pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
         }
         div.first {
             @if stuck { (nominal(answer, beside)) }
-            @else if let Some((_, tasks)) = answer.shown() { (films(answer, &tasks, beside)) }
+            @else if let Some((_, tasks)) = answer.finger_and_evaluations() { (films(answer, &tasks, beside)) }
             div {
                 (bar::section(answer, &beside.analyses.robots).unwrap_or_default())
                 (drawn(answer).unwrap_or_default())
@@ -97,7 +97,7 @@ fn nominal(answer: &Answer, beside: &Beside) -> Markup {
                 @let text = svg.split_once("<text").and_then(|(_, rest)| rest.split_once('>'));
                 @let text = text.and_then(|(_, rest)| rest.split('<').next()).unwrap_or_default();
                 figure.wide {
-                    img alt="the nominal start, phase by phase, from two sides" src=(inert(svg));
+                    img alt="the nominal start, phase by phase, from two sides" src=(data_url(svg));
                     figcaption { (PreEscaped(text)) "; the last phase is the one in which it fails" }
                 }
             }
@@ -112,7 +112,8 @@ pub fn preferred(answer: &Answer) -> &'static str {
         end.is_some_and(|end| informative.contains(&end))
     };
     let [negative, positive] = ENDS.map(|(end, _)| end);
-    let window = answer.shown().and_then(|(_, tasks)| Some(&tasks.first()?.window));
+    let window =
+        answer.finger_and_evaluations().and_then(|(_, tasks)| Some(&tasks.first()?.window));
     let below = window.is_some_and(|w| informative(w.end_negative) && !informative(w.end_positive));
     if below { negative } else { positive }
 }
@@ -129,7 +130,7 @@ fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Markup {
                 @if let Some(film) = shown.first() {
                     div.stage {
                         @if let Some(poster) = &film.poster {
-                            img src=(inert(poster)) alt="how the failed trial ended";
+                            img src=(data_url(poster)) alt="how the failed trial ended";
                         }
                         iframe #film title="two trials: the last that inserts, the first that fails" sandbox="allow-scripts" {}
                     }
@@ -156,7 +157,7 @@ fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Markup {
                     }
                 }
                 script type="application/json" id="viewer" {
-                    (PreEscaped(explore::embedded(&super::replay::viewer())))
+                    (PreEscaped(explore::embedded(&viewer().into())))
                 }
                 script { (PreEscaped(include_str!("films.js"))) }
             }
@@ -165,10 +166,8 @@ fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Markup {
 }
 
 fn label(answer: &Answer, film: &Film) -> String {
-    let task = answer.record.config.tasks().nth(film.task).unwrap_or_default();
-    let on =
-        if answer.record.config.several_tasks() { format!(" on {task}") } else { String::new() };
-    format!("{} end{on}", film.end)
+    let config = &answer.record.config;
+    format!("{} end{}", film.end, on(config, config.tasks().nth(film.task).unwrap_or_default()))
 }
 
 /// Returns `Left: the last start that inserts (+5.7 mm). Right: the next (+5.8 mm): jammed (class 3).`

@@ -19,8 +19,8 @@ struct Bar<'a> {
 }
 
 /// Returns the bars of the levers and of the infill, largest span first.
-fn bars(levers: &Levers) -> Vec<Bar<'_>> {
-    let bar = |lever: &'_ Lever| {
+fn bars<'a>(levers: &'a Levers) -> Vec<Bar<'a>> {
+    let bar = |lever: &'a Lever| {
         let end = |end: usize| {
             let amount = lever.amount([lever.low, lever.high][end]);
             match lever.ends[end] {
@@ -28,13 +28,10 @@ fn bars(levers: &Levers) -> Vec<Bar<'_>> {
                 None => (0.0, format!("none at {amount}")),
             }
         };
-        (lever.span_mm(levers.base), [end(0), end(1)])
-    };
-    let of = |lever| {
-        let (span_mm, ends) = bar(lever);
+        let (span_mm, ends) = (lever.span_mm(levers.base), [end(0), end(1)]);
         Bar { name: &lever.name, span_mm, ends, lever: Some(lever) }
     };
-    let mut bars: Vec<_> = levers.levers.iter().map(of).collect();
+    let mut bars: Vec<_> = levers.levers.iter().map(bar).collect();
     let span_mm = apart(levers.infill);
     let ends = levers.infill.map(|range| (range, format!("{range:.1} mm")));
     let at = bars.partition_point(|bar| bar.span_mm > span_mm);
@@ -110,13 +107,8 @@ fn draw(area: &Area<'_>, levers: &Levers, bars: &[Bar<'_>]) -> Drawn {
         for (words, ink, x, side) in
             [(*name, ink, left, HPos::Left), (&moves, MUTED, right, HPos::Right)]
         {
-            label(
-                &mut chart,
-                (x, y - 0.2),
-                (0, 0),
-                words,
-                &text_style(TEXT, ink, side, VPos::Center),
-            )?;
+            let style = text_style(TEXT, ink, side, VPos::Center);
+            label(&mut chart, (x, y - 0.2), (0, 0), words, &style)?;
         }
         for ((mm, words), top) in ends.iter().zip([y - 0.37, y - 0.65]) {
             let (by, anchor) = if *mm < base { (-5, HPos::Right) } else { (5, HPos::Left) };

@@ -1,6 +1,6 @@
 //! Elements drawn in plots: marked points, lines, stairs.
 
-use super::chart::{Area, Chart, Drawn, message, words};
+use super::chart::{Area, Chart, Drawn, Problem, words};
 use super::theme::{Colour, INK, MUTED};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -52,7 +52,7 @@ pub(super) fn key<'b>(
     area: &Area<'b>,
     series: &[Series<'_>],
     (style, line): (ShapeStyle, &str),
-) -> Result<Area<'b>, String> {
+) -> Result<Area<'b>, Problem> {
     let [height, mark, letter] = KEY;
     let names = series.iter().map(|(_, mark, name)| (Some(mark), *name)).chain([(None, line)]);
     let (right, [mut x, mut y]) = (area.dim_in_pixel().0 as i32 - LEFT, [LEFT, height]);
@@ -66,8 +66,8 @@ pub(super) fn key<'b>(
             Some(of) => area.draw(&of.at((x + 12, y))),
             None => area.draw(&PathElement::new([(x, y), (x + 20, y)], style)),
         };
-        drawn.map_err(message)?;
-        area.draw(&Text::new(name.to_owned(), (x + mark, y), text.clone())).map_err(message)?;
+        drawn?;
+        area.draw(&Text::new(name.to_owned(), (x + mark, y), text.clone()))?;
         x += width;
     }
     Ok(area.split_vertically(y + height / 2).1)
@@ -84,7 +84,7 @@ pub(super) fn points<'a, 'b: 'a>(
     if elements.peek().is_none() {
         return Ok(());
     }
-    let series = chart.draw_series(elements).map_err(message)?;
+    let series = chart.draw_series(elements)?;
     if !label.is_empty() {
         series.label(label).legend(move |(x, y)| mark.at((x + 10, y)));
     }
@@ -101,8 +101,7 @@ pub(super) fn line(
     if points.is_empty() {
         return Ok(());
     }
-    let (series, label) =
-        (chart.draw_series(LineSeries::new(points, style)).map_err(message)?, label.into());
+    let (series, label) = (chart.draw_series(LineSeries::new(points, style))?, label.into());
     if !label.is_empty() {
         series.label(label).legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], style));
     }
@@ -110,8 +109,8 @@ pub(super) fn line(
 }
 
 pub(super) fn dashed(chart: &mut Chart<'_, '_>, ends: [(f64, f64); 2]) -> Drawn {
-    let line = DashedLineSeries::new(ends, 5, 4, MUTED.rgb().stroke_width(1));
-    chart.draw_series(line).map(|_| ()).map_err(message)
+    chart.draw_series(DashedLineSeries::new(ends, 5, 4, MUTED.rgb().stroke_width(1)))?;
+    Ok(())
 }
 
 /// Draws a bar between two values of x and two of y.
@@ -121,8 +120,8 @@ pub(super) fn bar(
     y: [f64; 2],
     style: impl Into<ShapeStyle>,
 ) -> Drawn {
-    let bar = Rectangle::new([(x[0], y[0]), (x[1], y[1])], style);
-    chart.draw_series([bar]).map(|_| ()).map_err(message)
+    chart.draw_series([Rectangle::new([(x[0], y[0]), (x[1], y[1])], style)])?;
+    Ok(())
 }
 
 /// Writes words at a point, shifted by pixels.
@@ -133,8 +132,8 @@ pub(super) fn label(
     words: &str,
     style: &TextStyle<'static>,
 ) -> Drawn {
-    let words = EmptyElement::at(at) + Text::new(words.to_owned(), by, style);
-    chart.draw_series([words]).map(|_| ()).map_err(message)
+    chart.draw_series([EmptyElement::at(at) + Text::new(words.to_owned(), by, style)])?;
+    Ok(())
 }
 
 /// Returns the corners of a step function through points.

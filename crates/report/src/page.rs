@@ -6,7 +6,6 @@ use super::{
     ReportError, bench, convergence, explore, first, front, levers, map, provenance, set, shape,
 };
 use crate::answer::{Answer, command, expectation, lines};
-use analysis::map::CaptureMap;
 use insertion::surrogate::Model;
 use maud::{Markup, html};
 use std::path::Path;
@@ -63,16 +62,13 @@ fn sections(answer: &Answer, model: &Model, beside: &Beside) -> Result<Vec<Secti
         Some(_) => "Ties by simulation alone",
     };
     let PostAnalysis { levers, maps, .. } = &beside.analyses;
-    let levers = levers.as_ref().map(|levers| {
-        let caption = levers.sentence();
-        let figure = figure(&levers::svg(levers)?, &caption, &caption);
-        Ok::<_, ReportError>(html! { div.moved { (figure) } })
-    });
-    let map = |map: &CaptureMap| {
-        let caption = map.caption();
-        Ok::<_, ReportError>(figure(&map::svg(map)?, &caption, &caption))
+    let captioned = |svg: Result<String, ReportError>, caption: String| {
+        svg.map(|svg| figure(&svg, &caption, &caption))
     };
-    let maps = maps.iter().map(map).collect::<Result<Vec<_>, _>>()?;
+    let levers = levers.as_ref().map(|levers| captioned(levers::svg(levers), levers.sentence()));
+    let levers = levers.transpose()?.map(|figure| html! { div.moved { (figure) } });
+    let maps = maps.iter().map(|map| captioned(map::svg(map), map.caption()));
+    let maps = maps.collect::<Result<Vec<_>, _>>()?;
     let maps =
         (!maps.is_empty()).then(|| html! { div.views.maps { @for figure in maps { (figure) } } });
     let sections = [
@@ -80,7 +76,7 @@ fn sections(answer: &Answer, model: &Model, beside: &Beside) -> Result<Vec<Secti
         section("set", set_title, set::section(answer)),
         section("front", "Pareto front", front::section(answer, PLOT)?),
         section("shape", "Beyond the infill", shape::section(record)),
-        section("levers", "Sensitivity of the window", levers.transpose()?),
+        section("levers", "Sensitivity of the window", levers),
         section("maps", "Capture maps", maps),
         section("explore-views", "All designs", explore::section(answer, &beside.dir)),
         section("convergence", "Convergence", Some(convergence::section(record, PLOT)?)),

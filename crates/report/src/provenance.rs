@@ -8,10 +8,9 @@ use insertion::outcome::{FailureClass, Outcome};
 use insertion::stiffness::Axis;
 use insertion::surrogate::Model;
 use maud::{Markup, html};
+use parameters::numbers::CENTRE;
 use study::{Provenance, Recorded, StudyRecord};
 
-/// Key of the remote centre in a search space.
-const REMOTE_CENTRE_KEY: &str = "finger.rcc_mm";
 /// Lines of the recommended finger that other sections have.
 const ELSEWHERE: [&str; 9] = [
     "best design",
@@ -67,7 +66,7 @@ fn reading(answer: &Answer, model: &Model) -> Vec<String> {
                  designs are evaluated with the same draws.";
     texts.extend(goals.need_draws().then(|| draws.to_owned()));
     let parameters = &answer.record.config.space.parameters;
-    texts.push(match parameters.iter().any(|parameter| parameter.key == REMOTE_CENTRE_KEY) {
+    texts.push(match parameters.iter().any(|parameter| parameter.key == CENTRE) {
         true => "The finger's remote centre is a parameter of the design here; whether a finger with this \
                  infill and this centre can be made was not checked."
             .to_owned(),

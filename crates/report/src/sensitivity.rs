@@ -1,24 +1,23 @@
 //! Sensitivity of a measure to its inputs: table, JSON and chart.
 
-use super::chart::{Area, Drawn, rows, sheet, tick, words};
+use super::chart::{Area, Drawn, rows, sheet, words};
 use super::marks::{bar, label, line};
 use super::theme::{BLUE, INK};
 use super::{ReportError, text_table};
-use insertion::evaluation::objective::Measure;
+use analysis::levers::plain;
 use parameters::Parameter;
 use parameters::plan::saltelli::Indices;
 use plotters::prelude::Color;
 use plotters::style::text_anchor::{HPos, VPos};
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 /// Result of an analysis, as `--json` prints it.
 #[derive(Debug, Clone, Serialize)]
 pub struct Found {
     /// Name of the task.
     pub task: String,
-    /// Measure analysed.
-    #[serde(serialize_with = "name")]
-    pub objective: Measure,
+    /// Name of the measure analysed.
+    pub objective: String,
     /// Number of simulated windows.
     pub evaluations: usize,
     /// Number of them whose nominal start diverged, which count as 0.
@@ -27,10 +26,6 @@ pub struct Found {
     pub nominal_start_fails: usize,
     /// The inputs by total index, largest first.
     pub factors: Vec<Factor>,
-}
-
-fn name<S: Serializer>(measure: &Measure, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(measure.name())
 }
 
 /// An input and its Sobol indices, with their 95 % intervals.
@@ -131,7 +126,7 @@ fn draw(area: &Area<'_>, found: &Found) -> Drawn {
         let [low, high] = [factor.total_low, factor.total_high].map(|share| (share.max(0.0), y));
         line(&mut chart, vec![low, high], INK.rgb().stroke_width(2), "")?;
         let name = short(&factor.name);
-        let name = format!("{name} ({} to {})", tick(factor.low), tick(factor.high));
+        let name = format!("{name} ({} to {})", plain(factor.low), plain(factor.high));
         let style = words(13, INK, HPos::Right, VPos::Center);
         label(&mut chart, (0.0, y), (-8, 0), &name, &style)?;
         let style = words(14, INK, HPos::Left, VPos::Center);

@@ -14,14 +14,13 @@ const LISTED: usize = 8;
 pub(super) fn section(answer: &Answer) -> Option<Markup> {
     answer.verdict.finger()?;
     let found = answer.recommended.as_ref()?.ties.as_ref()?;
-    let named = answer.named()?.index;
+    let named = answer.design_to_print()?.index;
     let mut designs = found.designs.clone();
     // The recommended one first, then by increasing loss.
     designs
         .sort_by(|a, b| (a.0.index != named).cmp(&(b.0.index != named)).then(a.1.total_cmp(&b.1)));
     let millimetres = answer.record.config.objective.first().unit() == "mm";
-    let on_robot =
-        |recorded: &Recorded| answer.measured.iter().find(|found| found.design == recorded.design);
+    let on_robot = |recorded: &Recorded| answer.on_robot(&recorded.design);
     designs.truncate(LISTED);
     let any_measured = designs.iter().any(|(recorded, _)| on_robot(recorded).is_some());
     let row = |(recorded, loss): &(&Recorded, f64)| {
@@ -35,9 +34,9 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
             stiffness(recorded.stiffness.compliance),
         ];
         if any_measured {
-            cells.push(on_robot(recorded).map_or(String::new(), |robot| mm(robot.range_mm)));
+            cells.push(on_robot(recorded).map_or(String::new(), mm));
         }
-        cells.into_iter().map(|cell| html! { (cell) }).collect()
+        cells
     };
     let mut head = vec!["finger", "reason to choose it", "expected loss", "largest force", ACROSS];
     head.extend(any_measured.then_some("measured"));

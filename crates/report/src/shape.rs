@@ -14,18 +14,19 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     let parameters = &record.config.space.parameters;
     let shape: Vec<&Variable> = parameters.iter().filter(|p| is_shape(&p.key)).collect();
     let index = record.recommended().filter(|_| !shape.is_empty())?.index;
-    // As evaluated in the search, like the designs it is compared with.
+    // Its evaluation in the search: the designs it is compared with were not confirmed either.
     let best = record.current().iter().find(|recorded| recorded.index == index)?;
     let file = finger_file(record)?;
-    let plain: Vec<(&str, f64)> = shape
+    let of_file: Vec<(&str, f64)> = shape
         .iter()
         .filter_map(|p| Some((p.key.as_str(), p.value(p.nearest(file.numbers.number(&p.key)?)))))
         .collect();
-    let is_plain = |recorded: &&Recorded| {
-        plain.iter().all(|(key, value)| recorded.design.get(key) == Some(*value))
+    let has_finger_of_file = |recorded: &&Recorded| {
+        of_file.iter().all(|(key, value)| recorded.design.get(key) == Some(*value))
     };
-    let alone = study::best(&record.config.goals(), record.current().iter().filter(is_plain));
-    let changed: Vec<String> = plain
+    let infill_only =
+        study::best(&record.config.goals(), record.current().iter().filter(has_finger_of_file));
+    let changed: Vec<String> = of_file
         .iter()
         .filter_map(|&(key, from)| Some((key, from, best.design.get(key)?)))
         .filter(|(_, from, to)| from != to)
@@ -35,8 +36,8 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
         })
         .collect();
     Some(html! {
-        @match alone {
-            Some(alone) => p { "Compared with the best design that changes only the infill, " (evaluated(alone)) ": " (gain(alone, best)) }
+        @match infill_only {
+            Some(infill_only) => p { "Compared with the best design that changes only the infill, " (evaluated(infill_only)) ": " (gain(infill_only, best)) }
             None => p { "No evaluation of this study has the finger of the finger file." }
         }
         @if changed.is_empty() {
@@ -52,12 +53,13 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     })
 }
 
-fn gain(alone: &Recorded, best: &Recorded) -> String {
+/// Returns a clause on the change of range and force from one design to another, task by task.
+fn gain(infill_only: &Recorded, best: &Recorded) -> String {
     let of = |(before, now): (&Evaluation, &Evaluation)| {
         let [force, other] = [now, before].map(|task| Measure::PeakForce.show(task.peak_force_n));
         let more = now.window.range_mm() - before.window.range_mm();
         format!("{more:+.1} mm of range, with {force} instead of {other}")
     };
-    let gains = alone.tasks.iter().zip(&best.tasks).map(of);
+    let gains = infill_only.tasks.iter().zip(&best.tasks).map(of);
     format!("the finger's parameters give {}.", gains.collect::<Vec<_>>().join("; "))
 }

@@ -1,6 +1,6 @@
 //! Printable A4 sheet for measuring windows by hand: instructions and boxes to fill in.
 
-use super::elements::{inert, styled};
+use super::elements::{data_url, styled};
 use input::units::{DEG, MM};
 use insertion::outcome::Outcome;
 use insertion::task::Task;
@@ -88,7 +88,7 @@ fn drawn(Picture { outcome, svg, task }: &Picture) -> Markup {
     let class = usize::from(outcome.failure().unwrap_or(0));
     html! {
         figure {
-            img src=(inert(svg)) alt=(outcome.label());
+            img src=(data_url(svg)) alt=(outcome.label());
             figcaption {
                 b { (if class == 0 { "+".to_owned() } else { class.to_string() }) " " (outcome.label()) } ": "
                 (MEANINGS[class]) " (simulated, " (task) ")"

@@ -1,6 +1,6 @@
 //! Fit of the stiffness model as table, JSON and plot.
 
-use super::chart::{Area, Drawn, around, axes, legend, message, sheet, words};
+use super::chart::{Area, Drawn, Problem, around, axes, legend, sheet, words};
 use super::marks::{PointMark, dashed, line, points};
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE};
 use super::{ReportError, text_table};
@@ -10,8 +10,7 @@ use insertion::stiffness::{Axis, Measurement};
 use insertion::surrogate::{Estimate, Model};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
-use serde::Serialize;
-use std::fmt::Write;
+use serde_json::{Value, json};
 
 /// Returns the leave-one-out errors of every model on both axes, and the models that are used.
 pub fn table(model: &Model) -> String {
@@ -35,8 +34,6 @@ pub fn table(model: &Model) -> String {
     text += &text_table(2, ["axis", "model", "RMSE N/mm", "|e| %", "e/sd", ""], rows);
     text.push('\n');
     for axis in Axis::ALL {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{}: {}", axis.label(), model.describe(axis));
         let widening = model.widening(axis);
         let note = if widening > 1.0 {
             format!("standard deviations are widened by {widening:.2} to match the errors above")
@@ -45,7 +42,7 @@ pub fn table(model: &Model) -> String {
         } else {
             "standard deviations match the errors above, or are larger".to_owned()
         };
-        let _ = writeln!(text, "  {note}");
+        text += &format!("{}: {}\n  {note}\n", axis.label(), model.describe(axis));
     }
     if model.measurements.len() > 1 {
         text.push_str(
@@ -60,60 +57,30 @@ fn decimals(value: f64, places: usize) -> String {
     if value.is_finite() { format!("{value:.places$}") } else { "-".to_owned() }
 }
 
-/// A stiffness model, as `--json` prints it.
-#[derive(Serialize)]
-pub struct Output {
-    designs: usize,
-    models: Vec<LeaveOneOut>,
-    used: Used,
-}
-
-/// Leave-one-out errors of a model on an axis.
-#[derive(Serialize)]
-struct LeaveOneOut {
-    axis: &'static str,
-    model: &'static str,
-    loo_rmse_n_per_mm: f64,
-    loo_mean_absolute_percent: f64,
-    loo_standardised_rms: f64,
-    used: bool,
-}
-
-#[derive(Serialize)]
-struct Used {
-    assembly: AxisModel,
-    compliance: AxisModel,
-}
-
-#[derive(Serialize)]
-struct AxisModel {
-    model: Option<&'static str>,
-    parameters: String,
-    sd_widening: f64,
-}
-
-impl Output {
-    /// Returns the output of a model.
-    pub fn new(model: &Model) -> Self {
-        let errors = model.loo.iter().map(|row| LeaveOneOut {
-            axis: if row.axis == Axis::Assembly { "assembly" } else { "compliance" },
-            model: row.model.label(),
-            loo_rmse_n_per_mm: row.rmse_n_per_mm,
-            loo_mean_absolute_percent: row.mean_absolute_percent,
-            loo_standardised_rms: row.standardised_rms,
-            used: row.chosen,
-        });
-        let used = |axis| AxisModel {
-            model: model.chosen(axis).map(|row| row.model.label()),
-            parameters: model.describe(axis),
-            sd_widening: model.widening(axis),
-        };
-        Output {
-            designs: model.measurements.len(),
-            models: errors.collect(),
-            used: Used { assembly: used(Axis::Assembly), compliance: used(Axis::Compliance) },
-        }
-    }
+/// Returns the model used on each axis, and the leave-one-out errors of all, as JSON.
+pub fn json(model: &Model) -> Value {
+    let errors = model.loo.iter().map(|row| {
+        json!({
+            "axis": if row.axis == Axis::Assembly { "assembly" } else { "compliance" },
+            "model": row.model.label(),
+            "loo_rmse_n_per_mm": row.rmse_n_per_mm,
+            "loo_mean_absolute_percent": row.mean_absolute_percent,
+            "loo_standardised_rms": row.standardised_rms,
+            "used": row.chosen,
+        })
+    });
+    let used = |axis| {
+        json!({
+            "model": model.chosen(axis).map(|row| row.model.label()),
+            "parameters": model.describe(axis),
+            "sd_widening": model.widening(axis),
+        })
+    };
+    json!({
+        "designs": model.measurements.len(),
+        "models": errors.collect::<Value>(),
+        "used": {"assembly": used(Axis::Assembly), "compliance": used(Axis::Compliance)},
+    })
 }
 
 /// Draws four panels: both axes of stiffness against direction and against density, curves with a band of
@@ -123,11 +90,11 @@ pub fn svg(model: &Model) -> Result<String, ReportError> {
         let (head, body) = area.split_vertically(58);
         let style = |size, colour| words(size, colour, HPos::Left, VPos::Top);
         let title = "Stiffness of one finger: model and measurements";
-        head.draw_text(title, &style(20, INK), (20, 8)).map_err(message)?;
+        head.draw_text(title, &style(20, INK), (20, 8))?;
         let note = "band: ± 1 standard deviation of a new finger    filled: measured at the \
                      curve's value    open: measured in between (colour of the nearest curve)    \
                      dashed: limits of the measurements";
-        head.draw_text(note, &style(15, MUTED), (20, 36)).map_err(message)?;
+        head.draw_text(note, &style(15, MUTED), (20, 36))?;
         let panels = body.split_evenly((2, 2));
         for (panel, (axis, by)) in panels.iter().zip(PANELS) {
             draw(panel, model, axis, by)?;
@@ -144,13 +111,14 @@ const PANELS: [(Axis, bool); 4] = [
     (Axis::Assembly, false),
 ];
 
-/// Number of steps along a curve, unless the model computes fingers.
+/// Number of steps along a curve of a model that needs no computation of fingers.
 const SAMPLES: u32 = 80;
 
+/// Colours of the curves.
 const SERIES: [Colour; 3] = [BLUE, ORANGE, GREEN];
 
 fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> Drawn {
-    // Value along x and value of the curve, or the inverse.
+    // Converts density and direction to the value along x and that of the curve, or back.
     let swapped = |(density, direction): (f64, f64)| match by_direction {
         true => (direction, density),
         false => (density, direction),
@@ -158,8 +126,8 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> Drawn
     let of = |m: &Measurement| swapped((m.density_percent, m.direction_deg));
     let predict = |x: f64, curve: f64| {
         let (density, direction) = swapped((x, curve));
-        let Estimate { mean, sd } = model.predict(density, direction).map_err(message)?.axis(axis);
-        Ok::<_, String>((x, Estimate { mean: mean / N_PER_MM, sd: sd / N_PER_MM }))
+        let Estimate { mean, sd } = model.predict(density, direction)?.axis(axis);
+        Ok::<_, Problem>((x, Estimate { mean: mean / N_PER_MM, sd: sd / N_PER_MM }))
     };
     let name = |curve: f64| match by_direction {
         true => format!("density {curve} %"),
@@ -170,8 +138,8 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> Drawn
     let span = limits.end - limits.start;
     let x = (limits.start - 0.15 * span).max(0.0)..limits.end + 0.2 * span;
     let curves = levels(measured.iter().map(|m| of(m).1));
-    // Computing a finger takes a third of a second, so then only the ends and the curves of the other panel
-    // are evaluated.
+    // A model that computes fingers takes a third of a second per point, so its curves are evaluated only at their
+    // ends and at the curves of the other panel.
     let places: Vec<f64> = if model.ratios {
         let levels = levels(measured.iter().map(|m| of(m).0));
         [x.start].into_iter().chain(levels).chain([x.end]).collect()
@@ -181,7 +149,7 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> Drawn
     };
     let band = |&curve: &f64| places.iter().map(|&x| predict(x, curve)).collect();
     let bands: Vec<Vec<(f64, Estimate)>> =
-        curves.iter().map(band).collect::<Result<_, String>>()?;
+        curves.iter().map(band).collect::<Result<_, Problem>>()?;
     let tops = bands.iter().flatten().map(|(_, e)| e.mean + e.sd);
     let readings = measured.iter().map(|m| m.stiffness(axis) / N_PER_MM);
     let mut y = around(tops.chain(readings).chain([0.0]), 0.05);
@@ -197,9 +165,7 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> Drawn
         let upper = band.iter().map(|(x, e)| (*x, e.mean + e.sd));
         let lower = band.iter().rev().map(|(x, e)| (*x, (e.mean - e.sd).max(0.0)));
         let outline: Vec<(f64, f64)> = upper.chain(lower).collect();
-        chart
-            .draw_series([Polygon::new(outline, colour.rgb().mix(0.15).filled())])
-            .map_err(message)?;
+        chart.draw_series([Polygon::new(outline, colour.rgb().mix(0.15).filled())])?;
     }
     for ((band, colour), &curve) in bands.iter().zip(SERIES).zip(&curves) {
         let means = band.iter().map(|(x, e)| (*x, e.mean)).collect();

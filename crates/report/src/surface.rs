@@ -1,10 +1,11 @@
 //! Model of the first objective over the space for the report: a Gaussian process through the
 //! evaluations, like that of the optimizer `gp`.
 
+use crate::answer::words::{extent, rounded};
 use ask_tell::gp::{FitEffort, Gp, fit};
 use ask_tell::statistics::Moments;
 use insertion::space::Variable;
-use serde::Serialize;
+use serde_json::{Value, json};
 use study::StudyRecord;
 
 /// Largest number of evaluations of the model, taken evenly from more.
@@ -60,19 +61,9 @@ fn unit(parameter: &Variable, value: f64) -> f64 {
     if span > 0.0 { (value - parameter.low) / span } else { 0.5 }
 }
 
-/// Mean and standard deviation of the model over two parameters (by index), row by row.
-#[derive(Serialize)]
-pub(super) struct Surface {
-    axes: Vec<usize>,
-    x: Vec<f64>,
-    y: Vec<f64>,
-    mean: Vec<f64>,
-    sd: Vec<f64>,
-}
-
-/// Returns the surface over the two most influential parameters, the others as recommended; `None` for a
-/// single parameter.
-pub(super) fn of(record: &StudyRecord, model: &Model) -> Option<Surface> {
+/// Returns mean and standard deviation of the model, row by row, over the two most influential parameters (by
+/// index), the others as recommended; `None` for a single parameter.
+pub(super) fn of(record: &StudyRecord, model: &Model) -> Option<Value> {
     let parameters = &record.config.space.parameters;
     if parameters.len() < 2 {
         return None;
@@ -89,21 +80,19 @@ pub(super) fn of(record: &StudyRecord, model: &Model) -> Option<Surface> {
     let levels = |parameter: &Variable| -> Vec<f64> {
         let cells = parameter.levels().clamp(2, CELLS);
         let step = (parameter.high - parameter.low) / f64::from(cells - 1);
-        (0..cells).map(|k| round(parameter.low + f64::from(k) * step)).collect()
+        (0..cells).map(|k| rounded(parameter.low + f64::from(k) * step, 4)).collect()
     };
     let (p, q) = (&parameters[axes[0]], &parameters[axes[1]]);
     let (xs, ys) = (levels(p), levels(q));
-    let (mut mean, mut sd) = (Vec::new(), Vec::new());
-    for y in &ys {
-        for x in &xs {
-            let mut point = base.clone();
-            (point[axes[0]], point[axes[1]]) = (unit(p, *x), unit(q, *y));
-            let found = model.at(&point);
-            mean.push(round(found.0));
-            sd.push(round(found.1));
-        }
-    }
-    Some(Surface { axes, x: xs, y: ys, mean, sd })
+    let at = |(y, x): (&f64, &f64)| {
+        let mut point = base.clone();
+        (point[axes[0]], point[axes[1]]) = (unit(p, *x), unit(q, *y));
+        let (mean, sd) = model.at(&point);
+        (rounded(mean, 4), rounded(sd, 4))
+    };
+    let points = ys.iter().flat_map(|y| xs.iter().map(move |x| (y, x)));
+    let (mean, sd): (Vec<f64>, Vec<f64>) = points.map(at).unzip();
+    Some(json!({"axes": axes, "x": xs, "y": ys, "mean": mean, "sd": sd}))
 }
 
 /// Returns the spread of the model's mean along an axis through a point.
@@ -113,11 +102,6 @@ fn reach(model: &Model, base: &[f64], axis: usize) -> f64 {
         point[axis] = f64::from(level) / f64::from(LEVELS);
         model.at(&point).0
     });
-    let [low, high] =
-        along.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
+    let [low, high] = extent(along);
     high - low
-}
-
-fn round(value: f64) -> f64 {
-    (value * 1e4).round() / 1e4 + 0.0
 }

@@ -276,7 +276,7 @@ fn the_stiffness_report_has_every_model_and_both_axes() {
     for word in ["1.64", "10.00", "<- used", "RMSE N/mm", "assembly (z)", "compliance (y)"] {
         assert!(table.contains(word), "{word}: {table}");
     }
-    let json = serde_json::to_value(stiffness::Output::new(model)).unwrap();
+    let json = stiffness::json(model);
     assert_eq!(json["models"].as_array().map(Vec::len), Some(8));
     let percent = json["models"][0]["loo_mean_absolute_percent"].as_f64().unwrap();
     assert!((percent - 1.64).abs() < 0.01);

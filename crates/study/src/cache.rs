@@ -15,7 +15,7 @@ use insertion::robot::Robot;
 use insertion::trial::engine::EngineRecord;
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::{fs, io};
 
@@ -26,7 +26,8 @@ pub struct Cache {
     /// Prefix of all keys.
     context: String,
     found: AtomicU64,
-    problem: Mutex<Option<io::Error>>,
+    /// First error of writing.
+    problem: OnceLock<io::Error>,
 }
 
 impl Cache {
@@ -36,7 +37,7 @@ impl Cache {
             dir: dir.to_owned(),
             context: format!("sources {SIMULATION_SOURCES}\nengine {engine:?}\nrobot {robot:?}\n"),
             found: AtomicU64::new(0),
-            problem: Mutex::new(None),
+            problem: OnceLock::new(),
         }
     }
 
@@ -63,10 +64,8 @@ impl Cache {
             fs::create_dir_all(path.parent().unwrap_or(&self.dir))?;
             files::write_own(&path, seal(evaluation, None)?.as_bytes())
         };
-        if let Err(error) = write()
-            && let Ok(mut problem) = self.problem.lock()
-        {
-            problem.get_or_insert(error);
+        if let Err(error) = write() {
+            self.problem.get_or_init(|| error);
         }
     }
 
@@ -77,8 +76,7 @@ impl Cache {
 
     /// Returns the first error of writing, if there is one.
     pub fn problem(&self) -> Option<String> {
-        let problem = self.problem.lock().ok()?;
-        problem.as_ref().map(|error| format!("{}: {error}", self.dir.display()))
+        self.problem.get().map(|error| format!("{}: {error}", self.dir.display()))
     }
 
     fn path(&self, key: &str) -> PathBuf {

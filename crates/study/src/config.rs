@@ -186,13 +186,16 @@ impl StudyConfig {
         Ok(())
     }
 
+    /// Returns whether windows determine the objective, so that confirmation is worthwhile.
+    pub fn by_windows(&self) -> bool {
+        matches!(self.objective.single(), Some(Measure::Range | Measure::CentredRange))
+    }
+
     /// Returns whether early stopping is available: for a Gaussian process of one objective in mm without
     /// constraints.
     pub fn can_settle(&self) -> bool {
-        let widths =
-            matches!(self.objective.single(), Some(Measure::Range | Measure::CentredRange));
         let process = self.optimizer.parse() == Ok(OptimizerKind::Gp);
-        widths && process && self.constraints.is_empty() && self.polish == 0
+        self.by_windows() && process && self.constraints.is_empty() && self.polish == 0
     }
 
     /// Returns the settings of early stopping: evaluations before the first check, and patience

@@ -1,7 +1,7 @@
 //! Confirmation of the best designs of a study: `walk.json` beside the journal, not part of the budget.
 //!
-//! A study searches for the ends of its windows in strides, which miss a gap between two of them; an
-//! optimizer then favours designs with missed gaps. An end may also depend on whether a corner catches.
+//! A study searches for the ends of its windows in strides and may step over a gap; an optimizer then favours
+//! designs with undetected gaps. An end may also depend on whether a corner catches.
 //! Therefore, before a design is recommended,
 //!
 //! 1. its ends are repeated with friction, start and step varied
@@ -14,8 +14,7 @@
 //! the study has the fingers of the paper, each walked design is also measured once with the stiffnesses
 //! computed from its ribs, for comparison only.
 
-use super::error::StudyError;
-use super::folder::{read_analysis, write_analysis};
+use super::folder::read_analysis;
 use super::provenance::Provenance;
 use super::record::{ByRibs, Recorded, Walked};
 use super::rule::{Rank, Rule};
@@ -25,7 +24,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-const WALK_FILE: &str = "walk.json";
+pub(super) const WALK_FILE: &str = "walk.json";
 
 /// Contents of `walk.json`.
 #[derive(Serialize, Deserialize)]
@@ -70,14 +69,6 @@ impl ConfirmationFile {
         let file: ConfirmationFile = read_analysis(dir, WALK_FILE)?;
         provenance?.simulates_like(&file.provenance).then_some(file)
     }
-
-    /// Writes the file.
-    ///
-    /// # Errors
-    /// If it cannot be written.
-    pub fn write(&self, dir: &Path) -> Result<(), StudyError> {
-        write_analysis(dir, WALK_FILE, self)
-    }
 }
 
 impl Rule<'_> {
@@ -89,7 +80,7 @@ impl Rule<'_> {
     }
 
     /// Returns the rank of a design with its firm windows.
-    pub fn firmly(&self, recorded: &Recorded, firm: &[Firm]) -> Rank {
+    pub fn firm_rank(&self, recorded: &Recorded, firm: &[Firm]) -> Rank {
         let windows = recorded.tasks.iter().zip(firm);
         let windows: Vec<Window> = windows.map(|(task, firm)| firm.of(&task.window)).collect();
         self.rank(recorded, &windows)
@@ -114,7 +105,7 @@ pub(super) fn settled(dir: &Path, provenance: Option<&Provenance>, evaluations: 
 }
 
 /// Reads the walked designs, best first, and the firm value of the first objective of every design whose
-/// ends were repeated, by evaluation; nothing of an incomplete confirmation.
+/// ends were repeated, by evaluation. Both are empty if the confirmation is incomplete.
 pub(super) fn read(
     dir: &Path,
     rule: &Rule,
@@ -126,10 +117,10 @@ pub(super) fn read(
     for row in file.map_or(Vec::new(), |file| file.designs) {
         let Some(before) = current.iter().find(|r| r.index == row.evaluation) else { continue };
         let rank = match row.walked {
-            None => rule.firmly(before, &row.firm),
+            None => rule.firm_rank(before, &row.firm),
             Some(Walk { tasks, firm, computed: by_ribs }) => {
                 let recorded = with_windows(rule, before, &tasks);
-                let rank = rule.firmly(&recorded, &firm);
+                let rank = rule.firm_rank(&recorded, &firm);
                 walked.push((rank.clone(), Walked { recorded, firm, by_ribs }));
                 rank
             }

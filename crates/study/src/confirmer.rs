@@ -1,14 +1,14 @@
 //! Measurements that confirm the best designs of a study; see `confirmed.rs`.
 
-use super::config::StudyConfig;
-use super::confirmed::{ConfirmationFile, ConfirmedDesign, Walk, with_windows};
+use super::confirmed::{ConfirmationFile, ConfirmedDesign, WALK_FILE, Walk, with_windows};
 use super::error::StudyError;
-use super::folder::Study;
+use super::folder::{Study, write_analysis};
 use super::provenance::Provenance;
-use super::record::{ByRibs, Recorded};
+use super::record::{ByRibs, Recorded, first_current};
 use super::rule::{Rank, Rule};
+use super::simulated::Simulated;
 use ask_tell::Grid;
-use ask_tell::gp::{Advice, DEFAULT_NOISE_FLOOR, Gain, Outlook};
+use ask_tell::gp::{Advice, Outlook};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluate, Evaluator};
 use insertion::evaluation::robustness::Plan;
@@ -19,40 +19,30 @@ use insertion::space::Design;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Evaluators and settings of the confirmation.
 pub struct Confirmer<'a> {
     /// Walks a design.
-    pub walker: &'a dyn Evaluate,
+    pub walker: Simulated<'a>,
     /// Evaluator of computed fingers, if the study's fingers are those of the paper.
-    pub by_ribs: Option<&'a Evaluator>,
-    /// Evaluator of the study.
-    pub evaluator: &'a Evaluator,
+    pub by_ribs: Option<Evaluator>,
     /// Threads that simulate.
     pub pool: &'a ThreadPool,
-    /// Cancels the confirmation once it is set: trials then end at once.
-    pub stop: &'a AtomicBool,
-    /// Skips the confirmation.
-    pub no_confirm: bool,
-    /// Progress callback: design, number of designs done, and of all.
-    pub done: &'a (dyn Fn(Confirmed, &Recorded, [usize; 2]) + Sync),
+    /// Progress callback.
+    pub done: Box<OnConfirmed<'a>>,
 }
+
+/// Callback for a confirmed design, with the numbers of designs done and of all.
+pub type OnConfirmed<'a> = dyn Fn(ConfirmationStep, &Recorded, [usize; 2]) + Sync + 'a;
 
 /// Kind of confirmation of a design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Confirmed {
+pub enum ConfirmationStep {
     /// Its ends were repeated.
     Repeated,
     /// It was walked step by step.
     Walked,
-}
-
-/// Returns the gain over the best confirmed design that counts.
-pub(super) fn gain(config: &StudyConfig) -> Gain {
-    let (least, noise_floor) = (config.indifference_mm, DEFAULT_NOISE_FLOOR);
-    Gain { least, probability: 0.02, noise_floor, floor: 0.0 }
 }
 
 /// Designs confirmed at a time, independent of the number of threads.
@@ -67,20 +57,18 @@ impl Confirmer<'_> {
     pub fn confirm(
         &self,
         study: &Study,
-        log: &ConfirmationLog,
+        log: &mut ConfirmationLog,
         settled: bool,
     ) -> Result<(), StudyError> {
-        let goals = study.config.goals();
-        let rule = Rule { goals: &goals, space: &study.config.space };
         // The confirmation of a settled study is part of its search and is not repeated.
-        if !rule.by_windows() || (settled && study.settled()) {
+        if !study.config.by_windows() || (settled && study.settled()) {
             return Ok(());
         }
         self.by_expectation(study, log, study.evaluations.len(), false)?;
-        if self.stop.load(Ordering::SeqCst) {
+        if self.stopped() {
             return Ok(());
         }
-        log.finish(settled.then_some(study.evaluations.len() as u64))
+        log.write(Some(settled.then_some(study.evaluations.len() as u64)))
     }
 
     /// Returns whether no gain is expected after the first `told` evaluations; confirms the designs on which
@@ -91,102 +79,112 @@ impl Confirmer<'_> {
     pub fn stagnates(
         &self,
         study: &Study,
-        log: &ConfirmationLog,
+        log: &mut ConfirmationLog,
         told: usize,
     ) -> Result<bool, StudyError> {
         Ok(self.by_expectation(study, log, told, true)? == Advice::Settled)
     }
 
+    fn stopped(&self) -> bool {
+        self.walker.stop.load(Ordering::SeqCst)
+    }
+
     fn by_expectation(
         &self,
         study: &Study,
-        log: &ConfirmationLog,
+        log: &mut ConfirmationLog,
         told: usize,
         searching: bool,
     ) -> Result<Advice, StudyError> {
-        let (record, goals, seed) = (study.record(), study.config.goals(), study.config.seed);
-        let rule = Rule { goals: &goals, space: &study.config.space };
-        let current = record.current();
-        let current =
-            &current[..told.saturating_sub(record.first_current() as usize).min(current.len())];
+        let config = &study.config;
+        let rule = Rule::of(config);
+        let first = first_current(&study.segments) as usize;
+        let current = study.evaluations.get(first..told).unwrap_or_default();
         let ranks: Vec<Rank> = current.iter().map(|found| rule.as_recorded(found)).collect();
-        let space = &study.config.space;
-        let grid = Grid::new(space.levels());
+        let grid = Grid::new(config.space.levels());
         let observed = rule.observed(current);
         let mut order: Vec<usize> = (0..current.len()).collect();
         order.sort_by(|&a, &b| rule.order(&ranks[a], &ranks[b]));
         let mut places = vec![0; order.len()];
         order.iter().enumerate().for_each(|(place, &at)| places[at] = place);
         loop {
-            let known = |(at, found): (usize, &Recorded)| {
+            let known = |(index, found): (usize, &Recorded)| {
                 let row = log.get(found)?;
                 let rank = match &row.walked {
-                    None => rule.firmly(found, &row.firm),
-                    Some(walk) => rule.firmly(&with_windows(&rule, found, &walk.tasks), &walk.firm),
+                    None => rule.firm_rank(found, &row.firm),
+                    Some(walk) => {
+                        rule.firm_rank(&with_windows(&rule, found, &walk.tasks), &walk.firm)
+                    }
                 };
-                let (value, last) = (rank.value().unwrap_or(0.0), row.walked.is_some());
-                Some(ask_tell::gp::Confirmed { at, value, last })
+                let (value, is_final) = (rank.value().unwrap_or(0.0), row.walked.is_some());
+                Some(ask_tell::gp::Confirmed { index, value, is_final })
             };
             let confirmed: Vec<_> = current.iter().enumerate().filter_map(known).collect();
-            let outlook = Outlook::new(&grid, &observed, &confirmed, gain(&study.config));
+            let outlook = Outlook::new(&grid, &observed, &confirmed, config.indifference_mm);
             let advice = match searching {
                 true => outlook.advise(&places, AT_ONCE),
                 false => outlook.confirm_only(&places, AT_ONCE),
             };
             let Advice::Confirm(chosen) = &advice else { return Ok(advice) };
             // Without confirmation the results of the search are taken as they are.
-            if self.no_confirm {
+            if config.conclusion.no_confirm {
                 return Ok(Advice::Settled);
             }
             let chosen: Vec<&Recorded> = chosen.iter().map(|&at| &current[at]).collect();
             let walking = chosen.iter().any(|found| log.get(found).is_some());
-            let phase = if walking { Confirmed::Walked } else { Confirmed::Repeated };
-            log.select(&chosen);
-            self.each(phase, &chosen, |found| self.further(found, log, seed))?;
-            if self.stop.load(Ordering::SeqCst) {
+            let phase = if walking { ConfirmationStep::Walked } else { ConfirmationStep::Repeated };
+            let further = |found: &Recorded| self.further(found, log, config.seed);
+            let results = self.each(phase, &chosen, further)?;
+            log.add(results)?;
+            if self.stopped() {
                 return Ok(Advice::Search);
             }
         }
     }
 
-    /// Repeats a design or, if it was repeated, walks it; a result of an earlier run is used again.
+    /// Repeats a design or, if it was repeated, walks it; a result of an earlier run is used again. Returns
+    /// the result and whether it is new; `None` after cancellation.
     fn further(
         &self,
         found: &Recorded,
         log: &ConfirmationLog,
         seed: u64,
-    ) -> Result<(), StudyError> {
+    ) -> Result<Option<(ConfirmedDesign, bool)>, StudyError> {
         let earlier = log.earlier.iter().find(|row| row.evaluation == found.index).cloned();
         let row = match (log.get(found), earlier) {
             (None, Some(earlier)) => {
-                return log.set(ConfirmedDesign { walked: None, ..earlier }, false);
+                return Ok(Some((ConfirmedDesign { walked: None, ..earlier }, false)));
             }
-            (Some(_), Some(earlier)) if earlier.walked.is_some() => return log.set(earlier, false),
+            (Some(_), Some(earlier)) if earlier.walked.is_some() => {
+                return Ok(Some((earlier, false)));
+            }
             (None, None) => {
                 let firm = self.firm(found, &[], seed)?;
                 ConfirmedDesign { evaluation: found.index, firm, walked: None }
             }
-            (Some(row), _) => self.walk(found, row, seed)?,
+            (Some(row), _) => self.walk(found, row.clone(), seed)?,
         };
         // After cancellation trials may have been skipped.
-        if self.stop.load(Ordering::SeqCst) { Ok(()) } else { log.set(row, true) }
+        Ok((!self.stopped()).then_some((row, true)))
     }
 
-    /// Calls `what` with each design in parallel.
-    fn each(
+    /// Returns the result of `what` for each design that has one, in their order; calls it in parallel.
+    fn each<T: Send>(
         &self,
-        phase: Confirmed,
+        phase: ConfirmationStep,
         designs: &[&Recorded],
-        what: impl Fn(&Recorded) -> Result<(), StudyError> + Sync,
-    ) -> Result<(), StudyError> {
+        what: impl Fn(&Recorded) -> Result<Option<T>, StudyError> + Sync,
+    ) -> Result<Vec<T>, StudyError> {
         let count = AtomicUsize::new(0);
         let one = |recorded: &&Recorded| {
-            what(recorded)?;
+            let result = what(recorded)?;
             let done = count.fetch_add(1, Ordering::Relaxed) + 1;
             (self.done)(phase, recorded, [done, designs.len()]);
-            Ok(())
+            Ok(result)
         };
-        self.pool.install(|| designs.par_iter().try_for_each(one))
+        let results: Result<Vec<Option<T>>, StudyError> =
+            self.pool.install(|| designs.par_iter().map(one).collect());
+        Ok(results?.into_iter().flatten().collect())
     }
 
     /// Walks a design and repeats the ends that changed.
@@ -196,7 +194,7 @@ impl Confirmer<'_> {
         row: ConfirmedDesign,
         seed: u64,
     ) -> Result<ConfirmedDesign, StudyError> {
-        let found = self.walker.evaluate(&searched.design);
+        let found = self.walker.evaluate(&searched.design, None);
         let tasks = found
             .map_err(|source| StudyError::impossible(searched.index, &searched.design, source))?
             .tasks;
@@ -207,14 +205,15 @@ impl Confirmer<'_> {
             windows.map(|(windows, firm)| same(windows).then_some(*firm)).collect();
         walked.tasks.clone_from(&tasks);
         let firm = self.firm(&walked, &as_before, seed)?;
-        let computed = self.by_ribs.map(|evaluator| self.computed(evaluator, &searched.design));
+        let computed =
+            self.by_ribs.as_ref().map(|evaluator| self.computed(evaluator, &searched.design));
         Ok(ConfirmedDesign { walked: Some(Walk { tasks, firm, computed }), ..row })
     }
 
     /// Evaluates a design with the stiffnesses computed from its ribs.
     fn computed(&self, evaluator: &Evaluator, design: &Design) -> ByRibs {
         let measured = evaluator.evaluate_by(design, |specimen| {
-            evaluator.measure_or_teach(specimen, Search::default(), &Plan::WINDOW, self.stop)
+            evaluator.measure_or_teach(specimen, Search::default(), &Plan::WINDOW, self.walker.stop)
         });
         match measured {
             Ok(found) => ByRibs::Measured(found.tasks),
@@ -229,15 +228,15 @@ impl Confirmer<'_> {
         known: &[Option<Firm>],
         seed: u64,
     ) -> Result<Vec<Firm>, StudyError> {
+        let Simulated { evaluator, stop, .. } = self.walker;
         let measure = |(at, (template, task)): (usize, (&Template, &Evaluation))| {
             if let Some(Some(firm)) = known.get(at) {
                 return Ok(*firm);
             }
-            let specimen =
-                self.evaluator.specimen(template, &recorded.design, recorded.stiffness)?;
-            Ok(self.evaluator.firm(&specimen, task, seed, self.stop)?)
+            let specimen = evaluator.specimen(template, &recorded.design, recorded.stiffness)?;
+            Ok(evaluator.firm(&specimen, task, seed, stop)?)
         };
-        let tasks = self.evaluator.templates.iter().zip(&recorded.tasks).enumerate();
+        let tasks = evaluator.templates.iter().zip(&recorded.tasks).enumerate();
         let firm: Result<Vec<Firm>, Impossible> = tasks.map(measure).collect();
         firm.map_err(|source| StudyError::impossible(recorded.index, &recorded.design, source))
     }
@@ -249,8 +248,8 @@ pub struct ConfirmationLog {
     provenance: Provenance,
     /// Results of an earlier run.
     earlier: Vec<ConfirmedDesign>,
-    /// Selected designs, in that order, with their results.
-    rows: Mutex<Vec<(u64, Option<ConfirmedDesign>)>>,
+    /// Results, in the order in which the designs were selected.
+    designs: Vec<ConfirmedDesign>,
 }
 
 impl ConfirmationLog {
@@ -259,49 +258,30 @@ impl ConfirmationLog {
         let (dir, provenance) = (study.dir().to_owned(), study.provenance().clone());
         let file = ConfirmationFile::read(&dir, Some(&provenance));
         let earlier = file.map_or(Vec::new(), |file| file.designs);
-        ConfirmationLog { dir, provenance, earlier, rows: Mutex::default() }
+        ConfirmationLog { dir, provenance, earlier, designs: Vec::new() }
     }
 
-    fn rows(&self) -> MutexGuard<'_, Vec<(u64, Option<ConfirmedDesign>)>> {
-        self.rows.lock().unwrap_or_else(PoisonError::into_inner)
+    fn get(&self, recorded: &Recorded) -> Option<&ConfirmedDesign> {
+        self.designs.iter().find(|design| design.evaluation == recorded.index)
     }
 
-    /// Adds designs that were selected for the first time.
-    fn select(&self, chosen: &[&Recorded]) {
-        let mut rows = self.rows();
-        for found in chosen {
-            if !rows.iter().any(|(index, _)| *index == found.index) {
-                rows.push((found.index, None));
+    /// Adds or replaces results, each with whether it is new; writes the file if any is.
+    fn add(&mut self, results: Vec<(ConfirmedDesign, bool)>) -> Result<(), StudyError> {
+        let any_new = results.iter().any(|(_, new)| *new);
+        for (result, _) in results {
+            match self.designs.iter_mut().find(|design| design.evaluation == result.evaluation) {
+                Some(design) => *design = result,
+                None => self.designs.push(result),
             }
         }
-    }
-
-    fn get(&self, recorded: &Recorded) -> Option<ConfirmedDesign> {
-        self.rows().iter().find(|(index, _)| *index == recorded.index)?.1.clone()
-    }
-
-    /// Sets the result of a selected design; `write` is whether it is new.
-    fn set(&self, result: ConfirmedDesign, write: bool) -> Result<(), StudyError> {
-        let mut rows = self.rows();
-        if let Some((_, row)) = rows.iter_mut().find(|(index, _)| *index == result.evaluation) {
-            *row = Some(result);
-        }
-        if write { self.write(&rows, None) } else { Ok(()) }
-    }
-
-    fn finish(&self, settled_after: Option<u64>) -> Result<(), StudyError> {
-        self.write(&self.rows(), Some(settled_after))
+        if any_new { self.write(None) } else { Ok(()) }
     }
 
     /// Writes the file; `finished` holds the evaluations after which a complete study settled.
-    fn write(
-        &self,
-        rows: &[(u64, Option<ConfirmedDesign>)],
-        finished: Option<Option<u64>>,
-    ) -> Result<(), StudyError> {
-        let designs = rows.iter().filter_map(|(_, row)| row.clone()).collect();
-        let (provenance, complete) = (self.provenance.clone(), finished.is_some());
-        let settled_after = finished.flatten();
-        ConfirmationFile { provenance, complete, settled_after, designs }.write(&self.dir)
+    fn write(&self, finished: Option<Option<u64>>) -> Result<(), StudyError> {
+        let (provenance, designs) = (self.provenance.clone(), self.designs.clone());
+        let (complete, settled_after) = (finished.is_some(), finished.flatten());
+        let file = ConfirmationFile { provenance, complete, settled_after, designs };
+        write_analysis(&self.dir, WALK_FILE, &file)
     }
 }

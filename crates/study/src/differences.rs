@@ -7,12 +7,11 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(super) fn differences<T: Serialize>(ours: &T, theirs: &T, who: [&str; 2]) -> Option<String> {
     let (ours, theirs) = (flat(ours), flat(theirs));
     let keys: BTreeSet<&String> = ours.keys().chain(theirs.keys()).collect();
-    let show = |value: Option<&String>| value.map_or("nothing".to_owned(), Clone::clone);
     let lines: Vec<String> = keys
         .into_iter()
         .filter(|key| ours.get(*key) != theirs.get(*key))
         .map(|key| {
-            let (a, b) = (show(ours.get(key)), show(theirs.get(key)));
+            let [a, b] = [&ours, &theirs].map(|of| of.get(key).map_or("nothing", String::as_str));
             format!("  {key}: {} has {a}, {} has {b}", who[0], who[1])
         })
         .collect();

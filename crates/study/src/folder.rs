@@ -18,7 +18,7 @@ use super::error::StudyError;
 use super::journal::{self, Contents, Journal};
 use super::limits::ForceLimits;
 use super::lock::{Lock, UNKNOWN_OWNER, lock};
-use super::on_bench::{BENCH_FILE, OnBench};
+use super::on_bench::OnBench;
 use super::provenance::{Provenance, Segment};
 use super::record::{Recorded, StudyRecord, first_current};
 use super::rule::Rule;
@@ -60,7 +60,7 @@ pub struct Study {
     /// Evaluations so far, by index.
     pub evaluations: Vec<Recorded>,
     /// Segments of equal provenance.
-    segments: Vec<Segment>,
+    pub(super) segments: Vec<Segment>,
     /// Number of records of other programs in the journal.
     foreign: usize,
     pub(super) journal: Journal,
@@ -68,18 +68,9 @@ pub struct Study {
     _lock: Lock,
 }
 
-/// Action for a study whose provenance differs from that of the program and its inputs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum IfChanged {
-    /// Return an error.
-    Refuse,
-    /// Begin a new segment.
-    NewSegment,
-}
-
 impl Study {
     /// Begins a study in `dir`, or continues the study there if its configuration is the same or has a
-    /// smaller budget.
+    /// smaller budget; in a new segment if `accept_changed` and its provenance differs.
     ///
     /// # Errors
     /// If the folder holds another study or cannot be used.
@@ -87,7 +78,7 @@ impl Study {
         dir: &Path,
         config: &StudyConfig,
         inputs: &Inputs,
-        if_changed: IfChanged,
+        accept_changed: bool,
     ) -> Result<Study, StudyError> {
         fs::create_dir_all(dir).map_err(StudyError::io("create the folder", dir))?;
         let lock = lock(dir)?;
@@ -100,7 +91,7 @@ impl Study {
             study.config.budget = config.budget.max(least);
             study.config.settles = config.settles;
             let raised = before != (study.config.budget, study.config.settles);
-            study.measure_with(&config.provenance, inputs, if_changed)?;
+            study.measure_with(&config.provenance, inputs, accept_changed)?;
             if raised {
                 write_config(dir, &study.config)?;
             }
@@ -165,15 +156,15 @@ impl Study {
     /// Begins a new segment in the journal if the provenance of further evaluations differs.
     ///
     /// # Errors
-    /// If it differs and `if_changed` is to refuse, or no evaluation is left for a new segment.
+    /// If it differs without `accept_changed`, or no evaluation is left for a new segment.
     pub fn measure_with(
         &mut self,
         now: &Provenance,
         inputs: &Inputs,
-        if_changed: IfChanged,
+        accept_changed: bool,
     ) -> Result<(), StudyError> {
         let Some(differences) = self.provenance().differences(now) else { return Ok(()) };
-        if if_changed == IfChanged::Refuse {
+        if !accept_changed {
             return Err(StudyError::file(
                 &self.dir,
                 format!(
@@ -226,10 +217,6 @@ impl Study {
         self.segments.last().map_or(&self.config.provenance, |segment| &segment.provenance)
     }
 
-    pub(super) fn segments(&self) -> &[Segment] {
-        &self.segments
-    }
-
     /// Returns the copies of the input files for the next evaluation.
     ///
     /// # Errors
@@ -246,14 +233,6 @@ impl Study {
     /// Returns whether the search has settled with these evaluations.
     pub fn settled(&self) -> bool {
         confirmed::settled(&self.dir, Some(self.provenance()), self.evaluations.len())
-    }
-
-    /// Writes the bench prediction.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
-    pub fn keep_on_bench(&self, found: &OnBench) -> Result<(), StudyError> {
-        write_analysis(&self.dir, BENCH_FILE, found)
     }
 
     /// Returns a copy of the study with its analyses.
@@ -286,12 +265,10 @@ impl StudyRecord {
         let finger =
             inputs.get(FINGER).and_then(|text| FingerFile::parse(text, "inputs/finger").ok());
         let limits = ForceLimits::of(&inputs, config.tasks.len());
-        let on_bench = segments.last().and_then(|segment| OnBench::read(dir, &segment.provenance));
-        let goals = config.goals();
-        let rule = Rule { goals: &goals, space: &config.space };
         let provenance = segments.last().map(|segment| &segment.provenance);
+        let on_bench = provenance.and_then(|provenance| OnBench::read(dir, provenance));
         let current = evaluations.get(first_current(&segments) as usize..).unwrap_or_default();
-        let (walked, firm_values) = confirmed::read(dir, &rule, provenance, current);
+        let (walked, firm_values) = confirmed::read(dir, &Rule::of(&config), provenance, current);
         let settled = config.settles && confirmed::settled(dir, provenance, evaluations.len());
         StudyRecord {
             config,

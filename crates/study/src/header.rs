@@ -91,10 +91,9 @@ pub fn decode_segment(line: &str) -> Result<Option<Segment>, LineError> {
     let (content, _) = unseal(line)?;
     let line: AttributeLine<Segment> =
         serde_json::from_str(&content).map_err(|error| LineError::Format(error.to_string()))?;
-    match line.user_attr.into_values().next() {
-        Some(segment) => Ok(Some(segment)),
-        None => Err(LineError::Format("a segment without its provenance".to_owned())),
-    }
+    let segment = line.user_attr.into_values().next();
+    let missing = || LineError::Format("a segment without its provenance".to_owned());
+    segment.ok_or_else(missing).map(Some)
 }
 
 /// Checks the header of a journal of this configuration.
@@ -105,10 +104,10 @@ pub fn check(first: &str, second: &str, config: &StudyConfig) -> Result<(), Stri
     let damaged = |n: u8| format!("line {n} is damaged, or was not written by this program");
     unseal(first).map_err(|_| damaged(1))?;
     let (attributes, _) = unseal(second).map_err(|_| damaged(2))?;
-    let version = serde_json::from_str::<Value>(&attributes)
-        .ok()
-        .and_then(|value| value["user_attr"][OURS]["schema_version"].as_u64());
-    match version {
+    let mut line: AttributeLine<Value> =
+        serde_json::from_str(&attributes).map_err(|error| format!("line 2: {error}"))?;
+    let found = line.user_attr.remove(OURS).unwrap_or_default();
+    match found["schema_version"].as_u64() {
         Some(SCHEMA_VERSION) => {}
         Some(other) => {
             return Err(format!(
@@ -117,10 +116,8 @@ pub fn check(first: &str, second: &str, config: &StudyConfig) -> Result<(), Stri
         }
         None => return Err("line 2 has no schema_version".to_owned()),
     }
-    let found: AttributeLine<Value> =
-        serde_json::from_str(&attributes).map_err(|error| format!("line 2: {error}"))?;
     let expected = identity(config).map_err(|error| error.to_string())?;
-    match differences(&found.user_attr[OURS], &expected, ["the journal", "study.toml"]) {
+    match differences(&found, &expected, ["the journal", "study.toml"]) {
         Some(differences) => Err(format!("it was made with another configuration:\n{differences}")),
         None => Ok(()),
     }

@@ -11,6 +11,7 @@ use super::record::Recorded;
 use super::store::Store;
 use super::{header, line};
 use input::files::{self, LARGEST_JOURNAL};
+use insertion::space::Space;
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -19,7 +20,6 @@ use std::path::{Path, PathBuf};
 pub struct Journal {
     pub(super) path: PathBuf,
     store: Box<dyn Store>,
-    config: StudyConfig,
     /// Length of the complete, synced lines, bytes.
     len: u64,
     /// Whether a write failed; later ones are then refused.
@@ -53,13 +53,8 @@ impl Journal {
                 .truncate(parsed.whole as u64)
                 .map_err(StudyError::io("cut the torn last line off", path))?;
         }
-        let mut journal = Journal {
-            path: path.to_owned(),
-            store,
-            config: config.clone(),
-            len: parsed.whole as u64,
-            broken: false,
-        };
+        let mut journal =
+            Journal { path: path.to_owned(), store, len: parsed.whole as u64, broken: false };
         if parsed.whole == 0 {
             let header = header::encode(config).map_err(|error| journal.failed(error.into()))?;
             journal.write(&header)?;
@@ -68,8 +63,8 @@ impl Journal {
     }
 
     /// Appends an evaluation; it then survives a power failure.
-    pub fn append(&mut self, recorded: &Recorded) -> Result<(), StudyError> {
-        let line = line::encode(recorded, &self.config.space);
+    pub fn append(&mut self, recorded: &Recorded, space: &Space) -> Result<(), StudyError> {
+        let line = line::encode(recorded, space);
         self.write(&line.map_err(|error| self.failed(error.into()))?)
     }
 
@@ -112,12 +107,11 @@ impl Journal {
 
 /// Reads a journal without writing to it; a torn last line is ignored, and a study without one is empty.
 pub fn read(path: &Path, config: &StudyConfig) -> Result<Contents, StudyError> {
-    let bytes = File::open(path).and_then(|file| files::read_up_to(file, LARGEST_JOURNAL));
-    let bytes = match bytes {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
-        read => read,
+    let read = File::open(path).and_then(|file| files::read_up_to(file, LARGEST_JOURNAL));
+    let bytes = match read {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Vec::new(),
+        read => read.map_err(StudyError::io("read", path))?,
     };
-    let bytes = bytes.map_err(StudyError::io("read", path))?;
     parse(&bytes, path, config)
 }
 

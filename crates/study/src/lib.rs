@@ -36,15 +36,13 @@ pub use config::{
     BenchEffort, Conclusion, Confirmation, INDIFFERENCES_MM, LARGEST_BATCH, LARGEST_BUDGET,
     StudyConfig, study_name,
 };
-pub use confirmer::{ConfirmationLog, Confirmed, Confirmer};
+pub use confirmer::{ConfirmationLog, ConfirmationStep, Confirmer};
 pub use error::StudyError;
-pub use folder::{
-    CELL, FINGER, IfChanged, Inputs, Study, has_begun, input_path, read_analysis, read_config,
-};
+pub use folder::{CELL, FINGER, Inputs, Study, has_begun, input_path, read_analysis, read_config};
 pub use folder::{sha256, write_analysis, write_file, write_own_file};
 pub use limits::ForceLimits;
 pub use line::{decode, encode};
-pub use on_bench::{BenchFinger, LeaveOneOut, OnBench};
+pub use on_bench::{BENCH_FILE, BenchFinger, LeaveOneOut, OnBench};
 pub use provenance::{BENCH_ROLES, Provenance, SOURCES, Segment};
 pub use record::{ByRibs, Recorded, StudyRecord, Timing, Volume, Walked, best, nearest, volume};
 pub use runner::Runner;
@@ -52,5 +50,5 @@ pub use scheduler::{Ending, Next, Proposal, ProposalResult, Scheduler};
 pub use seal::{sha256_hex, strip_times};
 pub use simulated::Simulated;
 pub use store::Store;
-pub use table::{evaluations_csv, write_evaluations_csv};
+pub use table::{EVALUATIONS_CSV, evaluations_csv};
 pub use work::{Work, WorkError};

@@ -10,7 +10,8 @@ use insertion::space::Design;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-pub(super) const BENCH_FILE: &str = "bench.json";
+/// File of the prediction in the folder of a study.
+pub const BENCH_FILE: &str = "bench.json";
 
 /// The prediction of a calibration for the fingers of a study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -21,10 +21,10 @@ pub struct Provenance {
     pub source_sha256: String,
     /// SHA-256 of the sources that determine the evaluation of a design.
     pub simulation_sha256: String,
-    /// SHA-256 of each input file by its role (`task_1` and so on, `space`, `robot`,
-    /// `stiffness`; `cell`, `uncertainty`, the `finger` of computed ones, `measurements` and `priors` if there
-    /// is one), in hexadecimal.
+    /// SHA-256 of each input file by its role, in hexadecimal: `task_1` and so on, `space`, `robot`,
+    /// `stiffness`; if given `cell`, `uncertainty`, `finger` (of computed fingers), `measurements`, `priors`.
     pub input_sha256: BTreeMap<String, String>,
+    /// Contact engine with its settings.
     pub engine: EngineRecord,
 }
 
@@ -54,7 +54,7 @@ impl Provenance {
         }
     }
 
-    /// Returns whether both simulate the same; bench measurements change no simulated value.
+    /// Returns whether both give the same simulation results, which bench measurements do not affect.
     pub fn simulates_like(&self, other: &Provenance) -> bool {
         let simulated = |provenance: &Provenance| {
             let mut provenance = provenance.clone();

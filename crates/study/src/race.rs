@@ -36,7 +36,7 @@ impl Study {
     /// best one of the current model. The first draws are those in which that one failed, and among these
     /// and the others those in which most designs failed.
     pub(super) fn race(&self, told: usize) -> Option<Race> {
-        let first = first_current(self.segments()) as usize;
+        let first = first_current(&self.segments) as usize;
         let told = self.evaluations.get(first..told).filter(|_| self.config.race)?;
         let best = best(&self.config.goals(), told)?;
         let success = best.tasks.first()?.success.as_ref()?;

@@ -1,6 +1,5 @@
 //! Recommended design of a study, equivalent designs, and the influence of the finger.
 
-use super::confirmer::gain;
 use super::record::{Recorded, StudyRecord};
 use super::rule::Rule;
 use ask_tell::Grid;
@@ -12,9 +11,8 @@ impl StudyRecord {
     /// walked designs, else of all. If windows do not determine the objective, the [`best`](Self::best).
     pub fn recommendation(&self) -> Option<&Recorded> {
         self.config.objective.single()?;
-        let goals = self.config.goals();
-        let rule = Rule { goals: &goals, space: &self.config.space };
-        let searched = || rule.by_windows().then(|| rule.first(self.current())).flatten();
+        let rule = Rule::of(&self.config);
+        let searched = || self.config.by_windows().then(|| rule.first(self.current())).flatten();
         let walked = self.walked.first().map(|walked| &walked.recorded);
         walked.or_else(searched).or_else(|| self.best())
     }
@@ -45,21 +43,19 @@ impl StudyRecord {
     /// value or the median of the predicted one, rounded to the grid of ranges; the searched value if no
     /// design was repeated. `None` for designs that cannot be recommended.
     fn worth(&self) -> Vec<Option<f64>> {
-        let (current, goals) = (self.current(), self.config.goals());
+        let (current, rule) = (self.current(), Rule::of(&self.config));
         let searched = |found: &Recorded| {
             let values = found.feasible().filter(|_| !found.raced())?;
-            goals.gains(values).first().copied()
+            rule.goals.gains(values).first().copied()
         };
         let known = |at: usize| self.firm_values.get(&current[at].index).copied();
-        let confirmed = |at| Some(Confirmed { at, value: known(at)?, last: true });
+        let confirmed = |index| Some(Confirmed { index, value: known(index)?, is_final: true });
         let confirmed: Vec<Confirmed> = (0..current.len()).filter_map(confirmed).collect();
         if confirmed.is_empty() {
             return current.iter().map(searched).collect();
         }
-        let space = &self.config.space;
-        let observed = Rule { goals: &goals, space }.observed(current);
-        let grid = Grid::new(space.levels());
-        let outlook = Outlook::new(&grid, &observed, &confirmed, gain(&self.config));
+        let (grid, observed) = (Grid::new(rule.space.levels()), rule.observed(current));
+        let outlook = Outlook::new(&grid, &observed, &confirmed, self.config.indifference_mm);
         let expected = |at: usize| {
             searched(&current[at])?;
             known(at).or_else(|| outlook.median(at)).map(|mm| (10.0 * mm).round() / 10.0)
@@ -80,9 +76,7 @@ impl StudyRecord {
 
     /// Returns a measure of a design, aggregated over the tasks.
     pub fn measure(&self, recorded: &Recorded, measure: Measure) -> Option<f64> {
-        let values: Option<Vec<f64>> =
-            recorded.tasks.iter().map(|task| measure.value(task)).collect();
-        values.map(|values| self.aggregated(measure, &values))
+        self.config.goals().value(measure, &recorded.tasks())
     }
 
     /// Aggregates the values of a measure over the tasks.

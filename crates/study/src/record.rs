@@ -109,7 +109,7 @@ pub struct Timing {
 impl Timing {
     /// Calls `measure` and returns its result with start, end and duration.
     pub fn of<T>(measure: impl FnOnce() -> T) -> (T, Timing) {
-        // As Optuna reads it.
+        // The format of Optuna.
         let now = || Timestamp::now().strftime("%Y-%m-%dT%H:%M:%S.%6f").to_string();
         let (datetime_start, clock) = (now(), Instant::now());
         let measured = measure();
@@ -159,8 +159,8 @@ impl StudyRecord {
         foreign.into_iter().collect()
     }
 
-    /// Returns the evaluations of the current model: of the last segment, and of those before it that simulate
-    /// the same.
+    /// Returns the evaluations of the current model: of the last segment, and of those directly before it with
+    /// the same simulation.
     pub fn current(&self) -> &[Recorded] {
         self.evaluations.get(self.first_current() as usize..).unwrap_or_default()
     }
@@ -170,8 +170,8 @@ impl StudyRecord {
         first_current(&self.segments)
     }
 
-    /// Returns the [`current`](Self::current) evaluation with the best first objective: of the feasible ones that
-    /// were not raced.
+    /// Returns the feasible [`current`](Self::current) evaluation with the best first objective, without those that
+    /// lost a race early.
     pub fn best(&self) -> Option<&Recorded> {
         best(&self.config.goals(), self.current())
     }
@@ -179,7 +179,13 @@ impl StudyRecord {
     /// Returns the Pareto front of the feasible [`current`](Self::current) evaluations, best in the first
     /// objective first.
     pub fn front(&self) -> Vec<&Recorded> {
-        front(&self.config.goals(), self.current())
+        let goals = self.config.goals();
+        let known = |recorded| Some((recorded, Recorded::feasible(recorded)?));
+        let known: Vec<(&Recorded, &[f64])> = self.current().iter().filter_map(known).collect();
+        let gains: Vec<Vec<f64>> = known.iter().map(|(_, values)| goals.gains(values)).collect();
+        let mut front: Vec<_> = pareto::front(&gains).into_iter().map(|i| known[i]).collect();
+        front.sort_by(|(_, a), (_, b)| goals.order(b, a));
+        front.into_iter().map(|(recorded, _)| recorded).collect()
     }
 }
 
@@ -233,8 +239,8 @@ pub fn volume(goals: &Goals, evaluations: &[Recorded]) -> Volume {
     Volume { hypervolume: last, reference, so_far }
 }
 
-/// Returns the feasible evaluation with the best first objective that was not raced; of equal ones the one
-/// that is better in the next objective, then the earliest.
+/// Returns the feasible evaluation with the best first objective, without those that lost a race early; of
+/// equal ones the one that is better in the next objective, then the earliest.
 pub fn best<'a>(
     goals: &Goals,
     evaluations: impl IntoIterator<Item = &'a Recorded>,
@@ -248,14 +254,4 @@ pub fn best<'a>(
         }
     }
     best.map(|(recorded, _)| recorded)
-}
-
-/// Returns the Pareto front of the feasible evaluations, best in the first objective first.
-pub fn front<'a>(goals: &Goals, evaluations: &'a [Recorded]) -> Vec<&'a Recorded> {
-    let known: Vec<(&Recorded, &[f64])> =
-        evaluations.iter().filter_map(|recorded| Some((recorded, recorded.feasible()?))).collect();
-    let gains: Vec<Vec<f64>> = known.iter().map(|(_, values)| goals.gains(values)).collect();
-    let mut front: Vec<_> = pareto::front(&gains).into_iter().map(|i| known[i]).collect();
-    front.sort_by(|(_, a), (_, b)| goals.order(b, a));
-    front.into_iter().map(|(recorded, _)| recorded).collect()
 }

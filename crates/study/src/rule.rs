@@ -9,16 +9,17 @@
 //!    span of each;
 //! 6. the earlier evaluation.
 
+use super::StudyConfig;
 use super::record::Recorded;
 use ask_tell::Observation;
 use insertion::evaluation::objective::{Goals, Measure};
 use insertion::evaluation::{Evaluation, Window};
-use insertion::space::{Design, Space};
+use insertion::space::{Design, Space, Variable};
 use std::cmp::Ordering;
 
 /// Rule of recommendation for a study.
 pub(super) struct Rule<'a> {
-    pub goals: &'a Goals,
+    pub goals: Goals,
     pub space: &'a Space,
 }
 
@@ -36,10 +37,10 @@ pub(super) struct Rank {
     index: u64,
 }
 
-impl Rule<'_> {
-    /// Returns whether windows determine the objective, so that confirmation is worthwhile.
-    pub fn by_windows(&self) -> bool {
-        matches!(self.goals.objectives.single(), Some(Measure::Range | Measure::CentredRange))
+impl<'a> Rule<'a> {
+    /// Returns the rule for a study of this configuration.
+    pub fn of(config: &'a StudyConfig) -> Self {
+        Rule { goals: config.goals(), space: &config.space }
     }
 
     /// Returns the rank of a design with these windows, one for each task, in place of its own.
@@ -50,10 +51,7 @@ impl Rule<'_> {
         };
         let tasks: Vec<Evaluation> = recorded.tasks.iter().zip(windows).map(in_window).collect();
         let tasks: Vec<&Evaluation> = tasks.iter().collect();
-        let of = |measure: Measure| {
-            let values: Option<Vec<f64>> = tasks.iter().map(|task| measure.value(task)).collect();
-            values.map(|values| self.goals.aggregate.of(measure.sense(), &values))
-        };
+        let of = |measure| self.goals.value(measure, &tasks);
         let feasible = recorded.feasible().and_then(|_| self.goals.score(&tasks));
         Rank {
             values: feasible.map(|score| score.values),
@@ -97,7 +95,7 @@ impl Rule<'_> {
     /// Returns the distance from the nearest bound of a parameter, as a share of its span, 0 to 0.5.
     /// Parameters with one value are ignored.
     fn edge_distance(&self, design: &Design) -> f64 {
-        let of = |parameter: &insertion::space::Variable| {
+        let of = |parameter: &Variable| {
             let (value, span) = (design.get(&parameter.key)?, parameter.high - parameter.low);
             (span > 0.0).then(|| (value - parameter.low).min(parameter.high - value) / span)
         };
@@ -144,8 +142,7 @@ mod tests {
     /// Returns the indices in the order of the rule.
     fn ranked(designs: &[Recorded]) -> Vec<u64> {
         let space = Space::parse(SPACES[0].text, SPACES[0].file).unwrap();
-        let goals = goals();
-        let rule = Rule { goals: &goals, space: &space };
+        let rule = Rule { goals: goals(), space: &space };
         let mut ranks: Vec<Rank> = designs.iter().map(|design| rule.as_recorded(design)).collect();
         ranks.sort_by(|a, b| rule.order(a, b));
         ranks.iter().map(|rank| rank.index).collect()
@@ -177,9 +174,9 @@ mod tests {
         let space = Space::parse(SPACES[0].text, SPACES[0].file).unwrap();
         let goals =
             Goals { constraints: vec!["range>=3".parse().unwrap()], ..Goals::of(Measure::Range) };
-        let rule = Rule { goals: &goals, space: &space };
+        let rule = Rule { goals, space: &space };
         let mut wide = recorded(0, 20.0, [-20, 20], 50.0);
-        wide.score = goals.score(&wide.tasks());
+        wide.score = rule.goals.score(&wide.tasks());
         let firm = Window { negative_steps: -5, ..wide.tasks[0].window.clone() };
         assert_eq!(rule.rank(&wide, &[firm]).value(), Some(2.5));
     }

@@ -5,7 +5,7 @@ use super::folder::Study;
 use super::record::{Recorded, Timing};
 use super::scheduler::{Ending, Next, Proposal, ProposalResult, Scheduler};
 use ask_tell::Optimizer;
-use insertion::evaluation::evaluator::{Evaluate, Measured};
+use insertion::evaluation::evaluator::Evaluate;
 use rayon::ThreadPool;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,16 +19,11 @@ pub struct Runner<'a> {
     pub pool: &'a ThreadPool,
     /// Cancels the run once it is set; also set by the runner after an error.
     pub stop: &'a AtomicBool,
-    /// Returns whether no gain is expected after a number of evaluations.
-    pub stagnates: &'a GainCheck<'a>,
 }
 
-/// Check whether no gain is expected of a study after a number of its evaluations.
-pub type GainCheck<'a> = dyn Fn(&Study, usize) -> Result<bool, StudyError> + Sync + 'a;
-
 impl Runner<'_> {
-    /// Runs the study to its end with a new optimizer; `progress` is called after each evaluation was
-    /// written.
+    /// Runs the study to its end with a new optimizer. `stagnates` returns whether no gain is expected after
+    /// a number of evaluations; `progress` is called after each evaluation was written.
     ///
     /// # Errors
     /// If a design cannot be simulated or the journal cannot be written.
@@ -36,6 +31,7 @@ impl Runner<'_> {
         &self,
         study: &mut Study,
         optimizer: &mut dyn Optimizer,
+        stagnates: &mut dyn FnMut(&Study, usize) -> Result<bool, StudyError>,
         progress: &mut dyn FnMut(&Recorded),
     ) -> Result<Ending, StudyError> {
         let mut scheduler = Scheduler::new(study);
@@ -62,7 +58,7 @@ impl Runner<'_> {
                             }
                         }
                         Next::CheckGain(told) => {
-                            let stagnant = (self.stagnates)(study, told)?;
+                            let stagnant = stagnates(study, told)?;
                             if !self.stopped() {
                                 scheduler.record_stagnation(stagnant);
                             }
@@ -101,9 +97,7 @@ impl Runner<'_> {
         if self.stopped() {
             return Ok(None);
         }
-        let (measured, timing) = measured?;
-        let timing = Timing { cached: measured.cached.clone(), ..timing };
-        Ok(Some(ProposalResult { number: proposal.number, measured, timing }))
+        measured.map(Some)
     }
 }
 
@@ -112,12 +106,11 @@ impl Proposal {
     ///
     /// # Errors
     /// If the design cannot be simulated.
-    pub fn measure(&self, evaluator: &dyn Evaluate) -> Result<(Measured, Timing), StudyError> {
-        let (measured, timing) = Timing::of(|| match &self.race {
-            Some(race) => evaluator.race(&self.design, race),
-            None => evaluator.evaluate(&self.design),
-        });
-        let error = |source| StudyError::impossible(self.number, &self.design, source);
-        measured.map(|measured| (measured, timing)).map_err(error)
+    pub fn measure(&self, evaluator: &dyn Evaluate) -> Result<ProposalResult, StudyError> {
+        let number = self.number;
+        let (measured, timing) =
+            Timing::of(|| evaluator.evaluate(&self.design, self.race.as_ref()));
+        let error = |source| StudyError::impossible(number, &self.design, source);
+        measured.map(|measured| ProposalResult { number, measured, timing }).map_err(error)
     }
 }

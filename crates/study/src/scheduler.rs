@@ -28,7 +28,7 @@ use super::record::{Recorded, Timing, first_current};
 use ask_tell::GridPoint;
 use ask_tell::{Observation, Optimizer, StopReason};
 use insertion::evaluation::evaluator::Measured;
-use insertion::evaluation::objective::{Goals, Score};
+use insertion::evaluation::objective::Score;
 use insertion::evaluation::robustness::race::Race;
 use insertion::space::Design;
 use serde::{Deserialize, Serialize};
@@ -100,10 +100,7 @@ pub struct ProposalResult {
 
 /// Scheduler of a study: a state machine that is replayed from the journal.
 pub struct Scheduler {
-    goals: Goals,
     batch: usize,
-    budget: usize,
-    asynchronous: bool,
     /// Proposals without `tell`, by number, each with the number of evaluations told before it.
     open: BTreeMap<u64, (GridPoint, usize)>,
     /// Number of proposals so far.
@@ -112,7 +109,7 @@ pub struct Scheduler {
     told: usize,
     /// Designs being measured, by the number of the proposal.
     measuring: BTreeMap<u64, Design>,
-    /// Results that wait for earlier ones to be written, by the same number.
+    /// Results that wait for earlier ones, still being measured, to be written; by index.
     waiting: BTreeMap<u64, Recorded>,
     early_stopping: Option<EarlyStopping>,
     ended: Option<Ending>,
@@ -135,16 +132,12 @@ struct EarlyStopping {
 impl Scheduler {
     /// Returns the scheduler of a study, to be used with a new optimizer.
     pub fn new(study: &Study) -> Self {
-        let number = |n: u64| usize::try_from(n).unwrap_or(usize::MAX);
         let settled = study.settled();
         let early_stopping = study.config.settling().map(|[min_evaluations, patience]| {
             EarlyStopping { min_evaluations, patience, stagnant: 0, checked: 0, settled }
         });
         Scheduler {
-            goals: study.config.goals(),
-            batch: number(study.config.batch),
-            budget: number(study.config.evaluations()),
-            asynchronous: study.config.asynchronous,
+            batch: study.config.batch as usize,
             open: BTreeMap::new(),
             proposed: 0,
             told: 0,
@@ -165,7 +158,7 @@ impl Scheduler {
         optimizer: &mut dyn Optimizer,
     ) -> Result<Next, StudyError> {
         while self.ended.is_none() {
-            if !self.asynchronous && self.measuring.is_empty() {
+            if !study.config.asynchronous && self.measuring.is_empty() {
                 self.tell_batch(study, optimizer);
             }
             match self.early_stopping {
@@ -182,7 +175,7 @@ impl Scheduler {
                 }
                 _ => {}
             }
-            let proposals = match self.asynchronous {
+            let proposals = match study.config.asynchronous {
                 true => self.next_arrivals(study, optimizer)?,
                 false if self.measuring.is_empty() => self.next_batch(study, optimizer)?,
                 false => Vec::new(),
@@ -221,32 +214,24 @@ impl Scheduler {
         result: ProposalResult,
         progress: &mut dyn FnMut(&Recorded),
     ) -> Result<bool, StudyError> {
-        let ProposalResult { number, measured: Measured { stiffness, tasks, .. }, timing } = result;
-        let Some(design) = self.measuring.get(&number).cloned() else { return Ok(false) };
-        if self.waiting.contains_key(&number) {
-            return Ok(false);
-        }
-        let (index, proposal) = match self.asynchronous {
+        let ProposalResult { number, measured: Measured { stiffness, tasks, cached }, timing } =
+            result;
+        let Some(design) = self.measuring.remove(&number) else { return Ok(false) };
+        let (index, proposal) = match study.config.asynchronous {
             true => (study.evaluations.len() as u64, Some(number)),
             false => (number, None),
         };
-        let score = self.goals.score(&tasks.iter().collect::<Vec<_>>()).filter(is_finite);
+        let goals = study.config.goals();
+        let score = goals.score(&tasks.iter().collect::<Vec<_>>()).filter(is_finite);
+        let timing = Timing { cached, ..timing };
         let recorded = Recorded { index, proposal, design, score, stiffness, tasks, timing };
-        self.waiting.insert(number, recorded);
-        while let Some((number, recorded)) = self.next_written(study) {
-            study.journal.append(&recorded)?;
+        self.waiting.insert(index, recorded);
+        while let Some(recorded) = self.waiting.remove(&(study.evaluations.len() as u64)) {
+            study.journal.append(&recorded, &study.config.space)?;
             progress(&recorded);
             study.evaluations.push(recorded);
-            self.measuring.remove(&number);
         }
         Ok(true)
-    }
-
-    /// Removes and returns the result that is next in the journal, if it is known.
-    fn next_written(&mut self, study: &Study) -> Option<(u64, Recorded)> {
-        let next = study.evaluations.len() as u64;
-        let number = self.waiting.iter().find(|(_, found)| found.index == next).map(|(n, _)| *n)?;
-        self.waiting.remove_entry(&number)
     }
 
     /// Passes a batch to `tell` once all of it is measured.
@@ -258,7 +243,7 @@ impl Scheduler {
             let found = study.evaluations.iter().skip(self.told);
             let told: Vec<Observation> = points
                 .zip(found)
-                .map(|((point, _), found)| self.observation(point, found))
+                .map(|((point, _), found)| study.observation(point, found))
                 .collect();
             optimizer.tell(&told);
             self.told = end;
@@ -272,7 +257,7 @@ impl Scheduler {
         optimizer: &mut dyn Optimizer,
     ) -> Result<Vec<Proposal>, StudyError> {
         // After a limit was raised, the rest of its batch comes first.
-        if self.open.is_empty() && self.told < self.limit(study) {
+        if self.open.is_empty() && self.told < Self::limit(study) {
             self.propose(optimizer, self.batch);
             if self.open.is_empty() {
                 self.ended = Some(exhausted(optimizer));
@@ -291,7 +276,7 @@ impl Scheduler {
         let known = study.evaluations.len();
         proposals.retain(|proposal| proposal.number >= known as u64);
         if proposals.is_empty() && (self.open.is_empty() || self.told + self.open.len() > known) {
-            self.ended = Some(self.spent(study));
+            self.ended = Some(Self::spent(study));
         }
         Ok(proposals)
     }
@@ -313,15 +298,15 @@ impl Scheduler {
             let Some(point) = point.filter(|p| study.config.space.design(p) == found.design) else {
                 return Err(study.other_design(found, "another in its place"));
             };
-            optimizer.tell(&[self.observation(point, found)]);
+            optimizer.tell(&[study.observation(point, found)]);
             self.told += 1;
             self.propose(optimizer, 1);
         }
         let mut proposals = self.proposals(study);
         proposals.retain(|proposal| !self.measuring.contains_key(&proposal.number));
         if proposals.is_empty() && self.measuring.is_empty() {
-            let spent = self.told >= self.limit(study);
-            self.ended = Some(if spent { self.spent(study) } else { exhausted(optimizer) });
+            let spent = self.told >= Self::limit(study);
+            self.ended = Some(if spent { Self::spent(study) } else { exhausted(optimizer) });
         }
         Ok(proposals)
     }
@@ -334,39 +319,32 @@ impl Scheduler {
     }
 
     /// Returns the largest number of evaluations: the budget, or fewer while no design has inserted.
-    fn limit(&self, study: &Study) -> usize {
-        let first = first_current(study.segments()) as usize;
+    fn limit(study: &Study) -> usize {
+        let budget = study.config.evaluations() as usize;
+        let first = first_current(&study.segments) as usize;
         match study.evaluations.iter().skip(first).any(Recorded::inserts) {
-            true => self.budget,
-            false => self.budget.min(first + MAX_FAILED_STARTS),
+            true => budget,
+            false => budget.min(first + MAX_FAILED_STARTS),
         }
     }
 
     /// Returns the ending of a study at its limit.
-    fn spent(&self, study: &Study) -> Ending {
-        if self.limit(study) < self.budget { Ending::NothingInserts } else { Ending::BudgetSpent }
+    fn spent(study: &Study) -> Ending {
+        match (Self::limit(study) as u64) < study.config.evaluations() {
+            true => Ending::NothingInserts,
+            false => Ending::BudgetSpent,
+        }
     }
 
     /// Returns the proposals within the limit whose results were not told yet.
     fn proposals(&self, study: &Study) -> Vec<Proposal> {
-        let limit = self.limit(study) as u64;
+        let limit = Self::limit(study) as u64;
         let within = self.open.iter().filter(|(number, _)| **number < limit);
         let proposal = |(&number, (point, told)): (&u64, &(GridPoint, usize))| {
             let design = study.config.space.design(point);
             Proposal { number, design, race: study.race(*told) }
         };
         within.map(proposal).collect()
-    }
-
-    fn observation(&self, point: GridPoint, recorded: &Recorded) -> Observation {
-        let told = || {
-            let score = recorded.score.as_ref()?;
-            Some((self.goals.told(&recorded.tasks())?, score.violations.clone()))
-        };
-        match told() {
-            None => Observation::new(point, None),
-            Some((values, violations)) => Observation { point, values, violations },
-        }
     }
 }
 
@@ -384,6 +362,18 @@ fn exhausted(optimizer: &dyn Optimizer) -> Ending {
 }
 
 impl Study {
+    /// Returns the result of a point for the optimizer.
+    fn observation(&self, point: GridPoint, recorded: &Recorded) -> Observation {
+        let told = || {
+            let score = recorded.score.as_ref()?;
+            Some((self.config.goals().told(&recorded.tasks())?, score.violations.clone()))
+        };
+        match told() {
+            None => Observation::new(point, None),
+            Some((values, violations)) => Observation { point, values, violations },
+        }
+    }
+
     /// Returns the error for an evaluation of the journal in place of which another design is proposed.
     fn other_design(&self, found: &Recorded, proposed: &str) -> StudyError {
         let problem = format!(

@@ -8,7 +8,6 @@ use insertion::evaluation::robustness::race::Race;
 use insertion::evaluation::template::Impossible;
 use insertion::evaluation::tolerance::Search;
 use insertion::space::Design;
-use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Evaluator with a cache.
@@ -24,30 +23,21 @@ pub struct Simulated<'a> {
     pub stop: &'a AtomicBool,
 }
 
+// The key of a cache entry includes the plan with its race. A raced evaluation is therefore found only by the
+// same race, and the cache changes no journal.
 impl Evaluate for Simulated<'_> {
-    fn evaluate(&self, design: &Design) -> Result<Measured, Impossible> {
-        self.evaluate_by(design, self.plan)
-    }
-
-    fn race(&self, design: &Design, race: &Race) -> Result<Measured, Impossible> {
-        self.evaluate_by(design, &self.plan.against(Some(race)))
+    fn evaluate(&self, design: &Design, race: Option<&Race>) -> Result<Measured, Impossible> {
+        let (plan, mut cached) = (self.plan.against(race), Vec::new());
+        let measured = self.evaluator.evaluate_by(design, |specimen| {
+            let (evaluation, known) = self.measure(specimen, &plan)?;
+            cached.push(known);
+            Ok(evaluation)
+        })?;
+        Ok(Measured { cached, ..measured })
     }
 }
 
-// The key of a cache entry includes the plan with its race. A raced evaluation is therefore found only by the
-// same race, and the cache changes no journal.
 impl Simulated<'_> {
-    fn evaluate_by(&self, design: &Design, plan: &Plan) -> Result<Measured, Impossible> {
-        // The tasks come one after the other.
-        let cached = RefCell::new(Vec::new());
-        let measured = self.evaluator.evaluate_by(design, |specimen| {
-            let (evaluation, known) = self.measure(specimen, plan)?;
-            cached.borrow_mut().push(known);
-            Ok(evaluation)
-        })?;
-        Ok(Measured { cached: cached.into_inner(), ..measured })
-    }
-
     /// Returns the cached measurements of a design without simulating; `None` unless all are there.
     pub fn known(&self, design: &Design, race: Option<&Race>) -> Option<Measured> {
         let (cache, plan) = (self.cache?, self.plan.against(race));

@@ -1,7 +1,7 @@
 //! Storage of a journal: a file, or a replacement for tests that fails.
 
 use input::files::{self, LARGEST_JOURNAL};
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, File};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -47,11 +47,7 @@ impl FileStore {
         let file = File::options().read(true).append(true).create(true).open(path)?;
         // On other systems a lock would block readers.
         if cfg!(unix) {
-            match file.try_lock() {
-                Err(TryLockError::WouldBlock) => return Err(io::ErrorKind::WouldBlock.into()),
-                Err(TryLockError::Error(error)) => return Err(error),
-                Ok(()) => {}
-            }
+            file.try_lock()?;
         }
         Ok(FileStore { file, path: path.to_owned() })
     }
@@ -71,22 +67,21 @@ impl Store for FileStore {
     }
 
     fn check(&mut self, len: u64) -> Result<(), String> {
+        let inaccessible = |error: io::Error| format!("is not accessible any more: {error}");
         let found = match fs::symlink_metadata(&self.path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 return Err("was removed or renamed".to_owned());
             }
-            found => found.map_err(|error| format!("is not accessible any more: {error}"))?,
+            found => found.map_err(inaccessible)?,
         };
-        match files::is_open_file(&found, &self.file) {
-            Ok(true) if found.len() == len => Ok(()),
-            Ok(true) => {
-                let found = found.len();
-                Err(format!(
-                    "was changed by another program: it has {found} bytes, {len} were written"
-                ))
-            }
-            Ok(false) => Err("was replaced by another file".to_owned()),
-            Err(error) => Err(format!("is not accessible any more: {error}")),
+        if !files::is_open_file(&found, &self.file).map_err(inaccessible)? {
+            return Err("was replaced by another file".to_owned());
+        }
+        match found.len() {
+            found if found == len => Ok(()),
+            found => Err(format!(
+                "was changed by another program: it has {found} bytes, {len} were written"
+            )),
         }
     }
 

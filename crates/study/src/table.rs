@@ -1,34 +1,26 @@
 //! `evaluations.csv`: table of the evaluations with the keys of JSON and journal, units in the header.
 
 use super::error::StudyError;
-use super::folder::write_own_file;
 use super::record::{Recorded, StudyRecord};
 use insertion::evaluation::objective::Score;
 use serde::Serialize;
 use serde_json::Value;
 use std::path::Path;
 
-const TABLE: &str = "evaluations.csv";
+/// File of the table in the folder of a study.
+pub const EVALUATIONS_CSV: &str = "evaluations.csv";
 /// Lists with a value for each draw, which are not columns.
 const DRAWN: [&str; 2] = ["robust_ranges_mm", "success_failed_draws"];
 
 /// Columns and cells in order.
 type Row = Vec<(String, String)>;
 
-/// Writes `evaluations.csv` into a study's folder.
-///
-/// # Errors
-/// If it cannot be written.
-pub fn write_evaluations_csv(dir: &Path, record: &StudyRecord) -> Result<(), StudyError> {
-    write_own_file(&dir.join(TABLE), &evaluations_csv(dir, record)?)
-}
-
 /// Returns the text of `evaluations.csv`; `dir` is named in errors.
 ///
 /// # Errors
 /// If it cannot be written as CSV.
 pub fn evaluations_csv(dir: &Path, record: &StudyRecord) -> Result<String, StudyError> {
-    csv(record).map_err(|error| StudyError::file(&dir.join(TABLE), error))
+    csv(record).map_err(|error| StudyError::file(&dir.join(EVALUATIONS_CSV), error))
 }
 
 fn csv(record: &StudyRecord) -> Result<String, Box<dyn std::error::Error>> {

@@ -109,9 +109,10 @@ impl Work {
     ///
     /// # Errors
     /// If it cannot be serialized.
-    pub fn result(&self, measured: Measured, timing: &Timing) -> Result<Vec<u8>, WorkError> {
-        let done = Done { work_sha256: sha256_hex(&self.encode()?), tasks: measured.tasks };
-        encoded(&done, Some(timing))
+    pub fn result(&self, result: ProposalResult) -> Result<Vec<u8>, WorkError> {
+        let tasks = result.measured.tasks;
+        let done = Done { work_sha256: sha256_hex(&self.encode()?), tasks };
+        encoded(&done, Some(&result.timing))
     }
 
     /// Returns the result of this work; `stiffness` is the prediction of the study's own model.

@@ -8,7 +8,7 @@ use ask_tell::statistics::mean;
 use ask_tell::stream::stream;
 use calibration::bench::{Observation, sampled};
 use calibration::next::{Fingers, advise};
-use calibration::predict::{Of, predict};
+use calibration::predict::{IntervalKind, predict};
 use clap::Parser;
 use finger_opt::context::Context;
 use finger_opt::failure::Failure;
@@ -171,7 +171,7 @@ fn replay(prepared: &Prepared<'_>, task: &'static str, number: u64) -> Found {
             sampled(std::slice::from_ref(&bench), layout.dimension(), settings, &mut random);
         if printed.len() == FEW {
             let best = printed.iter().map(|&at| truth.ranges_mm[at]).fold(0.0, f64::max);
-            let expected = predict(&bench, &posterior, &among, Of::Truth);
+            let expected = predict(&bench, &posterior, &among, IntervalKind::Truth);
             let named = (0..among.len())
                 .max_by(|&a, &b| expected[a].mean_mm.total_cmp(&expected[b].mean_mm))
                 .unwrap_or(0);
@@ -180,10 +180,12 @@ fn replay(prepared: &Prepared<'_>, task: &'static str, number: u64) -> Found {
                 break;
             }
         }
+        let none = BTreeSet::new();
         let fingers =
-            Fingers { among: &among, failed: &BTreeSet::new(), printed: &BTreeSet::new() };
+            Fingers { designs: &subject.designs, among: &among, failed: &none, printed: &none };
         let advice = advise(&bench, &posterior, fingers, 1, 0.1, &mut random);
-        let Some(finger) = advice.next.first().map(|print| print.finger) else { break };
+        let first = advice.next.first();
+        let Some(finger) = first.and_then(|print| subject.finger(&print.design)) else { break };
         let at = among.iter().position(|&one| one == finger).unwrap_or(0);
         printed.push(at);
         let normal: f64 = noise.sample(StandardNormal);

@@ -6,8 +6,6 @@ use crate::failure::Failure;
 use crate::setup::measured;
 use crate::setup::task::read_task;
 use calibration::experiments::Experiment;
-use insertion::outcome::FailureClass;
-use insertion::space::Design;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -32,8 +30,9 @@ pub struct Checked {
     file: String,
     lines: usize,
     tasks: Vec<OfTask>,
+    /// Lines by the columns of the file; null where a column is empty.
     #[serde(skip_serializing_if = "Option::is_none")]
-    rows: Option<Vec<Row>>,
+    rows: Option<Vec<Experiment>>,
 }
 
 /// Number of lines of one task.
@@ -46,44 +45,6 @@ struct OfTask {
     bounds: usize,
     /// Number of measured windows.
     repeats: u32,
-}
-
-/// A line by the columns of the file; null where a column is empty.
-#[derive(Serialize)]
-struct Row {
-    line: u64,
-    task: String,
-    negative_mm: Option<f64>,
-    positive_mm: Option<f64>,
-    range_mm: Option<f64>,
-    failure_negative: Option<u8>,
-    failure_positive: Option<u8>,
-    repeats: u32,
-    peak_force_n: Option<f64>,
-    date: Option<String>,
-    note: String,
-    #[serde(flatten)]
-    design: Design,
-}
-
-impl From<&Experiment> for Row {
-    fn from(line: &Experiment) -> Self {
-        let [below, above] = line.failures.map(|failure| failure.map(FailureClass::number));
-        Row {
-            line: line.line,
-            task: line.task.clone(),
-            negative_mm: line.negative_mm,
-            positive_mm: line.positive_mm,
-            range_mm: line.range_mm(),
-            failure_negative: below,
-            failure_positive: above,
-            repeats: line.repeats,
-            peak_force_n: line.peak_force_n,
-            date: line.date.clone(),
-            note: line.note.clone(),
-            design: line.design.clone(),
-        }
-    }
 }
 
 impl command::Request for Request {
@@ -116,7 +77,7 @@ impl command::Request for Request {
         let (file, lines) = (self.file.clone(), found.len());
         let text = tasks.iter().map(line).collect::<String>()
             + &format!("{file}: {}, no problems found\n", counted(lines));
-        let rows = self.rows.then(|| found.iter().map(Row::from).collect());
+        let rows = self.rows.then_some(found);
         Ok(Output { value: Checked { file, lines, tasks, rows }, text, picture: None })
     }
 }

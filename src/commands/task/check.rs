@@ -74,7 +74,7 @@ impl command::Response for Checked {
         Ok(self.checked.task.as_ref().map(picture::svg))
     }
 
-    fn verdict(&self) -> Result<(), Failure> {
+    fn verdict(self) -> Result<(), Failure> {
         self.checked.verdict()
     }
 }

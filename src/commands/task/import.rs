@@ -306,7 +306,7 @@ impl Serialize for ImportedTask {
 }
 
 impl command::Response for ImportedTask {
-    fn verdict(&self) -> Result<(), Failure> {
+    fn verdict(self) -> Result<(), Failure> {
         self.checked.ended(self.tuned.as_ref())
     }
 }

@@ -124,7 +124,7 @@ impl Serialize for Written {
 }
 
 impl command::Response for Written {
-    fn verdict(&self) -> Result<(), Failure> {
+    fn verdict(self) -> Result<(), Failure> {
         self.checked.ended(self.tuned.as_ref())
     }
 }

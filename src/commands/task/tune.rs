@@ -302,7 +302,7 @@ impl Serialize for Done {
 }
 
 impl command::Response for Done {
-    fn verdict(&self) -> Result<(), Failure> {
+    fn verdict(self) -> Result<(), Failure> {
         match self.after {
             Some(_) => Ok(()),
             None => {

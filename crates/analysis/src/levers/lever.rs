@@ -59,11 +59,9 @@ pub struct Lever {
 impl Lever {
     /// Difference between the largest and the smallest range tried, including the baseline, mm.
     pub fn span_mm(&self, base: Base) -> f64 {
-        let all = self.ends.map(|end| end.unwrap_or(0.0));
-        let [low, high] = all
-            .iter()
-            .fold([base.range_mm; 2], |[low, high], &range| [low.min(range), high.max(range)]);
-        apart([low, high])
+        let [first, second] = self.ends.map(|end| end.unwrap_or(0.0));
+        let low = base.range_mm.min(first).min(second);
+        apart([low, base.range_mm.max(first).max(second)])
     }
 
     /// Formats a value with its unit: `5°`, `0.2`, `100 mm/s`.

@@ -1,17 +1,16 @@
 //! Measurement of the windows of a finger and of its levers.
 
 use super::lever::{Base, Lever, Levers};
-use super::question::{Cell, Question};
 use super::rows::{Row, rows};
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::robustness::Plan;
-use insertion::evaluation::template::Impossible;
+use insertion::evaluation::template::{Impossible, Template};
 use insertion::evaluation::tolerance::Search;
 use insertion::evaluation::{Evaluation, grid_mm};
 use insertion::finger::model::FingerSource;
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
 use insertion::surrogate::Prediction;
 use insertion::task::StartRule;
 use parameters::plan::one_at_a_time::End;
@@ -21,6 +20,23 @@ use std::sync::atomic::AtomicBool;
 
 /// Largest number of windows measured.
 const MOST_WINDOWS: usize = 20;
+
+/// Finger and task whose levers are to be measured.
+pub struct Question<'a> {
+    /// Evaluator for the windows.
+    pub evaluator: &'a Evaluator,
+    /// The task; one of the evaluator's.
+    pub template: &'a Template,
+    /// The space. Its bounds take precedence for the keys that it has.
+    pub space: &'a Space,
+    /// Design of the finger.
+    pub design: &'a Design,
+    /// Given stiffness of the finger; predicted if `None`.
+    pub given: Option<Prediction>,
+}
+
+/// Specimen and robot for one window.
+pub(super) type Cell = (Specimen, Robot);
 
 /// Lever to be measured: its row, its end values, and the index of the window of each end. An end
 /// that changes nothing has the index of the baseline.
@@ -50,9 +66,8 @@ impl Question<'_> {
         }
         let infills = cells.len();
         let (tried, left_out) = self.tried(&mut cells)?;
-        let found: Result<Vec<_>, _> =
-            cells.par_iter().map(|(specimen, robot)| self.window(specimen, robot, stop)).collect();
-        let found = found?;
+        let windows = cells.par_iter().map(|(specimen, robot)| self.window(specimen, robot, stop));
+        let found = windows.collect::<Result<Vec<_>, _>>()?;
         let ranges: Vec<_> = found.iter().map(range_mm).collect();
         let base = Base {
             range_mm: ranges[0].unwrap_or(0.0),

@@ -6,8 +6,7 @@
 
 mod lever;
 mod measure;
-mod question;
 mod rows;
 
 pub use lever::{Base, Lever, Levers, apart, counts, plain};
-pub use question::Question;
+pub use measure::Question;

@@ -1,6 +1,6 @@
 //! Levers of a task and a robot, with their bounds.
 
-use super::question::{Cell, Question};
+use super::measure::{Cell, Question};
 use connector::body::{ConvexBody, width};
 use connector::seat::section;
 use input::shipped::{LEVERS, PRIORS};
@@ -33,7 +33,7 @@ pub struct Row {
 /// Returns the rows that apply to the task, finger and robot. A key of the space takes its bounds
 /// from the space.
 pub fn rows(question: &Question<'_>, specimen: &Specimen) -> Result<Vec<Row>, Impossible> {
-    let own = Priors::parse(LEVERS.text, LEVERS.file)?.parameters;
+    let own = Priors::parse(LEVERS[0].text, LEVERS[0].file)?.parameters;
     let bench = Priors::parse(PRIORS[0].text, PRIORS[0].file)?.parameters;
     let bench = bench.into_iter().filter(|row| OF_BENCH.contains(&&*row.name));
     let (last, first): (Vec<_>, Vec<_>) =

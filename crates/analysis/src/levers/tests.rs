@@ -13,7 +13,7 @@ fn of(infill: [f64; 2], levers: Vec<Lever>) -> Levers {
 }
 
 #[test]
-fn the_sentence_names_what_helps_most_and_nothing_that_moves_little() {
+fn the_sentence_names_the_most_effective_lever_and_ignores_small_effects() {
     let tilt = || lever("tilt", [0.0, 5.0, 10.0], [Some(2.0), Some(4.9)]);
     let stroke = || lever("stroke", [-8.0, -10.0, -14.0], [Some(3.0), None]);
     let little = || lever("preload", [0.1, 0.3, 0.9], [Some(3.8), Some(4.2)]);
@@ -34,10 +34,10 @@ fn the_sentence_names_what_helps_most_and_nothing_that_moves_little() {
     }
 }
 
-/// The space is named where the task has all its numbers and the design leaves them as they are.
+/// `codesign` is suggested only if the task has all of its numbers and the design changes none of them.
 #[test]
-fn the_sentence_names_the_space_of_all_these_numbers() {
-    let unmoved = |key: &str| lever(key, [0.0, 5.0, 10.0], [Some(4.0); 2]);
+fn the_sentence_suggests_the_space_that_varies_the_levers_together() {
+    let without_effect = |key: &str| lever(key, [0.0, 5.0, 10.0], [Some(4.0); 2]);
     let mut tried = vec![lever("task.strategy.tilt_deg", [0.0, 5.0, 10.0], [Some(2.0), Some(4.9)])];
     tried.extend(
         [
@@ -46,18 +46,18 @@ fn the_sentence_names_the_space_of_all_these_numbers() {
             "task.grip.force_n",
             "task.strategy.phase.assembly.speed_mm_per_s",
         ]
-        .map(unmoved),
+        .map(without_effect),
     );
-    let names_it = |levers: &Levers| levers.sentence().contains("--space codesign");
+    let suggested = |levers: &Levers| levers.sentence().contains("--space codesign");
     let mut all = of([4.0; 2], tried.clone());
-    assert!(names_it(&all), "{}", all.sentence());
-    assert!(!names_it(&of([4.0; 2], tried[..4].to_vec())));
+    assert!(suggested(&all), "{}", all.sentence());
+    assert!(!suggested(&of([4.0; 2], tried[..4].to_vec())));
     all.design = all.design.with("task.strategy.tilt_deg", 8.0);
-    assert!(!names_it(&all), "{}", all.sentence());
+    assert!(!suggested(&all), "{}", all.sentence());
 }
 
 #[test]
-fn a_span_counts_the_present_value_and_what_does_not_insert() {
+fn a_span_includes_the_baseline_and_ends_that_do_not_insert() {
     let base = of([4.0; 2], Vec::new()).base;
     for (ends, span_mm) in [
         ([Some(3.8), Some(4.1)], 0.3),
@@ -70,9 +70,9 @@ fn a_span_counts_the_present_value_and_what_does_not_insert() {
 }
 
 #[test]
-fn a_study_reads_back_what_it_kept() {
-    let kept = of([1.0, 4.0], vec![lever("tilt", [0.1, 0.2, 0.3], [None, Some(4.4)])]);
-    let text = serde_json::to_string(&kept).unwrap();
+fn levers_round_trip_through_json() {
+    let levers = of([1.0, 4.0], vec![lever("tilt", [0.1, 0.2, 0.3], [None, Some(4.4)])]);
+    let text = serde_json::to_string(&levers).unwrap();
     assert!(text.contains("\"infill_range_mm\":[1.0,4.0]") && text.contains("null,4.4"), "{text}");
-    assert_eq!(serde_json::from_str::<Levers>(&text).unwrap(), kept);
+    assert_eq!(serde_json::from_str::<Levers>(&text).unwrap(), levers);
 }

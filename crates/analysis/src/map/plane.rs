@@ -1,4 +1,4 @@
-//! Trials over the plane of two start errors.
+//! Trials of a finger under two errors of the start.
 
 use clap::ValueEnum;
 use input::units::MM;
@@ -28,7 +28,7 @@ pub enum Axes {
 }
 
 impl Axes {
-    /// Returns name and unit of the second error, and its path.
+    /// Returns the name and unit of the second error, and the path of its number.
     fn second(self) -> ([&'static str; 2], &'static str) {
         match self {
             Axes::YX => (["x", "mm"], START_ACROSS),
@@ -37,18 +37,18 @@ impl Axes {
         }
     }
 
-    /// Returns name and unit of both.
+    /// Returns the names and units of both errors.
     pub(super) fn names(self) -> [[&'static str; 2]; 2] {
         [["y", "mm"], self.second().0]
     }
 }
 
-/// Trials of a finger under two errors. The part is grasped once for each value of the second.
+/// Trials of a finger under two errors of the start. The part is grasped once for each value of the second.
 pub struct Plane<'a> {
     rig: &'a dyn Rig,
     grasp: Grasp<'a>,
     pub(super) axes: Axes,
-    /// One per value of the second error, ascending.
+    /// Grasps by the value of the second error, ascending.
     grasped: Vec<OnceLock<Box<dyn Grasped + 'a>>>,
 }
 
@@ -59,18 +59,14 @@ impl<'a> Plane<'a> {
         Plane { rig, grasp, axes, grasped }
     }
 
-    /// Returns the outcome of the trial with these errors.
+    /// Returns the outcome of the trial with these errors, which are within [`LIMIT`].
     pub(super) fn outcome(&self, [y, other]: Node) -> Outcome {
         let hold = || {
             let conditions = Draw::under([(self.axes.second().1, value(other))]).conditions;
             self.rig.hold(Grasp { conditions, ..self.grasp })
         };
-        let inserts = |grasped: &dyn Grasped| grasped.trial(value(y) * MM).outcome;
-        let place = usize::try_from(other + LIMIT[1]).ok().and_then(|at| self.grasped.get(at));
-        match place {
-            Some(place) => inserts(&**place.get_or_init(hold)),
-            None => inserts(&*hold()),
-        }
+        let grasped = self.grasped[(other + LIMIT[1]) as usize].get_or_init(hold);
+        grasped.trial(value(y) * MM).outcome
     }
 }
 

@@ -57,7 +57,8 @@ pub(super) struct CmaEs {
     /// Initial step size.
     first_sigma: f64,
     max_generations: u64,
-    pub parameters: Parameters,
+    /// Population size.
+    pub lambda: usize,
     pub mean: DVector<f64>,
     sigma: f64,
     /// Covariance matrix C; only the lower triangle is updated.
@@ -91,7 +92,7 @@ impl CmaEs {
             start: start.clone(),
             first_sigma: sigma,
             max_generations: general.min(plan.limit),
-            parameters: Parameters::new(n, plan.lambda),
+            lambda: plan.lambda,
             mean: DVector::from_vec(mean),
             sigma,
             c: DMatrix::identity(n, n),
@@ -123,8 +124,8 @@ impl CmaEs {
         (&self.mean + self.sigma * (&self.b * scaled)).as_slice().to_vec()
     }
 
-    /// Updates the distribution with a generation. If its size differs from lambda, the strategy
-    /// parameters for its actual size are used. Fewer than two solutions, or a solution of the
+    /// Updates the distribution with a generation, whose size may differ from lambda, with the strategy
+    /// parameters for its actual size. Fewer than two solutions, or a solution of the
     /// wrong dimension, are ignored.
     pub fn tell(&mut self, solutions: &[Solution]) {
         if solutions.len() < 2 || solutions.iter().any(|s| s.x.len() != self.n) {
@@ -135,11 +136,7 @@ impl CmaEs {
         ranked.sort_by(|a, b| value(a).total_cmp(&value(b)));
         self.history.push(&ranked.iter().map(|s| value(s)).collect::<Vec<_>>());
 
-        let p = if ranked.len() == self.parameters.lambda {
-            self.parameters.clone()
-        } else {
-            Parameters::new(self.n, ranked.len())
-        };
+        let p = Parameters::new(self.n, ranked.len());
         let step = |s: &&Solution| (DVector::from_column_slice(&s.x) - &self.mean) / self.sigma;
         let steps: Vec<DVector<f64>> = ranked.iter().map(step).collect();
         self.generation += 1;
@@ -233,7 +230,7 @@ impl CmaEs {
             && self.sigma > 0.0
             && self.mean.iter().chain(&self.c).all(|v| v.is_finite());
         !finite
-            || self.history.ended(self.n, self.parameters.lambda, &self.start.tolerances)
+            || self.history.ended(self.n, self.lambda, &self.start.tolerances)
             || self.distribution_ended()
             || self.generation >= self.max_generations
     }

@@ -69,13 +69,13 @@ impl CmaEsOptimizer {
     fn next(&mut self) -> Option<GridPoint> {
         let mut extra = 0;
         while self.barren_restarts < BARREN_RESTARTS && extra < EXTRA_DRAWS {
-            let full = self.generation.len() >= self.restarts.current.parameters.lambda;
+            let full = self.generation.len() >= self.restarts.current.lambda;
             if full && self.generation.iter().all(|(_, point)| self.costs.of.contains_key(point)) {
                 self.finish_generation();
                 continue;
             }
             let x = self.restarts.current.sample();
-            let point = self.costs.proposed.grid().folded(&x);
+            let point = self.costs.proposed.grid.folded(&x);
             let new = self.costs.proposed.insert(&point);
             // A full generation that is waiting for values is only extended by new points.
             if new || !full {

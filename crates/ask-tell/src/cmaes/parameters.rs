@@ -3,9 +3,8 @@
 use libm::{log, sqrt};
 
 /// Strategy parameters of a run, in the tutorial's notation.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Parameters {
-    pub lambda: usize,
     /// Number of parents: the candidates with positive weight.
     pub mu: usize,
     /// `w_1 .. w_lambda`; the positive ones sum to one.
@@ -60,7 +59,7 @@ impl Parameters {
             .map(|(i, w)| if i < mu { w / sum_positive } else { w * scale })
             .collect();
         let chi_n = sqrt(dim) * (1.0 - 1.0 / (4.0 * dim) + 1.0 / (21.0 * dim * dim));
-        Parameters { lambda, mu, weights, mu_eff, c_sigma, d_sigma, c_c, c_1, c_mu, chi_n }
+        Parameters { mu, weights, mu_eff, c_sigma, d_sigma, c_c, c_1, c_mu, chi_n }
     }
 }
 
@@ -82,7 +81,7 @@ mod tests {
     fn constants_for_ten_dimensions_worked_by_hand() {
         // lambda = 10, mu = 5: w' = ln 5.5 - ln i.
         let p = Parameters::new(10, default_lambda(10));
-        assert_eq!((p.lambda, p.mu), (10, 5));
+        assert_eq!((p.weights.len(), p.mu), (10, 5));
         let raw: Vec<f64> = (1..=5).map(|i| libm::log(5.5) - libm::log(f64::from(i))).collect();
         let sum: f64 = raw.iter().sum();
         let mu_eff = sum * sum / raw.iter().map(|w| w * w).sum::<f64>();
@@ -112,7 +111,7 @@ mod tests {
     fn tiny_populations_have_usable_constants() {
         for lambda in 0..5 {
             let p = Parameters::new(1, lambda);
-            assert!(p.lambda >= 2 && p.weights.iter().all(|w| w.is_finite()));
+            assert!(p.weights.len() >= 2 && p.weights.iter().all(|w| w.is_finite()));
             assert!(p.c_mu >= 0.0 && p.c_1 + p.c_mu <= 1.0);
         }
     }

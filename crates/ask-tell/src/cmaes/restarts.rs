@@ -47,7 +47,7 @@ impl Restarts {
 
     /// Draws a generation of the current run.
     pub fn ask(&mut self) -> Vec<Vec<f64>> {
-        (0..self.current.parameters.lambda).map(|_| self.current.sample()).collect()
+        (0..self.current.lambda).map(|_| self.current.sample()).collect()
     }
 
     /// Tells a generation, and starts the next run if this one has a reason to stop.

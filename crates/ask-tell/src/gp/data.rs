@@ -1,9 +1,9 @@
-//! Values in the units of a model.
+//! Standardisation of the training values.
 
 use super::warp::{Warp, warp};
 use crate::statistics::Moments;
 
-/// Values by which the exponent of the transformation is chosen, at most.
+/// Largest number of values by which the exponent of the power transformation is chosen.
 const WARPED_BY: usize = 250;
 
 /// Values in the model's units: mean 0, variance 1.
@@ -13,32 +13,20 @@ pub(super) struct Standardised {
     pub values: Vec<f64>,
     /// The noise floor as a variance in the same units, in [1e-8, 1].
     pub noise_floor: f64,
-    /// Zero of the values given, in the model's units.
+    /// The value 0 in the units of the model.
     pub zero: f64,
-    /// The way to the model's units.
-    pub scale: Scale,
-}
-
-/// The way from a value as given to the model's units.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Scale {
-    mean: f64,
-    /// 0 of values that do not differ.
-    deviation: f64,
-    warp: Option<Warp>,
-}
-
-impl Scale {
-    fn of(&self, value: f64) -> f64 {
-        let standard = (value - self.mean) / self.deviation;
-        self.warp.map_or(standard, |warp| warp.of(standard))
-    }
+    /// Mean of the values given.
+    pub mean: f64,
+    /// Standard deviation of the values given; 0 of values that do not differ.
+    pub deviation: f64,
+    /// Power transformation, if there is one.
+    pub warp: Option<Warp>,
 }
 
 /// Standardises `values`; `noise_floor` is a standard deviation in objective units.
 ///
-/// A missing value, and one that is not finite, counts as the worst finite one: the model learns
-/// that the place is bad, but not a number out of all proportion. Constant values become zeros.
+/// A missing or infinite value counts as the worst finite one: the model learns that the region is bad
+/// without a number that dominates the others. Constant values become zeros.
 /// `None` if no value is finite.
 pub(super) fn standardise(values: &[Option<f64>], noise_floor: f64) -> Option<Standardised> {
     let finite = || values.iter().flatten().copied().filter(|v| v.is_finite());
@@ -54,14 +42,20 @@ pub(super) fn standardise(values: &[Option<f64>], noise_floor: f64) -> Option<St
             values: vec![0.0; filled.len()],
             noise_floor: 1e-6,
             zero: -mean,
-            scale: Scale { mean: mean * unit, ..Scale::default() },
+            mean: mean * unit,
+            deviation: 0.0,
+            warp: None,
         });
     }
     let floor = noise_floor / unit / deviation;
-    let values = filled.iter().map(|v| (v - mean) / deviation).collect();
-    let noise_floor = (floor * floor).clamp(1e-8, 1.0);
-    let scale = Scale { mean: mean * unit, deviation: deviation * unit, warp: None };
-    Some(Standardised { values, noise_floor, zero: -mean / deviation, scale })
+    Some(Standardised {
+        values: filled.iter().map(|v| (v - mean) / deviation).collect(),
+        noise_floor: (floor * floor).clamp(1e-8, 1.0),
+        zero: -mean / deviation,
+        mean: mean * unit,
+        deviation: deviation * unit,
+        warp: None,
+    })
 }
 
 impl Standardised {
@@ -73,18 +67,18 @@ impl Standardised {
             spread(self.values.len(), WARPED_BY).map(|i| self.values[i]).collect();
         let Some((values, warp)) = warp(&self.values, &sample) else { return self };
         let noise_floor = (self.noise_floor * warp.slope * warp.slope).clamp(1e-8, 1.0);
-        let scale = Scale { warp: Some(warp), ..self.scale };
-        Standardised { values, noise_floor, zero: f64::NAN, scale }
+        Standardised { values, noise_floor, zero: f64::NAN, warp: Some(warp), ..self }
     }
 
-    /// A value as given in the model's units: plus or minus infinity away from values that do not
-    /// differ.
+    /// Converts a value to the units of the model; plus or minus infinity if all values given are equal to
+    /// each other, but not to it.
     pub fn of(&self, value: f64) -> f64 {
-        self.scale.of(value)
+        let standard = (value - self.mean) / self.deviation;
+        self.warp.map_or(standard, |warp| warp.of(standard))
     }
 }
 
-/// `count` of `n` places, evenly; all if there are no more.
+/// Returns `count` evenly spaced indices below `n`; all if there are no more.
 pub(super) fn spread(n: usize, count: usize) -> impl Iterator<Item = usize> {
     let count = count.min(n);
     (0..count).map(move |k| k * n / count)

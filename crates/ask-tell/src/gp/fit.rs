@@ -4,19 +4,19 @@ use super::hyperparameters::Hyperparameters;
 use super::lbfgs::{Limits, minimise};
 use super::likelihood::{log_posterior, priors};
 
-/// How much to spend on a fit.
+/// Computational effort of a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FitEffort {
-    /// Evaluations of the posterior per start.
+    /// Evaluations of the posterior per starting point.
     pub evaluations: usize,
-    /// Whether to try the fixed starts beside the warm one.
+    /// Whether the fixed starting points are tried in addition to those of the last fit.
     pub restarts: bool,
 }
 
 impl FitEffort {
-    /// The effort for `n` observations: an evaluation costs about `n^3 / 2` multiplications, and
-    /// a fit should stay well below 10 ms. The fixed starts are tried at every fit while data
-    /// are few, and at each tenth observation up to 100.
+    /// Returns the effort for `n` observations: an evaluation costs about `n^3 / 2` multiplications, and
+    /// a fit should stay well below 10 ms. The fixed starting points are tried in every fit of
+    /// up to 30 observations, and at every tenth observation up to 100.
     pub fn for_observations(n: usize) -> Self {
         let cost = (n * n * n / 2).max(1);
         let evaluations = (10_000_000 / cost).clamp(2, 40);
@@ -31,9 +31,9 @@ const LOG_SIGNAL: (f64, f64) = (-4.6, 4.6);
 /// Range of the log noise variance above the floor.
 const LOG_NOISE: (f64, f64) = (-18.4, 0.0);
 
-/// The best hyperparameters found from `warm` (those of the last fit) and, as `effort` says,
-/// from three fixed starts: the prior's mode, short and long length scales.
-/// Falls back to the prior's mode; never fails.
+/// Returns the best hyperparameters found from `warm` (those of the last fit) and, if there are none or
+/// `effort` requires it, from three fixed starting points: the prior's mode, short and long length
+/// scales. Returns the prior's mode if every start fails.
 pub fn fit(
     x: &[Vec<f64>],
     y: &[f64],
@@ -44,7 +44,7 @@ pub fn fit(
     fit_until(x, y, noise_floor, warm, (effort, &|| false))
 }
 
-/// The same; soon after `stopped` says so it ends, with what is worthless.
+/// Like [`fit`], but ends soon after `stopped` returns true; the result is then meaningless.
 pub fn fit_until(
     x: &[Vec<f64>],
     y: &[f64],
@@ -54,12 +54,8 @@ pub fn fit_until(
 ) -> Hyperparameters {
     let d = x.first().map_or(0, Vec::len);
     let mode: Vec<f64> = priors(d).into_iter().map(|(mean, _)| mean).collect();
-    let bound = |pick: fn((f64, f64)) -> f64| {
-        let mut bounds = vec![pick(LOG_LENGTH); d];
-        bounds.extend([pick(LOG_SIGNAL), pick(LOG_NOISE)]);
-        bounds
-    };
-    let (low, high) = (bound(|b| b.0), bound(|b| b.1));
+    let bounds = [vec![LOG_LENGTH; d], vec![LOG_SIGNAL, LOG_NOISE]].concat();
+    let (low, high): (Vec<f64>, Vec<f64>) = bounds.into_iter().unzip();
     let limits = Limits { low: &low, high: &high, evaluations: effort.evaluations };
     let mut starts: Vec<Vec<f64>> = warm.map(Hyperparameters::to_vec).into_iter().collect();
     if effort.restarts || starts.is_empty() {
@@ -89,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_axis_that_matters_gets_the_shorter_length() {
+    fn the_relevant_axis_gets_the_shorter_length_scale() {
         let x: Vec<Vec<f64>> =
             (0..40).map(|i| vec![f64::from(i) / 39.0, f64::from(i * 17 % 40) / 39.0]).collect();
         let y: Vec<f64> = x.iter().map(|p| libm::sin(9.0 * p[0]) * 1.4).collect();
@@ -100,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn data_without_shape_do_not_break_it() {
+    fn degenerate_data_give_finite_hyperparameters() {
         let x = vec![vec![0.5, 0.5]; 12];
         let effort = FitEffort::for_observations(12);
         for y in [vec![0.0; 12], (0..12).map(|i| f64::from(i % 2)).collect(), vec![f64::NAN; 12]] {

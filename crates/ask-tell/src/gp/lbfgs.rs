@@ -1,7 +1,7 @@
-//! argmin's L-BFGS in a box.
+//! L-BFGS of argmin within a box.
 //!
-//! Each coordinate is a sine within its bounds, `x = middle + half sin(u)`, so that argmin
-//! sees no bound and a minimum on a face is an ordinary one.
+//! Each coordinate is substituted by `x = middle + half sin(u)`, which makes the problem unconstrained and a
+//! minimum on a face an ordinary one.
 
 use argmin::core::{CostFunction, Error, Executor, Gradient};
 use argmin::solver::linesearch::MoreThuenteLineSearch;
@@ -9,19 +9,19 @@ use argmin::solver::quasinewton::LBFGS;
 use std::cell::{Cell, RefCell};
 use std::f64::consts::FRAC_PI_2;
 
-/// Pairs of steps and changes of the gradient that are kept.
+/// Number of stored pairs of steps and gradient changes.
 const MEMORY: usize = 8;
-/// Length of the first step, in radians of the sine: argmin's is the gradient, whatever it is.
+/// Length of the first step, in radians: without scaling it would be the norm of the gradient.
 const FIRST_STEP: f64 = 0.3;
-/// Distance of the start from the faces, where the sine has no slope, in radians.
+/// Smallest distance of the start from the faces, where the derivative of the sine is zero, in radians.
 const OFF_THE_FACE: f64 = 0.1;
-/// Relative change of the value that ends it.
+/// Relative change of the value below which the run ends.
 const LEAST_GAIN: f64 = 1e-7;
 
 /// A value and its derivatives.
 type WithSlope = (f64, Vec<f64>);
 
-/// The box and the budget.
+/// Bounds and budget.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits<'a> {
     pub low: &'a [f64],
@@ -63,7 +63,7 @@ pub(super) fn minimise(
     };
     let tolerance = LEAST_GAIN * unit * value.abs().max(1.0);
     let best = RefCell::new((x, value));
-    // argmin asks for value and slope of one point one after the other.
+    // argmin evaluates value and gradient of a point separately.
     let last = RefCell::new((start.clone(), scaled(value, slope)));
     let left = Cell::new(limits.evaluations.saturating_sub(1));
     let evaluate = |u: &[f64]| {
@@ -79,7 +79,7 @@ pub(super) fn minimise(
     };
     let line_search = MoreThuenteLineSearch::new();
     let solver = LBFGS::new(line_search, MEMORY).with_tolerance_cost(tolerance).ok()?;
-    // It ends by an error when the budget is spent; the best point is known all the same.
+    // The run ends with an error when the budget is spent; the best point is stored outside of it.
     let _ = Executor::new(Scaled(&evaluate), solver)
         .configure(|state| state.param(start).max_iters(limits.evaluations as u64))
         .timer(false)
@@ -87,8 +87,8 @@ pub(super) fn minimise(
     Some(best.into_inner())
 }
 
-/// The function in angles, in units in which the first slope has the length of the first step;
-/// nothing when the evaluations are spent, or a point has no value.
+/// Objective as a function of the angles, scaled so that its first gradient has the length of the first step;
+/// `None` when the budget is spent or a point has no value.
 struct Scaled<'a>(&'a dyn Fn(&[f64]) -> Option<WithSlope>);
 
 impl Scaled<'_> {

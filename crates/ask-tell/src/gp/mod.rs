@@ -30,4 +30,4 @@ pub use hyperparameters::Hyperparameters;
 pub use model::Gp;
 pub use optimizer::DEFAULT_NOISE_FLOOR;
 pub(crate) use optimizer::GpOptimizer;
-pub use outlook::{Advice, Confirmed, Gain, Outlook};
+pub use outlook::{Advice, Confirmed, Outlook};

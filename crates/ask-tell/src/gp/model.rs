@@ -124,9 +124,9 @@ impl Gp {
         let variance = self.process.variance_of(&k, &ONE, self.signal, &half);
         let mut solved = half;
         factor.l_dirty().ad_solve_lower_triangular_unchecked_mut(&mut solved);
-        // The variance is signal - k' K^-1 k + leaning^2 precision.
-        let ([leaning], [to_mean]) = (constant.leaning(&k, &ONE), &constant.weights);
-        let by_k = -2.0 * (solved + leaning * to_mean);
+        // The variance is signal - k' K^-1 k + residual^2 precision.
+        let ([residual], [to_mean]) = (constant.solved_residual(&k, &ONE), &constant.weights);
+        let by_k = -2.0 * (solved + residual * to_mean);
         let mut slopes = (Vec::new(), Vec::new());
         for ((column, x), inverse_length) in
             points.columns.iter().zip(points.scale(x)).zip(&points.inverse_length)

@@ -1,31 +1,32 @@
-//! Processes of the points about a place, where one of all points would cost too much.
+//! Local Gaussian processes of the points nearest to a location, where one process of all points would
+//! cost too much.
 
 use super::data::{Standardised, spread};
 use super::hyperparameters::Hyperparameters;
 use super::model::{Gp, Scaled};
 use super::trained::{Goal, Trained};
 
-/// Neighbours of a place of which a rough answer will do.
+/// Number of neighbours for approximate predictions.
 pub(super) const FEW: usize = 24;
 
-/// All that is known, for models of a part of it (the local approximation of Gramacy and
-/// Apley 2015, J. Comput. Graph. Stat. 24:561, with the nearest points in place of chosen ones).
+/// All observations, for models of some of them (the local approximation of Gramacy and Apley
+/// 2015, J. Comput. Graph. Stat. 24:561, with the nearest points instead of optimised ones).
 #[derive(Debug, Clone)]
 pub(super) struct Neighbours {
-    /// The points, free axes alone.
+    /// Coordinates of the points on the free axes.
     pub x: Vec<Vec<f64>>,
-    /// The points in the length scales of the first objective.
+    /// The points in units of the length scales of the first objective.
     scaled: Scaled,
-    /// Values of the objectives, then of the constraints; of believed points, too.
+    /// Values of the objectives, then margins of the constraints, including those of believed points.
     pub data: Vec<Standardised>,
     thetas: Vec<Hyperparameters>,
-    /// Values from which on the constraints are kept.
+    /// Smallest feasible margin of each constraint, in the units of its model.
     pub zeros: Vec<f64>,
     pub goal: Goal,
 }
 
 impl Neighbours {
-    /// Of the values at `x`, at least one objective's; any point is looked for.
+    /// Stores the values at `x` of at least one objective; the goal is any feasible point.
     pub fn new(
         x: Vec<Vec<f64>>,
         data: Vec<Standardised>,
@@ -36,15 +37,15 @@ impl Neighbours {
         Neighbours { x, scaled, data, thetas, zeros, goal: Goal::Feasible }
     }
 
-    /// The models of the `count` points nearest to a place and of a third as many spread over the
-    /// others in the order in which they came: those nearest to an optimum crowd it, and know
-    /// nothing of the slopes around. `None` if a model cannot be made.
-    pub fn about(&self, place: &[f64], count: usize) -> Option<Trained> {
-        self.of(&self.chosen(place, count))
+    /// Returns models of the `count` points nearest to a location and of a third as many, evenly
+    /// selected from all in the order of observation: the nearest points cluster at an optimum and do not
+    /// determine the slopes around it. `None` if a process cannot be conditioned.
+    pub fn near(&self, location: &[f64], count: usize) -> Option<Trained> {
+        self.models_of(&self.chosen(location, count))
     }
 
-    /// The models of these points.
-    pub fn of(&self, chosen: &[usize]) -> Option<Trained> {
+    /// Returns models of the points with these indices.
+    pub fn models_of(&self, chosen: &[usize]) -> Option<Trained> {
         let x: Vec<Vec<f64>> = chosen.iter().map(|&i| self.x[i].clone()).collect();
         let model = |(data, theta): (&Standardised, &Hyperparameters)| {
             let y: Vec<f64> = chosen.iter().map(|&i| data.values[i]).collect();
@@ -54,9 +55,9 @@ impl Neighbours {
         Some(Trained { models, zeros: self.zeros.clone(), goal: self.goal.clone() })
     }
 
-    /// Takes the means at a point for observed there, as [`Trained::believe`].
+    /// Treats the posterior means at a point as observations, as [`Trained::believe`].
     pub fn believe(&mut self, x: &[f64]) {
-        let Some(mut near) = self.about(x, FEW) else { return };
+        let Some(mut near) = self.near(x, FEW) else { return };
         self.scaled.push(x);
         self.x.push(x.to_vec());
         for (data, gp) in self.data.iter_mut().zip(&near.models) {
@@ -66,25 +67,26 @@ impl Neighbours {
         self.goal = near.goal;
     }
 
-    /// Half the edges of a box about a place in which the nearest `count` points say enough.
-    pub fn reach(&self, place: &[f64], count: usize) -> Vec<f64> {
-        let far = self.by_distance(place, count).last().map_or(0.0, |&(r2, _)| r2.sqrt());
+    /// Returns the half widths of a box around a location in which the model of its `count` nearest points is
+    /// trusted: half the distance to the farthest of them.
+    pub fn reach(&self, location: &[f64], count: usize) -> Vec<f64> {
+        let far = self.by_distance(location, count).last().map_or(0.0, |&(r2, _)| r2.sqrt());
         self.scaled.inverse_length.iter().map(|i| 0.5 * far / i).collect()
     }
 
-    /// Ascending.
-    fn chosen(&self, place: &[f64], count: usize) -> Vec<usize> {
-        let near = self.by_distance(place, count).into_iter().map(|(_, i)| i);
+    /// Returns the indices of the points of a model at a location, ascending.
+    fn chosen(&self, location: &[f64], count: usize) -> Vec<usize> {
+        let near = self.by_distance(location, count).into_iter().map(|(_, i)| i);
         let mut chosen: Vec<usize> = near.chain(spread(self.x.len(), count / 3)).collect();
         chosen.sort_unstable();
         chosen.dedup();
         chosen
     }
 
-    /// The nearest points with their squared distances, the farthest of them last.
-    fn by_distance(&self, place: &[f64], count: usize) -> Vec<(f64, usize)> {
+    /// Returns the squared distances and indices of the nearest points, the farthest of them last.
+    fn by_distance(&self, location: &[f64], count: usize) -> Vec<(f64, usize)> {
         let mut near: Vec<(f64, usize)> =
-            self.scaled.distances2(place).into_iter().zip(0..).collect();
+            self.scaled.distances2(location).into_iter().zip(0..).collect();
         let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         if (1..near.len()).contains(&count) {
             near.select_nth_unstable_by(count - 1, order);
@@ -96,33 +98,34 @@ impl Neighbours {
 
 #[cfg(test)]
 mod tests {
-    use super::super::data::Scale;
+    use super::super::data::standardise;
     use super::*;
 
     fn known() -> Neighbours {
         let x: Vec<Vec<f64>> =
             (0..60).map(|i| vec![f64::from(i) / 59.0, f64::from(i * 23 % 60) / 59.0]).collect();
         let values: Vec<f64> = x.iter().map(|p| libm::sin(5.0 * p[0]) + p[1]).collect();
-        let data = Standardised { values, noise_floor: 1e-6, zero: 0.0, scale: Scale::default() };
+        let values: Vec<Option<f64>> = values.into_iter().map(Some).collect();
+        let data = standardise(&values, 1e-3).unwrap();
         let theta =
             Hyperparameters { log_length: vec![-1.0, 0.0], log_signal: 0.0, log_noise: -12.0 };
         Neighbours::new(x, vec![data], vec![theta], Vec::new())
     }
 
     #[test]
-    fn neighbours_of_a_place_say_there_what_all_points_say() {
+    fn a_local_model_predicts_as_the_global_one() {
         let known = known();
-        let place = [0.4, 0.5];
-        let of = |count| known.about(&place, count).unwrap().models[0].predict(&place);
+        let location = [0.4, 0.5];
+        let of = |count| known.near(&location, count).unwrap().models[0].predict(&location);
         let (whole, near) = (of(60), of(24));
         assert!((whole.0 - near.0).abs() < 0.02, "{whole:?} {near:?}");
-        // What is left out is not known: the variance can only be larger.
+        // With fewer observations the variance can only be larger.
         assert!(near.1 >= whole.1 - 1e-9 && near.1 < 0.05, "{whole:?} {near:?}");
-        assert_eq!(known.about(&place, 60).unwrap().len(), 60);
+        assert_eq!(known.near(&location, 60).unwrap().len(), 60);
     }
 
     #[test]
-    fn distances_are_in_length_scales_and_some_points_are_far() {
+    fn distances_are_in_length_scales_and_some_distant_points_are_chosen() {
         let known = known();
         let near = known.by_distance(&[0.5, 0.5], 6);
         let farthest = near.iter().map(|n| n.0).fold(0.0, f64::max);
@@ -134,12 +137,13 @@ mod tests {
     }
 
     #[test]
-    fn a_believed_point_is_known_with_its_mean() {
+    fn a_believed_point_keeps_its_mean_and_loses_its_variance() {
         let mut known = known();
-        let place = [0.11, 0.93];
-        let at = |known: &Neighbours| known.about(&place, 30).unwrap().models[0].predict(&place);
+        let location = [0.11, 0.93];
+        let at =
+            |known: &Neighbours| known.near(&location, 30).unwrap().models[0].predict(&location);
         let before = at(&known);
-        known.believe(&place);
+        known.believe(&location);
         let after = at(&known);
         assert!((before.0 - after.0).abs() < 0.05 && after.1 < 0.1 * before.1);
     }

@@ -30,9 +30,6 @@ const WHOLE: usize = 250;
 pub(crate) struct GpOptimizer {
     proposed: Proposed,
     training: Training,
-    seed: u64,
-    /// Axes with more than one level.
-    free: u64,
     design: SobolSequence,
     told: Vec<Observation>,
     /// Points asked but not yet told.
@@ -47,11 +44,9 @@ impl GpOptimizer {
     /// missing or non-positive entries count as zero.
     pub fn new(grid: Grid, seed: u64, noise_floors: &[f64]) -> Self {
         GpOptimizer {
-            free: grid.free_axes().len() as u64,
             design: SobolSequence::new(grid.dimension(), seed, 0, "gp design"),
             proposed: Proposed::new(grid, seed),
             training: Training::new(noise_floors),
-            seed,
             told: Vec::new(),
             pending: Vec::new(),
             model: None,
@@ -59,7 +54,7 @@ impl GpOptimizer {
     }
 
     fn unit(&self, point: &GridPoint) -> Vec<f64> {
-        self.proposed.grid().free_unit(point)
+        self.proposed.grid.free_unit(point)
     }
 
     /// Returns the models for an ask of `n` points, fitted and conditioned only if the data have
@@ -77,11 +72,12 @@ impl GpOptimizer {
 
 impl Optimizer for GpOptimizer {
     fn ask(&mut self, n: usize) -> Vec<GridPoint> {
+        let free = self.proposed.grid.free_axes().len() as u64;
         let mut points: Vec<GridPoint> = Vec::new();
         let mut model: Option<(Model, Vec<GridPoint>)> = None;
         while points.len() < n && !self.proposed.exhausted() {
             let mut found = None;
-            if self.proposed.len() >= (self.free + 1).max(3) && self.free > 0 {
+            if self.proposed.len() >= (free + 1).max(3) && free > 0 {
                 if model.is_none() {
                     model = self.train(n);
                     if let Some((model, _)) = &mut model {
@@ -90,13 +86,14 @@ impl Optimizer for GpOptimizer {
                         }
                     }
                 }
-                let (proposed, seed) = (&self.proposed, self.seed);
-                found = model.as_ref().and_then(|(model, incumbents)| {
-                    model.suggest(Room { proposed, incumbents, seed })
-                });
+                let proposed = &self.proposed;
+                let suggest = |(model, incumbents): &(Model, Vec<GridPoint>)| {
+                    model.suggest(Room { proposed, incumbents })
+                };
+                found = model.as_ref().and_then(suggest);
             }
             if found.is_none() {
-                let grid = self.proposed.grid();
+                let grid = &self.proposed.grid;
                 let mut cells = self.design.by_ref().map(|unit| grid.cell(&unit));
                 found = cells.find(|point| !self.proposed.contains(point));
             }
@@ -113,7 +110,7 @@ impl Optimizer for GpOptimizer {
 
     fn tell(&mut self, observations: &[Observation]) {
         for o in observations {
-            if !self.proposed.grid().contains(&o.point) {
+            if !self.proposed.grid.contains(&o.point) {
                 continue;
             }
             self.proposed.insert(&o.point);

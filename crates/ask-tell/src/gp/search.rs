@@ -1,4 +1,4 @@
-//! Where on the grid the acquisition is largest.
+//! Search for the grid point with the largest acquisition.
 
 use super::lbfgs::{Limits, minimise};
 use super::trained::Trained;
@@ -14,35 +14,33 @@ use std::collections::BTreeMap;
 const EXHAUSTIVE: u64 = 20_000;
 /// ... as long as grid size times observations stays below this (some ten milliseconds).
 const EXHAUSTIVE_WORK: u64 = 1_000_000;
-/// Starts of the local search.
+/// Number of candidates that are improved.
 const STARTS: usize = 4;
-/// Cost of an acquisition with its derivatives, in acquisitions.
+/// Cost of an acquisition with its gradient, in acquisitions.
 const COST_OF_SLOPE: usize = 3;
-/// Most of them from one start.
+/// Largest number of gradient evaluations from one start.
 const MOST_SLOPES: usize = 40;
 
-/// Where to search.
+/// Search region: the points not yet proposed.
 #[derive(Clone, Copy)]
 pub(super) struct Room<'a> {
     pub proposed: &'a Proposed,
     /// Good points to start from, best first.
     pub incumbents: &'a [GridPoint],
-    /// Names the streams.
-    pub seed: u64,
 }
 
-/// One search for the best unseen point.
+/// Search for the best unseen point.
 pub(super) struct Search<'a> {
     pub trained: &'a Trained,
     pub room: Room<'a>,
 }
 
-/// The values that were computed.
+/// Acquisitions that were computed.
 pub(super) type Memory = BTreeMap<GridPoint, f64>;
 
 impl Search<'_> {
-    /// The unseen grid point found with the largest acquisition; `None` if no unseen point
-    /// was met or none has a finite one.
+    /// Returns the unseen grid point with the largest acquisition found; `None` if no unseen point was
+    /// evaluated or none has a finite acquisition.
     pub fn maximise(&self) -> Option<GridPoint> {
         let (size, known) =
             (self.room.grid().size(), self.trained.len() * self.trained.models.len());
@@ -52,9 +50,9 @@ impl Search<'_> {
         self.sampled()
     }
 
-    /// Every unseen point, exactly: log expected improvement grows with the variance, so a bound
-    /// of the variance bounds it, and constraints only take away from it. Points are taken by
-    /// falling bound until it is below the best found, and few need the triangular solve.
+    /// Returns the best of all unseen points. The log expected improvement increases with the variance, so an
+    /// upper bound of the variance bounds it, and constraints only lower it. Points are evaluated in the
+    /// order of decreasing bound until it falls below the best value; few need the triangular solve.
     fn exhaustive(&self) -> Option<GridPoint> {
         let unseen = self.room.grid().points().filter(|point| !self.room.proposed.contains(point));
         let bound =
@@ -76,8 +74,8 @@ impl Search<'_> {
         best.map(|(_, point)| point)
     }
 
-    /// Sobol points and perturbations of the incumbents, the best of them improved by L-BFGS
-    /// within the cube and by single levels about the grid point nearest to where it ends.
+    /// Returns the best point found from Sobol points and perturbations of the incumbents, of which the best
+    /// are improved by L-BFGS within the cube and then by single-level steps on the grid.
     fn sampled(&self) -> Option<GridPoint> {
         let (n, models) = (self.trained.len(), self.trained.models.len());
         // A prediction takes about n^2 / 4 + 15 n nanoseconds; some six milliseconds in all.
@@ -99,7 +97,7 @@ impl Search<'_> {
         self.room.best_unseen(memory).map(|(point, _)| point)
     }
 
-    /// The grid point nearest to where L-BFGS ends within a box.
+    /// Returns the grid point nearest to the result of L-BFGS within a box.
     pub fn ascend(&self, from: &GridPoint, limits: &Limits) -> GridPoint {
         let negated = |x: &[f64]| {
             let (value, slope) = self.trained.sloped_acquisition(x)?;
@@ -116,8 +114,8 @@ impl Search<'_> {
         *memory.entry(point.clone()).or_insert_with(acquisition)
     }
 
-    /// Single levels along each axis while they improve and `budget` lasts. Leaves every point
-    /// it tried in `memory`.
+    /// Moves by single levels along each axis while they improve the acquisition and `budget` lasts. Stores
+    /// every point that it evaluates in `memory`.
     pub fn step_uphill(&self, mut at: GridPoint, mut budget: usize, memory: &mut Memory) {
         let mut value = self.value(&at, memory);
         let free = self.room.grid().free_axes();
@@ -149,23 +147,23 @@ impl Search<'_> {
 
 impl Room<'_> {
     pub fn grid(&self) -> &Grid {
-        self.proposed.grid()
+        &self.proposed.grid
     }
 
-    /// The unseen point of the largest finite value.
+    /// Returns the unseen point with the largest finite value.
     pub fn best_unseen(&self, memory: Memory) -> Option<(GridPoint, f64)> {
         let unseen = memory.into_iter().filter(|(p, _)| !self.proposed.contains(p));
         let finite = unseen.filter(|(_, v)| *v > f64::NEG_INFINITY);
         finite.reduce(|a, b| if b.1 > a.1 { b } else { a })
     }
 
-    /// Sobol points and perturbations of the incumbents, half and half; ascending.
+    /// Returns Sobol points and perturbations of the incumbents, half of each, ascending.
     pub fn candidates(&self, count: usize) -> Vec<GridPoint> {
-        let (grid, call) = (self.grid(), self.proposed.len());
+        let (grid, seed, call) = (self.grid(), self.proposed.seed, self.proposed.len());
         let half = count / 2;
-        let sobol = SobolSequence::new(grid.dimension(), self.seed, call, "gp candidates");
+        let sobol = SobolSequence::new(grid.dimension(), seed, call, "gp candidates");
         let mut points: Vec<GridPoint> = sobol.take(half).map(|u| grid.cell(&u)).collect();
-        let mut random = stream(self.seed, call, "gp perturbations");
+        let mut random = stream(seed, call, "gp perturbations");
         for i in 0..if self.incumbents.is_empty() { 0 } else { half } {
             let mut unit = grid.unit(&self.incumbents[i % self.incumbents.len()]);
             // Radii from a twohundredth of the edge to a third, on a logarithmic scale.
@@ -204,13 +202,13 @@ mod tests {
         let best = y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let trained = Trained { models: vec![gp], zeros: Vec::new(), goal: Goal::Improve(best) };
         let proposed = &proposed;
-        let room = Room { proposed, incumbents: &[], seed: 0 };
+        let room = Room { proposed, incumbents: &[] };
         let search = Search { trained: &trained, room };
         let found = search.exhaustive().unwrap();
         let mut memory = BTreeMap::new();
         let value = search.value(&found, &mut memory);
         assert!(!proposed.contains(&found));
-        for point in proposed.grid().points() {
+        for point in proposed.grid.points() {
             let other = search.value(&point, &mut memory);
             assert!(proposed.contains(&point) || other <= value + 1e-9);
         }

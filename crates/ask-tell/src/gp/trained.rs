@@ -1,34 +1,34 @@
-//! The models of all objectives and constraints, and what is looked for with them.
+//! Models of all objectives and constraints, and the acquisition function.
 
 use super::acquisition::{log_expected_improvement, log_expected_volume, log_probability_above};
 use super::model::{Gp, Sloped};
 use crate::pareto::{Archive, Cell, undominated};
 
-/// Step of the differences by the moments, in standard deviations.
+/// Step of the central differences with respect to the moments, in standard deviations.
 const DIFFERENCE: f64 = 1e-4;
 
-/// Models of what was told, and the goal they are used for.
+/// Models of the observations, and the goal of the acquisition function.
 #[derive(Debug, Clone)]
 pub(super) struct Trained {
-    /// Of each objective, then of how far each constraint is kept.
+    /// Model of each objective, then of the margin of each constraint.
     pub models: Vec<Gp>,
-    /// Values from which on the constraints are kept, in the models' units.
+    /// Smallest feasible margin of each constraint, in the units of its model.
     pub zeros: Vec<f64>,
     pub goal: Goal,
 }
 
-/// Use of a point.
+/// Goal of the acquisition function.
 #[derive(Debug, Clone)]
 pub(super) enum Goal {
-    /// Improvement over this value of the only objective, in the model's units.
+    /// Improvement over this value of the single objective, in the units of its model.
     Improve(f64),
-    /// Volume beyond the front of several objectives.
+    /// Hypervolume added to the Pareto front of several objectives.
     Volume(Front),
-    /// Any point that keeps the constraints: none is known yet.
+    /// A feasible point, while none is known.
     Feasible,
 }
 
-/// The front so far, in the models' units.
+/// Pareto front of the observations, in the units of the models.
 #[derive(Debug, Clone)]
 pub(super) struct Front {
     points: Archive,
@@ -37,8 +37,8 @@ pub(super) struct Front {
 }
 
 impl Front {
-    /// Of the posterior means at feasible points. The reference is the worst of `all` means,
-    /// at whatever points: above the worst corner of the front alone, its ends would not grow.
+    /// Returns the front of the posterior means at feasible points. The reference is the componentwise
+    /// minimum over `all` points: with that of the front alone, points beyond its ends would add no volume.
     pub fn new(feasible: &[Vec<f64>], all: &[Vec<f64>]) -> Self {
         let worst = |reference: Vec<f64>, point: &Vec<f64>| {
             reference.iter().zip(point).map(|(a, b)| a.min(*b)).collect()
@@ -60,7 +60,7 @@ impl Front {
 }
 
 impl Trained {
-    /// Observations and believed points together.
+    /// Returns the number of observations and believed points.
     pub fn len(&self) -> usize {
         self.models.first().map_or(0, Gp::len)
     }
@@ -69,7 +69,7 @@ impl Trained {
         self.models.len() - self.zeros.len()
     }
 
-    /// Takes the posterior means at `x` for observed.
+    /// Treats the posterior means at `x` as observations (kriging believer).
     pub fn believe(&mut self, x: &[f64]) {
         let mut means: Vec<f64> = self.models.iter().map(|gp| gp.mean(x)).collect();
         let margins = means.split_off(self.objectives());
@@ -81,8 +81,8 @@ impl Trained {
         self.models.iter_mut().for_each(|gp| gp.believe(x));
     }
 
-    /// Log of what a point is wanted for: its expected improvement or volume, times its
-    /// probability of keeping the constraints (Gardner et al. 2014, ICML 32:937).
+    /// Returns the logarithm of the expected improvement (or hypervolume improvement) times the probability of
+    /// feasibility (Gardner et al. 2014, ICML 32:937).
     pub fn acquisition(&self, x: &[f64]) -> f64 {
         let moments = |gp: &Gp| {
             let (mean, variance) = gp.predict(x);
@@ -91,9 +91,9 @@ impl Trained {
         self.acquisition_of(&self.models.iter().map(moments).collect::<Vec<_>>())
     }
 
-    /// The acquisition and its derivatives by the coordinates of the point; `None` where it
-    /// is not finite. Exact through the processes; by the moments of each, which cost next to
-    /// nothing, central differences.
+    /// Returns the acquisition and its gradient; `None` where it is not finite. The derivatives of the
+    /// posterior moments are exact; those with respect to the moments, which are cheap, are central
+    /// differences.
     pub fn sloped_acquisition(&self, x: &[f64]) -> Option<(f64, Vec<f64>)> {
         let sloped: Vec<Sloped> = self.models.iter().map(|gp| gp.sloped(x)).collect();
         let mut moments: Vec<(f64, f64)> =
@@ -120,7 +120,7 @@ impl Trained {
         finite.then_some((value, slope))
     }
 
-    /// Of the means and standard deviations by all models.
+    /// Returns the acquisition for these means and standard deviations of all models.
     fn acquisition_of(&self, moments: &[(f64, f64)]) -> f64 {
         let (objectives, margins) = moments.split_at(self.objectives());
         let gain = match &self.goal {
@@ -136,7 +136,7 @@ impl Trained {
         gain + feasible.map(log).sum::<f64>()
     }
 
-    /// A bound of [`acquisition`](Self::acquisition) that needs no triangular solution.
+    /// Returns an upper bound of [`acquisition`](Self::acquisition) that needs no triangular solve.
     pub fn bound(&self, x: &[f64]) -> f64 {
         let (Goal::Improve(best), [gp, ..]) = (&self.goal, &self.models[..]) else {
             return f64::INFINITY;

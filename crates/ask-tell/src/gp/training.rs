@@ -1,4 +1,4 @@
-//! From what was told to models.
+//! Fitting of the models to the observations.
 
 use super::data::{Standardised, spread, standardise};
 use super::fit::{FitEffort, fit};
@@ -10,29 +10,28 @@ use super::trained::{Front, Goal, Trained};
 use crate::pareto::front;
 use crate::{GridPoint, Observation};
 
-/// Points around which the acquisition is searched more closely.
+/// Number of incumbents, around which the acquisition is searched more closely.
 const INCUMBENTS: usize = 4;
-/// Of one objective, points of the largest values among which the best mean is looked for, where
-/// not all are.
+/// With local models: number of points with the largest values of which the posterior means are computed.
 const LEADERS: usize = 16;
-/// Observations beyond which the hyperparameters are fitted to some of them.
+/// Largest number of observations to which the hyperparameters are fitted.
 const FITTED: usize = 200;
-/// One more of so many observations is a reason to fit anew, beyond [`FITTED`].
+/// Beyond [`FITTED`] the hyperparameters are refitted after one in this many observations is new.
 const REFIT: usize = 20;
-/// Of a fit to some of the observations.
+/// Effort of a fit to some of the observations.
 const EFFORT: FitEffort = FitEffort { evaluations: 12, restarts: false };
 
 /// Models of the observations told.
 #[derive(Debug, Clone)]
 pub(super) enum Model {
-    /// One process, or a process for each objective and constraint, of all points.
+    /// Processes of all points.
     Whole(Trained),
-    /// Processes of some points, made where they are needed.
+    /// Processes of the nearest points, conditioned where they are needed.
     Local(Neighbours),
 }
 
 impl Model {
-    /// Takes the posterior means at `x` for observed.
+    /// Treats the posterior means at `x` as observations (kriging believer).
     pub fn believe(&mut self, x: &[f64]) {
         match self {
             Model::Whole(trained) => trained.believe(x),
@@ -40,7 +39,7 @@ impl Model {
         }
     }
 
-    /// The unseen point found with the largest acquisition.
+    /// Returns the unseen point with the largest acquisition found.
     pub fn suggest(&self, room: Room) -> Option<GridPoint> {
         match self {
             Model::Whole(trained) => Search { trained, room }.maximise(),
@@ -49,14 +48,14 @@ impl Model {
     }
 }
 
-/// Hyperparameters, and the values that they are fitted to.
+/// Hyperparameters of the last fit, and the settings of fits.
 #[derive(Debug, Clone)]
 pub(super) struct Training {
     /// Least standard deviation of the noise of each objective; 0 for those beyond the last.
     noise_floors: Vec<f64>,
-    /// Of the last fit, objectives first, then constraints.
+    /// Hyperparameters of the last fit, of the objectives, then of the constraints.
     thetas: Vec<Hyperparameters>,
-    /// Observations at the last fit.
+    /// Number of observations at the last fit.
     fitted: usize,
 }
 
@@ -69,8 +68,8 @@ impl Training {
         Training { noise_floors, thetas: Vec::new(), fitted: 0 }
     }
 
-    /// Models of what was `told` at `x`, of the whole of it or of the neighbours of a place, and
-    /// good points to start a search from, best first.
+    /// Returns models of the observations `told` at `x`, global (`whole`) or local, and good starting points of
+    /// a search, best first.
     pub fn model(
         &mut self,
         told: &[Observation],
@@ -90,7 +89,7 @@ impl Training {
         }
         let mut known = Neighbours::new(x, data, self.thetas.clone(), zeros);
         if whole {
-            let mut trained = known.of(&(0..n).collect::<Vec<_>>())?;
+            let mut trained = known.models_of(&(0..n).collect::<Vec<_>>())?;
             let (x, objectives) = (&known.x, &trained.models[..trained.objectives()]);
             let margin = |i: usize| trained.acquisition(&x[i]);
             let leaders = |feasible| best_first(|i| objectives[0].mean(&x[i]), feasible);
@@ -99,7 +98,7 @@ impl Training {
             trained.goal = goal;
             return Some((Model::Whole(trained), starts));
         }
-        // Told values are taken for means where there are many.
+        // With many observations their values replace the posterior means.
         let (objectives, margins) = known.data.split_at(known.data.len() - known.zeros.len());
         let margin = |i: usize| {
             let margins =
@@ -107,7 +106,7 @@ impl Training {
             margins.fold(f64::INFINITY, f64::min)
         };
         let mean = |i: usize| {
-            let near = known.about(&known.x[i], FEW);
+            let near = known.near(&known.x[i], FEW);
             near.map_or(f64::NEG_INFINITY, |near| near.models[0].mean(&known.x[i]))
         };
         let leaders = |feasible: Vec<usize>| {
@@ -120,8 +119,8 @@ impl Training {
         Some((Model::Local(known), starts))
     }
 
-    /// Values of the objectives, then margins of the constraints in the models' units, and the
-    /// zeros of these; `None` if nothing has a value.
+    /// Returns the values of the objectives, then the margins of the constraints, in the units of the models,
+    /// and the smallest feasible margins; `None` if no observation has a value.
     fn standardised(&self, told: &[Observation]) -> Option<(Vec<Standardised>, Vec<f64>)> {
         let count = |of: fn(&Observation) -> usize| told.iter().map(of).max().unwrap_or(0);
         let (objectives, constraints) = (count(|o| o.values.len()), count(|o| o.violations.len()));
@@ -145,7 +144,7 @@ impl Training {
         Some((data, zeros))
     }
 
-    /// Hyperparameters of each, fitted to some of its values from those it had before.
+    /// Returns the hyperparameters of each model, fitted to some of its values from those of the last fit.
     fn fitted(
         &self,
         x: &[Vec<f64>],
@@ -162,8 +161,8 @@ impl Training {
     }
 }
 
-/// Which of many values are fitted to: the largest, about which the search goes on, and as many
-/// evenly of all.
+/// Returns the indices of the values to which hyperparameters are fitted: the largest ones, near which the
+/// search continues, and as many evenly selected from all.
 fn some_of(values: &[f64]) -> Vec<usize> {
     let n = values.len();
     let leaders = best_first(|i| values[i], 0..n).into_iter().take(FITTED / 2);
@@ -173,7 +172,7 @@ fn some_of(values: &[f64]) -> Vec<usize> {
     some
 }
 
-/// Places with their numbers, the largest number first.
+/// Returns indices with their values, the largest value first.
 fn best_first(
     of: impl Fn(usize) -> f64,
     among: impl IntoIterator<Item = usize>,
@@ -183,9 +182,9 @@ fn best_first(
     ranked
 }
 
-/// The goal by what was told, and good points to start from. `margin` tells how likely a place
-/// keeps the constraints; `leaders` ranks places by the means of the only objective; `means` are
-/// those of all objectives.
+/// Returns the goal for the observations, and good starting points. `margin` ranks observations by
+/// feasibility; `leaders` ranks them by the mean of the single objective; `means` returns those of all
+/// objectives.
 fn goal(
     told: &[Observation],
     constrained: bool,

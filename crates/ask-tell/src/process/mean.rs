@@ -1,33 +1,33 @@
-//! The linear mean: its coefficients by generalised least squares.
+//! Linear mean with coefficients by generalised least squares.
 
 use super::factor::Factor;
 use nalgebra::DVector;
 
-/// Information of the values on the coefficients of `P` terms, whose prior is flat.
+/// Posterior precision of the coefficients of `P` terms with a flat prior.
 #[derive(Debug, Clone)]
 pub(crate) struct LinearMean<const P: usize> {
     /// `K^-1 H'`, by term.
     pub weights: [DVector<f64>; P],
-    /// `A = H K^-1 H' = L D L'`, one over the covariance of the coefficients: the rows of `L`
-    /// left of its diagonal of ones.
+    /// Rows of `L`, left of its diagonal of ones, in the factorisation `A = H K^-1 H' = L D L'` of the inverse
+    /// covariance of the coefficients.
     lower: [[f64; P]; P],
-    /// `D`; 0 where the values tell nothing.
+    /// `D`; 0 for coefficients that the values do not determine.
     pub pivots: [f64; P],
-    /// Whether the values tell all coefficients apart.
-    pub told: bool,
+    /// Whether the values determine all coefficients.
+    pub determined: bool,
 }
 
-/// Least share of a term that the terms before it must leave: below it rounding decides.
-const LEAST_SHARE: f64 = 1e-9;
+/// Smallest pivot relative to the diagonal element; smaller ones are dominated by rounding errors.
+const LEAST_RELATIVE_PIVOT: f64 = 1e-9;
 
 impl<const P: usize> LinearMean<P> {
-    /// Of terms whose values at the points are the columns of `H'`.
+    /// Factorises `A` for terms whose values at the points are the columns of `H'`.
     pub fn new(factor: &Factor, terms: &[DVector<f64>; P]) -> Self {
         let weights: [_; P] = std::array::from_fn(|p| factor.solve(&terms[p]));
         let product = |i: usize, j: usize| -> f64 {
             terms[i].iter().zip(&weights[j]).map(|(h, w)| h * w).sum()
         };
-        let (mut lower, mut pivots, mut told) = ([[0.0; P]; P], [0.0; P], true);
+        let (mut lower, mut pivots, mut determined) = ([[0.0; P]; P], [0.0; P], true);
         for i in 0..P {
             for j in 0..=i {
                 let known: f64 = (0..j).map(|m| lower[i][m] * lower[j][m] * pivots[m]).sum();
@@ -36,41 +36,41 @@ impl<const P: usize> LinearMean<P> {
                     lower[i][j] = quotient(whole - known, pivots[j]);
                 } else {
                     pivots[i] = (whole - known).max(0.0);
-                    told &= pivots[i] > LEAST_SHARE * whole;
+                    determined &= pivots[i] > LEAST_RELATIVE_PIVOT * whole;
                 }
             }
         }
-        LinearMean { weights, lower, pivots, told }
+        LinearMean { weights, lower, pivots, determined }
     }
 
-    /// The coefficients `A^-1 H K^-1 y`.
+    /// Returns the coefficients `A^-1 H K^-1 y`.
     pub fn coefficients(&self, y: &DVector<f64>) -> [f64; P] {
         self.solved(std::array::from_fn(|p| self.weights[p].dot(y)))
     }
 
-    /// `A^-1 r` with `r = h - H K^-1 k`: how a point of terms `h` and covariances `k` leans on
-    /// each coefficient.
-    pub fn leaning(&self, k: &DVector<f64>, h: &[f64; P]) -> [f64; P] {
-        self.solved(self.rest(k, h))
+    /// Returns `A^-1 r` with `r = h - H K^-1 k`, for a point with terms `h` and covariances `k`.
+    pub fn solved_residual(&self, k: &DVector<f64>, h: &[f64; P]) -> [f64; P] {
+        self.solved(self.residual(k, h))
     }
 
-    /// `r' A^-1 r`: the variance that the unknown coefficients add there.
+    /// Returns `r' A^-1 r`, the variance due to the unknown coefficients.
     pub fn variance(&self, k: &DVector<f64>, h: &[f64; P]) -> f64 {
-        let half = self.half_solved(self.rest(k, h));
+        let half = self.half_solved(self.residual(k, h));
         let square = |(z, d): (&f64, &f64)| quotient(*z, *d) * quotient(*z, *d) * d;
         half.iter().zip(&self.pivots).map(square).sum()
     }
 
-    /// `log |A|`.
+    /// Returns `log |A|`.
     pub fn log_determinant(&self) -> f64 {
         self.pivots.iter().map(|d| libm::log(d.max(f64::MIN_POSITIVE))).sum()
     }
 
-    fn rest(&self, k: &DVector<f64>, h: &[f64; P]) -> [f64; P] {
+    /// Returns `r = h - H K^-1 k`.
+    fn residual(&self, k: &DVector<f64>, h: &[f64; P]) -> [f64; P] {
         std::array::from_fn(|p| h[p] - k.dot(&self.weights[p]))
     }
 
-    /// `L^-1 b`.
+    /// Returns `L^-1 b`.
     fn half_solved(&self, mut b: [f64; P]) -> [f64; P] {
         for i in 0..P {
             for j in 0..i {
@@ -80,7 +80,7 @@ impl<const P: usize> LinearMean<P> {
         b
     }
 
-    /// `A^-1 b`.
+    /// Returns `A^-1 b`.
     fn solved(&self, b: [f64; P]) -> [f64; P] {
         let half = self.half_solved(b);
         let mut x: [f64; P] = std::array::from_fn(|i| quotient(half[i], self.pivots[i]));
@@ -93,7 +93,7 @@ impl<const P: usize> LinearMean<P> {
     }
 }
 
-/// 0 where the divisor is.
+/// Returns `a / b`; 0 if `b` is not positive.
 fn quotient(a: f64, b: f64) -> f64 {
     if b > 0.0 { a / b } else { 0.0 }
 }

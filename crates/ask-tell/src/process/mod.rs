@@ -84,7 +84,7 @@ impl<const P: usize> Process<P> {
         let column = |p: usize| DVector::from_iterator(n, terms.iter().map(|h| h[p]));
         let terms: [_; P] = std::array::from_fn(column);
         let mean = LinearMean::new(&factor, &terms);
-        if n > 0 && !mean.told {
+        if n > 0 && !mean.determined {
             return None;
         }
         let y = DVector::from_column_slice(values);

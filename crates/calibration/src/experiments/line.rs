@@ -73,14 +73,15 @@ pub(super) fn experiment(cells: &mut Cells<'_>, before: &[Experiment]) -> Experi
     if task.is_empty() {
         cells.problem("task", "is empty; name the task");
     }
-    let experiment = Experiment {
+    let mut experiment = Experiment {
         line: cells.line,
         task,
         design: cells.design(),
         negative_mm: cells.known("negative_mm", length),
         positive_mm: cells.known("positive_mm", length),
         range_mm: cells.known("range_mm", range).flatten(),
-        failures: ["failure_negative", "failure_positive"].map(|end| cells.known(end, failure)),
+        failure_negative: cells.known("failure_negative", failure),
+        failure_positive: cells.known("failure_positive", failure),
         repeats: cells.known("repeats", repeats).unwrap_or(1),
         peak_force_n: cells.known("peak_force_n", force),
         date: cells.known("date", date),
@@ -92,12 +93,15 @@ pub(super) fn experiment(cells: &mut Cells<'_>, before: &[Experiment]) -> Experi
     if cells.problems.is_empty() {
         cells.problems.extend(twice(&experiment, before));
     }
+    let ends = experiment.positive_mm.zip(experiment.negative_mm);
+    experiment.range_mm =
+        experiment.range_mm.or(ends.map(|(positive, negative)| positive - negative));
     experiment
 }
 
 /// A window holds the start from which it is measured, and is as wide as the range.
 fn check_window(cells: &mut Cells<'_>, experiment: &Experiment) {
-    let &Experiment { negative_mm, positive_mm, range_mm, failures, .. } = experiment;
+    let &Experiment { negative_mm, positive_mm, range_mm, .. } = experiment;
     for (column, end, right) in [
         ("negative_mm", negative_mm.filter(|end| *end > 0.0), "below"),
         ("positive_mm", positive_mm.filter(|end| *end < 0.0), "above"),
@@ -121,7 +125,8 @@ fn check_window(cells: &mut Cells<'_>, experiment: &Experiment) {
             format!("is `{NOT_MEASURABLE}`, but both ends are given; leave one or the other out");
         cells.problem("range_mm", &words);
     }
-    let said = not_measurable || failures.iter().any(Option::is_some);
+    let failure = experiment.failure_negative.or(experiment.failure_positive);
+    let said = not_measurable || failure.is_some();
     if [negative_mm, positive_mm, range_mm].iter().all(Option::is_none) && !said {
         let words = format!(
             "nothing was measured; give a range, an end of the window or `{NOT_MEASURABLE}`"

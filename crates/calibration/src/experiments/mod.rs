@@ -1,4 +1,4 @@
-//! Measurements from a bench: `measurements.csv` (`docs/guide/measuring.md`) to checked experiments.
+//! Parsing and checks of bench measurements: `measurements.csv` (`docs/guide/measuring.md`).
 //!
 //! Only the task, the design and something that was measured are needed; columns may be left
 //! out, and further design parameters are further columns, named as in a space file.
@@ -13,13 +13,14 @@ use input::{Fault, Place, Placed, UNCLOSED, unclosed_quote};
 use insertion::outcome::FailureClass;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use line::{Cells, is_of_space};
+use serde::Serialize;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-/// The cell of `range_mm` that says: the finger was tried, and no range could be measured.
+/// Text in `range_mm` for a finger that was tested without a measurable range.
 pub const NOT_MEASURABLE: &str = "not measurable";
 
-/// The documented columns in the order of a new file; further ones are keys of a space file.
+/// Columns in the order of a new file; further columns are keys of a space file.
 pub const COLUMNS: [&str; 12] = [
     "task",
     DENSITY_KEY,
@@ -35,19 +36,18 @@ pub const COLUMNS: [&str; 12] = [
     "note",
 ];
 
-/// Begin of a comment line that says where the file of a task of one's own is, from the folder of the
+/// Prefix of a comment line with the path of the user's task file, relative to the folder of the
 /// measurements: `# task usb-c: usb-c.toml`.
 const OWN_TASK: &str = "# task ";
 
-/// The comment line for a task of one's own; other lines that begin with `#` are no measurements
-/// either.
+/// Returns the comment line for a user's task.
 pub fn own_task(name: &str, path: &str) -> String {
     format!("{OWN_TASK}{name}: {path}\n")
 }
 
-/// The tasks of one's own, each with the path of its file, as the last comment line of it says.
+/// Returns the user's tasks with the paths of their files; the last comment line of a task counts.
 pub fn own_tasks(text: &str) -> BTreeMap<&str, &str> {
-    // A spreadsheet fills lines up with commas.
+    // Spreadsheets pad lines with commas.
     let named = comments(text).filter_map(|line| line.strip_prefix(OWN_TASK)?.split_once(": "));
     named.map(|(name, path)| (name, path.trim_end_matches([',', ' ']))).collect()
 }
@@ -56,7 +56,7 @@ fn comments(text: &str) -> impl Iterator<Item = &str> {
     text.trim_start_matches('\u{feff}').lines().filter(|line| line.starts_with('#'))
 }
 
-/// Whether there is nothing but comments.
+/// Returns whether a text has only comments and blank lines.
 fn is_empty(text: &str) -> bool {
     let text = text.trim_start_matches('\u{feff}');
     text.lines().all(|line| line.trim().is_empty() || line.starts_with('#'))
@@ -68,7 +68,7 @@ fn reader() -> csv::ReaderBuilder {
     reader
 }
 
-/// All that is wrong with one file, a line each.
+/// All problems of a file, one line each.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}", self.0.iter().map(Fault::to_string).collect::<Vec<_>>().join("\n"))]
 pub struct Problems(Vec<Fault>);
@@ -92,71 +92,62 @@ impl Placed for Problems {
     }
 }
 
-/// A fault of a line, in a column unless its name is empty.
+/// Returns a fault of a line; the name of the column may be empty.
 pub(crate) fn problem(line: u64, column: &str, words: &str) -> Fault {
     Place::default().line(line as usize).key(column).fault(words)
 }
 
-/// One line of a measurement file: one finger on one task.
-#[derive(Debug, Clone, PartialEq)]
+/// One line of a measurement file: one finger on one task, by the keys of `--json`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Experiment {
     pub line: u64,
     pub task: String,
-    /// The finger's infill, and what else its columns set.
-    pub design: Design,
     /// Most negative start that inserted, mm.
     pub negative_mm: Option<f64>,
     /// Most positive start that inserted, mm.
     pub positive_mm: Option<f64>,
-    range_mm: Option<f64>,
-    /// Failure below and above the window.
-    pub failures: [Option<FailureClass>; 2],
-    /// Measurements that the values are the mean of.
+    /// Tolerable range, if it was measured whole, mm.
+    pub range_mm: Option<f64>,
+    /// Failure below the window.
+    pub failure_negative: Option<FailureClass>,
+    /// Failure above the window.
+    pub failure_positive: Option<FailureClass>,
+    /// Number of measurements averaged into the values.
     pub repeats: u32,
     pub peak_force_n: Option<f64>,
     /// Day of the measurement, `YYYY-MM-DD`.
     pub date: Option<String>,
     pub note: String,
+    /// The finger's infill, and what else its columns set.
+    #[serde(flatten)]
+    pub design: Design,
 }
 
 impl Experiment {
-    /// The tolerable range that the line tells, mm, and whether it is this or more.
+    /// Returns the tolerable range, mm, and whether it is only a lower bound.
     ///
-    /// A window holds the start from which it is measured, so that one of its ends bounds the
-    /// range from below: "inserts at +1.5 mm" is a range of 1.5 mm or more.
+    /// A window contains the start from which it is measured, so that one end alone is a lower bound:
+    /// "inserts at +1.5 mm" is a range of 1.5 mm or more.
     pub fn extent(&self) -> Option<(f64, bool)> {
         match (self.range_mm, self.negative_mm, self.positive_mm) {
             (Some(range), ..) => Some((range, false)),
-            (None, Some(negative), Some(positive)) => Some((positive - negative, false)),
             (None, Some(end), None) | (None, None, Some(end)) => Some((end.abs(), true)),
-            (None, None, None) => None,
+            _ => None,
         }
     }
 
-    /// The order in which lines are used, whatever their order in the file: by task, then finger.
+    /// Compares lines by task, finger and date: they are used in this order, whatever that in the file.
     pub fn order(&self, other: &Self) -> Ordering {
-        let numbers = |line: &Self| {
-            let ends = [line.negative_mm, line.positive_mm, line.range_mm, line.peak_force_n];
-            ends.map(|number| number.unwrap_or(f64::NEG_INFINITY))
-        };
-        let (own, theirs) = (&self.design.0, &other.design.0);
-        let settings = own.iter().zip(theirs).map(|(a, b)| a.0.cmp(b.0).then(a.1.total_cmp(b.1)));
-        let numbers = numbers(self).into_iter().zip(numbers(other)).map(|(a, b)| a.total_cmp(&b));
-        let task = self.task.cmp(&other.task);
-        let design = settings.fold(task, Ordering::then).then(own.len().cmp(&theirs.len()));
-        let date = design.then(self.date.cmp(&other.date));
-        numbers.fold(date, Ordering::then).then(self.repeats.cmp(&other.repeats))
-    }
-
-    /// The range, if it was measured whole, mm.
-    pub fn range_mm(&self) -> Option<f64> {
-        self.extent().filter(|(_, at_least)| !at_least).map(|(range, _)| range)
+        // No two lines of a file agree in all of these; the numbers of a design are finite.
+        let own = (&self.task, &self.design.0, &self.date);
+        let order = own.partial_cmp(&(&other.task, &other.design.0, &other.date));
+        order.unwrap_or(Ordering::Equal)
     }
 }
 
 /// Columns of a measurement file.
 const COLUMNS_OF_LINES: Columns<'_> =
-    Columns { all: &COLUMNS, needed: 3, why: "a line needs the finger and the task" };
+    Columns { all: &COLUMNS, required: 3, why: "a line needs the finger and the task" };
 
 /// Reads and checks a measurement file; `file` is named in errors. An empty file has no lines.
 pub fn parse(text: &str, file: &str) -> Result<Vec<Experiment>, Problems> {
@@ -184,24 +175,24 @@ pub fn parse_known(text: &str, file: &str, known: &[&str]) -> Result<Vec<Experim
     rows(text, file, &COLUMNS_OF_LINES, one)
 }
 
-/// Columns of a table of fingers.
+/// Columns of a table with one finger per line.
 pub(crate) struct Columns<'a> {
-    /// All but keys of a space file, the needed ones first.
+    /// All columns except keys of a space file, required ones first.
     pub all: &'a [&'a str],
-    pub needed: usize,
-    /// Information that a line gives by the required columns.
+    /// Number of required columns.
+    pub required: usize,
+    /// Purpose of the required columns, for errors.
     pub why: &'a str,
 }
 
-/// Reads and checks such a table by `one`, which is given the lines before, too, and leaves what is
-/// wrong in the cells.
+/// Reads and checks a table. `parse_line` is given the lines before as well; it records problems in the cells.
 pub(crate) fn rows<T>(
     text: &str,
     file: &str,
     columns: &Columns<'_>,
-    mut one: impl FnMut(&mut Cells<'_>, &[T]) -> T,
+    mut parse_line: impl FnMut(&mut Cells<'_>, &[T]) -> T,
 ) -> Result<Vec<T>, Problems> {
-    // The reader counts a line of a "\r\n" file too few; spreadsheets begin with a mark.
+    // The CSV reader miscounts the lines of "\r\n" files; spreadsheets write a byte order mark.
     let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n").replace('\r', "\n");
     if is_empty(&text) {
         return Ok(Vec::new());
@@ -219,7 +210,7 @@ pub(crate) fn rows<T>(
         let record = record.map_err(wrong)?;
         let line = line_at(&text, record.position());
         let mut cells = Cells { header: &header, record: &record, line, problems: Vec::new() };
-        let row = one(&mut cells, &found);
+        let row = parse_line(&mut cells, &found);
         if cells.problems.is_empty() {
             found.push(row);
         }
@@ -228,7 +219,7 @@ pub(crate) fn rows<T>(
     if problems.is_empty() { Ok(found) } else { Err(Problems::of(file, problems)) }
 }
 
-/// The line of a record: the reader says that of the comments before it.
+/// Returns the line of a record; the CSV reader gives that of the comments before it.
 fn line_at(text: &str, position: Option<&csv::Position>) -> u64 {
     let Some(position) = position else { return 1 };
     let rest = text.get(position.byte() as usize..).unwrap_or("");
@@ -246,9 +237,9 @@ fn syntax(text: &str, error: &csv::Error) -> Fault {
     problem(line_at(text, error.position()), "", &words)
 }
 
-/// Checks that the columns are known, stand once, and say what is needed.
+/// Checks that all columns are known and unique and that no required one is missing.
 fn check_header(header: &StringRecord, columns: &Columns<'_>, at: u64) -> Result<(), Fault> {
-    let Columns { all, needed, why } = columns;
+    let Columns { all, required, why } = columns;
     for (i, name) in header.iter().enumerate() {
         if !is_of_space(name) && !all.contains(&name) {
             let words = format!(
@@ -262,7 +253,7 @@ fn check_header(header: &StringRecord, columns: &Columns<'_>, at: u64) -> Result
             return Err(problem(at, name, "is given twice; each column may stand once"));
         }
     }
-    match all[..*needed].iter().find(|needed| header.iter().all(|name| name != **needed)) {
+    match all[..*required].iter().find(|required| header.iter().all(|name| name != **required)) {
         None => Ok(()),
         Some(missing) => Err(problem(at, missing, &format!("is missing; {why}"))),
     }
@@ -272,9 +263,8 @@ fn hint(name: &str, known: &[&str]) -> String {
     nearest(name, known).map_or(String::new(), |near| format!(" (did you mean `{near}`?)"))
 }
 
-/// The file's text with one line more, after a comment line if that is not empty; `cells` are the
-/// columns that are not empty. Columns that the file does not have yet are added at its end; a new
-/// file has all the documented ones.
+/// Returns the text of a file with another line, after a comment line unless that is empty. `cells` are the columns
+/// with a value; those that the file does not have are added at its end. A new file has all of [`COLUMNS`].
 pub fn appended(text: &str, comment: &str, cells: &[(&str, String)]) -> Result<String, csv::Error> {
     let mut reader = reader().from_reader(text.as_bytes());
     let mut header: Vec<String> = match is_empty(text) {
@@ -291,26 +281,23 @@ pub fn appended(text: &str, comment: &str, cells: &[(&str, String)]) -> Result<S
         let cell = cells.iter().find(|(column, _)| column == name);
         cell.map_or("", |(_, text)| text.as_str())
     });
-    let line = |cells: &mut dyn Iterator<Item = &str>| {
-        // What begins with the mark of a comment is quoted.
-        let mut writer = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(Vec::new());
-        writer.write_record(cells)?;
-        let bytes = writer.into_inner().map_err(|error| error.into_error())?;
-        Ok::<_, csv::Error>(String::from_utf8_lossy(&bytes).into_owned())
-    };
-    let last = line(&mut new.into_iter())?;
     // What is there stays as it was written, unless a column is new.
-    if had == header.len() && !is_empty(text) {
-        let end = if text.ends_with('\n') { "" } else { "\n" };
-        return Ok(format!("{text}{end}{comment}{last}"));
+    let stays = had == header.len() && !is_empty(text);
+    let start = match stays {
+        true if text.ends_with('\n') => format!("{text}{comment}"),
+        true => format!("{text}\n{comment}"),
+        false => comments(text).flat_map(|line| [line, "\n"]).chain([comment]).collect(),
+    };
+    // What begins with the mark of a comment is quoted.
+    let mut writer = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(start.into_bytes());
+    if !stays {
+        writer.write_record(&header)?;
+        for record in reader.records() {
+            let more = std::iter::repeat_n("", header.len() - had);
+            writer.write_record(record?.iter().chain(more))?;
+        }
     }
-    let mut whole: String = comments(text).flat_map(|line| [line, "\n"]).collect();
-    whole += comment;
-    whole += &line(&mut header.iter().map(String::as_str))?;
-    for record in reader.records() {
-        let record = record?;
-        let more = std::iter::repeat_n("", header.len() - had);
-        whole += &line(&mut record.iter().chain(more))?;
-    }
-    Ok(whole + &last)
+    writer.write_record(new)?;
+    let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }

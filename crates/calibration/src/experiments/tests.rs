@@ -12,12 +12,12 @@ fn the_published_bench_is_in_the_documented_form() {
     let file = MEASUREMENTS[0];
     let found = parse(file.text, file.file).unwrap();
     assert_eq!(found.len(), 44);
-    assert_eq!(found.iter().filter_map(Experiment::range_mm).count(), 40);
+    assert_eq!(found.iter().filter_map(|line| line.range_mm).count(), 40);
     assert_eq!(
         parse_known(file.text, file.file, &["ket8", "ket12", "rj45", "usb"]),
         Ok(found.clone())
     );
-    assert_eq!(found[2].range_mm(), Some(8.6));
+    assert_eq!(found[2].range_mm, Some(8.6));
 }
 
 #[test]

@@ -20,30 +20,29 @@ const RISES: (f64, f64) = (0.5, 1.0 * MM);
 /// Share of the force along one axis that the springs of the robot have to explain better after a correction.
 const EXPLAINS: f64 = 0.5;
 
-/// A mistake in the columns of a vector, with its correction.
-#[derive(Clone, Copy)]
-struct Mistake {
-    cause: &'static str,
-    corrected: fn(Vector3<f64>) -> Vector3<f64>,
-}
+/// Correction of a vector.
+type Correction = fn(Vector3<f64>) -> Vector3<f64>;
+const MIRRORED_X: Correction = |v| Vector3::new(-v.x, v.y, v.z);
+const MIRRORED_Y: Correction = |v| Vector3::new(v.x, -v.y, v.z);
+const MIRRORED_X_AND_Y: Correction = |v| Vector3::new(-v.x, -v.y, v.z);
+
+/// Mistake in the columns of a vector: its likely cause, and its correction.
+type Mistake = (&'static str, Correction);
 
 /// Mistakes that a path over the table shows.
 const OVER_TABLE: [Mistake; 4] = [
-    Mistake { cause: "x looks mirrored", corrected: |v| Vector3::new(-v.x, v.y, v.z) },
-    Mistake { cause: "y looks mirrored", corrected: |v| Vector3::new(v.x, -v.y, v.z) },
-    Mistake { cause: "x and y look mirrored", corrected: |v| Vector3::new(-v.x, -v.y, v.z) },
-    Mistake { cause: "x and y look swapped", corrected: |v| v.yxz() },
+    ("x looks mirrored", MIRRORED_X),
+    ("y looks mirrored", MIRRORED_Y),
+    ("x and y look mirrored", MIRRORED_X_AND_Y),
+    ("x and y look swapped", |v| v.yxz()),
 ];
 /// Mistakes that change heights.
 const IN_HEIGHT: [Mistake; 3] = [
-    Mistake { cause: "z looks mirrored", corrected: |v| Vector3::new(v.x, v.y, -v.z) },
-    Mistake { cause: "x and z look swapped", corrected: |v| v.zyx() },
-    Mistake { cause: "y and z look swapped", corrected: |v| v.xzy() },
+    ("z looks mirrored", |v| Vector3::new(v.x, v.y, -v.z)),
+    ("x and z look swapped", |v| v.zyx()),
+    ("y and z look swapped", |v| v.xzy()),
 ];
-const METRES: Mistake = Mistake {
-    cause: "the commanded positions look like metres; give millimetres",
-    corrected: |v| v * 1e3,
-};
+const METRES: Mistake = ("the commanded positions look like metres; give millimetres", |v| v * 1e3);
 
 /// A place, where it should be, and its weight.
 type Pair = (Vector3<f64>, Vector3<f64>, f64);
@@ -65,7 +64,7 @@ impl Comparison {
             pairs.iter().map(|pair| pair.2 * distance(pair).lp_norm(1)).sum::<f64>() / all
         };
         let apart = mean(&|(is, wanted, _)| is - wanted);
-        let tried = mistakes.into_iter().map(|Mistake { cause, corrected }| {
+        let tried = mistakes.into_iter().map(|(cause, corrected)| {
             let left = mean(&|(is, wanted, _)| corrected(*is) - wanted);
             let change = mean(&|(is, ..)| corrected(*is) - is);
             (left, cause, apart - left > CORRECTS * change && change > AGREES)
@@ -110,9 +109,9 @@ fn commanded(remarks: &mut Remarks<'_>) {
             "measured and commanded positions, counted from their first, are {:.1} mm apart on average: \
              {cause}{}",
             found.apart / MM,
-            if cause == METRES.cause { "" } else { " in one of the two" }
+            if cause == METRES.0 { "" } else { " in one of the two" }
         );
-        remarks.say(true, None, text);
+        remarks.add(true, None, text);
     }
 }
 
@@ -166,7 +165,7 @@ fn search(remarks: &mut Remarks<'_>, task: &Task) {
         let apart = apart / MM;
         let text =
             format!("its search is {apart:.1} mm beside that of the task on average: {cause}");
-        remarks.say(true, None, text);
+        remarks.add(true, None, text);
     }
 }
 
@@ -180,50 +179,34 @@ fn twice(remarks: &mut Remarks<'_>, touched: usize) {
     if let Some(down) = moments[up..].iter().position(|moment| moment.position.z <= touch) {
         let text = "the tool rises and goes down to the socket once more: there are two attempts in this \
                     log; cut it into one log for each";
-        remarks.say(true, Some([up, up + down]), text);
+        remarks.add(true, Some([up, up + down]), text);
     }
 }
 
 /// Mistakes in the force, or in the positions against it.
 const IN_FORCE: [Mistake; 5] = [
-    Mistake {
-        cause: "along x; x_mm or fx_n looks mirrored",
-        corrected: |v| Vector3::new(-v.x, v.y, v.z),
-    },
-    Mistake {
-        cause: "along y; y_mm or fy_n looks mirrored",
-        corrected: |v| Vector3::new(v.x, -v.y, v.z),
-    },
-    Mistake {
-        cause: "along x and y; positions look mirrored against the force",
-        corrected: |v| Vector3::new(-v.x, -v.y, v.z),
-    },
-    Mistake {
-        cause: "along all axes; measured and commanded positions look swapped, or turn `force_sign`",
-        corrected: |v| -v,
-    },
-    Mistake { cause: "along x and y; fx_n and fy_n look swapped", corrected: |v| v.yxz() },
+    ("along x; x_mm or fx_n looks mirrored", MIRRORED_X),
+    ("along y; y_mm or fy_n looks mirrored", MIRRORED_Y),
+    ("along x and y; positions look mirrored against the force", MIRRORED_X_AND_Y),
+    ("along all axes; measured and commanded positions look swapped, or turn `force_sign`", |v| -v),
+    ("along x and y; fx_n and fy_n look swapped", |v| v.yxz()),
 ];
 
 /// Returns a remark on the direction in which the robot gives way to the force, over all attempts; `file` has
 /// the runs.
 pub(super) fn springs(file: &str, attempts: &[Curves]) -> Option<Remark> {
-    let score = |corrected: fn(Vector3<f64>) -> Vector3<f64>| {
+    let score = |corrected: Correction| {
         let with = |one: &Curves| {
             let force = one.force.iter().map(|force| corrected(*force)).collect();
             Curves { force, ..one.clone() }
         };
         explained(&attempts.iter().map(with).collect::<Vec<_>>())
     };
-    let tried = IN_FORCE.map(|mistake| (score(mistake.corrected), mistake.cause));
+    let tried = IN_FORCE.map(|(cause, corrected)| (score(corrected), cause));
     let (best, cause) = tried.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
     let text = format!("the robot does not give way in the direction of the force {cause}");
-    (best - explained(attempts) > EXPLAINS).then(|| Remark {
-        file: file.to_owned(),
-        lines: None,
-        text,
-        serious: true,
-    })
+    let remark = Remark { file: file.to_owned(), lines: None, text, serious: true };
+    (best - explained(attempts) > EXPLAINS).then_some(remark)
 }
 
 /// Returns a remark on a probe along whose slides the force drives the motion.

@@ -1,6 +1,7 @@
 //! Checks of a log before the fit; the remarks are sentences for its author.
 
 use super::axes::{cause, motion};
+use super::formulas::runs_of;
 use super::log::{Ended, Log, Moment, Run};
 use super::read::median_gap;
 use super::touch::{Air, after, air, any_touch, mean, touch};
@@ -9,14 +10,15 @@ use input::units::{DEG, MM};
 use insertion::outcome::FailureClass;
 use insertion::task::Task;
 use nalgebra::Vector3;
+use std::ops::Range;
 
 /// Lowest sampling rate, Hz: six samples in a search stroke of 60 ms.
 const SLOWEST_HZ: f64 = 100.0;
-/// Gap that counts as a step of the clock, in medians.
+/// Gap between moments that counts as a step of the clock, in median gaps.
 const STEP: f64 = 5.0;
-/// Number of equal samples at the largest force, and that force beyond the bias, N, of a saturated sensor.
+/// Saturated sensor: smallest number of consecutive samples at an extreme force, and that force beyond the bias, N.
 const SATURATED: (usize, f64) = (10, 10.0);
-/// Bias, N, and its slope, N/s, from which on there is a remark.
+/// Bias, N, and drift, N/s, above which there is a remark.
 const DRIFT: (f64, f64) = (5.0, 7.0);
 /// Largest distance of the first position from the task's start, m.
 const ASTRAY: f64 = 30.0 * MM;
@@ -48,13 +50,12 @@ pub struct Remark {
 
 impl std::fmt::Display for Remark {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self.lines {
-            Some([from, to]) if from != to => {
-                write!(f, "{}: lines {from} to {to}: {}", self.file, self.text)
-            }
-            Some([line, _]) => write!(f, "{}: line {line}: {}", self.file, self.text),
-            None => write!(f, "{}: {}", self.file, self.text),
-        }
+        let lines = match self.lines {
+            Some([from, to]) if from != to => format!("lines {from} to {to}: "),
+            Some([line, _]) => format!("line {line}: "),
+            None => String::new(),
+        };
+        write!(f, "{}: {lines}{}", self.file, self.text)
     }
 }
 
@@ -66,7 +67,7 @@ pub(super) struct Remarks<'a> {
 
 impl Remarks<'_> {
     /// Adds a remark on the moments between two indices.
-    pub(super) fn say(
+    pub(super) fn add(
         &mut self,
         serious: bool,
         between: Option<[usize; 2]>,
@@ -125,7 +126,7 @@ fn clock(remarks: &mut Remarks<'_>) {
             "it is recorded at {rate:.0} Hz (median; the worst gap is {largest:.0} ms), too slow for \
              the strokes of a search: record at 125 to 500 Hz"
         );
-        remarks.say(true, None, text);
+        remarks.add(true, None, text);
     }
     let steps = gaps.filter(|i| gap(i) > STEP * median).count();
     if steps > 0 {
@@ -134,7 +135,7 @@ fn clock(remarks: &mut Remarks<'_>) {
              what happened in them is not known",
             1e3 * median
         );
-        remarks.say(steps > 3, Some([worst, worst + 1]), text);
+        remarks.add(steps > 3, Some([worst, worst + 1]), text);
     }
 }
 
@@ -152,7 +153,7 @@ fn pose(remarks: &mut Remarks<'_>, run: &Run, task: &Task) {
             shown(start / MM, 1),
             cause(first.position, start)
         );
-        remarks.say(!probe, Some([0, 0]), text);
+        remarks.add(!probe, Some([0, 0]), text);
     }
     let (tilt, wanted) = (first.tilt / DEG, task.strategy.tilt / DEG);
     if !probe && (first.tilt - task.strategy.tilt).abs() > TILTED {
@@ -166,17 +167,17 @@ fn pose(remarks: &mut Remarks<'_>, run: &Run, task: &Task) {
         let text = format!(
             "the tool is tilted by {tilt:.1} degrees where the task says {wanted:.1}: {hint}"
         );
-        remarks.say(true, Some([0, 0]), text);
+        remarks.add(true, Some([0, 0]), text);
     }
     if first.target.is_none() {
         let text = "it has no commanded positions (target columns): the robot's stiffness cannot \
                     be told from this log";
-        remarks.say(false, None, text);
+        remarks.add(false, None, text);
     }
     if let Some([from, to]) = standstill(&log.moments) {
         let text = "the measured pose stands still while the commanded one moves: the pose is \
                     recorded too seldom or from another robot";
-        remarks.say(true, Some([from, to]), text);
+        remarks.add(true, Some([from, to]), text);
     }
 }
 
@@ -226,7 +227,7 @@ fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
     let Some(([from, to], force)) = touch_force(log) else {
         let text = "nothing is touched: the force never leaves the noise of the air for good; the \
                     log has only the approach, no force, or one in another unit than newtons";
-        remarks.say(true, None, text);
+        remarks.add(true, None, text);
         return None;
     };
     if force.iamax() != 2 || force.z >= 0.0 {
@@ -237,7 +238,7 @@ fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
          above 0 along z; turn `force_sign`",
         shown(force, 1)
     );
-    remarks.say(true, Some([from, to]), text);
+    remarks.add(true, Some([from, to]), text);
     None
 }
 
@@ -253,7 +254,7 @@ fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
              an attempt, or give the tool's weight",
             shown(bias, 1)
         );
-        remarks.say(false, span, text);
+        remarks.add(false, span, text);
     }
     let (slope, error) = slope(quiet, bias, noise);
     if touched.is_some() && slope.norm() > DRIFT.1.max(4.0 * error.norm()) {
@@ -261,26 +262,21 @@ fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
             "the force in the air changes by ({}) N/s: the sensor drifts, or the tool accelerates",
             shown(slope, 1)
         );
-        remarks.say(false, span, text);
+        remarks.add(false, span, text);
     }
     for (axis, name) in ["fx", "fy", "fz"].into_iter().enumerate() {
-        let all = || log.moments.iter().map(|moment| moment.force[axis]);
-        for extreme in [all().fold(f64::MIN, f64::max), all().fold(f64::MAX, f64::min)] {
-            let (mut run, mut longest) = (0, [0, 0]);
-            for (at, force) in all().enumerate() {
-                run = if force == extreme { run + 1 } else { 0 };
-                if run > longest[1] - longest[0] {
-                    longest = [at + 1 - run, at + 1];
-                }
-            }
-            let [from, end] = longest;
-            if end - from >= SATURATED.0 && (extreme - bias[axis]).abs() > SATURATED.1 {
+        let all: Vec<f64> = log.moments.iter().map(|moment| moment.force[axis]).collect();
+        let extremes = [f64::max, f64::min].map(|of| all.iter().copied().reduce(of).unwrap_or(0.0));
+        for extreme in extremes {
+            let runs = runs_of(all.len(), |i| all[i] == extreme).into_iter().rev();
+            let longest = runs.max_by_key(Range::len).unwrap_or_default();
+            if longest.len() >= SATURATED.0 && (extreme - bias[axis]).abs() > SATURATED.1 {
                 let text = format!(
                     "{name} stays at {extreme:.1} N, its extreme, for {} moments: the sensor is \
                      saturated",
-                    end - from
+                    longest.len()
                 );
-                remarks.say(true, Some([from, end - 1]), text);
+                remarks.add(true, Some([longest.start, longest.end - 1]), text);
             }
         }
     }
@@ -312,13 +308,13 @@ fn phases(remarks: &mut Remarks<'_>, run: &Run, task: &Task, touched: usize) {
             deepest / MM,
             task.success.depth / MM
         );
-        remarks.say(true, Some([touched, last]), text);
+        remarks.add(true, Some([touched, last]), text);
     }
     let seated = matches!(run.ended, Ended::Inserted | Ended::Failed(FailureClass::Jammed));
     if seated && deepest > 0.0 && depth(&log.moments[last]) < 0.0 {
         let left = log.moments.iter().rposition(|moment| depth(moment) >= 0.0).unwrap_or(0);
         let text = "it ends in the air, above the socket: cut it where the attempt ends";
-        remarks.say(false, Some([left, last]), text);
+        remarks.add(false, Some([left, last]), text);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Curves of a log or a simulated attempt at regular times.
 
-use super::log::{Log, Moment, Target};
+use super::log::{Log, Moment};
 use input::units::{DEG, MM};
 use insertion::trial::{Path, Sample, Tcp};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -48,23 +48,23 @@ impl Curves {
         }
     }
 
-    /// Returns the curves of samples `STEP_S` apart, as measured by a sensor with a tool of this mass, kg.
+    /// Returns the curves of samples `STEP_S` apart, as measured by a sensor that carries a tool of this mass, kg.
     pub fn of_samples(samples: &[Sample], tool_mass: f64) -> Self {
         let vectors = |of: fn(&Sample) -> [f64; 3], unit: f64| {
             samples.iter().map(|sample| Vector3::from(of(sample)) * unit).collect::<Vec<_>>()
         };
         let tcp = vectors(|sample| sample.tcp_mm, MM);
-        let carried = accelerations(&tcp).into_iter().map(|a| a * tool_mass);
+        let inertia = accelerations(&tcp).into_iter().map(|a| a * tool_mass);
         let force = vectors(|sample| sample.sensed_n, 1.0);
         Curves {
-            force: force.into_iter().zip(carried).map(|(force, carried)| force - carried).collect(),
+            force: force.into_iter().zip(inertia).map(|(force, inertia)| force - inertia).collect(),
             target: Some(vectors(|sample| sample.target_mm, MM)),
             tilt: samples.iter().map(|sample| sample.tcp_tilt_deg * DEG).collect(),
             tcp,
         }
     }
 
-    /// Returns the commanded path, or the measured one if that was not recorded, with the first tilt.
+    /// Returns the commanded path, or the measured one if that was not recorded, with the tilt of the first point.
     pub fn path(&self) -> Option<Path> {
         let commanded = self.target.as_ref().unwrap_or(&self.tcp);
         let tilt = self.tilt.first().copied().unwrap_or(0.0);
@@ -92,21 +92,21 @@ impl Curves {
         let target = self.target.as_ref()?;
         let speeds: Vec<f64> =
             target.windows(2).map(|pair| (pair[0].z - pair[1].z) / STEP_S).collect();
-        let fastest = speeds.iter().copied().fold(0.0, f64::max);
         let before = self.path().map_or(0, |path| (path.push() / STEP_S) as usize);
         let slowed = |i: &usize| speeds[*i] - speeds[*i + 1];
         let all = 0..before.min(speeds.len().saturating_sub(1));
         let most = all.max_by(|a, b| slowed(a).total_cmp(&slowed(b)))?;
-        let usual = speeds[..before.min(speeds.len())].iter().copied().fold(0.0, f64::max);
-        (slowed(&most) > STOPPED * usual.min(fastest)).then_some(most + 1)
+        let fastest = speeds[..before.min(speeds.len())].iter().copied().fold(0.0, f64::max);
+        (slowed(&most) > STOPPED * fastest).then_some(most + 1)
     }
 }
 
+/// Interpolates linearly between two moments.
 fn between(a: &Moment, b: &Moment, time: f64) -> Moment {
     let share = ((time - a.time_s) / (b.time_s - a.time_s)).clamp(0.0, 1.0);
     let vector = |a: Vector3<f64>, b: Vector3<f64>| a + share * (b - a);
     let number = |a: f64, b: f64| a + share * (b - a);
-    let target = a.target.zip(b.target).map(|(a, b)| Target {
+    let target = a.target.zip(b.target).map(|(a, b)| Tcp {
         position: vector(a.position, b.position),
         tilt: number(a.tilt, b.tilt),
     });
@@ -120,7 +120,7 @@ fn between(a: &Moment, b: &Moment, time: f64) -> Moment {
     }
 }
 
-/// First derivatives, by central differences of two steps to either side.
+/// Returns the first derivatives, by central differences over two steps on either side.
 pub fn rates(points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
     let last = points.len().saturating_sub(1);
     let rate = |i: usize| {
@@ -130,12 +130,12 @@ pub fn rates(points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
     (0..points.len()).map(rate).collect()
 }
 
-/// Second derivatives.
+/// Returns the second derivatives.
 pub fn accelerations(points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
     rates(&rates(points))
 }
 
-/// Means over so many points to either side.
+/// Returns moving averages over `reach` points on either side.
 pub fn smoothed(points: &[Vector3<f64>], reach: usize) -> Vec<Vector3<f64>> {
     let mean = |i: usize| {
         let range = i.saturating_sub(reach)..(i + reach + 1).min(points.len());

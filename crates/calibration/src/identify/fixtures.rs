@@ -1,9 +1,10 @@
 //! A log made up for tests.
 
-use super::log::{Log, Moment, Target};
+use super::log::{Log, Moment};
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
 use input::units::{DEG, MM};
+use insertion::trial::Tcp;
 use nalgebra::Vector3;
 use rand::RngExt;
 
@@ -23,7 +24,7 @@ pub fn made(noise: f64, drift: f64) -> Log {
         let sway = Vector3::new(0.3, -0.2, 0.8 + drift * time / 1.2);
         let force = Vector3::new(0.0, rub, press) + error + sway;
         let (tilt, line) = (10.0 * DEG, i as usize + 2);
-        let target = Some(Target { position: position - Vector3::z() * 1e-5, tilt });
+        let target = Some(Tcp { position: position - Vector3::z() * 1e-5, tilt });
         Moment { line, time_s: 7.0 + time, position, tilt, target, force }
     });
     Log::new("a.csv", moments.collect()).expect("moments in order")

@@ -139,15 +139,15 @@ pub fn preload(all: &[Curves]) -> Option<Estimate> {
         let sent = target[stopped + rest?];
         Some(one.tcp[stopped].z - sent.z)
     };
-    estimate(&all.iter().filter_map(of).collect::<Vec<_>>(), 0.0)
+    estimate(&all.iter().filter_map(of).collect::<Vec<_>>())
 }
 
-/// Mean, and its standard deviation from the scatter, at least `floor` of it.
-fn estimate(values: &[f64], floor: f64) -> Option<Estimate> {
+/// Returns the mean, and its standard deviation from the scatter.
+fn estimate(values: &[f64]) -> Option<Estimate> {
     let moments = Moments::of(values);
     let Moments { count, mean, .. } = moments;
     let sd = if count > 1.0 { (moments.sample_variance() / count).sqrt() } else { 0.0 };
-    (count > 0.0).then(|| Estimate { mean, sd: sd.max(floor * mean.abs()) })
+    (count > 0.0).then_some(Estimate { mean, sd })
 }
 
 /// One slide of a probe.
@@ -203,7 +203,7 @@ pub fn friction(probe: &Curves) -> Option<Friction> {
     let [forth, back] = [1.0, -1.0].map(each);
     let angle = |slides: &[Slide]| {
         let settled = slides.iter().filter(|slide| !slide.rising);
-        estimate(&settled.map(|slide| libm::atan(slide.ratio)).collect::<Vec<_>>(), 0.0)
+        estimate(&settled.map(|slide| libm::atan(slide.ratio)).collect::<Vec<_>>())
     };
     // A face that is not level adds its angle one way and takes it the other.
     let both = angle(&forth).zip(angle(&back));
@@ -252,14 +252,8 @@ fn slide(force: &[Vector3<f64>], sign: f64, range: Range<usize>) -> Slide {
     Slide { forth: sign > 0.0, ratio: last, rising: last > (1.0 + RISING) * middle }
 }
 
-/// The runs of neighbours for which something holds.
-fn runs_of(count: usize, holds: impl Fn(usize) -> bool) -> Vec<Range<usize>> {
-    let mut runs: Vec<Range<usize>> = Vec::new();
-    for i in (0..count).filter(|&i| holds(i)) {
-        match runs.last_mut() {
-            Some(run) if run.end == i => run.end = i + 1,
-            _ => runs.push(i..i + 1),
-        }
-    }
-    runs
+/// Returns the ranges of consecutive indices below `count` for which a condition holds.
+pub(super) fn runs_of(count: usize, holds: impl Fn(usize) -> bool) -> Vec<Range<usize>> {
+    let held: Vec<usize> = (0..count).filter(|&i| holds(i)).collect();
+    held.chunk_by(|a, b| a + 1 == *b).map(|run| run[0]..run[0] + run.len()).collect()
 }

@@ -1,8 +1,8 @@
 //! `frame.toml`: pose of the task's frame in the robot's base, and convention of the recorded force.
 
-use super::log::Target;
 use input::units::MM;
 use input::{Check, InputError, read};
+use insertion::trial::Tcp;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use serde::Deserialize;
 use std::f64::consts::{PI, TAU};
@@ -20,22 +20,12 @@ struct Raw {
     origin_mm: [f64; 3],
     axis_angle_rad: [f64; 3],
     upright_axis_angle_rad: Option<[f64; 3]>,
-    #[serde(default = "on_tool")]
-    force_sign: f64,
+    force_sign: Option<f64>,
     #[serde(default)]
     tool_mass_kg: f64,
     #[serde(default)]
     tool_centre_mm: [f64; 3],
-    #[serde(default = "yes")]
-    gravity_compensated: bool,
-}
-
-fn on_tool() -> f64 {
-    1.0
-}
-
-fn yes() -> bool {
-    true
+    gravity_compensated: Option<bool>,
 }
 
 /// The task's frame in the robot's base, and the tool on the sensor.
@@ -77,13 +67,14 @@ impl Frame {
             Some(upright) => rotation.inverse() * turn("upright_axis_angle_rad", upright)?,
             None => UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI),
         };
-        let sign = raw.force_sign;
+        let sign = raw.force_sign.unwrap_or(1.0);
         let must = "be 1 (force on the tool) or -1 (force of the tool)";
         check.require("force_sign", sign, sign.abs() == 1.0, must)?;
         let mass = raw.tool_mass_kg;
         let must = "lie in 0 .. 50 (kg); grams must be divided by 1000";
         check.require("tool_mass_kg", mass, (0.0..=50.0).contains(&mass), must)?;
-        if mass == 0.0 && !raw.gravity_compensated {
+        let compensated = raw.gravity_compensated.unwrap_or(true);
+        if mass == 0.0 && !compensated {
             let problem = "is needed where `gravity_compensated` is false; give the mass of all \
                            that hangs on the sensor";
             return check.fail("tool_mass_kg", problem);
@@ -95,7 +86,7 @@ impl Frame {
             sign,
             tool_mass: mass,
             tool_centre: Vector3::from(centre) * MM,
-            compensated: raw.gravity_compensated,
+            compensated,
         })
     }
 
@@ -103,9 +94,9 @@ impl Frame {
     ///
     /// # Errors
     /// The accepted rotation, if the TCP is turned from upright by more than a tilt about x.
-    pub(super) fn pose(&self, place: [f64; 3], turn: [f64; 3]) -> Result<Target, String> {
-        let position = self.base.inverse_transform_point(&Vector3::from(place).into()).coords;
-        let rotation = UnitQuaternion::from_scaled_axis(Vector3::from(turn));
+    pub(super) fn pose(&self, place: Vector3<f64>, turn: Vector3<f64>) -> Result<Tcp, String> {
+        let position = self.base.inverse_transform_point(&place.into()).coords;
+        let rotation = UnitQuaternion::from_scaled_axis(turn);
         let tilt = self.base.rotation.inverse() * rotation * self.upright.inverse();
         let turned = tilt.scaled_axis();
         let askew = turned.yz().norm();
@@ -116,7 +107,7 @@ impl Frame {
                  where it is upright; give `upright_axis_angle_rad` in the frame file, or correct it"
             ));
         }
-        Ok(Target { position, tilt: turned.x })
+        Ok(Tcp { position, tilt: turned.x })
     }
 
     /// Converts a recorded force in the base to the force on the tool in the task's frame, N.

@@ -4,7 +4,7 @@ use input::units::{DEG, MM};
 use input::{Fault, Place};
 use insertion::outcome::FailureClass;
 use insertion::space::Design;
-use insertion::trial::Sample;
+use insertion::trial::{Sample, Tcp};
 use nalgebra::Vector3;
 use std::fmt::Write as _;
 
@@ -32,18 +32,9 @@ pub struct Moment {
     /// Measured turn of the TCP about x from upright, rad.
     pub tilt: f64,
     /// Commanded TCP, if the log has it.
-    pub target: Option<Target>,
+    pub target: Option<Tcp>,
     /// Force on the tool, N.
     pub force: Vector3<f64>,
-}
-
-/// A pose of the TCP, measured or commanded.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Target {
-    /// Position, m.
-    pub position: Vector3<f64>,
-    /// Turn about x from upright, rad.
-    pub tilt: f64,
 }
 
 /// A recorded attempt or probe: all finite, time increasing, all moments with a target or none.
@@ -85,8 +76,7 @@ impl Log {
     /// Checks the moments of a log; `file` is named in errors.
     ///
     /// # Errors
-    /// If there are too few or too many, a number is not finite, time does not increase, or some
-    /// moments have a target and others none.
+    /// If there are too few or too many, a number is not finite, or time does not increase.
     pub fn new(file: &str, moments: Vec<Moment>) -> Result<Self, Fault> {
         let whole = |problem: String| Err(Place::file(file).fault(problem));
         if !(FEWEST..=MOST).contains(&moments.len()) {
@@ -101,9 +91,6 @@ impl Log {
                      its clock was set",
                     before.time_s, before.line, moment.time_s
                 )),
-                Some(before) if moment.target.is_some() != before.target.is_some() => {
-                    Some("some moments have a target and others none".to_owned())
-                }
                 _ => None,
             };
             if let Some(problem) = wrong {
@@ -148,7 +135,7 @@ impl Log {
 impl Moment {
     fn is_finite(&self) -> bool {
         let target =
-            self.target.map_or([0.0; 4], |Target { position: p, tilt }| [p.x, p.y, p.z, tilt]);
+            self.target.map_or([0.0; 4], |Tcp { position: p, tilt }| [p.x, p.y, p.z, tilt]);
         let vectors = self.position.iter().chain(&self.force).chain(&target);
         vectors.chain([&self.time_s, &self.tilt]).all(|value| value.is_finite())
     }
@@ -165,7 +152,7 @@ pub fn of_samples(file: &str, samples: &[Sample]) -> Result<Log, Fault> {
         time_s: sample.time_s - start,
         position: Vector3::from(sample.tcp_mm) * MM,
         tilt: sample.tcp_tilt_deg * DEG,
-        target: Some(Target {
+        target: Some(Tcp {
             position: Vector3::from(sample.target_mm) * MM,
             tilt: sample.tcp_tilt_deg * DEG,
         }),

@@ -1,5 +1,5 @@
-//! A socket or a grip that gives way under the push, which the model does not have: seen by how the TCP sinks as the
-//! force rises, beside the same slope of the simulation, in which the fingers yield alone.
+//! Detection of a compliant socket or grip, which the model does not have: under the push the TCP sinks more per
+//! newton than in the simulation, where only the fingers are compliant.
 
 use super::check::Remark;
 use super::curves::Curves;
@@ -7,37 +7,34 @@ use super::question::Compared;
 use ask_tell::statistics::median;
 use input::units::N_PER_MM;
 
-/// Shares of the largest force between which the slope is taken: the seated plug is pressed.
-const BETWEEN: [f64; 2] = [0.4, 0.9];
-/// Least largest force, N, and least number of points.
+/// Shares of the largest force between which the compliance is fitted: the seated plug is pressed.
+const FORCE_SHARES: [f64; 2] = [0.4, 0.9];
+/// Smallest peak force, N, and smallest number of points of a fit.
 const PRESSED: (f64, usize) = (20.0, 4);
-/// Least compliance that is remarked, m/N: 125 N/mm, beyond what an unknown modulus of the fingers explains.
-const YIELDS: f64 = 8e-6;
-/// Least number of attempts.
-const ATTEMPTS: usize = 3;
+/// Smallest additional compliance for a remark, m/N (125 N/mm): more than an uncertain modulus of the fingers explains.
+const LEAST_COMPLIANCE: f64 = 8e-6;
+/// Smallest number of attempts for a remark.
+const LEAST_ATTEMPTS: usize = 3;
 
-/// Returns a remark on what gives way beyond the fingers, median over the attempts; `file` has the runs.
+/// Returns a remark if socket or grip are compliant, by the median over the attempts; `file` has the runs.
 pub fn remark(file: &str, compared: &[Compared]) -> Option<Remark> {
     let more = |one: &Compared| {
         let [measured, simulated] =
             [&one.logged.curves, &one.after.0].map(|curves| compliance(curves, one.logged.push));
         Some(measured? - simulated?)
     };
-    said(file, &compared.iter().filter_map(more).collect::<Vec<_>>())
+    compliant(file, &compared.iter().filter_map(more).collect::<Vec<_>>())
 }
 
-fn said(file: &str, compliances: &[f64]) -> Option<Remark> {
+fn compliant(file: &str, compliances: &[f64]) -> Option<Remark> {
     let more = median(compliances.iter().copied())?;
-    (compliances.len() >= ATTEMPTS && more > YIELDS).then(|| Remark {
-        file: file.to_owned(),
-        lines: None,
-        text: format!(
-            "under the push the tool sinks as if socket or grip stood on a spring of {:.0} N/mm, which the model does \
-             not have: plugs that only the push straightens jam sooner than predicted; clamp the socket",
-            1.0 / more / N_PER_MM
-        ),
-        serious: false,
-    })
+    let text = format!(
+        "under the push the tool sinks as if socket or grip stood on a spring of {:.0} N/mm, which the model does \
+         not have: plugs that only the push straightens jam sooner than predicted; clamp the socket",
+        1.0 / more / N_PER_MM
+    );
+    let remark = Remark { file: file.to_owned(), lines: None, text, serious: false };
+    (compliances.len() >= LEAST_ATTEMPTS && more > LEAST_COMPLIANCE).then_some(remark)
 }
 
 /// Returns how far the TCP sinks per newton as the force of the push rises, m/N.
@@ -48,8 +45,8 @@ fn compliance(curves: &Curves, push: usize) -> Option<f64> {
     let before = |end: usize, share: f64| {
         pushed[..=end].iter().rposition(|force| force.z <= share * largest)
     };
-    let to = before(most, BETWEEN[1])?;
-    let from = before(to, BETWEEN[0])?;
+    let to = before(most, FORCE_SHARES[1])?;
+    let from = before(to, FORCE_SHARES[0])?;
     let (least, points) = PRESSED;
     if largest < least || to - from < points {
         return None;
@@ -68,7 +65,7 @@ mod tests {
     use super::*;
     use nalgebra::Vector3;
 
-    /// Pressed at 1 N per point onto a spring of this compliance, m/N, with a hold at 60 N.
+    /// Returns curves of a push at 1 N per point against a spring of this compliance, m/N, held at 60 N.
     fn pressed(per_newton: f64) -> Curves {
         let force = |i: i32| f64::from((i - 20).clamp(0, 60));
         let at = |i: i32| Vector3::new(0.0, 0.0, 0.05 - per_newton * force(i));
@@ -81,17 +78,17 @@ mod tests {
     }
 
     #[test]
-    fn the_slope_is_that_of_the_spring_and_a_soft_socket_is_said() {
+    fn the_compliance_is_that_of_the_spring_and_a_soft_socket_is_reported() {
         let [rigid, soft] = [25e-6, 39e-6].map(|per_newton| compliance(&pressed(per_newton), 10));
         assert!((rigid.unwrap() - 25e-6).abs() < 1e-9);
         let more = soft.unwrap() - rigid.unwrap();
-        let remark = said("runs.csv", &[more, more, 0.8 * more]).unwrap();
+        let remark = compliant("runs.csv", &[more, more, 0.8 * more]).unwrap();
         assert!(remark.text.contains("a spring of 71 N/mm") && !remark.serious, "{remark}");
-        assert_eq!(said("runs.csv", &[more; 2]), None);
-        assert_eq!(said("runs.csv", &[4e-6, more, 4e-6]), None);
-        let mut hardly = pressed(25e-6);
-        hardly.force.truncate(36);
-        hardly.tcp.truncate(36);
-        assert_eq!(compliance(&hardly, 10), None);
+        assert_eq!(compliant("runs.csv", &[more; 2]), None);
+        assert_eq!(compliant("runs.csv", &[4e-6, more, 4e-6]), None);
+        let mut too_short = pressed(25e-6);
+        too_short.force.truncate(36);
+        too_short.tcp.truncate(36);
+        assert_eq!(compliance(&too_short, 10), None);
     }
 }

@@ -6,7 +6,7 @@ use super::curves::Curves;
 use super::flange;
 use super::formulas::{self, Flange, Friction};
 use super::log::{Ended, Run};
-use super::replay::{Logged, Replay};
+use super::replay::Logged;
 use super::smoother::{Datum, Predicted, Settings, Smoothed, smooth};
 use super::touch::bias;
 use super::unknown::{
@@ -136,7 +136,7 @@ impl Question<'_> {
         let own = &self.evaluator.robot;
         let rigid = Robot { drive: Drive::Ideal, stop_force: f64::MAX, ..own.clone() };
         let along: Vec<Logged> = attempts.iter().filter_map(Logged::along_measured).collect();
-        let replayed = self.replay(&rigid).curves(&along, &[])?;
+        let replayed = self.replayed((&rigid, 1.0), &along, &[])?;
         let ratio = |(logged, (curves, _)): (&Logged, &(Curves, Outcome))| {
             let [measured, made] = [&logged.curves.force, &curves.force].map(|forces| {
                 let both = logged.curves.force.len().min(curves.force.len());
@@ -146,17 +146,6 @@ impl Question<'_> {
             (measured / made).sqrt()
         };
         Ok(median(along.iter().zip(&replayed).map(ratio).filter(|ratio| ratio.is_normal())))
-    }
-
-    fn replay<'a>(&'a self, robot: &'a Robot) -> Replay<'a> {
-        Replay {
-            evaluator: self.evaluator,
-            robot,
-            template: self.template,
-            tool_mass: self.tool_mass,
-            step_factor: 1.0,
-            stop: self.stop,
-        }
     }
 
     /// Identifies numbers by formulas and fits the others.
@@ -181,10 +170,9 @@ impl Question<'_> {
                 (known, false) => fitted.push((prior, known)),
             }
         }
-        let replay = self.replay(&robot);
         let rows: Vec<&Parameter> =
             fitted.iter().map(|(prior, known)| known.as_ref().unwrap_or(prior)).collect();
-        let smoothed = self.smoothed(&replay, &attempts, &rows)?;
+        let smoothed = self.smoothed(&robot, &attempts, &rows)?;
         let unknowns: Vec<Unknown> = fitted
             .iter()
             .enumerate()
@@ -192,8 +180,8 @@ impl Question<'_> {
             .chain(rest)
             .collect();
         let aside = self.aside(&attempts).into_iter().collect();
-        let compared = self.compared(&replay, attempts, &unknowns)?;
-        let aside = self.compared(&replay, aside, &unknowns)?.pop();
+        let compared = self.compared(&robot, attempts, &unknowns)?;
+        let aside = self.compared(&robot, aside, &unknowns)?.pop();
         Ok(Identified { robot, flange, preload, probes, unknowns, smoothed, compared, aside })
     }
 
@@ -265,32 +253,24 @@ impl Question<'_> {
         attempts: &[Logged],
     ) -> Option<Parameter> {
         let path = &prior.path;
-        if *path == FLANGE {
+        let (mean, sd, source) = if *path == FLANGE {
             let source = "force over how far the TCP is behind its target; [robot] has the values";
             let factor =
                 Parameter { transform: Transform::Factor, low: 0.5, high: 2.0, ..prior.clone() };
             return flange.map(|sd| with(&factor, 1.0, sd, source));
-        }
-        if path.ends_with("preload_mm") {
+        } else if path.ends_with("preload_mm") {
             let Estimate { mean, sd } = preload?;
-            let sd = (sd / MM).max(PRELOAD_MM);
-            return Some(with(
-                prior,
-                mean / MM,
-                sd,
-                "where the target stopped, and where it was sent",
-            ));
-        }
-        if path.starts_with(STRATEGY) && path.ends_with("move_mm.y") {
+            let source = "where the target stopped, and where it was sent";
+            (mean / MM, (sd / MM).max(PRELOAD_MM), source)
+        } else if path.starts_with(STRATEGY) && path.ends_with("move_mm.y") {
             let stroke = |one: &Logged| {
                 let (target, from) = (one.curves.target.as_ref()?, one.curves.stopped()?);
                 let to = one.push.min(target.len() - 1);
                 Some((target[to].y - target[from].y) / MM)
             };
             let mean = mean(attempts.iter().filter_map(stroke))?;
-            return Some(with(prior, mean, 0.01, "commanded from the touch to the push"));
-        }
-        if *path == FRICTION {
+            (mean, 0.01, "commanded from the touch to the push")
+        } else if *path == FRICTION {
             let said: Vec<Estimate> =
                 probes.iter().filter_map(|(_, found)| found.coefficient).collect();
             let sd = mean(said.iter().map(|one| one.sd))?;
@@ -298,30 +278,26 @@ impl Question<'_> {
             if means.mean <= 0.0 {
                 return None;
             }
-            return Some(with(
-                prior,
-                means.mean,
-                libm::hypot(sd, means.deviation()),
-                "probe: slides both ways",
-            ));
-        }
-        None
+            (means.mean, libm::hypot(sd, means.deviation()), "probe: slides both ways")
+        } else {
+            return None;
+        };
+        Some(with(prior, mean, sd, source))
     }
 
     fn smoothed(
         &self,
-        replay: &Replay<'_>,
+        robot: &Robot,
         attempts: &[Logged],
         rows: &[&Parameter],
     ) -> Result<Smoothed, Impossible> {
         let data: Vec<Datum> = attempts.iter().flat_map(Logged::data).collect();
-        let replay = Replay { step_factor: COARSE, ..*replay };
         let predict = |z: &[f64]| -> Result<Predicted, Impossible> {
             if self.stop.load(Ordering::SeqCst) {
                 // The result is not used after cancellation.
                 return Ok(vec![None; data.len()]);
             }
-            let replayed = replay.curves(attempts, &values(rows, z))?;
+            let replayed = self.replayed((robot, COARSE), attempts, &values(rows, z))?;
             let each = attempts.iter().zip(&replayed);
             Ok(each.flat_map(|(logged, (curves, _))| logged.predicted(curves)).collect())
         };
@@ -330,16 +306,15 @@ impl Question<'_> {
 
     fn compared(
         &self,
-        replay: &Replay<'_>,
+        robot: &Robot,
         attempts: Vec<Logged>,
         unknowns: &[Unknown],
     ) -> Result<Vec<Compared>, Impossible> {
         let now: Vec<(&Parameter, f64)> =
             unknowns.iter().map(|one| (&one.posterior, one.posterior.middle())).collect();
         let now: Vec<_> = now.into_iter().filter(|(row, _)| row.path != FLANGE).collect();
-        let files = Replay { robot: &self.evaluator.robot, ..*replay };
-        let before = files.curves(&attempts, &[])?;
-        let after = replay.curves(&attempts, &now)?;
+        let before = self.replayed((&self.evaluator.robot, 1.0), &attempts, &[])?;
+        let after = self.replayed((robot, 1.0), &attempts, &now)?;
         let each = attempts.into_iter().zip(before).zip(after);
         let compared = each.map(|((logged, before), after)| Compared { logged, before, after });
         Ok(compared.collect())

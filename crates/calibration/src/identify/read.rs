@@ -1,12 +1,13 @@
 //! Logs from text: `t_s,x_mm,..` in the task's frame, or what an RTDE recorder writes in the base's.
 
 use super::frame::Frame;
-use super::log::{COLUMNS, Log, MOST, Moment, TARGETS, Target};
+use super::log::{COLUMNS, Log, MOST, Moment, TARGETS};
 use crate::experiments::line::LARGEST_FORCE_N;
 use ask_tell::statistics::median;
 use input::files;
 use input::units::{DEG, MM};
 use input::{Fault, Place, shown};
+use insertion::trial::Tcp;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -49,9 +50,8 @@ pub fn parse(text: &str, file: &str, frame: Option<&Frame>) -> Result<Log, Fault
         if moments.len() == MOST {
             return Err(whole(format!("has more than {MOST} moments; cut it to the attempt")));
         }
-        let mut moment = table.moment(line).map_err(|problem| fault(at, problem))?;
-        moment.line = at + 1;
-        if let (Format::Task, Some(target)) = (&table.format, &mut moment.target) {
+        let mut moment = table.moment(at + 1, line).map_err(|problem| fault(at, problem))?;
+        if let (None, Some(target)) = (table.rtde, &mut moment.target) {
             target.tilt = moments.first().map_or(moment.tilt, |first| first.tilt);
         }
         moments.push(moment);
@@ -86,15 +86,10 @@ pub(super) fn median_gap(log: &Log) -> f64 {
     median(log.moments.windows(2).map(|w| w[1].time_s - w[0].time_s)).unwrap_or(0.0)
 }
 
-/// How a log was recorded, with the frame that it needs.
-enum Format<'a> {
-    Task,
-    Rtde(&'a Frame),
-}
-
 /// The columns of a log: time, TCP, force; then the commanded TCP, if there is one.
 struct Table<'a> {
-    format: Format<'a>,
+    /// Frame, if the log is in the robot's base, as RTDE recorders write it.
+    rtde: Option<&'a Frame>,
     frame: Option<&'a Frame>,
     commas: bool,
     names: Vec<&'a str>,
@@ -104,9 +99,8 @@ struct Table<'a> {
 
 /// The cells of a line, without quotes.
 fn cells(line: &str, commas: bool) -> impl Iterator<Item = &str> {
-    let blanks = (!commas).then(|| line.split_whitespace());
-    let split = commas.then(|| line.split(','));
-    let cells = split.into_iter().flatten().chain(blanks.into_iter().flatten());
+    let cells = line.split(move |c: char| if commas { c == ',' } else { c.is_whitespace() });
+    let cells = cells.filter(move |cell| commas || !cell.is_empty());
     cells.map(|cell| cell.trim().trim_matches('"'))
 }
 
@@ -147,26 +141,20 @@ impl<'a> Table<'a> {
         if let Some(twice) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
             return Err(format!("the header has {} twice; each column may stand once", twice.1));
         }
-        let format = match (is_rtde, frame) {
-            (false, _) => Format::Task,
-            (true, Some(frame)) => Format::Rtde(frame),
-            (true, None) => {
-                return Err(
-                    "its poses are in the robot's base; give the pose of the task's frame \
-                            there by --frame frame.toml"
-                        .to_owned(),
-                );
-            }
-        };
+        if is_rtde && frame.is_none() {
+            let problem = "its poses are in the robot's base; give the pose of the task's frame \
+                           there by --frame frame.toml";
+            return Err(problem.to_owned());
+        }
         let place = |name: &String| names.iter().position(|other| other == name);
         let places = needed.iter().filter_map(place).collect();
         let targets = wanted.iter().filter_map(place).collect();
-        Ok(Table { format, frame, commas, names, places, targets })
+        Ok(Table { rtde: frame.filter(|_| is_rtde), frame, commas, names, places, targets })
     }
 
-    /// The moment of a line; its own line and, in the task's frame, the commanded tilt are not set.
-    fn moment(&self, line: &str) -> Result<Moment, String> {
-        let found: Vec<&str> = cells(line, self.commas).collect();
+    /// Returns the moment of a line; in the task's frame its commanded tilt is 0.
+    fn moment(&self, line: usize, text: &str) -> Result<Moment, String> {
+        let found: Vec<&str> = cells(text, self.commas).collect();
         if found.len() != self.names.len() {
             let (has, header) = (found.len(), self.names.len());
             return Err(format!(
@@ -192,13 +180,13 @@ impl<'a> Table<'a> {
             return Err(format!("a force of {large} looks like millinewtons; give newtons"));
         }
         let vector = Vector3::from_column_slice;
-        let (tcp, target, force) = match self.format {
-            Format::Rtde(frame) => {
+        let (tcp, target, force) = match self.rtde {
+            Some(frame) => {
                 let target = (!goal.is_empty()).then(|| of_base(frame, &goal)).transpose()?;
                 let tcp = of_base(frame, &numbers[1..7])?;
                 (tcp, target, frame.force_of_base(vector(force)))
             }
-            Format::Task => {
+            None => {
                 let of = |place: &[f64]| match place.iter().find(|mm| mm.abs() > FARTHEST / MM) {
                     Some(mm) => Err(format!(
                         "a coordinate of {} looks like micrometres; give millimetres",
@@ -210,14 +198,14 @@ impl<'a> Table<'a> {
                     return Err(format!("tilt_deg: is {}; it must lie in -90 .. 90", numbers[4]));
                 }
                 let target = (!goal.is_empty()).then(|| of(&goal)).transpose()?;
-                let target = target.map(|position| Target { position, tilt: 0.0 });
-                let tcp = Target { position: of(&numbers[1..4])?, tilt: numbers[4] * DEG };
+                let target = target.map(|position| Tcp { position, tilt: 0.0 });
+                let tcp = Tcp { position: of(&numbers[1..4])?, tilt: numbers[4] * DEG };
                 let force = vector(force);
                 (tcp, target, self.frame.map_or(force, |frame| frame.force(force)))
             }
         };
         Ok(Moment {
-            line: 0,
+            line,
             time_s: numbers[0],
             position: tcp.position,
             tilt: tcp.tilt,
@@ -228,9 +216,8 @@ impl<'a> Table<'a> {
 }
 
 /// A pose of six numbers, m and rad in the base.
-fn of_base(frame: &Frame, pose: &[f64]) -> Result<Target, String> {
-    let [x, y, z, rx, ry, rz] = *pose else { return Err("a pose has six numbers".to_owned()) };
-    let (place, turn) = ([x, y, z], [rx, ry, rz]);
+fn of_base(frame: &Frame, pose: &[f64]) -> Result<Tcp, String> {
+    let (place, turn) = pose.split_at(3);
     if let Some(far) = place.iter().find(|m| m.abs() > FARTHEST) {
         let far = shown(*far);
         return Err(format!("a position of {far} looks like millimetres; RTDE records metres"));
@@ -241,5 +228,5 @@ fn of_base(frame: &Frame, pose: &[f64]) -> Result<Target, String> {
             "a turn of {large} looks like degrees; RTDE records axis-angle in rad"
         ));
     }
-    frame.pose(place, turn)
+    frame.pose(Vector3::from_column_slice(place), Vector3::from_column_slice(turn))
 }

@@ -2,11 +2,12 @@
 
 use super::curves::{Curves, STEP_S};
 use super::log::{Ended, Log, Moment, Run};
+use super::question::Question;
 use super::smoother::{Datum, Predicted};
 use super::touch::{bias, touch};
 use input::units::MM;
-use insertion::evaluation::evaluator::{Evaluator, Specimen};
-use insertion::evaluation::template::{Impossible, Template};
+use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::template::Impossible;
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::space::Design;
@@ -14,7 +15,6 @@ use insertion::trial::{Course, Grasp, Path};
 use nalgebra::Vector3;
 use parameters::Parameter;
 use std::ops::Range;
-use std::sync::atomic::AtomicBool;
 
 /// Replayed time before the touch, s.
 const AIR_S: f64 = 0.5;
@@ -151,32 +151,21 @@ fn mean(points: &[Vector3<f64>], bin: &Range<usize>) -> Vector3<f64> {
     points[bin.clone()].iter().sum::<Vector3<f64>>() / bin.len() as f64
 }
 
-/// Simulator of attempts.
-#[derive(Clone, Copy)]
-pub struct Replay<'a> {
-    pub evaluator: &'a Evaluator,
-    pub robot: &'a Robot,
-    pub template: &'a Template,
-    /// Mass below the force sensor, kg.
-    pub tool_mass: f64,
-    /// Factor on the time step of the engine.
-    pub step_factor: f64,
-    pub stop: &'a AtomicBool,
-}
-
-impl Replay<'_> {
-    /// Returns curves and outcomes of attempts with these values; each finger is grasped once.
-    pub fn curves(
+impl Question<'_> {
+    /// Returns curves and outcomes of attempts with these values, on a robot and with a factor on the time step of
+    /// the engine; each finger is grasped once.
+    pub(super) fn replayed(
         &self,
+        (robot, step_factor): (&Robot, f64),
         attempts: &[Logged],
         values: &[(&Parameter, f64)],
     ) -> Result<Vec<(Curves, Outcome)>, Impossible> {
-        let Replay { evaluator, template, .. } = self;
+        let Question { evaluator, template, .. } = self;
         let mut all = Vec::with_capacity(attempts.len());
         for alike in attempts.chunk_by(|a, b| a.design == b.design) {
             let (specimen, _) = evaluator.under(template, (&alike[0].design, None), values)?;
             let Specimen { task, finger, .. } = &specimen;
-            let rig = evaluator.engine.rig(task, self.robot, finger, self.step_factor)?;
+            let rig = evaluator.engine.rig(task, robot, finger, step_factor)?;
             let grasp = Grasp { stop: self.stop, ..Grasp::of(&specimen.finger) };
             let paths: Vec<&Path> = alike.iter().map(|logged| &logged.path).collect();
             let followed = rig.follow(grasp, Course::Paths(&paths), STEP_S);

@@ -69,7 +69,7 @@ pub fn read(
     let text = files::read_text(path, LARGEST_INPUT)
         .map_err(|error| Place::file(&file).fault(format!("cannot be read: {error}")))?;
     let why = "a line says of a log which finger it is of, where it started and how it ended";
-    let table = rows(&text, &file, &Columns { all: &COLUMNS, needed: 5, why }, row)?;
+    let table = rows(&text, &file, &Columns { all: &COLUMNS, required: 5, why }, row)?;
     if table.iter().all(|row| row.ended == Ended::Probe) {
         let words = "has no attempt; give one line at least whose outcome is `inserted` or a class";
         return Err(Place::file(file).fault(words).into());

@@ -64,16 +64,13 @@ pub fn smooth<E: Send>(
     settings: Settings,
     predict: impl Fn(&[f64]) -> Result<Predicted, E> + Sync,
 ) -> Result<Smoothed, E> {
-    let count = settings.members * unknowns;
+    // A single member for the misfit, if there is nothing to fit.
+    let count = (settings.members * unknowns).max(1);
     let mut random = stream(settings.seed, 0, "members");
     let mut members: Vec<Coordinates> = (0..count)
         .map(|_| (0..unknowns).map(|_| random.sample(StandardNormal)).collect())
         .collect();
-    // A single member for the misfit, if there is nothing to fit.
     let rounds = if unknowns == 0 { 0 } else { settings.rounds };
-    if unknowns == 0 {
-        members = vec![Vec::new()];
-    }
     let ask = |members: &[Coordinates]| -> Result<Known, E> {
         let predicted = members.par_iter().map(|member| predict(member));
         Ok(Known::of(data, &predicted.collect::<Result<Vec<Predicted>, E>>()?))

@@ -76,11 +76,11 @@ fn cell(sockets: &[Vec<Triangle>], plugs: &[Vec<Triangle>], effort: f64) -> f64 
         p[0].min(s[0]) * p[1].min(s[1]) * (s[0] + p[0]) * (s[1] + p[1])
     };
     let work: f64 = sockets.iter().flat_map(|s| plugs.iter().map(move |p| pair(s, p))).sum();
-    // Two bounds, with and without interference.
+    // Two bounds in each of two passes, without and with interference.
     (4.0 * work / effort).sqrt().sqrt().max(LEAST_CELL)
 }
 
-/// Coarse maps of a part: outermost heights, and innermost heights of two cells each way.
+/// Coarse maps of a part: the outermost height of each cell, and the innermost height of blocks of two by two cells.
 struct Coarse {
     outer: Map,
     inner: Map,

@@ -33,7 +33,7 @@ enum Sets {
 
 /// Returns the knobs of a strategy, each with its bounds' source.
 pub fn knobs(strategy: &Strategy) -> Result<Vec<Knob>, InputError> {
-    let mut rows = Priors::parse(LEVERS.text, LEVERS.file)?.parameters;
+    let mut rows = Priors::parse(LEVERS[0].text, LEVERS[0].file)?.parameters;
     rows.extend(Priors::parse(PRIORS[0].text, PRIORS[0].file)?.parameters);
     let of = |(i, phase): (usize, &insertion::task::Phase)| {
         let [x, y, _] = phase.displacement;

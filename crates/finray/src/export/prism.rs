@@ -13,7 +13,7 @@ use zip::CompressionMethod;
 use zip::result::ZipResult;
 use zip::write::{SimpleFileOptions, ZipWriter};
 
-/// Closed surface, its corners rounded as in files, so that the checks hold for those.
+/// Closed surface; its corners are rounded as in files, so that the checks apply to the files.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prism {
     /// Corners, mm.
@@ -54,7 +54,7 @@ impl Prism {
         Prism::new(&outer, &voids, geometry.finger.outline.depth / MM)?.with_block(geometry)
     }
 
-    /// Returns the surface of the finger without openings, for slicers that fill it with their own infill.
+    /// Returns the checked surface of the finger without openings, for slicers that fill it with their own infill.
     ///
     /// # Errors
     /// As of [`Prism::finger`].
@@ -76,9 +76,9 @@ impl Prism {
         Prism::new(&block.map(Point2::from).to_vec(), &[], outline.depth / MM)?.with_block(geometry)
     }
 
-    /// Adds the block that has the finger's holes, if there is one: a closed surface of its own that
-    /// overlaps the finger's. What lies in either is solid (3MF Core Specification 1.3, 4.1: the
-    /// positive fill rule), and slicers read STL files so, too.
+    /// Adds the block with the finger's holes, if there is one: a separate closed surface that
+    /// overlaps the finger. The inside of either is solid (3MF Core Specification 1.3, 4.1: the
+    /// positive fill rule); slicers read STL files in the same way.
     fn with_block(self, geometry: &Geometry) -> Result<Self, PrismError> {
         let Some((holes, block)) = geometry.block() else { return Ok(self) };
         let outline = &geometry.finger.outline;
@@ -103,7 +103,7 @@ impl Prism {
         self.and(&block).closed()
     }
 
-    /// Extrudes a ring less holes (clockwise) from 0 to `depth`, mm.
+    /// Extrudes a ring minus its holes (clockwise) from 0 to `depth`, mm.
     fn new(outer: &Ring, holes: &[Ring], depth: f64) -> Result<Self, PrismError> {
         let mesh = Mesh::coarsest(outer, holes).map_err(|error| {
             PrismError(format!("the profile cannot be divided into triangles: {error}"))
@@ -209,7 +209,7 @@ pub(super) fn three_mf(parts: &[&Prism], title: &str, more: &[(&str, &str)]) -> 
         ("_rels/.rels", RELATIONS),
         ("3D/3dmodel.model", &*model(parts, title)),
     ];
-    // No clock: the entries carry the format's first date.
+    // The entries have the first date of the format, so that equal contents give equal files.
     let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
     for &(name, text) in files.iter().chain(more) {
         zip.start_file(name, options)?;
@@ -218,7 +218,7 @@ pub(super) fn three_mf(parts: &[&Prism], title: &str, more: &[(&str, &str)]) -> 
     Ok(zip.finish()?.into_inner())
 }
 
-/// Returns the number of the object that is built of this many surfaces.
+/// Returns the number of the object that consists of this number of surfaces.
 pub(super) fn object(parts: usize) -> usize {
     if parts == 1 { 1 } else { parts + 1 }
 }

@@ -102,13 +102,8 @@ pub struct Measured {
 
 /// Evaluator of designs on several threads.
 pub trait Evaluate: Sync {
-    /// Evaluates a design; equal designs give equal results.
-    fn evaluate(&self, design: &Design) -> Result<Measured, Impossible>;
-
-    /// Evaluates a design in a race; by default in full.
-    fn race(&self, design: &Design, _race: &Race) -> Result<Measured, Impossible> {
-        self.evaluate(design)
-    }
+    /// Evaluates a design, in full without a race; equal designs and races give equal results.
+    fn evaluate(&self, design: &Design, race: Option<&Race>) -> Result<Measured, Impossible>;
 }
 
 impl Evaluator {
@@ -265,7 +260,7 @@ impl Evaluator {
     pub fn evaluate_by(
         &self,
         design: &Design,
-        measure: impl Fn(&Specimen) -> Result<Evaluation, Impossible>,
+        mut measure: impl FnMut(&Specimen) -> Result<Evaluation, Impossible>,
     ) -> Result<Measured, Impossible> {
         let stiffness = self.predict(design)?;
         let on = |template| measure(&self.specimen(template, design, stiffness)?);

@@ -181,15 +181,8 @@ impl<T: Ends> Traced<'_, T> {
 
     /// Simulates inferred points whose neighbours are all inferred and equal to them.
     fn probe(&mut self) {
-        let alike = |(node, found): &(&Node, &Found<T>)| {
-            let same = |beside: Node| {
-                let other = self.nodes[&beside];
-                !other.simulated && !differ(other.outcome, found.outcome)
-            };
-            !found.simulated && self.beside(**node).all(same)
-        };
-        let mut uniform: Vec<Node> =
-            self.nodes.iter().filter(alike).map(|(node, _)| *node).collect();
+        let same = |own: T, other: &Found<T>| !other.simulated && !differ(other.outcome, own);
+        let mut uniform = self.inferred(|own, beside| beside.iter().all(|other| same(own, other)));
         uniform.shuffle(&mut stream(0, 0, "probes of a capture map"));
         uniform.truncate(PROBES);
         self.simulate(uniform, MOST_TRIALS);
@@ -197,20 +190,22 @@ impl<T: Ends> Traced<'_, T> {
 
     /// Simulates inferred points next to a trial with a different outcome, until none is left.
     fn verify(&mut self) {
+        let against = |own: T, other: &Found<T>| other.simulated && differ(other.outcome, own);
         loop {
-            let doubtful = |(node, found): &(&Node, &Found<T>)| {
-                let against = |beside: Node| {
-                    let other = self.nodes[&beside];
-                    other.simulated && differ(other.outcome, found.outcome)
-                };
-                !found.simulated && self.beside(**node).any(against)
-            };
-            let doubtful: Vec<Node> =
-                self.nodes.iter().filter(doubtful).map(|(node, _)| *node).collect();
+            let doubtful =
+                self.inferred(|own, beside| beside.iter().any(|other| against(own, other)));
             if doubtful.is_empty() || !self.simulate(doubtful, MOST_TRIALS) {
                 return;
             }
         }
+    }
+
+    /// Returns the inferred points of which a condition on their outcome and their neighbours holds.
+    fn inferred(&self, holds: impl Fn(T, &[Found<T>]) -> bool) -> Vec<Node> {
+        let fits = |(node, found): &(&Node, &Found<T>)| {
+            !found.simulated && holds(found.outcome, &self.beside(**node))
+        };
+        self.nodes.iter().filter(fits).map(|(node, _)| *node).collect()
     }
 
     /// Simulates those points that have not been simulated; an evenly spaced subset if that would
@@ -238,11 +233,12 @@ impl<T: Ends> Traced<'_, T> {
         along(1).flat_map(|other| along(0).map(move |y| [y, other])).collect()
     }
 
-    /// Up to four neighbours on the grid.
-    fn beside(&self, node: Node) -> impl Iterator<Item = Node> {
+    /// Returns the up to four neighbours on the grid.
+    fn beside(&self, node: Node) -> Vec<Found<T>> {
         let all = [(0, -1), (0, 1), (1, -1), (1, 1)];
-        let beside = all.into_iter().map(move |(axis, by)| moved(node, axis, by));
-        beside.filter(|at| self.nodes.contains_key(at))
+        all.iter()
+            .filter_map(|&(axis, by)| self.nodes.get(&moved(node, axis, by)).copied())
+            .collect()
     }
 }
 

@@ -1,4 +1,4 @@
-//! One-at-a-time plan: each parameter goes from the current value towards either bound.
+//! One-at-a-time plan: each parameter alone is moved from its current value to either bound.
 
 use crate::Parameter;
 
@@ -27,17 +27,17 @@ pub fn farthest<T>(
         End::Low => parameter.low.min(neutral),
         End::High => parameter.high.max(neutral),
     };
-    let part = |steps: u32| at(neutral + f64::from(steps) / f64::from(STEPS) * (bound - neutral));
-    if let Some(whole) = part(STEPS) {
-        return Some(whole);
+    let at_step =
+        |steps: u32| at(neutral + f64::from(steps) / f64::from(STEPS) * (bound - neutral));
+    if let Some(found) = at_step(STEPS) {
+        return Some(found);
     }
-    // Feasible at `can`, infeasible at `cannot`.
-    let (mut can, mut cannot) = (0, STEPS);
-    while cannot - can > 1 {
-        let middle = (can + cannot) / 2;
-        if part(middle).is_some() { can = middle } else { cannot = middle }
+    let (mut feasible, mut infeasible) = (0, STEPS);
+    while infeasible - feasible > 1 {
+        let middle = (feasible + infeasible) / 2;
+        *(if at_step(middle).is_some() { &mut feasible } else { &mut infeasible }) = middle;
     }
-    part(can)
+    at_step(feasible)
 }
 
 #[cfg(test)]
@@ -46,7 +46,7 @@ mod tests {
     use crate::{Path, Transform};
 
     #[test]
-    fn the_bound_is_taken_or_the_farthest_possible_step_towards_it() {
+    fn the_result_is_that_of_the_bound_or_of_the_farthest_feasible_step() {
         let path = Path::new("task.grip.force_n").unwrap();
         let force = Parameter::uniform(path, [2.0, 10.0]);
         let below = |most: f64| move |value: f64| (value <= most).then_some(value);
@@ -57,7 +57,7 @@ mod tests {
         assert!((found - 7.0).abs() < 1e-12, "{found}");
         assert_eq!(farthest(&force, 5.0, End::High, below(4.0)), None);
         let outside = Parameter { low: 6.0, ..force.clone() };
-        assert_eq!(farthest(&outside, 5.0, End::Low, below(99.0)), Some(5.0), "as it is");
+        assert_eq!(farthest(&outside, 5.0, End::Low, below(99.0)), Some(5.0), "unchanged");
         let factor = Parameter { transform: Transform::Factor, low: 0.5, high: 2.0, ..force };
         assert_eq!(farthest(&factor, 5.0, End::Low, below(99.0)), Some(0.5));
     }

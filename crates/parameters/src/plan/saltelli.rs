@@ -9,7 +9,7 @@
 //! input from B.
 
 use ask_tell::SobolSequence;
-use ask_tell::statistics::Moments;
+use ask_tell::statistics::{Moments, quantile, sorted};
 use ask_tell::stream::stream;
 use rand::RngExt;
 
@@ -108,9 +108,8 @@ fn bootstrap(rows: usize, seed: u64, statistic: impl Fn(&[usize]) -> f64) -> Int
     let mut random = stream(seed, rows as u64, "sensitivity bootstrap");
     let mut resample =
         || -> Vec<usize> { every.iter().map(|_| random.random_range(0..rows)).collect() };
-    let mut found: Vec<f64> = (0..RESAMPLES).map(|_| statistic(&resample())).collect();
-    found.sort_by(f64::total_cmp);
-    let at = |share: f64| found[(share * (RESAMPLES - 1) as f64).round() as usize];
+    let found = sorted((0..RESAMPLES).map(|_| statistic(&resample())));
+    let at = |share: f64| quantile(&found, share).unwrap_or(f64::NAN);
     Interval { value: statistic(&every), low: at(TAIL), high: at(1.0 - TAIL) }
 }
 

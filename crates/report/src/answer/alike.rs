@@ -1,7 +1,8 @@
 //! Designs that tie with the recommended one, and the safe choice among them.
 
 use super::force::ExcessForce;
-use super::trust::Measured;
+use super::trust::{Measured, range_mm};
+use super::words::extent;
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::Measure;
 use insertion::space::label;
@@ -79,29 +80,22 @@ impl<'a> Ties<'a> {
             let (design, value) = found?;
             Some((reason, design, value, unit))
         });
-        let on_robot = |design: &Recorded| {
-            let found = measured.iter().find(|measured| measured.design == design.design);
-            found.map(|measured| measured.range_mm)
-        };
         // Within the limits of connectors and robot.
         let within = |(r, _): &&(&Recorded, f64)| ExcessForce::of(record, &r.tasks()).is_none();
-        let safest = || among.iter().filter(within);
-        let printed = safest().filter_map(|&(r, loss)| Some((r, loss, on_robot(r)?)));
-        let printed = printed.max_by(|a, b| a.2.total_cmp(&b.2).then(b.0.index.cmp(&a.0.index)));
-        let gentle = safest().filter_map(|&(design, _)| Some((design, force(design)?)));
-        let gentle = gentle.min_by(value).map(|(design, _)| design);
-        let loss = |design: &Recorded| among.iter().find(|(r, _)| r.index == design.index);
-        let safe = match (printed, gentle) {
-            (Some((design, loss, measured_mm)), _) => Some((design, loss, Some(measured_mm))),
-            (None, Some(design)) => loss(design).map(|&(design, loss)| (design, loss, None)),
-            (None, None) => None,
-        };
-        let safe = safe.map(|(design, loss, measured_mm)| Safe {
+        let safe = |&(design, loss): &(&'a Recorded, f64)| Safe {
             design,
-            measured_mm,
+            measured_mm: range_mm(measured, &design.design),
             force_n: force(design),
             loss: (10.0 * loss.max(0.0)).round() / 10.0,
+        };
+        let all = || among.iter().filter(within).map(safe);
+        let printed = all().filter_map(|safe| Some((safe.measured_mm?, safe)));
+        let printed = printed.max_by(|(a_mm, a), (b_mm, b)| {
+            a_mm.total_cmp(b_mm).then(b.design.index.cmp(&a.design.index))
         });
+        let gentle = all().filter_map(|safe| Some((safe.force_n?, safe)));
+        let gentle = gentle.min_by(|a, b| a.0.total_cmp(&b.0));
+        let safe = printed.or(gentle).map(|(_, safe)| safe);
         let (spread, share) = (spread(record, &designs), share(record, &designs));
         Ties { spread, share, alternatives: known.collect(), safe, designs }
     }
@@ -144,10 +138,7 @@ fn spread<'a>(record: &'a StudyRecord, designs: &[(&Recorded, f64)]) -> Vec<Spre
     let free = record.config.space.parameters.iter().filter(|p| p.low < p.high);
     let of = |key: &'a str| {
         let values = designs.iter().filter_map(|(recorded, _)| recorded.design.get(key));
-        let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-            [low.min(value), high.max(value)]
-        });
-        Spread { key, values: [low, high] }
+        Spread { key, values: extent(values) }
     };
     free.map(|parameter| of(&parameter.key)).collect()
 }
@@ -168,7 +159,7 @@ mod tests {
         let answer = Answer::of(&record);
         let found = answer.recommended.as_ref().and_then(|found| found.ties.as_ref()).unwrap();
         assert!(found.share < 0.5 && matches!(answer.verdict, Verdict::Print(_)), "{found:?}");
-        let named = answer.named().unwrap().index;
+        let named = answer.design_to_print().unwrap().index;
         assert!(found.designs.iter().any(|(member, loss)| member.index == named && *loss == 0.0));
         // All designs tie.
         record.config.indifference_mm = 10.0;

@@ -50,10 +50,12 @@ fn simulated_finger<'a, 'b>(answer: &'b Answer<'a>) -> Option<&'b Recommended<'a
 
 /// Returns the ends of the windows of a recommended design, its constraints and its ties.
 pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
+    let config = &answer.record.config;
     let of_task = |task: &OnTask| {
         let window = &task.measured.window;
         let [below, above] = [window.end_negative, window.end_positive].map(words::end);
-        let ends = line("ends", format!("{below} below, {above} above{}", found.on(task)));
+        let ends =
+            line("ends", format!("{below} below, {above} above{}", words::on(config, task.name)));
         iter::once(ends).chain(drawn(task.measured)).collect::<Vec<_>>()
     };
     let limits = found.constraints.iter();
@@ -67,7 +69,8 @@ pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
 /// Returns the best design of the search and its value in the repeats, if it was repeated and another one is recommended.
 pub fn widest(answer: &Answer, found: &Recommended) -> Option<Line> {
     let (measure, _) = found.objective.filter(|(measure, _)| measure.unit() == "mm")?;
-    let named = [Some(found.design), answer.named()].map(|named| named.map(|named| named.index));
+    let named =
+        [Some(found.design), answer.design_to_print()].map(|named| named.map(|named| named.index));
     let best = answer.record.best().filter(|best| !named.contains(&Some(best.index)))?;
     let repeated = measure.show(*answer.record.firm_values.get(&best.index)?);
     let (design, searched) = (words::design(&best.design), measure.show(best.value()?));
@@ -258,9 +261,7 @@ fn robot((task, order): &(&str, Order)) -> Line {
         "robot",
         format!(
             "on {task} {} ranked {} printed fingers with Spearman {:+.2} to the bench{chance}",
-            order.source.words(),
-            order.fingers,
-            order.spearman
+            order.source, order.fingers, order.spearman
         ),
     )
 }

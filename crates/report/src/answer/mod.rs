@@ -14,13 +14,12 @@ pub mod words;
 
 use calibration::order::{Order, order_on_bench};
 use insertion::evaluation::Evaluation;
-use insertion::evaluation::objective::Measure;
-use insertion::evaluation::robustness::firm::Firm;
 use insertion::space::Design;
 use study::{Recorded, StudyRecord, Volume, Walked, nearest, volume};
 
 pub use alike::{Safe, Spread, Ties};
 pub use force::ExcessForce;
+use recommended::firm_range_mm;
 pub use recommended::{OnTask, Recommended};
 pub use robots::UnderRobot;
 pub use start::Start;
@@ -34,9 +33,9 @@ pub struct Answer<'a> {
     pub record: &'a StudyRecord,
     /// Recommended action.
     pub verdict: Verdict<'a>,
-    /// Evidence that it rests on.
+    /// Evidence for the recommended action.
     pub trust: Trust,
-    /// Number of evaluations with the present settings.
+    /// Number of evaluations with the current settings.
     pub designs: usize,
     /// Number of them that satisfy all constraints and have a value.
     pub feasible: usize,
@@ -76,10 +75,7 @@ impl<'a> Answer<'a> {
     pub fn of(record: &'a StudyRecord) -> Self {
         let (config, current) = (&record.config, record.current());
         let front = || Front { designs: record.front(), volume: volume(&config.goals(), current) };
-        let walked = |walked: &'a Walked| {
-            let firm: Vec<f64> = walked.firm.iter().map(Firm::range_mm).collect();
-            (&walked.recorded, record.aggregated(Measure::Range, &firm))
-        };
+        let walked = |walked: &'a Walked| (&walked.recorded, firm_range_mm(record, walked));
         let order = |(at, task)| Some((task, order_on_bench(record, at)?));
         let measured = measured(record);
         let recommended = Recommended::of(record, &measured);
@@ -102,13 +98,14 @@ impl<'a> Answer<'a> {
             orders: config.tasks().enumerate().filter_map(order).collect(),
         };
         answer.verdict = Verdict::of(&answer, &answer.measured);
-        answer.trust = Trust::of(record, answer.named());
-        answer.force = answer.shown().and_then(|(_, tasks)| ExcessForce::of(record, &tasks));
+        answer.trust = Trust::of(record, answer.design_to_print());
+        answer.force =
+            answer.finger_and_evaluations().and_then(|(_, tasks)| ExcessForce::of(record, &tasks));
         answer
     }
 
-    /// Returns the evaluation of the finger to print by simulation; `None` if there is none.
-    pub fn named(&self) -> Option<&'a Recorded> {
+    /// Returns the design to print by simulation, with its evaluation; `None` if there is none.
+    pub fn design_to_print(&self) -> Option<&'a Recorded> {
         let found = self.recommended.as_ref()?;
         match (&self.verdict, &found.ties) {
             (Verdict::NothingInserts { .. } | Verdict::NoneFeasible, _) => None,
@@ -117,12 +114,17 @@ impl<'a> Answer<'a> {
         }
     }
 
+    /// Returns the range of a finger on a robot, mm, if it was measured.
+    pub fn on_robot(&self, finger: &Design) -> Option<f64> {
+        trust::range_mm(&self.measured, finger)
+    }
+
     /// Returns the finger to print and its simulated evaluation on each task; `None` if there is none.
-    pub fn shown(&self) -> Option<(&'a Design, Vec<&'a Evaluation>)> {
+    pub fn finger_and_evaluations(&self) -> Option<(&'a Design, Vec<&'a Evaluation>)> {
         let finger = self.verdict.finger()?;
         match &self.record.on_bench {
             Some(bench) => Some((finger, vec![&bench.simulated])),
-            None => self.named().map(|named| (finger, named.tasks())),
+            None => self.design_to_print().map(|named| (finger, named.tasks())),
         }
     }
 }

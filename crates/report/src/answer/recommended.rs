@@ -7,7 +7,7 @@ use super::words;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::Firm;
-use study::{ByRibs, Recorded, StudyRecord};
+use study::{ByRibs, Recorded, StudyRecord, Walked};
 
 /// The recommended design of a study. Of several tasks ranges and forces are aggregated, and the
 /// window is the intersection.
@@ -60,8 +60,6 @@ impl<'a> Recommended<'a> {
         let firm = walked.map(|walked| &walked.firm[..]);
         let windows: Option<Vec<[f64; 2]>> =
             firm.and_then(|firm| firm.iter().map(Firm::window_mm).collect());
-        let firm_ranges: Option<Vec<f64>> =
-            firm.map(|firm| firm.iter().map(Firm::range_mm).collect());
         let on = |(at, (name, measured)): (usize, (&'a str, &'a Evaluation))| OnTask {
             name,
             measured,
@@ -78,7 +76,7 @@ impl<'a> Recommended<'a> {
             constraints: limits.map(|limit| (limit.measure, limit.words(&tasks))).collect(),
             range_mm: record.measure(design, Measure::Range),
             window_mm,
-            firm_range_mm: firm_ranges.map(|mm| record.aggregated(Measure::Range, &mm)),
+            firm_range_mm: walked.map(|walked| firm_range_mm(record, walked)),
             firm_window_mm,
             peak_force_n: record.measure(design, Measure::PeakForce),
             tasks: config.tasks().zip(&design.tasks).enumerate().map(on).collect(),
@@ -88,11 +86,12 @@ impl<'a> Recommended<'a> {
             ties: found.map(|found| Ties::of(record, found.index, measured)),
         })
     }
+}
 
-    /// Returns ` on usb` for one of several tasks, else nothing.
-    pub fn on(&self, task: &OnTask) -> String {
-        if self.tasks.len() > 1 { format!(" on {}", task.name) } else { String::new() }
-    }
+/// Returns the range of a confirmed design in which all repeats insert, aggregated over the tasks, mm.
+pub(super) fn firm_range_mm(record: &StudyRecord, walked: &Walked) -> f64 {
+    let ranges: Vec<f64> = walked.firm.iter().map(Firm::range_mm).collect();
+    record.aggregated(Measure::Range, &ranges)
 }
 
 fn common(windows: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {

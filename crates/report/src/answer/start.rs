@@ -1,6 +1,6 @@
 //! Position of the start in its window.
 
-use super::words::mm;
+use super::words::{mm, rounded};
 
 /// Least share of the range on either side of a good start.
 const LEAST_SHARE: f64 = 0.25;
@@ -19,7 +19,8 @@ impl Start {
     pub fn of(window_mm: [f64; 2]) -> Option<Self> {
         let [low, high] = window_mm;
         (low <= 0.0 && high >= 0.0 && high > low)
-            .then(|| Start { window_mm, to_middle_mm: micrometres((low + high) / 2.0) })
+            // To micrometres, without the error of adding tenths.
+            .then(|| Start { window_mm, to_middle_mm: rounded((low + high) / 2.0, 3) })
     }
 
     /// Returns whether one side is so small that the start should be taught again.
@@ -36,11 +37,6 @@ impl Start {
         self.one_sided()
             .then(|| format!("teach the start {by} further to {side}: then {half} on either side"))
     }
-}
-
-/// Rounds a length in mm to micrometres, which removes the error of adding tenths.
-fn micrometres(mm: f64) -> f64 {
-    (mm * 1e3).round() / 1e3
 }
 
 #[cfg(test)]

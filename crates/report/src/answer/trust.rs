@@ -111,6 +111,11 @@ impl Trust {
     }
 }
 
+/// Returns the range of a finger, mm, if it is among the measured ones.
+pub(super) fn range_mm(measured: &[Measured], finger: &Design) -> Option<f64> {
+    measured.iter().find(|measured| measured.design == *finger).map(|found| found.range_mm)
+}
+
 /// Returns the ranges in words: `4.7 and 4.9 mm`.
 fn ranges(fingers: &[Measured]) -> String {
     let mut mm: Vec<String> =
@@ -123,9 +128,9 @@ fn ranges(fingers: &[Measured]) -> String {
 pub(super) fn published(task: &str) -> Vec<(Measured, Measurement)> {
     let bench = of_task(task, Origin::Bench);
     let one = |measurement: Measurement| {
-        let found = bench.iter().find(|found| found.design == measurement.design)?;
         let design = Design::infill(measurement.density_percent, measurement.direction_deg);
-        Some((Measured { design, range_mm: found.tolerable_range_mm? }, measurement))
+        let range_mm = bench.iter().find(|found| found.design == design)?.range_mm?;
+        Some((Measured { design, range_mm }, measurement))
     };
     designs().into_iter().filter_map(one).collect()
 }

@@ -193,17 +193,13 @@ fn simulated(found: &Recommended) -> String {
     let objective = objective.map_or(String::new(), |(measure, value)| {
         format!("{} {}, ", measure.name(), measure.show(value))
     });
-    match (found.firm_range_mm.zip(found.firm_window_mm), found.range_mm) {
-        (Some((range_mm, window_mm)), _) => {
-            format!("simulated {objective}{} ({})", mm(range_mm), span(window_mm))
+    let firm = found.firm_range_mm.zip(found.firm_window_mm);
+    let searched = found.range_mm.map(|range_mm| (range_mm, found.window_mm));
+    let note = if firm.is_none() { ", not confirmed" } else { "" };
+    match firm.or(searched) {
+        Some((range_mm, window_mm)) => {
+            format!("simulated {objective}{} ({}){note}", mm(range_mm), span(window_mm))
         }
-        (None, Some(range_mm)) => {
-            format!(
-                "simulated {objective}{} ({}), not confirmed",
-                mm(range_mm),
-                span(found.window_mm)
-            )
-        }
-        (None, None) => format!("simulated {objective}no range"),
+        None => format!("simulated {objective}no range"),
     }
 }

@@ -6,7 +6,7 @@ use insertion::evaluation::{RobustRange, SuccessRate, Window};
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, label};
 use insertion::surrogate::Estimate;
-use study::{Recorded, StudyRecord};
+use study::{Recorded, StudyConfig, StudyRecord};
 
 /// Returns after how many evaluations a search settled, and why.
 pub fn settled(record: &StudyRecord) -> String {
@@ -22,6 +22,11 @@ pub fn mm(length_mm: f64) -> String {
 /// Returns an interval of lengths: `3.1 to 3.5 mm`.
 pub fn interval([low_mm, high_mm]: [f64; 2]) -> String {
     format!("{low_mm:.1} to {high_mm:.1} mm")
+}
+
+/// Returns ` on usb` for one of several tasks, else nothing.
+pub fn on(config: &StudyConfig, task: &str) -> String {
+    if config.several_tasks() { format!(" on {task}") } else { String::new() }
 }
 
 /// Returns both ends of a window without their unit: `-4.5 to +5.8`.
@@ -52,6 +57,18 @@ pub fn number(value: f64, decimals: usize, unit: &str) -> String {
     let value = format!("{value:.decimals$}");
     // A body that a collision threw far away.
     if value.len() > 15 { "none".to_owned() } else { format!("{value} {unit}") }
+}
+
+/// Returns the smallest and the largest of the values; of none infinity and minus infinity.
+pub fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+}
+
+/// Rounds a number to so many decimals.
+pub fn rounded(value: f64, decimals: i32) -> f64 {
+    let scale = 10f64.powi(decimals);
+    // Adding 0 turns -0 into 0.
+    (value * scale).round() / scale + 0.0
 }
 
 /// Returns the force of a connector's contact springs, `up to 12 N`, or that none is given.

@@ -8,138 +8,81 @@ pub use page::html;
 
 use crate::answer::words::number;
 use crate::text_table;
-use calibration::identify::check::Remark;
-use calibration::identify::formulas::{Flange, Friction, Slide};
+use calibration::identify::formulas::{Flange, Friction};
 use calibration::identify::misfit::{Misfit, Validation, misfits};
 use calibration::identify::question::{Compared, IdentifyDone};
 use calibration::identify::unknown::{Unknown, ValueOrigin};
 use input::units::{MM, N_PER_MM};
 use insertion::surrogate::Estimate;
-use parameters::{Path, Transform};
+use serde_json::{Map, Value, json};
 
-use serde::Serialize;
-use std::collections::BTreeMap;
-
+/// Axes of the task's frame.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Result of an identification, as `--json` prints it.
-#[derive(Serialize)]
-pub struct Output<'a> {
-    task: &'a str,
-    remarks: &'a [Remark],
-    robot: BTreeMap<&'static str, Axis>,
-    preload_mm: Option<f64>,
-    preload_sd_mm: Option<f64>,
-    probes: Vec<Probe<'a>>,
-    unknowns: Vec<Identification<'a>>,
-    misfit: &'a [f64],
-    compared_share: f64,
-    phases: Vec<Misfit>,
-    attempts: Vec<Attempt<'a>>,
-    validation: Option<Validation>,
+/// Returns the result as JSON.
+pub fn json(done: &IdentifyDone) -> Value {
+    let found = &done.found;
+    let axis = |(name, flange): (&str, &Option<Flange>)| {
+        let flange = flange.as_ref()?;
+        let numbers = json!({
+            "stiffness_n_per_mm": flange.stiffness.mean / N_PER_MM,
+            "stiffness_sd_n_per_mm": flange.stiffness.sd / N_PER_MM,
+            "damping_n_s_per_m": flange.damping,
+            "mass_kg": flange.mass,
+            "delay_s": flange.delay_s,
+            "explained": flange.explained,
+        });
+        Some((name.to_owned(), numbers))
+    };
+    let robot: Map<_, _> = AXES.into_iter().zip(&found.flange).filter_map(axis).collect();
+    let probe = |(file, friction): &(String, Friction)| {
+        json!({
+            "log": file,
+            "friction": friction.coefficient.map(|one| one.mean),
+            "friction_sd": friction.coefficient.map(|one| one.sd),
+            "slides": friction.slides,
+        })
+    };
+    let attempt = |one: &Compared| {
+        json!({
+            "log": one.logged.file,
+            "offset_mm": one.logged.offset / MM,
+            "outcome_before": one.before.1.word(),
+            "outcome_after": one.after.1.word(),
+        })
+    };
+    json!({
+        "task": done.task,
+        "remarks": done.remarks,
+        "robot": robot,
+        "preload_mm": found.preload.map(|preload| preload.mean / MM),
+        "preload_sd_mm": found.preload.map(|preload| preload.sd / MM),
+        "probes": found.probes.iter().map(probe).collect::<Value>(),
+        "unknowns": found.unknowns.iter().map(identified).collect::<Value>(),
+        "misfit": found.smoothed.misfit,
+        "compared_share": found.smoothed.compared,
+        "phases": misfits(&found.compared),
+        "attempts": found.compared.iter().map(attempt).collect::<Value>(),
+        "validation": Validation::of(found),
+    })
 }
 
-#[derive(Serialize)]
-struct Axis {
-    stiffness_n_per_mm: f64,
-    stiffness_sd_n_per_mm: f64,
-    damping_n_s_per_m: f64,
-    mass_kg: f64,
-    delay_s: f64,
-    explained: f64,
-}
-
-#[derive(Serialize)]
-struct Probe<'a> {
-    log: &'a str,
-    friction: Option<f64>,
-    friction_sd: Option<f64>,
-    slides: &'a [Slide],
-}
-
-#[derive(Serialize)]
-struct Identification<'a> {
-    name: &'a str,
-    sets: &'a Path,
-    r#as: &'a Transform,
-    prior_low: f64,
-    prior_high: f64,
-    value: f64,
-    sd: Option<f64>,
-    from: ValueOrigin,
-    source: &'a str,
-    expected_share_of_prior_sd: Option<f64>,
-    share_of_prior_sd: Option<f64>,
-    advice: Option<&'a str>,
-}
-
-#[derive(Serialize)]
-struct Attempt<'a> {
-    log: &'a str,
-    offset_mm: f64,
-    outcome_before: &'a str,
-    outcome_after: &'a str,
-}
-
-impl<'a> Output<'a> {
-    /// Returns the output of an identification.
-    pub fn new(done: &'a IdentifyDone) -> Self {
-        let found = &done.found;
-        let axis = |flange: &Flange| Axis {
-            stiffness_n_per_mm: flange.stiffness.mean / N_PER_MM,
-            stiffness_sd_n_per_mm: flange.stiffness.sd / N_PER_MM,
-            damping_n_s_per_m: flange.damping,
-            mass_kg: flange.mass,
-            delay_s: flange.delay_s,
-            explained: flange.explained,
-        };
-        let axes = AXES.into_iter().zip(&found.flange);
-        let probe = |(file, friction): &'a (String, Friction)| Probe {
-            log: file,
-            friction: friction.coefficient.map(|one| one.mean),
-            friction_sd: friction.coefficient.map(|one| one.sd),
-            slides: &friction.slides,
-        };
-        let attempt = |one: &'a Compared| Attempt {
-            log: &one.logged.file,
-            offset_mm: one.logged.offset / MM,
-            outcome_before: one.before.1.word(),
-            outcome_after: one.after.1.word(),
-        };
-        Output {
-            task: &done.task,
-            remarks: &done.remarks,
-            robot: axes.filter_map(|(name, found)| Some((name, axis(found.as_ref()?)))).collect(),
-            preload_mm: found.preload.map(|preload| preload.mean / MM),
-            preload_sd_mm: found.preload.map(|preload| preload.sd / MM),
-            probes: found.probes.iter().map(probe).collect(),
-            unknowns: found.unknowns.iter().map(Identification::from).collect(),
-            misfit: &found.smoothed.misfit,
-            compared_share: found.smoothed.compared,
-            phases: misfits(&found.compared),
-            attempts: found.compared.iter().map(attempt).collect(),
-            validation: Validation::of(found),
-        }
-    }
-}
-
-impl<'a> From<&'a Unknown> for Identification<'a> {
-    fn from(Unknown { prior, posterior, left, from, advice }: &'a Unknown) -> Self {
-        Identification {
-            name: &posterior.name,
-            sets: &posterior.path,
-            r#as: &posterior.transform,
-            prior_low: prior.low,
-            prior_high: prior.high,
-            value: posterior.middle(),
-            sd: posterior.sd,
-            from: *from,
-            source: &posterior.source,
-            expected_share_of_prior_sd: left.map(|[expected, _]| expected),
-            share_of_prior_sd: left.map(|[_, left]| left),
-            advice: *advice,
-        }
-    }
+/// Returns a parameter of the cell, before and after the identification, as JSON.
+fn identified(Unknown { prior, posterior, left, from, advice }: &Unknown) -> Value {
+    json!({
+        "name": posterior.name,
+        "sets": posterior.path,
+        "as": posterior.transform,
+        "prior_low": prior.low,
+        "prior_high": prior.high,
+        "value": posterior.middle(),
+        "sd": posterior.sd,
+        "from": from,
+        "source": posterior.source,
+        "expected_share_of_prior_sd": left.map(|[expected, _]| expected),
+        "share_of_prior_sd": left.map(|[_, left]| left),
+        "advice": advice,
+    })
 }
 
 /// Returns the result as text for a terminal.
@@ -210,17 +153,17 @@ fn validated(one: &Validation) -> String {
 
 /// Returns a sentence on each phase and force component that the identified cell does not explain.
 fn unmodelled(compared: &[Compared]) -> Vec<String> {
-    let off = misfits(compared).into_iter().filter(|one| one.after > 3.0);
-    let words = |one: Misfit| {
+    let unexplained = misfits(compared).into_iter().filter(|one| one.after > 3.0);
+    let sentence = |one: Misfit| {
         let Misfit { phase, axis, after, .. } = one;
         format!(
             "the model does not explain these curves: phase {phase}, {axis}: misfit {after:.1} standard deviations"
         )
     };
-    off.map(words).collect()
+    unexplained.map(sentence).collect()
 }
 
-/// Rounds to three digits.
+/// Formats a number with three significant digits.
 fn short(value: f64) -> String {
     let digits = (2.0 - libm::log10(value.abs().max(1e-3)).floor()).clamp(0.0, 4.0);
     format!("{value:.0$}", digits as usize)

@@ -2,9 +2,9 @@
 
 use super::{AXES, origin, short, unmodelled, validated};
 use crate::answer::words::{design, number, outcome, stiffness};
-use crate::chart::{Area, Drawn, around, axes, message, sheet, words};
+use crate::chart::{Area, Drawn, around, axes, sheet, words};
 use crate::elements::{definitions, document, stacked, table};
-use crate::marks::{dashed, line};
+use crate::marks::{dashed, label, line};
 use crate::page::PLOT;
 use crate::theme::{BLUE, INK, MUTED, ORANGE, inline};
 use calibration::identify::curves::{Curves, STEP_S};
@@ -17,7 +17,7 @@ use input::units::MM;
 use insertion::outcome::Outcome;
 use maud::{Markup, PreEscaped, html};
 use parameters::{Parameter, Scale, Transform};
-use plotters::prelude::{Color, Text};
+use plotters::prelude::Color;
 use plotters::style::text_anchor::{HPos, VPos};
 
 /// Largest number of points of a curve, and of points before the first contact (0.1 s).
@@ -202,9 +202,9 @@ fn robot(found: &Identified) -> Markup {
             ],
             None => vec!["not identifiable from these logs".to_owned()],
         };
-        [format!("along {name}")].into_iter().chain(cells).map(|cell| html! { (cell) }).collect()
+        [vec![format!("along {name}")], cells].concat()
     };
-    let axes: Vec<Vec<Markup>> = AXES.into_iter().zip(&found.flange).map(axis).collect();
+    let axes: Vec<_> = AXES.into_iter().zip(&found.flange).map(axis).collect();
     let probes: Vec<_> = found.probes.iter().map(probe).collect();
     html! {
         (stacked(&["axis", "stiffness", "damping", "mass", "delay of the force", "force explained"], &axes))
@@ -217,7 +217,7 @@ fn robot(found: &Identified) -> Markup {
     }
 }
 
-fn probe((file, friction): &(String, Friction)) -> Vec<Markup> {
+fn probe((file, friction): &(String, Friction)) -> Vec<String> {
     let coefficient = friction.coefficient.map(|one| format!("{:.3} ± {:.3}", one.mean, one.sd));
     let slides = |forth: bool| {
         let of = friction.slides.iter().filter(|slide| slide.forth == forth);
@@ -226,13 +226,8 @@ fn probe((file, friction): &(String, Friction)) -> Vec<Markup> {
         });
         words.collect::<Vec<_>>().join(", ")
     };
-    let cells = [
-        file.clone(),
-        coefficient.unwrap_or("not identifiable".to_owned()),
-        slides(true),
-        slides(false),
-    ];
-    cells.map(|cell| html! { (cell) }).into()
+    let coefficient = coefficient.unwrap_or("not identifiable".to_owned());
+    vec![file.clone(), coefficient, slides(true), slides(false)]
 }
 
 /// Returns the outcome on the robot; `None` of a probe.
@@ -333,17 +328,16 @@ fn draw(area: &Area<'_>, one: &Compared, axis: usize) -> Drawn {
     let all = || measured.iter().chain(&before).chain(&after);
     let force = around(all().map(|point| point.1), 0.16);
     let (bottom, top) = (force.start, force.end);
-    let label = format!("force along {} (N)", AXES[axis]);
+    let y_label = format!("force along {} (N)", AXES[axis]);
     let time = around(all().map(|point| point.0), 0.0);
     let aside = 0.012 * (time.end - time.start);
-    let mut chart = axes(area, "", ("time (s)", time), (&label, force))?;
+    let mut chart = axes(area, "", ("time (s)", time), (&y_label, force))?;
     let phases = [(logged.touch, "search"), (logged.push, "push")];
     for (at, phase) in phases.into_iter().filter(|(at, _)| at + 1 < logged.curves.force.len()) {
         let time = at as f64 * STEP_S;
         dashed(&mut chart, [(time, bottom), (time, top)])?;
         let style = words(15, INK, HPos::Left, VPos::Top);
-        let name = Text::new(phase, (time + aside, top), style);
-        chart.draw_series([name]).map_err(message)?;
+        label(&mut chart, (time + aside, top), (0, 0), phase, &style)?;
     }
     line(&mut chart, measured, MUTED.rgb().stroke_width(1), "")?;
     line(&mut chart, before, ORANGE.rgb().stroke_width(2), "")?;

@@ -45,7 +45,7 @@ pub fn poster_file(task: usize, end: &str) -> String {
 /// Returns a page that plays films side by side, offline. Its script needs no library (three.js has 700 kB, this
 /// 18).
 pub fn page(title: &str, films: &[Film]) -> String {
-    let data: Vec<_> = films.iter().map(film::Data::new).collect();
+    let data = films.iter().map(film::data).collect();
     around(title, &embedded(&data))
 }
 

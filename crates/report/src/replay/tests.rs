@@ -1,4 +1,4 @@
-//! Films of made-up recordings: the contents of a page and of a table.
+//! Page, table and plot of synthetic recordings.
 
 use super::*;
 use contact::ContactPoint;
@@ -58,7 +58,7 @@ pub fn recording() -> Recording {
 }
 
 #[test]
-fn a_page_holds_the_film_and_fetches_nothing() {
+fn a_page_contains_its_films_and_loads_nothing() {
     let (task, recording) = (task(), recording());
     let film =
         Film { label: "</title><script>", task: &task, pad: &Pad::PAPER, recording: &recording };
@@ -70,20 +70,20 @@ fn a_page_holds_the_film_and_fetches_nothing() {
     assert!(page.len() < 600_000, "{} bytes", page.len());
 }
 
-/// Times are rounded; at the last frame, which is where the slider ends, the outcome still stands.
+/// The slider ends at the last frame, whose rounded time must not be before that of the outcome.
 #[test]
-fn a_film_ends_decided() {
+fn the_last_frame_has_the_outcome() {
     let (task, mut recording) = (task(), recording());
     recording.decided_s = 1.000_04;
     recording.frames.last_mut().unwrap().time_s = recording.decided_s;
     let film = Film { label: "a", task: &task, pad: &Pad::PAPER, recording: &recording };
-    let json = serde_json::to_value(film::Data::new(&film)).unwrap();
+    let json = film::data(&film);
     let times = json["time"].as_array().unwrap();
     assert!(times[times.len() - 1].as_f64() >= json["decided_s"].as_f64(), "{json}");
 }
 
 #[test]
-fn the_table_has_a_line_a_millisecond_and_units() {
+fn the_table_has_a_line_per_millisecond_and_units() {
     let table = csv(&recording());
     let mut lines = table.lines();
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();
@@ -100,7 +100,7 @@ fn the_table_has_a_line_a_millisecond_and_units() {
 }
 
 #[test]
-fn the_curve_is_drawn_with_its_units() {
+fn the_axes_of_the_plot_have_units() {
     let (task, recording) = (task(), recording());
     let svg = curve_svg(&Film { label: "a", task: &task, pad: &Pad::PAPER, recording: &recording })
         .unwrap();

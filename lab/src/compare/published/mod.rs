@@ -71,12 +71,13 @@ impl TaskTable {
     pub fn new(task: &str, windows: impl IntoIterator<Item = (Measurement, Window)>) -> Self {
         let published = [Origin::Simulation, Origin::Bench].map(|of| published::of_task(task, of));
         let row = |(design, window): (Measurement, Window)| {
+            let infill = Design::infill(design.density_percent, design.direction_deg);
             let [simulation, bench] = published.each_ref().map(|rows| {
-                let row = rows.iter().find(|row| row.design == design.design)?;
+                let row = rows.iter().find(|row| row.design == infill)?;
                 Some(Reading {
-                    range_mm: row.tolerable_range_mm,
-                    failure_negative: row.failure_negative_offset,
-                    failure_positive: row.failure_positive_offset,
+                    range_mm: row.range_mm,
+                    failure_negative: row.failure_negative,
+                    failure_positive: row.failure_positive,
                 })
             });
             let readings = [Some(Reading::from(&window)), simulation, bench];

@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn every_shipped_row_has_bounds_and_a_source() {
-        for file in PRIORS.iter().chain([&LEVERS]) {
+        for file in PRIORS.iter().chain(LEVERS) {
             let rows = Priors::parse(file.text, file.file).unwrap().parameters;
             assert!(rows.len() >= 7);
             for row in &rows {

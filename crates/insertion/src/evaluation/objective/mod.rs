@@ -153,16 +153,19 @@ impl Goals {
 
     /// Returns objectives and violations of a design; `None` if a measure has no value on one of the tasks.
     pub fn score(&self, tasks: &[&Evaluation]) -> Option<Score> {
-        let of = |measure: Measure| -> Option<Vec<f64>> {
-            tasks.iter().map(|evaluation| measure.value(evaluation)).collect()
-        };
-        let value = |&measure: &Measure| Some(self.aggregate.of(measure.sense(), &of(measure)?));
+        let value = |&measure: &Measure| self.value(measure, tasks);
         let violation =
             |constraint: &Constraint| Some(constraint.violation(constraint.worst(tasks)?));
         Some(Score {
             values: self.objectives.measures().iter().map(value).collect::<Option<_>>()?,
             violations: self.constraints.iter().map(violation).collect::<Option<_>>()?,
         })
+    }
+
+    /// Returns the value of a measure, aggregated over the tasks; `None` if it has no value on one of them.
+    pub fn value(&self, measure: Measure, tasks: &[&Evaluation]) -> Option<f64> {
+        let values: Option<Vec<f64>> = tasks.iter().map(|task| measure.value(task)).collect();
+        Some(self.aggregate.of(measure.sense(), &values?))
     }
 
     /// Returns the values with the sign for which larger is better.

@@ -1,40 +1,37 @@
-//! An optimizer that is given the values of chosen points.
+//! Optimizer that is seeded with chosen points.
 
 use super::{GridPoint, Observation, Optimizer, StopReason};
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 
-/// Asks another optimizer for a number of points first, so that it has its own first design, then
-/// proposes chosen points, and leaves the rest to the other, which is told of all.
+/// Optimizer that proposes chosen points after the initial design of another optimizer, which proposes all
+/// further points and receives all results.
 ///
-/// The other one must take observations of points that it has not proposed, and not propose
-/// those again.
-pub struct Informed {
+/// The other optimizer must accept observations of points that it has not proposed, and must not
+/// propose them again.
+pub struct SeededOptimizer {
     inner: Box<dyn Optimizer + Send>,
-    /// Points that `inner` is to be asked for before the chosen ones.
+    /// Number of points that `inner` proposes before the chosen ones.
     before: usize,
     chosen: VecDeque<GridPoint>,
-    /// Points proposed so far, of which `inner` may want a chosen one, too.
+    /// Points proposed so far; `inner` may have proposed a chosen one.
     proposed: Vec<GridPoint>,
 }
 
-impl Informed {
-    /// `inner`, new, first for `before` points; the chosen points lie on its grid.
+impl SeededOptimizer {
+    /// Creates the optimizer from a new `inner` one, which proposes the first `before` points; the chosen
+    /// points must lie on its grid.
     pub fn new(
         inner: Box<dyn Optimizer + Send>,
         before: usize,
         chosen: impl IntoIterator<Item = GridPoint>,
     ) -> Self {
-        let mut unique = VecDeque::new();
-        for point in chosen {
-            if !unique.contains(&point) {
-                unique.push_back(point);
-            }
-        }
-        Informed { inner, before, chosen: unique, proposed: Vec::new() }
+        let mut seen = BTreeSet::new();
+        let chosen = chosen.into_iter().filter(|point| seen.insert(point.clone())).collect();
+        SeededOptimizer { inner, before, chosen, proposed: Vec::new() }
     }
 }
 
-impl Optimizer for Informed {
+impl Optimizer for SeededOptimizer {
     fn ask(&mut self, n: usize) -> Vec<GridPoint> {
         let own = if self.chosen.is_empty() { n } else { n.min(self.before) };
         let mut points = if own > 0 { self.inner.ask(own) } else { Vec::new() };
@@ -67,7 +64,7 @@ mod tests {
         let grid = Grid::new(vec![5, 5]);
         let chosen = [[0, 0], [4, 4], [0, 0], [2, 3]].map(|levels| GridPoint(levels.to_vec()));
         let inner = build(OptimizerKind::Gp, grid, 1);
-        let mut optimizer = Informed::new(inner, 3, chosen.clone());
+        let mut optimizer = SeededOptimizer::new(inner, 3, chosen.clone());
         let mut seen = Vec::new();
         loop {
             let points = optimizer.ask(2);

@@ -108,7 +108,8 @@ impl command::Request for Request {
         }
         remarks.extend(mount::remark(&file, &found.compared));
         let cell = cell(&setup, &found, runs.len()).checked("the cell").map_err(Failure::input)?;
-        let done = IdentifyDone { task: template.task.name.clone(), remarks, found, cell };
+        let (task, runs) = (template.task.name.clone(), file.into_owned());
+        let done = IdentifyDone { task, runs, remarks, found, cell };
         if let Some(path) = &self.out {
             let text = toml::to_string(&done.cell).map_err(|error| Failure::Run(error.into()))?;
             write_file(path, &text)?;

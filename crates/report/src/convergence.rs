@@ -2,10 +2,10 @@
 //! hypervolume.
 
 use super::ReportError;
-use super::chart::{Area, Drawn, around, axes, legend, sheet, words};
+use super::chart::{Area, Drawn, around, axes, sheet, words};
 use super::drawn::{PLOTTED, drawn, note, turning};
 use super::elements::figure;
-use super::marks::{PointMark, dashed, label, line, points, stairs};
+use super::marks::{PointMark, Series, dashed, key, label, line, points, stairs};
 use super::theme::{BLUE, GREEN, MUTED, ORANGE, RED};
 use crate::answer::words::{settled, volume_unit};
 use insertion::evaluation::objective::Measure;
@@ -83,34 +83,47 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
         Some(measure) => (measure.label(), "best so far"),
         None => (format!("hypervolume ({})", volume_unit(objectives)), "hypervolume so far"),
     };
-    let mut chart = axes(area, "", x, (&y_label, range))?;
     if count == 0 {
+        let mut chart = axes(area, "", x, (&y_label, range))?;
         let style = words(17, MUTED, HPos::Center, VPos::Center);
         return label(&mut chart, (0.5, 0.5), (0, 0), "no evaluations yet", &style);
     }
+    let shown = drawn(record, &record.evaluations, PLOTTED);
+    let of = |which: &dyn Fn(&Recorded) -> bool| -> Vec<(f64, f64)> {
+        shown.iter().copied().filter(|&found| which(found)).filter_map(at).collect()
+    };
+    let lost = shown.iter().filter(|found| found.score.is_none());
+    let mut series: Vec<Series<'_>> = vec![(
+        lost.map(|found| (found.index as f64, bottom)).collect(),
+        PointMark::cross(RED, 4),
+        "no value",
+    )];
+    if objectives.single().is_some() {
+        let feasible = |found: &Recorded| found.feasible().is_some();
+        series.extend([
+            (of(&|found| found.raced()), PointMark::ring(BLUE, 3, 1), "at most (raced)"),
+            (
+                of(&|found| !found.raced() && feasible(found)),
+                PointMark::dot(BLUE, 3),
+                "each evaluation",
+            ),
+            (
+                of(&|found| !found.raced() && !feasible(found)),
+                PointMark::ring(MUTED, 3, 1),
+                "violates a constraint",
+            ),
+            (confirmed, PointMark::disc(GREEN, 5), "confirmed"),
+        ]);
+    }
+    series.retain(|(points, ..)| !points.is_empty());
+    let best_line = ORANGE.rgb().stroke_width(3);
+    let area = key(area, &series, (best_line, name))?;
+    let mut chart = axes(&area, "", x, (&y_label, range))?;
     if record.settled {
         dashed(&mut chart, [bottom, top].map(|value| (last, value)))?;
     }
-    let marked = drawn(record, &record.evaluations, PLOTTED);
-    if objectives.single().is_some() {
-        let (raced, full): (Vec<_>, Vec<_>) = marked.iter().copied().partition(|r| r.raced());
-        let (inside, outside): (Vec<_>, Vec<_>) =
-            full.into_iter().partition(|r| r.feasible().is_some());
-        for (evaluations, mark, name) in [
-            (raced, PointMark::ring(BLUE, 3, 1), "at most (raced)"),
-            (inside, PointMark::dot(BLUE, 3), "each evaluation"),
-            (outside, PointMark::ring(MUTED, 3, 1), "violates a constraint"),
-        ] {
-            points(&mut chart, evaluations.into_iter().filter_map(at), mark, name)?;
-        }
-        points(&mut chart, confirmed, PointMark::disc(GREEN, 5), "confirmed")?;
+    for (at, mark, _) in series {
+        points(&mut chart, at, mark, "")?;
     }
-    let lost = marked.iter().filter(|r| r.score.is_none()).map(|r| (r.index as f64, bottom));
-    points(&mut chart, lost, PointMark::cross(RED, 4), "no value")?;
-    line(&mut chart, stairs(turning(best)), ORANGE.rgb().stroke_width(3), name)?;
-    let corner = match objectives.single() {
-        Some(measure) if measure.sense() < 0.0 => SeriesLabelPosition::UpperRight,
-        _ => SeriesLabelPosition::LowerRight,
-    };
-    legend(&mut chart, corner)
+    line(&mut chart, stairs(turning(best)), best_line, "")
 }

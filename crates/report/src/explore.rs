@@ -30,7 +30,7 @@ pub(super) fn section(answer: &Answer, dir: &Path) -> Option<Markup> {
             "Values of the search"
             @if !answer.walked.is_empty() { ", before the best were confirmed" }
             ". Click a mark or a row to see a design; the arrow keys select the next. A mark with bars fails \
-            at the nominal start; the recommended one has a ring."
+            at the nominal start; the recommended one has a ring, and stays at the top of the table."
         }
         div #explore tabindex="0" {
             figure #map {
@@ -69,19 +69,26 @@ fn best(answer: &Answer) -> Markup {
     best.sort_by(|a, b| goals.order(b.1, a.1));
     let named = answer.design_to_print().map(|named| named.index);
     best.sort_by_key(|(found, _)| Some(found.index) != named);
+    best.truncate(SHOWN);
+    let on_robot = |found: &Recorded| answer.on_robot(&found.design);
+    let any_measured = best.iter().any(|(found, _)| on_robot(found).is_some());
     let row = |(found, values): &(&Recorded, &[f64])| {
         let window = &found.on(0)?.window;
-        Some(vec![
+        let mut cells = vec![
             found.index.to_string(),
             words::design(&found.design),
             words::values(&record.config.objective, values),
             format!("{} mm", span(ends_mm(window))),
             ends(window).join(" | "),
-            answer.on_robot(&found.design).map_or(String::new(), mm),
-        ])
+        ];
+        if any_measured {
+            cells.push(on_robot(found).map_or(String::new(), mm));
+        }
+        Some(cells)
     };
-    let head = ["evaluation", "design", "value in the search", "window", "ends", "measured"];
-    table(&head, &best.iter().take(SHOWN).filter_map(row).collect::<Vec<_>>())
+    let mut head = vec!["evaluation", "design", "value in the search", "window", "ends"];
+    head.extend(any_measured.then_some("measured"));
+    table(&head, &best.iter().filter_map(row).collect::<Vec<_>>())
 }
 
 fn ends(window: &Window) -> [String; 2] {

@@ -135,6 +135,13 @@ fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Markup {
                         iframe #film title="two trials: the last that inserts, the first that fails" sandbox="allow-scripts" {}
                     }
                     p #caption.muted { (caption(film, tasks)) }
+                } @else if let Some((film, poster)) = linked.first().and_then(|film| Some((film, film.poster.as_ref()?))) {
+                    div.stage {
+                        a href=(pair_file(film.task, film.end)) {
+                            img src=(inert(poster)) alt="how the failed trial ended; opens its replay";
+                        }
+                    }
+                    p.muted { "How the trial just outside the window ended. " (caption(film, tasks)) }
                 }
                 p.files {
                     @for (at, film) in shown.iter().enumerate() {
@@ -146,7 +153,7 @@ fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Markup {
                         }
                     }
                     @for film in linked {
-                        a.button href=(pair_file(film.task, film.end)) { (label(answer, film)) }
+                        a.button href=(pair_file(film.task, film.end)) { "Replay of the " (label(answer, film)) }
                     }
                 }
                 script type="application/json" id="viewer" {

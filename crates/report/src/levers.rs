@@ -116,6 +116,8 @@ fn draw(area: &Area<'_>, levers: &Levers, bars: &[Bar<'_>]) -> Drawn {
             bar(&mut chart, [base, *mm], [top, top - 0.27], fill.rgb().mix(share).filled())?;
             label(&mut chart, (*mm, top - 0.14), (by, 0), words, &style)?;
         }
+        // Between the lines of text.
+        dashed(&mut chart, [(base, y - 0.35), (base, y - 0.94)])?;
     }
-    dashed(&mut chart, [(base, 0.0), (base, -(bars.len() as f64))])
+    Ok(())
 }

@@ -1,8 +1,9 @@
 //! Elements drawn in plots: marked points, lines, stairs.
 
-use super::chart::{Chart, Drawn};
-use super::theme::{Colour, MUTED};
+use super::chart::{Area, Chart, Drawn, Problem, words};
+use super::theme::{Colour, INK, MUTED};
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
 
 /// Mark of a point: a circle or a cross of a size in pixels, and its style.
 #[derive(Clone, Copy)]
@@ -36,6 +37,40 @@ impl PointMark {
             false => Circle::new(at, self.size, self.style).into_dyn(),
         }
     }
+}
+
+/// Series of marked points and its name.
+pub(super) type Series<'a> = (Vec<(f64, f64)>, PointMark, &'a str);
+
+/// Height of a line of a key, width of a mark and of a letter, pixels.
+const KEY: [i32; 3] = [22, 26, 8];
+/// Left and right margin of a key, pixels.
+const LEFT: i32 = 16;
+
+/// Draws the names of series and of a line in the upper part of an area; returns the part below.
+pub(super) fn key<'b>(
+    area: &Area<'b>,
+    series: &[Series<'_>],
+    (style, line): (ShapeStyle, &str),
+) -> Result<Area<'b>, Problem> {
+    let [height, mark, letter] = KEY;
+    let names = series.iter().map(|(_, mark, name)| (Some(mark), *name)).chain([(None, line)]);
+    let (right, [mut x, mut y]) = (area.dim_in_pixel().0 as i32 - LEFT, [LEFT, height]);
+    let text = words(15, INK, HPos::Left, VPos::Center);
+    for (of, name) in names {
+        let width = mark + letter * name.len() as i32;
+        if x > LEFT && x + width > right {
+            [x, y] = [LEFT, y + height];
+        }
+        let drawn = match of {
+            Some(of) => area.draw(&of.at((x + 12, y))),
+            None => area.draw(&PathElement::new([(x, y), (x + 20, y)], style)),
+        };
+        drawn?;
+        area.draw(&Text::new(name.to_owned(), (x + mark, y), text.clone()))?;
+        x += width;
+    }
+    Ok(area.split_vertically(y + height / 2).1)
 }
 
 /// Draws marked points; `label` is for the legend, empty for none.

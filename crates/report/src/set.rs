@@ -20,33 +20,42 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
     designs
         .sort_by(|a, b| (a.0.index != named).cmp(&(b.0.index != named)).then(a.1.total_cmp(&b.1)));
     let millimetres = answer.record.config.objective.first().unit() == "mm";
+    let on_robot = |recorded: &Recorded| answer.on_robot(&recorded.design);
+    designs.truncate(LISTED);
+    let any_measured = designs.iter().any(|(recorded, _)| on_robot(recorded).is_some());
     let row = |(recorded, loss): &(&Recorded, f64)| {
         let loss = if millimetres { mm(loss.max(0.0)) } else { String::new() };
         let force = answer.record.measure(recorded, Measure::PeakForce);
-        vec![
+        let mut cells = vec![
             design(&recorded.design),
-            reasons(found, recorded, named),
+            reasons(answer, found, recorded, named),
             loss,
             force.map_or(String::new(), |force| format!("{force:.0} N")),
             stiffness(recorded.stiffness.compliance),
-            answer.on_robot(&recorded.design).map_or(String::new(), mm),
-        ]
+        ];
+        if any_measured {
+            cells.push(on_robot(recorded).map_or(String::new(), mm));
+        }
+        cells
     };
-    let head =
-        ["finger", "reason to choose it", "expected loss", "largest force", ACROSS, "measured"];
-    let rows: Vec<_> = designs.iter().take(LISTED).map(row).collect();
+    let mut head = vec!["finger", "reason to choose it", "expected loss", "largest force", ACROSS];
+    head.extend(any_measured.then_some("measured"));
+    let rows: Vec<_> = designs.iter().map(row).collect();
     Some(html! {
         p { (lines::tied(answer, found).1) "." }
         @if let Some((name, text)) = lines::safe(found) { p { b { (name) } " " (text) "." } }
         @if let Some(text) = lines::spread(answer) { p { b { "infill" } " " (text) "." } }
         @if rows.len() > 1 { (stacked(&head, &rows)) }
-        @if designs.len() > LISTED { p.muted { (designs.len() - LISTED) " more in the explorer." } }
+        @if found.designs.len() > LISTED { p.muted { (found.designs.len() - LISTED) " more in the explorer." } }
     })
 }
 
-fn reasons(found: &Ties, recorded: &Recorded, named: u64) -> String {
+fn reasons(answer: &Answer, found: &Ties, recorded: &Recorded, named: u64) -> String {
     let own = |one: &&Recorded| one.index == recorded.index;
-    let named = (recorded.index == named).then_some("recommended");
+    // With measurements another finger may be recommended.
+    let recommended = answer.verdict.finger() == Some(&recorded.design);
+    let best = if recommended { "recommended" } else { "best in simulation" };
+    let named = (recorded.index == named).then_some(best);
     let safe = found.safe.as_ref().filter(|safe| own(&safe.design)).map(|_| "safe choice");
     let others = found.alternatives.iter().filter(|(_, one, ..)| own(one)).map(|(why, ..)| *why);
     named.into_iter().chain(safe).chain(others).collect::<Vec<_>>().join(", ")

@@ -79,12 +79,21 @@ impl Remarks<'_> {
     }
 }
 
-/// Returns the remarks on the log of a run of a task.
-pub fn remarks(run: &Run, task: &Task) -> Vec<Remark> {
+/// Returns the remarks on the logs of the runs of a task; `file` has the runs.
+pub(super) fn remarks(file: &str, runs: &[Run], task: &Task) -> Vec<Remark> {
+    let frame = turned_frame(file, runs);
+    let each = runs.iter().flat_map(|run| of_log(run, task, frame.is_some()));
+    let mut found: Vec<Remark> = each.collect();
+    found.extend(frame);
+    found
+}
+
+/// Returns the remarks on one log; `turned` if the forces of all are in a turned frame.
+fn of_log(run: &Run, task: &Task, turned: bool) -> Vec<Remark> {
     let mut remarks = Remarks { log: &run.log, found: Vec::new() };
     clock(&mut remarks);
     pose(&mut remarks, run, task);
-    let touched = contact(&mut remarks);
+    let touched = contact(&mut remarks).filter(|_| !turned);
     sensor(&mut remarks, touched);
     motion(&mut remarks, run, task, touched);
     if let Some(touched) = touched {
@@ -187,39 +196,49 @@ fn standstill(moments: &[Moment]) -> Option<[usize; 2]> {
     None
 }
 
+/// Returns the first and last index of the first touch, and its mean force without the bias.
+fn touch_force(log: &Log) -> Option<([usize; 2], Vector3<f64>)> {
+    let from = any_touch(log)?;
+    let to = after(log, from, TOUCH_S[1]);
+    let contact = &log.moments[after(log, from, TOUCH_S[0]).min(to - 1)..to];
+    let force = mean(contact) - Air::of(air(log, Some(from))).bias;
+    (force.norm() > LEAST_N).then_some(([from, to], force))
+}
+
+/// Returns a remark if most logs have more force along x, or along y, than along z at the touch. A few may: an edge
+/// pushes sideways too.
+fn turned_frame(file: &str, runs: &[Run]) -> Option<Remark> {
+    let forces = runs.iter().filter_map(|run| Some(touch_force(&run.log)?.1.abs()));
+    let largest: Vec<usize> = forces.map(|force| force.imax()).collect();
+    let count = |axis: usize| largest.iter().filter(|&&one| one == axis).count();
+    let (along, times) = [("x", count(0)), ("y", count(1))].into_iter().max_by_key(|one| one.1)?;
+    let text = format!(
+        "the frame looks turned: at the touch the force is along {along} and not along z in {times} of {} logs; check \
+         `axis_angle_rad`, or whether f{along}_n and fz_n are swapped",
+        largest.len()
+    );
+    let most = 2 * times > largest.len();
+    most.then(|| Remark { file: file.to_owned(), lines: None, text, serious: true })
+}
+
 /// Checks the touch; returns its index if the direction of its force is right.
 fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
     let log = remarks.log;
-    let push = |from: usize| {
-        let to = after(log, from, TOUCH_S[1]);
-        let contact = &log.moments[after(log, from, TOUCH_S[0]).min(to - 1)..to];
-        let force = mean(contact) - Air::of(air(log, Some(from))).bias;
-        (force.norm() > LEAST_N).then_some(([from, to], force))
-    };
-    let Some(([from, to], force)) = any_touch(log).and_then(push) else {
+    let Some(([from, to], force)) = touch_force(log) else {
         let text = "nothing is touched: the force never leaves the noise of the air for good; the \
                     log has only the approach, no force, or one in another unit than newtons";
         remarks.add(true, None, text);
         return None;
     };
-    let [x, y, z]: [f64; 3] = force.abs().into();
-    let words = format!("the force on the tool becomes ({}) N", shown(force, 1));
-    if z >= x.max(y) && force.z < 0.0 {
-        let text = format!(
-            "at the touch {words}: on a tool that goes down it must be above 0 along z; turn \
-             `force_sign`"
-        );
-        remarks.add(true, Some([from, to]), text);
-    } else if z < x.max(y) {
-        let along = if x > y { "x" } else { "y" };
-        let text = format!(
-            "at the touch {words}: the frame looks turned, since the force is along {along} and not \
-             along z; check `axis_angle_rad`, or whether f{along}_n and fz_n are swapped"
-        );
-        remarks.add(true, Some([from, to]), text);
-    } else {
+    if force.iamax() != 2 || force.z >= 0.0 {
         return touch(log);
     }
+    let text = format!(
+        "at the touch the force on the tool becomes ({}) N: on a tool that goes down it must be \
+         above 0 along z; turn `force_sign`",
+        shown(force, 1)
+    );
+    remarks.add(true, Some([from, to]), text);
     None
 }
 

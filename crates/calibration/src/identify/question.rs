@@ -83,6 +83,8 @@ impl Identified {
 pub struct IdentifyDone {
     /// Name of the task.
     pub task: String,
+    /// File with the table of the logs, to which the remarks on all logs refer.
+    pub runs: String,
     /// Remarks on the logs, each a sentence.
     pub remarks: Vec<Remark>,
     /// Numbers of the cell, and the curves they come from.
@@ -97,14 +99,14 @@ impl Question<'_> {
     /// # Errors
     /// If a log's finger cannot be simulated.
     pub fn remarks(&self, file: &str) -> Result<Vec<Remark>, Impossible> {
-        let mut found: Vec<Remark> =
-            self.runs.iter().flat_map(|run| check::remarks(run, &self.template.task)).collect();
+        let mut found = check::remarks(file, self.runs, &self.template.task);
         found.extend(self.probes().iter().filter_map(slides));
         let attempts = self.attempts();
+        let of_all = |remark: &Remark| remark.file == file;
         let wrong =
             |one: &Logged| found.iter().any(|remark| remark.serious && remark.file == one.file);
         // Faulty logs are not compared with the others.
-        if !attempts.iter().any(wrong) {
+        if !found.iter().any(of_all) && !attempts.iter().any(wrong) {
             let curves: Vec<Curves> = attempts.iter().map(|one| one.curves.clone()).collect();
             found.extend(springs(file, &curves));
             let ratio = self.force_scale(&attempts)?;

@@ -22,7 +22,7 @@ fn usb() -> Task {
 
 fn said(log: Log) -> Vec<Remark> {
     let (design, ended) = (Design::infill(20.0, 10.0), Ended::Inserted);
-    check::remarks(&Run { log, design, offset: 0.0, ended, line: 2 }, &usb())
+    check::remarks("runs.csv", &[Run { log, design, offset: 0.0, ended, line: 2 }], &usb())
 }
 
 fn said_of(change: impl FnMut((usize, &mut Moment))) -> String {
@@ -187,6 +187,24 @@ fn remarks_say_what_is_wrong_and_where() {
     ] {
         assert!(found.contains(words), "{words}: {found}");
     }
+}
+
+#[test]
+fn a_frame_is_turned_if_most_logs_say_so() {
+    let run = |sideways: bool| {
+        let mut log = made(0.5, 1.0);
+        let turn = |moment: &mut Moment| moment.force = moment.force.zxy();
+        log.moments.iter_mut().filter(|_| sideways).for_each(turn);
+        let (design, ended) = (Design::infill(20.0, 10.0), Ended::Inserted);
+        Run { log, design, offset: 0.0, ended, line: 2 }
+    };
+    let found = |runs: &[Run]| {
+        let remarks = check::remarks("runs.csv", runs, &usb()).into_iter();
+        remarks.filter(|one| one.text.contains("looks turned")).collect::<Vec<_>>()
+    };
+    assert_eq!(found(&[run(true), run(false)]), []);
+    let [one] = &found(&[run(true), run(false), run(true)])[..] else { panic!("one remark") };
+    assert!(one.text.contains("along x and not along z in 2 of 3 logs"), "{one}");
 }
 
 #[test]

@@ -10,7 +10,7 @@ use crate::theme::{BLUE, INK, MUTED, ORANGE, inline};
 use calibration::identify::curves::{Curves, STEP_S};
 use calibration::identify::formulas::{Flange, Friction};
 use calibration::identify::log::Ended;
-use calibration::identify::misfit::{Validation, misfits};
+use calibration::identify::misfit::{Misfit, Validation, misfits};
 use calibration::identify::question::{Compared, Identified, IdentifyDone};
 use calibration::identify::unknown::{Unknown, ValueOrigin};
 use input::units::MM;
@@ -23,20 +23,25 @@ use plotters::style::text_anchor::{HPos, VPos};
 /// Largest number of points of a curve, and of points before the first contact (0.1 s).
 const POINTS: usize = 400;
 const AIR: usize = 50;
+/// Ratio of the misfits after and before from which on the page comments.
+const WORSE: f64 = 1.1;
 
 /// Returns the page: numbers of the cell, robot and probes, and every attempt, measured and simulated.
 pub fn html(done: &IdentifyDone) -> String {
-    let IdentifyDone { task, remarks, found, .. } = done;
-    let (serious, others): (Vec<_>, Vec<_>) = remarks.iter().partition(|remark| remark.serious);
+    let IdentifyDone { task, runs, remarks, found, .. } = done;
+    let (serious, notes): (Vec<_>, Vec<_>) = remarks.iter().partition(|remark| remark.serious);
+    let (of_all, of_logs): (Vec<_>, Vec<_>) = notes.iter().partition(|note| note.file == *runs);
     let rows: Vec<_> = found.unknowns.iter().map(unknown).collect();
     let body = html! {
         main {
             h1 { (headline(done)) }
+            p.lead { (evidence(found)) }
+            @for note in of_all { p { b { "All logs: " } (note.text) "." } }
+            (definitions(&summary(found)))
             @for remark in serious { p.warn { (remark) } }
             @for sentence in unmodelled(&found.compared) { p.warn { (sentence) } }
-            (definitions(&by_origin(found)))
-            @if !others.is_empty() {
-                details { summary { "Notes on the logs" } ul { @for remark in others { li { (remark) } } } }
+            @if !of_logs.is_empty() {
+                details { summary { "Notes on single logs" } ul { @for note in of_logs { li { (note) } } } }
             }
             section {
                 h2 { "Numbers of the cell" }
@@ -66,6 +71,7 @@ pub fn html(done: &IdentifyDone) -> String {
                 }
                 h3 { "All attempts" }
                 (misfit(&found.compared))
+                @if let Some(sentence) = worse(&found.compared) { p.muted { (sentence) } }
                 @for one in &found.compared { (attempt(one)) }
             }
         }
@@ -73,42 +79,59 @@ pub fn html(done: &IdentifyDone) -> String {
     document(&format!("{task}: cell identified from logs"), body)
 }
 
-fn headline(IdentifyDone { task, found, .. }: &IdentifyDone) -> String {
-    let counted =
-        |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
-    let attempts = counted(found.compared.len(), "attempt");
-    let probes = counted(found.probes.len(), "probe");
-    let of = |origins: &[ValueOrigin]| {
-        found.unknowns.iter().filter(|one| origins.contains(&one.from)).count()
-    };
-    let identified = of(&[ValueOrigin::Formula, ValueOrigin::Fit]);
-    let fixed = match of(&[ValueOrigin::Files]) {
-        0 => String::new(),
-        count => format!(" ({count} more were not fitted)"),
-    };
-    let misfit = match found.smoothed.misfit[..] {
-        [first, .., last] if last.is_finite() => {
-            format!("; misfit {first:.2} standard deviations before the fit, {last:.2} after")
-        }
-        _ => String::new(),
-    };
-    let all = identified + of(&[ValueOrigin::Prior]);
-    format!(
-        "{attempts} and {probes} on {task} identify {identified} of {all} numbers of the cell{fixed}{misfit}"
-    )
+fn counted(found: &Identified, origins: &[ValueOrigin]) -> usize {
+    found.unknowns.iter().filter(|one| origins.contains(&one.from)).count()
 }
 
-/// Returns the names of the numbers by the origin of their values, and the share of the data that was compared.
-fn by_origin(found: &Identified) -> Vec<(String, String)> {
+fn headline(IdentifyDone { task, found, .. }: &IdentifyDone) -> String {
+    let identified = counted(found, &[ValueOrigin::Formula, ValueOrigin::Fit]);
+    let all = identified + counted(found, &[ValueOrigin::Prior]);
+    format!("{task}: {identified} of {all} numbers of the cell identified")
+}
+
+/// Returns a sentence on the logs behind the numbers.
+fn evidence(found: &Identified) -> String {
+    let several =
+        |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+    let attempts = several(found.compared.len(), "attempt");
+    let probes = several(found.probes.len(), "probe");
+    let fixed = match counted(found, &[ValueOrigin::Files]) {
+        0 => String::new(),
+        count => format!("; {count} more numbers were not fitted"),
+    };
+    format!("From {attempts} and {probes}{fixed}.")
+}
+
+/// Returns the numbers by the origin of their values, and what they explain.
+fn summary(found: &Identified) -> Vec<(String, String)> {
     let named = |from: ValueOrigin| {
         let of = found.unknowns.iter().filter(|one| one.from == from);
-        let names: Vec<&str> = of.map(|one| one.posterior.name.as_str()).collect();
+        let identified = [ValueOrigin::Formula, ValueOrigin::Fit].contains(&from);
+        let name = |Unknown { posterior, .. }: &Unknown| match identified {
+            true => format!("{} {}", posterior.name, amount(posterior)),
+            false => posterior.name.clone(),
+        };
+        let names: Vec<String> = of.map(name).collect();
         (!names.is_empty()).then(|| (origin(from).to_owned(), names.join(", ")))
     };
-    let share = format!("{:.0} % of the data", 100.0 * found.smoothed.compared);
     let all =
         [ValueOrigin::Formula, ValueOrigin::Fit, ValueOrigin::Prior, ValueOrigin::Files].map(named);
-    all.into_iter().flatten().chain([("compared".to_owned(), share)]).collect()
+    let compared = &found.compared;
+    let [before, after] = [|one: &Compared| one.before.1, |one: &Compared| one.after.1]
+        .map(|of| compared.iter().filter(|one| measured(one) == Some(of(one))).count());
+    let outcomes = format!(
+        "{after} of {} attempts are simulated to end as measured; {before} with the files' numbers",
+        compared.len()
+    );
+    let share = format!("{:.0} % of the data compared", 100.0 * found.smoothed.compared);
+    let misfit = match found.smoothed.misfit[..] {
+        [first, .., last] if last.is_finite() => {
+            format!("{first:.2} to {last:.2} standard deviations over the iterations; {share}")
+        }
+        _ => share,
+    };
+    let more = [("outcomes", outcomes), ("misfit in the fit", misfit)];
+    all.into_iter().flatten().chain(more.map(|(name, text)| (name.to_owned(), text))).collect()
 }
 
 /// Returns a row of the table of numbers.
@@ -207,19 +230,40 @@ fn probe((file, friction): &(String, Friction)) -> Vec<String> {
     vec![file.clone(), coefficient, slides(true), slides(false)]
 }
 
+/// Returns the outcome on the robot; `None` of a probe.
+fn measured(one: &Compared) -> Option<Outcome> {
+    match one.logged.ended {
+        Ended::Inserted => Some(Outcome::Inserted),
+        Ended::Failed(class) => Some(Outcome::Failed(class)),
+        Ended::Probe => None,
+    }
+}
+
+/// Returns the reason why a simulated curve is shorter than the measured one, if it is.
+fn shorter(one: &Compared, simulated: &(Curves, Outcome), name: &str) -> Option<String> {
+    let [all, end] = [&one.logged.curves, &simulated.0].map(|curves| curves.force.len());
+    let time = end as f64 * STEP_S;
+    let why = outcome(simulated.1);
+    (end + AIR < all).then(|| {
+        format!(" The {name} curve ends at {time:.2} s with the simulated attempt: {why}.")
+    })
+}
+
 fn attempt(one: &Compared) -> Markup {
-    let logged = &one.logged;
-    let ended = match logged.ended {
-        Ended::Inserted => outcome(Outcome::Inserted),
-        Ended::Failed(class) => outcome(Outcome::Failed(class)),
-        Ended::Probe => "probe".to_owned(),
-    };
+    let (logged, measured) = (&one.logged, measured(one));
+    let ended = measured.map_or("probe".to_owned(), outcome);
+    let off = measured.is_some_and(|measured| measured != one.after.1);
     html! {
         article {
             h3 { (design(&logged.design)) ", start " (format!("{:+.1} mm", logged.offset / MM)) ": " (ended) }
             p.muted {
                 (logged.file) ". Simulated: " (outcome(one.before.1)) " with the files' numbers, "
                 (outcome(one.after.1)) " with the identified ones."
+                (shorter(one, &one.before, "orange").unwrap_or_default())
+                (shorter(one, &one.after, "blue").unwrap_or_default())
+            }
+            @if off {
+                p.warn { "Measured: " (ended) ". The identified cell predicts: " (outcome(one.after.1)) "." }
             }
             div.curves {
                 @for (axis, name) in AXES.into_iter().enumerate() {
@@ -242,14 +286,32 @@ fn misfit(compared: &[Compared]) -> Markup {
     let rows: Vec<Vec<String>> = all
         .chunk_by(|a, b| a.phase == b.phase)
         .map(|phase| {
-            let cells = phase.iter().map(|one| match one.before.max(one.after) > 0.0 {
-                true => format!("{:.2} → {:.2}", one.before, one.after),
+            let number = |misfit: f64| match misfit > 0.0 {
+                true => format!("{misfit:.2}"),
                 false => "not compared".to_owned(),
+            };
+            let cells = phase.iter().map(|one| match one.before.max(one.after) > 0.0 {
+                true => format!("{} → {}", number(one.before), number(one.after)),
+                false => number(0.0),
             });
             phase.first().map(|one| one.phase.to_owned()).into_iter().chain(cells).collect()
         })
         .collect();
     table(&["misfit", "fx", "fy", "fz"], &rows)
+}
+
+/// Returns a sentence on the components of the force that the identified numbers explain less well.
+fn worse(compared: &[Compared]) -> Option<String> {
+    let larger = |one: &Misfit| one.before > 0.0 && one.after > WORSE * one.before;
+    let all = misfits(compared).into_iter().filter(larger);
+    let names: Vec<String> = all.map(|one| format!("{} {}", one.phase, one.axis)).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "Larger with the identified numbers: {}. The fit minimizes the misfit of all components together, \
+             and a curve with the files' numbers may be compared for a shorter time.",
+            names.join(", ")
+        )
+    })
 }
 
 /// Draws one component of the force over time.

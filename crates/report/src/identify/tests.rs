@@ -11,7 +11,7 @@ use calibration::identify::smoother::Smoothed;
 use calibration::identify::unknown::{Unknown, ValueOrigin};
 use input::shipped::{PRIORS, ROBOTS};
 use insertion::evaluation::cell::Priors;
-use insertion::outcome::Outcome;
+use insertion::outcome::{FailureClass, Outcome};
 use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::surrogate::Estimate;
@@ -60,7 +60,9 @@ fn done() -> IdentifyDone {
     };
     let text = "the sensor is saturated".to_owned();
     let remark = Remark { file: FILE.to_owned(), lines: Some([3, 9]), text, serious: true };
-    IdentifyDone { task: "usb".to_owned(), remarks: vec![remark], found, cell }
+    let (file, text) = ("runs.csv".to_owned(), "the tool sinks".to_owned());
+    let of_all = Remark { file: file.clone(), lines: None, text, serious: false };
+    IdentifyDone { task: "usb".to_owned(), runs: file, remarks: vec![remark, of_all], found, cell }
 }
 
 #[test]
@@ -79,12 +81,27 @@ fn a_cell_that_predicts_worse_than_it_explains_is_doubtful() {
 }
 
 #[test]
+fn an_attempt_that_ends_differently_is_marked() {
+    let mut done = done();
+    let simulated = &mut done.found.compared[0].after;
+    simulated.1 = Outcome::Failed(FailureClass::Jammed);
+    simulated.0.force.truncate(100);
+    let page = html(&done);
+    assert!(page.contains("The identified cell predicts: jammed (class 3)."));
+    assert!(page.contains("The blue curve ends at 0.20 s with the simulated attempt: jammed"));
+    assert!(page.contains("11 of 12 attempts are simulated to end as measured"));
+}
+
+#[test]
 fn the_page_has_every_number_and_curve_and_runs_no_name() {
     let done = done();
     let page = html(&done);
     let has = |text: &str| assert!(page.contains(text), "{text}");
-    has("12 attempts and 1 probe on usb identify 1 of ");
-    has("misfit 2.00 standard deviations before the fit, 0.50 after");
+    has("<h1>usb: 1 of ");
+    has("From 12 attempts and 1 probe.");
+    has("2.00 to 0.50 standard deviations over the iterations; 90 % of the data compared");
+    has("12 of 12 attempts are simulated to end as measured; 12 with");
+    assert!(page.find("the tool sinks.") < page.find("class=\"warn\""), "the result comes first");
     has("&lt;b&gt;1.csv: lines 3 to 9: the sensor is saturated");
     has("not identifiable: a probe");
     has(

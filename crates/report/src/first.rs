@@ -138,7 +138,7 @@ fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Markup {
                 } @else if let Some((film, poster)) = linked.first().and_then(|film| Some((film, film.poster.as_ref()?))) {
                     div.stage {
                         a href=(pair_file(film.task, film.end)) {
-                            img src=(inert(poster)) alt="how the failed trial ended; opens its replay";
+                            img src=(data_url(poster)) alt="how the failed trial ended; opens its replay";
                         }
                     }
                     p.muted { "How the trial just outside the window ended. " (caption(film, tasks)) }

@@ -7,6 +7,7 @@ use crate::elements::{definitions, document, stacked, table};
 use crate::marks::{dashed, label, line};
 use crate::page::PLOT;
 use crate::theme::{BLUE, INK, MUTED, ORANGE, inline};
+use calibration::identify::check::Remark;
 use calibration::identify::curves::{Curves, STEP_S};
 use calibration::identify::formulas::{Flange, Friction};
 use calibration::identify::log::Ended;
@@ -30,7 +31,8 @@ const WORSE: f64 = 1.1;
 pub fn html(done: &IdentifyDone) -> String {
     let IdentifyDone { task, runs, remarks, found, .. } = done;
     let (serious, notes): (Vec<_>, Vec<_>) = remarks.iter().partition(|remark| remark.serious);
-    let (of_all, of_logs): (Vec<_>, Vec<_>) = notes.iter().partition(|note| note.file == *runs);
+    let (of_all, of_logs): (Vec<&Remark>, Vec<&Remark>) =
+        notes.into_iter().partition(|note| note.file == *runs);
     let rows: Vec<_> = found.unknowns.iter().map(unknown).collect();
     let body = html! {
         main {

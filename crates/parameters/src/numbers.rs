@@ -233,15 +233,16 @@ fn fits(pattern: &str, path: &str) -> bool {
         Some((word, rest)) => (word, Some(rest)),
         None => (pattern, None),
     };
-    let ends = path.match_indices('.').map(|(end, _)| end).chain([path.len()]);
-    ends.into_iter().any(|end| {
-        let fitting = word == "*" || word.split('|').any(|one| one == &path[..end]);
-        fitting
-            && match (rest, path.get(end + 1..)) {
-                (Some(rest), Some(path)) => fits(rest, path),
-                (rest, path) => rest.is_none() && path.is_none(),
-            }
-    })
+    let goes_on = |after: &str| match (rest, after.strip_prefix('.')) {
+        (Some(rest), Some(path)) => fits(rest, path),
+        (rest, _) => rest.is_none() && after.is_empty(),
+    };
+    if word == "*" {
+        let mut ends = path.match_indices('.').map(|(end, _)| end).chain([path.len()]);
+        ends.any(|end| goes_on(&path[end..]))
+    } else {
+        word.split('|').any(|one| path.strip_prefix(one).is_some_and(goes_on))
+    }
 }
 
 /// Checks a number against the bounds of its path.
@@ -285,12 +286,14 @@ fn check_value(
     let number = value.as_float().or(value.as_integer().map(|whole| whole as f64));
     match (value, number) {
         (Value::Table(table), _) => check_table(check, (path, key), table),
-        (Value::Array(items), _) => items.iter().enumerate().try_for_each(|(i, item)| {
+        (Value::Array(items), _) => {
             // The numbers of a list that vary together have one path.
-            let below = format!("{path}.{i}");
-            let own = NUMBERS.iter().any(|number| fits(number.pattern, path));
-            check_value(check, (if own { path } else { &below }, key), item)
-        }),
+            let one = NUMBERS.iter().any(|number| fits(number.pattern, path));
+            items.iter().enumerate().try_for_each(|(i, item)| match one {
+                true => check_value(check, (path, key), item),
+                false => check_value(check, (&format!("{path}.{i}"), key), item),
+            })
+        }
         (_, Some(number)) => {
             problem(path, number).map_or(Ok(()), |problem| check.fail(key, problem))
         }

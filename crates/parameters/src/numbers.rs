@@ -227,21 +227,24 @@ pub fn problem(path: &str, value: f64) -> Option<String> {
     out_of_bounds(value, row.bounds)
 }
 
-/// Returns whether a pattern has this path; a name in place of `*` may have dots of its own.
+/// Returns whether a pattern has this path.
 fn fits(pattern: &str, path: &str) -> bool {
-    let (word, rest) = match pattern.split_once('.') {
-        Some((word, rest)) => (word, Some(rest)),
-        None => (pattern, None),
-    };
-    let goes_on = |after: &str| match (rest, after.strip_prefix('.')) {
-        (Some(rest), Some(path)) => fits(rest, path),
-        (rest, _) => rest.is_none() && after.is_empty(),
+    below(pattern, path) == Some("")
+}
+
+/// Returns the rest of a pattern below this path, if there is one; a name in place of `*` may have dots of its own.
+fn below<'p>(pattern: &'p str, path: &str) -> Option<&'p str> {
+    let (word, rest) = pattern.split_once('.').unwrap_or((pattern, ""));
+    let goes_on = |after: &str| match after.strip_prefix('.') {
+        Some(path) if !rest.is_empty() => below(rest, path),
+        Some(_) => None,
+        None => after.is_empty().then_some(rest),
     };
     if word == "*" {
         let mut ends = path.match_indices('.').map(|(end, _)| end).chain([path.len()]);
-        ends.any(|end| goes_on(&path[end..]))
+        ends.find_map(|end| goes_on(&path[end..]))
     } else {
-        word.split('|').any(|one| path.strip_prefix(one).is_some_and(goes_on))
+        word.split('|').find_map(|one| goes_on(path.strip_prefix(one)?))
     }
 }
 
@@ -283,17 +286,20 @@ fn check_value(
     (path, key): (&str, &str),
     value: &Value,
 ) -> Result<(), InputError> {
+    let rests: Vec<_> = NUMBERS.iter().filter_map(|number| below(number.pattern, path)).collect();
     let number = value.as_float().or(value.as_integer().map(|whole| whole as f64));
     match (value, number) {
+        // Most numbers of a file are coordinates, which have no bounds of their own.
+        _ if rests.is_empty() => Ok(()),
         (Value::Table(table), _) => check_table(check, (path, key), table),
-        (Value::Array(items), _) => {
-            // The numbers of a list that vary together have one path.
-            let one = NUMBERS.iter().any(|number| fits(number.pattern, path));
-            items.iter().enumerate().try_for_each(|(i, item)| match one {
-                true => check_value(check, (path, key), item),
-                false => check_value(check, (&format!("{path}.{i}"), key), item),
-            })
+        // The numbers of a list that vary together have one path.
+        (Value::Array(items), _) if rests.contains(&"") => {
+            items.iter().try_for_each(|item| check_value(check, (path, key), item))
         }
+        (Value::Array(items), _) => items
+            .iter()
+            .enumerate()
+            .try_for_each(|(i, item)| check_value(check, (&format!("{path}.{i}"), key), item)),
         (_, Some(number)) => {
             problem(path, number).map_or(Ok(()), |problem| check.fail(key, problem))
         }

@@ -55,7 +55,7 @@ def test_a_window_with_sharp_ends_and_its_line(out, command):
     assert robot.offsets[:7] == [0.0, -0.5, -1.0, -1.5, -2.0, -2.5, -3.0]
     assert max(map(abs, robot.offsets)) <= 4.0
     code, said, errors = command("measure", "check", str(out))
-    assert code == 0 and "1 ranges" in said, errors
+    assert code == 0 and "1 range," in said, errors
     assert [line["offset_mm"] for line in log_of(out)] == robot.offsets
     # Measured today, it is not measured again.
     assert measure_window(robot, out=out, **FINGER) == found
@@ -75,7 +75,7 @@ def test_ends_that_are_not_met_are_bounds(out, command):
     assert (found.negative_mm, found.positive_mm, found.range_mm, found.settled) == (None, None, None, False)
     assert found.inserted_mm == (-3.0, 3.0)
     code, said, errors = command("measure", "check", str(out))
-    assert code == 0 and "1 lower bounds" in said, errors
+    assert code == 0 and "1 lower bound," in said, errors
 
 
 def test_attempts_max_ends_it(out):

@@ -227,24 +227,21 @@ pub fn problem(path: &str, value: f64) -> Option<String> {
     out_of_bounds(value, row.bounds)
 }
 
-/// Returns whether a pattern has this path.
+/// Returns whether a pattern has this path; a name in place of `*` may have dots of its own.
 fn fits(pattern: &str, path: &str) -> bool {
-    below(pattern, path) == Some("")
-}
-
-/// Returns the rest of a pattern below this path, if there is one; a name in place of `*` may have dots of its own.
-fn below<'p>(pattern: &'p str, path: &str) -> Option<&'p str> {
-    let (word, rest) = pattern.split_once('.').unwrap_or((pattern, ""));
-    let goes_on = |after: &str| match after.strip_prefix('.') {
-        Some(path) if !rest.is_empty() => below(rest, path),
-        Some(_) => None,
-        None => after.is_empty().then_some(rest),
+    let (word, rest) = match pattern.split_once('.') {
+        Some((word, rest)) => (word, Some(rest)),
+        None => (pattern, None),
+    };
+    let goes_on = |after: &str| match (rest, after.strip_prefix('.')) {
+        (Some(rest), Some(path)) => fits(rest, path),
+        (rest, _) => rest.is_none() && after.is_empty(),
     };
     if word == "*" {
         let mut ends = path.match_indices('.').map(|(end, _)| end).chain([path.len()]);
-        ends.find_map(|end| goes_on(&path[end..]))
+        ends.any(|end| goes_on(&path[end..]))
     } else {
-        word.split('|').find_map(|one| goes_on(path.strip_prefix(one)?))
+        word.split('|').any(|one| path.strip_prefix(one).is_some_and(goes_on))
     }
 }
 
@@ -261,47 +258,62 @@ pub fn check(check: Check<'_>, path: &str, value: f64) -> Result<(), InputError>
 /// # Errors
 /// The first number that is out of bounds: with the bounds.
 pub fn check_file(root: &str, table: &toml::Table, file: &str) -> Result<(), InputError> {
-    check_table(Check { file }, (root, ""), table)
+    let rows: Vec<Row> = NUMBERS
+        .iter()
+        .filter_map(|number| Some((number, number.pattern.strip_prefix(root)?.strip_prefix('.')?)))
+        .collect();
+    check_table(Check { file }, "", table, &rows)
 }
 
-/// Checks the numbers of a table; `path` is that of the table, and `key` names it in errors.
+/// Row of the table with the rest of its pattern, from where a walk through a file has come.
+type Row = (&'static Number, &'static str);
+
+/// Returns the rows whose patterns go on with a word that fits.
+fn next(rows: &[Row], fits: impl Fn(&str) -> bool) -> Vec<Row> {
+    let after = |(number, rest): &Row| {
+        let (word, rest) = rest.split_once('.').unwrap_or((rest, ""));
+        word.split('|').any(&fits).then_some((*number, rest))
+    };
+    rows.iter().filter_map(after).collect()
+}
+
 fn check_table(
     check: Check<'_>,
-    (path, key): (&str, &str),
+    key: &str,
     table: &toml::Table,
+    rows: &[Row],
 ) -> Result<(), InputError> {
     let name = table.get("name").and_then(Value::as_str).filter(|_| !key.is_empty());
-    table.iter().try_for_each(|(word, value)| {
-        let key = match name {
-            Some(name) => format!("{key} \"{name}\" {word}"),
-            None if key.is_empty() => word.clone(),
-            None => format!("{key}.{word}"),
-        };
-        check_value(check, (&format!("{path}.{word}"), &key), value)
-    })
+    for (word, value) in table {
+        let rows = next(rows, |one| one == word);
+        if !rows.is_empty() {
+            let key = match name {
+                Some(name) => format!("{key} \"{name}\" {word}"),
+                None if key.is_empty() => word.clone(),
+                None => format!("{key}.{word}"),
+            };
+            check_value(check, &key, value, &rows)?;
+        }
+    }
+    Ok(())
 }
 
-fn check_value(
-    check: Check<'_>,
-    (path, key): (&str, &str),
-    value: &Value,
-) -> Result<(), InputError> {
-    let rests: Vec<_> = NUMBERS.iter().filter_map(|number| below(number.pattern, path)).collect();
-    let number = value.as_float().or(value.as_integer().map(|whole| whole as f64));
-    match (value, number) {
-        // Most numbers of a file are coordinates, which have no bounds of their own.
-        _ if rests.is_empty() => Ok(()),
-        (Value::Table(table), _) => check_table(check, (path, key), table),
-        // The numbers of a list that vary together have one path.
-        (Value::Array(items), _) if rests.contains(&"") => {
-            items.iter().try_for_each(|item| check_value(check, (path, key), item))
+fn check_value(check: Check<'_>, key: &str, value: &Value, rows: &[Row]) -> Result<(), InputError> {
+    match value {
+        Value::Table(table) => check_table(check, key, table, rows),
+        Value::Array(items) => {
+            let mut below = next(rows, |one| one == "*");
+            // The numbers of a list that vary together have one path.
+            below.extend(rows.iter().filter(|(_, rest)| rest.is_empty()));
+            items.iter().try_for_each(|item| check_value(check, key, item, &below))
         }
-        (Value::Array(items), _) => items
-            .iter()
-            .enumerate()
-            .try_for_each(|(i, item)| check_value(check, (&format!("{path}.{i}"), key), item)),
-        (_, Some(number)) => {
-            problem(path, number).map_or(Ok(()), |problem| check.fail(key, problem))
+        Value::Integer(_) | Value::Float(_) => {
+            let number = value.as_float().or(value.as_integer().map(|whole| whole as f64));
+            match (number, rows.iter().find(|(_, rest)| rest.is_empty())) {
+                (Some(value), Some((row, _))) => out_of_bounds(value, row.bounds)
+                    .map_or(Ok(()), |problem| check.fail(key, problem)),
+                _ => Ok(()),
+            }
         }
         _ => Ok(()),
     }

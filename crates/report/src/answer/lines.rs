@@ -112,7 +112,7 @@ pub fn force(answer: &Answer) -> Option<Line> {
         Some(safe) => format!("take the safe choice, {}", words::design(&safe.design.design)),
         // A study that predicts a robot takes no constraints.
         None if answer.record.on_bench.is_some() => {
-            format!("try optimize task tune --max-force-n {:.0}", acceptable(answer))
+            format!("try optimize task tune FILE --max-force-n {:.0}", acceptable(answer))
         }
         None => format!("try --constraint 'peak-force<={:.0}'", acceptable(answer)),
     };

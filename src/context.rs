@@ -47,14 +47,28 @@ impl<'a> Context<'a> {
             return Ok(());
         }
         let dir = dir.display().to_string();
-        let handler = move || {
+        watch(move || {
             INTERRUPTED.store(true, Ordering::SeqCst);
             std::thread::sleep(GRACE);
             say(&format!("stopped; continue with: optimize resume {dir}"));
             std::process::exit(1);
-        };
-        ctrlc::set_handler(handler)
-            .map_err(|error| Failure::running(format!("cannot watch for Ctrl-C: {error}")))
+        })
+    }
+
+    /// Lets Ctrl-C or SIGTERM cancel a command of the terminal, which then keeps what it has; a second one ends the
+    /// process.
+    ///
+    /// # Errors
+    /// If signals cannot be watched.
+    pub fn cancel_on_interrupt(&self) -> Result<(), Failure> {
+        if self.shown.is_none() {
+            return Ok(());
+        }
+        watch(|| {
+            if INTERRUPTED.swap(true, Ordering::SeqCst) {
+                std::process::exit(1);
+            }
+        })
     }
 
     /// Checks that the command has not been cancelled.
@@ -153,6 +167,11 @@ impl Shown {
     fn progress(&self) -> MutexGuard<'_, Option<Progress>> {
         self.progress.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+fn watch(handler: impl FnMut() + 'static + Send) -> Result<(), Failure> {
+    ctrlc::set_handler(handler)
+        .map_err(|error| Failure::running(format!("cannot watch for Ctrl-C: {error}")))
 }
 
 /// Checks that a run has not been cancelled.

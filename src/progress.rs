@@ -101,14 +101,8 @@ impl Progress {
 
     /// Adds a part of this cost; the last of a phase is always shown.
     fn step(&mut self, cost: f64, what: &str, last: bool) {
-        self.done += cost;
-        self.left = (self.left - cost).max(0.0);
-        let took = self.last.elapsed();
+        let left = self.time_left(cost, self.last.elapsed());
         self.last = Instant::now();
-        if took > CACHED {
-            self.computed = (self.computed.0 + cost, self.computed.1 + took);
-        }
-        let left = self.computed.1.mul_f64(self.left / self.computed.0.max(1.0));
         if let Some(bar) = &self.bar {
             bar.set_message(format!("{what}, about {:#} left", HumanDuration(left)));
             bar.set_length((self.done + self.left).ceil() as u64);
@@ -117,6 +111,16 @@ impl Progress {
             self.said = Instant::now();
             say(&format!("{what}, about {} s left", left.as_secs()));
         }
+    }
+
+    /// Counts a part of this cost that took so long; returns the time left, by the parts that were no cached results.
+    fn time_left(&mut self, cost: f64, took: Duration) -> Duration {
+        self.done += cost;
+        self.left = (self.left - cost).max(0.0);
+        if took > CACHED {
+            self.computed = (self.computed.0 + cost, self.computed.1 + took);
+        }
+        self.computed.1.mul_f64(self.left / self.computed.0.max(1.0))
     }
 
     /// Writes a line on standard error, above a bar.
@@ -180,4 +184,18 @@ fn bar(left: f64) -> ProgressBar {
     }
     bar.enable_steady_tick(Duration::from_millis(500));
     bar
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cached_results_do_not_shorten_the_time_left() {
+        let mut progress = Progress::of(10.0, false);
+        let second = Duration::from_secs(1);
+        (0..5).for_each(|_| assert!(progress.time_left(1.0, CACHED / 2).is_zero()));
+        assert_eq!(progress.time_left(1.0, second), 4 * second);
+        assert_eq!(progress.time_left(2.0, 4 * second), 2 * second * 5 / 3);
+    }
 }

@@ -209,6 +209,8 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
     let next = line(&format!("next --task ket8 {few} bench.csv"));
     let words = "ket8: nothing measured yet (bench.csv does not exist); by simulation alone\n";
     assert!(next.succeeds().starts_with(words), "{}", next.stdout);
+    let first = "bench.csv does not exist: fingers are chosen by simulation alone\n";
+    assert!(next.stderr.starts_with(first), "{}", next.stderr);
     line(&format!("next {few} bench.csv")).fails(2, &["bench.csv: has no line", "give --task"]);
     line(&format!("calibrate --task ket8 {few} bench.csv")).fails(2, &["bench.csv: cannot read"]);
     line(&format!("next --task ket8 {few} bensh")).fails(2, &["unknown measurement file `bensh`"]);

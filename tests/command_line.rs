@@ -256,6 +256,8 @@ fn the_project_file_gives_defaults_that_options_precede() {
     studies.file("lab/finger-opt.toml", "seed = 3\n");
     lines("lab", "config")
         .fails(2, &["finger-opt.toml", "seed: belongs to one study; give --seed"]);
+    studies.file("lab/finger-opt.toml", "task = \"usb,kett\"\n");
+    lines("lab", "config").fails(2, &["finger-opt.toml: ", "`kett`", "ket8, ket12, rj45, usb"]);
     studies.file("lab/finger-opt.toml", "tasks = \"usb\"\n");
     lines("lab", study).fails(2, &["finger-opt.toml", "tasks"]);
 }

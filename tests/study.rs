@@ -4,7 +4,7 @@ mod common;
 
 use ask_tell::OptimizerKind;
 use ask_tell::stream::stream;
-use common::{SLOW, Studies, end, read, run, start};
+use common::{SLOW, Studies, end, fake, read, run, start};
 use rand::RngExt;
 use std::fs;
 use std::io::Write;
@@ -450,4 +450,15 @@ fn a_task_that_no_design_does_ends_with_what_went_wrong() {
     let json: serde_json::Value = serde_json::from_str(&json.stdout).unwrap();
     assert_eq!(json["recommended"], serde_json::Value::Null);
     assert!(studies.dir("s").join("nominal.svg").exists());
+}
+
+#[test]
+fn the_next_command_names_the_file_of_ones_own_task() {
+    let studies = Studies::new();
+    let text = include_str!("../tasks/usb.toml").replace("name = \"usb\"", "name = \"mine\"");
+    let own = studies.file("mine.toml", text);
+    let line =
+        format!("--task {own} --budget 4 --no-levers --no-map --json --out {}", studies.word("s"));
+    let next = &fake(&line).json()["answer"]["next"]["command"];
+    assert_eq!(next, &format!("optimize measure add bench.csv --task {own}"));
 }

@@ -3,9 +3,14 @@
 mod common;
 
 use common::{Studies, optimize};
+use connector::tune::{Effort, Stage, tune};
+use finger_opt::setup::files::robot;
+use finger_opt::setup::tune::bench;
 use insertion::task::Task;
+use insertion::trial::engine::EngineKind;
 use serde_json::Value;
 use std::fs::read_to_string;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 fn shipped(name: &str) -> &'static str {
     input::shipped::TASKS.iter().find(|file| file.name == name).unwrap().text
@@ -67,4 +72,24 @@ fn where_nothing_inserts_it_is_said_with_what_stopped_the_plug() {
     let ran = optimize(&["task", "tune", "usb"]);
     assert_eq!(ran.code, Some(2));
     assert!(ran.stderr.contains("name the file to write with --out"), "{}", ran.stderr);
+}
+
+#[test]
+fn an_interrupt_leaves_what_was_tried_until_then() {
+    let task = Task::parse(&off(), "own.toml").unwrap();
+    let (robot, stop) = (robot("servo").unwrap(), AtomicBool::new(false));
+    let bench = bench(&task, &robot, EngineKind::Direct, &stop).unwrap();
+    let quiet = |_: &str, _, _, _| ();
+    let effort = |last, tell| Effort { last, until_enough: false, seed: 0, tell };
+    let whole = tune(&bench, &effort(Stage::Families, &quiet)).unwrap();
+    // In the middle of the search, whose first candidates have been told by then.
+    let stop_in_search = |_: &str, _, windows, _| {
+        stop.store(windows > whole.windows, Ordering::SeqCst);
+    };
+    let cut = tune(&bench, &effort(Stage::Search, &stop_in_search)).unwrap();
+    assert_eq!(cut.steps[..whole.steps.len()], whole.steps);
+    assert!(cut.inserts() && cut.best > 0, "{:?}", cut.best());
+    assert_eq!(cut.kept, []);
+    let costs: usize = cut.steps.iter().map(|step| step.tried.cost).sum();
+    assert_eq!(cut.windows, costs);
 }

@@ -5,7 +5,9 @@ use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout::lines;
 use crate::project::{PROJECT_FILE, Project, Settings};
+use crate::setup::files::robot;
 use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE};
+use crate::setup::task::{read_space, read_task};
 use serde::Serialize;
 
 /// Print the settings of finger-opt.toml in this folder or above
@@ -30,9 +32,22 @@ impl command::Request for Request {
 
     fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
         let found = Project::current()?;
+        found.iter().try_for_each(check)?;
         let (file, settings) = found.map(|found| (found.file, found.settings)).unzip();
         let value = Held { file, settings: settings.unwrap_or_default() };
         Ok(Output { text: value.text(), value, picture: None })
+    }
+}
+
+/// Checks the names of tasks, robot and space. Cell and measurements may still be missing: commands create them.
+fn check(Project { file, settings }: &Project) -> Result<(), Failure> {
+    let Settings { task, robot: of_robot, space, .. } = settings;
+    let tasks = task.iter().flat_map(|tasks| tasks.split(',')).map(|name| read_task(name).err());
+    let robot = of_robot.iter().map(|name| robot(name).err());
+    let space = space.iter().map(|name| read_space(name).err());
+    match tasks.chain(robot).chain(space).flatten().next() {
+        Some(problem) => Err(Failure::in_file(file, problem)),
+        None => Ok(()),
     }
 }
 

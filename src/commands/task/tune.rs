@@ -32,7 +32,7 @@ use study::write_file;
 ///
 /// First the start is taught with a medium finger; then the strategies of the shipped tasks are tried, scaled to
 /// this opening; then tilt, strokes, preload and push speed are optimized for the smallest range of a soft, a
-/// medium and a stiff finger. Exit code 1 if nothing inserts.
+/// medium and a stiff finger. Exit code 1 if nothing inserts. Ctrl-C writes the best strategy so far.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(display_order = 5, after_help = "Example: optimize task tune mine.toml --svg mine.svg")]
 pub struct Request {
@@ -103,6 +103,7 @@ impl command::Request for Request {
 
     fn run(&self, context: &Context<'_>) -> Result<Done, Failure> {
         let stop = context.stop;
+        context.cancel_on_interrupt()?;
         context.begin(MOST_WINDOWS as f64);
         let file = TaskFile::parse(TaskSource::Named(self.file.clone()).read()?)?;
         let target = self.target()?;
@@ -120,7 +121,9 @@ impl command::Request for Request {
         let effort =
             Effort { last: Stage::Search, until_enough: false, seed: self.seed, tell: &said };
         let tuned = tune(&bench, &effort).map_err(Failure::input)?;
-        not_stopped(stop)?;
+        if context.check().is_err() {
+            return Err(self.interrupted(&file, &tuned, target)?);
+        }
         let Bench { fingers, limits, .. } = bench;
         let mut done = Done {
             file: self.file.clone(),
@@ -179,14 +182,24 @@ impl Request {
         robot: &Robot,
         (target, stop): (Option<&Path>, &AtomicBool),
     ) -> Result<After, Failure> {
-        let strategy = &done.tuned.best().tried.strategy;
-        let after = TaskFile::parse(rewritten(&file.source, &file.task, strategy)?)?;
+        let after = rewritten(file, &done.tuned)?;
         let bench = self.bench(&after.task, robot, stop)?;
         let found = bench.windows(&after.task.strategy, &bench.fingers, Conditions::NOMINAL);
         not_stopped(stop)?;
         let found = found.map_err(Failure::input)?;
         let force_n = found.iter().map(|found| found.force_n).fold(0.0, f64::max);
         let windows = found.into_iter().map(|found| found.window).collect();
+        self.save(file, &after, target)?;
+        Ok(After { windows, force_n })
+    }
+
+    /// Writes the drawing and, unless it is a dry run, the task.
+    fn save(
+        &self,
+        file: &TaskFile,
+        after: &TaskFile,
+        target: Option<&Path>,
+    ) -> Result<(), Failure> {
         if let Some(svg) = &self.svg {
             write_file(svg, &picture::both(&file.task, &after.task))?;
         }
@@ -196,13 +209,35 @@ impl Request {
             let text = &after.source.text;
             write_file(target, if beside { without_parts(text) } else { text })?;
         }
-        Ok(After { windows, force_n })
+        Ok(())
+    }
+
+    /// Writes the best strategy so far, if it is another one; returns the error of the interruption.
+    fn interrupted(
+        &self,
+        file: &TaskFile,
+        tuned: &Tuned,
+        target: Option<&Path>,
+    ) -> Result<Failure, Failure> {
+        let Some(target) = target.filter(|_| tuned.best > 0 && tuned.inserts() && !self.dry_run)
+        else {
+            return Ok(Failure::Interrupted(None));
+        };
+        self.save(file, &rewritten(file, tuned)?, Some(target))?;
+        let (best, target) = (outcome(tuned.best()), target.display());
+        let hint = format!(
+            "{target} has the best strategy so far ({best}); go on with: optimize task tune {target}"
+        );
+        Ok(Failure::Interrupted(Some(hint)))
     }
 }
 
-fn rewritten(source: &Source, task: &Task, strategy: &Strategy) -> Result<Source, Failure> {
+/// Returns the task file with the recommended strategy.
+fn rewritten(file: &TaskFile, tuned: &Tuned) -> Result<TaskFile, Failure> {
+    let TaskFile { source, task } = file;
+    let strategy = &tuned.best().tried.strategy;
     let text = rewrite::strategy(&source.text, task, strategy).map_err(Failure::input)?;
-    Ok(Source { file: source.file.clone(), text })
+    TaskFile::parse(Source { file: source.file.clone(), text })
 }
 
 /// Strategy with the windows of the fingers, as in the output of `--json`.

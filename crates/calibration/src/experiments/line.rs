@@ -94,8 +94,9 @@ pub(super) fn experiment(cells: &mut Cells<'_>, before: &[Experiment]) -> Experi
         cells.problems.extend(twice(&experiment, before));
     }
     let ends = experiment.positive_mm.zip(experiment.negative_mm);
-    experiment.range_mm =
-        experiment.range_mm.or(ends.map(|(positive, negative)| positive - negative));
+    // Without the rounding error of the subtraction.
+    let width = |(positive, negative): (f64, f64)| ((positive - negative) * 1e6).round() / 1e6;
+    experiment.range_mm = experiment.range_mm.or(ends.map(width));
     experiment
 }
 

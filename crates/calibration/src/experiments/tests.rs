@@ -32,6 +32,7 @@ fn partial_data_are_data() {
     let range = |mm: f64| Some((mm, false));
     assert_eq!(extents, [range(7.6), range(5.5), Some((1.5, true)), None, range(4.0)]);
     assert_eq!((found[1].repeats, found[3].note.as_str(), found[0].line), (2, "the pad tore", 2));
+    assert_eq!(of("ket8,20,0,-2.3,1.8,,,,,").unwrap()[0].range_mm, Some(4.1));
     assert_eq!(parse("", "m.csv"), Ok(vec![]));
     assert_eq!(of("").map(|found| found.len()), Ok(0));
 }

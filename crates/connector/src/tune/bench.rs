@@ -12,7 +12,7 @@ use insertion::trial::engine::EngineKind;
 use insertion::trial::run::RigError;
 use insertion::trial::{Conditions, Grasp, Trial};
 use rayon::prelude::*;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Smallest sufficient window on either side of the start, mm.
 pub const ENOUGH_MM: f64 = 0.5;
@@ -94,6 +94,11 @@ impl<'a> Bench<'a> {
         let force = task.limits.force.or(Some(robot.stop_force));
         let limits = Limits { force, ..task.limits };
         Some(Bench { task, robot, engine, fingers, others, limits, stop })
+    }
+
+    /// Returns whether it was stopped; what was measured last is then invalid.
+    pub(super) fn stopped(&self) -> bool {
+        self.stop.load(Ordering::SeqCst)
     }
 
     /// Returns the window of a finger.

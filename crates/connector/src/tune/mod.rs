@@ -100,6 +100,9 @@ pub struct Effort<'a> {
 
 /// Tunes the strategy of the bench's task.
 ///
+/// If `bench.stop` is set meanwhile, the result is what was tried until then; nothing else is in `steps`, and `kept` is
+/// empty.
+///
 /// # Errors
 /// If the task cannot be simulated as it is.
 pub fn tune(bench: &Bench, effort: &Effort) -> Result<Tuned, Impossible> {
@@ -107,10 +110,9 @@ pub fn tune(bench: &Bench, effort: &Effort) -> Result<Tuned, Impossible> {
     let given = bench.given(&bench.task.strategy)?;
     tuned.add(Stage::AsItIs, [("as it is".to_owned(), given)], effort);
     for stage in [Stage::Start, Stage::Families, Stage::Search] {
-        let stopped = bench.stop.load(std::sync::atomic::Ordering::SeqCst);
         let tried = stage > Stage::Start && effort.until_enough;
         let enough = tried && tuned.best().tried.is_enough();
-        if stage > effort.last || enough || stopped {
+        if stage > effort.last || enough || bench.stopped() {
             break;
         }
         match stage {
@@ -179,11 +181,17 @@ impl Tuned {
         let tried = bench.taught(own)?;
         let what =
             format!("start taught, {:+.1} mm in y", (tried.strategy.start[1] - own.start[1]) / MM);
-        self.add(Stage::Start, bench.with_slower_push(what, tried), effort);
+        let slowed = bench.with_slower_push(what, tried);
+        if bench.stopped() {
+            return Ok(());
+        }
+        self.add(Stage::Start, slowed, effort);
         let upright = own.tilt == 0.0 && effort.until_enough && !has_core(bench.task);
         if upright && let Some(strategy) = Family::Key.of(bench.task) {
-            let tried = bench.taught(&strategy)?;
-            self.add(Stage::Start, bench.with_slower_push(Family::Key.name(), tried), effort);
+            let slowed = bench.with_slower_push(Family::Key.name(), bench.taught(&strategy)?);
+            if !bench.stopped() {
+                self.add(Stage::Start, slowed, effort);
+            }
         }
         Ok(())
     }
@@ -197,7 +205,9 @@ impl Tuned {
                 Some(bench.with_slower_push(family.name(), tried))
             })
             .collect();
-        self.add(Stage::Families, tried.into_iter().flatten().flatten(), effort);
+        if !bench.stopped() {
+            self.add(Stage::Families, tried.into_iter().flatten().flatten(), effort);
+        }
     }
 
     fn search(&mut self, bench: &Bench, effort: &Effort) -> Result<(), InputError> {
@@ -211,7 +221,7 @@ impl Tuned {
         optimizer.tell(&[Observation::new(middle, Some(self.best().tried.score))]);
         while self.windows + BATCH * EACH <= limit {
             let points = optimizer.ask(BATCH);
-            if points.is_empty() || bench.stop.load(std::sync::atomic::Ordering::SeqCst) {
+            if points.is_empty() {
                 break;
             }
             let tried: Vec<_> = points
@@ -221,6 +231,9 @@ impl Tuned {
                     (what, bench.taught(&strategy).ok())
                 })
                 .collect();
+            if bench.stopped() {
+                break;
+            }
             let score = |tried: &Option<Tried>| tried.as_ref().map(|tried| tried.score);
             let told: Vec<_> = points
                 .into_iter()
@@ -259,6 +272,9 @@ impl Tuned {
             }
             checked += 1;
             let kept = self.kept(bench, strategy, &bench.others[1..2], TURNED)?;
+            if bench.stopped() {
+                return Ok(());
+            }
             self.windows += kept.len();
             let turned = kept.iter().map(|kept| kept.least_range_mm).fold(f64::INFINITY, f64::min);
             if turned <= 0.0 {
@@ -271,8 +287,11 @@ impl Tuned {
             }
         }
         self.best = most.0;
-        self.kept = self.kept(bench, &self.best().tried.strategy, &bench.others, 0..CHANGES)?;
-        self.windows += self.kept.len() * bench.others.len();
+        let kept = self.kept(bench, &self.best().tried.strategy, &bench.others, 0..CHANGES)?;
+        if !bench.stopped() {
+            self.windows += kept.len() * bench.others.len();
+            self.kept = kept;
+        }
         Ok(())
     }
 

@@ -90,10 +90,11 @@ pub struct Evaluation {
     pub failure_counts: [u32; 4],
     /// Trials that diverged numerically.
     pub diverged: u32,
-    /// Largest contact force between plug and socket over the inserted trials, N.
+    /// Largest contact force between plug and socket over the inserted trials, N; NaN if none inserted.
     #[serde(deserialize_with = "null_is_nan")]
     pub peak_force_n: f64,
-    /// Largest slip of the part in the grasp over the inserted trials, mm.
+    /// Largest slip of the part in the grasp over the inserted trials, mm; NaN if none
+    /// inserted.
     #[serde(deserialize_with = "null_is_nan")]
     pub slip_mm: f64,
     /// Trials of the window search.

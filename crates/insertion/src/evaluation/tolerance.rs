@@ -123,8 +123,9 @@ impl Evaluation {
             failure_counts: [0; 4],
             diverged: 0,
             trials: 0,
-            peak_force_n: 0.0,
-            slip_mm: 0.0,
+            // Until a trial inserts there is no largest value.
+            peak_force_n: f64::NAN,
+            slip_mm: f64::NAN,
             simulated_s: 0.0,
             end_shares,
             taught: None,

@@ -36,6 +36,14 @@ impl Named<'_> {
         let tasks = tasks.map(|number| self.input(&format!("task_{number}"), TASKS));
         tasks.collect::<Vec<_>>().join(",")
     }
+
+    /// Returns the user's own file of the task at `place`; a task passed as text from Python has none.
+    fn own_file(&self, place: usize) -> Option<&String> {
+        let role = format!("task_{}", place + 1);
+        let files = &self.record.config.conclusion.task_files;
+        let own = name(self.provenance(), &role, TASKS).is_none();
+        files.get(place).filter(|file| own && file.ends_with(".toml"))
+    }
 }
 
 /// Number of fingers to print at a time.
@@ -44,8 +52,9 @@ const PRINTS: usize = 3;
 /// Returns the next step as a complete command, and its purpose; `dir` is the study's folder.
 pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
     let named = Named { record: answer.record, dir };
-    let tasks = named.tasks();
     let several = answer.record.config.several_tasks();
+    // Measurements belong to the user's file, not to its copy.
+    let task = named.own_file(0).cloned().unwrap_or_else(|| named.input("task_1", TASKS));
     match (&answer.verdict, &answer.trust) {
         (Verdict::NothingInserts { place, .. }, _) => mend(answer.record, dir, *place),
         (Verdict::NoneFeasible, _) => (
@@ -60,7 +69,7 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
             };
             let file = shipped.map(str::to_owned).or(given);
             let file = file.unwrap_or_else(|| named.input("measurements", MEASUREMENTS));
-            let asked = format!("--task {tasks} --measurements {file} --count {PRINTS}");
+            let asked = format!("--task {task} --measurements {file} --count {PRINTS}");
             let why = match (&answer.verdict, &answer.record.on_bench) {
                 (Verdict::MeasuredBefore { .. }, _) => {
                     "check whether printing another finger is worth it"
@@ -71,7 +80,7 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
             (format!("optimize next {asked}"), why)
         }
         _ => {
-            let task = if several { String::new() } else { format!(" --task {tasks}") };
+            let task = if several { String::new() } else { format!(" --task {task}") };
             (format!("optimize measure add bench.csv{task}"), "enter what your robot measured")
         }
     }
@@ -84,9 +93,7 @@ pub fn mend(record: &StudyRecord, dir: &Path, place: usize) -> (String, &'static
     if let Some(shipped) = name(named.provenance(), &role, TASKS) {
         return (format!("optimize task check {shipped}"), "find out why nothing inserts");
     }
-    let given = record.config.conclusion.task_files.get(place);
-    // A task passed as text from Python has no file.
-    let file = given.filter(|file| file.ends_with(".toml")).cloned().unwrap_or_else(|| {
+    let file = named.own_file(place).cloned().unwrap_or_else(|| {
         format!("{} --out {}.toml", named.input(&role, TASKS), record.config.tasks[place])
     });
     (format!("optimize task tune {file}"), "find a start and a strategy that insert")

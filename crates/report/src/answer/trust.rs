@@ -71,6 +71,7 @@ impl Trust {
     /// Returns the label of the evidence.
     pub fn label(&self) -> &'static str {
         match self {
+            Trust::Calibrated { fingers: 1, .. } => "corrected by one measured finger",
             Trust::Calibrated { .. } => "calibrated on measured fingers",
             Trust::Published { .. } => "simulated; similar fingers measured",
             Trust::Simulated { .. } => "simulated only",

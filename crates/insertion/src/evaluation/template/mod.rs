@@ -121,7 +121,15 @@ impl Template {
         let finger = finger.iter().map(String::as_str);
         let elsewhere: Vec<_> = finger.chain([DENSITY_KEY, DIRECTION_KEY]).collect();
         let table = self.numbers.with(of_task.iter().copied(), &elsewhere)?;
-        Task::from_table(table, &self.numbers.file)
+        let changed = Task::from_table(table, &self.numbers.file);
+        changed.or_else(|error| {
+            // The file itself is valid.
+            let of_error = |path: &&str| path.strip_prefix("task.") == error.key.as_deref();
+            match of_task.iter().map(|(path, _)| *path).find(of_error) {
+                Some(path) => DESIGN.fail(path, error.problem),
+                None => Err(error),
+            }
+        })
     }
 }
 
@@ -138,6 +146,13 @@ mod tests {
     fn usb() -> Template {
         let file = task_file("usb");
         Template::parse(file.text, file.file).unwrap()
+    }
+
+    #[test]
+    fn a_value_out_of_range_is_an_error_of_the_design() {
+        let design = Design::infill(20.0, 0.0).with("task.strategy.tilt_deg", 400.0);
+        let error = usb().apply(&design, &FingerSource::Paper, &at_pad()).unwrap_err().to_string();
+        assert!(error.starts_with("design: task.strategy.tilt_deg: is 400; "), "{error}");
     }
 
     fn at_pad() -> Prediction {

@@ -7,7 +7,7 @@ use contact::scene::{Body, Friction, Geom, Inertia, Motion, Pose, Scene, Shape};
 use contact::{Engine, World};
 use divan::{Bencher, black_box};
 use finray::geometry::Geometry;
-use finray::infill::Design;
+use finray::infill::InfillDesign;
 use finray::mechanics;
 use finray::printed::PrintedFinger;
 use input::shipped::{FINGERS, ROBOTS, Shipped, TASKS};
@@ -130,7 +130,7 @@ fn solver_10_steps(bencher: Bencher) {
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn stiffness_of_a_printed_finger(bencher: Bencher) {
     let finger = PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).expect("a finger");
-    let design = Design { density_percent: 20.0, direction_deg: 10.0, phase_mm: None };
+    let design = InfillDesign { density_percent: 20.0, direction_deg: 10.0, phase_mm: None };
     bencher.bench(|| {
         let geometry = Geometry::new(black_box(&finger), &design).expect("it fits");
         mechanics::compute(&geometry).expect("a stiffness")

@@ -7,7 +7,7 @@ use common::{Studies, optimize_line, read};
 use finray::export::prism::Prism;
 use finray::export::slicer;
 use finray::geometry::Geometry;
-use finray::infill::Design;
+use finray::infill::InfillDesign;
 use finray::printed::PrintedFinger;
 use nalgebra::Matrix3;
 use std::collections::BTreeMap;
@@ -23,7 +23,7 @@ fn finray9(density_percent: f64, direction_deg: f64) -> Geometry {
 fn holed(density_percent: f64, direction_deg: f64, holes: &str) -> Geometry {
     let text = include_str!("../fingers/finray9.toml").to_owned() + holes;
     let finger = PrintedFinger::parse(&text, "finray9.toml").expect("the shipped finger");
-    let design = Design { density_percent, direction_deg, phase_mm: None };
+    let design = InfillDesign { density_percent, direction_deg, phase_mm: None };
     Geometry::new(&finger, &design).expect("a finger that can be printed")
 }
 

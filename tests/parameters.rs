@@ -90,5 +90,5 @@ fn every_number_of_finger_and_robot_can_be_a_row_of_a_cell() {
     evaluate("shift.toml", row("finger.mass_g", "shift", 1.0, 2.0)).fails(2, &["stays above 0"]);
     evaluate("low.toml", row("finger.mass_g", "value", -1.0, 2.0)).fails(2, &["must lie in 1e-9"]);
     evaluate("error.toml", row("cell.clearance_mm", "shift", 0.1, 0.2))
-        .fails(2, &["`cell.clearance_mm` is no number of a cell"]);
+        .fails(2, &["`cell.clearance_mm` cannot be set by a cell"]);
 }

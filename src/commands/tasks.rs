@@ -5,7 +5,7 @@ use crate::context::Context;
 use crate::failure::Failure;
 use crate::setup::task::TaskFile;
 use connector::seat::clearance;
-use input::shipped::{SOLD, SPACES, Shipped, Source, TASKS, UNCERTAINTIES};
+use input::shipped::{COMMERCIAL, SPACES, Shipped, Source, TASKS, UNCERTAINTIES};
 use input::units::MM;
 use serde::Serialize;
 use std::fmt;
@@ -42,7 +42,7 @@ impl command::Request for Request {
     type Response = Output<Listed>;
 
     fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
-        let tasks = TASKS.iter().chain(SOLD).map(listed).collect::<Result<Vec<_>, _>>()?;
+        let tasks = TASKS.iter().chain(COMMERCIAL).map(listed).collect::<Result<Vec<_>, _>>()?;
         let [spaces, uncertainties] = [SPACES, UNCERTAINTIES].map(described);
         let value = Listed { tasks, spaces: spaces?, uncertainties: uncertainties? };
         let text = value.to_string();

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use calibration::experiments::{self, Experiment};
 use calibration::subject::whole;
 use input::files::{LARGEST_INPUT, read_text};
-use input::shipped::{MEASUREMENTS, SOLD, Source, TASKS};
+use input::shipped::{COMMERCIAL, MEASUREMENTS, Source, TASKS};
 use insertion::evaluation::cell::Priors;
 use insertion::evaluation::template::Template;
 use insertion::space::Space;
@@ -86,8 +86,9 @@ pub fn task(source: &Source) -> Result<TaskSource, Failure> {
             false => format!("has lines of {}", tasks.join(", ")),
         }));
     };
-    let shipped =
-        || [TASKS, SOLD].concat().iter().any(|shipped| shipped.name == task).then(|| task.into());
+    let shipped = || {
+        [TASKS, COMMERCIAL].concat().iter().any(|shipped| shipped.name == task).then(|| task.into())
+    };
     let path = own_task(source, task)?.or_else(shipped);
     let path = path.ok_or_else(|| wrong(format!("no file is known of the task `{task}`")))?;
     Ok(TaskSource::Named(path.to_string_lossy().into_owned()))
@@ -99,7 +100,7 @@ const MOST_FINGERS: usize = 200;
 /// Returns the measurements of a file in the order that determines the draws; their tasks are shipped ones,
 /// those in `more`, or have a comment line.
 pub fn lines(source: &Source, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
-    let shipped = TASKS.iter().chain(SOLD).map(|task| task.name);
+    let shipped = TASKS.iter().chain(COMMERCIAL).map(|task| task.name);
     let own = experiments::own_tasks(&source.text).into_keys().filter(|own| !more.contains(own));
     let known: Vec<&str> = shipped.chain(more.iter().copied()).chain(own).collect();
     let found = experiments::parse_known(&source.text, &source.file, &known);

@@ -4,7 +4,7 @@ use super::Setup;
 use super::files::{DEFAULT_FINGER, Fingers, find, stiffness_data};
 use crate::failure::Failure;
 use input::files::{LARGEST_INPUT, read_text};
-use input::shipped::{FINGERS, ROBOTS, SOLD, SPACES, Source, TASKS, resolve};
+use input::shipped::{COMMERCIAL, FINGERS, ROBOTS, SPACES, Source, TASKS, resolve};
 use insertion::evaluation::cell::Priors;
 use insertion::finger::file::is_shape;
 use insertion::finger::model::{FingerModelKind, FingerSource};
@@ -61,7 +61,7 @@ impl TaskSource {
     pub fn read(&self) -> Result<Source, Failure> {
         let source = match self {
             TaskSource::Named(name) => {
-                resolve("task", &[TASKS, SOLD].concat(), name).map_err(Failure::task)?
+                resolve("task", &[TASKS, COMMERCIAL].concat(), name).map_err(Failure::task)?
             }
             TaskSource::Given(source) => source.clone(),
         };

@@ -111,8 +111,8 @@ impl AskTellStudy {
         let work = Work {
             proposal,
             seed: study.config.seed,
-            success_rate: goals.need(Measure::SuccessRate),
-            robust_range: goals.need(Measure::RobustRange),
+            success_rate: goals.needs(Measure::SuccessRate),
+            robust_range: goals.needs(Measure::RobustRange),
             provenance: study.provenance().clone(),
             inputs: setup.inputs.clone(),
         };

@@ -62,7 +62,7 @@ impl OpenStudy {
         conclusion.project = conclusion.project.or_else(|| before.project.clone());
         study.conclude_by(conclusion)?;
         let goals = study.config.goals();
-        let plan = setup.plan(study.config.seed, |measure| goals.need(measure))?;
+        let plan = setup.plan(study.config.seed, |measure| goals.needs(measure))?;
         let cache = run.cache(&setup);
         Ok(OpenStudy { study, setup, run, plan, cache, new_measurements: 0 })
     }

@@ -126,7 +126,7 @@ pub enum DraftError {
     #[error(
         "{0}: is {1} mm long; the pads are {height} mm high and must stay outside of the socket, so \
          at least {2:.1} mm are needed",
-        height = Pad::PAPER.height / MM
+        height = Pad::PUBLISHED.height / MM
     )]
     TooShort(&'static str, f64, f64),
     /// No strategy can be derived.
@@ -152,7 +152,7 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
     let finger_torsion = PadTorsion::Points(30.0 * MM);
     let friction = Friction { finger_plug: 1.0, finger_torsion, plug_socket: 0.2 };
     let (force, hold) = like.map_or((5.0, Hold::Always), |task| (task.grip.force, task.grip.hold));
-    let slip_limit = Pad::PAPER.height / 2.0;
+    let slip_limit = Pad::PUBLISHED.height / 2.0;
     Task {
         name: name.to_owned(),
         description: String::new(),
@@ -226,7 +226,7 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     task.grip.faces_y = [-held.width / 2.0, held.width / 2.0];
     let floor = body.map_or(SHARE * plug.length, |_| plug.length + BELOW_TIP);
     // The pads stay outside of the socket.
-    let pads = Pad::PAPER.height + BELOW_PADS;
+    let pads = Pad::PUBLISHED.height + BELOW_PADS;
     let (option, least) = match body {
         Some(_) => ("--body", pads),
         None if size.round => ("--round", pads / (1.0 - SHARE)),

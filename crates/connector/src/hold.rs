@@ -10,7 +10,7 @@ use nalgebra::Point3;
 pub const SEAM: f64 = 0.05 * MM;
 
 /// Extent of a pad in x, m.
-pub const PAD_X: [f64; 2] = [-Pad::PAPER.width / 2.0, Pad::PAPER.width / 2.0];
+pub const PAD_X: [f64; 2] = [-Pad::PUBLISHED.width / 2.0, Pad::PUBLISHED.width / 2.0];
 
 /// Grasp of a plug by pads whose roofs rest at a given height; plug frame, m.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +27,7 @@ pub struct Held {
 
 /// Returns the lower and upper edge of pads whose roofs rest on a shoulder, plug frame, m.
 pub fn pad_z(shoulder: f64) -> [f64; 2] {
-    [shoulder + ROOF_GAP - Pad::PAPER.height, shoulder + ROOF_GAP]
+    [shoulder + ROOF_GAP - Pad::PUBLISHED.height, shoulder + ROOF_GAP]
 }
 
 /// Returns the grasp by pads whose roofs rest at `shoulder`, m, at the widest faces or at those given by `faces_y`, m.
@@ -75,10 +75,10 @@ fn cover(pieces: &[Vec<Point3<f64>>], face: f64, side: usize) -> f64 {
 fn under_roof(plug: &ConvexBody, shoulder: f64, face: f64, side: usize) -> Option<f64> {
     // Narrowed by the tolerance, so that a part beside the roof does not count.
     let column = match side {
-        0 => [face, face + Pad::PAPER.roof - SEAM],
-        _ => [face - Pad::PAPER.roof + SEAM, face],
+        0 => [face, face + Pad::PUBLISHED.roof - SEAM],
+        _ => [face - Pad::PUBLISHED.roof + SEAM, face],
     };
-    let from = shoulder - Pad::PAPER.height / 2.0;
+    let from = shoulder - Pad::PUBLISHED.height / 2.0;
     let top = |part: &Part| {
         let piece = clipped(&clipped(&part.solid.corners(), 1, column), 0, PAD_X);
         let [_, top] = extent(&piece, 2);

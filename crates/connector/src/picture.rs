@@ -36,7 +36,7 @@ pub(crate) const VIEWS: [(&str, [usize; 2]); 3] = [
 /// Draws the task as an SVG.
 pub fn svg(task: &Task) -> String {
     let mut drawing = Drawing::default();
-    drawing.paper();
+    drawing.white_background();
     Picture::new(task).draw(&mut drawing, &task.description, 0.0);
     drawing.svg(SIZE, "")
 }
@@ -44,7 +44,7 @@ pub fn svg(task: &Task) -> String {
 /// Draws the task before a change of its strategy and after it, one below the other.
 pub fn both(before: &Task, after: &Task) -> String {
     let mut drawing = Drawing::default();
-    drawing.paper();
+    drawing.white_background();
     for (top, when, task) in [(0.0, "before", before), (SIZE[1], "after", after)] {
         let words = format!("{when}: {}", task.description);
         Picture::new(task).draw(&mut drawing, &words, top);
@@ -166,7 +166,7 @@ impl<'a> Picture<'a> {
         let grip = &self.task.grip;
         for (side, face) in [-1.0, 1.0].into_iter().zip(grip.faces_y) {
             let pose = self.start * Pose::translation(0.0, face, grip.tcp_z);
-            for geom in Pad::PAPER.geoms(grip.shoulder(), side) {
+            for geom in Pad::PUBLISHED.geoms(grip.shoulder(), side) {
                 frame.polygon(drawing, &geom, &pose, FINGERS);
             }
         }

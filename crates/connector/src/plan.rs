@@ -88,7 +88,7 @@ fn planned(mut task: Task, plug: &ConvexBody, socket: &ConvexBody, seat: &Seat) 
     let held = held(plug, task.grip.shoulder_z, Some(task.grip.faces_y));
     let cover = held.cover[0].min(held.cover[1]);
     task.grip.tcp_z = round_mm(task.grip.shoulder_z - BELOW_SHOULDER.min(0.8 * cover));
-    task.grip.slip_limit = round_mm((Pad::PAPER.height / 2.0).min(0.9 * cover));
+    task.grip.slip_limit = round_mm((Pad::PUBLISHED.height / 2.0).min(0.9 * cover));
     let play = match task.success.mated {
         // The opening is the plug with its play, whatever springs were left out.
         Some(_) => width(task.opening[1]) - width(section(plug, seat.depth - BELOW_TOP)[1]),

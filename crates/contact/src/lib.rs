@@ -2,7 +2,7 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
-// A panic is a defect; what input can reach is an error with a message.
+// A panic is a bug; invalid input must produce an error with a message.
 #![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 use crate::scene::{Body, BodyId, Joint, JointId, Motion, Pose, Scene, Spring, Springs};
@@ -38,11 +38,11 @@ pub trait Engine: Send + Sync {
     fn world(&self, scene: &Scene) -> Box<dyn World>;
 
     /// Returns the same engine with half the step, to repeat trials that diverged.
-    fn halved(&self) -> Box<dyn Engine>;
+    fn with_half_step(&self) -> Box<dyn Engine>;
 
     /// Returns finer engines for convergence studies, each with its name.
     fn finer(&self) -> Vec<(&'static str, Box<dyn Engine>)> {
-        vec![("half the step", self.halved())]
+        vec![("half the step", self.with_half_step())]
     }
 }
 
@@ -51,7 +51,8 @@ pub trait Engine: Send + Sync {
 pub enum Unsupported {
     /// A feature that the scene needs is missing.
     #[error(
-        "the engine {engine} cannot simulate `{part}`: it has no {feature}; use --engine direct"
+        "the engine {engine} cannot simulate `{part}`: it does not support {feature}; \
+         use --engine direct"
     )]
     Lacking {
         /// Name and version of the engine.
@@ -62,7 +63,7 @@ pub enum Unsupported {
         feature: &'static str,
     },
     /// The engine rejects a value of the scene.
-    #[error("the engine {engine} refuses these bodies: {reason}; use --engine direct")]
+    #[error("the engine {engine} rejects the scene: {reason}; use --engine direct")]
     Refused {
         /// Name and version of the engine.
         engine: String,
@@ -73,7 +74,7 @@ pub enum Unsupported {
 
 /// Returns the parts of a scene that only `direct` can simulate, each with the feature that the other engines lack:
 /// springs that couple axes, friction of a contact patch, mass that depends on the direction.
-fn lacking(scene: &Scene) -> impl DoubleEndedIterator<Item = (&str, &'static str)> {
+fn unsupported_parts(scene: &Scene) -> impl DoubleEndedIterator<Item = (&str, &'static str)> {
     let coupled = |joint: &&Joint| matches!(joint.springs, Springs::Coupled { .. });
     let mechanism = |body: &&Body| matches!(body.motion, Motion::Mechanism(_));
     let joint = scene.joints.iter().find(coupled).map(|joint| joint.name.as_str());
@@ -140,7 +141,7 @@ pub trait World: Send + Sync {
     /// Moves a fixed body, which must have no contacts before or after.
     fn place(&mut self, body: BodyId, pose: Pose);
 
-    /// Replaces the spring of an axis (0..6) of a joint that is a servo from the start.
+    /// Replaces the spring of an axis (0..6) of a joint; the axis must be a servo in the scene.
     fn set_spring(&mut self, joint: JointId, axis: usize, spring: Spring);
 
     /// Sets the force at a free body's centre of mass, N, and the moment, N m, in world axes, that act

@@ -7,11 +7,12 @@ use nalgebra::{Point2, Vector2, center};
 const BEYOND: f64 = 1.5;
 /// Gap between the drawn part and its extension line.
 const GAP: f64 = 1.0;
+/// Style of dimension and extension lines.
 const LINE: Style = Style::line("#444", 0.18);
 
 impl Drawing {
-    /// Draws a dimension line between two points of a part at a distance to their left, the words
-    /// above its middle; for drawings in mm.
+    /// Draws a dimension line for two points of a part, at a distance to their left, with a text above its middle;
+    /// for drawings in mm.
     pub fn dimension(&mut self, ends: [Point2<f64>; 2], distance: f64, words: &str) {
         let along = (ends[1] - ends[0]).normalize();
         let left = Vector2::new(along.y, -along.x) * distance.signum();
@@ -22,11 +23,11 @@ impl Drawing {
             self.line([at - tick, at + tick], LINE);
         }
         self.line(shown, LINE);
-        self.beside(shown, words);
+        self.text_along(shown, words);
     }
 
-    /// Writes words above the middle of a line, never upside down.
-    fn beside(&mut self, [a, b]: [Point2<f64>; 2], words: &str) {
+    /// Writes a text above the middle of a line, never upside down.
+    fn text_along(&mut self, [a, b]: [Point2<f64>; 2], words: &str) {
         let (at, along) = (center(&a, &b), b - a);
         let back = along.x < -1e-9 || (along.x < 1e-9 && along.y > 0.0);
         let along = if back { -along } else { along };
@@ -38,7 +39,7 @@ impl Drawing {
         ));
     }
 
-    /// Draws a bar of a length with ticks at its ends, and words beside it.
+    /// Draws a scale bar of a length, with ticks at its ends and a text beside it.
     pub fn scale_bar(&mut self, at: Point2<f64>, length: f64, words: &str, size: f64) {
         let (end, tick) = (at + Vector2::x() * length, Vector2::y() * 0.3 * size);
         let style = Style::line("#333", 0.09 * size);
@@ -48,7 +49,7 @@ impl Drawing {
         self.text(end + Vector2::new(0.5, 0.35) * size, words, Font::new(size));
     }
 
-    /// Draws an arrow from a point to its tip, with a head of a length.
+    /// Draws an arrow from a point to a tip; `head` is the length of its head.
     pub fn arrow(&mut self, [from, tip]: [Point2<f64>; 2], head: f64, colour: &'static str) {
         let along = (tip - from).normalize() * head;
         let (neck, across) = (tip - along, Vector2::new(-along.y, along.x) * 0.6);

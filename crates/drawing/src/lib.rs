@@ -1,8 +1,8 @@
-//! Technical drawings as SVG: shapes, words and dimensions on a plane whose y axis points down.
+//! Technical drawings as SVG: shapes, text and dimensions on a plane whose y axis points down.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
-// A panic is a defect; what input can reach is an error with a message.
+// A panic is a bug; invalid input must produce an error with a message.
 #![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 mod dimension;
@@ -29,15 +29,15 @@ impl View {
     }
 }
 
-/// Elements of a drawing, in the order in which they cover each other.
+/// Drawing: a list of SVG elements, of which later ones cover earlier ones.
 #[derive(Debug, Default)]
 pub struct Drawing {
     elements: String,
 }
 
 impl Drawing {
-    /// Returns the drawing as a stand-alone SVG of a width and height; `unit` (`mm`) makes that its
-    /// true size, an empty one leaves the size to the viewer.
+    /// Returns the drawing as a stand-alone SVG with a width and height. They are its true size in `unit` (`mm`); if
+    /// `unit` is empty, the viewer chooses the size.
     pub fn svg(self, [width, height]: [f64; 2], unit: &str) -> String {
         let [wide, high] = [width, height].map(number);
         let size = match unit {
@@ -51,19 +51,19 @@ impl Drawing {
         )
     }
 
-    /// Covers everything with white.
-    pub fn paper(&mut self) {
+    /// Fills the background with white.
+    pub fn white_background(&mut self) {
         self.element("<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>");
     }
 
-    /// Draws elements that style sheets can address by a class.
+    /// Draws a group of elements with a class for style sheets.
     pub fn group(&mut self, class: &str, draw: impl FnOnce(&mut Self)) {
         self.element(&format!("<g class=\"{class}\">"));
         draw(self);
         self.element("</g>");
     }
 
-    /// Draws elements about an upper left corner, with a border at which they are cut off.
+    /// Draws a panel with a border at which its elements are clipped; their origin is its upper left corner.
     pub fn panel(&mut self, corner: Point2<f64>, size: [f64; 2], draw: impl FnOnce(&mut Self)) {
         let [x, y, width, height] = [corner.x, corner.y, size[0], size[1]].map(number);
         self.element(&format!("<svg x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\">"));
@@ -72,13 +72,13 @@ impl Drawing {
         self.element("</svg>");
     }
 
-    /// Writes words at a point.
+    /// Writes a text at a point.
     pub fn text(&mut self, at: Point2<f64>, words: &str, font: Font) {
         let [x, y] = [at.x, at.y].map(number);
         self.element(&format!("<text x=\"{x}\" y=\"{y}\"{font}>{}</text>", escape(words)));
     }
 
-    /// Names the drawing for readers that do not see it.
+    /// Sets the title of the drawing, for screen readers.
     pub fn title(&mut self, words: &str) {
         self.element(&format!("<title>{}</title>", escape(words)));
     }
@@ -102,7 +102,7 @@ impl Drawing {
         self.path(&closed.collect::<String>(), style);
     }
 
-    /// Draws a rectangle between two opposite corners, its own rounded by a radius.
+    /// Draws a rectangle between two opposite corners, rounded by a radius.
     pub fn rectangle(&mut self, [a, b]: [Point2<f64>; 2], radius: f64, style: Style) {
         let (corner, size) = (a.inf(&b), (b - a).abs());
         let [x, y, width, height, radius] =
@@ -139,7 +139,7 @@ fn path(points: impl IntoIterator<Item = Point2<f64>>) -> String {
     data
 }
 
-/// Rounds to what the eye can tell apart; adding 0 turns -0 into 0.
+/// Rounds to three decimals, finer than the eye can resolve; adding 0 turns -0 into 0.
 fn number(value: f64) -> f64 {
     (value * 1e3).round() / 1e3 + 0.0
 }

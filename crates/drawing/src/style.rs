@@ -1,4 +1,4 @@
-//! Looks of shapes and words.
+//! Styles of shapes and text.
 
 use std::fmt::{Display, Formatter, Result};
 
@@ -23,17 +23,17 @@ impl Style {
         Style::fill("none").outlined(colour, width)
     }
 
-    /// Returns the same with a line of a colour and width.
+    /// Returns the style with a line of a colour and width.
     pub const fn outlined(self, colour: &'static str, width: f64) -> Self {
         Style { stroke: colour, width, ..self }
     }
 
-    /// Returns the same with a fill of an opacity, 0 to 1.
+    /// Returns the style with an opacity of the fill, 0 to 1.
     pub const fn opacity(self, opacity: f64) -> Self {
         Style { opacity, ..self }
     }
 
-    /// Returns the same with a dashed line.
+    /// Returns the style with a dashed line.
     pub const fn dashed(self) -> Self {
         Style { dashed: true, ..self }
     }
@@ -56,7 +56,7 @@ impl Display for Style {
     }
 }
 
-/// Size, colour and alignment of words, in units of the drawing.
+/// Size, colour and alignment of text; the size is in units of the drawing.
 #[derive(Debug, Clone, Copy)]
 pub struct Font {
     size: f64,
@@ -66,32 +66,32 @@ pub struct Font {
 }
 
 impl Font {
-    /// Returns a dark font of a size, whose words begin at their point.
+    /// Returns a dark font of a size; text starts at its point.
     pub const fn new(size: f64) -> Self {
         Font { size, colour: "#222", anchor: "start", bold: false }
     }
 
-    /// Returns the same in a colour.
+    /// Returns the font in a colour.
     pub const fn colour(self, colour: &'static str) -> Self {
         Font { colour, ..self }
     }
 
-    /// Returns the same with words about their point.
+    /// Returns the font with text centred on its point.
     pub const fn middle(self) -> Self {
         Font { anchor: "middle", ..self }
     }
 
-    /// Returns the same with words that end at their point.
+    /// Returns the font with text that ends at its point.
     pub const fn end(self) -> Self {
         Font { anchor: "end", ..self }
     }
 
-    /// Returns the same in bold.
+    /// Returns the font in bold.
     pub const fn bold(self) -> Self {
         Font { bold: true, ..self }
     }
 
-    /// Returns the same, smaller if words need it to fit a width: at least `least`.
+    /// Returns the font, reduced if necessary to fit a text into a width, but not below the size `least`.
     pub fn fitting(self, words: &str, width: f64, least: f64) -> Self {
         let fits = width / (0.52 * words.chars().count() as f64);
         Font { size: self.size.min(fits.max(least)), ..self }

@@ -19,14 +19,14 @@ const LEAF: usize = 8;
 
 /// Elasticity of the triangles of a mesh.
 pub trait Element {
-    /// Degrees of freedom of a node.
-    const FREEDOMS: usize;
+    /// Number of degrees of freedom of a node.
+    const DOFS: usize;
     /// Returns the stiffness matrix of a triangle, square, row by row, by the degrees of freedom of its six nodes; only the
     /// lower half is used.
     fn stiffness(&self, corners: [Point2<f64>; 3]) -> Vec<f64>;
-    /// Returns the displacement of a node by the three motions of a rigid pad, a row for each degree of freedom;
-    /// `place` is the position of the node along y and z, from the middle of the pad, m.
-    fn follow(&self, outline: &Outline, place: [f64; 2]) -> Vec<[f64; 3]>;
+    /// Returns the displacements of a node per unit of the three motions of a rigid pad, a row for each degree of
+    /// freedom; `place` is the position of the node along y and z, from the middle of the pad, m.
+    fn rigid_displacements(&self, outline: &Outline, place: [f64; 2]) -> Vec<[f64; 3]>;
 }
 
 /// Treatment of a node in the condensation.
@@ -45,9 +45,9 @@ pub enum Role {
 pub struct Condensed {
     /// Kept nodes, in the order of the matrix.
     pub nodes: Vec<u32>,
-    /// Symmetric, square: `FREEDOMS` rows for each kept node.
+    /// Symmetric, square: `DOFS` rows for each kept node.
     pub stiffness: DMatrix<f64>,
-    freedoms: usize,
+    dofs: usize,
     count: usize,
     steps: Vec<Frontal>,
 }
@@ -79,19 +79,19 @@ pub fn condense<E: Element>(
     Ok(Condensed {
         nodes: root.nodes,
         stiffness,
-        freedoms: E::FREEDOMS,
+        dofs: E::DOFS,
         count: mesh.nodes.len(),
         steps: work.steps.unwrap_or_default(),
     })
 }
 
 impl Condensed {
-    /// Returns the displacement of every node (`FREEDOMS` numbers each, m or rad) from those of the kept
+    /// Returns the displacement of every node (`DOFS` numbers each, m or rad) from those of the kept
     /// nodes, in the order of the matrix. Free nodes stay at 0 unless they were remembered.
     pub fn expand(&self, kept: &DVector<f64>) -> Vec<f64> {
-        let mut all = vec![0.0; self.count * self.freedoms];
-        for (&node, from) in self.nodes.iter().zip(kept.as_slice().chunks(self.freedoms)) {
-            all[node as usize * self.freedoms..][..self.freedoms].copy_from_slice(from);
+        let mut all = vec![0.0; self.count * self.dofs];
+        for (&node, from) in self.nodes.iter().zip(kept.as_slice().chunks(self.dofs)) {
+            all[node as usize * self.dofs..][..self.dofs].copy_from_slice(from);
         }
         for step in self.steps.iter().rev() {
             step.substitute(&mut all);
@@ -160,7 +160,7 @@ impl<E: Element> Condensation<'_, E> {
         for (place, &node) in inner.iter().enumerate() {
             self.places[node as usize] = place as u32;
         }
-        Frontal::new(inner, eliminated, E::FREEDOMS)
+        Frontal::new(inner, eliminated, E::DOFS)
     }
 }
 

@@ -82,7 +82,7 @@ pub fn shape([a, b, c]: [Point2<f64>; 3], [l, m, n]: [f64; 3]) -> Shape {
 
 impl Element for PlaneStress {
     /// Displacements along X and Y.
-    const FREEDOMS: usize = 2;
+    const DOFS: usize = 2;
 
     fn stiffness(&self, corners: [Point2<f64>; 3]) -> Vec<f64> {
         let Slab { modulus, poisson, thickness } = self.0;
@@ -106,7 +106,7 @@ impl Element for PlaneStress {
     }
 
     /// Motions: translations along y and z, rotation about x = y x z.
-    fn follow(&self, outline: &Outline, [at_y, at_z]: [f64; 2]) -> Vec<[f64; 3]> {
+    fn rigid_displacements(&self, outline: &Outline, [at_y, at_z]: [f64; 2]) -> Vec<[f64; 3]> {
         let (y, z) = (outline.out_of_pad(), outline.along_pad());
         let turn = z * at_y - y * at_z;
         (0..2).map(|d| [y[d], z[d], turn[d]]).collect()

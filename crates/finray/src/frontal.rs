@@ -14,21 +14,21 @@ pub struct Frontal {
     /// Nodes of the mesh, those to eliminate first.
     pub nodes: Vec<u32>,
     eliminated: usize,
-    freedoms: usize,
+    dofs: usize,
     /// Square, row by row; only the lower triangle is used.
     pub values: Vec<f64>,
 }
 
 impl Frontal {
     /// Creates a zero matrix of these nodes.
-    pub fn new(nodes: Vec<u32>, eliminated: usize, freedoms: usize) -> Self {
-        let size = nodes.len() * freedoms;
-        Frontal { nodes, eliminated, freedoms, values: vec![0.0; size * size] }
+    pub fn new(nodes: Vec<u32>, eliminated: usize, dofs: usize) -> Self {
+        let size = nodes.len() * dofs;
+        Frontal { nodes, eliminated, dofs, values: vec![0.0; size * size] }
     }
 
     /// Returns the number of rows.
     pub fn size(&self) -> usize {
-        self.nodes.len() * self.freedoms
+        self.nodes.len() * self.dofs
     }
 
     /// Returns an entry of the lower triangle.
@@ -39,7 +39,7 @@ impl Frontal {
     /// Adds the lower half of a square matrix. `places` are the places of its nodes in this matrix, `None` for a
     /// fixed node.
     pub fn add(&mut self, places: &[Option<usize>], lower: &[f64]) {
-        let (size, f) = (self.size(), self.freedoms);
+        let (size, f) = (self.size(), self.dofs);
         let width = places.len() * f;
         for (a, to_a) in places.iter().enumerate() {
             let Some(to_a) = to_a else { continue };
@@ -61,7 +61,7 @@ impl Frontal {
     /// # Errors
     /// If one of the first nodes is not supported.
     pub fn eliminate(&mut self) -> Result<(), MeshError> {
-        let (size, end) = (self.size(), self.eliminated * self.freedoms);
+        let (size, end) = (self.size(), self.eliminated * self.dofs);
         let least: Vec<f64> = (0..end).map(|i| SMALLEST_PIVOT * self.at(i, i)).collect();
         let mut panel = vec![0.0; PANEL * size];
         for start in (0..end).step_by(PANEL) {
@@ -91,7 +91,7 @@ impl Frontal {
             let (column, later) = panel[q * size..].split_at_mut(size);
             let pivot = column[start + q];
             if pivot.is_nan() || pivot <= least[start + q] {
-                return Err(MeshError::Loose);
+                return Err(MeshError::Disconnected);
             }
             let scale = 1.0 / pivot.sqrt();
             column[start + q..].iter_mut().for_each(|value| *value *= scale);
@@ -138,7 +138,7 @@ impl Frontal {
 
     /// Returns the condensed matrix of the remaining nodes.
     pub fn rest(&self) -> Frontal {
-        let mut rest = Frontal::new(self.nodes[self.eliminated..].to_vec(), 0, self.freedoms);
+        let mut rest = Frontal::new(self.nodes[self.eliminated..].to_vec(), 0, self.dofs);
         let (size, small) = (self.size(), rest.size());
         let skip = size - small;
         for i in 0..small {
@@ -148,9 +148,9 @@ impl Frontal {
         rest
     }
 
-    /// Sets the displacements of the eliminated nodes by those of the others.
+    /// Computes the displacements of the eliminated nodes from those of the others.
     pub fn substitute(&self, displacements: &mut [f64]) {
-        let f = self.freedoms;
+        let f = self.dofs;
         let place = |i: usize| self.nodes[i / f] as usize * f + i % f;
         let mut values: Vec<f64> = (0..self.size()).map(|i| displacements[place(i)]).collect();
         // Eliminated nodes carry no load: L^T u = 0, solved from the last row up.

@@ -1,7 +1,7 @@
 //! The solid profile of a printed finger: outline, skin and ribs, checked.
 
 use super::FingerError;
-use super::infill::{Design, NARROWEST_VOID, RibLines};
+use super::infill::{InfillDesign, NARROWEST_VOID, RibLines};
 use super::polygon::{self, HalfPlane, Ring, without_repeats};
 use crate::holes::{Block, Holes};
 use crate::outline::{Outline, ring};
@@ -15,7 +15,7 @@ pub struct Geometry {
     /// Finger file, with the numbers that the design sets in it.
     pub finger: PrintedFinger,
     /// Infill.
-    pub design: Design,
+    pub design: InfillDesign,
     /// Centre lines of the ribs.
     pub lines: RibLines,
     /// Outline, counter-clockwise from the tip along the back, m.
@@ -34,7 +34,7 @@ impl Geometry {
     ///
     /// # Errors
     /// If its parts do not fit one another; the message names file and key.
-    pub fn new(finger: &PrintedFinger, design: &Design) -> Result<Self, FingerError> {
+    pub fn new(finger: &PrintedFinger, design: &InfillDesign) -> Result<Self, FingerError> {
         let lines = RibLines::new(finger, design);
         let check = Check { file: &finger.file };
         check_outline(check, &finger.outline)?;
@@ -116,7 +116,7 @@ fn check_outline(check: Check<'_>, outline: &Outline) -> Checked {
     let Outline { length, width, tip, back_radius, pad, roof, solid, clamped, .. } = *outline;
     below(check, "outline.tip_mm", tip, width, "the tip lies in front of the back")?;
     below(check, "base.solid_mm", solid, length, "the base is a part of the finger")?;
-    let in_base = "what is clamped is solid";
+    let in_base = "the clamped part is solid";
     below(check, "base.clamped_mm", clamped, solid * (1.0 + 1e-9), in_base)?;
     let (radius, rise, ribbed) = (back_radius / MM, (width - tip) / MM, length - solid);
     let Some(centre) = outline.arc_centre() else {
@@ -141,9 +141,14 @@ fn check_outline(check: Check<'_>, outline: &Outline) -> Checked {
 }
 
 /// Checks that ribs at this pitch, m, can be printed and leave room between them.
-fn check_ribs(check: Check<'_>, finger: &PrintedFinger, design: &Design, pitch: f64) -> Checked {
+fn check_ribs(
+    check: Check<'_>,
+    finger: &PrintedFinger,
+    design: &InfillDesign,
+    pitch: f64,
+) -> Checked {
     let PrintedFinger { ribs, line_width, smallest_gap, skin, .. } = finger;
-    let Design { density_percent, direction_deg, phase_mm } = *design;
+    let InfillDesign { density_percent, direction_deg, phase_mm } = *design;
     let (key, fits) = ("infill_density_percent", density_percent > 0.0 && density_percent < 100.0);
     check.require(key, density_percent, fits, "be above 0 and below 100")?;
     let (key, fits) = ("infill_direction_deg", (-80.0..=80.0).contains(&direction_deg));

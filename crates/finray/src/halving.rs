@@ -45,7 +45,7 @@ struct Halving {
     ranks: [Vec<u32>; 4],
     /// Scratch of [`Halving::shared`].
     stamps: Vec<u8>,
-    /// As of [`halve`].
+    /// See [`halve`].
     cuts: Vec<usize>,
 }
 

@@ -6,12 +6,12 @@ use nalgebra::{Point2, Vector2};
 
 /// Infill of a finger.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Design {
+pub struct InfillDesign {
     /// Infill density, percent.
     pub density_percent: f64,
     /// Infill direction, degrees.
     pub direction_deg: f64,
-    /// Phase of the first rib, mm; the finger file's if not given.
+    /// Phase of the first rib, mm; if not given, the phase in the finger file.
     pub phase_mm: Option<f64>,
 }
 
@@ -32,8 +32,8 @@ pub struct RibLines {
 }
 
 impl RibLines {
-    /// Returns the centre lines by the rule of the finger file.
-    pub fn new(finger: &PrintedFinger, design: &Design) -> Self {
+    /// Computes the centre lines from the finger file and the infill.
+    pub fn new(finger: &PrintedFinger, design: &InfillDesign) -> Self {
         let (sin, cos) = libm::sincos(design.direction_deg * DEG);
         let across = Vector2::new(cos, -sin);
         let phase = design.phase_mm.map_or(finger.ribs.phase, |mm| mm * MM);
@@ -47,7 +47,7 @@ impl RibLines {
         self.first + n as f64 * self.pitch
     }
 
-    /// Returns the numbers of the lines whose gaps contain a part of a ring.
+    /// Returns the numbers of the lines that cross a ring, and of the next line on either side.
     pub(super) fn range(&self, ring: &[Point2<f64>]) -> std::ops::RangeInclusive<i64> {
         let places = ring.iter().map(|p| (self.across.dot(&p.coords) - self.first) / self.pitch);
         let span = |(low, high): (f64, f64), n: f64| (low.min(n), high.max(n));

@@ -7,7 +7,7 @@
 use super::FingerError;
 use super::elasticity::{PlaneStress, Slab};
 use super::geometry::Geometry;
-use super::infill::{Design, RibLines};
+use super::infill::{InfillDesign, RibLines};
 use super::mesh::MeshError;
 use super::meshed::{RigidFace, rigid_stiffness};
 use super::plate::MindlinPlate;
@@ -53,13 +53,14 @@ pub fn compute(geometry: &Geometry) -> Result<FingerStiffness, FingerError> {
 /// roof; `size` is the side length of the triangles, m.
 ///
 /// # Errors
-/// As of [`compute`].
+/// See [`compute`].
 pub fn planar(geometry: &Geometry, size: f64) -> Result<[PlanarStiffness; 2], FingerError> {
     let fails = |problem| FingerError::mesh(geometry, problem);
     let element = PlaneStress(Slab::of(&geometry.finger));
     let held = rigid_stiffness(geometry, &element, size, [RigidFace::Pad, RigidFace::PadAndRoof])
         .map_err(fails)?;
-    let stiffness = |matrix| PlanarStiffness::new(matrix).ok_or_else(|| fails(MeshError::Limp));
+    let stiffness =
+        |matrix| PlanarStiffness::new(matrix).ok_or_else(|| fails(MeshError::NotPositiveDefinite));
     let pad = stiffness(held[0])?;
     let compliance = pad.in_compliance() / N_PER_MM;
     if !PLAUSIBLE.contains(&compliance) {
@@ -81,7 +82,7 @@ pub fn cross(geometry: &Geometry, size: f64) -> Result<CrossStiffness, FingerErr
     let fails = |problem| FingerError::mesh(geometry, problem);
     let element = MindlinPlate(Slab::of(&geometry.finger));
     let [held] = rigid_stiffness(geometry, &element, size, [RigidFace::Pad]).map_err(fails)?;
-    CrossStiffness::new(held).ok_or_else(|| fails(MeshError::Limp))
+    CrossStiffness::new(held).ok_or_else(|| fails(MeshError::NotPositiveDefinite))
 }
 
 /// Returns the stiffness in the plane ([`planar`]) for the positions of the first rib that a slicer can choose: at
@@ -94,13 +95,13 @@ pub fn over_phases(
     density_percent: f64,
     direction_deg: f64,
 ) -> Result<Vec<[PlanarStiffness; 2]>, FingerError> {
-    let design = Design { density_percent, direction_deg, phase_mm: None };
+    let design = InfillDesign { density_percent, direction_deg, phase_mm: None };
     // A density of 0 has no finite pitch: the first geometry returns the error.
     let pitch = RibLines::new(finger, &design).pitch;
     let at = |share: f64| {
         let phase = finger.ribs.phase + share * pitch;
         let phase_mm = (share > 0.0).then_some(phase / MM);
-        planar(&Geometry::new(finger, &Design { phase_mm, ..design })?, SIZE)
+        planar(&Geometry::new(finger, &InfillDesign { phase_mm, ..design })?, SIZE)
     };
     // Collected by index, so that of several errors the same one is returned.
     let found: Vec<_> = (0..PHASES).into_par_iter().map(|i| at(i as f64 / PHASES as f64)).collect();
@@ -115,11 +116,11 @@ impl StiffnessCache {
     /// Returns the stiffness of a finger with an infill.
     ///
     /// # Errors
-    /// As of [`Geometry::new`] and [`compute`].
+    /// See [`Geometry::new`] and [`compute`].
     pub fn stiffness(
         &self,
         finger: &PrintedFinger,
-        design: &Design,
+        design: &InfillDesign,
     ) -> Result<FingerStiffness, FingerError> {
         // The debug format of a number reads back as the same bits.
         let key = format!("{finger:?} {design:?}");

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 /// Smallest angle of a triangle, degrees; above 30 the refinement may not terminate.
 const SMALLEST_ANGLE_DEG: f64 = 25.0;
 /// Largest number of nodes; a profile that can be printed needs fewer.
-const MOST_VERTICES: usize = 100_000;
+const MAX_VERTICES: usize = 100_000;
 /// Share of the requested area below which a triangle is not divided to improve its angles.
 const SMALLEST_SHARE: f64 = 1e-3;
 
@@ -31,14 +31,14 @@ pub enum MeshError {
     #[error("its edges cross or touch one another")]
     Crossing,
     /// Details much smaller than the triangles.
-    #[error("it takes more than {MOST_VERTICES} triangles: a wall or gap is too thin")]
+    #[error("its mesh needs more than {MAX_VERTICES} vertices: a wall or gap is too thin")]
     TooFine,
     /// Nodes that are not supported.
     #[error("a part of the finger is not connected to its base")]
-    Loose,
+    Disconnected,
     /// A stiffness matrix that is not positive definite.
     #[error("its stiffness matrix is not positive definite")]
-    Limp,
+    NotPositiveDefinite,
 }
 
 impl Mesh {
@@ -52,7 +52,7 @@ impl Mesh {
             .with_angle_limit(AngleLimit::from_deg(SMALLEST_ANGLE_DEG))
             .with_max_allowed_area(area)
             .with_min_required_area(area * SMALLEST_SHARE)
-            .with_max_additional_vertices(MOST_VERTICES);
+            .with_max_additional_vertices(MAX_VERTICES);
         Mesh::fill(outer, holes, parameters)
     }
 

@@ -8,8 +8,8 @@ use crate::outline::{Outline, ring};
 use input::units::MM;
 use nalgebra::{DMatrix, Matrix3, Point2};
 
-/// Distance from a line within which a node lies on it, m.
-const ON: f64 = 1e-6 * MM;
+/// Distance from a line within which a node counts as on it, m.
+const ON_LINE: f64 = 1e-6 * MM;
 /// Size of the triangles at the ends of the rigid part, where stress is singular, as a share of the usual size.
 const FINEST: f64 = 0.3;
 
@@ -27,7 +27,7 @@ pub struct MeshedFinger {
 pub enum RigidFace {
     /// The pad alone.
     Pad,
-    /// The pad and the part of the roof that rests on a part.
+    /// The pad and the section of the roof that rests on the part.
     PadAndRoof,
 }
 
@@ -45,8 +45,8 @@ impl MeshedFinger {
         let mesh = Mesh::new(&ring, &geometry.voids, size)?;
         let mut meshed = MeshedFinger { mesh, outline, roles: Vec::new() };
         let role = |p: &Point2<f64>| match () {
-            () if p.x > clamp - ON => Role::Fixed,
-            () if meshed.holds(RigidFace::PadAndRoof, p) => Role::Kept,
+            () if p.x > clamp - ON_LINE => Role::Fixed,
+            () if meshed.is_on(RigidFace::PadAndRoof, p) => Role::Kept,
             () => Role::Free,
         };
         meshed.roles = meshed.mesh.nodes.iter().map(role).collect();
@@ -59,19 +59,19 @@ impl MeshedFinger {
         [self.outline.out_of_pad(), self.outline.along_pad()].map(|axis| axis.dot(&from_middle))
     }
 
-    fn holds(&self, face: RigidFace, point: &Point2<f64>) -> bool {
+    fn is_on(&self, face: RigidFace, point: &Point2<f64>) -> bool {
         let [y, z] = self.local(point);
         let half = self.outline.pad / 2.0;
-        let on_pad = y.abs() < ON && z.abs() < half + ON;
-        let on_roof = (z - half).abs() < ON && y > -ON && y < self.outline.roof + ON;
+        let on_pad = y.abs() < ON_LINE && z.abs() < half + ON_LINE;
+        let on_roof = (z - half).abs() < ON_LINE && y > -ON_LINE && y < self.outline.roof + ON_LINE;
         on_pad || (face == RigidFace::PadAndRoof && on_roof)
     }
 
-    /// Returns the stiffness of a face that is rigid, with the other kept nodes free.
+    /// Returns the stiffness and motion of a face that is rigid, with the other kept nodes free.
     ///
     /// # Errors
     /// If a part of the finger is not connected to its base.
-    pub fn hold<E: Element>(
+    pub fn rigid_motion<E: Element>(
         &self,
         condensed: &Condensed,
         element: &E,
@@ -79,41 +79,44 @@ impl MeshedFinger {
     ) -> Result<RigidMotion, MeshError> {
         let places: Vec<_> =
             condensed.nodes.iter().map(|&node| self.mesh.nodes[node as usize]).collect();
-        let freedoms = E::FREEDOMS;
+        let dofs = E::DOFS;
         let (held, free): (Vec<usize>, Vec<usize>) =
-            (0..places.len()).partition(|&i| self.holds(face, &places[i]));
+            (0..places.len()).partition(|&i| self.is_on(face, &places[i]));
         // Columns: the face's three motions, then the free nodes' degrees of freedom.
-        let rows = places.len() * freedoms;
-        let mut follow = DMatrix::zeros(rows, 3 + free.len() * freedoms);
+        let rows = places.len() * dofs;
+        let mut displacements = DMatrix::zeros(rows, 3 + free.len() * dofs);
         for i in held {
-            let rows = element.follow(&self.outline, self.local(&places[i]));
+            let rows = element.rigid_displacements(&self.outline, self.local(&places[i]));
             for (d, row) in rows.iter().enumerate() {
-                follow.fixed_view_mut::<1, 3>(i * freedoms + d, 0).copy_from_slice(row);
+                displacements.fixed_view_mut::<1, 3>(i * dofs + d, 0).copy_from_slice(row);
             }
         }
         for (k, i) in free.into_iter().enumerate() {
-            for d in 0..freedoms {
-                follow[(i * freedoms + d, 3 + k * freedoms + d)] = 1.0;
+            for d in 0..dofs {
+                displacements[(i * dofs + d, 3 + k * dofs + d)] = 1.0;
             }
         }
-        let stiffness = follow.transpose() * &condensed.stiffness * &follow;
+        let stiffness = displacements.transpose() * &condensed.stiffness * &displacements;
         let free = stiffness.nrows() - 3;
         let own: Matrix3<f64> = stiffness.fixed_view::<3, 3>(0, 0).into_owned();
         if free == 0 {
-            return Ok(RigidMotion { stiffness: own, follow });
+            return Ok(RigidMotion { stiffness: own, displacements });
         }
         let mixed = stiffness.view((3, 0), (free, 3)).into_owned();
         let among = stiffness.view((3, 3), (free, free)).into_owned();
-        let answer = -among.cholesky().ok_or(MeshError::Loose)?.solve(&mixed);
-        let condensed = own + mixed.transpose() * &answer;
-        let follow =
-            follow.columns(0, 3).into_owned() + follow.columns(3, free).into_owned() * answer;
-        Ok(RigidMotion { stiffness: condensed.fixed_view::<3, 3>(0, 0).into_owned(), follow })
+        let response = -among.cholesky().ok_or(MeshError::Disconnected)?.solve(&mixed);
+        let condensed = own + mixed.transpose() * &response;
+        let displacements = displacements.columns(0, 3).into_owned()
+            + displacements.columns(3, free).into_owned() * response;
+        Ok(RigidMotion {
+            stiffness: condensed.fixed_view::<3, 3>(0, 0).into_owned(),
+            displacements,
+        })
     }
 }
 
-/// Returns the stiffness matrices (forces and moments by motions) of faces that are each rigid, on a
-/// mesh with triangles of sides of about `size`, m.
+/// Returns the stiffness matrices (forces and moments per motion) of faces, each of them rigid, on a mesh with
+/// triangles with sides of about `size`, m.
 ///
 /// # Errors
 /// If the profile cannot be meshed, or a part of it is not connected to its base.
@@ -127,22 +130,22 @@ pub fn rigid_stiffness<E: Element, const N: usize>(
     let condensed = condense(&meshed.mesh, element, &meshed.roles, false)?;
     let mut found = [Matrix3::zeros(); N];
     for (matrix, face) in found.iter_mut().zip(faces) {
-        *matrix = meshed.hold(&condensed, element, face)?.stiffness;
+        *matrix = meshed.rigid_motion(&condensed, element, face)?.stiffness;
     }
     Ok(found)
 }
 
 /// Stiffness and motion of a rigid face.
 pub struct RigidMotion {
-    /// Forces and moments on the face by its motions.
+    /// Forces and moments on the face per unit of its motions.
     pub stiffness: Matrix3<f64>,
-    /// Displacements of the kept nodes by the face's motions.
-    pub follow: DMatrix<f64>,
+    /// Displacements of the kept nodes per unit of the face's motions.
+    pub displacements: DMatrix<f64>,
 }
 
-/// Returns a ring whose edges are divided finely near some of its corners.
+/// Returns a ring whose edges are finely divided near the given corners.
 fn graded(ring: &Ring, corners: &[Point2<f64>], size: f64) -> Ring {
-    let near = |p: Point2<f64>| corners.iter().any(|corner| (p - corner).norm() < ON);
+    let near = |p: Point2<f64>| corners.iter().any(|corner| (p - corner).norm() < ON_LINE);
     let steps = |length: f64| -> Vec<f64> {
         let reach = size.min(length / 2.0);
         let steps = std::iter::successors(Some(FINEST * size), |step| Some(2.0 * step));

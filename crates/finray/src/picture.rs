@@ -17,25 +17,26 @@ use nalgebra::{Point2, Vector2, Vector3};
 const SCALE: f64 = 12.0;
 /// Margins around the finger, mm: left, top, right, bottom.
 const MARGIN: [f64; 4] = [9.0, 12.0, 4.0, 11.0];
-/// Longest displacement in the picture, mm.
+/// Largest displacement in the picture, mm.
 const LONGEST: f64 = 5.0;
 /// Length of the scale bar, mm.
 const BAR: f64 = 10.0;
 
 /// Draws the finger at rest (light) and under a force on its pad, y and z in N (dark), as a
-/// stand-alone SVG. The part touches the pad alone and does not hold it from turning.
+/// stand-alone SVG. The part touches only the pad and does not prevent its rotation.
 ///
 /// # Errors
 /// If the finger's stiffness cannot be computed.
 pub fn svg(geometry: &Geometry, force: [f64; 2]) -> Result<String, FingerError> {
-    let bent = Bent::new(geometry, force).map_err(|error| FingerError::mesh(geometry, error))?;
+    let bent =
+        BentFinger::new(geometry, force).map_err(|error| FingerError::mesh(geometry, error))?;
     let [left, top, right, bottom] = MARGIN.map(|mm| mm * SCALE);
     let view = View { origin: Point2::new(left, top), scale: SCALE / MM };
     let Outline { length, width, clamped, .. } = geometry.finger.outline;
     let [long, wide] = [length, width].map(|size| size * view.scale);
     let mut drawing = Drawing::default();
-    drawing.paper();
-    words(&mut drawing, geometry, force, bent.exaggeration);
+    drawing.white_background();
+    caption(&mut drawing, geometry, force, bent.exaggeration);
     let boundary = bent.meshed.mesh.boundary();
     let mut shape = |at: &dyn Fn(usize) -> Point2<f64>, colour| {
         let ring = |ring: &Vec<usize>| ring.iter().map(|&node| view.place(at(node))).collect();
@@ -56,27 +57,28 @@ pub fn svg(geometry: &Geometry, force: [f64; 2]) -> Result<String, FingerError> 
 }
 
 /// Finger under load.
-struct Bent {
+struct BentFinger {
     meshed: MeshedFinger,
-    /// Two numbers for each node, m.
+    /// Displacements of each node along x and y, m.
     displacements: Vec<f64>,
     exaggeration: f64,
     /// Motion of the pad along y and z and about x, m and rad.
     motion: Vector3<f64>,
 }
 
-impl Bent {
+impl BentFinger {
     fn new(geometry: &Geometry, [y, z]: [f64; 2]) -> Result<Self, MeshError> {
         let meshed = MeshedFinger::new(geometry, SIZE)?;
         let element = PlaneStress(Slab::of(&geometry.finger));
         let condensed = condense(&meshed.mesh, &element, &meshed.roles, true)?;
-        let held = meshed.hold(&condensed, &element, RigidFace::Pad)?;
-        let stiffness = PlanarStiffness::new(held.stiffness).ok_or(MeshError::Limp)?;
+        let held = meshed.rigid_motion(&condensed, &element, RigidFace::Pad)?;
+        let stiffness =
+            PlanarStiffness::new(held.stiffness).ok_or(MeshError::NotPositiveDefinite)?;
         let motion = stiffness.compliance * Vector3::new(y, z, 0.0);
-        let displacements = condensed.expand(&(&held.follow * motion));
+        let displacements = condensed.expand(&(&held.displacements * motion));
         let largest = displacements.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
-        let exaggeration = round(LONGEST * MM / largest);
-        Ok(Bent { meshed, displacements, exaggeration, motion })
+        let exaggeration = round_down(LONGEST * MM / largest);
+        Ok(BentFinger { meshed, displacements, exaggeration, motion })
     }
 
     fn moved(&self, node: usize) -> Point2<f64> {
@@ -94,7 +96,7 @@ impl Bent {
 }
 
 /// Returns the largest of 1, 2, 5, 10, ... that is not above a number; 0 unless it is finite and above 0.
-fn round(value: f64) -> f64 {
+fn round_down(value: f64) -> f64 {
     if !(value.is_finite() && value > 0.0) {
         return 0.0;
     }
@@ -102,7 +104,7 @@ fn round(value: f64) -> f64 {
     [5.0, 2.0, 1.0].map(|step| step * decade).into_iter().find(|&n| n <= value).unwrap_or(decade)
 }
 
-fn words(drawing: &mut Drawing, geometry: &Geometry, [y, z]: [f64; 2], factor: f64) {
+fn caption(drawing: &mut Drawing, geometry: &Geometry, [y, z]: [f64; 2], factor: f64) {
     let (name, design) = (&geometry.finger.name, &geometry.design);
     let title = format!(
         "{name}: infill {} %, {}°; {y:.1} N in y and {z:.1} N in z on the pad",

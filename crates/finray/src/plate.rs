@@ -29,7 +29,7 @@ type Strains = [f64; 5];
 
 impl Element for MindlinPlate {
     /// Deflection out of the plane (along X x Y) and the turns about X and Y.
-    const FREEDOMS: usize = 3;
+    const DOFS: usize = 3;
 
     fn stiffness(&self, corners: [Point2<f64>; 3]) -> Vec<f64> {
         let mut matrix = vec![0.0; 324];
@@ -46,7 +46,7 @@ impl Element for MindlinPlate {
 
     /// Motions: translation along x, rotations about y and z. The deflection of the plate is along
     /// -x, since its axes X, Y have the opposite orientation of y, z.
-    fn follow(&self, outline: &Outline, [at_y, at_z]: [f64; 2]) -> Vec<[f64; 3]> {
+    fn rigid_displacements(&self, outline: &Outline, [at_y, at_z]: [f64; 2]) -> Vec<[f64; 3]> {
         let (y, z) = (outline.out_of_pad(), outline.along_pad());
         // u_x = ry z - rz y
         vec![[-1.0, -at_z, at_y], [0.0, y.x, z.x], [0.0, y.y, z.y]]

@@ -117,7 +117,7 @@ impl PrintedFinger {
     /// Reads and checks the finger of a parsed file.
     ///
     /// # Errors
-    /// As of [`PrintedFinger::parse`].
+    /// See [`PrintedFinger::parse`].
     pub fn read(document: &Document<'_>) -> Result<Self, InputError> {
         PrintedFinger::checked(document.read()?, document.file())
     }
@@ -125,7 +125,7 @@ impl PrintedFinger {
     /// Checks the finger of a file that has already been read as TOML.
     ///
     /// # Errors
-    /// As of [`PrintedFinger::parse`].
+    /// See [`PrintedFinger::parse`].
     pub fn from_table(table: toml::Table, file: &str) -> Result<Self, InputError> {
         PrintedFinger::checked(table.try_into().map_err(|error| syntax(file, "", &error))?, file)
     }

@@ -7,21 +7,21 @@ use nalgebra::{Matrix3, Vector3};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanarStiffness {
     stiffness: Matrix3<f64>,
-    /// Displacements (m, m, rad) by forces and a moment (N, N, N m).
+    /// Compliance matrix: displacements (m, m, rad) per force and moment (N, N, N m).
     pub(super) compliance: Matrix3<f64>,
 }
 
 impl PlanarStiffness {
-    /// Takes a matrix in N, N, N m per m, m, rad; `None` unless the matrix is positive definite.
+    /// Creates the stiffness from a matrix in N, N, N m per m, m, rad; `None` unless the matrix is positive definite.
     pub fn new(stiffness: Matrix3<f64>) -> Option<Self> {
         let stiffness = (stiffness + stiffness.transpose()) / 2.0;
         let compliance = stiffness.cholesky()?.inverse();
         Some(PlanarStiffness { stiffness, compliance })
     }
 
-    /// Returns a stiffness with these free stiffnesses in y and z, N/m, and the same against tilting. The
-    /// correlations of the compliances are kept, so that it is positive definite; the distances of the
-    /// centre change by the square roots of new over old compliance.
+    /// Returns a stiffness with the given stiffnesses in y and z, each with the other motions free, N/m, and with the
+    /// same tilting stiffness. The correlations of the compliances are kept, so the result is positive definite; the
+    /// distances of the remote centre scale with the square roots of new over old compliance.
     pub fn corrected(&self, compliance: f64, assembly: f64) -> Option<Self> {
         let free = [self.in_compliance() / compliance, self.in_assembly() / assembly, 1.0];
         let roots = Matrix3::from_diagonal(&Vector3::from(free.map(f64::sqrt)));
@@ -48,7 +48,7 @@ impl PlanarStiffness {
         1.0 / self.compliance[(2, 2)]
     }
 
-    /// Returns the distance of the remote centre, which a moment does not move, below the pad's middle
+    /// Returns the distance of the remote centre, the point that a moment does not move, below the pad's middle
     /// (towards the tip and beyond), m.
     pub fn centre_below_pad(&self) -> f64 {
         -self.compliance[(0, 2)] / self.compliance[(2, 2)]
@@ -59,8 +59,8 @@ impl PlanarStiffness {
         -self.compliance[(1, 2)] / self.compliance[(2, 2)]
     }
 
-    /// Returns the correlation of the compliances in y and z, -1 .. 1; if positive, a pad that is pushed up approaches the
-    /// part.
+    /// Returns the correlation of the compliances in y and z, -1 .. 1; if positive, a pad that is pushed up
+    /// approaches the part.
     pub fn coupling_yz(&self) -> f64 {
         let c = &self.compliance;
         c[(0, 1)] / (c[(0, 0)] * c[(1, 1)]).sqrt()
@@ -81,7 +81,8 @@ pub struct CrossStiffness {
 }
 
 impl CrossStiffness {
-    /// Takes a matrix in N, N m, N m per m, rad, rad; `None` unless the matrix is positive definite.
+    /// Creates the stiffness from a matrix in N, N m, N m per m, rad, rad; `None` unless the matrix is positive
+    /// definite.
     pub fn new(stiffness: Matrix3<f64>) -> Option<Self> {
         let PlanarStiffness { stiffness: matrix, compliance } = PlanarStiffness::new(stiffness)?;
         let [in_depth, about_y, about_z] = [0, 1, 2].map(|i| 1.0 / compliance[(i, i)]);
@@ -122,13 +123,13 @@ mod tests {
         assert!(close(found.tilting(), pad.tilting()));
         assert!(close(found.coupling_yz(), pad.coupling_yz()));
         assert!(close(found.centre_below_pad(), pad.centre_below_pad() / 1.6f64.sqrt()));
-        // What is left of each spring at the centre is positive.
+        // The remaining compliance of the spring at the centre is positive.
         let left = 1.0 / ky - found.centre_below_pad().powi(2) / found.tilting();
         assert!(left > 0.0, "{left}");
     }
 
     #[test]
-    fn a_stiffness_that_would_push_away_is_none() {
+    fn an_indefinite_stiffness_is_rejected() {
         let matrix = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, 1.0));
         assert_eq!(PlanarStiffness::new(matrix), None);
         assert_eq!(CrossStiffness::new(matrix * f64::NAN), None);

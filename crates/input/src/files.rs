@@ -37,7 +37,7 @@ pub fn read_up_to(file: impl Read, limit: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     file.take(limit + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > limit {
-        let problem = format!("it is longer than {limit} bytes, the most that is read");
+        let problem = format!("it is longer than {limit} bytes, the limit");
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, problem));
     }
     Ok(bytes)
@@ -48,7 +48,7 @@ fn text(bytes: Vec<u8>) -> io::Result<String> {
     String::from_utf8(bytes).map_err(|_| io::Error::new(io::ErrorKind::InvalidData, problem))
 }
 
-/// Writes a file that the user has named. A plain file keeps its mode and is written atomically; a device, a
+/// Writes a file at a path given by the user. A plain file keeps its mode and is written atomically; a device, a
 /// pipe or the target of a link is written in place.
 ///
 /// # Errors
@@ -70,11 +70,11 @@ fn read_only() -> io::Error {
     io::Error::new(io::ErrorKind::PermissionDenied, "it is read-only")
 }
 
-/// Writes a file atomically, also if the process is killed. A link is replaced.
+/// Writes a file atomically, even if the process is killed. A link is replaced.
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn write_own(path: &Path, content: &[u8]) -> io::Result<()> {
+pub fn write_atomic(path: &Path, content: &[u8]) -> io::Result<()> {
     write_whole(path, content, None)
 }
 
@@ -94,10 +94,10 @@ fn write_whole(path: &Path, content: &[u8], mode: Option<Permissions>) -> io::Re
     written
 }
 
-/// Text file of the user to which lines are added, locked against other processes. It is not replaced, so that
-/// it keeps its mode and its links.
+/// Text file of the user to which lines are added, locked against other processes. The file itself is not
+/// replaced, so it keeps its mode and its links.
 #[derive(Debug)]
-pub struct Table {
+pub struct LockedFile {
     file: File,
     path: PathBuf,
     text: String,
@@ -105,7 +105,7 @@ pub struct Table {
     created: bool,
 }
 
-impl Table {
+impl LockedFile {
     /// Opens the file, which need not exist, and waits for its lock.
     ///
     /// # Errors
@@ -125,17 +125,17 @@ impl Table {
             // The previous owner of the lock may have removed or replaced the file.
             if fs::metadata(path).is_ok_and(|now| is_open_file(&now, &file).unwrap_or(false)) {
                 let text = text(read_up_to(&file, limit)?)?;
-                return Ok(Table { file, path: path.to_owned(), text, created });
+                return Ok(LockedFile { file, path: path.to_owned(), text, created });
             }
         }
     }
 
-    /// Returns its contents.
+    /// Returns the text of the file.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// Replaces the text, by appending if possible; it then survives a power failure.
+    /// Replaces the text, by appending if possible. The new text is on the disk when this function returns.
     ///
     /// # Errors
     /// If it cannot be written; the file is then unchanged.
@@ -181,7 +181,7 @@ impl Table {
     }
 }
 
-impl Drop for Table {
+impl Drop for LockedFile {
     /// Removes a new file to which nothing was added.
     fn drop(&mut self) {
         if self.created && self.text.is_empty() {
@@ -317,7 +317,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("table.csv");
         fs::write(&path, "a line\n").unwrap();
-        let mut table = Table::open(&path, LARGEST_INPUT).unwrap();
+        let mut table = LockedFile::open(&path, LARGEST_INPUT).unwrap();
         let other = dir.path().join("table.csv.before");
         fs::write(&other, "older").unwrap();
         assert!(
@@ -328,7 +328,7 @@ mod tests {
         fs::remove_file(other).unwrap();
         table.replace("another beginning\n").unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "another beginning\n");
-        drop(Table::open(&dir.path().join("new.csv"), LARGEST_INPUT).unwrap());
+        drop(LockedFile::open(&dir.path().join("new.csv"), LARGEST_INPUT).unwrap());
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1, "no copy, no empty file");
     }
 }

@@ -1,9 +1,9 @@
-//! Input files: reading up to a limit, checks, errors and units. Inside, every quantity is in SI units;
+//! Input files: reading up to a limit, checks, errors and units. Internally, every quantity is in SI units;
 //! millimetres, newtons per millimetre and degrees appear only in names with these units ([`units`]).
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
-// A panic is a defect; what input can reach is an error with a message.
+// A panic is a bug; invalid input must produce an error with a message.
 #![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod files;
@@ -35,7 +35,7 @@ pub struct InputError {
 /// Largest absolute value of a number in a file; beyond it the unit is wrong, and sums and products
 /// could overflow.
 const LARGEST: f64 = 1e9;
-/// Smallest number where one must be above 0.
+/// Smallest value of a number that must be above 0.
 const SMALLEST: f64 = 1e-9;
 /// Longest length and largest coordinate, mm.
 const LONGEST_MM: f64 = 1000.0;
@@ -108,12 +108,12 @@ impl<'a> Document<'a> {
         self
     }
 
-    /// Reads a value of the whole document.
+    /// Deserializes the whole document.
     ///
     /// # Errors
     /// If the structure differs, or the document has a control character or an invalid name.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, InputError> {
-        let (value, table) = (self.of()?, self.of()?);
+        let (value, table) = (self.deserialize()?, self.deserialize()?);
         if let Some((key, problem)) = bad_text(&table) {
             return Check { file: self.file }.fail(&key, problem);
         }
@@ -132,7 +132,7 @@ impl<'a> Document<'a> {
         })
     }
 
-    fn of<T: DeserializeOwned>(&self) -> Result<T, InputError> {
+    fn deserialize<T: DeserializeOwned>(&self) -> Result<T, InputError> {
         T::deserialize(toml::de::Deserializer::from(self.tree.clone())).map_err(|mut error| {
             error.set_input(Some(self.text));
             syntax(self.file, self.text, &error)
@@ -207,7 +207,7 @@ pub fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
-/// Checks of the values of a file.
+/// Checker of the values of a file.
 #[derive(Debug, Clone, Copy)]
 pub struct Check<'a> {
     /// The file as given.
@@ -260,7 +260,7 @@ impl Check<'_> {
     pub fn finite(&self, key: &str, value: f64) -> Result<f64, InputError> {
         // Written so that a NaN is outside.
         let fits = value.abs() <= LARGEST;
-        self.require(key, value, fits, "be a finite number of size 1e9 or less")
+        self.require(key, value, fits, "be a finite number of magnitude 1e9 or less")
     }
 
     /// Checks that a value lies in 1e-9 .. 1e9.

@@ -1,18 +1,18 @@
-//! TOML files, the numbers of which a design may set by their paths.
+//! TOML files whose numbers a design may set by path.
 
 use crate::shipped::nearest;
 use crate::{Check, Document, InputError};
 use std::collections::BTreeSet;
 use toml::{Table, Value};
 
-/// Errors about values of a design, which stand in no file.
+/// Check for values of a design, which are not in a file.
 pub const DESIGN: Check<'static> = Check { file: "design" };
 
 const VECTOR: [&str; 3] = ["x", "y", "z"];
 
 /// A TOML file as read. A number's key is the root, then its path in the file: tables and keys as
-/// they stand there; one of several tables by its `name`; a number of a vector by `x`, `y`, `z`, of
-/// any other list by its place, counted from 0.
+/// written in the file; one of several tables by its `name`; a number of a vector by `x`, `y`, `z`, of
+/// any other list by its index, from 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NumberFile {
     root: &'static str,
@@ -34,7 +34,7 @@ impl NumberFile {
     pub fn keys(&self) -> Vec<String> {
         let mut table = self.table.clone();
         let mut keys: Vec<String> =
-            of_table(self.root, &mut table).into_iter().map(|(key, _)| key).collect();
+            numbers_in_table(self.root, &mut table).into_iter().map(|(key, _)| key).collect();
         keys.sort();
         keys
     }
@@ -42,27 +42,29 @@ impl NumberFile {
     /// Returns the number under a key, in the unit of the key.
     pub fn number(&self, key: &str) -> Option<f64> {
         let mut table = self.table.clone();
-        let number = of_table(self.root, &mut table).into_iter().find(|(name, _)| name == key)?.1;
+        let number =
+            numbers_in_table(self.root, &mut table).into_iter().find(|(name, _)| name == key)?.1;
         number.as_float().or_else(|| number.as_integer().map(|whole| whole as f64))
     }
 
     /// Returns the table with these numbers in place of its own.
     ///
     /// # Errors
-    /// If a key sets no number, or two; the message names the keys there are, `elsewhere` included.
+    /// If a key sets no number or two; the message suggests keys of the file and of `elsewhere`.
     pub fn with<'k>(
         &self,
         values: impl IntoIterator<Item = (&'k str, f64)>,
         elsewhere: &[&str],
     ) -> Result<Table, InputError> {
         let mut table = self.table.clone();
-        let mut numbers = of_table(self.root, &mut table);
+        let mut numbers = numbers_in_table(self.root, &mut table);
         for (key, value) in values {
             let mut found = numbers.iter_mut().filter(|(name, _)| name == key);
             match (found.next(), found.next()) {
                 (Some((_, number)), None) => **number = Value::Float(value),
                 (Some(_), Some(_)) => {
-                    let problem = "is two numbers: two tables have the same name; rename one";
+                    let problem =
+                        "names two numbers, since two tables have the same name; rename one table";
                     return Check { file: &self.file }.fail(key, problem);
                 }
                 (None, _) => {
@@ -76,8 +78,8 @@ impl NumberFile {
     }
 }
 
-/// Every number within a table with its path, which begins with `path`.
-fn of_table<'a>(path: &str, table: &'a mut Table) -> Vec<(String, &'a mut Value)> {
+/// Returns every number within a table with its path, which begins with `path`.
+fn numbers_in_table<'a>(path: &str, table: &'a mut Table) -> Vec<(String, &'a mut Value)> {
     let below = |name: &str| format!("{path}.{name}");
     table.iter_mut().flat_map(|(key, value)| numbers(&below(key), value)).collect()
 }
@@ -85,7 +87,7 @@ fn of_table<'a>(path: &str, table: &'a mut Table) -> Vec<(String, &'a mut Value)
 fn numbers<'a>(path: &str, value: &'a mut Value) -> Vec<(String, &'a mut Value)> {
     match value {
         Value::Integer(_) | Value::Float(_) => vec![(path.to_owned(), value)],
-        Value::Table(table) => of_table(path, table),
+        Value::Table(table) => numbers_in_table(path, table),
         Value::Array(items) => {
             let vector = items.len() == VECTOR.len() && items.iter().all(Value::is_float);
             let name = |place: usize, item: &Value| match item.get("name").and_then(Value::as_str) {
@@ -100,8 +102,8 @@ fn numbers<'a>(path: &str, value: &'a mut Value) -> Vec<(String, &'a mut Value)>
     }
 }
 
-/// Problem of a path that is none of `paths`: the nearest of them, and how one that begins like it
-/// goes on.
+/// Returns the error message for a path that is not in `paths`: the nearest path, and the words that can follow its
+/// longest known prefix.
 pub fn unknown(path: &str, paths: &[&str]) -> String {
     let near = nearest(path, paths).map(|near| format!("; did you mean `{near}`?"));
     let hint = near.as_deref().unwrap_or(";");
@@ -120,7 +122,7 @@ pub fn unknown(path: &str, paths: &[&str]) -> String {
             }
             (_, Some(_)) => {
                 let names = names.join(", ");
-                return format!("unknown path `{path}`{hint} `{prefix}` goes on with {names}");
+                return format!("unknown path `{path}`{hint} `{prefix}` continues with {names}");
             }
             (0, None) => return format!("unknown path `{path}`"),
             (_, None) => end = path[..end].rfind('.').unwrap_or(0),

@@ -9,51 +9,51 @@ pub struct Place {
     pub file: Option<String>,
     /// Line of the file, counted from 1.
     pub line: Option<usize>,
-    /// Path of the field in the file, its column, or the option as Python has it.
+    /// Path of the field in the file, its column, or the name of the option in Python.
     pub key: Option<String>,
 }
 
 /// Error with a place.
 pub trait Placed {
-    /// Returns its place.
+    /// Returns the place of the error.
     fn place(&self) -> Place;
 }
 
-/// Fault at a place.
+/// Error with its place and problem.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{place}: {problem}")]
 pub struct Fault {
-    /// Its place; something of it is known.
+    /// Place of the error; at least one of its fields is known.
     pub place: Place,
-    /// The problem, and what would be right.
+    /// The problem, and what is accepted.
     pub problem: String,
 }
 
 impl Place {
-    /// Returns a file.
+    /// Returns the place of a file.
     pub fn file(file: impl Into<String>) -> Self {
         Place { file: Some(file.into()), ..Place::default() }
     }
 
-    /// Returns the option of the command line that a text begins with, as Python has it; none if it does
-    /// not.
+    /// Returns the place of the command-line option with which a text begins, under its name in Python; an empty
+    /// place if it begins with none.
     pub fn option(text: &str) -> Self {
         let name = text.strip_prefix("--").unwrap_or_default();
         let end = name.find(|c: char| !c.is_ascii_lowercase() && c != '-').unwrap_or(name.len());
         Place::default().key(&name[..end].replace('-', "_"))
     }
 
-    /// Returns a field or option; none if it is empty.
+    /// Returns the place with a field or option; without one if `key` is empty.
     pub fn key(self, key: &str) -> Self {
         Place { key: (!key.is_empty()).then(|| key.to_owned()), ..self }
     }
 
-    /// Returns a line, counted from 1.
+    /// Returns the place with a line, counted from 1.
     pub fn line(self, line: usize) -> Self {
         Place { line: Some(line), ..self }
     }
 
-    /// This problem of it.
+    /// Returns the error of a problem at this place.
     pub fn fault(self, problem: impl Into<String>) -> Fault {
         Fault { place: self, problem: problem.into() }
     }

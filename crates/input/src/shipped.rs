@@ -1,11 +1,11 @@
-//! The files shipped within the program, so that it runs from any folder.
+//! Files embedded in the program, so that it runs from any folder.
 
 use crate::files::{self, LARGEST_INPUT};
 use crate::place::{Place, Placed};
 use std::path::Path;
 use strsim::osa_distance;
 
-/// A file within the program.
+/// File embedded in the program.
 #[derive(Debug, Clone, Copy)]
 pub struct Shipped {
     /// Name on the command line.
@@ -34,8 +34,8 @@ pub const TASKS: &[Shipped] = shipped! {
     "usb": "tasks/usb.toml",
 };
 
-/// Connectors of the same kinds with the mechanisms and the clearances of those that are sold.
-pub const SOLD: &[Shipped] = shipped! {
+/// Tasks with connectors of the same kinds that have the mechanisms and clearances of commercial connectors.
+pub const COMMERCIAL: &[Shipped] = shipped! {
     "rj45_latch": "tasks/rj45_latch.toml",
     "usb_a": "tasks/usb_a.toml",
 };
@@ -47,7 +47,7 @@ pub const SPACES: &[Shipped] = shipped! {
     "finger": "spaces/finger.toml",
 };
 
-/// Robots, from rigid to a compliant arm.
+/// Robots, from a rigid one to a compliant arm.
 pub const ROBOTS: &[Shipped] = shipped! {
     "servo": "robots/servo.toml",
     "rigid": "robots/rigid.toml",
@@ -73,7 +73,7 @@ pub const STIFFNESS: &[Shipped] = shipped! { "measured": "data/measured_stiffnes
 /// Measurements on a bench.
 pub const MEASUREMENTS: &[Shipped] = shipped! { "published": "data/published_bench.csv" };
 
-/// A text and what to call it in messages.
+/// Text of a file with its name for messages.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Deserialize)]
 pub struct Source {
     /// File name as the user knows it.
@@ -82,7 +82,7 @@ pub struct Source {
     pub text: String,
 }
 
-/// Error of a name or path that gives no text.
+/// Error for a name or path that cannot be resolved to a text.
 #[derive(Debug, thiserror::Error)]
 #[error("{text}")]
 pub struct ShippedError {
@@ -97,10 +97,10 @@ impl Placed for ShippedError {
 }
 
 /// Returns the shipped file of that name or, if `name` looks like a path (it has a separator or an
-/// extension), the file there.
+/// extension), the file at that path.
 ///
 /// # Errors
-/// If there is no such file; the message has the nearest name and all names.
+/// If there is no such file; the message lists the nearest name and all names.
 pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, ShippedError> {
     if let Some(found) = shipped.iter().find(|shipped| shipped.name == name) {
         return Ok(Source { file: found.file.to_owned(), text: found.text.to_owned() });
@@ -124,7 +124,7 @@ pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, Sh
     Err(ShippedError { place: Place::default().key(&kind.replace(' ', "_")), text })
 }
 
-/// Returns the name that differs least from `name`, if less than half of it differs.
+/// Returns the name with the smallest edit distance from `name`, if that is at most half the length of `name`.
 pub fn nearest<'a>(name: &str, names: &[&'a str]) -> Option<&'a str> {
     let distance = |other: &&&str| osa_distance(name, other);
     let best = names.iter().min_by_key(distance)?;
@@ -136,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_name_of_which_half_differs_is_not_near() {
+    fn a_name_of_which_more_than_half_differs_is_not_near() {
         assert_eq!(nearest("hexapod", &["usb", "rj45"]), None);
     }
 }

@@ -1,4 +1,4 @@
-//! Units of files, headers and plots; inside, every quantity is in SI units.
+//! Units of files, headers and plots; internally, every quantity is in SI units.
 //!
 //! A constant is the SI value of one such unit: `3.0 * MM` reads "3 mm" and is
 //! in metres; `x / MM` is the number of millimetres in `x` metres.
@@ -19,9 +19,9 @@ pub const GRAM: f64 = 1e-3;
 /// One percent, as a share.
 pub const PERCENT: f64 = 0.01;
 
-/// Number, array, list or option of numbers that a factor converts.
+/// Number, or array, list or option of numbers, that is converted by a factor.
 pub trait Quantity<'de>: Deserialize<'de> {
-    /// Multiplies its numbers by a factor.
+    /// Multiplies all numbers by a factor.
     fn times(self, factor: f64) -> Self;
 }
 

@@ -39,7 +39,7 @@ pub fn rig(task: Task) -> EngineRig {
     EngineRig::new(task, &robot("servo"), Box::<Direct>::default()).unwrap()
 }
 
-/// Mean and standard deviation of the compliance and of the assembly stiffness, N/mm.
+/// Returns a prediction with mean and standard deviation of the compliance and of the assembly stiffness, N/mm.
 pub fn predicted(compliance: [f64; 2], assembly: [f64; 2]) -> Prediction {
     let [compliance, assembly] = [compliance, assembly]
         .map(|[mean, sd]| Estimate { mean: mean * N_PER_MM, sd: sd * N_PER_MM });

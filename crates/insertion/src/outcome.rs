@@ -1,6 +1,6 @@
 //! Outcome of a trial.
 
-use parameters::plan::grid::Ends;
+use parameters::plan::grid::Traceable;
 use serde::{Deserialize, Serialize};
 
 /// Failure class of a trial; the numbers are the paper's (Table "Failure Cases").
@@ -11,9 +11,9 @@ pub enum FailureClass {
     ContactLossBeforeSearch,
     /// 2: when the search ended, the leading edge was not inside the opening.
     PlugMissed,
-    /// 3: it was, but the part is not seated; still held.
+    /// 3: the leading edge was inside the opening, but the part is not seated; it is still held.
     Jammed,
-    /// 4: the part left the grasp, or slipped beyond the limit, in search or insertion.
+    /// 4: the part left the grasp, or slipped beyond the limit, during search or insertion.
     ContactLossInInsertion,
 }
 
@@ -38,7 +38,7 @@ impl FailureClass {
         labels[self as usize]
     }
 
-    /// Short name for plots.
+    /// Returns a short name for plots.
     pub fn short(self) -> &'static str {
         ["lost early", "missed", "jammed", "lost"][self as usize]
     }
@@ -91,7 +91,7 @@ impl Outcome {
         }
     }
 
-    /// Short name for plots.
+    /// Returns a short name for plots.
     pub fn short(self) -> &'static str {
         match self {
             Outcome::Failed(class) => class.short(),
@@ -99,7 +99,7 @@ impl Outcome {
         }
     }
 
-    /// Returns the failure class, 1 to 4, if it was a failure.
+    /// Returns the number of the failure class, 1 to 4; `None` unless the trial failed.
     pub fn failure(self) -> Option<u8> {
         match self {
             Outcome::Failed(class) => Some(class.number()),
@@ -107,7 +107,8 @@ impl Outcome {
         }
     }
 }
-impl Ends for Outcome {
+
+impl Traceable for Outcome {
     fn inside(self) -> bool {
         self == Outcome::Inserted
     }

@@ -20,7 +20,7 @@ impl Axis {
     /// Both axes, assembly first, as in the measured file.
     pub const ALL: [Axis; 2] = [Axis::Assembly, Axis::Compliance];
 
-    /// Short name for tables and plots.
+    /// Returns a short name for tables and plots.
     pub fn label(self) -> &'static str {
         match self {
             Axis::Assembly => "assembly (z)",

@@ -2,7 +2,7 @@
 
 use contact::mjcf::*;
 use contact::scene::*;
-use input::shipped::{ROBOTS, SOLD, Shipped, TASKS};
+use input::shipped::{COMMERCIAL, ROBOTS, Shipped, TASKS};
 use input::units::N_PER_MM;
 use insertion::finger::Finger;
 use insertion::robot::Robot;
@@ -167,12 +167,13 @@ fn what_mjcf_cannot_say_is_refused_by_name() {
     let arm = supports(&scene("usb", "ur5e")).unwrap_err();
     assert_eq!(
         arm.to_string(),
-        "`flange` cannot be written as MJCF: it has no mass that depends on the direction"
+        "`flange` cannot be written as MJCF, which does not support mass that depends on the \
+         direction"
     );
     let mut off = scene("usb", "servo");
     let joint = &mut off.joints[0];
     joint.in_parent = Pose::translation(0.0, 0.0, 1e-6) * joint.in_parent;
-    assert_eq!(supports(&off).unwrap_err().feature, "joints that start off their zero");
+    assert_eq!(supports(&off).unwrap_err().feature, "joints with nonzero initial coordinates");
     let mut twice = scene("usb", "servo");
     let again = twice.joints[0].clone();
     twice.joints.push(again);
@@ -194,7 +195,7 @@ fn geoms_of_one_name_are_told_apart() {
 /// it should be. The latch of the connector as sold hangs on a plug of a few grams.
 #[test]
 fn every_contact_is_as_stiff_as_it_should_be() {
-    for task in TASKS.iter().chain(SOLD) {
+    for task in TASKS.iter().chain(COMMERCIAL) {
         let text = model(&of(task, "servo"));
         let document = Document::parse(&text).unwrap();
         for pair in all(&document, "pair") {

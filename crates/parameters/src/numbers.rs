@@ -1,5 +1,5 @@
-//! The table of all numbers of files and of those that may vary, with the unit in each path and
-//! plausible bounds.
+//! Table of all numbers in the input files and of the other numbers that may vary, with plausible bounds. Each
+//! path ends in the unit.
 //!
 //! In a pattern `*` matches a name or a list index (a phase, a part, an end of a span), and `a|b`
 //! either word.
@@ -36,75 +36,75 @@ pub const START_TILT: &str = "cell.start_tilt_deg";
 /// Rotation of the socket about z.
 pub const SOCKET_YAW: &str = "cell.socket_yaw_deg";
 
-/// Object on which a number is set, and how.
+/// Object to which a number belongs, and how it is set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// A coordinate of the infill.
     Infill,
-    /// In the text of a task or finger file, before its checks.
+    /// Number in the text of a task or finger file, set before the checks of the file.
     File,
-    /// In the finger built from the files.
+    /// Number of the finger built from the files.
     Finger,
-    /// In the robot built from its file.
+    /// Number of the robot built from its file.
     Robot,
-    /// Added to a shape of the task; its nominal value is 0.
+    /// Change of a shape of the task; its nominal value is 0.
     Added,
     /// Factor on both springs of the finger.
     Springs,
     /// Random error of an insertion, relative to nominal.
     Error,
-    /// In a file, as a part of what varies as a whole or not at all: not a path.
+    /// Number in a file without a path of its own, since it varies only together with others, or not at all.
     Fixed,
 }
 
-/// Row of the table: pattern of the paths, and plausible bounds in their unit.
+/// Entry of the table: pattern of the paths, and plausible bounds in their unit.
 #[derive(Debug, PartialEq)]
-pub struct Number {
+pub struct NumberSpec {
     /// Pattern of the paths.
     pub pattern: &'static str,
-    /// Object on which it is set.
+    /// Object to which the numbers belong.
     pub kind: Kind,
     /// Smallest and largest plausible value.
     pub bounds: [f64; 2],
 }
 
-const fn number(kind: Kind, pattern: &'static str, low: f64, high: f64) -> Number {
-    Number { pattern, kind, bounds: [low, high] }
+const fn number(kind: Kind, pattern: &'static str, low: f64, high: f64) -> NumberSpec {
+    NumberSpec { pattern, kind, bounds: [low, high] }
 }
-const fn file(pattern: &'static str, low: f64, high: f64) -> Number {
+const fn file(pattern: &'static str, low: f64, high: f64) -> NumberSpec {
     number(Kind::File, pattern, low, high)
 }
-const fn error(pattern: &'static str, largest: f64) -> Number {
+const fn error(pattern: &'static str, largest: f64) -> NumberSpec {
     number(Kind::Error, pattern, -largest, largest)
 }
 /// A coordinate or a difference of two, mm.
-const fn distance(pattern: &'static str) -> Number {
+const fn distance(pattern: &'static str) -> NumberSpec {
     file(pattern, -1e3, 1e3)
 }
 /// A length above 0, mm, or a time, s.
-const fn length(pattern: &'static str) -> Number {
-    file(pattern, LEAST, 1e3)
+const fn length(pattern: &'static str) -> NumberSpec {
+    file(pattern, SMALLEST, 1e3)
 }
-/// A size of a part, mm: at least a thousandth of what a printer prints.
-const fn size(pattern: &'static str) -> Number {
+/// A size of a part, mm: at least 1 um, far below the smallest printable size.
+const fn size(pattern: &'static str) -> NumberSpec {
     file(pattern, 1e-3, 1e3)
 }
-const fn fixed(pattern: &'static str, low: f64, high: f64) -> Number {
+const fn fixed(pattern: &'static str, low: f64, high: f64) -> NumberSpec {
     number(Kind::Fixed, pattern, low, high)
 }
-/// Least value of what must be above 0.
-const LEAST: f64 = 1e-9;
+/// Smallest value of a number that must be above 0.
+const SMALLEST: f64 = 1e-9;
 
-/// All numbers. Those of an arm's joints do not vary: together they are one published arm.
-pub static NUMBERS: &[Number] = &[
-    // Less than 1 % is no infill: 0.2 is a share written as percent.
+/// All numbers. The numbers of an arm's joints do not vary: together they describe one published arm.
+pub static NUMBERS: &[NumberSpec] = &[
+    // A density below 1 % is not an infill: 0.2 is a fraction that should be a percentage.
     number(Kind::Infill, DENSITY, 1.0, 100.0),
     number(Kind::Infill, DIRECTION, 0.0, 90.0),
     file("task.turn_in_base_deg", -360.0, 360.0),
-    file("task.plug.mass_g", LEAST, 1e6),
+    file("task.plug.mass_g", SMALLEST, 1e6),
     distance("task.plug.latch.root_mm|end_mm.*"),
     size("task.plug.latch.width_mm|thickness_mm"),
-    file("task.plug.latch.modulus_gpa", LEAST, 1e6),
+    file("task.plug.latch.modulus_gpa", SMALLEST, 1e6),
     distance("task.plug|socket.part.*.x_mm|y_mm|z_mm|centre_mm|span_mm.*"),
     distance("task.plug|socket.part.*.outline_mm|points_mm.*.*"),
     size("task.plug|socket.part.*.diameter_mm"),
@@ -113,7 +113,7 @@ pub static NUMBERS: &[Number] = &[
     distance("task.socket.opening_x_mm|opening_y_mm.*"),
     length("task.grip.tcp_z_mm|shoulder_z_mm|slip_limit_mm"),
     distance("task.grip.faces_y_mm.*"),
-    file("task.grip.force_n", LEAST, 1e6),
+    file("task.grip.force_n", SMALLEST, 1e6),
     file("task.friction.plug_socket|finger_plug", 0.0, 5.0),
     file("task.friction.finger_plug_torsion_mm", 0.0, 500.0),
     length("task.finger.rcc_mm"),
@@ -123,12 +123,12 @@ pub static NUMBERS: &[Number] = &[
     file("task.strategy.tilt_deg", -45.0, 45.0),
     distance("task.strategy.start_mm.*"),
     distance("task.strategy.phase.*.move_mm.*"),
-    file("task.strategy.phase.*.speed_mm_per_s|touch_force_n", LEAST, 1e6),
+    file("task.strategy.phase.*.speed_mm_per_s|touch_force_n", SMALLEST, 1e6),
     length("task.strategy.phase.*.tolerance_mm|settle_s|preload_mm"),
     file("task.strategy.phase.*.latency_s", 0.0, 1e3),
     length("task.success.depth_mm"),
-    file("task.success.tilt_deg", LEAST, 360.0),
-    fixed("task.limits.force_n|speed_mm_per_s", LEAST, 1e6),
+    file("task.success.tilt_deg", SMALLEST, 360.0),
+    fixed("task.limits.force_n|speed_mm_per_s", SMALLEST, 1e6),
     fixed("task.mating_force.depth_mm.*", 0.0, 1e3),
     fixed("task.mating_force.force_n.*", 0.0, 1e5),
     distance("task.success.mated.tip_mm.*"),
@@ -151,24 +151,24 @@ pub static NUMBERS: &[Number] = &[
     file("finger.mount.tilt_deg", 0.0, 60.0),
     file("finger.material.modulus_gpa", 1e-4, 500.0),
     file("finger.material.poisson", 0.0, 0.5),
-    file("finger.material.density_kg_per_m3", LEAST, 1e9),
+    file("finger.material.density_kg_per_m3", SMALLEST, 1e9),
     length("finger.holes.spacing_mm|diameter_mm"),
     length("finger.holes.block.length_mm|width_mm|overlap_mm"),
     length("finger.print.line_width_mm|smallest_gap_mm"),
     // Up to a thousand times the stiffness of a solid finger.
     fixed("stiffness_assembly_n_per_mm|stiffness_compliance_n_per_mm", 1e-6, 1e6),
-    number(Kind::Springs, STIFFNESS, LEAST, 1e6),
+    number(Kind::Springs, STIFFNESS, SMALLEST, 1e6),
     // The remote centre may lie on either side of the TCP.
     number(Kind::Finger, CENTRE, -1e6, 1e6),
     number(
         Kind::Finger,
         "finger.rotation_x_nm_per_rad|rotation_y_nm_per_rad|rotation_z_nm_per_rad",
-        LEAST,
+        SMALLEST,
         1e6,
     ),
-    number(Kind::Finger, "finger.depth_n_per_mm|mass_g", LEAST, 1e6),
-    number(Kind::Finger, "finger.damping_n_s_per_m|rotational_damping_nm_s_per_rad", LEAST, 1e6),
-    // From a cushion to a machine tool. Ten times what a stiff industrial arm has is N/m.
+    number(Kind::Finger, "finger.depth_n_per_mm|mass_g", SMALLEST, 1e6),
+    number(Kind::Finger, "finger.damping_n_s_per_m|rotational_damping_nm_s_per_rad", SMALLEST, 1e6),
+    // From a cushion to a machine tool. Ten times the value of a stiff industrial arm is a value in N/m.
     number(Kind::Robot, "robot.stiffness_n_per_mm", 0.01, 5e3),
     number(Kind::Robot, "robot.stop_force_n", 0.1, 1e5),
     number(Kind::Robot, "robot.mass_kg", 1e-3, 1e3),
@@ -203,8 +203,8 @@ pub static NUMBERS: &[Number] = &[
     fixed("uncertainty.robust_range.tail_percent", 1e-4, 99.9999),
 ];
 
-impl Number {
-    /// Returns its paths, with `*` for a name or a list index.
+impl NumberSpec {
+    /// Returns the paths of the pattern, with `*` for a name or a list index.
     pub fn paths(&self) -> Vec<String> {
         let start = vec![String::new()];
         let paths = self.pattern.split('.').fold(start, |paths, word| {
@@ -215,26 +215,26 @@ impl Number {
     }
 }
 
-/// Returns the paths of a kind.
+/// Returns the paths of all numbers of a kind.
 pub fn paths(kind: Kind) -> Vec<String> {
-    NUMBERS.iter().filter(|number| number.kind == kind).flat_map(Number::paths).collect()
+    NUMBERS.iter().filter(|number| number.kind == kind).flat_map(NumberSpec::paths).collect()
 }
 
-/// Returns the problem of a number that is out of the bounds of its path, if it is; one that is not in
-/// the table has none.
+/// Returns the error message for a number that is out of the bounds of its path; `None` if it is within them or the
+/// path is not in the table.
 pub fn problem(path: &str, value: f64) -> Option<String> {
-    let row = NUMBERS.iter().find(|number| fits(number.pattern, path))?;
+    let row = NUMBERS.iter().find(|number| matches(number.pattern, path))?;
     out_of_bounds(value, row.bounds)
 }
 
-/// Returns whether a pattern has this path; a name in place of `*` may have dots of its own.
-fn fits(pattern: &str, path: &str) -> bool {
+/// Returns whether a path matches a pattern; a name in place of `*` may contain dots.
+fn matches(pattern: &str, path: &str) -> bool {
     let (word, rest) = match pattern.split_once('.') {
         Some((word, rest)) => (word, Some(rest)),
         None => (pattern, None),
     };
     let goes_on = |after: &str| match (rest, after.strip_prefix('.')) {
-        (Some(rest), Some(path)) => fits(rest, path),
+        (Some(rest), Some(path)) => matches(rest, path),
         (rest, _) => rest.is_none() && after.is_empty(),
     };
     if word == "*" {
@@ -248,7 +248,7 @@ fn fits(pattern: &str, path: &str) -> bool {
 /// Checks a number against the bounds of its path.
 ///
 /// # Errors
-/// As of [`problem`].
+/// See [`problem`].
 pub fn check(check: Check<'_>, path: &str, value: f64) -> Result<(), InputError> {
     problem(path, value).map_or(Ok(()), |problem| check.fail(path, problem))
 }
@@ -256,21 +256,21 @@ pub fn check(check: Check<'_>, path: &str, value: f64) -> Result<(), InputError>
 /// Checks all numbers of a file against the table; `root` is the first word of their paths.
 ///
 /// # Errors
-/// The first number that is out of bounds: with the bounds.
+/// If a number is out of bounds; the error is about the first one.
 pub fn check_file(root: &str, table: &toml::Table, file: &str) -> Result<(), InputError> {
-    let rows: Vec<Row> = NUMBERS
+    let rows: Vec<PartialMatch> = NUMBERS
         .iter()
         .filter_map(|number| Some((number, number.pattern.strip_prefix(root)?.strip_prefix('.')?)))
         .collect();
     check_table(Check { file }, "", table, &rows)
 }
 
-/// Row of the table with the rest of its pattern, from where a walk through a file has come.
-type Row = (&'static Number, &'static str);
+/// Entry of the table whose pattern begins with the path so far, and the rest of the pattern.
+type PartialMatch = (&'static NumberSpec, &'static str);
 
-/// Returns the rows whose patterns go on with a word that fits.
-fn next(rows: &[Row], fits: impl Fn(&str) -> bool) -> Vec<Row> {
-    let after = |(number, rest): &Row| {
+/// Returns the entries whose patterns continue with a matching word, advanced by this word.
+fn advance(rows: &[PartialMatch], fits: impl Fn(&str) -> bool) -> Vec<PartialMatch> {
+    let after = |(number, rest): &PartialMatch| {
         let (word, rest) = rest.split_once('.').unwrap_or((rest, ""));
         word.split('|').any(&fits).then_some((*number, rest))
     };
@@ -281,11 +281,11 @@ fn check_table(
     check: Check<'_>,
     key: &str,
     table: &toml::Table,
-    rows: &[Row],
+    rows: &[PartialMatch],
 ) -> Result<(), InputError> {
     let name = table.get("name").and_then(Value::as_str).filter(|_| !key.is_empty());
     for (word, value) in table {
-        let rows = next(rows, |one| one == word);
+        let rows = advance(rows, |one| one == word);
         if !rows.is_empty() {
             let key = match name {
                 Some(name) => format!("{key} \"{name}\" {word}"),
@@ -298,11 +298,16 @@ fn check_table(
     Ok(())
 }
 
-fn check_value(check: Check<'_>, key: &str, value: &Value, rows: &[Row]) -> Result<(), InputError> {
+fn check_value(
+    check: Check<'_>,
+    key: &str,
+    value: &Value,
+    rows: &[PartialMatch],
+) -> Result<(), InputError> {
     match value {
         Value::Table(table) => check_table(check, key, table, rows),
         Value::Array(items) => {
-            let mut below = next(rows, |one| one == "*");
+            let mut below = advance(rows, |one| one == "*");
             // The numbers of a list that vary together have one path.
             below.extend(rows.iter().filter(|(_, rest)| rest.is_empty()));
             items.iter().try_for_each(|item| check_value(check, key, item, &below))
@@ -334,7 +339,7 @@ mod tests {
 
     #[test]
     fn each_path_of_the_table_has_its_bounds_and_others_have_none() {
-        for path in NUMBERS.iter().flat_map(Number::paths) {
+        for path in NUMBERS.iter().flat_map(NumberSpec::paths) {
             let named = path.replacen('*', "a name.with a dot", 1).replace('*', "0");
             assert!(problem(&named, f64::NAN).is_some(), "{named}");
         }

@@ -25,14 +25,14 @@ pub enum Scale {
 pub enum Transform {
     /// Multiplies the number.
     Factor,
-    /// Is added to the number.
+    /// Adds to the number.
     Shift,
     /// Replaces the number.
     Value,
 }
 
 /// Uncertain number: uniform between its bounds or, if value and deviation are given, a normal
-/// distribution truncated there. Row of a file of priors, levers or of a cell.
+/// distribution truncated there. Entry of a file of priors, levers or a cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parameter {
@@ -88,12 +88,13 @@ impl Parameter {
             (_, Some((value, 0.0))) => value,
             (Scale::Linear, Some((value, sd))) => {
                 let [from, to] = [low, high].map(|bound| (bound - value) / sd);
-                (value + sd * cut_normal(share, from, to)).clamp(low, high)
+                (value + sd * truncated_normal_quantile(share, from, to)).clamp(low, high)
             }
             (Scale::Log, Some((value, sd))) => {
                 let sd = sd / value;
                 let [from, to] = [low, high].map(|bound| libm::log(bound / value) / sd);
-                (value * libm::exp(sd * cut_normal(share, from, to))).clamp(low, high)
+                (value * libm::exp(sd * truncated_normal_quantile(share, from, to)))
+                    .clamp(low, high)
             }
         }
     }
@@ -121,7 +122,7 @@ impl Parameter {
         }
     }
 
-    /// Checks a row of a file.
+    /// Checks a parameter read from a file.
     ///
     /// # Errors
     /// If a bound, the value or the transform cannot be used with this path.
@@ -133,7 +134,7 @@ impl Parameter {
             return check.fail(name, "low must be below high");
         }
         if (*scale == Scale::Log || self.transform == Transform::Factor) && *low <= 0.0 {
-            return check.fail(name, "low must be above 0: a factor, or a logarithm");
+            return check.fail(name, "low must be above 0 for a factor or on a log scale");
         }
         if let Some(problem) = self.mismatch() {
             return check.fail(name, problem);
@@ -163,10 +164,12 @@ impl Parameter {
         match (self.path.kind(), self.transform) {
             (Kind::Infill | Kind::Error, _) => {
                 let path = &self.path;
-                Some(format!("`{path}` is no number of a cell: a space or an uncertainty has it"))
+                Some(format!(
+                    "`{path}` cannot be set by a cell; set it in a space or an uncertainty file"
+                ))
             }
             (Kind::Added, Factor) => {
-                Some("must be as = \"shift\": a size in place of none".to_owned())
+                Some("must be as = \"shift\": its nominal value is 0".to_owned())
             }
             (Kind::Springs, Shift | Value) => {
                 Some("must be as = \"factor\": it sets two stiffnesses".to_owned())
@@ -180,8 +183,8 @@ impl Parameter {
     }
 }
 
-/// Quantile of the standard normal distribution truncated to `from .. to`.
-fn cut_normal(share: f64, from: f64, to: f64) -> f64 {
+/// Returns the quantile of the standard normal distribution truncated to `from .. to`.
+fn truncated_normal_quantile(share: f64, from: f64, to: f64) -> f64 {
     let [below, above] = [from, to].map(normal_cdf);
     normal_quantile(below + share * (above - below))
 }
@@ -252,7 +255,7 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever a file may give, draws lie within the bounds and rise with the share.
+        /// For each accepted parameter, draws lie within the bounds and increase with the share.
         #[test]
         fn draws_lie_within_the_bounds(
             low in 1e-3..1e3f64,

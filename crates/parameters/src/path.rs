@@ -1,6 +1,6 @@
 //! Paths of numbers, checked against the table of all numbers.
 
-use crate::numbers::{Kind, NUMBERS, Number};
+use crate::numbers::{Kind, NUMBERS, NumberSpec};
 use input::numbers::unknown;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -11,7 +11,7 @@ use std::ops::Deref;
 #[serde(try_from = "String", into = "String")]
 pub struct Path {
     text: String,
-    number: &'static Number,
+    number: &'static NumberSpec,
 }
 
 /// Error for a path that is not in the table; suggests the closest match.
@@ -51,12 +51,12 @@ impl Path {
         self.number.kind
     }
 
-    /// Smallest and largest plausible value, in the unit of the path.
+    /// Returns the smallest and largest plausible value, in the unit of the path.
     pub fn bounds(&self) -> [f64; 2] {
         self.number.bounds
     }
 
-    /// Unit as a suffix to a value, with a leading space where one is needed; empty if unitless.
+    /// Returns the unit as a suffix to a value, with a leading space if needed; empty if unitless.
     pub fn unit(&self) -> &'static str {
         label(self).1
     }
@@ -172,11 +172,11 @@ mod tests {
     }
 
     #[test]
-    fn no_number_stands_twice_and_bounds_are_intervals() {
+    fn no_number_is_listed_twice_and_bounds_are_intervals() {
         for number in NUMBERS.iter().filter(|number| number.kind != Kind::Fixed) {
             for path in number.paths() {
                 let first = Path::new(path).unwrap();
-                assert!(std::ptr::eq(first.number, number), "{first} stands twice");
+                assert!(std::ptr::eq(first.number, number), "{first} is listed twice");
             }
             assert!(number.bounds[0] < number.bounds[1], "{}", number.pattern);
         }
@@ -190,7 +190,7 @@ mod tests {
                 "task.strategy.phase.side.preload",
                 "did you mean `task.strategy.phase.side.preload_mm`?",
             ),
-            ("finger.skin.thick_mm", "`finger.skin.` goes on with thickness_mm"),
+            ("finger.skin.thick_mm", "`finger.skin.` continues with thickness_mm"),
             ("robot.mass", "did you mean `robot.mass_kg`?"),
             ("tilt", "a path begins with cell, finger, infill_density_percent,"),
             ("task.clearance_mm.x", "unknown path `task.clearance_mm.x`"),

@@ -42,8 +42,10 @@ impl Variable {
         let within = format!("must lie in {} .. {}", shown(least), shown(most));
         let log = "on a log scale step must be above 1 and low above 0";
         let settable = matches!(self.key.kind(), Kind::Infill | Kind::File | Kind::Finger);
+        let unset =
+            "cannot be set by a design; accepted are numbers of infill, task file and finger";
         let problems = [
-            (!settable, "is no number of a design, as those of its infill, task and finger are"),
+            (!settable, unset),
             (
                 ![low, high, step].iter().all(|v| v.is_finite()),
                 "low, high and step must be finite numbers",
@@ -59,7 +61,7 @@ impl Variable {
         problems.into_iter().find(|(wrong, _)| *wrong).map(|(_, problem)| problem.to_owned())
     }
 
-    /// Number of distinct values.
+    /// Returns the number of distinct values.
     pub fn levels(&self) -> u32 {
         self.steps().round() as u32 + 1
     }
@@ -149,13 +151,13 @@ pub struct Space {
 #[serde(transparent)]
 pub struct Design(pub BTreeMap<String, f64>);
 
-/// Returns whether a path names a number of the task, of which a change needs no print.
+/// Returns whether a path is that of a number of the task, which can change without printing a new finger.
 pub fn is_of_task(path: &str) -> bool {
     path.starts_with("task.")
 }
 
 impl Design {
-    /// Returns whether it sets numbers of the task.
+    /// Returns whether the design sets numbers of the task.
     pub fn changes_task(&self) -> bool {
         self.0.keys().any(|key| is_of_task(key))
     }
@@ -165,7 +167,7 @@ impl Design {
         Design::default().with(DENSITY_KEY, density_percent).with(DIRECTION_KEY, direction_deg)
     }
 
-    /// Like [`infill`](Self::infill), but checks the bounds; `given` names the source in errors.
+    /// Returns the same as [`infill`](Self::infill) after checking the bounds; `given` names the source in errors.
     ///
     /// # Errors
     /// If a value is out of bounds or NaN.
@@ -192,7 +194,7 @@ impl Design {
         self.0.get(key).copied()
     }
 
-    /// Formats for display: `infill density 20 %, infill direction 10°`.
+    /// Formats the design for display: `infill density 20 %, infill direction 10°`.
     pub fn labelled(&self) -> String {
         let value = |(key, value): (&String, &f64)| {
             let (name, unit) = crate::label(key);
@@ -210,7 +212,7 @@ impl std::fmt::Display for Design {
     }
 }
 
-const MOST_PARAMETERS: usize = 100;
+const MAX_PARAMETERS: usize = 100;
 /// Smallest step: a thousand times the rounding of values.
 const FINEST_STEP: f64 = 1e-6;
 
@@ -246,14 +248,14 @@ impl Space {
 
     fn check(raw: RawSpace, file: &str) -> Result<Self, InputError> {
         let fail = |key: &str, problem: &str| Check { file }.fail(key, problem);
-        if !(1..=MOST_PARAMETERS).contains(&raw.parameter.len()) {
-            let problem = format!("a space needs one [[parameter]] to {MOST_PARAMETERS} of them");
+        if !(1..=MAX_PARAMETERS).contains(&raw.parameter.len()) {
+            let problem = format!("a space needs 1 to {MAX_PARAMETERS} tables [[parameter]]");
             return fail("parameter", &problem);
         }
         for (i, parameter) in raw.parameter.iter().enumerate() {
             let key = &parameter.key;
             if raw.parameter[..i].iter().any(|other| other.key == *key) {
-                return fail(key, "is given twice; each key may stand once");
+                return fail(key, "is given twice; give each key once");
             }
             if let Some(problem) = parameter.problem() {
                 return fail(key, &problem);
@@ -329,12 +331,12 @@ source = "paper"
     }
 
     #[test]
-    fn what_no_design_sets_is_refused_and_an_unknown_key_names_the_nearest() {
+    fn keys_that_no_design_sets_are_rejected_and_an_unknown_key_names_the_nearest() {
         for (key, words) in [
             ("task.friction.plug_sokcet", "line 5, column 7"),
             ("task.friction.plug_sokcet", "did you mean `task.friction.plug_socket`?"),
-            ("robot.mass_kg", "s.toml: robot.mass_kg: is no number of a design"),
-            ("task.clearance_mm", "is no number of a design"),
+            ("robot.mass_kg", "s.toml: robot.mass_kg: cannot be set by a design"),
+            ("task.clearance_mm", "cannot be set by a design"),
         ] {
             let error = Space::parse(&GOOD.replace(DENSITY_KEY, key), "s.toml").unwrap_err();
             assert!(error.to_string().contains(words), "{error}");
@@ -342,8 +344,7 @@ source = "paper"
     }
 
     proptest! {
-        /// Whatever is accepted has levels that can be counted, and each is the nearest to its
-        /// value.
+        /// Each accepted variable has a limited number of levels, and each level is the nearest to its value.
         #[test]
         fn accepted_levels_are_few_and_found_again(
             low in -1e3..1e3f64,

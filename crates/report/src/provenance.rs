@@ -52,7 +52,7 @@ pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
 /// Returns the limitations of the numbers.
 fn reading(answer: &Answer, model: &Model) -> Vec<String> {
     let goals = answer.record.config.goals();
-    let robust = goals.need(Measure::RobustRange);
+    let robust = goals.needs(Measure::RobustRange);
     let mut texts = vec![
         "The ends of a window lie on a 0.1 mm grid and the next step does not insert, so the true \
          range is up to 0.2 mm wider."
@@ -64,7 +64,7 @@ fn reading(answer: &Answer, model: &Model) -> Vec<String> {
     ];
     let draws = "Success rate and robust range hold for the assumed errors, not for your cell; all \
                  designs are evaluated with the same draws.";
-    texts.extend(goals.need_draws().then(|| draws.to_owned()));
+    texts.extend(goals.needs_draws().then(|| draws.to_owned()));
     let parameters = &answer.record.config.space.parameters;
     texts.push(match parameters.iter().any(|parameter| parameter.key == CENTRE) {
         true => "The finger's remote centre is a parameter of the design here; whether a finger with this \

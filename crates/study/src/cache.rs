@@ -62,7 +62,7 @@ impl Cache {
         let write = || {
             let path = self.path(key);
             fs::create_dir_all(path.parent().unwrap_or(&self.dir))?;
-            files::write_own(&path, seal(evaluation, None)?.as_bytes())
+            files::write_atomic(&path, seal(evaluation, None)?.as_bytes())
         };
         if let Err(error) = write() {
             self.problem.get_or_init(|| error);

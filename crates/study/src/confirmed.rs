@@ -18,7 +18,7 @@ use super::folder::read_analysis;
 use super::provenance::Provenance;
 use super::record::{ByRibs, Recorded, Walked};
 use super::rule::{Rank, Rule};
-use insertion::evaluation::robustness::firm::Firm;
+use insertion::evaluation::robustness::firm::FirmResult;
 use insertion::evaluation::{Evaluation, Window};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -45,7 +45,7 @@ pub(super) struct ConfirmationFile {
 pub(super) struct ConfirmedDesign {
     pub evaluation: u64,
     /// Repeats on each task at the ends that the search found.
-    pub firm: Vec<Firm>,
+    pub firm: Vec<FirmResult>,
     /// The walk, if there was one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub walked: Option<Walk>,
@@ -57,7 +57,7 @@ pub(super) struct Walk {
     /// Evaluations on each task.
     pub tasks: Vec<Evaluation>,
     /// Repeats on each task at the ends of the walk.
-    pub firm: Vec<Firm>,
+    pub firm: Vec<FirmResult>,
     /// Evaluations of the computed finger.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub computed: Option<ByRibs>,
@@ -80,9 +80,10 @@ impl Rule<'_> {
     }
 
     /// Returns the rank of a design with its firm windows.
-    pub fn firm_rank(&self, recorded: &Recorded, firm: &[Firm]) -> Rank {
+    pub fn firm_rank(&self, recorded: &Recorded, firm: &[FirmResult]) -> Rank {
         let windows = recorded.tasks.iter().zip(firm);
-        let windows: Vec<Window> = windows.map(|(task, firm)| firm.of(&task.window)).collect();
+        let windows: Vec<Window> =
+            windows.map(|(task, firm)| firm.narrowed(&task.window)).collect();
         self.rank(recorded, &windows)
     }
 }

@@ -12,7 +12,7 @@ use ask_tell::gp::{Advice, Outlook};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluate, Evaluator};
 use insertion::evaluation::robustness::Plan;
-use insertion::evaluation::robustness::firm::Firm;
+use insertion::evaluation::robustness::firm::FirmResult;
 use insertion::evaluation::template::{Impossible, Template};
 use insertion::evaluation::tolerance::Search;
 use insertion::space::Design;
@@ -201,7 +201,7 @@ impl Confirmer<'_> {
         let mut walked = searched.clone();
         let same = |(before, now): (&Evaluation, &Evaluation)| before.window == now.window;
         let windows = searched.tasks.iter().zip(&tasks).zip(&row.firm);
-        let as_before: Vec<Option<Firm>> =
+        let as_before: Vec<Option<FirmResult>> =
             windows.map(|(windows, firm)| same(windows).then_some(*firm)).collect();
         walked.tasks.clone_from(&tasks);
         let firm = self.firm(&walked, &as_before, seed)?;
@@ -225,9 +225,9 @@ impl Confirmer<'_> {
     fn firm(
         &self,
         recorded: &Recorded,
-        known: &[Option<Firm>],
+        known: &[Option<FirmResult>],
         seed: u64,
-    ) -> Result<Vec<Firm>, StudyError> {
+    ) -> Result<Vec<FirmResult>, StudyError> {
         let Simulated { evaluator, stop, .. } = self.walker;
         let measure = |(at, (template, task)): (usize, (&Template, &Evaluation))| {
             if let Some(Some(firm)) = known.get(at) {
@@ -237,7 +237,7 @@ impl Confirmer<'_> {
             Ok(evaluator.firm(&specimen, task, seed, stop)?)
         };
         let tasks = evaluator.templates.iter().zip(&recorded.tasks).enumerate();
-        let firm: Result<Vec<Firm>, Impossible> = tasks.map(measure).collect();
+        let firm: Result<Vec<FirmResult>, Impossible> = tasks.map(measure).collect();
         firm.map_err(|source| StudyError::impossible(recorded.index, &recorded.design, source))
     }
 }

@@ -388,7 +388,7 @@ fn write_inputs(dir: &Path, segment: usize, inputs: &Inputs) -> Result<(), Study
         let folder = path.parent().unwrap_or(dir);
         fs::create_dir_all(folder).map_err(StudyError::io("create the folder", folder))?;
         // Unchanged: its hash is recorded.
-        files::write_own(&path, text.as_bytes()).map_err(StudyError::io("write", &path))?;
+        files::write_atomic(&path, text.as_bytes()).map_err(StudyError::io("write", &path))?;
     }
     Ok(())
 }
@@ -434,7 +434,7 @@ pub fn write_analysis(dir: &Path, file: &str, found: &impl Serialize) -> Result<
     write_own_file(&path, &(text + "\n"))
 }
 
-/// Writes a file of a study's folder: see [`files::write_own`]. A text is written without control
+/// Writes a file of a study's folder: see [`files::write_atomic`]. A text is written without control
 /// characters.
 ///
 /// # Errors
@@ -443,7 +443,7 @@ pub fn write_own_file(
     path: &Path,
     content: &(impl AsRef<[u8]> + ?Sized),
 ) -> Result<(), StudyError> {
-    files::write_own(path, &plain(content.as_ref())).map_err(StudyError::io("write", path))
+    files::write_atomic(path, &plain(content.as_ref())).map_err(StudyError::io("write", path))
 }
 
 /// Removes control characters from a text; binary content is unchanged.

@@ -7,7 +7,7 @@ use super::provenance::Segment;
 use ask_tell::pareto;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::{Goals, Measure, Score};
-use insertion::evaluation::robustness::firm::Firm;
+use insertion::evaluation::robustness::firm::FirmResult;
 use insertion::finger::file::FingerFile;
 use insertion::outcome::Outcome;
 use insertion::space::Design;
@@ -44,7 +44,7 @@ pub struct StudyRecord {
     pub finger: Option<FingerFile>,
     /// Largest contact forces, from task and robot files.
     pub limits: ForceLimits,
-    /// Firm values of the first objective of the designs whose ends were repeated, by evaluation.
+    /// FirmResult values of the first objective of the designs whose ends were repeated, by evaluation.
     pub firm_values: BTreeMap<u64, f64>,
     /// Bench prediction, if there are measurements.
     pub on_bench: Option<OnBench>,
@@ -57,8 +57,8 @@ pub struct StudyRecord {
 pub struct Walked {
     /// Evaluation and score with the windows of the walk.
     pub recorded: Recorded,
-    /// Firm part of each window under small variations of friction, start and step.
-    pub firm: Vec<Firm>,
+    /// FirmResult part of each window under small variations of friction, start and step.
+    pub firm: Vec<FirmResult>,
     /// Evaluations with stiffnesses computed from the ribs, if the study has those of the paper.
     pub by_ribs: Option<ByRibs>,
 }

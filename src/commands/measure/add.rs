@@ -8,8 +8,8 @@ use crate::terminal::say;
 use calibration::experiments::{
     COLUMNS, Experiment, NOT_MEASURABLE, appended, own_task, own_tasks, parse,
 };
-use input::files::{LARGEST_INPUT, Table};
-use input::shipped::{MEASUREMENTS, SOLD, TASKS};
+use input::files::{LARGEST_INPUT, LockedFile};
+use input::shipped::{COMMERCIAL, MEASUREMENTS, TASKS};
 use serde::Serialize;
 use std::io::{self, BufRead};
 use std::path::Path;
@@ -124,7 +124,8 @@ fn added(
     let mut own = None;
     if let Some((_, name)) = cells.iter_mut().find(|(column, _)| *column == "task") {
         let TaskFile { source, task } = read_task(name)?;
-        let shipped = [TASKS, SOLD].concat().iter().any(|shipped| shipped.text == source.text);
+        let shipped =
+            [TASKS, COMMERCIAL].concat().iter().any(|shipped| shipped.text == source.text);
         // Relative to the folder of the measurements, if it is inside, else absolute.
         let folder = Path::new(file).parent().unwrap_or(Path::new(""));
         let path = Path::new(name).strip_prefix(folder).map(Path::to_owned);
@@ -135,7 +136,7 @@ fn added(
     // Read last, since others may have added lines meanwhile.
     let unusable = |error| Failure::in_file(file, format!("cannot add a line: {error}"));
     let full = |error| Failure::running(format!("{file}: cannot write: {error}"));
-    let mut table = Table::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
+    let mut table = LockedFile::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
     parse(table.text(), file).map_err(Failure::input)?;
     let new =
         |(name, path): &(String, String)| own_tasks(table.text()).get(&**name) != Some(&&**path);

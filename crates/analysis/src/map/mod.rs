@@ -7,7 +7,7 @@ pub use plane::{Axes, Plane};
 
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::Design;
-use parameters::plan::grid::{self, Node, Traced};
+use parameters::plan::grid::{self, Node, TracedMap};
 use plane::{LIMIT, value};
 use serde::{Deserialize, Serialize};
 
@@ -55,7 +55,7 @@ impl CaptureMap {
     pub fn trace(task: &str, design: Design, plane: &Plane<'_>) -> Self {
         let outcome = |node| plane.outcome(node);
         let traced = grid::trace(LIMIT, &outcome);
-        let Traced { low, high, nodes, trials, step, .. } = &traced;
+        let TracedMap { low, high, nodes, trials, step, .. } = &traced;
         let inserting = nodes.values().filter(|found| found.outcome == Outcome::Inserted).count();
         let names = plane.axes.names();
         let outcome = |node| nodes.get(&node).map_or(Outcome::Diverged, |found| found.outcome);

@@ -21,30 +21,31 @@ pub(super) enum State {
     Slide,
 }
 
-/// Velocity of a contact, split for the law.
+/// Relative velocity of a contact with reversed sign, split into its components along and across the normal.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Pull {
+pub(super) struct SplitVelocity {
     /// `-(u + b)` along the normal, m/s.
     normal: f64,
-    /// `-u` but for its part along the normal, m/s.
+    /// `-u` without its component along the normal, m/s.
     tangent: Vector4<f64>,
-    /// Length of `tangent`, m/s.
+    /// Magnitude of `tangent`, m/s.
     speed: f64,
 }
 
-impl Pull {
+impl SplitVelocity {
     /// Splits a relative velocity by the unit normal, with the bias along it.
     #[inline]
     pub fn new(velocity: &Vector4<f64>, normal: &Vector4<f64>, bias: f64) -> Self {
         let along = velocity.dot(normal);
         let tangent = normal * along - velocity;
-        Pull { normal: -(along + bias), tangent, speed: tangent.norm() }
+        SplitVelocity { normal: -(along + bias), tangent, speed: tangent.norm() }
     }
 }
 
 /// Friction cone with its compliances, 1/kg: relative velocity per impulse.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Cone {
+    /// Coefficient of friction.
     pub mu: f64,
     /// Compliance along the normal.
     pub normal: f64,
@@ -61,10 +62,10 @@ impl Cone {
 
     /// Returns the part of the cone on which the impulse lies.
     #[inline]
-    pub fn state(&self, pull: &Pull) -> State {
-        if pull.speed * self.normal <= self.mu * pull.normal * self.tangent {
+    pub fn state(&self, split: &SplitVelocity) -> State {
+        if split.speed * self.normal <= self.mu * split.normal * self.tangent {
             State::Stick
-        } else if self.mu * pull.speed <= -pull.normal {
+        } else if self.mu * split.speed <= -split.normal {
             State::Apart
         } else {
             State::Slide
@@ -73,27 +74,27 @@ impl Cone {
 
     /// Returns the normal impulse of a sliding contact, N s.
     #[inline]
-    fn sliding(&self, pull: &Pull) -> f64 {
-        (pull.normal + self.mu * pull.speed) / self.edge()
+    fn sliding(&self, split: &SplitVelocity) -> f64 {
+        (split.normal + self.mu * split.speed) / self.edge()
     }
 
-    /// Returns the impulse on the second body, N s; the fourth is its moment over the patch radius.
+    /// Returns the impulse on the second body, N s; its fourth component is the moment divided by the patch radius.
     #[inline]
-    pub fn impulse(&self, pull: &Pull, normal: &Vector4<f64>) -> Vector4<f64> {
-        match self.state(pull) {
+    pub fn impulse(&self, split: &SplitVelocity, normal: &Vector4<f64>) -> Vector4<f64> {
+        match self.state(split) {
             State::Apart => Vector4::zeros(),
-            State::Stick => normal * (pull.normal / self.normal) + pull.tangent / self.tangent,
+            State::Stick => normal * (split.normal / self.normal) + split.tangent / self.tangent,
             State::Slide => {
-                let pressed = self.sliding(pull);
-                normal * pressed + pull.tangent * (self.mu * pressed / pull.speed)
+                let pressed = self.sliding(split);
+                normal * pressed + split.tangent * (self.mu * pressed / split.speed)
             }
         }
     }
 
-    /// Minus the derivative of the impulse by the velocity, kg: symmetric, positive semidefinite.
+    /// Returns minus the derivative of the impulse with respect to the velocity, kg: symmetric, positive semidefinite.
     #[inline]
-    pub fn stiffness(&self, pull: &Pull, normal: &Vector4<f64>) -> Matrix4<f64> {
-        match self.state(pull) {
+    pub fn stiffness(&self, split: &SplitVelocity, normal: &Vector4<f64>) -> Matrix4<f64> {
+        match self.state(split) {
             State::Apart => Matrix4::zeros(),
             State::Stick => {
                 let tangent = 1.0 / self.tangent;
@@ -101,10 +102,10 @@ impl Cone {
                 Matrix4::from_diagonal_element(tangent) + (normal * extra) * normal.transpose()
             }
             State::Slide => {
-                let along = pull.tangent / pull.speed;
+                let along = split.tangent / split.speed;
                 let edge = normal + along * self.mu;
                 let weight = 1.0 / self.edge();
-                let turning = self.mu * self.sliding(pull) / pull.speed;
+                let turning = self.mu * self.sliding(split) / split.speed;
                 let across =
                     Matrix4::identity() - normal * normal.transpose() - along * along.transpose();
                 (edge * weight) * edge.transpose() + across * turning
@@ -121,7 +122,7 @@ mod tests {
     const CONE: Cone = Cone { mu: 0.3, normal: 0.02, tangent: 0.001 };
 
     fn impulse(u: Vector4<f64>) -> Vector4<f64> {
-        CONE.impulse(&Pull::new(&u, &Vector4::z(), 0.0), &Vector4::z())
+        CONE.impulse(&SplitVelocity::new(&u, &Vector4::z(), 0.0), &Vector4::z())
     }
 
     #[test]
@@ -149,7 +150,7 @@ mod tests {
         ];
         for u in moves {
             let u = Vector4::from(u);
-            let k = CONE.stiffness(&Pull::new(&u, &Vector4::z(), 0.0), &Vector4::z());
+            let k = CONE.stiffness(&SplitVelocity::new(&u, &Vector4::z(), 0.0), &Vector4::z());
             for axis in 0..4 {
                 let mut d = Vector4::zeros();
                 d[axis] = 1e-7;

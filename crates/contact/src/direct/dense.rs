@@ -17,7 +17,7 @@ macro_rules! unrolled {
     };
 }
 
-/// `to += factor * from`.
+/// Computes `to += factor * from`.
 #[inline(always)]
 fn add(to: &mut Six, factor: f64, from: Six) {
     for c in 0..6 {
@@ -25,7 +25,7 @@ fn add(to: &mut Six, factor: f64, from: Six) {
     }
 }
 
-/// `result = matrix * vector` for a symmetric matrix with both halves.
+/// Computes `result = matrix * vector` for a symmetric matrix of which both halves are stored.
 pub(super) fn multiply(matrix: &[Six], vector: &[Six], result: &mut [Six]) {
     unrolled!(vector.len(), multiply_unrolled(matrix, vector, result));
 }

@@ -15,7 +15,7 @@ use nalgebra::Vector3;
 const PARTS: usize = 8;
 /// Number of steps that are divided after an impact begins: that of the impact and three more.
 const DIVIDED: usize = 4;
-/// Least speed of approach of an impact, m/s: at 5 mm/s a contact sinks by 1 um.
+/// Smallest approach speed of an impact, m/s: at 5 mm/s a contact penetrates by 1 um.
 const IMPACT: f64 = 5e-3;
 
 impl DirectWorld {

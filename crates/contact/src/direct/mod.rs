@@ -68,7 +68,7 @@ impl Engine for Direct {
         Box::new(world::DirectWorld::new(scene, self))
     }
 
-    fn halved(&self) -> Box<dyn Engine> {
+    fn with_half_step(&self) -> Box<dyn Engine> {
         Box::new(Direct { step_s: 0.5 * self.step_s, ..*self })
     }
 }

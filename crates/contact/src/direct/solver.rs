@@ -4,31 +4,31 @@
 //! minimise `v.S v/2 - r.v + sum of potentials`; its gradient is the out-of-balance impulse
 //! `S v - r - sum J^T l`. The potential's cone law has associated friction, which would lift a
 //! sliding contact by `mu |u_t| h`; the term `s = mu |u_t|` of De Saxce and Feng (1998, Math.
-//! Comput. Modelling 28) takes that back, by a fixed point about the Newton iterations (Acary,
+//! Comput. Modelling 28) compensates this, by fixed-point iterations around Newton's (Acary,
 //! Cadoux, Lemarechal and Malick 2011, ZAMM 91).
 
 use super::blocks::Vector6;
-use super::cone::{Cone, Pull, State};
+use super::cone::{Cone, SplitVelocity, State};
 use super::dense::{self, Six};
 use nalgebra::{Matrix4, Matrix4x3, Vector3, Vector4};
 
-/// Out-of-balance force at which the iterations always end, N (for moments N per 10 mm).
+/// Out-of-balance force below which the iterations end, N; moments are divided by [`ARM`].
 const FORCE_TOLERANCE: f64 = 1e-4;
-/// ... and as a share of the largest normal force.
+/// Out-of-balance force below which the iterations end, as a share of the largest normal force.
 const FORCE_SHARE: f64 = 1e-3;
-/// Arm by which moments are compared with forces, m.
+/// Lever arm by which moments are divided to compare them with forces, m.
 const ARM: f64 = 0.01;
 /// Largest number of Newton iterations in a step.
-const ITERATIONS: usize = 60;
+const MAX_ITERATIONS: usize = 60;
 /// Accepted error of the sliding term, m/s: 0.1 um in a step of 0.1 ms.
 const SLIDING_TOLERANCE: f64 = 1e-3;
 /// Largest number of evaluations of a line search.
-const SEARCHES: usize = 30;
+const MAX_LINE_SEARCH_STEPS: usize = 30;
 /// Largest number of fixed-point iterations.
-const ROUNDS: usize = 6;
+const MAX_ROUNDS: usize = 6;
 
-/// Returns the velocity of a point at `arm` from the centre of mass, m, by the angular velocity `w`: `w x arm`
-/// along the world's axes, and `rho w_n` about the `patch` vector, the normal times the radius.
+/// Returns the matrix that maps the angular velocity `w` of a body to the velocity of a point at `arm` from its centre
+/// of mass, m: `w x arm` along the world's axes, and `rho w_n` about `patch`, the normal times the patch radius.
 pub(super) fn lever(arm: &Vector3<f64>, patch: &Vector3<f64>) -> Matrix4x3<f64> {
     let mut lever = Matrix4x3::zeros();
     lever.fixed_view_mut::<3, 3>(0, 0).copy_from(&-arm.cross_matrix());
@@ -36,9 +36,9 @@ pub(super) fn lever(arm: &Vector3<f64>, patch: &Vector3<f64>) -> Matrix4x3<f64> 
     lever
 }
 
-/// Returns the lever for friction that acts at a distance `aside` from the point, m: rotation about the normal moves
-/// that place, not the point.
-pub(super) fn moved_aside(
+/// Returns the lever of a contact point for friction that acts at an offset `aside` from it, m: rotation about the
+/// normal moves the point at this offset.
+pub(super) fn offset_lever(
     lever: &Matrix4x3<f64>,
     aside: &Vector3<f64>,
     normal: &Vector3<f64>,
@@ -50,7 +50,7 @@ pub(super) fn moved_aside(
 }
 
 /// Returns the velocity of a contact point of a body, m/s.
-pub(super) fn relative(lever: &Matrix4x3<f64>, v: &Six) -> Vector4<f64> {
+pub(super) fn point_velocity(lever: &Matrix4x3<f64>, v: &Six) -> Vector4<f64> {
     Vector4::new(v[0], v[1], v[2], 0.0) + lever * Vector3::new(v[3], v[4], v[5])
 }
 
@@ -59,7 +59,7 @@ pub(super) fn relative(lever: &Matrix4x3<f64>, v: &Six) -> Vector4<f64> {
 pub(super) struct Contact {
     /// Places of the first and second body in the reduced system; `None` for a fixed or driven body.
     pub place: [Option<usize>; 2],
-    /// Relative velocity by the angular velocity of each body, m; see [`lever`].
+    /// Matrix from the angular velocity of each body to the velocity of the contact point, m; see [`lever`].
     pub lever: [Matrix4x3<f64>; 2],
     /// Unit normal from the first to the second; its fourth component is 0.
     pub normal: Vector4<f64>,
@@ -67,41 +67,45 @@ pub(super) struct Contact {
     pub drift: Vector4<f64>,
     /// Largest approach velocity that the gap allows, `gap / h`, m/s.
     pub bias: f64,
-    /// Law of contact.
+    /// Friction cone of the contact law.
     pub cone: Cone,
     /// De Saxce's term, m/s.
     pub slide: f64,
     /// Relative velocity, m/s.
     pub velocity: Vector4<f64>,
-    /// Relative velocity, split for the law.
-    pub pull: Pull,
-    /// Change of the velocity along the line of search, m/s.
+    /// Relative velocity, split for the contact law.
+    pub split: SplitVelocity,
+    /// Change of the relative velocity for a full step along the search direction, m/s.
     pub change: Vector4<f64>,
     /// Impulse on the second body, N s.
     pub impulse: Vector4<f64>,
 }
 
 impl Contact {
-    /// Returns the relative velocity by the free bodies' velocities.
+    /// Returns the relative velocity due to the velocities of the free bodies.
     fn relative(&self, velocities: &[Six]) -> Vector4<f64> {
         let mut sum = Vector4::zeros();
         for (side, sign) in [(0, -1.0), (1, 1.0)] {
             if let Some(place) = self.place[side] {
-                sum += relative(&self.lever[side], &velocities[place]) * sign;
+                sum += point_velocity(&self.lever[side], &velocities[place]) * sign;
             }
         }
         sum
     }
 
-    /// Returns the velocity so far along the line of search, split for the law.
-    fn pull(&self, along: f64) -> Pull {
-        Pull::new(&(self.velocity + self.change * along), &self.normal, self.bias + self.slide)
+    /// Returns the relative velocity after a step of length `along` in the search direction, split for the contact law.
+    fn split(&self, along: f64) -> SplitVelocity {
+        SplitVelocity::new(
+            &(self.velocity + self.change * along),
+            &self.normal,
+            self.bias + self.slide,
+        )
     }
 
-    /// Evaluates law and impulse at the present velocity.
+    /// Updates the split velocity and the impulse for the current velocity.
     fn apply(&mut self) {
-        self.pull = Pull::new(&self.velocity, &self.normal, self.bias + self.slide);
-        self.impulse = self.cone.impulse(&self.pull, &self.normal);
+        self.split = SplitVelocity::new(&self.velocity, &self.normal, self.bias + self.slide);
+        self.impulse = self.cone.impulse(&self.split, &self.normal);
     }
 
     /// Returns the sliding speed times the coefficient of friction, m/s.
@@ -114,11 +118,11 @@ impl Contact {
 /// Reduced problem and its workspace.
 #[derive(Clone)]
 pub(super) struct Solver {
-    /// Rows of the reduced system, row by row.
+    /// Matrix of the reduced system, row by row.
     pub system: Vec<Six>,
     /// Right-hand side.
     pub rhs: Vec<Six>,
-    /// Solution; on entry, the first guess.
+    /// Solution; on entry, the initial guess.
     pub velocities: Vec<Six>,
     hessian: Vec<Six>,
     gradient: Vec<Six>,
@@ -140,24 +144,24 @@ impl Solver {
         }
     }
 
-    /// Solves; None if the numbers are not finite.
+    /// Solves for the velocities; returns `None` if the numbers are not finite.
     pub fn solve(&mut self, contacts: &mut [Contact], step: f64) -> Option<()> {
         let mut iterations = 0;
         self.update_velocities(contacts);
         for contact in contacts.iter_mut() {
             contact.slide = contact.sliding();
         }
-        for _ in 0..ROUNDS {
-            while iterations < ITERATIONS {
+        for _ in 0..MAX_ROUNDS {
+            while iterations < MAX_ITERATIONS {
                 // A NaN passes this test; the factorization then fails.
-                let slope = self.slope(contacts);
+                let slope = self.update_gradient(contacts);
                 let pressed = contacts.iter().map(|c| c.impulse.dot(&c.normal)).fold(0.0, f64::max);
                 if slope < (step * FORCE_TOLERANCE).max(FORCE_SHARE * pressed) {
                     break;
                 }
                 iterations += 1;
-                self.descend(contacts)?;
-                let along = self.search(contacts);
+                self.update_direction(contacts)?;
+                let along = self.line_search(contacts);
                 let direction = self.direction.as_flattened();
                 for (v, d) in self.velocities.as_flattened_mut().iter_mut().zip(direction) {
                     *v += d * along;
@@ -168,7 +172,7 @@ impl Solver {
             for contact in contacts.iter_mut() {
                 // With the sliding term that the velocities were solved with.
                 contact.apply();
-                if contact.cone.state(&contact.pull) != State::Apart {
+                if contact.cone.state(&contact.split) != State::Apart {
                     let now = contact.sliding();
                     error = error.max((now - contact.slide).abs());
                     contact.slide = now;
@@ -190,7 +194,7 @@ impl Solver {
     }
 
     /// Computes the gradient; returns its largest component, N s.
-    fn slope(&mut self, contacts: &mut [Contact]) -> f64 {
+    fn update_gradient(&mut self, contacts: &mut [Contact]) -> f64 {
         dense::multiply(&self.system, &self.velocities, &mut self.gradient);
         let rhs = self.rhs.as_flattened();
         for (g, r) in self.gradient.as_flattened_mut().iter_mut().zip(rhs) {
@@ -222,13 +226,13 @@ impl Solver {
         self.gradient.iter().map(scaled).fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
     }
 
-    /// Computes Newton's direction.
-    fn descend(&mut self, contacts: &mut [Contact]) -> Option<()> {
+    /// Computes the Newton direction; returns `None` if the Hessian is not positive definite.
+    fn update_direction(&mut self, contacts: &mut [Contact]) -> Option<()> {
         self.hessian.copy_from_slice(&self.system);
         let bodies = self.velocities.len();
         for contact in contacts.iter() {
-            if contact.cone.state(&contact.pull) != State::Apart {
-                let stiffness = contact.cone.stiffness(&contact.pull, &contact.normal);
+            if contact.cone.state(&contact.split) != State::Apart {
+                let stiffness = contact.cone.stiffness(&contact.split, &contact.normal);
                 add_stiffness(&mut self.hessian, bodies, contact, &stiffness);
             }
         }
@@ -244,16 +248,16 @@ impl Solver {
     }
 
     /// Returns the step length along the direction: 1, or less if the potential rises before.
-    fn search(&mut self, contacts: &[Contact]) -> f64 {
+    fn line_search(&mut self, contacts: &[Contact]) -> f64 {
         let dot = |a: &[Six], b: &[Six]| {
             a.iter().zip(b).map(|(a, b)| Vector6::from(*a).dot(&Vector6::from(*b))).sum::<f64>()
         };
         let first = dot(&self.gradient, &self.direction);
-        // Along the line the quadratic part is linear in the distance.
+        // Along the line, the slope of the quadratic part is linear in the step length.
         dense::multiply(&self.system, &self.direction, &mut self.gradient);
         let curvature = dot(&self.gradient, &self.direction);
         let pushed = |along: f64| -> f64 {
-            let power = |c: &Contact| c.cone.impulse(&c.pull(along), &c.normal).dot(&c.change);
+            let power = |c: &Contact| c.cone.impulse(&c.split(along), &c.normal).dot(&c.change);
             contacts.iter().map(power).sum()
         };
         let start = first + contacts.iter().map(|c| c.impulse.dot(&c.change)).sum::<f64>();
@@ -263,7 +267,7 @@ impl Solver {
             return 1.0;
         }
         let mut low = (0.0, first);
-        for _ in 0..SEARCHES {
+        for _ in 0..MAX_LINE_SEARCH_STEPS {
             let at = low.0 - low.1 / (high.1 - low.1) * (high.0 - low.0);
             let value = slope(at);
             if value.abs() < 0.1 * first.abs() {

@@ -7,7 +7,7 @@ use super::cone::Cone;
 use super::contacts::{Detector, Touch};
 use super::joints::SprungJoint;
 use super::patch::Patch;
-use super::solver::{Contact, Solver, lever, moved_aside, relative};
+use super::solver::{Contact, Solver, lever, offset_lever, point_velocity};
 use crate::scene::{
     AxialFriction, BodyId, ContactPair, Joint, JointId, Motion, Pose, Scene, Spring, Torsion,
 };
@@ -100,13 +100,13 @@ impl DirectWorld {
                     let aside = |p: &Patch| p.aside(&ends[0].pose, &touch.point, &touch.normal);
                     let aside = self.patch(touch.geoms).map_or(Vector3::zeros(), aside);
                     let at_point = arm.map(|arm| lever(&arm, &Vector3::zeros()));
-                    at_point.map(|lever| moved_aside(&lever, &aside, &touch.normal))
+                    at_point.map(|lever| offset_lever(&lever, &aside, &touch.normal))
                 }
             };
             let mut drift = Vector4::zeros();
             for (body, lever, sign) in [(ends[0], &lever[0], -1.0), (ends[1], &lever[1], 1.0)] {
                 if let Kind::Driven(_) = body.kind {
-                    drift += relative(lever, body.velocity.as_ref()) * sign;
+                    drift += point_velocity(lever, body.velocity.as_ref()) * sign;
                 }
             }
             let closing = touch.gap / step;

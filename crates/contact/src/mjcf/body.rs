@@ -2,7 +2,7 @@
 
 use super::xml::Element;
 use super::{
-    ANCHOR, AXES, FAR, HEAVY, RUBBING, axis_name, driven_axis_name, geom_names, mesh_name,
+    ANCHOR, AXES, FAR, HEAVY, MATING_FORCE, axis_name, driven_axis_name, geom_names, mesh_name,
 };
 use crate::scene::{
     AxialFriction, Body, BodyId, Geom, Inertia, Joint, Motion, Pose, Scene, Shape, Spring, Springs,
@@ -19,7 +19,7 @@ const COLOURS: [[f64; 3]; 6] = [
     [0.51, 0.45, 0.70],
     [0.55, 0.55, 0.55],
 ];
-/// Least half thickness of a mesh, m.
+/// Smallest half thickness of a mesh, m.
 const THIN: f64 = 1e-6;
 /// Opacity of fixed bodies.
 const SEE_THROUGH: f64 = 0.5;
@@ -35,17 +35,17 @@ pub(super) fn world(scene: &Scene) -> Element {
         let root = &scene.bodies[body];
         let placed = element(root, &root.pose);
         let rooted = match root.motion {
-            // Movable, since the trial shifts the socket and takes the stand away.
+            // Movable, since the trial shifts the socket and removes the stand.
             Motion::Fixed => placed.with("mocap", "true"),
             // Slides along and hinges about the axes of its first pose.
-            Motion::Driven => placed.holding(
+            Motion::Driven => placed.with_children(
                 (0..6).map(|axis| joint(&driven_axis_name(root, axis), &Pose::identity(), axis)),
             ),
-            _ => placed.holding([Element::new("freejoint")]),
+            _ => placed.with_children([Element::new("freejoint")]),
         };
-        rooted.holding(inside(scene, body, &names))
+        rooted.with_children(inside(scene, body, &names))
     });
-    Element::new("worldbody").holding([light]).holding(list)
+    Element::new("worldbody").with_children([light]).with_children(list)
 }
 
 /// Returns the children of a body after its joints: inertia, geoms and the bodies it carries.
@@ -57,19 +57,19 @@ fn inside(scene: &Scene, body: usize, names: &[Vec<String>]) -> Vec<Element> {
     for joint in scene.joints.iter().filter(|joint| joint.parent.0 == body) {
         let child = joint.child.0;
         let carried = element(&scene.bodies[child], &zero(joint));
-        list.push(carried.holding(joints(joint)).holding(inside(scene, child, names)));
+        list.push(carried.with_children(joints(joint)).with_children(inside(scene, child, names)));
     }
     list
 }
 
 /// Returns the ends of the tendon with the axial friction that are on a body.
 fn sites(along: &AxialFriction, body: BodyId) -> impl Iterator<Item = Element> {
-    let ends = [(along.parent, ANCHOR, -FAR), (along.child, RUBBING, 0.0)];
+    let ends = [(along.parent, ANCHOR, -FAR), (along.child, MATING_FORCE, 0.0)];
     let own = ends.into_iter().filter(move |(of, ..)| *of == body);
     own.map(|(_, name, z)| Element::new("site").with("name", name).numbers("pos", [0.0, 0.0, z]))
 }
 
-/// Returns the frame of the child in the parent's where all coordinates are zero.
+/// Returns the pose of the child in the frame of the parent when all coordinates are zero.
 pub(super) fn zero(joint: &Joint) -> Pose {
     joint.in_parent * joint.in_child.inverse()
 }
@@ -150,7 +150,7 @@ fn geom_element(scene: &Scene, body: usize, geom: &Geom, name: &str) -> Element 
     element.numbers("rgba", [r, g, b, if fixed { SEE_THROUGH } else { 1.0 }])
 }
 
-/// Returns the turn of MuJoCo's capsules, which lie along z.
+/// Returns the rotation of a capsule from MuJoCo's axis, z, to the axis of its core.
 fn upright(geom: &Geom) -> Pose {
     let Shape::RoundBox { core, .. } = &geom.shape else { return Pose::identity() };
     let turn = match extended(core)[..] {
@@ -164,7 +164,7 @@ fn upright(geom: &Geom) -> Pose {
 fn mesh(shape: &Shape) -> Option<Vec<Point3<f64>>> {
     match shape {
         Shape::Hull { points } => Some(points.clone()),
-        // A box with a margin has no contact at its edges; a flat mesh is refused.
+        // A box with a margin has no contact at its edges; MuJoCo rejects a flat mesh.
         Shape::RoundBox { core, .. } if extended(core).len() > 1 => {
             Some(Shape::Box { half: core.map(|half| half.max(THIN)) }.corners())
         }
@@ -172,7 +172,7 @@ fn mesh(shape: &Shape) -> Option<Vec<Point3<f64>>> {
     }
 }
 
-/// Returns the distance, m, at which a geom touches: the radius of a mesh that is a core.
+/// Returns the contact margin of a geom, m: the radius if its mesh is only the core, else 0.
 pub(super) fn margin(shape: &Shape) -> f64 {
     match shape {
         Shape::RoundBox { radius, .. } if mesh(shape).is_some() => *radius,
@@ -189,10 +189,10 @@ pub(super) fn assets(scene: &Scene) -> Element {
         let corners = points.iter().flat_map(|point| <[f64; 3]>::from(point.coords));
         Some(Element::new("mesh").with("name", mesh_name(name)).numbers("vertex", corners))
     };
-    Element::new("asset").holding(geoms.filter_map(mesh))
+    Element::new("asset").with_children(geoms.filter_map(mesh))
 }
 
-/// Returns whether a joint's bodies stand where its coordinates are zero.
+/// Returns whether the initial coordinates of a joint are zero.
 pub(super) fn at_zero(scene: &Scene, joint: &Joint) -> bool {
     let pose = |body: BodyId| scene.bodies[body.0].pose;
     let off = (pose(joint.parent) * zero(joint)).inv_mul(&pose(joint.child));

@@ -24,7 +24,7 @@ use nalgebra::{DMatrix, Matrix3, Point3, Vector3, Vector6};
 
 /// Depth over which an impedance may vary, m; ours is constant.
 const WIDTH: f64 = 1e-3;
-/// Least and largest impedance in MuJoCo.
+/// Smallest and largest impedance in MuJoCo.
 const IMPEDANCES: [f64; 2] = [1e-4, 0.9999];
 
 /// Returns the pairs of geoms that may touch.
@@ -52,7 +52,7 @@ pub(super) fn pairs(scene: &Scene, settings: &MjcfSettings) -> Element {
             .numbers("solreffriction", friction)
             .numbers("solimp", [impedance, impedance, WIDTH])
     };
-    Element::new("contact").holding(scene.geom_pairs().into_iter().map(pair))
+    Element::new("contact").with_children(scene.geom_pairs().into_iter().map(pair))
 }
 
 /// Adds the friction of a pair.

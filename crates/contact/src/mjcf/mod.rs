@@ -18,7 +18,7 @@ mod body;
 mod contact;
 mod xml;
 
-use super::lacking;
+use super::unsupported_parts;
 use crate::direct::Direct;
 use crate::scene::{AxialFriction, Body, Joint, Motion, Scene, Spring, Springs};
 use xml::Element;
@@ -44,8 +44,8 @@ pub struct MjcfSettings {
     pub friction_rate: f64,
     /// Tolerance of MuJoCo's solver.
     pub tolerance: f64,
-    /// Whether two meshes may touch at several points. At a rim MuJoCo gives them wrong normals; without,
-    /// a face of a mesh bears at one point only.
+    /// Whether two meshes may touch at several points. At a rim their normals are wrong; without this
+    /// option, the face of a mesh is supported at one point only.
     pub multiccd: bool,
 }
 
@@ -72,7 +72,7 @@ const VIEWER_FREQUENCY: f64 = 100.0;
 
 /// Feature of a scene that MJCF lacks.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{part}` cannot be written as MJCF: it has no {feature}")]
+#[error("`{part}` cannot be written as MJCF, which does not support {feature}")]
 pub struct NotMjcf {
     /// Body or joint of the scene.
     pub part: String,
@@ -86,7 +86,7 @@ pub struct NotMjcf {
 /// If it has a feature that MJCF lacks.
 pub fn supports(scene: &Scene) -> Result<(), NotMjcf> {
     let refuse = |part: &str, feature| Err(NotMjcf { part: part.to_owned(), feature });
-    if let Some((part, feature)) = lacking(scene).next_back() {
+    if let Some((part, feature)) = unsupported_parts(scene).next_back() {
         return refuse(part, feature);
     }
     for (i, joint) in scene.joints.iter().enumerate() {
@@ -98,16 +98,16 @@ pub fn supports(scene: &Scene) -> Result<(), NotMjcf> {
             return refuse(&joint.name, "bodies on two joints");
         }
         if !body::at_zero(scene, joint) {
-            return refuse(&joint.name, "joints that start off their zero");
+            return refuse(&joint.name, "joints with nonzero initial coordinates");
         }
     }
     Ok(())
 }
 
-/// Returns the text of a model of the scene; `name` is shown by viewers.
+/// Returns the scene as MJCF text; `name` is shown by viewers.
 ///
 /// # Errors
-/// As of [`supports`].
+/// See [`supports`].
 pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<String, NotMjcf> {
     supports(scene)?;
     let g = scene.gravity;
@@ -123,37 +123,37 @@ pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<Strin
         // Springs and dampers are solved for together with the contacts.
         .with("integrator", "discrete")
         .with("cone", "elliptic")
-        // Resistance of sticking friction by that along the normal, for all pairs.
+        // Ratio of the resistance of sticking friction to that along the normal, for all pairs.
         .with("impratio", settings.stick_damping / (settings.friction_rate * settings.contact_mass))
         .with("solver", "Newton")
         .with("tolerance", settings.tolerance)
-        .holding([flags]);
+        .with_children([flags]);
     let geom = Element::new("geom").with("contype", 0).with("conaffinity", 0);
-    let model = Element::new("mujoco").with("model", name).holding([
+    let model = Element::new("mujoco").with("model", name).with_children([
         Element::new("compiler").with("angle", "radian").with("autolimits", "true"),
         option,
-        Element::new("visual").holding([Element::new("map").with("znear", 0.01)]),
+        Element::new("visual").with_children([Element::new("map").with("znear", 0.01)]),
         Element::new("statistic").numbers("center", [0.0; 3]).with("extent", 0.15),
         // Only the listed pairs touch.
-        Element::new("default").holding([geom]),
+        Element::new("default").with_children([geom]),
         body::assets(scene),
         body::world(scene),
         contact::pairs(scene, settings),
         actuators(scene),
     ]);
     let model = match &scene.axial_friction {
-        Some(along) => model.holding(tendon(along, settings.step_s)),
+        Some(along) => model.with_children(tendon(along, settings.step_s)),
         None => model,
     };
     let units = "<!-- Lengths in m, masses in kg, forces in N, angles in rad. -->\n";
     Ok(units.to_owned() + &model.text(0))
 }
 
-/// Name of the tendon with the axial friction, and of its site on the plug.
-pub(crate) const RUBBING: &str = "mating force";
-/// Name of the site at the other end of that tendon.
+/// Name of the tendon with the axial friction, and of its end on the plug.
+pub(crate) const MATING_FORCE: &str = "mating force";
+/// Name of the other end of that tendon.
 const ANCHOR: &str = "anchor of the mating force";
-/// Distance of that site below the socket's origin, m: a lateral offset of 1 mm inclines the tendon by 0.1 mrad.
+/// Distance of that end below the socket's origin, m: a lateral offset of 1 mm inclines the tendon by 0.1 mrad.
 const FAR: f64 = 10.0;
 /// Impedance of sticking friction: the largest that MuJoCo accepts.
 const STICKING: f64 = 0.9999;
@@ -163,20 +163,20 @@ const STICKING: f64 = 0.9999;
 fn tendon(along: &AxialFriction, step_s: f64) -> [Element; 2] {
     let site = |name| Element::new("site").with("site", name);
     let spatial = Element::new("spatial")
-        .with("name", RUBBING)
+        .with("name", MATING_FORCE)
         .numbers("rgba", [0.0; 4])
         .with("frictionloss", 0)
         // As stiff as the step allows, like a sticking contact point.
         .numbers("solreffriction", [2.0 * step_s, 1.0])
         .numbers("solimpfriction", [STICKING, STICKING, 1e-3])
-        .holding([site(ANCHOR), site(RUBBING)]);
+        .with_children([site(ANCHOR), site(MATING_FORCE)]);
     let numeric = |name: &str, column: usize| {
-        let name = format!("{RUBBING}: {name}");
+        let name = format!("{MATING_FORCE}: {name}");
         let values = along.force.iter().map(|row| row[column]);
         Element::new("numeric").with("name", name).numbers("data", values)
     };
     let table = [numeric("depth of the tip", 0), numeric("frictionloss", 1)];
-    [Element::new("tendon").holding([spatial]), Element::new("custom").holding(table)]
+    [Element::new("tendon").with_children([spatial]), Element::new("custom").with_children(table)]
 }
 
 /// Returns the actuators of the driven bodies and of the servos.
@@ -191,7 +191,7 @@ fn actuators(scene: &Scene) -> Element {
     let commands = driven.flat_map(|body| (0..6).map(move |axis| command(body, axis)));
     let servo = |joint, i| Some(actuator(&axis_name(joint, i), servo(joint, i)?, 0.02));
     let servos = scene.joints.iter().flat_map(|joint| (0..6).filter_map(move |i| servo(joint, i)));
-    Element::new("actuator").holding(commands).holding(servos)
+    Element::new("actuator").with_children(commands).with_children(servos)
 }
 
 fn actuator(joint: &str, spring: &Spring, reach: f64) -> Element {

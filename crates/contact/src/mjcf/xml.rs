@@ -24,14 +24,14 @@ impl Element {
         self
     }
 
-    /// Adds an attribute of numbers, separated by blanks.
+    /// Adds an attribute of numbers, separated by spaces.
     pub fn numbers(self, name: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
         let words: Vec<String> = values.into_iter().map(|value| value.to_string()).collect();
         self.with(name, words.join(" "))
     }
 
     /// Adds children.
-    pub fn holding(mut self, children: impl IntoIterator<Item = Element>) -> Self {
+    pub fn with_children(mut self, children: impl IntoIterator<Item = Element>) -> Self {
         self.children.extend(children);
         self
     }
@@ -54,7 +54,7 @@ mod tests {
     #[test]
     fn elements_nest_and_values_are_escaped() {
         let inner = Element::new("b").numbers("pos", [0.5, -1e-3, 0.0]);
-        let outer = Element::new("a").with("name", "x<\"&\">").holding([inner]);
+        let outer = Element::new("a").with("name", "x<\"&\">").with_children([inner]);
         let expected =
             "<a name=\"x&lt;&quot;&amp;&quot;&gt;\">\n  <b pos=\"0.5 -0.001 0\"/>\n</a>\n";
         assert_eq!(outer.text(0), expected);

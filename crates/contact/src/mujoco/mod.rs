@@ -60,7 +60,7 @@ impl Engine for Mujoco {
         Box::new(MujocoWorld::new(scene, model))
     }
 
-    fn halved(&self) -> Box<dyn Engine> {
+    fn with_half_step(&self) -> Box<dyn Engine> {
         let step_s = 0.5 * self.settings.step_s;
         Box::new(Mujoco { settings: MjcfSettings { step_s, ..self.settings } })
     }

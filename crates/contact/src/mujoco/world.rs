@@ -1,6 +1,6 @@
 //! World of `mujoco`.
 
-use crate::mjcf::{HEAVY, RUBBING, axis_name, driven_axis_name, geom_names, servo};
+use crate::mjcf::{HEAVY, MATING_FORCE, axis_name, driven_axis_name, geom_names, servo};
 use crate::scene::{
     AxialFriction, Body, BodyId, ContactPair, Joint, JointId, Motion, Pose, Scene, Spring,
 };
@@ -25,17 +25,17 @@ pub(super) struct MujocoWorld {
     pairs: Vec<ContactPair>,
     /// Forces of the pairs over the last step.
     forces: Vec<ContactForce>,
-    axial_friction: Option<Rubbing>,
+    axial_friction: Option<MatingForce>,
 }
 
 /// Friction along an axis, as a tendon.
 #[derive(Clone)]
-struct Rubbing {
+struct MatingForce {
     along: AxialFriction,
     tendon: usize,
     /// First of the three places of the child's linear velocity.
     velocity: usize,
-    /// By pair: 1 if its force acts on the child or on what hangs on it, -1 if so does its reaction.
+    /// Sign of each pair: 1 if its force acts on the child or a body attached to it, -1 if its reaction does.
     signs: Vec<f64>,
 }
 
@@ -89,13 +89,13 @@ impl MujocoWorld {
         }
         let axial_friction = scene.axial_friction.clone().map(|along| {
             let child = id(&model, MjtObjBase::mjOBJ_BODY, &scene.bodies[along.child.0].name);
-            let tendon = id(&model, MjtObjBase::mjOBJ_TENDON, RUBBING);
+            let tendon = id(&model, MjtObjBase::mjOBJ_TENDON, MATING_FORCE);
             let velocity = model.body_dofadr()[child] as usize;
             let hangs = |joint: &Joint, body| joint.parent == along.child && joint.child == body;
             let own = |body| body == along.child || scene.joints.iter().any(|j| hangs(j, body));
             let sign = |body| f64::from(u8::from(own(body)));
             let signs = scene.contacts.iter().map(|pair| sign(pair.second) - sign(pair.first));
-            Rubbing { tendon, velocity, signs: signs.collect(), along }
+            MatingForce { tendon, velocity, signs: signs.collect(), along }
         });
         let mut data = MjData::new(Arc::new(model));
         data.kinematics();
@@ -106,7 +106,7 @@ impl MujocoWorld {
 
     /// Sets the limit of the axial friction at the present poses.
     fn update_axial_friction(&mut self) {
-        let Some(Rubbing { along, tendon, .. }) = &self.axial_friction else { return };
+        let Some(MatingForce { along, tendon, .. }) = &self.axial_friction else { return };
         let limit = along.largest(&self.pose(along.parent), &self.pose(along.child));
         let tendon = *tendon;
         if self.data.model().tendon_frictionloss()[tendon] != limit {
@@ -114,9 +114,12 @@ impl MujocoWorld {
         }
     }
 
-    /// Adds the friction along an axis: what constrains the child beside its contacts and those of what hangs on it.
+    /// Adds the friction along an axis, which constrains the child in addition to the contacts of the child and of the
+    /// bodies attached to it.
     fn add_axial_friction(&mut self) {
-        let Some(Rubbing { along, tendon, velocity, signs }) = &self.axial_friction else { return };
+        let Some(MatingForce { along, tendon, velocity, signs }) = &self.axial_friction else {
+            return;
+        };
         if self.data.model().tendon_frictionloss()[*tendon] == 0.0 {
             return;
         }

@@ -3,12 +3,12 @@
 
 mod world;
 
-use super::{Engine, Unsupported, World, lacking};
+use super::{Engine, Unsupported, World, unsupported_parts};
 use crate::scene::Scene;
 use world::RapierWorld;
 
-/// The engine `rapier` and its settings, for parts of millimetres. rapier's defaults are for games
-/// with parts of metres, and are wrong here (a 10 N push sinks 0.7 mm).
+/// The engine `rapier` and its settings, for parts of a few millimetres. rapier's defaults are
+/// for games with parts of metres, and are wrong here (a push of 10 N penetrates by 0.7 mm).
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Rapier {
     /// Length of a step, s; collisions are detected once per step.
@@ -23,12 +23,12 @@ pub struct Rapier {
     pub contact_hz: f64,
     /// Damping ratio of a contact; 1 is critical.
     pub contact_damping_ratio: f64,
-    /// Distance at which a contact is foreseen, m: farther than anything moves in a step, smaller
+    /// Distance at which a contact is predicted, m: farther than anything moves in a step, smaller
     /// than the gaps between faces that must not interact.
     pub prediction: f64,
     /// Highest speed at which a penetration is pushed out, m/s. This bounds the force that a
     /// contact can bear: at 0.5 m/s a 5 g connector wedged by 70 N sinks 2.4 mm at 2 kHz, and one
-    /// wedged by 200 N sinks 1.1 mm at 8 kHz (check T10). Here it bears some 3 kN on such a part.
+    /// wedged by 200 N sinks 1.1 mm at 8 kHz (check T10). The default bears about 3 kN on such a part.
     pub corrective_velocity: f64,
     /// Penetration that is not corrected, m.
     pub allowed_error: f64,
@@ -58,7 +58,7 @@ impl Engine for Rapier {
     }
 
     fn supports(&self, scene: &Scene) -> Result<(), Unsupported> {
-        let Some((part, feature)) = lacking(scene).next() else { return Ok(()) };
+        let Some((part, feature)) = unsupported_parts(scene).next() else { return Ok(()) };
         Err(Unsupported::Lacking { engine: self.version(), part: part.to_owned(), feature })
     }
 
@@ -72,12 +72,12 @@ impl Engine for Rapier {
         Box::new(RapierWorld::new(scene, self))
     }
 
-    fn halved(&self) -> Box<dyn Engine> {
+    fn with_half_step(&self) -> Box<dyn Engine> {
         Box::new(Rapier { step_s: 0.5 * self.step_s, ..*self })
     }
 
     fn finer(&self) -> Vec<(&'static str, Box<dyn Engine>)> {
         let finer = Rapier { substeps: 2 * self.substeps, ..*self };
-        vec![("half the step", self.halved()), ("2 x substeps", Box::new(finer))]
+        vec![("half the step", self.with_half_step()), ("2 x substeps", Box::new(finer))]
     }
 }

@@ -46,7 +46,7 @@ impl Prism {
     /// Returns the checked surface of the finger with its ribs.
     ///
     /// # Errors
-    /// If the surface is not closed, or encloses another volume than area times depth.
+    /// If the surface is not closed, or its volume differs from area times depth.
     pub fn finger(geometry: &Geometry) -> Result<Self, PrismError> {
         let mut rings = rings(geometry);
         let voids = rings.split_off(1);
@@ -57,7 +57,7 @@ impl Prism {
     /// Returns the checked surface of the finger without openings, for slicers that fill it with their own infill.
     ///
     /// # Errors
-    /// As of [`Prism::finger`].
+    /// See [`Prism::finger`].
     pub fn outline(geometry: &Geometry) -> Result<Self, PrismError> {
         let mut rings = rings(geometry);
         let holes = rings.split_off(1 + geometry.voids.len());
@@ -67,7 +67,7 @@ impl Prism {
     /// Returns the surface of the solid base, where a slicer's infill has to be full.
     ///
     /// # Errors
-    /// As of [`Prism::finger`].
+    /// See [`Prism::finger`].
     pub fn base(geometry: &Geometry) -> Result<Self, PrismError> {
         let outline = &geometry.finger.outline;
         let (start, end) = ((outline.length - outline.solid) / MM, outline.length / MM);
@@ -76,9 +76,9 @@ impl Prism {
         Prism::new(&block.map(Point2::from).to_vec(), &[], outline.depth / MM)?.with_block(geometry)
     }
 
-    /// Adds the block with the finger's holes, if there is one: a separate closed surface that
-    /// overlaps the finger. The inside of either is solid (3MF Core Specification 1.3, 4.1: the
-    /// positive fill rule); slicers read STL files in the same way.
+    /// Adds the block with the finger's holes, if there is one: a separate closed surface that overlaps the finger.
+    /// The union of both is solid (3MF Core Specification 1.3, 4.1: the positive fill rule); slicers read STL files
+    /// in the same way.
     fn with_block(self, geometry: &Geometry) -> Result<Self, PrismError> {
         let Some((holes, block)) = geometry.block() else { return Ok(self) };
         let outline = &geometry.finger.outline;
@@ -100,7 +100,7 @@ impl Prism {
             let [x, y, z] = *corner;
             (corner[u], corner[v], corner[axis]) = (x, y, z + start as f32);
         }
-        self.and(&block).closed()
+        self.merged(&block).closed()
     }
 
     /// Extrudes a ring minus its holes (clockwise) from 0 to `depth`, mm.
@@ -138,15 +138,16 @@ impl Prism {
     }
 
     /// Returns the surface if each edge belongs to two triangles, once in each direction. Corners are identified by
-    /// their positions, as in a file without numbers of corners.
+    /// their positions, as in an STL file, which does not number them.
     fn closed(self) -> Result<Self, PrismError> {
         let place = |corner: u32| self.corners[corner as usize].map(f32::to_bits);
-        let mut met: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
+        let mut counts: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
         for [a, b] in self.triangles.iter().flat_map(sides) {
-            *met.entry([place(a), place(b)]).or_default() += 1;
+            *counts.entry([place(a), place(b)]).or_default() += 1;
         }
-        let twice = |[a, b]: &[[u32; 3]; 2]| met[&[*a, *b]] == 1 && met.get(&[*b, *a]) == Some(&1);
-        match met.keys().filter(|edge| !twice(edge)).count() {
+        let twice =
+            |[a, b]: &[[u32; 3]; 2]| counts[&[*a, *b]] == 1 && counts.get(&[*b, *a]) == Some(&1);
+        match counts.keys().filter(|edge| !twice(edge)).count() {
             0 => Ok(self),
             open => Err(PrismError(format!("{open} edges do not belong to exactly two triangles"))),
         }
@@ -166,7 +167,7 @@ impl Prism {
         triangle.map(|corner| self.corners[corner as usize].map(f64::from).into())
     }
 
-    /// Returns a binary STL file, mm; `title` goes into its header.
+    /// Returns a binary STL file, mm, with a title in its header.
     pub fn stl(&self, title: &str) -> Vec<u8> {
         let mut out = format!("finger-opt: {title}; mm").into_bytes();
         out.resize(HEADER, b' ');
@@ -191,8 +192,8 @@ impl Prism {
         three_mf(&[self], title, &[])
     }
 
-    /// Returns the two surfaces as one, the triangles of the other after those of this one.
-    pub(super) fn and(mut self, other: &Prism) -> Self {
+    /// Returns both surfaces as one; the triangles of the other follow those of this one.
+    pub(super) fn merged(mut self, other: &Prism) -> Self {
         let first = self.corners.len() as u32;
         self.corners.extend(&other.corners);
         self.triangles.extend(other.triangles.iter().map(|t| t.map(|corner| corner + first)));
@@ -200,8 +201,8 @@ impl Prism {
     }
 }
 
-/// Returns a 3MF file, mm, with further texts. Several surfaces are components of one object, numbered from 1; that
-/// object follows them.
+/// Returns a 3MF file, mm, with `more` text files (name, content). Several surfaces are components, numbered from 1, of
+/// one object, which follows them.
 pub(super) fn three_mf(parts: &[&Prism], title: &str, more: &[(&str, &str)]) -> ZipResult<Vec<u8>> {
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     let files = [
@@ -209,7 +210,7 @@ pub(super) fn three_mf(parts: &[&Prism], title: &str, more: &[(&str, &str)]) -> 
         ("_rels/.rels", RELATIONS),
         ("3D/3dmodel.model", &*model(parts, title)),
     ];
-    // The entries have the first date of the format, so that equal contents give equal files.
+    // The entries have the earliest date of the zip format, so that equal contents give equal files.
     let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
     for &(name, text) in files.iter().chain(more) {
         zip.start_file(name, options)?;
@@ -218,13 +219,13 @@ pub(super) fn three_mf(parts: &[&Prism], title: &str, more: &[(&str, &str)]) -> 
     Ok(zip.finish()?.into_inner())
 }
 
-/// Returns the number of the object that consists of this number of surfaces.
-pub(super) fn object(parts: usize) -> usize {
+/// Returns the id of the object that consists of a number of surfaces.
+pub(super) fn object_id(parts: usize) -> usize {
     if parts == 1 { 1 } else { parts + 1 }
 }
 
 fn model(parts: &[&Prism], title: &str) -> String {
-    let whole = object(parts.len());
+    let whole = object_id(parts.len());
     let model = html! {
         model unit="millimeter" xml:lang="en-US"
             xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"

@@ -1,4 +1,4 @@
-//! The profile of a finger as an SVG of its true size, and as a DXF for CAD.
+//! The profile of a finger as an SVG in true size, and as a DXF for CAD.
 
 use super::rings;
 use crate::geometry::Geometry;
@@ -7,7 +7,7 @@ use input::units::MM;
 use nalgebra::Point2;
 use std::fmt::Write;
 
-/// Returns an SVG of the profile, one unit a millimetre, its front side above: for laser cutters and drawings.
+/// Returns an SVG of the profile, with one unit per millimetre and the front side up: for laser cutters and drawings.
 pub fn svg(geometry: &Geometry, title: &str) -> String {
     let outline = &geometry.finger.outline;
     let (length, width) = (outline.length / MM, outline.width / MM);
@@ -28,7 +28,7 @@ pub(super) fn profile(drawing: &mut Drawing, geometry: &Geometry, view: View, st
     drawing.rings(geometry.rings_mm().into_iter().map(ring), style);
 }
 
-/// Returns a DXF (R12, for every program) of the outline and the openings as polylines on two layers, mm.
+/// Returns a DXF (R12, which every CAD program reads) of the outline and the openings as polylines on two layers, mm.
 pub fn dxf(geometry: &Geometry, title: &str) -> String {
     let mut out = pairs(&[
         ("999", &format!("finger-opt: {title}; mm")),
@@ -59,7 +59,7 @@ pub fn dxf(geometry: &Geometry, title: &str) -> String {
     out + &pairs(&[("0", "ENDSEC"), ("0", "EOF")])
 }
 
-/// Returns the group codes and their values, one a line.
+/// Formats group codes and their values, each on its own line.
 fn pairs(groups: &[(&str, &str)]) -> String {
     groups.iter().fold(String::new(), |mut out, (code, value)| {
         // Writing to a string cannot fail.

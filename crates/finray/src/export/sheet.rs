@@ -54,7 +54,7 @@ pub fn svg(geometry: &Geometry, stiffness: &AtPad) -> String {
     let view = View { origin: Point2::new(CORNER[0], CORNER[1] + wing * scale), scale };
     let drawn = if scale >= 1.0 { format!("{scale} : 1") } else { format!("1 : {}", 1.0 / scale) };
     let mut drawing = Drawing::default();
-    drawing.paper();
+    drawing.white_background();
     drawing.text(Point2::new(15.0, 17.0), &title(geometry), Font::new(7.0));
     let about = format!(
         "{}. Both fingers of a gripper are this part: print two.",
@@ -71,7 +71,7 @@ pub fn svg(geometry: &Geometry, stiffness: &AtPad) -> String {
 }
 
 /// Returns the finger as the sheet draws it, with its lengths (in a group of class `lengths`) and infill
-/// directions, as an SVG of its own.
+/// directions, as a separate SVG.
 pub fn part(geometry: &Geometry) -> String {
     let ([beyond, wing], outline) = (block(geometry), &geometry.finger.outline);
     let scale = ROOM[0] / (outline.length / MM + beyond);
@@ -127,7 +127,7 @@ fn degrees(angle: f64) -> f64 {
     (angle / DEG * 100.0).round() / 100.0
 }
 
-/// Returns a length in mm to a tenth, which is what a print keeps.
+/// Formats a length in mm to a tenth, the accuracy of a print.
 fn tenth(length: f64) -> String {
     format!("{}", (length / MM * 10.0).round() / 10.0)
 }
@@ -225,7 +225,7 @@ fn print(geometry: &Geometry) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Standard deviation of the eleven shipped fingers from what their ribs say, as a share.
+/// Standard deviation of the stiffness of the eleven shipped fingers from the one computed from their ribs, as a share.
 const SCATTER: f64 = 0.175;
 
 fn check(geometry: &Geometry, AtPad { ribs, measured }: &AtPad) -> Vec<(&'static str, String)> {
@@ -241,7 +241,7 @@ fn check(geometry: &Geometry, AtPad { ribs, measured }: &AtPad) -> Vec<(&'static
     let [model_across, model_along] = measured.map_or([none(), none()], |found| found.map(of));
     let without = if geometry.block().is_some() { " without the block" } else { "" };
     let modulus = geometry.finger.material.modulus / 1e9;
-    // What the trials were simulated with is what a print is to be.
+    // The expected stiffness of the print is the stiffness in the simulated trials.
     let (mean, sd, by) = match *measured {
         Some([[mean, sd], _]) => (mean, sd, "measured model"),
         None => (ribs[0], SCATTER * ribs[0], "from the ribs"),

@@ -2,8 +2,8 @@
 //! sliced: parallel lines in one direction, their ends not connected, walls alone around them, no
 //! top and no bottom.
 //!
-//! A slicer's density is not the design's: its pitch follows from its own line width. So the
-//! settings give the pitch. Where the first rib lies is the slicer's choice.
+//! The density of a slicer differs from that of the design, since its pitch follows from its own line width. So
+//! the settings define the pitch. The slicer determines the position of the first rib.
 
 use super::prism::{self, DECLARATION, Prism, PrismError};
 use super::{mm, title};
@@ -15,10 +15,10 @@ use std::f64::consts::PI;
 
 /// Height of a layer, mm: half the line width of the published fingers, a usual choice.
 const LAYER: f64 = 0.2;
-/// Version of the settings of Cura 5.0; later versions read them.
+/// Version of the settings of Cura 5.0; later versions accept them.
 const CURA_SETTING_VERSION: &str = "20";
 
-/// Returns the profile to import in Cura, where `infill_line_distance` decides over the density. As in the
+/// Returns the profile to import in Cura, where `infill_line_distance` overrides the density. As in the
 /// design, an angle of 0 is along Y, and a positive one turns the lines' upper end to +X.
 pub fn cura(geometry: &Geometry) -> String {
     let (count, width) = walls(&geometry.finger);
@@ -67,14 +67,14 @@ pub fn prusaslicer(geometry: &Geometry) -> String {
     notes(geometry) + &lines.collect::<String>()
 }
 
-/// Returns the settings by their keys in PrusaSlicer, and in OrcaSlicer and Bambu Studio, which also count the angle
-/// and space the lines in the same way; no key where a program has none. The fill pattern is
-/// `alignedrectilinear`: `rectilinear` turns by 90 degrees from layer to layer.
+/// Returns the settings: the key in PrusaSlicer, the key in OrcaSlicer and Bambu Studio, and the value. A key is empty
+/// if the program has no such setting. All three programs define angle and line spacing in the same way. The fill
+/// pattern is `alignedrectilinear`, since `rectilinear` turns by 90 degrees from layer to layer.
 fn settings(geometry: &Geometry) -> Vec<(&'static str, &'static str, String)> {
     let (count, width) = walls(&geometry.finger);
     let (wall, line) = (mm(width), mm(geometry.finger.line_width));
-    // At the design's pitch: the spacing of lines that touch (their ends are half circles of the
-    // layer's height) over the pitch.
+    // Density at the design's pitch: the spacing of lines that touch (the sides of their cross-section are
+    // semicircles as high as a layer) divided by the pitch.
     let touching = geometry.finger.line_width / MM - LAYER * (1.0 - PI / 4.0);
     let density = touching / (geometry.lines.pitch / MM) * 100.0;
     // Slicers count from X, counter-clockwise; the design from Y, clockwise.
@@ -136,7 +136,7 @@ pub fn prusaslicer_project(geometry: &Geometry) -> Result<Vec<u8>, PrismError> {
             }
         }
     };
-    written(&[&outline.and(&base)], geometry, "Metadata/Slic3r_PE_model.config", &config)
+    project(&[&outline.merged(&base)], geometry, "Metadata/Slic3r_PE_model.config", &config)
 }
 
 /// Returns a 3MF file with outline and solid base and their settings for OrcaSlicer and Bambu Studio, which are
@@ -150,7 +150,7 @@ pub fn orcaslicer_project(geometry: &Geometry) -> Result<Vec<u8>, PrismError> {
     let parts = [&Prism::outline(geometry)?, &Prism::base(geometry)?];
     let config = html! {
         config {
-            object id=(prism::object(parts.len())) {
+            object id=(prism::object_id(parts.len())) {
                 metadata key="name" value=(title(geometry)) {}
                 @for (_, key, value) in settings(geometry) {
                     @if !key.is_empty() { metadata key=(key) value=(value) {} }
@@ -159,17 +159,17 @@ pub fn orcaslicer_project(geometry: &Geometry) -> Result<Vec<u8>, PrismError> {
                 part id="2" subtype="modifier_part" {
                     metadata key="name" value="solid base" {}
                     metadata key="sparse_infill_density" value="100%" {}
-                    // OrcaSlicer reads it as its rectilinear, which Bambu Studio does not know by that name.
+                    // OrcaSlicer reads this value as `rectilinear`, a name that Bambu Studio does not know.
                     metadata key="sparse_infill_pattern" value="zig-zag" {}
                 }
             }
         }
     };
-    written(&parts, geometry, "Metadata/model_settings.config", &config)
+    project(&parts, geometry, "Metadata/model_settings.config", &config)
 }
 
-/// Returns a 3MF file with a configuration of this name.
-fn written(
+/// Returns a 3MF file that contains a configuration under a name.
+fn project(
     parts: &[&Prism],
     geometry: &Geometry,
     name: &str,
@@ -180,7 +180,8 @@ fn written(
     zip.map_err(|error| PrismError(error.to_string()))
 }
 
-/// Returns the number and width, m, of the walls that make the skin: the fewest at most two lines wide.
+/// Returns the number and width, m, of the walls that form the skin: the smallest number of walls at most two lines
+/// wide.
 fn walls(finger: &PrintedFinger) -> (u32, f64) {
     let count = (finger.skin / (2.0 * finger.line_width) - 1e-9).ceil().max(1.0);
     (count as u32, finger.skin / count)
@@ -188,8 +189,8 @@ fn walls(finger: &PrintedFinger) -> (u32, f64) {
 
 fn notes(geometry: &Geometry) -> String {
     format!(
-        "# {}: settings for its outline without ribs; the slicer lays them.\n\
-         # The tip at low X, the front at high Y, as the outline's file has it: do not turn it.\n\
+        "# {}: settings for its outline without ribs; the slicer adds them.\n\
+         # Tip at low X, front at high Y, as in the file of the outline: do not turn it.\n\
          # The solid base is a modifier with 100 % infill. The published fingers were printed with\n\
          # lines of 0.4 mm; here walls are as wide as the skin of the finger file.\n",
         title(geometry)

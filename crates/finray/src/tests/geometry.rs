@@ -2,7 +2,7 @@
 
 use super::{finray9, infill};
 use crate::geometry::Geometry;
-use crate::infill::Design;
+use crate::infill::InfillDesign;
 use crate::mechanics::compute;
 use crate::mesh::Mesh;
 use crate::picture;
@@ -10,7 +10,8 @@ use crate::polygon::{self, Ring};
 use crate::printed::PrintedFinger;
 use input::units::{GRAM, MM};
 
-const MIDDLE: Design = Design { density_percent: 20.0, direction_deg: 20.0, phase_mm: None };
+const MIDDLE: InfillDesign =
+    InfillDesign { density_percent: 20.0, direction_deg: 20.0, phase_mm: None };
 
 /// In the CAD, ribs at 10 % and 0 degrees have their centre lines at X = 4.143 + 3.81 n mm.
 #[test]
@@ -66,7 +67,7 @@ fn the_finger_has_a_mass_of_some_grams() {
 fn every_phase_can_be_meshed() {
     for step in 0..40 {
         let phase_mm = Some(1.905 * f64::from(step) / 40.0);
-        let design = Design { phase_mm, direction_deg: f64::from(step), ..MIDDLE };
+        let design = InfillDesign { phase_mm, direction_deg: f64::from(step), ..MIDDLE };
         let geometry = Geometry::new(&finray9(), &design).unwrap();
         let mesh = Mesh::new(&geometry.outer, &geometry.voids, 1.0 * MM).unwrap();
         assert!(mesh.triangles.len() < 8000, "{} at {design:?}", mesh.triangles.len());
@@ -96,7 +97,7 @@ fn shape_parameters_change_stiffness_and_area() {
 #[test]
 fn errors_about_parts_that_do_not_fit_name_the_key() {
     type Change = fn(&mut PrintedFinger);
-    let cases: [(&str, Design, Change); 12] = [
+    let cases: [(&str, InfillDesign, Change); 12] = [
         ("ribs.thickness_mm", MIDDLE, |finger| finger.ribs.thickness = 2.0 * MM),
         ("ribs.thickness_mm", MIDDLE, |finger| finger.ribs.thickness = 0.1 * MM),
         ("skin.thickness_mm", MIDDLE, |finger| finger.skin = 5.0 * MM),
@@ -106,9 +107,9 @@ fn errors_about_parts_that_do_not_fit_name_the_key() {
         ("outline.back_radius_mm", MIDDLE, |finger| finger.outline.back_radius = 400.0 * MM),
         ("outline.tip_mm", MIDDLE, |finger| finger.outline.tip = 16.0 * MM),
         ("base.clamped_mm", MIDDLE, |finger| finger.outline.clamped = 12.0 * MM),
-        ("ribs.thickness_mm", Design { density_percent: 95.0, ..MIDDLE }, |_| {}),
-        ("infill_density_percent", Design { density_percent: 0.0, ..MIDDLE }, |_| {}),
-        ("infill_direction_deg", Design { direction_deg: 90.0, ..MIDDLE }, |_| {}),
+        ("ribs.thickness_mm", InfillDesign { density_percent: 95.0, ..MIDDLE }, |_| {}),
+        ("infill_density_percent", InfillDesign { density_percent: 0.0, ..MIDDLE }, |_| {}),
+        ("infill_direction_deg", InfillDesign { direction_deg: 90.0, ..MIDDLE }, |_| {}),
     ];
     for (key, design, change) in cases {
         let mut finger = finray9();

@@ -2,7 +2,7 @@
 
 use super::infill;
 use crate::geometry::Geometry;
-use crate::infill::Design;
+use crate::infill::InfillDesign;
 use crate::mechanics::compute;
 use crate::polygon;
 use crate::printed::PrintedFinger;
@@ -17,7 +17,7 @@ const ALONG: &str = "[holes]\naxis = \"length\"\nrow = \"width\"\ncount = 2\nspa
 fn geometry(holes: &str) -> Result<Geometry, String> {
     let text = include_str!("../../../../fingers/finray9.toml").to_owned() + holes;
     let finger = PrintedFinger::parse(&text, "f.toml").map_err(|error| error.to_string())?;
-    let design = Design { density_percent: 20.0, direction_deg: 20.0, phase_mm: None };
+    let design = InfillDesign { density_percent: 20.0, direction_deg: 20.0, phase_mm: None };
     Geometry::new(&finger, &design).map_err(|error| error.to_string())
 }
 

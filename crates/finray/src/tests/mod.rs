@@ -5,7 +5,7 @@ mod holes;
 mod solid;
 
 use super::geometry::Geometry;
-use super::infill::Design;
+use super::infill::InfillDesign;
 use crate::condense::{Role, condense};
 use crate::elasticity::{PlaneStress, Slab};
 use crate::mechanics::compute;
@@ -21,7 +21,7 @@ fn finray9() -> PrintedFinger {
 
 /// The shipped finger with an infill.
 fn infill(density_percent: f64, direction_deg: f64) -> Geometry {
-    let design = Design { density_percent, direction_deg, phase_mm: None };
+    let design = InfillDesign { density_percent, direction_deg, phase_mm: None };
     Geometry::new(&finray9(), &design).unwrap()
 }
 
@@ -57,5 +57,5 @@ fn what_is_held_by_nothing_is_an_error() {
     let mesh = Mesh::new(&square.to_vec(), &[], 0.3).unwrap();
     let roles = vec![Role::Free; mesh.nodes.len()];
     let element = PlaneStress(Slab { modulus: 2e9, poisson: 0.4, thickness: 0.012 });
-    assert_eq!(condense(&mesh, &element, &roles, false).err(), Some(MeshError::Loose));
+    assert_eq!(condense(&mesh, &element, &roles, false).err(), Some(MeshError::Disconnected));
 }

@@ -36,7 +36,7 @@ fn term(axis: usize, term: usize, z: f64, half: f64) -> (f64, f64) {
 impl Solid {
     /// Strains XX, YY, ZZ, YZ, ZX, XY of a degree of freedom.
     fn strain(&self, shape: &Shape, freedom: usize, z: f64) -> Vector6<f64> {
-        let (node, axis) = (freedom / Self::FREEDOMS, freedom % Self::FREEDOMS / TERMS);
+        let (node, axis) = (freedom / Self::DOFS, freedom % Self::DOFS / TERMS);
         let (value, slope) = term(axis, freedom % TERMS, z, self.0.thickness / 2.0);
         let (n, [dx, dy]) = (shape.values[node], shape.gradients[node]);
         let (x, y, z) = (dx * value, dy * value, n * slope);
@@ -60,10 +60,10 @@ impl Solid {
 }
 
 impl Element for Solid {
-    const FREEDOMS: usize = 3 * TERMS;
+    const DOFS: usize = 3 * TERMS;
 
     fn stiffness(&self, corners: [Point2<f64>; 3]) -> Vec<f64> {
-        let size = 6 * Self::FREEDOMS;
+        let size = 6 * Self::DOFS;
         let mut matrix = vec![0.0; size * size];
         let elasticity = self.elasticity();
         let half = self.0.thickness / 2.0;
@@ -87,10 +87,10 @@ impl Element for Solid {
     }
 
     /// A turn moves X and Y in proportion to z (term 0, scaled by the half depth).
-    fn follow(&self, outline: &Outline, place: [f64; 2]) -> Vec<[f64; 3]> {
+    fn rigid_displacements(&self, outline: &Outline, place: [f64; 2]) -> Vec<[f64; 3]> {
         let [deflection, about_x, about_y] =
-            <[_; 3]>::try_from(MindlinPlate(self.0).follow(outline, place)).unwrap();
-        let mut rows = vec![[0.0; 3]; Self::FREEDOMS];
+            <[_; 3]>::try_from(MindlinPlate(self.0).rigid_displacements(outline, place)).unwrap();
+        let mut rows = vec![[0.0; 3]; Self::DOFS];
         rows[0] = about_y;
         rows[TERMS] = about_x.map(|turn| -turn);
         rows[2 * TERMS] = deflection.map(|way| way / (self.0.thickness / 2.0));

@@ -1,7 +1,7 @@
 //! Evaluator: from a design to its evaluation.
 
 use super::cell::{Priors, change};
-use super::robustness::firm::{self, Firm};
+use super::robustness::firm::{self, FirmResult};
 use super::robustness::race::Race;
 use super::robustness::repeat::Repeats;
 use super::robustness::{self, Drawn, Plan};
@@ -245,9 +245,9 @@ impl Evaluator {
         measured: &Evaluation,
         seed: u64,
         stop: &AtomicBool,
-    ) -> Result<Firm, RigError> {
+    ) -> Result<FirmResult, RigError> {
         if measured.window.nominal != Outcome::Inserted {
-            return Ok(Firm::NONE);
+            return Ok(FirmResult::NONE);
         }
         let rig = |factor| self.rig(specimen, measured.taught, factor);
         let (whole, half) = (rig(1.0)?, rig(0.5)?);

@@ -188,8 +188,8 @@ impl SuccessRate {
         (counted > 0.0).then(|| inserted / counted)
     }
 
-    /// Wilson's score interval of the true rate (1927, J. Am. Stat. Assoc. 22:209); of a raced one,
-    /// whose draws were not taken at random, all of 0 to 1.
+    /// Returns Wilson's score interval of the true rate (1927, J. Am. Stat. Assoc. 22:209). It is 0 to 1
+    /// without a rate, as for a raced design, whose draws are not random.
     pub fn interval(&self) -> [f64; 2] {
         let Some(rate) = self.rate() else { return [0.0, 1.0] };
         let n = f64::from(self.counted());
@@ -203,7 +203,7 @@ impl SuccessRate {
 /// Ranges of one design under sampled errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RobustRange {
-    /// Range under each sample, mm; a sample whose nominal start diverged has none.
+    /// Range under each sample, mm; without the samples whose nominal start diverged.
     #[serde(rename = "robust_ranges_mm")]
     pub ranges_mm: Vec<f64>,
     /// Samples whose nominal start diverged.
@@ -212,7 +212,7 @@ pub struct RobustRange {
     /// Trials of all windows.
     #[serde(rename = "robust_trials")]
     pub trials: u32,
-    /// The statistic the settings ask for, mm; `None` with fewer than two ranges.
+    /// Statistic selected in the settings, mm; `None` with fewer than two ranges.
     #[serde(rename = "robust_range_mm", skip_serializing)]
     pub value_mm: Option<f64>,
 }

@@ -31,7 +31,7 @@ impl Search {
     }
 }
 
-/// Measures one finger: its window, and what all trials on the way reported.
+/// Measures the window of one finger, with the results of all trials that this takes.
 ///
 /// The start is shifted outward on the 0.1 mm grid in both directions until
 /// the first trial that does not insert (the paper, Sec. "Robot Movement").

@@ -30,7 +30,7 @@ pub(super) struct Overrides {
 }
 
 impl Pad {
-    /// Pad and roof of a printed finger.
+    /// Returns pad and roof of a printed finger.
     pub fn of(outline: &Outline) -> Self {
         Pad { width: outline.depth, height: outline.pad, roof: outline.roof }
     }

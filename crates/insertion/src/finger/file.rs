@@ -25,9 +25,9 @@ pub fn is_shape(key: &str) -> bool {
 
 /// Returns the infill of a design, with the first rib at `phase_mm`, by default as in the finger file. Numbers
 /// that the design does not set are NaN, which is invalid in a finger.
-pub fn infill(design: &Design, phase_mm: Option<f64>) -> infill::Design {
+pub fn infill(design: &Design, phase_mm: Option<f64>) -> infill::InfillDesign {
     let value = |key| design.get(key).unwrap_or(f64::NAN);
-    infill::Design {
+    infill::InfillDesign {
         density_percent: value(DENSITY_KEY),
         direction_deg: value(DIRECTION_KEY),
         phase_mm,
@@ -88,7 +88,7 @@ mod tests {
         for (key, value, words) in [
             ("finger.skin.thickness_mm", 0.0, "fingers/finray9.toml: skin.thickness_mm: is 0"),
             ("finger.material.modulus_gpa", 2e3, "gigapascals"),
-            ("finger.skin.thick_mm", 1.0, "`finger.skin.` goes on with thickness_mm"),
+            ("finger.skin.thick_mm", 1.0, "`finger.skin.` continues with thickness_mm"),
         ] {
             let error = with(key, value).unwrap_err().to_string();
             assert!(error.contains(words), "{error}");

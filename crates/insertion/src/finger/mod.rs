@@ -67,9 +67,9 @@ impl Finger {
             assembly,
             depth: 100.0 * N_PER_MM,
             rotation: [TILTING, 10.0, 10.0],
-            rcc: Rcc::PAPER_DISTANCE,
+            rcc: Rcc::PUBLISHED_DISTANCE,
             ahead: 0.0,
-            pad: Pad::PAPER,
+            pad: Pad::PUBLISHED,
             mass: 2.0 * GRAM,
             damping: 10.0,
             rotational_damping: 0.02,
@@ -79,7 +79,7 @@ impl Finger {
 
     /// Returns the finger with the properties that a task file sets, for an infill in this direction, degrees.
     pub fn shaped(self, model: &FingerModel, direction_deg: f64) -> Self {
-        let rcc = model.rcc.map_or(Rcc::PAPER_DISTANCE, |rcc| rcc.at(direction_deg));
+        let rcc = model.rcc.map_or(Rcc::PUBLISHED_DISTANCE, |rcc| rcc.at(direction_deg));
         Finger { rcc, coupling: model.coupling, ..self }
     }
 }
@@ -98,7 +98,7 @@ pub struct Pad {
 
 impl Pad {
     /// Dimensions of the published simulation.
-    pub const PAPER: Pad = Pad { width: 12.0 * MM, height: 8.4 * MM, roof: 2.5 * MM };
+    pub const PUBLISHED: Pad = Pad { width: 12.0 * MM, height: 8.4 * MM, roof: 2.5 * MM };
 
     /// Returns the height of its middle above the TCP, m; `shoulder` as in [`Pad::geoms`].
     pub fn middle(&self, shoulder: f64) -> f64 {

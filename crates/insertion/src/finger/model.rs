@@ -25,7 +25,7 @@ pub enum FingerModelKind {
 }
 
 impl FingerModelKind {
-    /// Name on the command line and in study files.
+    /// Returns the name on the command line and in study files.
     pub fn name(self) -> &'static str {
         match self {
             FingerModelKind::Paper => "paper",

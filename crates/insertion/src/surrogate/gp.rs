@@ -19,7 +19,7 @@
 //! likelihood: no random restarts, so the fit is the same on every run.
 
 use super::link::{Link, Sum};
-use super::{Estimate, Fitted, Measured, Standard, infills};
+use super::{Estimate, Fitted, Measured, Standardizer, infills};
 use crate::stiffness::{Axis, Infill};
 use ask_tell::process::{Process, matern52};
 use input::units::DEG;
@@ -49,9 +49,9 @@ pub(super) struct PhysicalProcess<const P: usize> {
     link: Link,
     setting: Setting,
     /// Standardisation of the feature and of the inputs.
-    scales: [Standard; 3],
+    scales: [Standardizer; 3],
     /// Standardisation of the values on the scale of the link.
-    target: Standard,
+    target: Standardizer,
     places: Vec<Place>,
     /// Process of the standardised values, in units of the process variance.
     process: Process<P>,
@@ -111,8 +111,8 @@ impl<const P: usize> PhysicalProcess<P> {
         let values: Vec<f64> = measured.targets().iter().map(|&k| link.forward(k)).collect();
         let n = Some(values.len()).filter(|&n| n > P)?;
         let of_column =
-            |i: usize| Standard::of(&rows.iter().map(|row| row[i]).collect::<Vec<_>>(), 1);
-        let (scales, target) = (std::array::from_fn(of_column), Standard::of(&values, 1));
+            |i: usize| Standardizer::of(&rows.iter().map(|row| row[i]).collect::<Vec<_>>(), 1);
+        let (scales, target) = (std::array::from_fn(of_column), Standardizer::of(&values, 1));
         let (terms, places): (Vec<[f64; P]>, Vec<Place>) =
             rows.iter().map(|&row| scaled(row, &scales, setting.theta)).unzip();
         let noise = |i, j| if i == j { setting.nugget } else { 0.0 };
@@ -124,7 +124,11 @@ impl<const P: usize> PhysicalProcess<P> {
     }
 }
 
-fn scaled<const P: usize>(row: [f64; 3], scales: &[Standard; 3], theta: f64) -> ([f64; P], Place) {
+fn scaled<const P: usize>(
+    row: [f64; 3],
+    scales: &[Standardizer; 3],
+    theta: f64,
+) -> ([f64; P], Place) {
     let [feature, u, v]: [f64; 3] = std::array::from_fn(|i| scales[i].apply(row[i]));
     (std::array::from_fn(|term| if term == 0 { 1.0 } else { feature }), [theta * u, theta * v])
 }

@@ -1,13 +1,13 @@
 //! Link functions: the quantity in which a model is linear, positive everywhere.
 
-/// The quantity that a model adds up.
+/// Quantity in which the terms of a model are additive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Sum {
-    /// Stiffness itself: springs side by side.
+    /// The stiffness: springs in parallel.
     Parallel,
-    /// Its inverse: springs one after the other.
+    /// Its inverse: springs in series.
     Series,
-    /// Its logarithm: shares of what is computed.
+    /// Its logarithm: factors on the computed stiffness.
     Product,
 }
 

@@ -1,14 +1,14 @@
 //! From infill to stiffness: models fitted to measured fingers at start-up.
 //!
-//! Three steps, once per axis (assembly z, compliance y), of at least seven fingers:
+//! With at least seven fingers, three steps for each axis (assembly z, compliance y):
 //!
 //! 1. fit each candidate of [`ModelKind`] to all measured designs;
 //! 2. leave each design out in turn, refit everything (link, exponent,
 //!    hyperparameters, penalty) without it, and predict it ([`Loo`]);
 //! 3. keep the candidate with the smallest mean absolute percentage error.
 //!
-//! Of fewer than seven fingers the models are of measured / computed stiffness: the ribs give the
-//! shape, the fingers its scale (`docs/notes/finger.md`).
+//! With fewer than seven fingers, the models predict the ratio of measured to computed stiffness: the ribs
+//! determine the shape, the measurements its scale (`docs/notes/finger.md`).
 //!
 //! Nothing here is random, so equal measurements give bit-identical models.
 
@@ -165,22 +165,22 @@ fn left_out(
 
 /// Shift and scale that bring values to mean 0 and standard deviation 1.
 #[derive(Debug, Clone, Copy)]
-struct Standard {
+struct Standardizer {
     /// Mean of the values.
     pub mean: f64,
     /// Their standard deviation; 1 if all values are equal.
     pub sd: f64,
 }
 
-impl Standard {
-    /// Returns shift and scale of values; their variance is the sum of squares over the count minus `lost`.
+impl Standardizer {
+    /// Computes shift and scale of values; the variance is the sum of squares divided by the count minus `lost`.
     pub fn of(values: &[f64], lost: usize) -> Self {
         let Moments { count, mean, squares } = Moments::of(values);
         let variance = squares / (count - lost as f64);
-        Standard { mean, sd: if variance > 0.0 { variance.sqrt() } else { 1.0 } }
+        Standardizer { mean, sd: if variance > 0.0 { variance.sqrt() } else { 1.0 } }
     }
 
-    /// Returns a value in standard deviations about the mean.
+    /// Returns the deviation of a value from the mean, in standard deviations.
     pub fn apply(self, value: f64) -> f64 {
         (value - self.mean) / self.sd
     }

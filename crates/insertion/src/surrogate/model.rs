@@ -1,4 +1,4 @@
-//! The candidates for the model of each axis, their leave-one-out errors, and the choice.
+//! Candidate models of each axis, their leave-one-out errors, and the choice between them.
 
 use super::hull::Hull;
 use super::link::{Link, Sum};
@@ -10,21 +10,21 @@ use finray::FingerError;
 use finray::printed::PrintedFinger;
 use input::units::N_PER_MM;
 
-/// A model of one axis.
+/// Kind of model of one axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ModelKind {
-    /// `k = a + b density + c direction` by least squares: the
-    /// reference. Never chosen, since it turns negative outside the data.
+    /// `k = a + b density + c direction` by least squares: the reference. Never chosen, since it becomes
+    /// negative outside the data.
     Linear,
     /// The same terms with a ridge penalty, through a link that stays positive.
     RidgeLinear,
     /// All terms up to second degree with a ridge penalty, through the same link.
     RidgeQuadratic,
-    /// A Gaussian process about a physical mean.
+    /// A Gaussian process with a physical mean function.
     GaussianProcess,
-    /// The computed stiffness times one number.
+    /// The computed stiffness times a constant factor.
     ComputedScale,
-    /// A Gaussian process of the logarithm of measured / computed about one number.
+    /// A Gaussian process with a constant mean for the logarithm of measured / computed stiffness.
     ComputedProcess,
 }
 
@@ -50,7 +50,7 @@ impl ModelKind {
     }
 }
 
-/// Fits one model on one axis; of a computed kind to ratios of measured and computed stiffness.
+/// Fits a model of one axis. The data of a kind with computed stiffness are ratios of measured to computed stiffness.
 fn fit_axis(axis: Axis, kind: ModelKind, measured: &Measured) -> Option<Box<dyn Fitted>> {
     fn boxed<F: Fitted + 'static>(fitted: Option<F>) -> Option<Box<dyn Fitted>> {
         fitted.map(|fitted| Box::new(fitted) as Box<dyn Fitted>)
@@ -86,20 +86,20 @@ pub struct Loo {
 }
 
 /// Measurements along one axis.
-struct Data {
+struct AxisData {
     axis: Axis,
-    /// Stiffness, N/m; of computed kinds measured / computed.
+    /// Stiffness, N/m, or ratios of measured to computed stiffness.
     measured: Measured,
-    /// Unit of each design's value, N/m.
+    /// Unit of each design's value, N/m: the computed stiffness for a ratio, else 1.
     units: Vec<f64>,
 }
 
-impl Data {
+impl AxisData {
     /// Returns the data of an axis, in the unit of each measurement.
     fn new(axis: Axis, measurements: &[Measurement], units: Vec<f64>) -> Self {
         let infills: Vec<_> = measurements.iter().map(Measurement::infill).collect();
         let values = measurements.iter().zip(&units).map(|(m, unit)| m.stiffness(axis) / unit);
-        Data { axis, measured: measured(&infills, &values.collect::<Vec<_>>()), units }
+        AxisData { axis, measured: measured(&infills, &values.collect::<Vec<_>>()), units }
     }
 
     /// Fits `kind` without each design in turn and predicts that design.
@@ -125,10 +125,10 @@ impl Data {
     }
 }
 
-/// Fewest designs that a model is fitted to without computing any: the quadratic has six
-/// terms, and a leave-one-out error needs one design more than that.
+/// Smallest number of designs to which models without computed stiffness are fitted: the quadratic has six
+/// terms, and a leave-one-out error needs one more design.
 pub const MIN_MEASURED: usize = 7;
-/// Fewest designs for which leave-one-out may choose a process about the computed stiffness.
+/// Smallest number of designs for which [`ModelKind::ComputedProcess`] is a candidate.
 const MIN_FOR_PROCESS: usize = 4;
 
 /// Stiffness of a finger as a function of its infill, fitted to measurements.
@@ -140,9 +140,9 @@ pub struct Model {
     chosen: [Chosen; 2],
     /// Leave-one-out errors: one row per axis and model, assembly first.
     pub loo: Vec<Loo>,
-    /// Stiffness of the fingers computed from their ribs, each once.
+    /// Stiffness computed from the ribs, once for each finger.
     computed: Computed,
-    /// Whether the models are of ratios to the computed stiffness, which takes some 0.2 s a finger.
+    /// Whether the models predict ratios to the computed stiffness, which takes about 0.2 s per finger.
     pub ratios: bool,
 }
 
@@ -153,12 +153,12 @@ struct Chosen {
     widen: f64,
 }
 
-/// Fits every model, chooses one per axis by its leave-one-out error. Of [`MIN_MEASURED`] designs
-/// without the finger, which costs nothing; of fewer about its computed stiffness.
+/// Fits every candidate model and chooses one per axis by its leave-one-out error. With fewer than [`MIN_MEASURED`]
+/// designs the models are based on the computed stiffness of `finger`, which is not needed otherwise.
 ///
 /// # Errors
-/// A measurement that cannot be used, none at all, designs that differ in too few respects,
-/// or of few measurements one of a finger that cannot be computed.
+/// If there is no measurement, one is invalid, the designs are too similar, or a computed stiffness is needed and
+/// cannot be computed.
 pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model, SurrogateError> {
     check_all(measurements)?;
     let infills: Vec<Infill> = measurements.iter().map(Measurement::infill).collect();
@@ -174,7 +174,7 @@ pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model
             false => Ok(1.0),
         };
         let units = measurements.iter().map(unit).collect::<Result<_, FingerError>>()?;
-        choose(&Data::new(axis, measurements, units), kinds)
+        choose(&AxisData::new(axis, measurements, units), kinds)
     };
     let (assembly, mut loo) = choose(Axis::Assembly)?;
     let (compliance, rest) = choose(Axis::Compliance)?;
@@ -185,7 +185,7 @@ pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model
 }
 
 /// Chooses the model with the smallest leave-one-out error.
-fn choose(data: &Data, kinds: &[ModelKind]) -> Result<(Chosen, Vec<Loo>), SurrogateError> {
+fn choose(data: &AxisData, kinds: &[ModelKind]) -> Result<(Chosen, Vec<Loo>), SurrogateError> {
     let mut loo: Vec<Loo> = kinds.iter().map(|&kind| data.leave_one_out(kind)).collect();
     let unfittable = SurrogateError::Unfittable(data.axis.label());
     // A single finger has no leave-one-out error.
@@ -200,16 +200,15 @@ fn choose(data: &Data, kinds: &[ModelKind]) -> Result<(Chosen, Vec<Loo>), Surrog
         .min_by(|a, b| a.mean_absolute_percent.total_cmp(&b.mean_absolute_percent))
         .ok_or(unfittable.clone())?;
     best.chosen = true;
-    // Overconfident: widen until the left-out errors fit. Never narrow.
+    // An overconfident model is widened until the left-out errors fit; none is narrowed.
     let widen = best.standardised_rms.max(1.0);
     let fitted = fit_axis(data.axis, best.model, &data.measured).ok_or(unfittable)?;
     Ok((Chosen { fitted, widen }, loo))
 }
 
 impl Model {
-    /// Returns the stiffness of one finger, N/m, for any density (percent; below 1 counts
-    /// as 1) and direction (degrees). The standard deviation is that of a
-    /// finger yet to be printed: model error and scatter together.
+    /// Returns the stiffness of one finger, N/m, for any density (percent; below 1 counts as 1) and direction
+    /// (degrees). The standard deviation is that of a finger yet to be printed: model error and scatter together.
     ///
     /// # Errors
     /// If the model uses the computed stiffness and the finger cannot be computed.
@@ -250,8 +249,8 @@ impl Model {
         self.chosen[axis as usize].fitted.describe()
     }
 
-    /// Returns the factor by which the predicted standard deviation of an axis was widened
-    /// so that the leave-one-out errors fit it; 1 if it fitted already.
+    /// Returns the factor by which the predicted standard deviation of an axis was widened to fit the leave-one-out
+    /// errors; 1 if it already fitted.
     pub fn widening(&self, axis: Axis) -> f64 {
         self.chosen[axis as usize].widen
     }

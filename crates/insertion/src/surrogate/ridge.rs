@@ -1,19 +1,20 @@
 //! Ridge polynomials: baseline without physics.
 //!
 //! Terms and target are standardised, then fitted by `linfa-elasticnet` with an L1 share of 0. The
-//! penalty has the smallest leave-one-out error of the designs given.
+//! penalty is the one with the smallest leave-one-out error over the given designs.
 //!
-//! The terms are turned into their principal axes first. A rotation does not change the ridge
+//! The terms are first rotated onto their principal axes. A rotation does not change the ridge
 //! penalty, and along axes that are orthogonal one sweep of coordinate descent is exact.
 
 use super::link::Link;
-use super::{Estimate, Fitted, Measured, Standard, infills, left_out};
+use super::{Estimate, Fitted, Measured, Standardizer, infills, left_out};
 use crate::stiffness::Infill;
 use linfa::prelude::{Dataset, Fit};
 use linfa_elasticnet::ElasticNet;
 use nalgebra::{DMatrix, DVector};
 use ndarray::{Array1, Array2};
 
+/// Candidate ridge penalties.
 pub(super) const PENALTIES: [f64; 4] = [1e-6, 1e-4, 1e-3, 1e-2];
 
 /// A fitted polynomial in (density, direction) on the scale of its link.
@@ -21,13 +22,13 @@ pub(super) const PENALTIES: [f64; 4] = [1e-6, 1e-4, 1e-3, 1e-2];
 pub(super) struct Ridge {
     link: Link,
     degree: u8,
-    terms: Vec<Standard>,
-    target: Standard,
+    terms: Vec<Standardizer>,
+    target: Standardizer,
     coefficients: Vec<f64>,
     /// Residual standard deviation, in units of the standardised target.
     residual_sd: f64,
     /// Inverse of the Gram matrix of the terms, with the constant first.
-    spread: DMatrix<f64>,
+    inverse_gram: DMatrix<f64>,
     penalty: f64,
 }
 
@@ -40,52 +41,61 @@ fn terms(infill: Infill, degree: u8) -> Vec<f64> {
     }
 }
 
-/// Fits with the best of `penalties`; `None` if nothing can be fitted.
+/// Fits the polynomial with the penalty of the smallest leave-one-out error; `None` if no fit is possible.
 pub(super) fn fit(measured: &Measured, degree: u8, link: Link, penalties: &[f64]) -> Option<Ridge> {
     if let [penalty] = penalties {
-        return fit_one(measured, degree, link, *penalty);
+        return fit_with_penalty(measured, degree, link, *penalty);
     }
     let error = |&penalty: &f64| {
         let predicted = left_out(measured, |others, infill| {
-            Some(fit_one(others, degree, link, penalty)?.predict(infill))
+            Some(fit_with_penalty(others, degree, link, penalty)?.predict(infill))
         });
         let off = predicted.iter().zip(measured.targets()).map(|(e, k)| (e.mean / k - 1.0).abs());
         (penalty, off.sum::<f64>())
     };
     let fitted = penalties.iter().map(error).filter(|(_, error)| !error.is_nan());
     let best = fitted.min_by(|a, b| a.1.total_cmp(&b.1));
-    fit_one(measured, degree, link, best?.0)
+    fit_with_penalty(measured, degree, link, best?.0)
 }
 
-fn fit_one(measured: &Measured, degree: u8, link: Link, penalty: f64) -> Option<Ridge> {
+fn fit_with_penalty(measured: &Measured, degree: u8, link: Link, penalty: f64) -> Option<Ridge> {
     let rows: Vec<Vec<f64>> = infills(measured).map(|infill| terms(infill, degree)).collect();
     let (n, count) = (rows.len(), rows.first()?.len());
-    let scales: Vec<Standard> = (0..count)
-        .map(|j| Standard::of(&rows.iter().map(|row| row[j]).collect::<Vec<_>>(), 0))
+    let scales: Vec<Standardizer> = (0..count)
+        .map(|j| Standardizer::of(&rows.iter().map(|row| row[j]).collect::<Vec<_>>(), 0))
         .collect();
     let raw: Vec<f64> = measured.targets().iter().map(|&k| link.forward(k)).collect();
-    let target = Standard::of(&raw, 0);
+    let target = Standardizer::of(&raw, 0);
     let x = DMatrix::from_fn(n, count, |i, j| scales[j].apply(rows[i][j]));
     let y: Array1<f64> = raw.iter().map(|&g| target.apply(g)).collect();
     let design = x.clone().insert_column(0, 1.0);
     // `None` if the designs do not distinguish the terms.
-    let spread = design.tr_mul(&design).cholesky()?.inverse();
+    let inverse_gram = design.tr_mul(&design).cholesky()?.inverse();
     let axes = x.tr_mul(&x).symmetric_eigen().eigenvectors;
-    let turned = &x * &axes;
-    let turned = Array2::from_shape_fn((n, count), |place| turned[place]);
+    let rotated = &x * &axes;
+    let rotated = Array2::from_shape_fn((n, count), |place| rotated[place]);
     let net = ElasticNet::params()
         .l1_ratio(0.0)
         .penalty(penalty)
         .with_intercept(false)
         .max_iterations(1)
-        .fit(&Dataset::new(turned.clone(), y.clone()))
+        .fit(&Dataset::new(rotated.clone(), y.clone()))
         .ok()?;
-    let residual = &y - &turned.dot(net.hyperplane());
-    let freedom = n.saturating_sub(count + 1).max(1) as f64;
-    let residual_sd = (residual.dot(&residual) / freedom).sqrt();
+    let residual = &y - &rotated.dot(net.hyperplane());
+    let degrees_of_freedom = n.saturating_sub(count + 1).max(1) as f64;
+    let residual_sd = (residual.dot(&residual) / degrees_of_freedom).sqrt();
     let along_axes = DVector::from_iterator(count, net.hyperplane().iter().copied());
     let coefficients = (axes * along_axes).data.into();
-    Some(Ridge { link, degree, terms: scales, target, coefficients, residual_sd, spread, penalty })
+    Some(Ridge {
+        link,
+        degree,
+        terms: scales,
+        target,
+        coefficients,
+        residual_sd,
+        inverse_gram,
+        penalty,
+    })
 }
 
 impl Fitted for Ridge {
@@ -100,7 +110,7 @@ impl Fitted for Ridge {
             scaled.len() + 1,
             std::iter::once(1.0).chain(scaled.iter().copied()),
         );
-        let leverage = row.dot(&(&self.spread * &row));
+        let leverage = row.dot(&(&self.inverse_gram * &row));
         let (mean, slope) = self.link.backward(self.target.mean + self.target.sd * g);
         let link_sd = self.target.sd * self.residual_sd * (1.0 + leverage).sqrt();
         Estimate { mean, sd: libm::hypot(slope * link_sd, super::gp::READING_SD * mean) }
@@ -117,7 +127,7 @@ mod tests {
     use crate::stiffness::parse;
     use input::shipped::STIFFNESS;
 
-    /// At the minimum a term's product with the residuals is the penalty's pull on its coefficient.
+    /// At the minimum, the gradients of the squared error and of the penalty cancel.
     #[test]
     fn one_sweep_along_the_principal_axes_is_the_minimum() {
         let shipped = parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap();
@@ -126,18 +136,18 @@ mod tests {
         let n = stiffness.len() as f64;
         let data = crate::surrogate::measured(&infills, &stiffness);
         for penalty in PENALTIES {
-            let fitted = fit_one(&data, 2, Link::IDENTITY, penalty).unwrap();
+            let fitted = fit_with_penalty(&data, 2, Link::IDENTITY, penalty).unwrap();
             let row = |&infill: &Infill| -> Vec<f64> {
                 let terms = terms(infill, 2);
                 terms.iter().zip(&fitted.terms).map(|(&t, scale)| scale.apply(t)).collect()
             };
             let rows: Vec<Vec<f64>> = infills.iter().map(row).collect();
             for (j, coefficient) in fitted.coefficients.iter().enumerate() {
-                let pull = rows.iter().zip(&stiffness).map(|(row, &k)| {
+                let products = rows.iter().zip(&stiffness).map(|(row, &k)| {
                     let g: f64 = row.iter().zip(&fitted.coefficients).map(|(x, b)| x * b).sum();
                     row[j] * (fitted.target.apply(k) - g)
                 });
-                let gradient = pull.sum::<f64>() - n * penalty * coefficient;
+                let gradient = products.sum::<f64>() - n * penalty * coefficient;
                 assert!(gradient.abs() < 1e-12 * n, "{penalty}, term {j}: {gradient}");
             }
         }

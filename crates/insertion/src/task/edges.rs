@@ -313,7 +313,7 @@ mod tests {
         assert!(left("-z", Cut::Radius(1.9 * MM)).is_ok());
     }
 
-    /// Of every plate that is cut, what is left is whole; the others are refused.
+    /// Each plate that can be cut keeps its corners; plates that are too thin are rejected.
     #[test]
     fn no_plate_loses_corners() {
         let (mut whole, mut refused) = (0, 0);

@@ -40,7 +40,7 @@ pub struct Coupling(Matrix6<f64>);
 
 impl Rcc {
     /// Distance of the publication, m.
-    pub const PAPER_DISTANCE: f64 = 21.0 * MM;
+    pub const PUBLISHED_DISTANCE: f64 = 21.0 * MM;
 
     /// Returns the distance for an infill direction in degrees, m.
     pub fn at(&self, direction_deg: f64) -> f64 {

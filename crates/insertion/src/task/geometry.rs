@@ -23,7 +23,7 @@ pub struct Part {
     pub name: String,
     /// Shape in metres.
     pub solid: Solid,
-    /// Coefficient of friction of its own, if any.
+    /// Coefficient of friction of this part, if it differs from that of the task.
     pub friction: Option<f64>,
 }
 

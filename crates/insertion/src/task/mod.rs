@@ -37,7 +37,7 @@ pub struct Task {
     pub name: String,
     /// One-line description for lists.
     pub description: String,
-    /// Turn of the task frame about z in the robot's base frame, rad.
+    /// Rotation of the task frame about z in the robot's base frame, rad.
     pub turn: f64,
     /// Plug, in the plug frame (origin at the tip, z along its axis).
     pub plug: Plug,

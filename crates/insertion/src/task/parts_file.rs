@@ -21,7 +21,7 @@ pub struct PartsFile {
     pub sha256: String,
 }
 
-/// SHA-256 of a text, hexadecimal.
+/// Returns the SHA-256 of a text, hexadecimal.
 pub fn sha256(text: &str) -> String {
     format!("{:x}", Sha256::digest(text))
 }
@@ -55,12 +55,12 @@ pub fn with_parts(source: Source) -> Result<Source, InputError> {
     Ok(Source { text: joined(&source.text, &parts), file: source.file })
 }
 
-/// Text of a task file with the text of its parts file appended.
+/// Returns the text of a task file with the text of its parts file appended.
 pub fn joined(task: &str, parts: &str) -> String {
     format!("{task}{APPENDED}{parts}")
 }
 
-/// Text of a task file without appended parts.
+/// Returns the text of a task file without appended parts.
 pub fn without_parts(text: &str) -> &str {
     text.split(APPENDED).next().unwrap_or(text)
 }

@@ -1,9 +1,9 @@
-//! Box with round edges, as convex shapes that are flush with one another: a core with the radius
-//! along each round edge, a sharp hull of all flats, and at each corner that is not part of a ball a
-//! hull that follows the arcs within 1 um.
+//! Box with round edges, decomposed into convex shapes that join without steps: a capsule along each round
+//! edge, one hull with sharp edges that spans all flat faces, and, at each corner that is not part of a ball,
+//! a hull that approximates the arcs within 1 um.
 //!
-//! Arcs that meet at a corner are mitred, as cylinders that cut one another; three of one radius
-//! leave a ball.
+//! Arcs that meet at a corner are mitred like intersecting cylinders; three arcs of equal radius form part
+//! of a ball.
 
 use super::edges::{Cut, Edge, Face, HalfSpace, SAME, corners, same, spaces};
 use super::geometry;
@@ -22,10 +22,10 @@ pub struct Rounded {
     /// Size, m.
     size: Vector3<f64>,
     edges: Vec<(Edge, Cut)>,
-    /// Shapes with their centres from the smallest corner, m.
+    /// Shapes with their centres relative to the smallest corner, m.
     pieces: Vec<(Shape, Vector3<f64>)>,
-    /// Corners of a hull inside it, at most 1 um below the arcs (of a ball 4 % of the radius), from the
-    /// smallest corner, m.
+    /// Corners of a hull inside the box, at most 1 um below the arcs (at a ball at most 4 % of its radius),
+    /// relative to the smallest corner, m.
     inside: Vec<Point3<f64>>,
 }
 
@@ -39,8 +39,9 @@ impl Rounded {
         let size = max - min;
         let (pieces, inside) = (Vec::new(), Vec::new());
         let mut made = Rounded { min: *min, size, edges: edges.to_vec(), pieces, inside };
-        made.pieces = made.whole().map_or_else(|| made.flush(), |core| Some(vec![core]))?;
-        let balls: Vec<_> = made.ends().filter_map(|end| made.ball(&end)).collect();
+        made.pieces =
+            made.single_core().map_or_else(|| made.decompose(), |core| Some(vec![core]))?;
+        let balls: Vec<_> = made.rounded_corners().filter_map(|end| made.ball(&end)).collect();
         let hulls = made.pieces.iter().filter(|(shape, _)| matches!(shape, Shape::Hull { .. }));
         let points = hulls
             .chain(&balls)
@@ -49,12 +50,12 @@ impl Rounded {
         Some(made)
     }
 
-    /// Returns its shapes and their centres.
+    /// Returns the shapes and their centres.
     pub fn pieces(&self) -> impl Iterator<Item = (Shape, Vector3<f64>)> {
         self.pieces.iter().map(|(shape, at)| (shape.clone(), at + self.min))
     }
 
-    /// Returns the corners of a hull inside it, at most 1 um below its arcs.
+    /// Returns the corners of a hull inside the box, at most 1 um below its arcs.
     pub fn corners(&self) -> impl Iterator<Item = Point3<f64>> {
         self.inside.iter().map(|point| point + self.min)
     }
@@ -75,8 +76,8 @@ impl Rounded {
         })
     }
 
-    /// Returns the one core of a box all of whose edges have one radius.
-    fn whole(&self) -> Option<(Shape, Vector3<f64>)> {
+    /// Returns the single core of a box whose edges all have the same radius.
+    fn single_core(&self) -> Option<(Shape, Vector3<f64>)> {
         let (_, Cut::Radius(radius)) = *self.edges.first()? else { return None };
         let all =
             self.edges.len() == 12 && self.edges.iter().all(|(_, cut)| *cut == Cut::Radius(radius));
@@ -86,8 +87,8 @@ impl Rounded {
         all.then_some((Shape::RoundBox { core, radius }, self.size / 2.0))
     }
 
-    /// Returns the cores along the round edges, the hull of the flats and those of the corners.
-    fn flush(&self) -> Option<Vec<(Shape, Vector3<f64>)>> {
+    /// Returns the cores along the round edges, the hull of the flat faces and the hulls of the corners.
+    fn decompose(&self) -> Option<Vec<(Shape, Vector3<f64>)>> {
         let mut found: Vec<_> =
             self.edges.iter().filter_map(|(edge, cut)| self.core(edge, *cut)).collect();
         let flats = corners(&spaces(&Vector3::zeros(), &self.size, &self.edges, |_| 1));
@@ -97,7 +98,9 @@ impl Rounded {
         }
         found.push(geometry::centred(&points));
         found.extend(
-            self.ends().filter(|end| self.ball(end).is_none()).filter_map(|end| self.corner(&end)),
+            self.rounded_corners()
+                .filter(|end| self.ball(end).is_none())
+                .filter_map(|end| self.corner_hull(&end)),
         );
         Some(found)
     }
@@ -107,7 +110,7 @@ impl Rounded {
         self.edges.iter().find(|(other, _)| same(other, &edge)).map(|(_, cut)| *cut)
     }
 
-    /// Returns the core along a round edge, up to where its ends would stand out.
+    /// Returns the core along a round edge, shortened so that its ends do not protrude.
     fn core(&self, edge: &Edge, cut: Cut) -> Option<(Shape, Vector3<f64>)> {
         let Cut::Radius(radius) = cut else { return None };
         let axis = 3 - edge[0].axis - edge[1].axis;
@@ -125,7 +128,7 @@ impl Rounded {
         Some((Shape::RoundBox { core, radius }, centre))
     }
 
-    /// Returns the distance from a face at which the ball of a round edge first fits, m.
+    /// Returns the smallest distance from a face at which a ball with the radius of a round edge fits, m.
     fn trim(&self, edge: &Edge, radius: f64, end: Face) -> f64 {
         let beside = |side: &Face| match self.cut([end, *side]) {
             Some(Cut::Chamfer(leg)) => leg + (SQRT_2 - 1.0) * radius,
@@ -135,8 +138,8 @@ impl Rounded {
         edge.iter().map(beside).fold(radius, f64::max)
     }
 
-    /// Returns the corners of the box with a round edge, by their three faces.
-    fn ends(&self) -> impl Iterator<Item = [Face; 3]> {
+    /// Returns the corners of the box at which a round edge ends, each as its three faces.
+    fn rounded_corners(&self) -> impl Iterator<Item = [Face; 3]> {
         let corner = |i: usize| [0, 1, 2].map(|axis| Face { axis, high: i >> axis & 1 == 1 });
         let round = |[a, b, c]: &[Face; 3]| {
             let cuts = [[*a, *b], [*b, *c], [*c, *a]].map(|edge| self.cut(edge));
@@ -145,7 +148,7 @@ impl Rounded {
         (0..8).map(corner).filter(round)
     }
 
-    /// Returns the ball of a corner at which three edges of one radius meet.
+    /// Returns the ball of a corner at which three edges of equal radius meet.
     fn ball(&self, [a, b, c]: &[Face; 3]) -> Option<(Shape, Vector3<f64>)> {
         let Some(Cut::Radius(radius)) = self.cut([*a, *b]) else { return None };
         let all =
@@ -155,8 +158,8 @@ impl Rounded {
         all.then(|| (shape, Vector3::new(at(a), at(b), at(c))))
     }
 
-    /// Returns the hull of a corner, where the cores of its edges do not reach.
-    fn corner(&self, faces: &[Face; 3]) -> Option<(Shape, Vector3<f64>)> {
+    /// Returns the hull of a corner, which the cores of its edges do not reach.
+    fn corner_hull(&self, faces: &[Face; 3]) -> Option<(Shape, Vector3<f64>)> {
         let near = |edge: &Edge| edge.iter().all(|face| faces.contains(face));
         let chords = |edge: &Edge| match self.cut(*edge) {
             Some(Cut::Radius(radius)) if near(edge) => {
@@ -181,7 +184,7 @@ impl Rounded {
     }
 }
 
-/// Returns the side of a plane across an axis that the end is on.
+/// Returns the half-space of a plane at `at` across the axis of the face `end`, on the side of this face.
 fn far_side(end: Face, at: f64) -> HalfSpace {
     let inward = -end.outward();
     (inward, inward[end.axis] * at)
@@ -237,11 +240,11 @@ mod tests {
                 (0..3).all(|i| way[i] * (at[i] - of.size[i] / 2.0) >= 0.0 && way[i] != 0.0);
             if beyond { way.norm() - radius } else { f64::MIN }
         };
-        let balls = of.ends().filter_map(|end| of.ball(&end)).map(at_ball);
+        let balls = of.rounded_corners().filter_map(|end| of.ball(&end)).map(at_ball);
         of.edges.iter().map(at_edge).chain(balls).fold(flat, f64::max)
     }
 
-    /// Last point on a ray from inside that is within.
+    /// Last point within a solid on the way from a point inside to one outside.
     fn last(
         from: &Vector3<f64>,
         to: &Vector3<f64>,
@@ -306,7 +309,7 @@ mod tests {
             let found = deviation(&made, &mut state);
             assert!(found[..2].iter().all(|&most| most < 1e-6), "{cuts:?}: {found:?}");
             // The points of a ball are 22.5 degrees apart.
-            let ball = made.ends().filter_map(|end| made.ball(&end)).next();
+            let ball = made.rounded_corners().filter_map(|end| made.ball(&end)).next();
             let radius = ball.map_or(0.0, |(shape, _)| shape.corners()[0].coords.norm());
             assert!(found[2] < 1e-6 + 0.04 * radius, "{cuts:?}: {found:?}");
         }

@@ -98,8 +98,7 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// Returns a copy with the start shifted by `offset` metres along y, and as the conditions say along
-    /// x.
+    /// Returns a copy with the start shifted by `offset` metres along y, and by the shift of the conditions along x.
     pub fn shifted(&self, offset: f64) -> Attempt<'a> {
         let mut shifted = self.clone();
         // The socket is shifted the other way instead of the start. The part has not

@@ -134,7 +134,7 @@ mod tests {
             (facts(false, false, Some(Stage::Search), false), ContactLossInInsertion),
             (facts(false, false, Some(Stage::Assembly), true), ContactLossInInsertion),
             (facts(false, true, None, false), PlugMissed),
-            // What jams is pushed aside, too: that it is let go of then is not the cause.
+            // A jammed part is also pushed aside: its loss by the fingers is then not the cause.
             (facts(false, false, None, true), Jammed),
         ] {
             assert_eq!(classify(given), Outcome::Failed(class), "{given:?}");

@@ -7,20 +7,20 @@ use crate::task::{PadTorsion, Part, Solid, Task};
 use contact::scene::Pose;
 use nalgebra::Vector3;
 
-/// Deviations of the world from the task file; SI units.
+/// Deviations of a trial from the task file; SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Conditions {
-    /// Turn of the socket about z through the middle of its opening, rad.
+    /// Rotation of the socket about z through the middle of its opening, rad.
     pub yaw: f64,
     /// Shift of the start along x, m.
     pub start_across: f64,
-    /// Turn of the start about x beside the tilt of the search, rad.
+    /// Rotation of the start about x, in addition to the tilt of the search, rad.
     pub start_tilt: f64,
-    /// Factor on the friction finger-plug.
+    /// Factor on the friction between finger and plug.
     pub friction_finger: f64,
-    /// Factor on the friction plug-socket.
+    /// Factor on the friction between plug and socket.
     pub friction_socket: f64,
-    /// Added to the width of the opening in x and in y, m.
+    /// Increase of the width of the opening in x and in y, m.
     pub clearance: f64,
     /// Displacement of the part in the gripper along x, m.
     pub grasp_across: f64,
@@ -50,8 +50,8 @@ impl Conditions {
             *moment *= self.friction_finger;
         }
         task.friction.plug_socket *= self.friction_socket;
-        // Parts under the pads keep their friction, which is that of the finger.
-        let pads = task.grip.shoulder_z + ROOF_GAP - Pad::PAPER.height;
+        // Plug parts at the height of the pads touch the finger, not the socket, and keep their friction.
+        let pads = task.grip.shoulder_z + ROOF_GAP - Pad::PUBLISHED.height;
         let below = |part: &&mut Part| part.solid.corners().iter().all(|corner| corner.z < pads);
         for part in task.plug.parts.iter_mut().filter(below).chain(&mut task.socket) {
             part.friction = part.friction.map(|mu| mu * self.friction_socket);
@@ -69,7 +69,7 @@ impl Conditions {
         task
     }
 
-    /// Moves the part, and what it stands on, to where these conditions put it in the gripper.
+    /// Moves the part and its stand to the position in the gripper under these conditions.
     pub fn displace(&self, cell: &mut WorkCell) {
         let by = Pose::translation(self.grasp_across, 0.0, -self.grasp_low);
         for body in [cell.plug, cell.stand].into_iter().chain(cell.latch) {

@@ -42,7 +42,7 @@ pub struct EngineRecord {
 }
 
 impl EngineKind {
-    /// Name on the command line and in study files.
+    /// Returns the name on the command line and in study files.
     pub fn name(self) -> &'static str {
         match self {
             EngineKind::Rapier => "rapier",

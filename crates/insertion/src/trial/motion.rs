@@ -31,22 +31,23 @@ impl Tcp {
 pub struct Move {
     from: Tcp,
     to: Tcp,
+    /// Duration, s.
     pub duration: f64,
 }
 
 impl Move {
-    /// Returns the move at this mean speed, m/s.
+    /// Returns a move at a mean speed, m/s.
     pub fn new(from: Tcp, to: Tcp, speed: f64) -> Self {
         let duration = ((to.position - from.position).norm() / speed).max(SHORTEST_MOVE_S);
         Move { from, to, duration }
     }
 
-    /// Returns the move with this duration, s.
+    /// Returns a move with a duration, s.
     pub fn with_duration(from: Tcp, to: Tcp, duration: f64) -> Self {
         Move { from, to, duration: duration.max(SHORTEST_MOVE_S) }
     }
 
-    /// Returns the command at `time` seconds after the start; stays at the end after it.
+    /// Returns the commanded TCP `time` seconds after the start; after the duration, the end of the move.
     pub fn at(&self, time: f64) -> Tcp {
         let t = (time / self.duration).clamp(0.0, 1.0);
         let s = t * t * t * (10.0 - 15.0 * t + 6.0 * t * t);

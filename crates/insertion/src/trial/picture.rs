@@ -23,7 +23,7 @@ const FOOT: f64 = 34.0;
 /// Length of an arrow, mm for each newton, and the longest.
 const ARROW: (f64, f64) = (0.15, 18.0);
 /// Forces that are smaller are not drawn, N.
-const LEAST_FORCE: f64 = 0.1;
+const MIN_FORCE: f64 = 0.1;
 const SOCKET: &str = "#b8c4d6";
 const PLUG: &str = "#e8a33d";
 const FINGER: &str = "#5b8c5a";
@@ -39,14 +39,14 @@ struct Extent {
 }
 
 impl Extent {
-    /// Width and height, pixels.
+    /// Returns width and height, pixels.
     fn size(&self) -> [f64; 2] {
         [self.across, self.up].map(|[low, high]| (high - low) * SCALE)
     }
 }
 
-/// Draws a row of panels for each view, a column for each phase, as a stand-alone SVG; `label` says
-/// what was tried. All panels have one scale, and nothing sticks out of them.
+/// Draws a row of panels for each view, a column for each phase, as a stand-alone SVG; `label`
+/// describes the trial. All panels have the same scale and clip their contents.
 pub fn svg(task: &Task, pad: &Pad, trial: &Trial, label: &str) -> String {
     let mut rows = [1, 0].map(|axis| extent(task, pad, &trial.phases, axis));
     let [a, b] = rows.map(|row| row.across[1] - row.across[0]);
@@ -58,7 +58,7 @@ pub fn svg(task: &Task, pad: &Pad, trial: &Trial, label: &str) -> String {
     // Wide enough for the title.
     let width = (trial.phases.len().max(1) as f64 * column).max(560.0);
     let mut drawing = Drawing::default();
-    drawing.paper();
+    drawing.white_background();
     drawing.text(Point2::new(8.0, 18.0), label, Font::new(15.0));
     drawing.text(Point2::new(8.0, 36.0), &outcome(trial), FONT);
     let mut y = HEAD;
@@ -75,7 +75,7 @@ pub fn svg(task: &Task, pad: &Pad, trial: &Trial, label: &str) -> String {
     drawing.svg([width, y + FOOT], "")
 }
 
-/// Draws how a trial ended, seen along x, as a stand-alone SVG without words; empty if it did not
+/// Draws how a trial ended, seen along x, as a stand-alone SVG without text; empty if it did not
 /// begin.
 pub fn ended(task: &Task, pad: &Pad, trial: &Trial) -> String {
     let Some(phase) = trial.phases.last() else { return String::new() };
@@ -159,7 +159,7 @@ fn panel(
 fn force(drawing: &mut Drawing, contact: &ContactPoint, axis: usize, view: View) {
     let force = Vector2::new(contact.force[axis], contact.force.z);
     let size = force.norm();
-    if size < LEAST_FORCE {
+    if size < MIN_FORCE {
         return;
     }
     let tip = Point2::new(contact.point[axis], contact.point.z) / MM;
@@ -167,7 +167,7 @@ fn force(drawing: &mut Drawing, contact: &ContactPoint, axis: usize, view: View)
     drawing.arrow([from, tip].map(|point| view.place(point)), SCALE, FORCE);
 }
 
-/// Draws a bar of 10 mm, the colours, and what an arrow means; its line `y` pixels down.
+/// Draws the legend `y` pixels from the top: a scale bar of 10 mm, the colours and the scale of the arrows.
 fn legend(drawing: &mut Drawing, y: f64) {
     drawing.scale_bar(Point2::new(8.0, y), 10.0 * SCALE, "10 mm", 13.0);
     let mut at = Point2::new(106.0, y);

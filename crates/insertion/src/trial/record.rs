@@ -159,7 +159,7 @@ impl Sample {
 }
 
 /// Smallest interval of samples, s: no engine has a shorter step.
-const LEAST_INTERVAL: f64 = 5e-5;
+const MIN_INTERVAL: f64 = 5e-5;
 /// Largest difference between the end of a step and a sample time for which no interpolation is needed, s.
 const SAME_TIME: f64 = 1e-9;
 
@@ -174,7 +174,7 @@ pub(super) struct Trace {
 impl Trace {
     /// Creates a trace with a sample each `every_s` seconds of simulated time, from the end of the first step on.
     pub fn new(every_s: f64) -> Self {
-        Trace { every_s: every_s.max(LEAST_INTERVAL), last: None, samples: Vec::new() }
+        Trace { every_s: every_s.max(MIN_INTERVAL), last: None, samples: Vec::new() }
     }
 
     /// Records the state at the end of a step.

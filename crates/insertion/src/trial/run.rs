@@ -167,7 +167,8 @@ impl Ready<'_> {
         if first.0.outcome != Outcome::Diverged {
             return first;
         }
-        let again = || self.rig.prepare(&*self.rig.engine.halved(), self.grasp, self.filmed);
+        let again =
+            || self.rig.prepare(&*self.rig.engine.with_half_step(), self.grasp, self.filmed);
         let (trial, samples, frames) =
             self.halved.get_or_init(again).watched(offset, every_s, rest_s);
         (Trial { retried: true, ..trial }, samples, frames)
@@ -232,7 +233,7 @@ mod tests {
             if self.halvings == 0 { self.direct.world(scene) } else { broken.world(scene) }
         }
 
-        fn halved(&self) -> Box<dyn Engine> {
+        fn with_half_step(&self) -> Box<dyn Engine> {
             let direct = Direct { step_s: 0.5 * self.direct.step_s, ..self.direct };
             Box::new(Fragile { direct, halvings: self.halvings - 1 })
         }
@@ -271,7 +272,7 @@ mod tests {
         let fragile = |halvings| Box::new(Fragile { direct: Direct::default(), halvings });
         let sound = trial(fragile(0));
         assert_eq!((sound.outcome, sound.retried), (Outcome::Inserted, false));
-        let fine = trial(Direct::default().halved());
+        let fine = trial(Direct::default().with_half_step());
         let mended = trial(fragile(1));
         assert_eq!(mended, Trial { retried: true, ..fine });
         let lost = trial(fragile(2));

@@ -7,7 +7,7 @@ use contact::scene::Pose;
 use input::units::MM;
 use nalgebra::{Point3, Vector3};
 
-/// Time constant of the force filter, s, as of a wrist sensor: a step's impact is numerics.
+/// Time constant of the force filter, s, like that of a wrist sensor: the impact within a step is a numerical artefact.
 const FORCE_FILTER: f64 = 0.005;
 /// Time without contact after which a finger has lost the part, s: longer than a bounce.
 const LOSS_TIME: f64 = 0.02;

@@ -14,40 +14,40 @@ use std::collections::BTreeMap;
 /// Grid steps per millimetre or degree.
 pub const STEPS_PER_UNIT: i32 = 4;
 /// Largest number of trials of a map.
-pub const MOST_TRIALS: usize = 300;
+pub const MAX_TRIALS: usize = 300;
 /// Number of those trials reserved for probes in uniform areas.
 const PROBES: usize = 60;
 /// Spacing of the first lattice, in grid steps; doubled for a large region.
 const COARSE: i32 = 4;
 /// Number of lattice points above which the spacing is doubled.
-const MOST_COARSE: usize = 110;
+const MAX_COARSE: usize = 110;
 
 /// Grid point: steps along both axes from zero error.
 pub type Node = [i32; 2];
 
-/// Outcome of a trial.
-pub trait Ends: Copy + PartialEq + Send + Sync {
-    /// Returns whether it belongs to the traced region.
+/// Outcome of a trial, for the tracing of the region in which trials insert.
+pub trait Traceable: Copy + PartialEq + Send + Sync {
+    /// Returns whether the outcome belongs to the traced region.
     fn inside(self) -> bool;
 }
 
 /// Outcome at a grid point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Found<T> {
+pub struct NodeOutcome<T> {
     /// The outcome.
     pub outcome: T,
-    /// Whether it was simulated; otherwise it was inferred from its neighbours.
+    /// Whether the outcome was simulated; otherwise it was inferred from neighbours.
     pub simulated: bool,
 }
 
 /// Outcomes at every grid point from `low` to `high`.
-pub struct Traced<'a, T> {
+pub struct TracedMap<'a, T> {
     /// Lowest corner.
     pub low: Node,
     /// Highest corner.
     pub high: Node,
     /// Every grid point from `low` to `high`.
-    pub nodes: BTreeMap<Node, Found<T>>,
+    pub nodes: BTreeMap<Node, NodeOutcome<T>>,
     /// Number of trials simulated.
     pub trials: usize,
     /// Spacing of the initial lattice, grid steps.
@@ -57,17 +57,16 @@ pub struct Traced<'a, T> {
     measure: &'a (dyn Fn(Node) -> T + Sync),
 }
 
-/// Traces the inserting region around zero error, up to `limit` along either axis (a multiple of
-/// 8).
-pub fn trace<T: Ends>(limit: Node, measure: &(dyn Fn(Node) -> T + Sync)) -> Traced<'_, T> {
+/// Traces the inserting region around zero error, up to `limit` along either axis (a multiple of 8).
+pub fn trace<T: Traceable>(limit: Node, measure: &(dyn Fn(Node) -> T + Sync)) -> TracedMap<'_, T> {
     let (low, high) = ([-2 * COARSE, -COARSE], [2 * COARSE, COARSE]);
     let nodes = BTreeMap::new();
     let coarse = COARSE;
-    let mut traced = Traced { low, high, nodes, trials: 0, coarse, step: coarse, measure };
+    let mut traced = TracedMap { low, high, nodes, trials: 0, coarse, step: coarse, measure };
     traced.extend(limit);
     let mut probed = false;
     loop {
-        let most = if probed { MOST_TRIALS } else { MOST_TRIALS - PROBES };
+        let most = if probed { MAX_TRIALS } else { MAX_TRIALS - PROBES };
         traced.step = traced.refine(differ, most);
         if probed {
             traced.verify();
@@ -82,15 +81,15 @@ pub fn trace<T: Ends>(limit: Node, measure: &(dyn Fn(Node) -> T + Sync)) -> Trac
         traced.probe();
         probed = true;
     }
-    traced.refine(|a, b| a != b, MOST_TRIALS);
+    traced.refine(|a, b| a != b, MAX_TRIALS);
     traced
 }
 
-fn differ<T: Ends>(a: T, b: T) -> bool {
+fn differ<T: Traceable>(a: T, b: T) -> bool {
     a.inside() != b.inside()
 }
 
-impl<T: Ends> Traced<'_, T> {
+impl<T: Traceable> TracedMap<'_, T> {
     /// Simulates the lattice, extended on each side until no trial there inserts. Returns whether
     /// it has grown.
     fn extend(&mut self, limit: Node) -> bool {
@@ -98,7 +97,7 @@ impl<T: Ends> Traced<'_, T> {
         loop {
             let coarse = self.coarse;
             let new = self.lattice(coarse);
-            self.simulate(new, MOST_TRIALS);
+            self.simulate(new, MAX_TRIALS);
             let before = (self.low, self.high);
             for axis in [0, 1] {
                 let inserts = |edge: i32| {
@@ -115,14 +114,14 @@ impl<T: Ends> Traced<'_, T> {
                     self.high[axis] = high;
                 }
             }
-            if coarse == COARSE && self.lattice(coarse).len() > MOST_COARSE {
+            if coarse == COARSE && self.lattice(coarse).len() > MAX_COARSE {
                 let coarse = 2 * COARSE;
                 self.coarse = coarse;
                 self.low = self.low.map(|at| at.div_euclid(coarse) * coarse);
                 self.high = self.high.map(|at| -(-at).div_euclid(coarse) * coarse);
             }
             let new = self.lattice(self.coarse).into_iter().filter(|&node| !self.simulated(node));
-            if self.trials + new.count() > MOST_TRIALS {
+            if self.trials + new.count() > MAX_TRIALS {
                 (self.low, self.high) = before;
             }
             if (self.low, self.high) == before {
@@ -132,7 +131,7 @@ impl<T: Ends> Traced<'_, T> {
     }
 
     /// Refines the lattice by repeatedly halving its spacing. Points between outcomes that differ
-    /// by `differ` are simulated, up to `most` trials. Returns the finest spacing that was
+    /// according to `differ` are simulated, up to `most` trials. Returns the finest spacing that was
     /// completed.
     fn refine(&mut self, differ: fn(T, T) -> bool, most: usize) -> i32 {
         let (mut half, mut complete, mut traced) = (self.coarse / 2, true, self.coarse);
@@ -147,7 +146,7 @@ impl<T: Ends> Traced<'_, T> {
                     }
                     let around = self.around(node, half, between, differ);
                     let Some(&outcome) = around.first() else { continue };
-                    self.nodes.insert(node, Found { outcome, simulated: false });
+                    self.nodes.insert(node, NodeOutcome { outcome, simulated: false });
                     if around.iter().any(|&other| differ(other, outcome)) {
                         unsure.push(node);
                     }
@@ -162,9 +161,8 @@ impl<T: Ends> Traced<'_, T> {
         traced
     }
 
-    /// Outcomes of the neighbours at distance `by` along the axes on which the point lies between
-    /// two. For a face centre, only those along the axis on which both are equal, if there is just
-    /// one.
+    /// Returns the outcomes of the neighbours at distance `by` along the axes on which the point lies between two.
+    /// For a face centre with equal neighbours along exactly one axis, only the outcomes along this axis.
     fn around(&self, node: Node, by: i32, between: [bool; 2], differ: fn(T, T) -> bool) -> Vec<T> {
         let pair = |axis: usize| -> Vec<T> {
             let beside = [-by, by].map(|by| moved(node, axis, by));
@@ -181,28 +179,29 @@ impl<T: Ends> Traced<'_, T> {
 
     /// Simulates inferred points whose neighbours are all inferred and equal to them.
     fn probe(&mut self) {
-        let same = |own: T, other: &Found<T>| !other.simulated && !differ(other.outcome, own);
+        let same = |own: T, other: &NodeOutcome<T>| !other.simulated && !differ(other.outcome, own);
         let mut uniform = self.inferred(|own, beside| beside.iter().all(|other| same(own, other)));
         uniform.shuffle(&mut stream(0, 0, "probes of a capture map"));
         uniform.truncate(PROBES);
-        self.simulate(uniform, MOST_TRIALS);
+        self.simulate(uniform, MAX_TRIALS);
     }
 
     /// Simulates inferred points next to a trial with a different outcome, until none is left.
     fn verify(&mut self) {
-        let against = |own: T, other: &Found<T>| other.simulated && differ(other.outcome, own);
+        let against =
+            |own: T, other: &NodeOutcome<T>| other.simulated && differ(other.outcome, own);
         loop {
             let doubtful =
                 self.inferred(|own, beside| beside.iter().any(|other| against(own, other)));
-            if doubtful.is_empty() || !self.simulate(doubtful, MOST_TRIALS) {
+            if doubtful.is_empty() || !self.simulate(doubtful, MAX_TRIALS) {
                 return;
             }
         }
     }
 
-    /// Returns the inferred points of which a condition on their outcome and their neighbours holds.
-    fn inferred(&self, holds: impl Fn(T, &[Found<T>]) -> bool) -> Vec<Node> {
-        let fits = |(node, found): &(&Node, &Found<T>)| {
+    /// Returns the inferred points for which a condition on their outcome and their neighbours holds.
+    fn inferred(&self, holds: impl Fn(T, &[NodeOutcome<T>]) -> bool) -> Vec<Node> {
+        let fits = |(node, found): &(&Node, &NodeOutcome<T>)| {
             !found.simulated && holds(found.outcome, &self.beside(**node))
         };
         self.nodes.iter().filter(fits).map(|(node, _)| *node).collect()
@@ -218,7 +217,7 @@ impl<T: Ends> Traced<'_, T> {
         }
         let outcomes: Vec<T> = wanted.par_iter().map(|&node| (self.measure)(node)).collect();
         self.trials += wanted.len();
-        let found = outcomes.into_iter().map(|outcome| Found { outcome, simulated: true });
+        let found = outcomes.into_iter().map(|outcome| NodeOutcome { outcome, simulated: true });
         self.nodes.extend(wanted.into_iter().zip(found));
         all <= room
     }
@@ -227,14 +226,14 @@ impl<T: Ends> Traced<'_, T> {
         self.nodes.get(&node).is_some_and(|found| found.simulated)
     }
 
-    /// Lattice points at a spacing, ordered by the second axis, so that neighbours share a grasp.
+    /// Returns the lattice points at a spacing, ordered by the second axis, so that neighbours share a grasp.
     fn lattice(&self, distance: i32) -> Vec<Node> {
         let along = |axis: usize| (self.low[axis]..=self.high[axis]).step_by(distance as usize);
         along(1).flat_map(|other| along(0).map(move |y| [y, other])).collect()
     }
 
     /// Returns the up to four neighbours on the grid.
-    fn beside(&self, node: Node) -> Vec<Found<T>> {
+    fn beside(&self, node: Node) -> Vec<NodeOutcome<T>> {
         let all = [(0, -1), (0, 1), (1, -1), (1, 1)];
         all.iter()
             .filter_map(|&(axis, by)| self.nodes.get(&moved(node, axis, by)).copied())
@@ -262,7 +261,7 @@ mod tests {
         Missed,
     }
 
-    impl Ends for Outcome {
+    impl Traceable for Outcome {
         fn inside(self) -> bool {
             self == Inserted
         }
@@ -270,8 +269,8 @@ mod tests {
 
     const LIMIT: Node = [64, 32];
 
-    /// Places, trials and step of a made-up region (in mm), how many places it has otherwise, and
-    /// how many of them in whether they insert.
+    /// Traces a synthetic region (in mm). Returns the numbers of points and trials, the step, and the numbers of points
+    /// with a wrong outcome and on the wrong side of the border.
     fn traced(region: &(dyn Fn(f64, f64) -> Outcome + Sync)) -> (usize, usize, i32, [usize; 2]) {
         let of = |node: Node| {
             let [y, x] = node.map(|at| f64::from(at) / f64::from(STEPS_PER_UNIT));
@@ -287,9 +286,9 @@ mod tests {
             found.nodes.iter().filter(|(node, found)| wrong(found.outcome, of(**node))).count()
         };
         assert_eq!(found.trials, tried.lock().unwrap().len());
-        assert!(found.trials <= MOST_TRIALS);
+        assert!(found.trials <= MAX_TRIALS);
         let [wide, high] = [0, 1].map(|axis| (found.high[axis] - found.low[axis] + 1) as usize);
-        assert_eq!(found.nodes.len(), wide * high, "a place without an outcome");
+        assert_eq!(found.nodes.len(), wide * high, "a point without an outcome");
         let wrong = [count(&|a, b| a != b), count(&differ)];
         (found.nodes.len(), found.trials, found.step, wrong)
     }
@@ -299,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn a_disc_and_a_slanted_strip_are_traced_to_the_last_place() {
+    fn a_disc_and_a_slanted_strip_are_traced_to_the_last_point() {
         let disc = |y: f64, x: f64| match libm::hypot(y - 1.0, x) < 3.0 {
             false if y > 2.0 => Missed,
             inserts => inserted(inserts),
@@ -323,13 +322,13 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_end_is_cut_off_and_what_takes_too_many_trials_is_traced_coarsely() {
+    fn an_unbounded_region_is_cut_off_and_an_intricate_one_is_traced_coarsely() {
         let (places, _, step, wrong) = traced(&|_, _| Inserted);
         assert_eq!((places, step, wrong), (129 * 65, 1, [0, 0]));
         let (places, trials, ..) = traced(&|_, _| Missed);
         assert_eq!((places, trials), (17 * 9, 15 + PROBES));
         let (_, trials, step, _) =
             traced(&|y, x| inserted(libm::sin(3.1 * y) + libm::cos(2.7 * x) > 0.2));
-        assert!(trials == MOST_TRIALS && step > 1, "{trials}, {step}");
+        assert!(trials == MAX_TRIALS && step > 1, "{trials}, {step}");
     }
 }

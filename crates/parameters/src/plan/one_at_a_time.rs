@@ -14,13 +14,14 @@ pub enum End {
     High,
 }
 
-/// Returns the result of `at` at a bound of the parameter or, if that is infeasible, at the nearest
-/// feasible value, found by bisection. `at` returns `None` for an infeasible value.
+/// Returns the result of `evaluate` at a bound of the parameter or, if that is infeasible, at the nearest feasible
+/// value, found by bisection; `number` is the current value in the files. `evaluate` returns `None` for an infeasible
+/// value.
 pub fn farthest<T>(
     parameter: &Parameter,
     number: f64,
     end: End,
-    at: impl Fn(f64) -> Option<T>,
+    evaluate: impl Fn(f64) -> Option<T>,
 ) -> Option<T> {
     let neutral = parameter.neutral(number);
     let bound = match end {
@@ -28,7 +29,7 @@ pub fn farthest<T>(
         End::High => parameter.high.max(neutral),
     };
     let at_step =
-        |steps: u32| at(neutral + f64::from(steps) / f64::from(STEPS) * (bound - neutral));
+        |steps: u32| evaluate(neutral + f64::from(steps) / f64::from(STEPS) * (bound - neutral));
     if let Some(found) = at_step(STEPS) {
         return Some(found);
     }

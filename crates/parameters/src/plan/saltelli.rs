@@ -97,12 +97,12 @@ impl Sample {
     }
 }
 
-/// Variance of both samples pooled, over some rows.
+/// Returns the pooled variance of both samples over the given rows.
 fn variance(of_a: &[f64], of_b: &[f64], rows: &[usize]) -> f64 {
     Moments::of(rows.iter().flat_map(|&row| [of_a[row], of_b[row]])).sample_variance()
 }
 
-/// Bootstrap interval of `statistic` over independent rows.
+/// Computes the bootstrap interval of `statistic` over independent rows.
 fn bootstrap(rows: usize, seed: u64, statistic: impl Fn(&[usize]) -> f64) -> Interval {
     let every: Vec<usize> = (0..rows).collect();
     let mut random = stream(seed, rows as u64, "sensitivity bootstrap");
@@ -161,9 +161,9 @@ mod tests {
         close(&found, &first, &total, 0.03);
     }
 
-    /// Over many small samples a 95 % interval holds the truth about as often as it says.
+    /// Over many small samples, the coverage of a 95 % interval is about 95 %.
     #[test]
-    fn intervals_hold_the_truth() {
+    fn intervals_cover_the_true_value() {
         let held = (0..60).filter(|&seed| {
             let sample = Sample::new(2, 128, seed);
             let values: Vec<f64> = sample.points().iter().map(|u| u[0] + 0.5 * u[1]).collect();

@@ -6,7 +6,7 @@ use super::trust::Measured;
 use super::words;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
-use insertion::evaluation::robustness::firm::Firm;
+use insertion::evaluation::robustness::firm::FirmResult;
 use study::{ByRibs, Recorded, StudyRecord, Walked};
 
 /// The recommended design of a study. Of several tasks ranges and forces are aggregated, and the
@@ -48,8 +48,8 @@ pub struct OnTask<'a> {
     pub name: &'a str,
     /// Its evaluation.
     pub measured: &'a Evaluation,
-    /// Firm part of the window, if its ends were repeated.
-    pub firm: Option<&'a Firm>,
+    /// FirmResult part of the window, if its ends were repeated.
+    pub firm: Option<&'a FirmResult>,
 }
 
 impl<'a> Recommended<'a> {
@@ -59,7 +59,7 @@ impl<'a> Recommended<'a> {
         let walked = record.walked.first().filter(|_| found.is_some());
         let firm = walked.map(|walked| &walked.firm[..]);
         let windows: Option<Vec<[f64; 2]>> =
-            firm.and_then(|firm| firm.iter().map(Firm::window_mm).collect());
+            firm.and_then(|firm| firm.iter().map(FirmResult::window_mm).collect());
         let on = |(at, (name, measured)): (usize, (&'a str, &'a Evaluation))| OnTask {
             name,
             measured,
@@ -90,7 +90,7 @@ impl<'a> Recommended<'a> {
 
 /// Returns the range of a confirmed design in which all repeats insert, aggregated over the tasks, mm.
 pub(super) fn firm_range_mm(record: &StudyRecord, walked: &Walked) -> f64 {
-    let ranges: Vec<f64> = walked.firm.iter().map(Firm::range_mm).collect();
+    let ranges: Vec<f64> = walked.firm.iter().map(FirmResult::range_mm).collect();
     record.aggregated(Measure::Range, &ranges)
 }
 

@@ -60,8 +60,12 @@ pub fn recording() -> Recording {
 #[test]
 fn a_page_contains_its_films_and_loads_nothing() {
     let (task, recording) = (task(), recording());
-    let film =
-        Film { label: "</title><script>", task: &task, pad: &Pad::PAPER, recording: &recording };
+    let film = Film {
+        label: "</title><script>",
+        task: &task,
+        pad: &Pad::PUBLISHED,
+        recording: &recording,
+    };
     let page = page("\"</title><script>alert(1)</script>", &[film, film]);
     assert_eq!(page.matches("<script").count(), 2, "the data and the viewer");
     assert_eq!(page.matches("\"label\":").count(), 2);
@@ -76,7 +80,7 @@ fn the_last_frame_has_the_outcome() {
     let (task, mut recording) = (task(), recording());
     recording.decided_s = 1.000_04;
     recording.frames.last_mut().unwrap().time_s = recording.decided_s;
-    let film = Film { label: "a", task: &task, pad: &Pad::PAPER, recording: &recording };
+    let film = Film { label: "a", task: &task, pad: &Pad::PUBLISHED, recording: &recording };
     let json = film::data(&film);
     let times = json["time"].as_array().unwrap();
     assert!(times[times.len() - 1].as_f64() >= json["decided_s"].as_f64(), "{json}");
@@ -102,7 +106,8 @@ fn the_table_has_a_line_per_millisecond_and_units() {
 #[test]
 fn the_axes_of_the_plot_have_units() {
     let (task, recording) = (task(), recording());
-    let svg = curve_svg(&Film { label: "a", task: &task, pad: &Pad::PAPER, recording: &recording })
-        .unwrap();
+    let svg =
+        curve_svg(&Film { label: "a", task: &task, pad: &Pad::PUBLISHED, recording: &recording })
+            .unwrap();
     assert!(svg.contains("force plug to socket (N)") && svg.contains("top (mm)"));
 }

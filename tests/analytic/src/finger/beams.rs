@@ -62,8 +62,8 @@ fn end<Of: Element>(
     let roles: Vec<Role> = mesh.nodes.iter().map(role).collect();
     let Condensed { nodes, stiffness, .. } = condense(&mesh, element, &roles, false).ok()?;
     let motion = DMatrix::from_fn(stiffness.nrows(), 3, |row, column| {
-        let node = mesh.nodes[nodes[row / Of::FREEDOMS] as usize];
-        follow(&node, row % Of::FREEDOMS)[column]
+        let node = mesh.nodes[nodes[row / Of::DOFS] as usize];
+        follow(&node, row % Of::DOFS)[column]
     });
     Some((motion.transpose() * stiffness * motion).fixed_view::<3, 3>(0, 0).into_owned())
 }

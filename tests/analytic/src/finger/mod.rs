@@ -13,7 +13,7 @@ mod reference;
 
 use super::CheckRow;
 use finray::geometry::Geometry;
-use finray::infill::Design;
+use finray::infill::InfillDesign;
 use finray::printed::PrintedFinger;
 use input::shipped::FINGERS;
 
@@ -28,6 +28,7 @@ fn finray9() -> Option<PrintedFinger> {
 
 /// Returns the finger with an infill of a density (percent) and a direction (degrees).
 fn infill(finger: &PrintedFinger, [density, direction]: [f64; 2]) -> Option<Geometry> {
-    let design = Design { density_percent: density, direction_deg: direction, phase_mm: None };
+    let design =
+        InfillDesign { density_percent: density, direction_deg: direction, phase_mm: None };
     Geometry::new(finger, &design).ok()
 }

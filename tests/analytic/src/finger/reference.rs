@@ -4,7 +4,7 @@
 use super::finray9;
 use crate::{CheckRow, Tolerance};
 use finray::geometry::Geometry;
-use finray::infill::Design;
+use finray::infill::InfillDesign;
 use finray::mechanics::{SIZE, planar};
 use finray::stiffness::PlanarStiffness;
 use input::units::{MM, N_PER_MM};
@@ -48,7 +48,7 @@ fn stiffness(row: &Row) -> Option<[PlanarStiffness; 2]> {
     let mut finger = finray9()?;
     finger.outline.roof = HELD_ROOF;
     let [density_percent, direction_deg, phase] = row.0;
-    let design = Design { density_percent, direction_deg, phase_mm: Some(phase) };
+    let design = InfillDesign { density_percent, direction_deg, phase_mm: Some(phase) };
     planar(&Geometry::new(&finger, &design).ok()?, SIZE).ok()
 }
 

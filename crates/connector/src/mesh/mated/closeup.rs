@@ -25,7 +25,7 @@ pub fn svg(
     place: Point3<f64>,
 ) -> String {
     let mut drawing = Drawing::default();
-    drawing.paper();
+    drawing.white_background();
     let [x, y, z] = [place.x, place.y, place.z].map(|v| v / MM);
     let title = format!("section at [{x:.2}, {y:.2}, {z:.2}] mm, 2 mm wide");
     drawing.text(Point2::new(10.0, 20.0), &title, Font::new(16.0));

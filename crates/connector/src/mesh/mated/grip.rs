@@ -86,7 +86,7 @@ fn grasp_at(plug: &[Triangle], low: &Face, high: &Face, free: f64) -> Option<(f6
         let near = |p: &&Point3<f64>| column[0] - SEAM < p.y && p.y < column[1] + SEAM;
         extent(points().filter(near), 2)[1]
     };
-    let roof = Pad::PAPER.roof.min(width(faces) / 2.0);
+    let roof = Pad::PUBLISHED.roof.min(width(faces) / 2.0);
     let tops = [top([faces[0], faces[0] + roof]), top([faces[1] - roof, faces[1]])];
     let shoulder = tops[0].max(tops[1]);
     let pads = pad_z(shoulder);
@@ -113,7 +113,7 @@ pub fn handle(plug: &[Triangle], [x, y, z]: [f64; 3], free: f64) -> Grasp {
     let [_, top] = extent(plug.iter().flatten(), 2);
     let low = (top - ENCLOSED).max(free + CLEAR);
     // The pads stay above the socket too.
-    let shoulder = (low + z).max(free + CLEAR + Pad::PAPER.height);
+    let shoulder = (low + z).max(free + CLEAR + Pad::PUBLISHED.height);
     let faces = [-y / 2.0, y / 2.0];
     let part = block("handle", [[-x / 2.0, x / 2.0], faces, [low, shoulder]]);
     Grasp { shoulder, faces, part }

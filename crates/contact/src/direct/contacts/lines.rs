@@ -10,7 +10,8 @@ use parry::query::{ContactManifold, TrackedContact};
 use parry::shape::PackedFeatureId;
 use rapier3d_f64::parry;
 
-/// Angle by which one shape is rotated to find an end, rad: over a length of 10 mm it opens the prediction distance.
+/// Angle by which one shape is rotated to find an end, rad: over a length of 10 mm it opens a gap of the default
+/// prediction distance.
 const TURN: f64 = 0.02;
 
 /// Adds the points at which the shapes touch if one is rotated slightly, in each of four directions.

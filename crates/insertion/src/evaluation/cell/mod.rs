@@ -41,7 +41,7 @@ impl Priors {
     /// Checks every row and the robot; `file` is named in errors.
     ///
     /// # Errors
-    /// The first that is invalid, by name, and what is accepted.
+    /// If a row or the robot is invalid; the error names the first invalid one and states what is accepted.
     pub fn checked(self, file: &str) -> Result<Self, InputError> {
         let (all, check) = (&self.parameters, Check { file });
         for (i, parameter) in all.iter().enumerate() {
@@ -149,7 +149,7 @@ mod tests {
             (
                 "sets = \"task.edge_radius_mm\"\nas = \"shift\"",
                 "sets = \"task.edge_radius_mm\"\nas = \"factor\"",
-                "in place of none",
+                "its nominal value is 0",
             ),
             (
                 "sets = \"task.friction.plug_socket\"",
@@ -161,7 +161,7 @@ mod tests {
                 "friction.plug_sokcet\"",
                 "mean `task.friction.plug_socket`?",
             ),
-            ("task.friction.plug_socket\"", "cell.clearance_mm\"", "no number of a cell"),
+            ("task.friction.plug_socket\"", "cell.clearance_mm\"", "cannot be set by a cell"),
             ("name = \"friction pad-plug\"", "name = \"friction plug-socket\"", "twice"),
             ("\nscale = \"log\"", "\nscale = \"logg\"", "logg"),
             ("\nlow = 0.5", "\nlow = 0.5\nvalue = 1.0", "go together"),

@@ -15,7 +15,7 @@ use std::cmp::Ordering;
 use std::fmt;
 use std::str::FromStr;
 
-/// Conversions for types that study files store as on the command line.
+/// Implements the conversions of types that study files store in the syntax of the command line.
 macro_rules! stored_as_text {
     ($($stored:ty),*) => {$(
         impl From<$stored> for String {
@@ -35,7 +35,7 @@ macro_rules! stored_as_text {
 
 stored_as_text!(Aggregate, Constraint, Objectives);
 
-/// Largest number of objectives: a Pareto front of more does not help to choose.
+/// Largest number of objectives: a Pareto front of more objectives is too large to choose from.
 const MAX_OBJECTIVES: usize = 3;
 
 /// One to three different measures to be optimized, in the order given.
@@ -54,17 +54,17 @@ impl Objectives {
         &self.0
     }
 
-    /// Returns the first one, which plots show.
+    /// Returns the first objective, the one that plots show.
     pub fn first(&self) -> Measure {
         self.0[0]
     }
 
-    /// Returns the only one, `None` if there are several.
+    /// Returns the only objective; `None` if there are several.
     pub fn single(&self) -> Option<Measure> {
         (self.0.len() == 1).then_some(self.0[0])
     }
 
-    /// Returns a key for each in tables and JSON: `objective_mm`; `objective_1_mm`, `objective_2_n`.
+    /// Returns the key of each objective in tables and JSON: `objective_mm`; `objective_1_mm`, `objective_2_n`.
     pub fn keys(&self) -> Vec<String> {
         match self.single() {
             Some(measure) => vec![format!("objective_{}", measure.key())],
@@ -137,12 +137,12 @@ impl Goals {
     }
 
     /// Returns whether a measure is an objective or is constrained.
-    pub fn need(&self, measure: Measure) -> bool {
+    pub fn needs(&self, measure: Measure) -> bool {
         self.measures().any(|needed| needed == measure)
     }
 
     /// Returns whether trials or windows under sampled errors are needed.
-    pub fn need_draws(&self) -> bool {
+    pub fn needs_draws(&self) -> bool {
         self.measures().any(Measure::is_drawn)
     }
 
@@ -174,7 +174,7 @@ impl Goals {
         measures.iter().zip(values).map(|(measure, value)| measure.sense() * value).collect()
     }
 
-    /// Compares by the first objective, then the next and so on; greater is better.
+    /// Compares the values of two designs by the first objective, then by the next ones; greater is better.
     pub fn order(&self, a: &[f64], b: &[f64]) -> Ordering {
         let (a, b) = (self.gains(a), self.gains(b));
         let differing = a.iter().zip(&b).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne());
@@ -199,7 +199,7 @@ impl Goals {
         let of = |&measure: &Measure| {
             let values: Option<Vec<f64>> = tasks
                 .iter()
-                .map(|task| Some(measure.value(task)? + slope(measure, task)))
+                .map(|task| Some(measure.value(task)? + grid_correction(measure, task)))
                 .collect();
             Some(measure.sense() * self.aggregate.of(measure.sense(), &values?))
         };
@@ -207,10 +207,10 @@ impl Goals {
     }
 }
 
-/// Returns the correction within the grid step, mm, less than one step, so that the order of different ranges
-/// does not change: at each end half of the share that still inserts; for a failing nominal start its negative
-/// margin; 0 for measures that are not on the grid.
-fn slope(measure: Measure, evaluation: &Evaluation) -> f64 {
+/// Returns the correction of a range within the grid step, mm. At each end it is half of the share of the next step
+/// that still inserts; for a failing nominal start it is the negative margin; for measures that are not on the grid it
+/// is 0. It is less than one step, so the order of different ranges does not change.
+fn grid_correction(measure: Measure, evaluation: &Evaluation) -> f64 {
     if !matches!(measure, Measure::Range | Measure::CentredRange) {
         return 0.0;
     }
@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_not_measured_leaves_no_score() {
+    fn a_measure_without_a_value_leaves_no_score() {
         let jammed = Outcome::Failed(FailureClass::Jammed);
         let nothing = evaluation(jammed, jammed);
         let good = evaluation(Outcome::Inserted, jammed);
@@ -284,7 +284,7 @@ mod tests {
         assert!(goals.order(&[3.0, 1.0], &[4.0, 9.0]).is_gt());
         assert!(goals.order(&[3.0, 1.0], &[3.0, 2.0]).is_lt());
         assert!(goals.order(&[3.0, 1.0], &[3.0, 1.0]).is_eq());
-        assert!(goals.need(Measure::Range) && !goals.need(Measure::Slip) && !goals.need_draws());
+        assert!(goals.needs(Measure::Range) && !goals.needs(Measure::Slip) && !goals.needs_draws());
     }
 
     #[test]
@@ -308,7 +308,7 @@ mod tests {
 
     /// -3.333 and 1.400 mm in the closed form: 0.033 and nothing beyond the grid.
     #[test]
-    fn the_slope_is_half_of_what_the_grid_cuts_off() {
+    fn the_correction_is_half_of_the_part_beyond_the_grid() {
         let evaluation = measured(3.0, 20.0);
         let beyond = interpolated(Measure::Range, &evaluation) - 4.7;
         assert!((beyond - 0.033_333 / 2.0).abs() < 1e-5, "{beyond}");
@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn plateaus_have_a_slope_and_the_order_of_ranges_stays() {
+    fn the_correction_separates_equal_ranges_and_keeps_the_order_of_others() {
         let fingers = (0..200).map(|i| measured(3.0, 20.0 + 0.05 * f64::from(i)));
         let found: Vec<(f64, f64)> = fingers
             .map(|evaluation| {

@@ -1,4 +1,4 @@
-//! Firm window: offsets that insert also under small variations of friction, start and step.
+//! Firm window: offsets that still insert under small variations of friction, start and step.
 //!
 //! From each end of the window the search goes inward in steps of 0.1 mm to the first offset at which all
 //! repeats insert. Offsets between the two ends are not repeated.
@@ -7,7 +7,7 @@ use super::repeat::Repeats;
 use crate::evaluation::{OffsetStep, Window, grid_mm};
 use serde::{Deserialize, Serialize};
 
-/// Repeats at each end.
+/// Number of repeats at each end of the window.
 pub const REPEATS: u32 = 6;
 
 /// Outermost offsets at which all repeats insert, in grid steps.
@@ -21,16 +21,16 @@ pub struct FirmWindow {
 
 /// Result of the repeats at both ends of a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Firm {
+pub struct FirmResult {
     /// Firm window; `None` if there is no offset on one side at which all repeats insert.
     pub window: Option<FirmWindow>,
-    /// Trials of all repeats.
+    /// Number of trials in all repeats.
     pub trials: u32,
 }
 
-impl Firm {
+impl FirmResult {
     /// Result without a trial, for a window whose nominal start fails.
-    pub const NONE: Firm = Firm { window: None, trials: 0 };
+    pub const NONE: FirmResult = FirmResult { window: None, trials: 0 };
 
     /// Returns the firm range, mm; 0 without a firm window.
     pub fn range_mm(&self) -> f64 {
@@ -44,30 +44,34 @@ impl Firm {
         self.window.map(|window| [window.negative_steps, window.positive_steps].map(grid_mm))
     }
 
-    /// Returns a window with the ends of the firm window.
-    pub fn of(&self, window: &Window) -> Window {
+    /// Returns the window, narrowed to the firm window.
+    pub fn narrowed(&self, window: &Window) -> Window {
         let firm = self.window.unwrap_or(FirmWindow { negative_steps: 0, positive_steps: 0 });
         let FirmWindow { negative_steps, positive_steps } = firm;
         Window { negative_steps, positive_steps, ..window.clone() }
     }
 }
 
-/// Searches inward from both ends of a window whose nominal start inserts.
-pub fn measure(repeats: &Repeats, window: &Window) -> Firm {
+/// Measures the firm window of a window whose nominal start inserts, by a search inward from both ends.
+pub fn measure(repeats: &Repeats, window: &Window) -> FirmResult {
     let ((negative, below), (positive, above)) = rayon::join(
-        || end(repeats, -window.negative_steps, -1),
-        || end(repeats, window.positive_steps, 1),
+        || outermost_step(repeats, -window.negative_steps, -1),
+        || outermost_step(repeats, window.positive_steps, 1),
     );
     let found = negative.zip(positive).map(|(negative, positive)| FirmWindow {
         negative_steps: -negative,
         positive_steps: positive,
     });
-    Firm { window: found, trials: below + above }
+    FirmResult { window: found, trials: below + above }
 }
 
 /// Returns the outermost of the steps `from` to 0 at which all repeats insert, and the number of trials. The
 /// repeat that failed last comes first, since it is the likeliest to fail again.
-fn end(repeats: &Repeats, from: OffsetStep, sign: OffsetStep) -> (Option<OffsetStep>, u32) {
+fn outermost_step(
+    repeats: &Repeats,
+    from: OffsetStep,
+    sign: OffsetStep,
+) -> (Option<OffsetStep>, u32) {
     let (count, mut doubtful, mut trials) = (repeats.count(), 0, 0);
     for step in (0..=from).rev() {
         let mut fails = |run: &usize| {
@@ -106,10 +110,10 @@ mod tests {
         };
         assert!(all(firm.negative_steps) && all(firm.positive_steps));
         assert!(!all(firm.negative_steps - 1) && !all(firm.positive_steps + 1));
-        // One trial at most steps that fail, a hundred at the two that hold.
+        // Mostly one trial for each step that fails, a hundred for each of the two that insert.
         assert!((200..320).contains(&found.trials), "{}", found.trials);
-        let part = found.of(&window);
-        assert_eq!(part.negative_steps, firm.negative_steps);
-        assert_eq!(part.end_positive, window.end_positive);
+        let narrowed = found.narrowed(&window);
+        assert_eq!(narrowed.negative_steps, firm.negative_steps);
+        assert_eq!(narrowed.end_positive, window.end_positive);
     }
 }

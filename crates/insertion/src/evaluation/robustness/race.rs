@@ -1,4 +1,4 @@
-//! Racing on the success rate: designs that can no longer reach the best one stop early.
+//! Racing on the success rate: the trials of a design stop early if it can no longer reach the best design.
 //!
 //! All designs are evaluated under the same draws, so the criterion is exact: a design is eliminated once
 //! its rate would stay below the bar even if all remaining draws inserted. The point of elimination
@@ -13,8 +13,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Race {
-    /// Success rate to be reached, 0 to 1. With several tasks, each must
-    /// reach it.
+    /// Success rate to be reached, 0 to 1. With several tasks, each must reach it.
     pub bar_share: f64,
     /// Number of draws.
     pub draws: u32,
@@ -23,7 +22,7 @@ pub struct Race {
 }
 
 impl Race {
-    /// Returns the order of this number of draws.
+    /// Returns the numbers of the draws in the order of the race.
     pub fn order(&self, draws: u32) -> Vec<u32> {
         let place = |draw: &u32| self.first.iter().rposition(|first| first == draw);
         let mut order: Vec<u32> = (0..draws).collect();
@@ -33,13 +32,13 @@ impl Race {
     }
 
     /// Returns whether the bar is out of reach even if all remaining draws insert.
-    pub fn is_lost_by(&self, success: &SuccessRate) -> bool {
+    pub fn is_out_of_reach(&self, success: &SuccessRate) -> bool {
         success.at_most().is_some_and(|rate| rate < self.bar_share)
     }
 }
 
-/// Counts the outcomes of the draws in the order of the race, up to the one with which it is lost. The number
-/// of threads changes nothing, since later draws are not counted.
+/// Evaluates the draws in the order of the race and counts their outcomes until the bar is out of reach. Draws
+/// beyond that point are not counted, so the result does not depend on the number of threads.
 pub fn run(
     draws: u32,
     confidence: f64,
@@ -53,7 +52,7 @@ pub fn run(
         let ended: Vec<Outcome> = draws.par_iter().map(|&draw| outcome(draw)).collect();
         for (&draw, outcome) in draws.iter().zip(ended) {
             success.count(draw, outcome);
-            if race.is_some_and(|race| race.is_lost_by(&success)) {
+            if race.is_some_and(|race| race.is_out_of_reach(&success)) {
                 break 'race;
             }
         }

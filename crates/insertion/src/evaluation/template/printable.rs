@@ -10,8 +10,8 @@ use finray::geometry::Geometry;
 use input::{Check, InputError};
 
 /// Checks that every finger of a space read from `file` can be printed, by every combination of extreme values
-/// of infill and finger. Thickness and gaps are monotonic in each number, so the fingers between are printable,
-/// too.
+/// of infill and finger. Thickness and gaps are monotonic in each number, so the fingers in between are
+/// printable, too.
 ///
 /// # Errors
 /// If the finger file lacks a key, or a combination cannot be printed.
@@ -28,12 +28,12 @@ pub fn check(space: &Space, file: &str, finger: &FingerFile) -> Result<(), Input
     })
 }
 
-/// Checks that a space read from `file` that sets the remote centre or tilting stiffness of computed fingers has
-/// springs for each. Turning about a distant centre alone can be softer than the measured finger, so all
-/// combinations of extreme values are tried, including those of the infill.
+/// Checks that springs can represent every finger of a space read from `file` that sets the remote centre or the
+/// tilting stiffness of computed fingers. Rotation about a distant centre alone can be softer than the measured
+/// finger, so all combinations of extreme values are tried, including those of the infill.
 ///
 /// # Errors
-/// The first combination without springs.
+/// If springs cannot represent a combination; the error is about the first one.
 pub fn check_springs(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), InputError> {
     let sets = |key: &str| [RCC_KEY, TILTING_KEY].contains(&key);
     let computed = matches!(evaluator.fingers, FingerSource::Computed(_));
@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_printed_is_told_by_its_key() {
+    fn an_unprintable_finger_is_reported_with_its_key() {
         for (change, words) in [
             (["high = 0.76", "high = 1.14"], "ribs.thickness_mm"),
             (["high = 12.0", "high = 20.0"], "notch.roof_mm"),

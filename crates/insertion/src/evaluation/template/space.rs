@@ -57,7 +57,7 @@ pub(super) fn each_extreme<'a>(
 /// Checks the combinations of extreme values ([`corners`]); an error is about `key` and contains `words`.
 ///
 /// # Errors
-/// The first combination that is impossible.
+/// If a combination is impossible; the error is about the first one.
 pub(super) fn each_corner<'a>(
     check: Check<'_>,
     key: &str,

@@ -31,7 +31,7 @@ pub struct Draw {
     stiffness_sd_factor: f64,
 }
 
-/// `count` draws of a study; draw `i` is a function of the seed and `i` alone.
+/// Returns `count` draws of a study; draw `i` depends only on the seed and `i`.
 pub fn draws(errors: &Errors, seed: u64, count: u32) -> Vec<Draw> {
     (0..count).map(|i| draw(errors, seed, u64::from(i))).collect()
 }

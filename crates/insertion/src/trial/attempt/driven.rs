@@ -28,7 +28,7 @@ pub struct State {
     pub time_s: f64,
     /// TCP as measured by the robot, relative to the assumed middle of the opening, mm.
     pub tcp_mm: [f64; 3],
-    /// Turn of the flange about x, y and z, degrees; it includes the tilt of the search.
+    /// Rotation of the flange about x, y and z, degrees; it includes the tilt of the search.
     pub turn_deg: [f64; 3],
     /// Net force of the socket on the plug as a wrist sensor filters it, N.
     pub force_n: [f64; 3],
@@ -38,7 +38,7 @@ pub struct State {
     pub tilt_deg: f64,
     /// Slip of the part in the grasp since the grasp, mm.
     pub slip_mm: f64,
-    /// Distance of the tip from where it counts as inserted, mm.
+    /// Distance of the tip from the depth at which it counts as inserted, mm.
     pub distance_mm: f64,
     /// Outcome, once it has ended.
     pub outcome: Option<Outcome>,
@@ -52,7 +52,7 @@ impl Driven {
         driven
     }
 
-    /// Restarts, with the start shifted by `offset` metres along y.
+    /// Restarts the trial with the start shifted by `offset` metres along y.
     pub fn start(&mut self, offset: f64) -> State {
         self.attempt = self.ready.shifted(offset);
         self.end = self.prepared;

@@ -134,18 +134,18 @@ fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Markup {
                         }
                         iframe #film title="two trials: the last that inserts, the first that fails" sandbox="allow-scripts" {}
                     }
-                    p #caption.muted { (caption(film, tasks)) }
+                    p #caption.muted { (caption(film, tasks, false)) }
                 } @else if let Some((film, poster)) = linked.first().and_then(|film| Some((film, film.poster.as_ref()?))) {
                     div.stage {
                         a href=(pair_file(film.task, film.end)) {
                             img src=(data_url(poster)) alt="how the failed trial ended; opens its replay";
                         }
                     }
-                    p.muted { "How the trial just outside the window ended. " (caption(film, tasks)) }
+                    p.muted { (caption(film, tasks, true)) }
                 }
                 p.files {
                     @for (at, film) in shown.iter().enumerate() {
-                        button type="button" data-film=(at) data-caption=(caption(film, tasks)) {
+                        button type="button" data-film=(at) data-caption=(caption(film, tasks, false)) {
                             span aria-hidden="true" { "▶ " } "Play the " (label(answer, film))
                         }
                         script type="application/json" id={ "film" (at) } {
@@ -170,8 +170,9 @@ fn label(answer: &Answer, film: &Film) -> String {
     format!("{} end{}", film.end, on(config, config.tasks().nth(film.task).unwrap_or_default()))
 }
 
-/// Returns `Left: the last start that inserts (+5.7 mm). Right: the next (+5.8 mm): jammed (class 3).`
-fn caption(film: &Film, tasks: &[&Evaluation]) -> String {
+/// Returns `Left: the last start that inserts (+5.7 mm). Right: the next (+5.8 mm): jammed (class 3).`, or for the
+/// picture of the failed trial alone its part.
+fn caption(film: &Film, tasks: &[&Evaluation], failed_alone: bool) -> String {
     let Some(window) = tasks.get(film.task).map(|task| &task.window) else { return String::new() };
     let (last, end, outward) = match film.end == ENDS[0].0 {
         true => (window.negative_steps, window.end_negative, ENDS[0].1),
@@ -179,7 +180,10 @@ fn caption(film: &Film, tasks: &[&Evaluation]) -> String {
     };
     let [inside, outside] = [last, last + outward].map(grid_mm);
     let ends = end.map_or("fails".to_owned(), outcome);
-    format!(
-        "Left: the last start that inserts ({inside:+.1} mm). Right: the next ({outside:+.1} mm): {ends}."
-    )
+    match failed_alone {
+        true => format!("The first start outside of the window ({outside:+.1} mm): {ends}."),
+        false => format!(
+            "Left: the last start that inserts ({inside:+.1} mm). Right: the next ({outside:+.1} mm): {ends}."
+        ),
+    }
 }

@@ -178,7 +178,7 @@ fn call<R: Request>(matches: &ArgMatches, context: &Context<'_>) -> Result<Calle
 }
 
 fn to_json(response: &impl Serialize) -> Result<String, Failure> {
-    // As a value first, so that of a key of two flattened parts the last remains.
+    // Serialized to a value first, so that the last of two flattened parts with the same key wins.
     let value = serde_json::to_value(response);
     Ok(value.map_err(|error| Failure::running(error.to_string()))?.to_string())
 }

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::progress::{Busy, Part, Progress};
-use crate::terminal::{self, say};
+use crate::terminal::{print, say};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -18,13 +18,14 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 pub struct Context<'a> {
     /// Cancels the command once it is set.
     pub stop: &'a AtomicBool,
-    shown: Option<Shown>,
+    terminal: Option<Terminal>,
 }
 
 /// Constructor of the command line of the program.
 pub type Program = fn() -> clap::Command;
 
-struct Shown {
+/// Terminal on which a command was started.
+struct Terminal {
     program: Program,
     json: bool,
     quiet: bool,
@@ -34,16 +35,16 @@ struct Shown {
 impl<'a> Context<'a> {
     /// Returns a context that shows nothing.
     pub fn silent(stop: &'a AtomicBool) -> Self {
-        Context { stop, shown: None }
+        Context { stop, terminal: None }
     }
 
-    /// Lets Ctrl-C or SIGTERM cancel a command of the terminal. After the grace period the process exits, which the
-    /// journal of the study in `dir` survives.
+    /// Lets Ctrl-C or SIGTERM cancel a command of the terminal. After the grace period the process exits; the journal
+    /// of the study in `dir` remains valid.
     ///
     /// # Errors
     /// If signals cannot be watched.
     pub fn stop_on_interrupt(&self, dir: &Path) -> Result<(), Failure> {
-        if self.shown.is_none() {
+        if self.terminal.is_none() {
             return Ok(());
         }
         let dir = dir.display().to_string();
@@ -81,44 +82,47 @@ impl<'a> Context<'a> {
 
     /// Begins to show the progress of work that costs this many evaluations.
     pub fn begin(&self, cost: f64) {
-        if let Some(shown) = &self.shown {
-            *shown.progress() = Some(Progress::of(cost, !shown.quiet && !shown.json));
+        if let Some(terminal) = &self.terminal {
+            *terminal.progress() = Some(Progress::of(cost, !terminal.quiet && !terminal.json));
         }
     }
 
     /// Begins to show the progress of a study.
     pub fn begin_study(&self, study: &Study) {
-        if let Some(shown) = &self.shown {
-            *shown.progress() = Some(Progress::of_study(study, !shown.quiet));
+        if let Some(terminal) = &self.terminal {
+            *terminal.progress() = Some(Progress::of_study(study, !terminal.quiet));
         }
     }
 
     /// Begins to show work of unknown length, until the result is dropped.
     pub fn busy(&self, what: &'static str) -> Option<Busy> {
-        self.shown.as_ref().filter(|shown| !shown.quiet && !shown.json).map(|_| Busy::new(what))
+        self.terminal
+            .as_ref()
+            .filter(|terminal| !terminal.quiet && !terminal.json)
+            .map(|_| Busy::new(what))
     }
 
     /// Ends the progress that is shown.
     pub fn end(&self) {
-        if let Some(shown) = &self.shown {
-            drop(shown.progress().take());
+        if let Some(terminal) = &self.terminal {
+            drop(terminal.progress().take());
         }
     }
 
     /// Shows that a part is done, from any thread.
     pub fn part(&self, part: &Part) {
-        self.see(|progress| progress.part(part));
+        self.update(|progress| progress.part(part));
     }
 
     /// Shows that a design was evaluated and recorded.
     pub fn evaluated(&self, recorded: &Recorded) {
-        self.see(|progress| progress.evaluated(recorded));
+        self.update(|progress| progress.evaluated(recorded));
     }
 
-    fn see(&self, see: impl FnOnce(&mut Progress)) {
-        let Some(shown) = &self.shown else { return };
-        if let Some(progress) = &mut *shown.progress() {
-            see(progress);
+    fn update(&self, update: impl FnOnce(&mut Progress)) {
+        let Some(terminal) = &self.terminal else { return };
+        if let Some(progress) = &mut *terminal.progress() {
+            update(progress);
         }
     }
 
@@ -127,17 +131,17 @@ impl<'a> Context<'a> {
     /// # Errors
     /// If the command was not started from a terminal.
     pub fn program(&self) -> Result<clap::Command, Failure> {
-        let shown = self.shown.as_ref();
-        let shown = shown.ok_or_else(|| {
+        let terminal = self.terminal.as_ref();
+        let terminal = terminal.ok_or_else(|| {
             Failure::usage("this command describes the command line; run it as `optimize`")
         })?;
-        Ok((shown.program)())
+        Ok((terminal.program)())
     }
 
     /// Writes a line on standard error.
     pub fn note(&self, text: &str) {
-        let Some(shown) = &self.shown else { return };
-        match &*shown.progress() {
+        let Some(terminal) = &self.terminal else { return };
+        match &*terminal.progress() {
             Some(progress) => progress.say(text),
             None => say(text),
         }
@@ -148,8 +152,8 @@ impl<'a> Context<'a> {
     /// # Errors
     /// If standard output cannot be written.
     pub fn print(&self, text: &str) -> Result<(), Failure> {
-        match &self.shown {
-            Some(shown) if !shown.json => terminal::print(text),
+        match &self.terminal {
+            Some(terminal) if !terminal.json => print(text),
             _ => Ok(()),
         }
     }
@@ -159,11 +163,11 @@ impl Context<'static> {
     /// Returns the context of a command that was started from a terminal.
     pub fn terminal(json: bool, quiet: bool, program: Program) -> Self {
         let progress = Mutex::new(None);
-        Context { stop: &INTERRUPTED, shown: Some(Shown { program, json, quiet, progress }) }
+        Context { stop: &INTERRUPTED, terminal: Some(Terminal { program, json, quiet, progress }) }
     }
 }
 
-impl Shown {
+impl Terminal {
     fn progress(&self) -> MutexGuard<'_, Option<Progress>> {
         self.progress.lock().unwrap_or_else(PoisonError::into_inner)
     }

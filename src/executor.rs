@@ -10,13 +10,13 @@ use study::SOURCES;
 /// Environment variable with the hash of the program's sources, for the package.
 const SOURCES_KEY: &str = "FINGER_OPT_SOURCES";
 
-/// Runs a command, without the program's name, by the Python package, which reports its own errors; returns its
+/// Runs a command line, without the program's name, in the Python package, which reports its own errors; returns its
 /// exit code.
 pub fn run(executor: &str, words: &[OsString]) -> Result<ExitCode, Failure> {
     let python = interpreter();
     let missing = |said: &str| {
         Failure::running(format!(
-            "--executor {executor} needs the Python package of finger-opt ({} says: {said}); in \
+            "--executor {executor} needs the Python package of finger-opt ({}: {said}); in \
              the project's folder: pip install './python[dask,slurm]'. {PYTHON} names another \
              interpreter",
             python.display()
@@ -28,7 +28,7 @@ pub fn run(executor: &str, words: &[OsString]) -> Result<ExitCode, Failure> {
         let said = String::from_utf8_lossy(&found.stderr);
         return Err(missing(said.lines().last().unwrap_or("nothing")));
     }
-    // The package ends the study at the end of its input, also if this process is killed. The handler is set
+    // The package ends the study when its standard input closes, also if this process is killed. The handler is set
     // first, since a signal may come as soon as the package runs.
     let input = Arc::new(Mutex::new(Input { stopped: false, pipe: None }));
     let watched = Arc::clone(&input);
@@ -45,11 +45,11 @@ pub fn run(executor: &str, words: &[OsString]) -> Result<ExitCode, Failure> {
     let status = study.wait().map_err(|error| Failure::running(error.to_string()))?;
     match status.code() {
         Some(code) => Ok(ExitCode::from(u8::try_from(code).unwrap_or(1))),
-        None => Err(Failure::running(format!("the Python package was ended: {status}"))),
+        None => Err(Failure::running(format!("the Python package was terminated: {status}"))),
     }
 }
 
-/// Input of the interpreter.
+/// Standard input of the interpreter.
 struct Input {
     stopped: bool,
     pipe: Option<ChildStdin>,

@@ -42,7 +42,7 @@ fn place<E: Placed + Error + 'static>(error: &(dyn Error + 'static)) -> Option<P
     error.downcast_ref::<E>().map(Placed::place)
 }
 
-/// Types of errors that have a place.
+/// Functions that return the place of an error, one for each type of error that has one.
 const PLACED: [fn(&(dyn Error + 'static)) -> Option<Place>; 10] = [
     place::<Usage>,
     place::<Fault>,
@@ -85,7 +85,7 @@ impl Failure {
         Failure::input(Usage(message.into()))
     }
 
-    /// Returns an error of bad usage found by clap, the option first.
+    /// Returns an error of bad usage found by clap; its text begins with the option.
     pub fn of_clap(error: clap::Error) -> Self {
         if let (ErrorKind::MissingRequiredArgument, Some(ContextValue::Strings(missing))) =
             (error.kind(), error.get(ContextKind::InvalidArg))
@@ -104,11 +104,11 @@ impl Failure {
         // Drops the lines on how to get help.
         let text = text.split("\n\nUsage:").next().unwrap_or(text);
         let text = text.split("\n\nFor more information").next().unwrap_or(text);
-        let text = described_numbers(text);
+        let text = plain_number_errors(text);
         let value = context(ContextKind::InvalidValue);
         Failure::usage(match (option, value, text.split_once("': ")) {
             (Some(option), Some(value), Some((_, why))) => {
-                // Of a range clap says `0 is not in 1..=10000`.
+                // The text of clap for a range is `0 is not in 1..=10000`.
                 let range =
                     why.split_once(" is not in ").and_then(|(_, range)| range.split_once("..="));
                 let range =
@@ -136,8 +136,8 @@ impl Failure {
     }
 }
 
-/// Returns the text of an error of clap with the problems of numbers described by what is accepted.
-pub(crate) fn described_numbers(text: &str) -> String {
+/// Replaces the standard library's errors of numbers in a text of clap by the accepted values.
+pub(crate) fn plain_number_errors(text: &str) -> String {
     const PROBLEMS: [(&str, &str); 6] = [
         ("invalid digit found in string", "must be a whole number"),
         ("cannot parse integer from empty string", "must be a whole number"),
@@ -149,7 +149,7 @@ pub(crate) fn described_numbers(text: &str) -> String {
     PROBLEMS.iter().fold(text.to_owned(), |text, (raw, plain)| text.replace(raw, plain))
 }
 
-/// Checks that a number lies in its range, if it is given; `option` is what gives it.
+/// Checks that the number given by `option`, if there is one, lies in its range.
 pub fn within<T: PartialOrd + fmt::Display>(
     option: &str,
     number: impl Into<Option<T>>,
@@ -165,7 +165,7 @@ pub fn within<T: PartialOrd + fmt::Display>(
     }
 }
 
-/// Converts a range of smaller integers to that which clap takes.
+/// Converts a range of smaller integers to the type that clap accepts.
 pub(crate) fn wide<T: Copy + Into<i64>>(range: &RangeInclusive<T>) -> RangeInclusive<i64> {
     (*range.start()).into()..=(*range.end()).into()
 }
@@ -213,12 +213,13 @@ fn options(usage: &str) -> String {
     }
 }
 
-/// Longest line of a message, characters, and largest number of lines, since it may quote a file.
-const LONGEST: usize = 600;
+/// Largest length of a line of a message, characters; a message may quote a file.
+const LONGEST_LINE: usize = 600;
+/// Largest number of lines of a message.
 const MOST_LINES: usize = 60;
 
 fn short(text: &str) -> String {
-    let line = |line: &str| match line.char_indices().nth(LONGEST) {
+    let line = |line: &str| match line.char_indices().nth(LONGEST_LINE) {
         Some((end, _)) => format!("{} .. (cut)", &line[..end]),
         None => line.to_owned(),
     };

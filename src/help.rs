@@ -1,4 +1,4 @@
-//! Help of the command line: the short one on a screen, headings of options, colours.
+//! Help of the command line: short help that fits a screen, headings of options, colours.
 
 use crate::project::NO_CONFIG;
 use clap::builder::styling::{AnsiColor, Style, Styles};
@@ -17,8 +17,8 @@ const COMMANDS: [(&str, &[&str]); 5] = [
     ("Bench", &["measure", "next", "identify", "calibrate"]),
     ("Files", &["export", "config", "ask-tell", "completions", "man"]),
 ];
-/// Columns for the description of a command.
-const ROOM: usize = 65;
+/// Largest width of the description of a command.
+const MAX_WIDTH: usize = 65;
 /// Options of the short help.
 const FEW: [(&str, &str); 6] = [
     ("--task <NAME>", "Task of a study: `optimize tasks`, or the path of a task file"),
@@ -50,7 +50,7 @@ pub fn styles() -> Styles {
     Styles::styled().header(TITLE).usage(TITLE).literal(WORD).placeholder(PLACE)
 }
 
-/// Sets the headings of the options of a command with many.
+/// Sets the headings of the options of a command that has many options.
 pub fn with_headings(command: Command) -> Command {
     let group = |arg: &Arg| {
         let long = arg.get_long().unwrap_or_default();
@@ -89,7 +89,8 @@ pub fn short(program: &Command) -> String {
             let Some(command) = program.find_subcommand(name) else { continue };
             let about = command.get_about().map(ToString::to_string).unwrap_or_default();
             let clauses = [about.as_str()].into_iter().chain(about.split([':', ',']));
-            let about = clauses.take(2).find(|clause| clause.len() <= ROOM).unwrap_or_default();
+            let about =
+                clauses.take(2).find(|clause| clause.len() <= MAX_WIDTH).unwrap_or_default();
             let _ = writeln!(text, "  {WORD}{name:<12}{WORD:#} {about}");
         }
     }

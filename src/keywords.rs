@@ -1,4 +1,4 @@
-//! Keywords of another program as the options of a command.
+//! Commands called by another program, with their options as keywords.
 
 use crate::command::{Called, Command};
 use crate::context::Context;
@@ -66,7 +66,7 @@ fn words(program: &clap::Command, keywords: &Map<String, Value>) -> Result<Vec<O
             }
             value => vec![joined(value, arg)],
         };
-        // The default is allowed without the options that it requires.
+        // The default value is accepted even without the other options that the keyword requires.
         let default = arg.get_default_values().iter().map(|value| value.to_string_lossy());
         if several.iter().map(String::as_str).eq(default) {
             continue;
@@ -75,14 +75,14 @@ fn words(program: &clap::Command, keywords: &Map<String, Value>) -> Result<Vec<O
             (true, _) => positional.extend(several),
             (false, ArgAction::SetTrue) => words.push(format!("--{name}")),
             (false, _) if *value == Value::Bool(true) => words.push(format!("--{name}")),
-            (false, ArgAction::Append) if least(arg) > 1 => {
+            (false, ArgAction::Append) if min_values(arg) > 1 => {
                 words.push(format!("--{name}"));
                 words.extend(several);
             }
             (false, _) => words.extend(several.iter().map(|value| format!("--{name}={value}"))),
         }
     }
-    // Ends the options.
+    // Positional arguments follow.
     words.push("--".to_owned());
     Ok(words.into_iter().chain(positional).map(OsString::from).collect())
 }
@@ -92,7 +92,7 @@ fn several(arg: &Arg) -> bool {
     matches!(arg.get_action(), ArgAction::Append) && arg.get_value_delimiter().is_none() || many
 }
 
-fn least(arg: &Arg) -> usize {
+fn min_values(arg: &Arg) -> usize {
     arg.get_num_args().map_or(1, |count| count.min_values())
 }
 

@@ -1,11 +1,11 @@
 //! Finds the compliant finger that makes a connector insertion most robust.
 //!
-//! Data flows one way, and no crate reaches back up the flow; `docs/architecture.md` draws it. This crate holds the
+//! Data flows between the crates in one direction; `docs/architecture.md` has a diagram. This crate contains the
 //! [`commands`] of the program `optimize`: each is a request, whose fields are its options, and a response,
 //! which is printed as text or JSON.
 //!
-//! Inside the library every quantity is in SI units; millimetres, newtons per millimetre and degrees appear only in
-//! names that say so (see [`input::units`]).
+//! Inside the library every quantity is in SI units; values in millimetres, newtons per millimetre or degrees have the
+//! unit in their names (see [`input::units`]).
 //!
 //! ```
 //! use finger_opt::command::Request as _;
@@ -26,9 +26,9 @@
 //! ```
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-// A stream that has gone makes these panic: `terminal` prints.
+// These macros panic if the stream is closed; `terminal` prints instead.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
-// A panic is a defect; what input can reach is an error with a message.
+// A panic is a defect; invalid input gives an error.
 #![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod command;

@@ -2,7 +2,7 @@
 
 use crate::command::Command;
 use crate::commands::{COMMANDS, study};
-use crate::failure::{Failure, described_numbers};
+use crate::failure::{Failure, plain_number_errors};
 use crate::project::{NO_CONFIG, OptionDefault, Project, with_defaults};
 use crate::terminal::say;
 use crate::{executor, help};
@@ -114,10 +114,10 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let matches = match program.try_get_matches_from(&words) {
         Ok(matches) => matches,
         Err(usage) if usage.use_stderr() => {
-            say(described_numbers(&usage.render().to_string()).trim_end());
+            say(plain_number_errors(&usage.render().to_string()).trim_end());
             return ExitCode::from(2);
         }
-        // Help and version come this way, too.
+        // Help and version.
         Err(shown) => shown.exit(),
     };
     let done = chosen(&matches).and_then(|(command, matches)| {
@@ -171,7 +171,7 @@ fn with_project(
         say(&value);
         defaults.push(OptionDefault { option: "project", value });
     }
-    // Of a file that is named without its option.
+    // A measurement file given as a positional argument takes precedence.
     let positional = texts.get(path.len()).is_some_and(|word| !word.starts_with('-'));
     defaults.retain(|set| set.option != "file" || !positional);
     Ok((with_defaults(program, &path, &defaults), defaults))

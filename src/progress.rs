@@ -1,7 +1,7 @@
 //! Progress on standard error, through all phases: a bar on a terminal, a line every few seconds
 //! elsewhere.
 
-use crate::studies::standing::Standing;
+use crate::studies::best_so_far::BestSoFar;
 use crate::terminal::say;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, stderr};
@@ -13,7 +13,7 @@ use study::{Recorded, Study};
 /// A part of a long phase.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
-    /// The phase and what was done: `confirming 10 %, 26°`.
+    /// Phase and object: `confirming 10 %, 26°`.
     pub what: String,
     /// Parts of the phase that are done.
     pub done: usize,
@@ -47,7 +47,7 @@ const CONFIRMED: [f64; 2] = [5.0, 1.5];
 pub struct Progress {
     bar: Option<ProgressBar>,
     shown: bool,
-    said: Instant,
+    printed: Instant,
     /// End of the last part.
     last: Instant,
     /// Work done since it began, and estimated work left.
@@ -56,7 +56,7 @@ pub struct Progress {
     /// Work that took time, unlike results from the cache, and the time that it took.
     computed: (f64, Duration),
     /// Number of evaluations of a study, unless it stops early, and the best so far.
-    search: Option<(Option<u64>, Standing)>,
+    search: Option<(Option<u64>, BestSoFar)>,
 }
 
 impl Progress {
@@ -72,7 +72,7 @@ impl Progress {
         let left = budget.saturating_sub(done) as f64 + confirmed + bench;
         let mut progress = Progress::of(left, shown && done < config.evaluations());
         let total = if config.settles { None } else { Some(budget) };
-        progress.search = Some((total, Standing::new(study)));
+        progress.search = Some((total, BestSoFar::new(study)));
         progress
     }
 
@@ -81,7 +81,7 @@ impl Progress {
         let bar = (shown && stderr().is_terminal()).then(|| bar(left));
         let now = Instant::now();
         let computed = (0.0, Duration::ZERO);
-        Progress { bar, shown, said: now, last: now, done: 0.0, left, computed, search: None }
+        Progress { bar, shown, printed: now, last: now, done: 0.0, left, computed, search: None }
     }
 
     /// Shows that a part is done.
@@ -91,11 +91,11 @@ impl Progress {
 
     /// Shows that a design was evaluated.
     pub fn evaluated(&mut self, recorded: &Recorded) {
-        let Some((budget, standing)) = &mut self.search else { return };
-        standing.add(recorded);
+        let Some((budget, best_so_far)) = &mut self.search else { return };
+        best_so_far.add(recorded);
         let (done, budget) = (recorded.index + 1, *budget);
         let of = budget.map_or(String::new(), |budget| format!("/{budget}"));
-        let what = format!("{done}{of} evaluations, {}", standing.best());
+        let what = format!("{done}{of} evaluations, {}", best_so_far.best());
         self.step(1.0, &what, Some(done) == budget);
     }
 
@@ -107,8 +107,8 @@ impl Progress {
             bar.set_message(format!("{what}, about {:#} left", HumanDuration(left)));
             bar.set_length((self.done + self.left).ceil() as u64);
             bar.set_position(self.done as u64);
-        } else if self.shown && (last || self.said.elapsed() >= EVERY) {
-            self.said = Instant::now();
+        } else if self.shown && (last || self.printed.elapsed() >= EVERY) {
+            self.printed = Instant::now();
             say(&format!("{what}, about {} s left", left.as_secs()));
         }
     }

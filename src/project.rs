@@ -11,14 +11,14 @@ use std::path::{Path, PathBuf};
 pub const PROJECT_FILE: &str = "finger-opt.toml";
 /// Option that ignores the file.
 pub const NO_CONFIG: &str = "no-config";
-/// Keys that determine a study, with the options that set them.
+/// Options that belong to one study and are not accepted as keys.
 const OF_STUDY: [&str; 2] = ["seed", "budget"];
 
 /// Keys of a project file; paths are relative to its folder.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// Task or tasks, by commas.
+    /// Task, or several separated by commas.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub task: Option<String>,
     /// Robot.
@@ -88,31 +88,32 @@ impl Project {
         Ok(Project { file, settings })
     }
 
-    /// Returns the defaults for a command; `given` tells whether an option is on the command line, which
-    /// precedes.
+    /// Returns the defaults for a command; `given` returns whether an option is on the command line, which
+    /// takes precedence.
     pub fn defaults(&self, command: &Command, given: impl Fn(&str) -> bool) -> Vec<OptionDefault> {
         let Settings { task, robot, cell, measurements, space, threads } = self.settings.clone();
         let name = command.get_name();
         let takes = |long: &str| command.get_arguments().any(|arg| arg.get_long() == Some(long));
-        // Only what is there can be read; `next` and `measure add` begin such a file.
-        let begins = ["next", "add"].contains(&name);
-        let measurements = measurements.filter(|file| begins || exists(file));
+        // Only `next` and `measure add` accept a missing file of measurements.
+        let accepts_missing = ["next", "add"].contains(&name);
+        let measurements = measurements.filter(|file| accepts_missing || exists(file));
         let file = (["add", "check"].contains(&name) && !takes("svg")).then_some("file");
-        // A study with other goals makes no use of measurements.
+        // A study with other goals does not use measurements.
         let other = ["objective", "constraint", "aggregate"].into_iter().any(&given);
         let bench = takes("measurements").then_some("measurements").filter(|_| !other);
         let measured = measurements.is_some() && bench.is_some() || given("measurements");
-        // The cell is a prior where measurements correct it. `identify` makes it; a robot contradicts it.
+        // With measurements the cell replaces the priors. `identify` writes the cell and does not read it. A robot on
+        // the command line takes precedence.
         let cell = cell.filter(|file| exists(file) && name != "identify");
         let cell = cell.filter(|_| !["cell", "priors", "robot"].into_iter().any(&given));
-        let held = if measured && takes("priors") { "priors" } else { "cell" };
-        let cell = cell.filter(|_| takes(held));
+        let cell_option = if measured && takes("priors") { "priors" } else { "cell" };
+        let cell = cell.filter(|_| takes(cell_option));
         let robot = robot.filter(|_| cell.is_none() && !given("cell") && !given("priors"));
         let threads = threads.map(|count| count.to_string());
         [
             (Some("task"), task),
             (Some("robot"), robot),
-            (Some(held), cell),
+            (Some(cell_option), cell),
             (file.or(bench), measurements),
             (Some("space"), space),
             (Some("threads"), threads),
@@ -123,7 +124,7 @@ impl Project {
         .collect()
     }
 
-    /// Returns the file and what it sets: `finger-opt.toml sets task usb, robot ur5e`.
+    /// Returns the file and the options set by it: `finger-opt.toml sets task usb, robot ur5e`.
     pub fn words(&self, defaults: &[OptionDefault]) -> String {
         let set =
             defaults.iter().map(|OptionDefault { option, value }| format!("{option} {value}"));

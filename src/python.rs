@@ -8,12 +8,12 @@ use std::sync::OnceLock;
 
 /// Environment variable for another interpreter than `python3`.
 pub const PYTHON: &str = "FINGER_OPT_PYTHON";
-/// Environment variable that excludes the current folder from imports, also of child processes.
+/// Environment variable that excludes the current folder from imports, also in child processes.
 const SAFE_PATH: (&str, &str) = ("PYTHONSAFEPATH", "1");
 /// The same for Python 3.10, which ignores the variable.
 const SAFE: &str = "import sys; sys.path[:] = filter(None, sys.path); ";
 
-/// Interpreter that this library is loaded in.
+/// Interpreter in which this library is loaded.
 pub static OWN: OnceLock<OsString> = OnceLock::new();
 
 /// Returns the interpreter.
@@ -28,14 +28,14 @@ pub struct Format {
     pub name: &'static str,
     /// Extra of the package.
     pub extra: &'static str,
-    /// Code that prints what it reads from `sys.argv[1]`, or exits with what is wrong in one line.
+    /// Code that prints the contents of the file `sys.argv[1]`, or exits with an error of one line.
     pub reader: &'static str,
-    /// What the user can do without the package, after a semicolon.
+    /// Alternative without the package, the last clause of the error.
     pub otherwise: &'static str,
 }
 
 impl Format {
-    /// Returns what the reader prints of a file, which is called `file` in errors, and its warnings.
+    /// Returns the output of the reader for a file, and its warnings; errors call the file `file`.
     ///
     /// # Errors
     /// If it cannot read the file, or the package or its extra is not installed.
@@ -44,12 +44,12 @@ impl Format {
         let python = interpreter();
         let called = |said: &str| said.replace(&path.display().to_string(), file);
         let fail = |said: &str| {
-            // Names the file itself, unless the package is missing.
+            // An error of the reader begins with the file; any other means that the package is missing.
             let named = called(said);
             let problem = match named.strip_prefix(file) {
                 Some(problem) => problem.trim_start_matches(':').trim_start().to_owned(),
                 None => format!(
-                    "is {name}, which the Python package reads: pip install 'finger_opt[{extra}]' ({} says: \
+                    "is {name}, which the Python package reads: pip install 'finger_opt[{extra}]' ({}: \
                      {named}; {PYTHON} names another interpreter); {otherwise}",
                     python.display()
                 ),
@@ -67,7 +67,7 @@ impl Format {
     }
 }
 
-/// Returns the command that runs some code.
+/// Returns the command that runs Python code.
 pub fn command(code: &str) -> Command {
     let mut command = Command::new(interpreter());
     command.args(["-c", &format!("{SAFE}{code}")]).envs([SAFE_PATH]);

@@ -231,7 +231,7 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
     assert_eq!(found["tasks"][0]["task"], "mine");
     let text = folder.read("own/bench.csv").replace("# task mine: mine.toml\n", "");
     folder.file("hand.csv", text);
-    line(&format!("next {few} hand.csv")).fails(2, &["no file is known of the task `mine`"]);
+    line(&format!("next {few} hand.csv")).fails(2, &["the file of the task `mine` is unknown"]);
     // A file that has gone, or has another task, is not taken for it.
     folder.file("own/mine.toml", own.replace("\"mine\"", "\"other\""));
     line("measure check own/bench.csv").fails(2, &["is called `other`", "# task mine: .."]);

@@ -1,4 +1,4 @@
-//! Hashes the sources that determine results; results of other sources are not used.
+//! Hashes the sources that determine results, to recognise results of other sources.
 
 use sha2::{Digest, Sha256};
 use std::io;
@@ -24,12 +24,12 @@ const STUDY: [&str; 3] = ["crates/ask-tell", "crates/calibration", "crates/study
 const WORKSPACE: &str = "../..";
 
 fn main() -> io::Result<()> {
-    name("FINGER_OPT_SIMULATION_SHA256", &SIMULATION)?;
-    name("FINGER_OPT_STUDY_SHA256", &[&SIMULATION[..], &STUDY[..]].concat())
+    set_hash("FINGER_OPT_SIMULATION_SHA256", &SIMULATION)?;
+    set_hash("FINGER_OPT_STUDY_SHA256", &[&SIMULATION[..], &STUDY[..]].concat())
 }
 
-/// Sets a variable to the hash of all files below these paths.
-fn name(variable: &str, paths: &[&str]) -> io::Result<()> {
+/// Sets an environment variable of the compilation to the hash of all files below these paths.
+fn set_hash(variable: &str, paths: &[&str]) -> io::Result<()> {
     let mut files = Vec::new();
     for path in paths {
         let path = Path::new(WORKSPACE).join(path);

@@ -15,7 +15,7 @@ use insertion::trial::engine::EngineKind;
 use insertion::trial::run::EngineRig;
 use std::sync::Arc;
 
-/// Largest move of an end by half the step, in grid steps: 0.1 mm.
+/// Largest accepted move of an end when the step is halved, in grid steps: 0.1 mm.
 const ALLOWED_STEPS: OffsetStep = 1;
 
 /// Compare the contact engine with analytic results.
@@ -81,7 +81,7 @@ impl Arguments {
     }
 }
 
-/// Ways of the engine as it is, and finer in each setting that it can be.
+/// Returns the engine as it is and its finer variants, as settings of a task.
 fn finer(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskSettings, Failure> {
     let finer = engine.finer();
     let settings = std::iter::once(("production", engine)).chain(finer).map(|(name, engine)| {

@@ -102,8 +102,8 @@ class Asked:
             threads: Threads [default: one per processor]; changes no result.
             cache: Folder of evaluations that studies share; safe to delete [default: results/.cache].
             no_cache: Measure every design again and store nothing.
-            no_confirm: Skip the confirmation of the best designs: walked step by step, and repeated at their
-                ends.
+            no_confirm: Skip the confirmation of the best designs (windows measured step by step and repeated at
+                their ends).
             no_levers: Skip the one-at-a-time sensitivity analysis of the recommended finger (levers).
             no_map: Skip the maps of outcomes over two errors of the start.
             accept_changed: Continue a study of another program version, engine setting or input file in a new

@@ -51,8 +51,8 @@ def load_study(
         threads: Threads [default: one per processor]; changes no result.
         cache: Folder of evaluations that studies share; safe to delete [default: results/.cache].
         no_cache: Measure every design again and store nothing.
-        no_confirm: Skip the confirmation of the best designs: walked step by step, and repeated at their
-            ends.
+        no_confirm: Skip the confirmation of the best designs (windows measured step by step and repeated at
+            their ends).
         no_levers: Skip the one-at-a-time sensitivity analysis of the recommended finger (levers).
         no_map: Skip the maps of outcomes over two errors of the start.
         accept_changed: Continue a study of another program version, engine setting or input file in a new
@@ -122,8 +122,8 @@ def evaluate(
         uncertainty: Also compute success rate and robust range under these errors: typical, or the path of
             a file.
         seed: Seed of the drawn errors; the same draws as in a study with this seed.
-        repeat: Then N times more with friction within 10 %, start within 0.02 mm, and half the step by
-            turns.
+        repeat: Repeat N times with friction varied within 10 %, start within 0.02 mm, and half the step in
+            every other one.
         repeat_seed: Seed of the repeats.
 
     Raises:
@@ -192,12 +192,12 @@ def trial(
         stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
         stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
         set: A number of the task or the finger, as in spaces/codesign.toml.
-        repeat: Then N times more with friction within 10 %, start within 0.02 mm, and half the step by
-            turns.
+        repeat: Repeat N times with friction varied within 10 %, start within 0.02 mm, and half the step in
+            every other one.
         repeat_seed: Seed of the repeats.
         record: Record the trial: a page that plays it, or a table of every millisecond.
         plot: Draw force against depth.
-        log: Write force and pose at 500 Hz, as a robot logs them, from the search on.
+        log: Write force and pose at 500 Hz, as a robot logs them, from the start of the search.
         probe: Slide the part on a flat plate instead of inserting it: 8 mm along y and back at 5 N, for
             `identify`.
         svg: Draw plug, fingertips and socket at the end of each phase.
@@ -245,7 +245,7 @@ def capture_map(
     """Trace the capture map of one finger, as ``optimize map`` does.
 
     The tolerance window is its section along y without a second error. At most 300 trials are simulated;
-    places between two equal outcomes are filled in.
+    points between two equal outcomes are filled in.
 
     Args:
         task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
@@ -306,8 +306,8 @@ def finger(
         phase_mm: Position of the first rib, mm [default: that of the finger file].
         set: A number of the finger file, for example finger.skin.thickness_mm=0.8.
         svg: Draw the finger at rest and under a force on its pad.
-        load_n: This force, N: y towards the part, z up; for example -5,0 for a grasp or 0,10 for a part
-            pulling up.
+        load_n: Force on the pad for svg, N: y towards the part, z up; -5,0 is a grasp, 0,10 a part that
+            pulls up.
 
     Raises:
         InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
@@ -332,7 +332,7 @@ def compare(
     Args:
         studies: Folders of the studies; several seeds of an optimizer give median and quartiles.
         svg: Draw the best value so far of each optimizer.
-        html: Write table and picture as a page.
+        html: Write table and chart as an HTML page.
 
     Raises:
         InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
@@ -747,8 +747,8 @@ def config() -> Found:
     """Print the settings of finger-opt.toml in this folder or above, as ``optimize config`` does.
 
     The file sets task, robot, cell, measurements, space and threads for all commands in its folder and
-    below. Options precede it; no_config ignores it. Seed and budget belong to one study and cannot be set
-    there.
+    below. Options take precedence over it; no_config ignores it. Seed and budget belong to one study and
+    cannot be set there.
 
     Raises:
         InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.

@@ -97,7 +97,8 @@ def import_parts(
     Args:
         plug: File of the plug, or of both.
         socket: File of the socket.
-        assembly: File of both in their mated pose, in place of ``plug`` and ``socket``; the plug is what can be withdrawn.
+        assembly: File of both in their mated pose, in place of ``plug`` and ``socket``; the plug is the part
+            that can be withdrawn.
         out: Task file to write; the plug's name with ``.toml`` unless given.
         unit: Unit of the files; found from the shapes unless given.
         insert_along: Where the plug points in its file.

@@ -86,7 +86,7 @@ class Progress:
             with suppress(ImportError):
                 self.bar = importlib.import_module("tqdm.auto").tqdm(unit="evaluation")
 
-    def show(self, study: _native.Guided, ended: bool = False) -> None:
+    def show(self, study: _native.AskTellStudy, ended: bool = False) -> None:
         """The line, if it is time for it: twice a second where it can be written over."""
         now = time.monotonic()
         if self.callbacks or self.bar is not None:
@@ -117,7 +117,7 @@ class Progress:
 
 
 def run_open(
-    begin: Callable[[int | None], _native.Guided],
+    begin: Callable[[int | None], _native.AskTellStudy],
     executor: Any | None,
     progress: bool,
     workers: int | None,
@@ -151,7 +151,7 @@ class Course:
     """The work that is out, and how often each was lost."""
 
     def __init__(
-        self, study: _native.Guided, executor: Any, performer: Performer, retries: int, progress: Progress
+        self, study: _native.AskTellStudy, executor: Any, performer: Performer, retries: int, progress: Progress
     ) -> None:
         self.study = study
         self.executor = executor

@@ -40,7 +40,7 @@ class Study(Asked):
     True
     """
 
-    def __init__(self, asked: _native.Asked) -> None:
+    def __init__(self, asked: _native.StudyRequest) -> None:
         #: The folder.
         self.path: str = os.path.abspath(asked.create())
         self._asked = asked
@@ -48,7 +48,7 @@ class Study(Asked):
     @classmethod
     def asked(cls, words: Mapping[str, Any]) -> Study:
         """The study of these words, in its folder; a batch that is not given follows from the workers of :meth:`run`."""
-        return cls(_native.Asked(keywords(words)))
+        return cls(_native.StudyRequest(keywords(words)))
 
     @classmethod
     def resumed(cls, folder: StrPath, words: Mapping[str, Any] | None = None) -> Study:
@@ -56,7 +56,7 @@ class Study(Asked):
         if not os.path.isfile(os.path.join(folder, "study.toml")):
             raise wrong("folder", f"{os.fspath(folder)} is not a study: it has no study.toml")
         _native.Recorded(os.fspath(folder))
-        return cls(_native.Asked.resumed(os.fspath(folder), keywords(words or {})))
+        return cls(_native.StudyRequest.resumed(os.fspath(folder), keywords(words or {})))
 
     @checked
     def run(
@@ -95,7 +95,7 @@ class Study(Asked):
         """Writes tables and plots again, as ``optimize report`` does; gives the path of the page."""
         return str(called("report", {"dir": self.path}, Found)["page"])
 
-    def _open(self, workers: int | None) -> _native.Guided:
+    def _open(self, workers: int | None) -> _native.AskTellStudy:
         return self._asked.open(workers)
 
     def _begun(self) -> bool:

@@ -231,7 +231,7 @@ def main(words: list[str]) -> int:
             "the installed Python package finger-opt is of other sources than this program; "
             "install the one from the same folder: pip install ./python"
         )
-    asked = _native.Asked.in_words(words)
+    asked = _native.StudyRequest.in_words(words)
     if asked.executor is None:
         raise _native.InputError("give --executor")
     with named(asked.executor) as executor:

@@ -12,7 +12,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
 /// Interval at which a long call checks for Ctrl-C.
-const LOOK: Duration = Duration::from_millis(100);
+const SIGNAL_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Runs `work`, which may use the shared threads, without the interpreter's lock.
 pub fn released<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
@@ -20,7 +20,7 @@ pub fn released<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyR
     Ok(py.allow_threads(work))
 }
 
-/// Runs long `work` without the interpreter's lock: Ctrl-C sets its flag and is raised once it has ended.
+/// Runs long `work` without the interpreter's lock: Ctrl-C sets its flag and is raised once `work` has ended.
 pub fn interruptible<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(&AtomicBool) -> T + Send,
@@ -40,11 +40,11 @@ pub fn watched<T: Send>(
     py.allow_threads(|| {
         std::thread::scope(|scope| {
             let (sender, receiver) = mpsc::channel();
-            // The receiver is there until the scope ends.
+            // The receiver lives until the scope ends.
             scope.spawn(move || sender.send(work()));
             let mut signal = Ok(());
             loop {
-                match receiver.recv_timeout(LOOK) {
+                match receiver.recv_timeout(SIGNAL_INTERVAL) {
                     Ok(done) => return signal.map(|()| done),
                     Err(RecvTimeoutError::Timeout) if signal.is_ok() => {
                         signal = Python::with_gil(|py| py.check_signals()).map_err(signalled);
@@ -52,7 +52,7 @@ pub fn watched<T: Send>(
                     }
                     Err(RecvTimeoutError::Timeout) => {}
                     Err(RecvTimeoutError::Disconnected) => {
-                        return Err(StudyError::new_err("the simulation broke off"));
+                        return Err(StudyError::new_err("the simulation ended unexpectedly"));
                     }
                 }
             }
@@ -60,13 +60,13 @@ pub fn watched<T: Send>(
     })
 }
 
-/// Reads keywords: an object of JSON.
+/// Parses keywords from a JSON object.
 pub fn read(keywords: &str) -> PyResult<Map<String, Value>> {
     serde_json::from_str(keywords).map_err(|error| InputError::new_err(error.to_string()))
 }
 
-/// Runs a command by its name, `task new`, with its options as a JSON object; returns its result as JSON, and
-/// a picture or a page of it, if there is one.
+/// Runs a command by its name (`task new`) with its options as a JSON object. Returns its result as JSON, and its
+/// picture or page, if there is one.
 #[pyfunction]
 pub fn call(py: Python<'_>, command: &str, keywords: &str) -> PyResult<(String, Option<String>)> {
     let keywords = read(keywords)?;

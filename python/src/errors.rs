@@ -11,27 +11,27 @@ pyo3::create_exception!(
     finger_opt,
     InputError,
     PyValueError,
-    "A wrong argument or input file; the text says what would be right.\n\n\
-     `file`, `line` (from 1) and `key` (field, column or argument) say where, None where unknown."
+    "Invalid argument or input file; the text gives the accepted values.\n\n\
+     `file`, `line` (from 1) and `key` (field, column or argument) are the place of the error; None if unknown."
 );
-pyo3::create_exception!(finger_opt, TaskError, InputError, "A wrong task file, or none.");
+pyo3::create_exception!(finger_opt, TaskError, InputError, "Invalid or missing task file.");
 pyo3::create_exception!(
     finger_opt,
     StudyError,
     PyRuntimeError,
-    "Something failed while running; what was measured before is safe."
+    "Failure at run time; earlier results of a study are saved."
 );
 pyo3::create_exception!(
     finger_opt,
     Refused,
     StudyError,
-    "A result that cannot be one of the work it is said to be of; nothing of it is believed."
+    "Result that does not belong to its work; it is discarded."
 );
 pyo3::create_exception!(
     finger_opt,
     Interrupted,
     PyKeyboardInterrupt,
-    "Ctrl-C ended it; what a study had measured before is safe."
+    "Cancelled by Ctrl-C; earlier results of a study are saved."
 );
 
 /// Adds the exceptions to the module.
@@ -52,7 +52,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     Ok(())
 }
 
-/// Process of the threads that all simulations share; 0 before they exist.
+/// Number of the process that owns the shared threads of all simulations; 0 before they exist.
 static PROCESS: AtomicU32 = AtomicU32::new(0);
 
 /// Checks that the threads of the library belong to this process.

@@ -15,7 +15,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 pub struct Insertion(Mutex<driven::Insertion>);
 
 /// Numbers of a state in the order of its fields, the outcome, and the failure class.
-type Stand = (Vec<f64>, Option<&'static str>, Option<u8>);
+type StateTuple = (Vec<f64>, Option<&'static str>, Option<u8>);
 
 impl Insertion {
     fn open(&self) -> MutexGuard<'_, driven::Insertion> {
@@ -37,29 +37,29 @@ impl Insertion {
     }
 
     /// Restarts with the start shifted along y, mm.
-    fn start(&self, py: Python<'_>, offset_mm: f64) -> PyResult<Stand> {
+    fn start(&self, py: Python<'_>, offset_mm: f64) -> PyResult<StateTuple> {
         finite("offset_mm", &[offset_mm])?;
-        Ok(stand(&py.allow_threads(|| self.open().start(offset_mm))))
+        Ok(state_tuple(&py.allow_threads(|| self.open().start(offset_mm))))
     }
 
     /// Runs a control step.
-    fn step(&self, py: Python<'_>, velocity_mm_per_s: [f64; 3]) -> PyResult<Stand> {
+    fn step(&self, py: Python<'_>, velocity_mm_per_s: [f64; 3]) -> PyResult<StateTuple> {
         finite("velocity", &velocity_mm_per_s)?;
-        Ok(stand(&py.allow_threads(|| self.open().step(velocity_mm_per_s))))
+        Ok(state_tuple(&py.allow_threads(|| self.open().step(velocity_mm_per_s))))
     }
 }
 
-fn finite(what: &str, numbers: &[f64]) -> PyResult<()> {
+fn finite(name: &str, numbers: &[f64]) -> PyResult<()> {
     match numbers.iter().all(|number| number.is_finite()) {
         true => Ok(()),
         false => {
-            let error = InputError::new_err(format!("{what}: has to be finite"));
-            Err(placed(Place::default().key(what), error))
+            let error = InputError::new_err(format!("{name}: must be finite"));
+            Err(placed(Place::default().key(name), error))
         }
     }
 }
 
-fn stand(state: &State) -> Stand {
+fn state_tuple(state: &State) -> StateTuple {
     let mut numbers = vec![state.time_s];
     numbers.extend(state.tcp_mm.iter().chain(&state.turn_deg).chain(&state.force_n));
     numbers.extend(state.tip_mm);

@@ -28,12 +28,12 @@ fn commands() -> String {
     serde_json::json!(manual::commands(program::program())).to_string()
 }
 
-/// The extension module.
+/// Defines the extension module.
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     let executable: OsString = module.py().import("sys")?.getattr("executable")?.extract()?;
-    // What the library asks Python for is asked of this one; of a second load it is the same.
+    // The library runs Python code with this interpreter. A second import would set the same path.
     let _ = python::OWN.set(executable);
     module.add("LARGEST_FORCE_N", LARGEST_FORCE_N)?;
     module.add("LARGEST_LENGTH_MM", LARGEST_LENGTH_MM)?;
@@ -53,8 +53,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<insertion::Insertion>()?;
     module.add_class::<sweep::Sweep>()?;
     module.add_class::<study::Stop>()?;
-    module.add_class::<study::Asked>()?;
+    module.add_class::<study::StudyRequest>()?;
     module.add_class::<study::Recorded>()?;
-    module.add_class::<study::Guided>()?;
+    module.add_class::<study::AskTellStudy>()?;
     Ok(())
 }

@@ -9,7 +9,7 @@ use finger_opt::context::Context;
 use finger_opt::failure::Failure;
 use finger_opt::keywords::request;
 use finger_opt::program::program;
-use finger_opt::studies::ask_tell::{self, AskTellStudy, Order, RejectedResult};
+use finger_opt::studies::ask_tell::{self, Order, RejectedResult};
 use finger_opt::studies::recommended;
 use finger_opt::studies::request::AnyStudy;
 use finger_opt::studies::summary::summary;
@@ -65,40 +65,44 @@ pub fn source_sha256() -> &'static str {
 
 /// Request of a study, and the form of its output.
 #[pyclass(frozen)]
-pub struct Asked {
+pub struct StudyRequest {
     study: AnyStudy,
     executor: Option<String>,
     quiet: bool,
-    shown: Shown,
+    format: OutputFormat,
 }
 
 /// Form of the output of a study.
 #[derive(Clone, Copy, Default)]
-struct Shown {
+struct OutputFormat {
     json: bool,
     verbose: bool,
 }
 
-impl Asked {
+impl StudyRequest {
     fn of(study: AnyStudy) -> Self {
-        Asked { study, executor: None, quiet: false, shown: Shown::default() }
+        StudyRequest { study, executor: None, quiet: false, format: OutputFormat::default() }
     }
 }
 
 #[pymethods]
-impl Asked {
-    /// The study of these keywords.
+impl StudyRequest {
+    /// Creates the request for a study with these keywords.
     #[new]
     fn new(keywords: &str) -> PyResult<Self> {
         let request = request(&read(keywords)?).map_err(raise)?;
-        Ok(Asked::of(AnyStudy::asked(request)))
+        Ok(StudyRequest::of(AnyStudy::asked(request)))
     }
 
-    /// The study in a folder, to be gone on with by these keywords.
+    /// Creates the request to continue the study in a folder with these keywords.
     #[staticmethod]
     fn resumed(folder: PathBuf, keywords: &str) -> PyResult<Self> {
         let run = request(&read(keywords)?).map_err(raise)?;
-        Ok(Asked::of(AnyStudy::Resumed(resume::Request { dir: folder, run, verbose: false })))
+        Ok(StudyRequest::of(AnyStudy::Resumed(resume::Request {
+            dir: folder,
+            run,
+            verbose: false,
+        })))
     }
 
     /// Parses words of the command line.
@@ -113,17 +117,17 @@ impl Asked {
         };
         let study = read.map_err(raise)?;
         let (run, verbose) = study.run_options();
-        let (executor, shown) = (run.executor.clone(), Shown { json, verbose });
-        Ok(Asked { study, executor, quiet, shown })
+        let (executor, format) = (run.executor.clone(), OutputFormat { json, verbose });
+        Ok(StudyRequest { study, executor, quiet, format })
     }
 
-    /// Executor.
+    /// Returns the executor, if one was requested.
     #[getter]
     fn executor(&self) -> Option<&str> {
         self.executor.as_deref()
     }
 
-    /// Whether progress is hidden.
+    /// Returns whether progress is hidden.
     #[getter]
     fn quiet(&self) -> bool {
         self.quiet
@@ -135,14 +139,14 @@ impl Asked {
     }
 
     /// Starts or continues the study.
-    fn open(&self, py: Python<'_>, workers: Option<u64>) -> PyResult<Guided> {
+    fn open(&self, py: Python<'_>, workers: Option<u64>) -> PyResult<AskTellStudy> {
         let open = || {
             let open = self.study.open(workers)?;
-            open.warn(&Context::terminal(self.shown.json, true, program))?;
-            AskTellStudy::new(open)
+            open.warn(&Context::terminal(self.format.json, true, program))?;
+            ask_tell::AskTellStudy::new(open)
         };
         let opened = released(py, open)?.map_err(raise)?;
-        Ok(Guided { open: Mutex::new(Some(opened)), shown: self.shown })
+        Ok(AskTellStudy { open: Mutex::new(Some(opened)), format: self.format })
     }
 }
 
@@ -197,33 +201,33 @@ impl Recorded {
 
 /// Open study whose designs the caller measures.
 #[pyclass(frozen)]
-pub struct Guided {
-    open: Mutex<Option<AskTellStudy>>,
+pub struct AskTellStudy {
+    open: Mutex<Option<ask_tell::AskTellStudy>>,
     /// Form of its output.
-    shown: Shown,
+    format: OutputFormat,
 }
 
 /// Work to be measured, empty if a result is pending, and the ending, if there is one.
 type Next<'py> = (Vec<(u64, Bound<'py, PyBytes>)>, Option<String>);
 
-impl Guided {
-    fn study(&self) -> MutexGuard<'_, Option<AskTellStudy>> {
+impl AskTellStudy {
+    fn study(&self) -> MutexGuard<'_, Option<ask_tell::AskTellStudy>> {
         self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Calls `what` with the study, without the interpreter's lock.
+    /// Calls `action` with the study, without the interpreter's lock.
     fn with<T: Send>(
         &self,
         py: Python<'_>,
-        what: impl FnOnce(&mut AskTellStudy) -> T + Send,
+        action: impl FnOnce(&mut ask_tell::AskTellStudy) -> T + Send,
     ) -> PyResult<T> {
-        let done = released(py, || self.study().as_mut().map(what))?;
+        let done = released(py, || self.study().as_mut().map(action))?;
         done.ok_or_else(|| StudyError::new_err("the study is closed"))
     }
 }
 
 #[pymethods]
-impl Guided {
+impl AskTellStudy {
     fn next<'py>(&self, py: Python<'py>) -> PyResult<Next<'py>> {
         let order = interruptible(py, |stop: &AtomicBool| {
             self.study().as_mut().map(|study| study.order(stop))
@@ -275,9 +279,9 @@ impl Guided {
         let answer = Answer::of(&ended.record);
         let analyse = |stop: &AtomicBool| ended.analyse(&answer, stop);
         let analyses = interruptible(py, analyse)?.map_err(raise)?;
-        let text = match self.shown.json {
+        let text = match self.format.json {
             true => summary(&ended, &answer, &analyses).to_string() + "\n",
-            false => text::ended(&ended, &answer, self.shown.verbose) + &text::analyses(&analyses),
+            false => text::ended(&ended, &answer, self.format.verbose) + &text::analyses(&analyses),
         };
         Ok((text, unusable))
     }

@@ -48,14 +48,14 @@ impl Sweep {
         Ok(Sweep(sweep.map_err(raise)?))
     }
 
-    /// Number of windows that were in the cache.
+    /// Returns the number of windows that were in the cache.
     #[getter]
     fn known(&self) -> u64 {
         self.0.known()
     }
 
-    /// Measures the fingers of the rows of these columns: `density`, `direction`, numbers of task and finger by their
-    /// keys. Ends early once `stop` is set.
+    /// Measures one finger for each row of these columns: `density`, `direction`, and numbers of task and finger by
+    /// their keys. Ends early once `stop` is set.
     #[pyo3(signature = (columns, stop=None))]
     fn measure<'py>(
         &self,
@@ -98,7 +98,8 @@ fn fingers(columns: &BTreeMap<String, Vec<f64>>) -> PyResult<Vec<FingerRequest>>
     let mut fingers = vec![FingerRequest::default(); rows];
     for (name, numbers) in columns {
         if numbers.len() != rows {
-            let problem = format!("{name}: has {} rows, another column {rows}", numbers.len());
+            let problem =
+                format!("{name}: has {} rows, but another column has {rows}", numbers.len());
             return Err(InputError::new_err(problem));
         }
         for (finger, number) in fingers.iter_mut().zip(numbers) {

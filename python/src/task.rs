@@ -11,13 +11,13 @@ use pyo3::prelude::*;
 use rand::RngExt;
 use serde_json::{Value, json};
 
-/// Every outcome as a map has it: number, words, colour.
+/// Returns all outcomes of a map: number, words, colour.
 #[pyfunction]
 pub fn outcomes() -> Vec<(i8, &'static str, String)> {
     report::map::outcomes().into()
 }
 
-/// The parameters of a space as the first line of `ask-tell` has them, as JSON.
+/// Returns the parameters of a space in the form of the first line of `ask-tell`, as JSON.
 #[pyfunction]
 pub fn space(name: &str) -> PyResult<String> {
     let space = read_space(name).map_err(raise)?;
@@ -28,21 +28,21 @@ pub fn space(name: &str) -> PyResult<String> {
     Ok(space.parameters.iter().map(line).collect::<Value>().to_string())
 }
 
-/// Name in messages and text of the task file of this name or path, checked.
+/// Reads and checks the task file of this name or path; returns its name in messages and its text.
 #[pyfunction]
 pub fn task(name: &str) -> PyResult<(String, String)> {
     let Source { file, text } = read_task(name).map_err(raise)?.source;
     Ok((file, text))
 }
 
-/// The fields of a task file, checked, as JSON.
+/// Checks a task file and returns its fields as JSON.
 #[pyfunction]
 pub fn task_fields(file: String, text: String) -> PyResult<String> {
     let fields = TaskFile::fields(Source { file, text }).map_err(raise)?;
     Ok(json!(fields).to_string())
 }
 
-/// The text of a task file with these fields, given as JSON; checked.
+/// Returns the text of a task file with these fields, given as JSON, and checks it.
 #[pyfunction]
 pub fn task_text(file: &str, fields: &str) -> PyResult<String> {
     let fields: Value = serde_json::from_str(fields)
@@ -50,7 +50,7 @@ pub fn task_text(file: &str, fields: &str) -> PyResult<String> {
     Ok(TaskFile::of_fields(file, &fields).map_err(raise)?.source.text)
 }
 
-/// A cell whose numbers are drawn from the shipped priors: text of its file, and its rows as JSON.
+/// Draws a cell from the shipped priors; returns the text of its file, and its parameters as JSON.
 #[pyfunction]
 pub fn drawn_cell(seed: u64) -> PyResult<(String, String)> {
     let wrong = |error: &dyn std::fmt::Display| InputError::new_err(error.to_string());

@@ -103,7 +103,7 @@ def test_the_workers_end_when_their_driver_is_killed(tmp_path, expected):
     os.kill(driver, signal.SIGKILL)
     assert process.wait(PATIENCE_S) == 1
     assert all_end(others)
-    assert "the Python package was ended" in process.stderr.read()
+    assert "the Python package was terminated" in process.stderr.read()
     assert goes_on(tmp_path) == expected
 
 

@@ -132,10 +132,10 @@ def test_the_names_in_signatures_are_those_that_are_shipped():
 def test_the_words_of_a_study_are_those_that_the_library_takes():
     for word, hint in (("optimizer", _words.OptimizerName), ("objective", _words.Objective)):
         with pytest.raises(fo.InputError) as raised:
-            _native.Asked(json.dumps({"task": "usb", word: "nothing"}))
+            _native.StudyRequest(json.dumps({"task": "usb", word: "nothing"}))
         assert all(name in str(raised.value) for name in get_args(hint)), raised.value
         for name in get_args(hint):
-            _native.Asked(json.dumps({"task": "usb", word: name}))
+            _native.StudyRequest(json.dumps({"task": "usb", word: name}))
 
 
 WRONG = [

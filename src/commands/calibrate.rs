@@ -4,7 +4,7 @@ use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::progress::cost;
-use crate::setup::bench::{BenchRequest, HowCalibrated, Prepared, folds};
+use crate::setup::bench::{BenchRequest, CalibrationRequest, Prepared, folds};
 use crate::setup::measured;
 use calibration::bench::Settings;
 use calibration::calibrate::Calibration;
@@ -30,7 +30,7 @@ pub struct Request {
     pub bench: BenchRequest,
     /// Options of the computation.
     #[command(flatten)]
-    pub how: HowCalibrated,
+    pub calibration: CalibrationRequest,
     /// Folder for the tables
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -42,11 +42,11 @@ impl command::Request for Request {
     const PROGRESS: bool = true;
 
     fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
-        let simulations = self.bench.setup.tasks.len().max(1) * self.how.simulations();
+        let simulations = self.bench.setup.tasks.len().max(1) * self.calibration.simulations();
         context.begin(simulations as f64 * cost::SIMULATION);
         let source = measured::file(&self.bench.measurements)?;
         let Prepared { subjects, layout, settings } =
-            self.how.prepare((&self.bench, &source), &[], context)?;
+            self.calibration.prepare((&self.bench, &source), &[], context)?;
         let done = |[done, of]: [usize; 2]| context.part(&folds(done, of));
         let found = Calibration::new(layout, &subjects, &Settings { done: &done, ..settings });
         context.check()?;

@@ -20,7 +20,7 @@ pub struct Request {
     /// Draw the best value so far of each optimizer
     #[arg(long, value_name = "FILE.svg")]
     pub svg: Option<PathBuf>,
-    /// Write table and picture as a page
+    /// Write table and chart as an HTML page
     #[arg(long, value_name = "FILE.html")]
     pub html: Option<PathBuf>,
 }

@@ -1,4 +1,4 @@
-//! `optimize config`: prints the settings that hold in this folder.
+//! `optimize config`: prints the settings in effect in this folder.
 
 use crate::command::{self, Output};
 use crate::context::Context;
@@ -12,29 +12,29 @@ use serde::Serialize;
 
 /// Print the settings of finger-opt.toml in this folder or above
 ///
-/// The file sets task, robot, cell, measurements, space and threads for all commands in its folder and below.
-/// Options precede it; --no-config ignores it. Seed and budget belong to one study and cannot be set there.
+/// The file sets task, robot, cell, measurements, space and threads for all commands in its folder and below. Options
+/// take precedence over it; --no-config ignores it. Seed and budget belong to one study and cannot be set there.
 #[derive(Debug, clap::Args)]
 #[command(display_order = 45, after_help = "Example: optimize config --json")]
 pub struct Request {}
 
-/// Settings that hold in the current folder.
+/// Settings in effect in the current folder.
 #[derive(Serialize)]
-pub struct Held {
+pub struct CurrentSettings {
     /// Path of the project file.
     file: Option<String>,
-    /// What it sets, by option.
+    /// Values that it sets, by option.
     settings: Settings,
 }
 
 impl command::Request for Request {
-    type Response = Output<Held>;
+    type Response = Output<CurrentSettings>;
 
     fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
         let found = Project::current()?;
         found.iter().try_for_each(check)?;
         let (file, settings) = found.map(|found| (found.file, found.settings)).unzip();
-        let value = Held { file, settings: settings.unwrap_or_default() };
+        let value = CurrentSettings { file, settings: settings.unwrap_or_default() };
         Ok(Output { text: value.text(), value, picture: None })
     }
 }
@@ -51,13 +51,13 @@ fn check(Project { file, settings }: &Project) -> Result<(), Failure> {
     }
 }
 
-impl Held {
+impl CurrentSettings {
     fn text(&self) -> String {
         let Settings { task, robot, cell, measurements, space, threads } = self.settings.clone();
         let none = format!("no {PROJECT_FILE} in this folder or above");
         let from = self.file.as_deref().unwrap_or_default();
         let threads = threads.map(|count| count.to_string());
-        let held = [
+        let rows = [
             ("task", task, "none"),
             ("robot", robot, DEFAULT_ROBOT),
             ("cell", cell, "none"),
@@ -65,7 +65,7 @@ impl Held {
             ("space", space, DEFAULT_SPACE),
             ("threads", threads, "one per processor"),
         ];
-        let held = held.into_iter().map(|(key, set, default)| {
+        let rows = rows.into_iter().map(|(key, set, default)| {
             let (value, origin) = match &set {
                 Some(value) => (value.as_str(), from),
                 None => (default, "default"),
@@ -73,6 +73,6 @@ impl Held {
             (key.to_owned(), format!("{value:<24} ({origin})"))
         });
         let first = ("file".to_owned(), self.file.clone().unwrap_or(none));
-        lines(std::iter::once(first).chain(held))
+        lines(std::iter::once(first).chain(rows))
     }
 }

@@ -48,7 +48,7 @@ pub struct Request {
     #[command(flatten)]
     pub repeat: Option<RepeatRequest>,
     /// Skip the window with stiffness computed from the ribs
-    // On which of the two the bench agrees depends on the task (docs/notes/finger.md).
+    // Which of the two agrees better with the bench depends on the task (docs/notes/finger.md).
     #[arg(long, hide = true)]
     pub no_ribs: bool,
 }
@@ -91,7 +91,7 @@ impl command::Request for Request {
         let window = &evaluation.window;
         let bands = |repeat: RepeatRequest| {
             let (specimen, taught) = (&chosen.specimen, evaluation.taught);
-            repeat.of(&setup, specimen, taught, stop, |repeats| repeats.bands(window))
+            repeat.run(&setup, specimen, taught, stop, |repeats| repeats.bands(window))
         };
         let repeat = self.repeat.filter(|_| window.nominal == Outcome::Inserted);
         let bands = repeat.map(bands).transpose()?;
@@ -105,7 +105,7 @@ impl Request {
     pub(crate) fn prepared(&self) -> Result<(Setup, Plan), Failure> {
         let mut setup = self.setup.setup()?;
         if let Some(name) = &self.uncertainty {
-            setup = setup.under_named(name)?;
+            setup = setup.with_named_uncertainty(name)?;
         }
         let plan = setup.plan(self.seed, |_| setup.uncertainty.is_some())?;
         Ok((setup, plan))

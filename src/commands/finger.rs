@@ -35,7 +35,7 @@ const LARGEST_LOAD_N: f64 = 1000.0;
     after_help = "Example: optimize finger --density 20 --direction 20 --svg finger.svg"
 )]
 pub struct Request {
-    /// Its infill.
+    /// Infill of the finger.
     #[command(flatten)]
     pub infill: InfillRequest,
     /// Finger: finray9, or the path of a finger file
@@ -50,16 +50,16 @@ pub struct Request {
     /// Draw the finger at rest and under a force on its pad
     #[arg(long, value_name = "FILE.svg")]
     pub svg: Option<PathBuf>,
-    /// This force, N: y towards the part, z up; for example -5,0 for a grasp or 0,10 for a part pulling up
-    #[arg(long, value_name = "Y,Z", default_value = "-5,0", value_parser = load,
+    /// Force on the pad for --svg, N: y towards the part, z up; -5,0 is a grasp, 0,10 a part that pulls up
+    #[arg(long, value_name = "Y,Z", default_value = "-5,0", value_parser = force,
         allow_hyphen_values = true)]
     pub load_n: [f64; 2],
 }
 
-fn load(text: &str) -> Result<[f64; 2], String> {
+fn force(text: &str) -> Result<[f64; 2], String> {
     let number = |part: &str| part.trim().parse::<f64>().ok();
-    let force = text.split_once(',').and_then(|(y, z)| Some([number(y)?, number(z)?]));
-    let [y, z] = force.unwrap_or_default();
+    let parts = text.split_once(',').and_then(|(y, z)| Some([number(y)?, number(z)?]));
+    let [y, z] = parts.unwrap_or_default();
     match (1e-3..=LARGEST_LOAD_N).contains(&libm::hypot(y, z)) {
         true => Ok([y, z]),
         false => {
@@ -70,7 +70,7 @@ fn load(text: &str) -> Result<[f64; 2], String> {
 
 /// Finger with its computed stiffness, and the prediction of the stiffness model.
 #[derive(Serialize)]
-pub struct Ribs {
+pub struct ComputedFinger {
     finger: String,
     infill_density_percent: f64,
     infill_direction_deg: f64,
@@ -93,7 +93,7 @@ struct Across {
 }
 
 impl command::Request for Request {
-    type Response = Output<Ribs>;
+    type Response = Output<ComputedFinger>;
 
     fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
         if let Some((key, _)) = self.set.iter().find(|(key, _)| !is_shape(key)) {
@@ -110,10 +110,11 @@ impl command::Request for Request {
         let computed = mechanics::compute(&geometry).map_err(Failure::input)?;
         let mut design = Design::infill(density, direction);
         design.0.extend(set.0);
-        let ribs = Ribs::new(&geometry, &computed, measured_model(&file.finger, &design)?);
+        let value =
+            ComputedFinger::new(&geometry, &computed, measured_model(&file.finger, &design)?);
         let svg = picture::svg(&geometry, self.load_n).map_err(Failure::input)?;
-        let text = ribs.text(&geometry);
-        Output::drawn((ribs, text), svg, self.svg.as_ref())
+        let text = value.text(&geometry);
+        Output::drawn((value, text), svg, self.svg.as_ref())
     }
 }
 
@@ -144,10 +145,10 @@ impl From<&PlanarStiffness> for Planar {
     }
 }
 
-impl Ribs {
+impl ComputedFinger {
     fn new(geometry: &Geometry, computed: &FingerStiffness, model: Option<Prediction>) -> Self {
         let (design, cross) = (&geometry.design, &computed.cross);
-        Ribs {
+        ComputedFinger {
             finger: geometry.finger.name.clone(),
             infill_density_percent: design.density_percent,
             infill_direction_deg: design.direction_deg,
@@ -166,7 +167,9 @@ impl Ribs {
     }
 
     fn text(&self, geometry: &Geometry) -> String {
-        let Ribs { finger, infill_density_percent, infill_direction_deg, phase_mm, .. } = self;
+        let ComputedFinger {
+            finger, infill_density_percent, infill_direction_deg, phase_mm, ..
+        } = self;
         let material = &geometry.finger.material;
         let model = self.measured_model.as_ref();
         let model = model.map(|prediction| lines::stiffness(prediction)[0].1.clone());

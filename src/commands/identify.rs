@@ -102,7 +102,7 @@ impl command::Request for Request {
         let mut remarks = question.remarks(&file).map_err(Failure::input)?;
         let found = question.answer().map_err(Failure::input)?;
         not_stopped(stop)?;
-        // Curves that were compared are shown all the same, but make no cell.
+        // Compared curves are still shown, but give no cell.
         if !found.is_informative() && (self.out.is_some() || found.compared.is_empty()) {
             return Err(nothing_learnt(&remarks));
         }

@@ -1,4 +1,4 @@
-//! `optimize map`: how insertions end over two errors of the start.
+//! `optimize map`: outcomes of insertions over two errors of the start.
 
 use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
@@ -18,7 +18,7 @@ use std::sync::atomic::AtomicBool;
 
 /// Trace the capture map of one finger
 ///
-/// The tolerance window is its section along y without a second error. At most 300 trials are simulated; places
+/// The tolerance window is its section along y without a second error. At most 300 trials are simulated; points
 /// between two equal outcomes are filled in.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
@@ -111,15 +111,15 @@ impl Mapped {
             });
         lines.push((format!("at {} = 0", second.name), window));
         let coarser = if map.traced_step > first.step {
-            format!("; its border within {} for want of trials", map.traced_step)
+            format!("; border traced to {} only (limit of trials)", map.traced_step)
         } else {
             String::new()
         };
-        let places: usize = map.outcomes.iter().map(Vec::len).sum();
+        let points: usize = map.outcomes.iter().map(Vec::len).sum();
         let steps = format!("{} {}, {} {}", first.step, first.unit, second.step, second.unit);
         lines.push((
             "trials".to_owned(),
-            format!("{} for {places} places, every {steps}{coarser}", map.trials),
+            format!("{} for {points} grid points, every {steps}{coarser}", map.trials),
         ));
         format!("task          {}\n{}{}", map.task, chosen.text(), layout::lines(lines))
     }

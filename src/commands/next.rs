@@ -4,7 +4,7 @@ use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::progress::cost;
-use crate::setup::bench::{BenchRequest, HowCalibrated, Prepared};
+use crate::setup::bench::{BenchRequest, CalibrationRequest, Prepared};
 use crate::setup::measured;
 use ask_tell::stream::stream;
 use calibration::bench::sampled;
@@ -27,9 +27,9 @@ pub enum Among {
 /// Recommend the finger to print next, or to stop printing.
 ///
 /// It is the finger whose measurement is expected to improve the final choice most, by simulation and measurements:
-/// because it may be the best, or because it decides between others. In a space with numbers of the task (codesign)
-/// it is a finger with a strategy; another strategy for a printed finger costs no print. The file of measurements may
-/// be empty or missing.
+/// because it may be the best, or because it decides between others. In a space that varies the task
+/// as well (codesign) it is a finger with a strategy; another strategy for a printed finger needs no new print. The file
+/// of measurements may be empty or missing.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 22,
@@ -49,9 +49,9 @@ pub struct Request {
     /// Smallest expected gain of the chosen finger's range that is worth a print and its measurement, mm
     #[arg(long, value_name = "MM", default_value_t = 0.1, value_parser = print_cost)]
     pub print_cost_mm: f64,
-    /// Options of the computation.
+    /// Options of the calibration.
     #[command(flatten)]
-    pub how: HowCalibrated,
+    pub calibration: CalibrationRequest,
 }
 
 fn print_cost(text: &str) -> Result<f64, String> {
@@ -78,9 +78,9 @@ impl command::Request for Request {
     const PROGRESS: bool = true;
 
     fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
-        context.begin(self.how.simulations() as f64 * cost::SIMULATION);
+        context.begin(self.calibration.simulations() as f64 * cost::SIMULATION);
         if self.bench.setup.tasks.len() > 1 {
-            return Err(Failure::usage("give a single --task"));
+            return Err(Failure::usage("give one --task"));
         }
         let published = match self.among {
             Among::Space => Vec::new(),
@@ -98,7 +98,7 @@ impl command::Request for Request {
             true => Source { file: file.clone(), text: String::new() },
             false => measured::file(file)?,
         };
-        let prepared = self.how.prepare((&self.bench, &source), &published, context)?;
+        let prepared = self.calibration.prepare((&self.bench, &source), &published, context)?;
         let Prepared { subjects, layout, settings } = prepared;
         let benches = layout.benches(&subjects);
         let one = subjects.first().zip(benches.first());

@@ -5,8 +5,8 @@ use crate::context::Context;
 use crate::failure::Failure;
 use crate::setup::Setup;
 use crate::setup::run::RunRequest;
-use crate::studies::concluded::{self, Concluded};
 use crate::studies::open::OpenStudy;
+use crate::studies::output::{self, StudyOutput};
 use std::path::PathBuf;
 use study::Study;
 
@@ -25,11 +25,11 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    type Response = Concluded;
+    type Response = StudyOutput;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Concluded, Failure> {
-        concluded::run(self.open()?, context, self.verbose)
+    fn run(&self, context: &Context<'_>) -> Result<StudyOutput, Failure> {
+        output::run(self.open()?, context, self.verbose)
     }
 }
 

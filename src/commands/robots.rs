@@ -4,7 +4,7 @@ use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout::{lines, wrapped};
-use crate::setup::robots::{ForCell, robots};
+use crate::setup::robots::{CellRobot, robots};
 use serde::Serialize;
 
 /// List the shipped robots with the cells that they represent, and an example of a robot file
@@ -15,7 +15,7 @@ pub struct Request {}
 /// Shipped robots, and an example of a robot file.
 #[derive(Serialize)]
 pub struct Listed {
-    robots: Vec<ForCell>,
+    robots: Vec<CellRobot>,
     own_file: &'static str,
 }
 
@@ -36,7 +36,7 @@ impl command::Request for Request {
     }
 }
 
-fn text(found: &ForCell) -> String {
+fn text(found: &CellRobot) -> String {
     let stiffness = found.stiffness_n_per_mm.map_or("rigid".to_owned(), |[x, y, z]| {
         format!("stiffness {x:.1}, {y:.1}, {z:.1} N/mm along x, y, z at the TCP")
     });

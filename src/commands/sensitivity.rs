@@ -67,7 +67,7 @@ impl Request {
         }
         let mut setup = self.setup.setup()?;
         if self.uncertainty != "none" {
-            setup = setup.under_named(&self.uncertainty)?;
+            setup = setup.with_named_uncertainty(&self.uncertainty)?;
         }
         if setup.uncertainty.as_ref().is_some_and(|uncertainty| uncertainty.cell.is_some()) {
             return Err(Failure::usage(

@@ -9,9 +9,9 @@ use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE, SetupRequest};
 use crate::setup::run::RunRequest;
 use crate::setup::words::Words;
 use crate::setup::{Setup, measured};
-use crate::studies::concluded::{self, Concluded};
 use crate::studies::on_bench;
 use crate::studies::open::OpenStudy;
+use crate::studies::output::{self, StudyOutput};
 use ask_tell::OptimizerKind;
 use input::shipped::PRIORS;
 use insertion::evaluation::INDIFFERENCE_MM;
@@ -118,11 +118,11 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    type Response = Concluded;
+    type Response = StudyOutput;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Concluded, Failure> {
-        concluded::run(self.open(None)?, context, self.verbose)
+    fn run(&self, context: &Context<'_>) -> Result<StudyOutput, Failure> {
+        output::run(self.open(None)?, context, self.verbose)
     }
 }
 
@@ -130,14 +130,14 @@ impl Request {
     /// Starts or continues the study; without a batch that of a new study is `workers`.
     pub fn open(&self, workers: Option<u64>) -> Result<OpenStudy, Failure> {
         let (setup, config, dir) = self.planned(workers)?;
-        let more = measured::more(&dir, &setup);
+        let more = measured::new_measurements(&dir, &setup);
         let accept_changed = self.run.accept_changed || more.is_some();
         let study = Study::create_or_continue(&dir, &config, &setup.inputs, accept_changed)?;
         let open = OpenStudy::new(study, setup, self.run.clone())?;
         Ok(OpenStudy { new_measurements: more.unwrap_or(0), ..open })
     }
 
-    /// Writes the study without measuring and returns its folder; a study that is there stays as it is.
+    /// Writes the study without measuring and returns its folder; an existing study is not changed.
     pub(crate) fn create(&self) -> Result<PathBuf, Failure> {
         let (setup, config, dir) = self.planned(None)?;
         Study::create(&dir, &config, &setup.inputs)?;
@@ -166,7 +166,8 @@ impl Request {
                 ));
             }
             (true, name) => {
-                setup = setup.under_named(name.as_deref().unwrap_or(DEFAULT_UNCERTAINTY))?;
+                setup =
+                    setup.with_named_uncertainty(name.as_deref().unwrap_or(DEFAULT_UNCERTAINTY))?;
             }
         }
         if let Some(name) = &self.measurements {
@@ -182,7 +183,7 @@ impl Request {
         }
         let dir = self.out.clone().unwrap_or_else(|| self.default_folder(&config));
         if self.batch.is_none() {
-            // A study that goes on keeps its own.
+            // A resumed study keeps its batch.
             let keeps = workers.is_none() || has_begun(&dir);
             let kept = read_config(&dir).ok().filter(|_| keeps).map(|found| found.batch);
             config.batch = kept.or(workers).unwrap_or(DEFAULT_BATCH).clamp(1, LARGEST_BATCH);
@@ -190,8 +191,8 @@ impl Request {
         Ok((setup, config, dir))
     }
 
-    /// Returns `results/<task>-<optimizer>-seed<seed>`, with what else was asked for after the task, so that another
-    /// question has a folder of its own.
+    /// Returns `results/<task>-<optimizer>-seed<seed>`, with all other options that define the study after the task, so
+    /// that another study has a folder of its own.
     fn default_folder(&self, config: &StudyConfig) -> PathBuf {
         let setup = &self.setup;
         let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
@@ -247,7 +248,7 @@ impl Request {
     fn constraints(&self, setup: &Setup) -> Vec<Constraint> {
         let mut constraints = self.constraints.clone();
         let bounded = constraints.iter().any(|constraint| constraint.measure == Measure::PeakForce);
-        // A bench prediction knows no forces.
+        // A bench prediction contains no forces.
         if setup.space.changes_task() && !bounded && setup.measured.is_none() {
             let templates = setup.evaluator.templates.iter();
             let forces = templates.filter_map(|template| template.task.limits.force);
@@ -281,7 +282,7 @@ impl Request {
             polish: self.polish,
             batch: self.batch.unwrap_or(DEFAULT_BATCH),
             asynchronous: self.asynchronous,
-            conclusion: self.run.conclusion(setup, None),
+            conclusion: self.run.analyses(setup, None),
             provenance: setup.provenance(),
             space: setup.space.clone(),
         };

@@ -67,7 +67,7 @@ fn listed(file: &Shipped) -> Result<TaskListed, Failure> {
     Ok(TaskListed { file, clearance_x_mm, clearance_y_mm })
 }
 
-/// Length with two digits, within which the seat is found.
+/// Rounds a length to two digits, the accuracy of the seat.
 fn round(length_mm: f64) -> f64 {
     (length_mm * 100.0).round() / 100.0
 }

@@ -68,7 +68,7 @@ pub struct Request {
     /// Recordings.
     #[command(flatten)]
     pub film: FilmRequest,
-    /// Write force and pose at 500 Hz, as a robot logs them, from the search on
+    /// Write force and pose at 500 Hz, as a robot logs them, from the start of the search
     #[arg(long, value_name = "FILE.csv")]
     pub log: Option<PathBuf>,
     /// Slide the part on a flat plate instead of inserting it: 8 mm along y and back at 5 N, for `identify`
@@ -90,7 +90,7 @@ pub struct Done {
     /// Its outcome.
     #[serde(flatten, serialize_with = "whole")]
     pub trial: Trial,
-    /// Shift of a taught start against that of the task, grid steps.
+    /// Shift of a taught start relative to that of the task, grid steps.
     #[serde(
         rename = "taught_start_mm",
         serialize_with = "taught_mm",
@@ -143,7 +143,7 @@ impl command::Request for Request {
         }
         drop(rig);
         let outcomes = |repeat: RepeatRequest| {
-            repeat.of(&setup, specimen, taught, stop, |repeats| repeats.outcomes(offset))
+            repeat.run(&setup, specimen, taught, stop, |repeats| repeats.outcomes(offset))
         };
         let repeats = self.repeat.map(outcomes).transpose()?.map(|outcomes| {
             let mut counts = BTreeMap::new();
@@ -208,9 +208,9 @@ impl Series {
     }
 }
 
-/// Outcome of a trial, by the keys of `--json`.
+/// Fields of `--json` about the outcome of a trial.
 #[derive(Serialize)]
-pub struct Ended<'a> {
+pub struct OutcomeFields<'a> {
     outcome: &'a str,
     failure: Option<u8>,
     depth_mm: f64,
@@ -219,11 +219,11 @@ pub struct Ended<'a> {
     slip_mm: f64,
 }
 
-impl<'a> From<&'a Trial> for Ended<'a> {
+impl<'a> From<&'a Trial> for OutcomeFields<'a> {
     fn from(trial: &'a Trial) -> Self {
         let Trial { outcome, depth_mm, tilt_deg, peak_force_n, slip_mm, .. } = *trial;
         let (failure, outcome) = (outcome.failure(), outcome.word());
-        Ended { outcome, failure, depth_mm, tilt_deg, peak_force_n, slip_mm }
+        OutcomeFields { outcome, failure, depth_mm, tilt_deg, peak_force_n, slip_mm }
     }
 }
 
@@ -231,7 +231,7 @@ fn whole<S: Serializer>(trial: &Trial, serializer: S) -> Result<S::Ok, S::Error>
     #[derive(Serialize)]
     struct Whole<'a> {
         #[serde(flatten)]
-        ended: Ended<'a>,
+        ended: OutcomeFields<'a>,
         simulated_s: f64,
         retried_at_half_step: bool,
         phases: &'a [PhaseEnd],

@@ -44,7 +44,7 @@ pub struct BenchRequest {
     "Folder of simulations shared with studies; safe to delete [default: results/.cache]"
 )))]
 #[command(mut_arg("no_cache", |off| off.help("Simulate again and store nothing")))]
-pub struct HowCalibrated {
+pub struct CalibrationRequest {
     /// Priors of the parameters that were not measured: bench, or the path of a file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_PRIORS)]
     pub priors: String,
@@ -63,7 +63,7 @@ pub struct HowCalibrated {
 pub struct Prepared<'a> {
     /// Fingers of the tasks, in order.
     pub subjects: Vec<Subject>,
-    /// Meaning of each coordinate.
+    /// Meaning of each coordinate of a sample of the posterior.
     pub layout: Layout,
     /// Settings of the sampler.
     pub settings: Settings<'a>,
@@ -80,13 +80,13 @@ impl BenchRequest {
     }
 }
 
-impl HowCalibrated {
+impl CalibrationRequest {
     /// Returns the simulations per task.
     pub fn simulations(&self) -> usize {
         self.effort.count()
     }
 
-    /// Simulates the tasks and reads their measurements; `more` are fingers to predict besides those of the
+    /// Simulates the tasks and reads their measurements; `more` are fingers to predict in addition to those of the
     /// space.
     pub fn prepare<'a>(
         &self,
@@ -99,7 +99,7 @@ impl HowCalibrated {
         let setup = bench.setup(measurements, &priors)?;
         setup.evaluator.check_paths(&priors, &source.file).map_err(Failure::input)?;
         let experiments = measured::lines(measurements, &setup.task_names())?;
-        let effort = self.effort.or(None);
+        let effort = self.effort.completed(None);
         let calibration = CalibrationContext {
             setup: &setup,
             priors: &priors,

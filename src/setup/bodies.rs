@@ -34,13 +34,13 @@ pub struct Pair {
     /// Unit, if it is known.
     pub unit: Option<Unit>,
     /// Finding about the bodies of an assembly.
-    pub said: Option<(&'static str, String)>,
+    pub finding: Option<(&'static str, String)>,
 }
 
-/// Reads plug and socket; of a file that has both, what one of them leaves is the other.
+/// Reads plug and socket; in a file with both, the bodies that are not named belong to the other part.
 ///
 /// # Errors
-/// If a file cannot be read, has no such body, or does not say which body is the plug.
+/// If a file cannot be read or has no such body, or if the body of the plug is unknown.
 pub fn pair(files: Files, named: &Named, context: &Context<'_>) -> Result<Pair, Failure> {
     let (plug, plug_step) = bodies(named.plug, files[0], context)?;
     let both = named.socket == named.plug;
@@ -51,7 +51,7 @@ pub fn pair(files: Files, named: &Named, context: &Context<'_>) -> Result<Pair, 
         let problem = format!("--unit {}: STEP names its unit, and is read in mm", value(other));
         return Err(Failure::usage(problem));
     }
-    let mut said = None;
+    let mut finding = None;
     let pick = |of: &[Body], names: &[String], file: &str| {
         let picked = (!names.is_empty()).then(|| pick(of, names, file));
         picked.transpose().map_err(Failure::input)
@@ -65,20 +65,20 @@ pub fn pair(files: Files, named: &Named, context: &Context<'_>) -> Result<Pair, 
         (None, Some([socket, rest])) => [if both { rest } else { all(plug) }, socket],
         (None, None) if named.assembled => {
             let (parts, names) = split(files[0], plug, unit)?;
-            said = Some(("plug's bodies", format!("{names}; --plug-body names others")));
+            finding = Some(("plug's bodies", format!("{names}; --plug-body names others")));
             parts
         }
         (None, None) if both => {
             let names: Vec<_> = plug.iter().map(|body| format!("`{}`", body.name)).collect();
             return Err(Failure::usage(format!(
-                "{} has the bodies {}: give --socket, or say which is the plug with --plug-body",
+                "{} has the bodies {}: give --socket, or name those of the plug with --plug-body",
                 files[0],
                 names.join(", ")
             )));
         }
         (None, None) => [all(plug), all(socket)],
     };
-    Ok(Pair { triangles, unit, said })
+    Ok(Pair { triangles, unit, finding })
 }
 
 /// Bodies of a file, and whether it is STEP, which names its unit and is read in mm.

@@ -35,8 +35,8 @@ impl Fingers {
         &self.file.finger
     }
 
-    /// Returns the source of fingers of a design.
-    pub fn made(&self) -> FingerSource {
+    /// Returns the source from which the fingers of designs are made.
+    pub fn finger_source(&self) -> FingerSource {
         match self.source {
             None => FingerSource::Paper,
             Some(_) => self.computed(),

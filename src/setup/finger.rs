@@ -252,8 +252,8 @@ impl Chosen {
         let (below, ahead) = (finger.rcc / MM, finger.ahead / MM);
         let given = match self.specimen.centre_from() {
             CentreFrom::Model => String::new(),
-            CentreFrom::TaskFile => ", as the task file says, not computed".to_owned(),
-            CentreFrom::Design => format!(", as {RCC_KEY} says, not computed"),
+            CentreFrom::TaskFile => ", given by the task file, not computed".to_owned(),
+            CentreFrom::Design => format!(", given by {RCC_KEY}, not computed"),
         };
         format!(
             "finger        computed: tilting {:.2} N m/rad, remote centre {ahead:.1} mm in front of \

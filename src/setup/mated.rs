@@ -1,4 +1,4 @@
-//! Task of a plug and a socket in frames of their own, by their mated pose.
+//! Task of a plug and a socket whose files may use different frames, by their mated pose.
 
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
@@ -14,16 +14,16 @@ use serde::Serialize;
 use std::path::Path;
 use study::write_file;
 
-/// Most places of overlap that are listed.
+/// Largest number of overlaps that are listed.
 const MOST_SHOWN: usize = 4;
 
-/// What the user decides of a mated pair.
-pub struct Given<'a> {
+/// Options of the task of a mated pair.
+pub struct MateOptions<'a> {
     /// Name of the task.
     pub name: &'a str,
     /// Unit of the files.
     pub unit: Option<Unit>,
-    /// Whether the files have them in their mated pose.
+    /// Whether the files contain plug and socket in their mated pose.
     pub assembled: bool,
     /// Direction of insertion in the file of the socket.
     pub along: Option<Along>,
@@ -35,13 +35,13 @@ pub struct Given<'a> {
     pub handle: Option<[f64; 3]>,
     /// Depth to be reached in a through hole, m.
     pub depth: Option<f64>,
-    /// File for the picture of a place at which the parts are not as drawn.
+    /// File for a picture of the place where the convex parts deviate from the drawing.
     pub closeup: &'a Path,
 }
 
 /// Task of a mated pair.
 pub struct MatedTask {
-    /// Task and what was left out.
+    /// Task, and the parts left out of it.
     pub made: Made,
     /// Unit of the files.
     pub unit: Unit,
@@ -54,10 +54,10 @@ pub struct MatedTask {
     /// Play in x and in y, m.
     pub play: [f64; 2],
     /// Findings: the subject and a sentence.
-    pub said: Vec<(&'static str, String)>,
+    pub findings: Vec<(&'static str, String)>,
 }
 
-/// Fields of `--json` about what was left out of a body.
+/// Fields of `--json` about the parts left out of a body.
 #[derive(Serialize)]
 pub struct LeftOut {
     body: &'static str,
@@ -86,28 +86,28 @@ impl From<&Interference> for LeftOut {
 /// Returns the task of a plug and a socket, whose mated pose is found from their shapes.
 ///
 /// # Errors
-/// If no unit fits, or if the plug goes into the socket nowhere.
+/// If no unit fits, or if the plug fits into the socket in no pose.
 pub fn mated(
     files: Files,
     triangles: [&[Triangle]; 2],
-    given: &Given,
+    options: &MateOptions,
     context: &Context<'_>,
 ) -> Result<MatedTask, Failure> {
-    let (unit, why) = unit(files, triangles, given.unit)?;
-    let mut said: Vec<(&str, String)> = why.map(|why| ("unit", why)).into_iter().collect();
+    let (unit, why) = unit(files, triangles, options.unit)?;
+    let mut findings: Vec<(&str, String)> = why.map(|why| ("unit", why)).into_iter().collect();
     let scaled = |of: usize| -> Vec<Triangle> {
         triangles[of].iter().map(|t| t.map(|p| p * unit.metres())).collect()
     };
     let drawn = [scaled(0), scaled(1)];
-    let (plug, plug_inward) = few(files[0], triangles[0], unit, context);
-    let (socket, socket_inward) = few(files[1], triangles[1], unit, context);
-    if !given.assembled {
+    let (plug, plug_inward) = oriented(files[0], triangles[0], unit, context);
+    let (socket, socket_inward) = oriented(files[1], triangles[1], unit, context);
+    if !options.assembled {
         context.note("looking for the mated pose");
     }
-    let mate = mate(files, [&plug, &socket], given, context, &mut said)?;
+    let mate = mate(files, [&plug, &socket], options, context, &mut findings)?;
     let out = mate.out.into_inner();
     let across = mate.across.map(|way| way.into_inner());
-    let chosen = |way: &&Vector3<f64>| given.jaws.is_none_or(|jaws| axis(jaws) == way.iamax());
+    let chosen = |way: &&Vector3<f64>| options.jaws.is_none_or(|jaws| axis(jaws) == way.iamax());
     let jaws: Vec<Vector3<f64>> = across.iter().filter(chosen).copied().collect();
     if jaws.is_empty() {
         let [a, b] = across.map(|way| value(jaws_of(&way)));
@@ -115,7 +115,7 @@ pub fn mated(
             format!("--jaws: the plug goes in along {}; give {a} or {b}", value(along_of(&-out)));
         return Err(Failure::usage(problem));
     }
-    let depth = given.depth.unwrap_or(mate.engaged_m);
+    let depth = options.depth.unwrap_or(mate.engaged_m);
     let above = out * (mate.engaged_m - depth);
     let moved = |of: &[Triangle]| -> Vec<Triangle> {
         of.iter().map(|t| t.map(|p| mate.pose * p + above)).collect()
@@ -130,20 +130,24 @@ pub fn mated(
         engaged: depth,
         play: [0, 1].map(|i| (across[i], mate.play_m[i])),
     };
-    let made = task(&pair, &Request { name: given.name, like: given.like, handle: given.handle });
-    as_drawn(files, &made, given.closeup)?;
+    let made =
+        task(&pair, &Request { name: options.name, like: options.like, handle: options.handle });
+    check_drawing(files, &made, options.closeup)?;
     let long = width(extent(raised.iter().flatten(), out.iamax()));
-    said.extend(found(&mate, long, &made, given));
+    findings.extend(described(&mate, long, &made, options));
     let play = [1, 0].map(|i| {
         let along = |way: &Vector3<f64>| (way.dot(&made.jaws).abs() > 0.7) == (i == 0);
         across.iter().position(along).map_or(0.0, |at| mate.play_m[at])
     });
     let (along, jaws) = (along_of(&-out), jaws_of(&made.jaws));
-    Ok(MatedTask { made, unit, along, jaws, inward: [plug_inward, socket_inward], play, said })
+    Ok(MatedTask { made, unit, along, jaws, inward: [plug_inward, socket_inward], play, findings })
 }
 
-/// Returns an error with a picture of the place if the parts are not as drawn.
-fn as_drawn(files: Files, made: &Made, closeup: &Path) -> Result<(), Failure> {
+/// Checks that the convex parts match the drawing.
+///
+/// # Errors
+/// If they do not, with a picture of the largest deviation in the file `closeup`.
+fn check_drawing(files: Files, made: &Made, closeup: &Path) -> Result<(), Failure> {
     let at = |place: Point3<f64>| {
         let [x, y, z] = [place.x, place.y, place.z].map(|v| v / MM);
         format!("at [{x:.2}, {y:.2}, {z:.2}] mm of the task")
@@ -152,11 +156,11 @@ fn as_drawn(files: Files, made: &Made, closeup: &Path) -> Result<(), Failure> {
     let (file, problem) = match (made.deviation, made.difference) {
         (Some((body, off)), _) => {
             let how = match off.out {
-                Some(far) => format!("stand {:.3} mm out of the drawing", far / MM),
+                Some(far) => format!("protrude {:.3} mm from the drawing", far / MM),
                 None => "lack a face of the drawing".to_owned(),
             };
             let at = at(off.place);
-            (files[body].to_owned(), format!("the convex parts {how} {at}, plug mated"))
+            (files[body].to_owned(), format!("the convex parts {how} {at}, in the mated pose"))
         }
         (None, Some(off)) => {
             let [drawn, parts] = off.gaps.map(|gap| gap / MM);
@@ -174,8 +178,8 @@ fn as_drawn(files: Files, made: &Made, closeup: &Path) -> Result<(), Failure> {
     let deepest = made.interference.iter().map(|of| of.depth / MM).fold(0.0, f64::max);
     let cause = match made.deviation.is_none() && deepest > 0.0 {
         true => format!(
-            "plug and socket overlap by up to {deepest:.2} mm in the pose that was found: if it is not theirs, give their \
-             assembly in the mated pose"
+            "plug and socket overlap by up to {deepest:.2} mm in the pose that was found: if it is not the real one, give \
+             an assembly of both in the mated pose"
         ),
         false => "look there for faces that cross one another or are turned inside out".to_owned(),
     };
@@ -184,26 +188,32 @@ fn as_drawn(files: Files, made: &Made, closeup: &Path) -> Result<(), Failure> {
     Err(Failure::in_file(file, problem))
 }
 
-/// Sentences about the mate of a plug of this length along the axis, m, and the grip.
-fn found(mate: &Mate, long: f64, made: &Made, given: &Given) -> Vec<(&'static str, String)> {
+/// Returns findings about the mate of a plug of this length along the axis, m, and the grip.
+fn described(
+    mate: &Mate,
+    long: f64,
+    made: &Made,
+    options: &MateOptions,
+) -> Vec<(&'static str, String)> {
     let depth = mate.engaged_m / MM;
     let long = long / MM;
     let engaged = match depth <= long {
         true => format!("{depth:.2} mm of the plug's {long:.1} mm engage"),
         false => format!("the plug of {long:.1} mm goes {depth:.2} mm along a post"),
     };
-    let mut said = vec![("mate", engaged)];
+    let mut findings = vec![("mate", engaged)];
     if mate.through {
-        let depth = given.depth.unwrap_or(mate.engaged_m) / MM;
-        said.push(("through", format!("nothing stops the plug: {depth:.2} mm are to be reached")));
+        let depth = options.depth.unwrap_or(mate.engaged_m) / MM;
+        findings
+            .push(("through", format!("nothing stops the plug: {depth:.2} mm are to be reached")));
     }
     if made.handle {
-        let [x, y, z] = given.handle.unwrap_or(HANDLE).map(|side| side / MM);
+        let [x, y, z] = options.handle.unwrap_or(HANDLE).map(|side| side / MM);
         let why = format!(
-            "a block of {x:.1} x {y:.1} x {z:.1} mm stands on the plug, which has no two faces for the pads under a \
-             top for their roofs; --body gives its size"
+            "the plug has no two opposite faces for the pads below a top face for their roofs, so a block of \
+             {x:.1} x {y:.1} x {z:.1} mm is added on top of it; --body sets its size"
         );
-        said.push(("handle", why));
+        findings.push(("handle", why));
     }
     let mut left_out: Vec<LeftOut> = made.interference.iter().map(LeftOut::from).collect();
     left_out.sort_by(|a, b| b.depth_mm.total_cmp(&a.depth_mm));
@@ -222,25 +232,25 @@ fn found(mate: &Mate, long: f64, made: &Made, given: &Given) -> Vec<(&'static st
                 false => "left out".to_owned(),
             }
         );
-        said.push(("overlap", why));
+        findings.push(("overlap", why));
     }
     if !more.is_empty() {
         let parts: usize = more.iter().map(|left| left.parts).sum();
         let why = format!("{parts} parts in {} more places, less deep (--json)", more.len());
-        said.push(("overlap", why));
+        findings.push(("overlap", why));
     }
-    said
+    findings
 }
 
-/// The mate in the given direction, or the best one.
+/// Returns the mate in the given direction, or the best one.
 fn mate(
     files: Files,
     [plug, socket]: [&[Triangle]; 2],
-    given: &Given,
+    options: &MateOptions,
     context: &Context<'_>,
-    said: &mut Vec<(&'static str, String)>,
+    findings: &mut Vec<(&'static str, String)>,
 ) -> Result<Mate, Failure> {
-    let found = match given.assembled {
+    let found = match options.assembled {
         true => assembled(plug, socket).map(|mate| Found { mates: vec![mate], equal: 1 }),
         false => mates(plug, socket, context.stop),
     };
@@ -248,9 +258,9 @@ fn mate(
     let nowhere = |why: String| Failure::in_file(files.join(", "), why);
     let Found { mates: mut all, equal } = found.map_err(|error| nowhere(error.to_string()))?;
     if equal > 1 {
-        said.push(("symmetry", format!("the first of {equal} equal poses is taken")));
+        findings.push(("symmetry", format!("the first of {equal} equal poses is taken")));
     }
-    if let Some(along) = given.along {
+    if let Some(along) = options.along {
         all.retain(|mate| along_of(&-mate.out.into_inner()) == along);
     }
     if let [_, _, ..] = all[..] {
@@ -259,15 +269,15 @@ fn mate(
             format!("along {along}, {depth:.2} mm deep")
         });
         let list = others.collect::<Vec<_>>().join("; ");
-        said.push(("poses", format!("the first of these is taken: {list}")));
+        findings.push(("poses", format!("the first of these is taken: {list}")));
     }
     all.into_iter().next().ok_or_else(|| {
-        let along = given.along.map(value).unwrap_or_default();
+        let along = options.along.map(value).unwrap_or_default();
         nowhere(format!("the plug does not go in along {along}"))
     })
 }
 
-/// The unit in which both have the size of a connector, and why; millimetres if several do.
+/// Returns the unit in which both have the size of a connector, and the reason; millimetres if several fit.
 pub fn unit(
     files: Files,
     triangles: [&[Triangle]; 2],
@@ -282,9 +292,9 @@ pub fn unit(
     let units = given.map_or(vec![Unit::Mm, Unit::M, Unit::In], |unit| vec![unit]);
     let Some(unit) = units.into_iter().find(fits) else {
         let problem = format!(
-            "the plug is {plug:.4} long and the socket {socket:.4}: connectors are 3 to 300 mm, and these are not in \
-             {}",
-            given.map_or("mm, in or m".to_owned(), value)
+            "the plug is {plug:.4} long and the socket {socket:.4}, which is outside of 3 to 300 mm, the size of \
+             connectors, in {}",
+            given.map_or("mm, m and in".to_owned(), value)
         );
         return Err(Failure::in_file(files.join(", "), problem));
     };
@@ -296,8 +306,9 @@ pub fn unit(
     Ok((unit, Some(why)))
 }
 
-/// Triangles of a mesh, m, reduced if they are many and closed, that look outward; and whether they looked inward.
-fn few(
+/// Returns the triangles of a mesh, m, with outward normals and reduced if the mesh is large and closed; and whether
+/// its normals pointed inward.
+fn oriented(
     file: &str,
     triangles: &[Triangle],
     unit: Unit,

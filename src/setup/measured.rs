@@ -59,7 +59,7 @@ fn own_task(source: &Source, task: &str) -> Result<Option<PathBuf>, Failure> {
     let Some(path) = experiments::own_tasks(text).remove(task) else { return Ok(None) };
     let path = Path::new(file).parent().unwrap_or(Path::new("")).join(path);
     let wrong = |problem: String| {
-        let task = format!("task `{task}`: {problem}; mend the line `# task {task}: ..`");
+        let task = format!("task `{task}`: {problem}; correct the line `# task {task}: ..`");
         Failure::in_file(file, format!("{task}, or give --task"))
     };
     let found = read_task(&path.to_string_lossy()).map_err(|error| wrong(error.to_string()))?;
@@ -72,7 +72,7 @@ fn own_task(source: &Source, task: &str) -> Result<Option<PathBuf>, Failure> {
 /// Returns the only task of a measurement file, by its comment line or as shipped.
 ///
 /// # Errors
-/// If there are several tasks, or the file of the task is not known.
+/// If there are several tasks, or the file of the task is unknown.
 pub fn task(source: &Source) -> Result<TaskSource, Failure> {
     let Source { file, text } = source;
     let wrong = |problem: String| Failure::in_file(file, format!("{problem}; give --task"));
@@ -82,7 +82,7 @@ pub fn task(source: &Source) -> Result<TaskSource, Failure> {
     tasks.dedup();
     let [task] = tasks[..] else {
         return Err(wrong(match tasks.is_empty() {
-            true => "has no line yet that says of which task".to_owned(),
+            true => "has no measurements yet, so that its task is unknown".to_owned(),
             false => format!("has lines of {}", tasks.join(", ")),
         }));
     };
@@ -90,15 +90,15 @@ pub fn task(source: &Source) -> Result<TaskSource, Failure> {
         [TASKS, COMMERCIAL].concat().iter().any(|shipped| shipped.name == task).then(|| task.into())
     };
     let path = own_task(source, task)?.or_else(shipped);
-    let path = path.ok_or_else(|| wrong(format!("no file is known of the task `{task}`")))?;
+    let path = path.ok_or_else(|| wrong(format!("the file of the task `{task}` is unknown")))?;
     Ok(TaskSource::Named(path.to_string_lossy().into_owned()))
 }
 
-/// Largest number of fingers of a task; sampling their process takes a minute.
+/// Largest number of fingers of a task; sampling a Gaussian process of so many takes a minute.
 const MOST_FINGERS: usize = 200;
 
-/// Returns the measurements of a file in the order that determines the draws; their tasks are shipped ones,
-/// those in `more`, or have a comment line.
+/// Reads the measurements of a file and sorts them, since their order determines the random draws. Their tasks are
+/// shipped ones, those in `more`, or have a comment line.
 pub fn lines(source: &Source, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
     let shipped = TASKS.iter().chain(COMMERCIAL).map(|task| task.name);
     let own = experiments::own_tasks(&source.text).into_keys().filter(|own| !more.contains(own));
@@ -112,7 +112,7 @@ pub fn lines(source: &Source, more: &[&str]) -> Result<Vec<Experiment>, Failure>
             let (file, task) = (&source.file, &of_task[0].task);
             let problem = format!(
                 "has {fingers} different fingers of the task `{task}`; at most {MOST_FINGERS} are \
-                 taken: keep those nearest to the best"
+                 accepted: keep those nearest to the best"
             );
             return Err(Failure::in_file(file, problem));
         }
@@ -132,7 +132,7 @@ pub fn check(
     if !own().any(|line| line.extent().is_some()) {
         let problem = format!(
             "no line has a range of the task `{task}`; measure one finger at least (`optimize next` \
-             says which), or leave out --measurements"
+             recommends one), or leave out --measurements"
         );
         return Err(Failure::in_file(file, problem));
     }
@@ -144,20 +144,20 @@ pub fn check(
 
 /// Returns the number of new measurements of the tasks of the study in `dir`; `None` if anything else
 /// differs from this setup. New measurements change no simulated value.
-pub fn more(dir: &Path, setup: &Setup) -> Option<usize> {
+pub fn new_measurements(dir: &Path, setup: &Setup) -> Option<usize> {
     let text = setup.inputs.get(BENCH_ROLES[0])?;
     let record = StudyRecord::load(dir).ok()?;
     let (mut before, mut now) = (record.segments.last()?.provenance.clone(), setup.provenance());
     let inputs = record.inputs(dir).ok()?;
     let known = inputs.get(BENCH_ROLES[0]);
-    // Without lines it had no bounds of what nobody measured either.
+    // A study without measurements has no priors either.
     for role in BENCH_ROLES.iter().take(if known.is_some() { 1 } else { 2 }) {
         before.input_sha256.remove(*role);
         now.input_sha256.remove(*role);
     }
     let lines = |text: &str| {
         let mut lines = experiments::parse(text, "").ok()?;
-        // Comments and columns may have moved them.
+        // New comments may have changed the line numbers.
         lines.iter_mut().for_each(|line| line.line = 0);
         Some(lines)
     };

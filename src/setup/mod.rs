@@ -1,4 +1,4 @@
-//! All that is needed to evaluate designs, and the options from which commands make it.
+//! Setup for the evaluation of designs, and the options from which commands create it.
 
 pub mod assembly;
 pub mod bag;
@@ -40,7 +40,7 @@ use measured::Measured;
 use std::sync::Arc;
 use study::{BENCH_ROLES, CELL, FINGER, Inputs, Provenance, sha256};
 
-/// Everything that an evaluation of a design needs.
+/// Setup for the evaluation of designs.
 pub struct Setup {
     /// Evaluator of designs.
     pub evaluator: Evaluator,
@@ -85,10 +85,10 @@ impl Setup {
         if inputs.contains_key(CELL) {
             let source = input(inputs, CELL)?;
             let found = cell(&source)?;
-            setup = setup.within(source, found)?;
+            setup = setup.with_cell(source, found)?;
         }
         if inputs.contains_key(UNCERTAINTY) {
-            setup = setup.under(input(inputs, UNCERTAINTY)?)?;
+            setup = setup.with_uncertainty(input(inputs, UNCERTAINTY)?)?;
         }
         let [measurements, priors] = BENCH_ROLES;
         match inputs.contains_key(measurements) {
@@ -109,7 +109,7 @@ impl Setup {
         let template =
             |task: &Source| Template::parse(&task.text, &task.file).map_err(Failure::task);
         let templates = tasks.iter().map(template).collect::<Result<Vec<_>, Failure>>()?;
-        different(&templates)?;
+        check_distinct(&templates)?;
         let space = within_limits(space, &templates);
         let roles = (1..).map(task_role).zip(tasks);
         let others = [SPACE, ROBOT, STIFFNESS_DATA].map(str::to_owned).into_iter();
@@ -118,10 +118,10 @@ impl Setup {
         let sources = roles.chain(others).chain(finger);
         let inputs = sources.map(|(role, source)| (role, source.text.clone())).collect();
         let surrogate = surrogate(stiffness_source, fingers.measured_finger())?;
-        let made = fingers.made();
+        let finger_source = fingers.finger_source();
         let evaluator =
-            Evaluator { surrogate, fingers: made, templates, robot, engine, cell: None };
-        fit_together(&evaluator, &space, &space_source.file)?;
+            Evaluator { surrogate, fingers: finger_source, templates, robot, engine, cell: None };
+        check_compatible(&evaluator, &space, &space_source.file)?;
         let task_files = tasks.iter().map(|task| task.file.clone()).collect();
         let (uncertainty, measured) = (None, None);
         Ok(Setup { inputs, evaluator, fingers, uncertainty, measured, space, task_files })
@@ -142,12 +142,12 @@ impl Setup {
             engine: own.engine,
             cell: own.cell.clone(),
         };
-        fit_together(&evaluator, &self.space, SPACE).ok()?;
+        check_compatible(&evaluator, &self.space, SPACE).ok()?;
         Some(evaluator)
     }
 
     /// Returns the setup in a cell with the cell's robot.
-    pub(crate) fn within(mut self, source: Source, cell: Priors) -> Result<Self, Failure> {
+    pub(crate) fn with_cell(mut self, source: Source, cell: Priors) -> Result<Self, Failure> {
         for row in &cell.parameters {
             self.evaluator.robot.change(row, row.middle());
         }
@@ -158,11 +158,11 @@ impl Setup {
     }
 
     /// Returns the setup with the distribution of errors of that name.
-    pub(crate) fn under_named(self, name: &str) -> Result<Self, Failure> {
-        self.under(find("uncertainty", UNCERTAINTIES, name)?)
+    pub(crate) fn with_named_uncertainty(self, name: &str) -> Result<Self, Failure> {
+        self.with_uncertainty(find("uncertainty", UNCERTAINTIES, name)?)
     }
 
-    fn under(mut self, errors: Source) -> Result<Self, Failure> {
+    fn with_uncertainty(mut self, errors: Source) -> Result<Self, Failure> {
         let uncertainty = Uncertainty::parse(&errors.text, &errors.file).map_err(Failure::input)?;
         if let Some(cell) = &uncertainty.cell {
             self.evaluator.check_paths(cell, &errors.file).map_err(Failure::input)?;
@@ -172,7 +172,7 @@ impl Setup {
         let mut rows = rows.flat_map(|cell| &cell.parameters);
         if let Some(row) = rows.find(|row| !robot.fits(row)) {
             let problem =
-                format!("goes with a robot of kind = \"servo\", which `{}` is not", robot.name);
+                format!("needs a robot of kind = \"servo\"; `{}` is of another kind", robot.name);
             return Err(Failure::input(Place::file(&errors.file).key(&row.name).fault(problem)));
         }
         self.uncertainty = Some(uncertainty);
@@ -236,7 +236,7 @@ impl Setup {
 }
 
 /// Checks that robot, engine, fingers and space (of `file`) are compatible with each task.
-fn fit_together(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), Failure> {
+fn check_compatible(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), Failure> {
     let Evaluator { fingers, templates, robot, engine, .. } = evaluator;
     if let FingerSource::Computed(fingers) = fingers {
         printable::check(space, file, &fingers.file).map_err(Failure::input)?;
@@ -250,7 +250,7 @@ fn fit_together(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), 
 }
 
 /// Checks that no task is given twice.
-fn different(templates: &[Template]) -> Result<(), Failure> {
+fn check_distinct(templates: &[Template]) -> Result<(), Failure> {
     let names: Vec<&str> = templates.iter().map(|template| &*template.task.name).collect();
     match names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
         None => Ok(()),

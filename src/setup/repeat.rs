@@ -14,10 +14,10 @@ use std::sync::atomic::AtomicBool;
 
 const REPEATS: RangeInclusive<u32> = 2..=10_000;
 
-/// Number of repeats, with friction within 10 %, start within 0.02 mm, and alternately half the step.
+/// Number and seed of repeats with small variations of friction, start and step.
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub struct RepeatRequest {
-    /// Then N times more with friction within 10 %, start within 0.02 mm, and half the step by turns
+    /// Repeat N times with friction varied within 10 %, start within 0.02 mm, and half the step in every other one
     #[arg(id = "repeat", long = "repeat", value_name = "N", required = false,
           value_parser = clap::value_parser!(u32).range(wide(&REPEATS)))]
     pub count: u32,
@@ -33,8 +33,8 @@ pub struct RepeatRequest {
 }
 
 impl RepeatRequest {
-    /// Calls `measure` with repeats of a finger on its task, from this taught start.
-    pub(crate) fn of<T>(
+    /// Calls `measure` with the repeats of a finger on its task from this taught start, and returns its result.
+    pub(crate) fn run<T>(
         &self,
         setup: &Setup,
         specimen: &Specimen,

@@ -157,7 +157,7 @@ impl SetupRequest {
         let setup =
             Setup::new(&tasks, (&space, parsed), [&robot, &stiffness], fingers, self.engine)?;
         match cell {
-            Some((source, cell)) => setup.within(source, cell),
+            Some((source, cell)) => setup.with_cell(source, cell),
             None => Ok(setup),
         }
     }
@@ -191,7 +191,7 @@ impl FingerModelRequest {
     /// # Errors
     /// If the finger file is invalid.
     pub fn fingers(&self) -> Result<FingerSource, Failure> {
-        Ok(Fingers::parse(self.file(None)?)?.made())
+        Ok(Fingers::parse(self.file(None)?)?.finger_source())
     }
 
     /// Returns the finger file if fingers are computed, which a space with parameters of the printed finger

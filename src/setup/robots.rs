@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// Shipped robot and the cell it represents; the file contains only what the robot file does not.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct ForCell {
+pub struct CellRobot {
     /// Description of the cell.
     pub cell: String,
     /// Name of the robot.
@@ -32,13 +32,13 @@ pub struct ForCell {
 ///
 /// # Errors
 /// If a shipped file is damaged.
-pub fn robots() -> Result<Vec<ForCell>, Failure> {
-    let mut cells: std::collections::BTreeMap<String, Vec<ForCell>> =
+pub fn robots() -> Result<Vec<CellRobot>, Failure> {
+    let mut cells: std::collections::BTreeMap<String, Vec<CellRobot>> =
         input::read(include_str!("cells.toml"), "cells.toml").map_err(Failure::input)?;
     let mut robots = cells.remove("robot").unwrap_or_default();
     for found in &mut robots {
         let robot = robot(&found.name)?;
-        (found.stiffness_n_per_mm, found.lag_s) = felt(&robot, [0.0; 2])?;
+        (found.stiffness_n_per_mm, found.lag_s) = stiffness_and_lag(&robot, [0.0; 2])?;
         (found.description, found.stop_force_n) = (robot.description, robot.stop_force);
     }
     Ok(robots)
@@ -46,7 +46,7 @@ pub fn robots() -> Result<Vec<ForCell>, Failure> {
 
 /// Returns stiffness along x, y and z, N/mm (`None` if rigid), and lag, s, of a robot at a task whose frame is
 /// turned about the base's z and whose TCP is tilted about its x, rad.
-pub(crate) fn felt(
+pub(crate) fn stiffness_and_lag(
     robot: &Robot,
     [turn, tilt]: [f64; 2],
 ) -> Result<(Option<[f64; 3]>, f64), Failure> {

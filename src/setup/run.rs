@@ -9,7 +9,7 @@ use rayon::ThreadPool;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
-use study::{BenchEffort, Cache, Conclusion};
+use study::{AnalysisSettings, BenchEffort, Cache};
 
 const CACHE: &str = "results/.cache";
 const THREADS: RangeInclusive<u16> = 1..=1024;
@@ -60,8 +60,8 @@ impl EffortRequest {
         usize::from(self.simulations.unwrap_or(EFFORT.simulations))
     }
 
-    /// Returns the effort; what is not given is that of the study.
-    pub(crate) fn or(self, of_study: Option<BenchEffort>) -> BenchEffort {
+    /// Returns the effort, completed by that of the study.
+    pub(crate) fn completed(self, of_study: Option<BenchEffort>) -> BenchEffort {
         let other = of_study.unwrap_or(EFFORT);
         BenchEffort {
             simulations: self.simulations.unwrap_or(other.simulations),
@@ -84,7 +84,7 @@ pub struct RunRequest {
     /// Cache of evaluations.
     #[command(flatten)]
     pub cache: CacheRequest,
-    /// Skip the confirmation of the best designs: walked step by step, and repeated at their ends
+    /// Skip the confirmation of the best designs (windows measured step by step and repeated at their ends)
     #[arg(long)]
     pub no_confirm: bool,
     /// Skip the one-at-a-time sensitivity analysis of the recommended finger (levers)
@@ -104,12 +104,12 @@ pub struct RunRequest {
     /// Effort of the bench prediction.
     #[command(flatten)]
     pub effort: EffortRequest,
-    /// Project file and what it set, recorded in study.toml
+    /// Project file and the options set by it, recorded in study.toml
     #[arg(long, hide = true)]
     pub project: Option<String>,
 }
 
-/// Kinds of executors; a colon separates the rest.
+/// Kinds of executors; an address or a number follows after a colon.
 const EXECUTORS: [&str; 3] = ["dask", "slurm", "processes"];
 
 fn executor(text: &str) -> Result<String, String> {
@@ -124,12 +124,12 @@ fn executor(text: &str) -> Result<String, String> {
 
 impl RunRequest {
     /// Returns the settings of the analyses after a study; `effort` is that of its bench prediction so far.
-    pub(crate) fn conclusion(&self, setup: &Setup, effort: Option<BenchEffort>) -> Conclusion {
-        let bench = setup.measured.as_ref().map(|_| self.effort.or(effort));
+    pub(crate) fn analyses(&self, setup: &Setup, effort: Option<BenchEffort>) -> AnalysisSettings {
+        let bench = setup.measured.as_ref().map(|_| self.effort.completed(effort));
         let measurements = setup.measured.as_ref().map(|measured| measured.file.clone());
         let task_files = setup.task_files.clone();
         let (no_confirm, project) = (self.no_confirm, self.project.clone());
-        Conclusion { no_confirm, bench, measurements, task_files, project }
+        AnalysisSettings { no_confirm, bench, measurements, task_files, project }
     }
 
     /// Returns the number of threads; 0 for one per processor.

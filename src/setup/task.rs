@@ -2,8 +2,8 @@
 
 use super::files::{find, robot};
 use super::request::TaskSource;
-use super::tune::{self, mended};
-use crate::commands::trial::Ended;
+use super::tune::{self, tune_until_success};
+use crate::commands::trial::OutcomeFields;
 use crate::context::not_stopped;
 use crate::failure::Failure;
 use connector::check::{Problem, problems};
@@ -41,13 +41,13 @@ impl TaskFile {
         Ok(TaskFile { source, task })
     }
 
-    /// Returns the fields of a task file, checked.
+    /// Checks a task file and returns its fields.
     pub fn fields(source: Source) -> Result<toml::Table, Failure> {
         let Source { file, text } = TaskFile::parse(source)?.source;
         input::read(&text, &file).map_err(Failure::input)
     }
 
-    /// Returns the task file with these fields, checked; `file` is its name in messages.
+    /// Creates a task file with these fields and checks it; `file` is its name in messages.
     pub fn of_fields(file: &str, fields: &serde_json::Value) -> Result<Self, Failure> {
         let text = toml::to_string(fields)
             .map_err(|error| Failure::task(Place::file(file).fault(error.to_string())))?;
@@ -112,7 +112,7 @@ impl TaskCheck {
     ///
     /// # Errors
     /// If the task cannot be simulated; if `stop` is set meanwhile.
-    pub fn mend(
+    pub fn tune(
         &self,
         robot_name: &str,
         engine: EngineKind,
@@ -121,7 +121,7 @@ impl TaskCheck {
         let fails = |(_, trial, _): &(Finger, Trial, String)| trial.outcome != Outcome::Inserted;
         match (&self.task, &self.nominal) {
             (Some(task), Some(nominal)) if fails(nominal) => {
-                mended(task, (robot_name, engine), Stage::Search, stop).map(Some)
+                tune_until_success(task, (robot_name, engine), Stage::Search, stop).map(Some)
             }
             _ => Ok(None),
         }
@@ -157,7 +157,7 @@ pub(crate) fn nominal_recording(
     Ok((shaped, recording))
 }
 
-/// Returns the shipped measured finger of medium compliance stiffness, and the same shaped for a task.
+/// Returns the shipped measured finger of medium compliance stiffness, and the same finger shaped for a task.
 fn medium(task: &Task) -> Result<(Finger, Finger), Failure> {
     let three = three(designs());
     let middle = three.get(1).or(three.first());
@@ -169,7 +169,7 @@ fn medium(task: &Task) -> Result<(Finger, Finger), Failure> {
 impl Serialize for TaskCheck {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let nominal = self.nominal.as_ref().map(|(finger, trial, explanation)| {
-            let mut json = json!(Ended::from(trial));
+            let mut json = json!(OutcomeFields::from(trial));
             json["compliance_n_per_mm"] = json!(finger.compliance / N_PER_MM);
             json["assembly_n_per_mm"] = json!(finger.assembly / N_PER_MM);
             json["explanation"] = json!(explanation);
@@ -194,7 +194,7 @@ impl TaskCheck {
             None => text.push_str("nominal       not tried: fix the problems first\n"),
             Some((finger, trial, explanation)) => text.push_str(&format!(
                 "geometry      no problems\n\
-                 finger        compliance {} N/mm, assembly {} N/mm: the middle one of the measured\n\
+                 finger        compliance {} N/mm, assembly {} N/mm: the medium one of the measured fingers\n\
                  mating force  {}\n\
                  nominal       {}, peak force {:.1} N, slip {:.2} mm\n              {explanation}\n",
                 finger.compliance / N_PER_MM,
@@ -229,14 +229,14 @@ impl TaskCheck {
     ///
     /// # Errors
     /// If it does not.
-    pub fn ended(&self, tuned: Option<&Tuned>) -> Result<(), Failure> {
+    pub fn check_new(&self, tuned: Option<&Tuned>) -> Result<(), Failure> {
         match (self.verdict(), tuned) {
             (Ok(()), _) => Ok(()),
             (Err(_), Some(tuned)) => {
                 let file = &self.source.file;
                 let tried = tune::tried(tuned);
                 Err(Failure::running(format!(
-                    "{file}: does not insert; tried: {tried}; `optimize task tune {file}` looks further"
+                    "{file}: does not insert; tried: {tried}; `optimize task tune {file}` tries more"
                 )))
             }
             (Err(problems), None) => Err(Failure::running(problems.to_string())),

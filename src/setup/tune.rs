@@ -29,12 +29,12 @@ pub fn bench<'a>(
         .ok_or_else(|| Failure::running("no measured fingers are shipped"))
 }
 
-/// Returns a new task with its start taught and, if that is not enough, the strategy of a family; a task with
+/// Tunes a new task: teaches its start and, if that is not enough, tries the strategies of the families. A task with
 /// problems is not tuned.
 ///
 /// # Errors
 /// If the task cannot be simulated; if `stop` is set meanwhile.
-pub fn begun(
+pub fn tune_new(
     task: Task,
     engine: EngineKind,
     stop: &AtomicBool,
@@ -42,7 +42,7 @@ pub fn begun(
     if !problems(&task).is_empty() {
         return Ok((task, None));
     }
-    let tuned = mended(&task, (DEFAULT_ROBOT, engine), Stage::Families, stop)?;
+    let tuned = tune_until_success(&task, (DEFAULT_ROBOT, engine), Stage::Families, stop)?;
     let best = tuned.best();
     let strategy = if tuned.inserts() { best.tried.strategy.clone() } else { task.strategy };
     Ok((Task { strategy, ..task }, Some(tuned)))
@@ -52,7 +52,7 @@ pub fn begun(
 ///
 /// # Errors
 /// If the task cannot be simulated; if `stop` is set meanwhile.
-pub fn mended(
+pub fn tune_until_success(
     task: &Task,
     (robot_name, engine): (&str, EngineKind),
     last: Stage,
@@ -100,13 +100,13 @@ pub fn brief(name: &str, tuned: &Tuned) -> String {
     layout::lines([(name.to_owned(), text)])
 }
 
-/// Returns the tried strategies as text; of the search only their number.
+/// Returns the tried strategies as text; those of the search are only counted.
 pub fn tried(tuned: &Tuned) -> String {
     let searched = tuned.steps.iter().filter(|step| step.stage == Stage::Search).count();
     let named = tuned.steps.iter().filter(|step| step.stage != Stage::Search);
     let mut all: Vec<_> = named.map(|step| step.what.clone()).collect();
     if searched > 0 {
-        all.push(format!("{searched} of tilt, strokes, preload and speed"));
+        all.push(format!("{searched} variations of tilt, strokes, preload and speed"));
     }
     all.join(", ")
 }

@@ -9,7 +9,7 @@ use crate::context::not_stopped;
 use crate::failure::Failure;
 use crate::setup::Setup;
 use crate::setup::files::robot;
-use crate::setup::robots::felt;
+use crate::setup::robots::stiffness_and_lag;
 use ::report::PostAnalysis;
 use ::report::answer::command::own_task;
 use ::report::answer::{Answer, UnderRobot};
@@ -136,7 +136,7 @@ fn robots(
 ) -> Result<Vec<UnderRobot>, Failure> {
     let start = [specimen.task.turn, specimen.task.strategy.tilt];
     let under = |robot: &Robot, measured: Evaluation| {
-        let (stiffness_n_per_mm, _) = felt(robot, start)?;
+        let (stiffness_n_per_mm, _) = stiffness_and_lag(robot, start)?;
         Ok::<_, Failure>(UnderRobot { robot: robot.name.clone(), stiffness_n_per_mm, measured })
     };
     let known =

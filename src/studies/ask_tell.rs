@@ -1,8 +1,8 @@
 //! Study whose designs are measured by the caller: a process pool, a cluster.
 
+use super::best_so_far::BestSoFar;
 use super::open::{Ended, OpenStudy, confirmer, hint, resume_hint, simulated};
 use super::optimizer::optimizer;
-use super::standing::Standing;
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::setup::Setup;
@@ -25,7 +25,7 @@ pub struct AskTellStudy {
     scheduler: Scheduler,
     /// Work being measured, by the number of its proposal.
     measuring: BTreeMap<u64, Work>,
-    standing: Standing,
+    best_so_far: BestSoFar,
     log: ConfirmationLog,
 }
 
@@ -54,10 +54,10 @@ impl AskTellStudy {
     /// If the optimizer cannot be created.
     pub fn new(open: OpenStudy) -> Result<Self, Failure> {
         let optimizer = optimizer(&open.setup, &open.study.config)?;
-        let (scheduler, standing) = (Scheduler::new(&open.study), Standing::new(&open.study));
+        let (scheduler, best_so_far) = (Scheduler::new(&open.study), BestSoFar::new(&open.study));
         let log = ConfirmationLog::open(&open.study);
         let measuring = BTreeMap::new();
-        Ok(AskTellStudy { open, optimizer, scheduler, measuring, standing, log })
+        Ok(AskTellStudy { open, optimizer, scheduler, measuring, best_so_far, log })
     }
 
     /// Returns the next step. Designs in the cache are not measured again.
@@ -138,8 +138,8 @@ impl AskTellStudy {
     }
 
     fn accept(&mut self, result: ProposalResult) -> Result<bool, Failure> {
-        let (standing, study) = (&mut self.standing, &mut self.open.study);
-        let taken = self.scheduler.accept(study, result, &mut |recorded| standing.add(recorded));
+        let (best_so_far, study) = (&mut self.best_so_far, &mut self.open.study);
+        let taken = self.scheduler.accept(study, result, &mut |recorded| best_so_far.add(recorded));
         taken.map_err(|error| hint(error, study))
     }
 
@@ -148,10 +148,10 @@ impl AskTellStudy {
         let study = &self.open.study;
         let done = study.evaluations.len();
         let expected = study.config.expected_evaluations().max(done as u64);
-        (done, expected, self.standing.best())
+        (done, expected, self.best_so_far.best())
     }
 
-    /// Returns how to resume the study.
+    /// Returns the command that resumes the study, with its progress.
     pub fn hint(&self) -> String {
         resume_hint(&self.open.study)
     }

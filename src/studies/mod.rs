@@ -1,17 +1,17 @@
-//! Studies: opened, run on the threads of this process or measured by the caller, concluded and reported.
+//! Studies: opening, running on the threads of this process or measured by the caller, output and reports.
 
 pub mod analysis;
 pub mod ask_tell;
-pub mod concluded;
+pub mod best_so_far;
 mod film;
 pub mod on_bench;
 pub mod open;
 mod optimizer;
+pub mod output;
 mod printable;
 pub mod recommended;
 pub mod report;
 pub mod request;
-pub mod standing;
 pub mod summary;
 pub mod sweep;
 pub mod text;

@@ -48,7 +48,7 @@ pub struct Ended {
     /// Reason for which it ended.
     pub ending: Ending,
     /// Evaluations that were in the cache.
-    pub known: u64,
+    pub cached: u64,
     /// Failure if no design inserts at the nominal start.
     pub unusable: Option<Failure>,
     pub(crate) run: RunRequest,
@@ -58,9 +58,9 @@ impl OpenStudy {
     pub(crate) fn new(mut study: Study, setup: Setup, run: RunRequest) -> Result<Self, Failure> {
         check(&study.config, &setup)?;
         let before = &study.config.conclusion;
-        let mut conclusion = run.conclusion(&setup, before.bench);
+        let mut conclusion = run.analyses(&setup, before.bench);
         conclusion.project = conclusion.project.or_else(|| before.project.clone());
-        study.conclude_by(conclusion)?;
+        study.set_analyses(conclusion)?;
         let goals = study.config.goals();
         let plan = setup.plan(study.config.seed, |measure| goals.needs(measure))?;
         let cache = run.cache(&setup);
@@ -134,7 +134,7 @@ impl OpenStudy {
         context: &Context<'_>,
     ) -> Result<Ended, Failure> {
         let stop = context.stop;
-        let known = self.cache.as_ref().map_or(0, Cache::found);
+        let cached = self.cache.as_ref().map_or(0, Cache::found);
         let OpenStudy { study, setup, run, cache, .. } = self;
         let interrupted = || ending == Ending::Interrupted || stop.load(Ordering::SeqCst);
         let settled = ending == Ending::Settled;
@@ -145,7 +145,7 @@ impl OpenStudy {
         study.check_journal()?;
         if !interrupted() {
             let predicted = on_bench::predict((study, setup), run, pool, context);
-            // After cancellation the report is written all the same.
+            // After cancellation the report is still written.
             predicted.or_else(|failure| if interrupted() { Ok(()) } else { Err(failure) })?;
         }
         let (dir, record) = (study.dir().to_owned(), study.record());
@@ -163,7 +163,7 @@ impl OpenStudy {
         if interrupted() {
             return Err(Failure::Interrupted(Some(resume_hint(study))));
         }
-        Ok(Ended { dir, record, ending, known, unusable, run: run.clone() })
+        Ok(Ended { dir, record, ending, cached, unusable, run: run.clone() })
     }
 }
 
@@ -227,7 +227,7 @@ fn check(config: &StudyConfig, setup: &Setup) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Adds how to resume the study to an error, unless the journal was changed.
+/// Adds the command that resumes the study to an error, unless the journal was changed.
 pub(super) fn hint(error: StudyError, study: &Study) -> Failure {
     let changed = matches!(error, StudyError::Interfered { .. });
     match Failure::from(error) {
@@ -238,7 +238,7 @@ pub(super) fn hint(error: StudyError, study: &Study) -> Failure {
     }
 }
 
-/// Returns the progress of a study and how to resume it.
+/// Returns the progress of a study and the command that resumes it.
 pub(super) fn resume_hint(study: &Study) -> String {
     let (done, dir) = (study.config.counted(study.evaluations.len()), study.dir().display());
     format!("{done} are safe; continue with: optimize resume {dir}")

@@ -122,9 +122,9 @@ fn bench(found: &OnBench) -> Value {
     })
 }
 
-/// Returns the answer of the study in `dir`: what to do, what to expect, how far to trust it.
+/// Returns the answer of the study in `dir`: recommended action, expectation and trust.
 pub fn advice(answer: &Answer, dir: &Path) -> Value {
-    // Simulated set and window do not apply to a finger that is predicted for the bench.
+    // The simulated ties and window do not apply to a finger that is predicted for the bench.
     let simulated = answer.verdict.finger().is_some() && answer.record.on_bench.is_none();
     let one = answer.recommended.as_ref().filter(|_| simulated);
     let start = one.and_then(|found| found.start).map(|start| {
@@ -151,8 +151,8 @@ pub fn advice(answer: &Answer, dir: &Path) -> Value {
     })
 }
 
-/// Returns the contact force that connector or robot do not withstand, and what to do about it; null if
-/// there is none.
+/// Returns the contact force that exceeds a limit of the connector or the robot, and the remedy; null if there is
+/// none.
 fn force(answer: &Answer) -> Value {
     let (Some(excess), Some((_, text))) = (&answer.force, lines::force(answer)) else {
         return Value::Null;
@@ -200,7 +200,7 @@ fn equivalent(answer: &Answer, as_good: &Ties) -> Value {
             "evaluation": safe.design.index,
             "measured_range_mm": safe.measured_mm,
             "peak_force_n": safe.force_n,
-            // Objectives in other units are equivalent only without a loss.
+            // With objectives in other units only designs without a loss are equivalent.
             "loss_mm": in_mm.then_some(safe.loss),
         })
     });

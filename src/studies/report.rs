@@ -50,7 +50,7 @@ fn beside(dir: &Path, answer: &Answer) -> Beside {
         nominal: read(unusable::PICTURE),
         analyses: analysis::read(dir, answer),
     };
-    // The film shown first comes first: a page has no room for the films of many tasks.
+    // The film that the page shows first is added first, since a page has no room for the films of many tasks.
     let shown = report::preferred(answer);
     let mut ends = ENDS.map(|(end, _)| end);
     ends.sort_by_key(|end| *end != shown);

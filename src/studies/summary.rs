@@ -55,7 +55,7 @@ pub fn summary(ended: &Ended, answer: &Answer, analyses: &PostAnalysis) -> Value
         "polish": config.polish,
         "evaluations": record.evaluations.len(),
         "settled": record.settled,
-        "cached": ended.known,
+        "cached": ended.cached,
         "ending": ended.ending,
         "best": best.map(evaluated),
     });

@@ -12,7 +12,7 @@ use study::{Ending, Recorded, StudyRecord};
 
 /// Returns the output of a study that has ended, with `all` numbers of the answer if requested.
 pub fn ended(ended: &Ended, answer: &Answer, all: bool) -> String {
-    let verbose = if all { verbose(answer, ended.ending, ended.known) } else { String::new() };
+    let verbose = if all { verbose(answer, ended.ending, ended.cached) } else { String::new() };
     shown(answer, &ended.dir, &verbose)
 }
 
@@ -25,12 +25,12 @@ pub fn analyses(PostAnalysis { levers, robots, .. }: &PostAnalysis) -> String {
 
 /// Returns the answer and the next command.
 fn shown(answer: &Answer, dir: &Path, verbose: &str) -> String {
-    // Before everything that invites to print it.
+    // First, since the following lines may recommend to print the finger.
     let mut text = layout::lines(lines::force(answer));
     text += &format!("{}\n{}\n", answer.verdict.headline(), expectation(answer));
     text += &layout::lines(lines::brief(answer));
     text += verbose;
-    // Not wrapped, to be copied.
+    // Not wrapped, so that it can be copied.
     let (command, why) = command::next(answer, dir);
     let page = dir.join(PAGE);
     let place = format!("study         {} (see {})\n", dir.display(), page.display());
@@ -38,7 +38,7 @@ fn shown(answer: &Answer, dir: &Path, verbose: &str) -> String {
 }
 
 /// Returns all numbers of the answer.
-fn verbose(answer: &Answer, ending: Ending, known: u64) -> String {
+fn verbose(answer: &Answer, ending: Ending, cached: u64) -> String {
     let record = answer.record;
     let config = &record.config;
     let done = record.evaluations.len();
@@ -67,8 +67,8 @@ fn verbose(answer: &Answer, ending: Ending, known: u64) -> String {
         Some(front) => front_text(record, front),
         None => layout::lines(lines::recommended(answer, found)),
     });
-    if known > 0 {
-        text += &format!("cache         {known} evaluations were known from other studies\n");
+    if cached > 0 {
+        text += &format!("cache         {cached} evaluations were reused from other studies\n");
     }
     text
 }

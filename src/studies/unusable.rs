@@ -1,4 +1,4 @@
-//! Diagnosis where no design of a study inserts at the nominal start.
+//! Diagnosis of a study of which no design inserts at the nominal start.
 
 use crate::context::not_stopped;
 use crate::failure::Failure;

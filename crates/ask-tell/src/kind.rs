@@ -9,7 +9,7 @@ use std::fmt;
 use std::iter::empty;
 use std::str::FromStr;
 
-/// The optimizers a study can be run with.
+/// Optimizer of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum OptimizerKind {
     /// `gp`: Gaussian process with log expected improvement.
@@ -24,9 +24,8 @@ pub enum OptimizerKind {
     Grid,
 }
 
-/// Each kind with its name on the command line, in the order in which help texts list them, and its
-/// largest number of parameters, with which its model, covariance matrix or points neither exhaust the memory
-/// nor take minutes.
+/// Kinds with their names on the command line and their largest numbers of parameters, in the order of help texts. More
+/// parameters could exhaust the memory or take minutes in the model, the covariance matrix or the lattice.
 const KINDS: [(OptimizerKind, &str, usize); 5] = [
     (OptimizerKind::Gp, "gp", 100),
     (OptimizerKind::CmaEs, "cma-es", 200),
@@ -80,8 +79,8 @@ pub fn build(kind: OptimizerKind, grid: Grid, seed: u64) -> Box<dyn Optimizer + 
     build_for(kind, grid, seed, &[DEFAULT_NOISE_FLOOR])
 }
 
-/// Like [`build`], with the least standard deviation of the noise of each objective (for example from
-/// rounding), in its unit.
+/// Returns the optimizer as [`build`] does, for this least standard deviation of the noise of each objective (for
+/// example from rounding), in its unit.
 pub fn build_for(
     kind: OptimizerKind,
     grid: Grid,

@@ -5,8 +5,8 @@ use super::{Grid, GridPoint};
 /// Stage at which every axis of up to 2^32 levels is fully resolved.
 const LAST_STAGE: u32 = 32;
 
-/// Nested lattices: stage `s` is the product of up to `2^s + 1` evenly spaced levels of each axis,
-/// so stage 0 is the centre, stage 1 adds the corners and mid-sides, and the last stage is the
+/// Returns the points of nested lattices: stage `s` is the product of up to `2^s + 1` evenly spaced
+/// levels of each axis, so stage 0 is the centre, stage 1 adds the corners and mid-sides, and the last stage is the
 /// whole grid. Points of earlier stages are repeated.
 ///
 /// Within a stage the points are visited at a stride near the golden section of their number
@@ -59,7 +59,7 @@ fn gcd(a: u128, b: u128) -> u128 {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-/// `a * b mod m` by doubling, without overflow for `m` below 2^127.
+/// Returns `a * b mod m` by doubling, without overflow for `m` below 2^127.
 fn mul_mod(a: u128, b: u128, m: u128) -> u128 {
     if let Some(product) = a.checked_mul(b) {
         return product % m;

@@ -46,22 +46,22 @@ impl Grid {
         Grid { levels: levels.into_iter().map(|n| n.max(1)).collect() }
     }
 
-    /// Levels per axis.
+    /// Returns the number of levels of each axis.
     pub fn levels(&self) -> &[u32] {
         &self.levels
     }
 
-    /// Number of axes.
+    /// Returns the number of axes.
     pub fn dimension(&self) -> usize {
         self.levels.len()
     }
 
-    /// Number of points, saturating at `u64::MAX`.
+    /// Returns the number of points, saturating at `u64::MAX`.
     pub fn size(&self) -> u64 {
         self.levels.iter().fold(1, |n, &l| n.saturating_mul(u64::from(l)))
     }
 
-    /// Unit-cube coordinates of a grid point.
+    /// Returns the unit-cube coordinates of a grid point.
     pub fn unit(&self, point: &GridPoint) -> Vec<f64> {
         let coordinate = |(&k, &n): (&u32, &u32)| {
             if n == 1 { 0.5 } else { f64::from(k) / f64::from(n - 1) }
@@ -69,7 +69,7 @@ impl Grid {
         point.0.iter().zip(&self.levels).map(coordinate).collect()
     }
 
-    /// Whether `point` has one level per axis, each below the axis' count.
+    /// Returns whether `point` has one level per axis, each below the axis' count.
     pub fn contains(&self, point: &GridPoint) -> bool {
         point.0.len() == self.levels.len() && point.0.iter().zip(&self.levels).all(|(k, n)| k < n)
     }
@@ -83,24 +83,24 @@ impl Grid {
         GridPoint(unit.iter().zip(&self.levels).map(level).collect())
     }
 
-    /// The axes with more than one level.
+    /// Returns the axes with more than one level.
     pub(crate) fn free_axes(&self) -> Vec<usize> {
         (0..self.dimension()).filter(|&axis| self.levels[axis] > 1).collect()
     }
 
-    /// Coordinates of a grid point on the free axes.
+    /// Returns the coordinates of a grid point on the free axes.
     pub(crate) fn free_unit(&self, point: &GridPoint) -> Vec<f64> {
         let axes = self.unit(point).into_iter().zip(&self.levels);
         axes.filter(|&(_, &levels)| levels > 1).map(|(unit, _)| unit).collect()
     }
 
-    /// All points in lexicographic order.
+    /// Returns all points in lexicographic order.
     pub fn points(&self) -> impl Iterator<Item = GridPoint> {
         let first = GridPoint(vec![0; self.dimension()]);
         std::iter::successors(Some(first), |point| self.after(point))
     }
 
-    /// The next point in lexicographic order.
+    /// Returns the next point in lexicographic order.
     pub(crate) fn after(&self, point: &GridPoint) -> Option<GridPoint> {
         let mut next = point.clone();
         for (k, &n) in next.0.iter_mut().zip(&self.levels).rev() {
@@ -113,7 +113,7 @@ impl Grid {
         None
     }
 
-    /// The grid point nearest to a point of R^n, one coordinate for each free axis, folded onto
+    /// Returns the grid point nearest to a point of R^n, one coordinate for each free axis, folded onto
     /// the cube by reflection at its faces (`x -> |x - 2 round(x / 2)|`).
     pub(crate) fn folded(&self, x: &[f64]) -> GridPoint {
         let mut unit = vec![0.5; self.dimension()];
@@ -123,7 +123,7 @@ impl Grid {
         self.snap(&unit)
     }
 
-    /// The grid point nearest to `unit`; coordinates outside [0, 1] are clamped.
+    /// Returns the grid point nearest to `unit`; coordinates outside [0, 1] are clamped.
     pub fn snap(&self, unit: &[f64]) -> GridPoint {
         let level = |(&u, &n): (&f64, &u32)| (u.clamp(0.0, 1.0) * f64::from(n - 1)).round() as u32;
         GridPoint(unit.iter().zip(&self.levels).map(level).collect())

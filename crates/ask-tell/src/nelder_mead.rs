@@ -64,7 +64,7 @@ impl NelderMead {
         self.costs.tell(observations);
         // Without a value for a point asked, every run would end there.
         for point in self.pending.drain(..) {
-            self.costs.of.entry(point).or_insert(f64::INFINITY);
+            self.costs.by_point.entry(point).or_insert(f64::INFINITY);
         }
     }
 
@@ -127,7 +127,7 @@ impl CostFunction for &Recorded<'_> {
 
     fn cost(&self, x: &Vec<f64>) -> Result<f64, Error> {
         let point = self.costs.proposed.grid.folded(x);
-        if let Some(cost) = self.costs.of.get(&point) {
+        if let Some(cost) = self.costs.by_point.get(&point) {
             return Ok(*cost);
         }
         let mut missing = self.missing.borrow_mut();

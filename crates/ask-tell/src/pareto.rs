@@ -162,7 +162,7 @@ mod tests {
         assert_eq!(hypervolume(&[], &[0.0; 3]), 0.0);
     }
 
-    /// Volume that a point adds, from the cells.
+    /// Returns the volume that a point adds, from the cells.
     fn added(cells: &[Cell], point: &[f64]) -> f64 {
         let side = |i: usize, cell: &Cell| (point[i].min(cell.high[i]) - cell.low[i]).max(0.0);
         cells.iter().map(|cell| (0..point.len()).map(|i| side(i, cell)).product::<f64>()).sum()

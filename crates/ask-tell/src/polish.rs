@@ -3,8 +3,8 @@
 use super::nelder_mead::NelderMead;
 use super::{Grid, GridPoint, Observation, Optimizer, StopReason};
 
-/// Optimizer that takes a number of points from another optimizer and then polishes the best of them by
-/// Nelder-Mead with up to a second number of points.
+/// Optimizer that takes its first points from another optimizer and then polishes the best of them by Nelder-Mead; the
+/// number of points of each phase is limited.
 ///
 /// It may propose fewer points than requested: at the end of the search, and in the polish, which only
 /// proposes the points that Nelder-Mead needs.
@@ -21,8 +21,8 @@ pub struct Polished {
 }
 
 impl Polished {
-    /// Creates the optimizer from a new `inner` one over `grid` for `search` points, and a polish of up to
-    /// `polish` points.
+    /// Creates the optimizer from a new `inner` one over `grid`, with up to `search` points of the search and up to
+    /// `polish` points of the polish.
     pub fn new(inner: Box<dyn Optimizer + Send>, grid: Grid, search: u64, polish: u64) -> Self {
         Polished {
             inner,
@@ -80,8 +80,8 @@ mod tests {
     use crate::{OptimizerKind, build};
     use std::collections::BTreeSet;
 
-    /// A narrow curved valley with its top at (0.6, 0.36) of the first and the last axis.
-    fn valley(grid: &Grid, point: &GridPoint) -> f64 {
+    /// Returns the height of a narrow curved ridge whose top is at (0.6, 0.36) of the first and the last axis.
+    fn ridge(grid: &Grid, point: &GridPoint) -> f64 {
         let u = grid.unit(point);
         -(0.6 - u[0]).powi(2) - 10.0 * (u[2] - u[0] * u[0]).powi(2)
     }
@@ -90,7 +90,7 @@ mod tests {
         Grid::new(vec![201, 1, 201])
     }
 
-    /// All that was told in order, and why it ended.
+    /// Returns all observations in order, and the stop reason.
     fn run(
         kind: OptimizerKind,
         search: u64,
@@ -104,7 +104,7 @@ mod tests {
             if points.is_empty() {
                 return (all, optimizer.stop());
             }
-            let tell = |p: &GridPoint| Observation::new(p.clone(), Some(valley(&grid(), p)));
+            let tell = |p: &GridPoint| Observation::new(p.clone(), Some(ridge(&grid(), p)));
             let told: Vec<Observation> = points.iter().map(tell).collect();
             optimizer.tell(&told);
             all.extend(told);
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn the_search_is_what_it_is_without_a_polish_and_the_polish_betters_it() {
+    fn the_polish_leaves_the_search_unchanged_and_improves_its_best_point() {
         for n in [1, 4] {
             let alone = build(OptimizerKind::Sobol, grid(), 5).ask(22);
             let (all, _) = run(OptimizerKind::Sobol, 22, 60, n);
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn the_polish_keeps_to_its_budget_and_ends_when_nothing_new_is_wanted() {
+    fn the_polish_stays_within_its_budget_and_ends_when_it_has_converged() {
         assert_eq!(run(OptimizerKind::Random, 10, 5, 4).0.len(), 15);
         assert_eq!(run(OptimizerKind::Random, 10, 0, 4).0.len(), 10);
         let (all, stop) = run(OptimizerKind::Random, 10, 100_000, 4);

@@ -75,12 +75,12 @@ impl Proposed {
 #[derive(Debug, Clone)]
 pub(crate) struct Costs {
     pub proposed: Proposed,
-    pub of: BTreeMap<GridPoint, f64>,
+    pub by_point: BTreeMap<GridPoint, f64>,
 }
 
 impl Costs {
     pub fn new(grid: Grid, seed: u64) -> Self {
-        Costs { proposed: Proposed::new(grid, seed), of: BTreeMap::new() }
+        Costs { proposed: Proposed::new(grid, seed), by_point: BTreeMap::new() }
     }
 
     pub fn tell(&mut self, observations: &[Observation]) {
@@ -88,14 +88,14 @@ impl Costs {
             if self.proposed.grid.contains(&o.point) {
                 let cost = o.merit().filter(|v| v.is_finite()).map_or(f64::INFINITY, |v| -v);
                 self.proposed.insert(&o.point);
-                self.of.insert(o.point.clone(), cost);
+                self.by_point.insert(o.point.clone(), cost);
             }
         }
     }
 
     /// Coordinates of the point of least finite cost, on the free axes.
     pub fn best(&self) -> Option<Vec<f64>> {
-        let finite = self.of.iter().filter(|(_, cost)| cost.is_finite());
+        let finite = self.by_point.iter().filter(|(_, cost)| cost.is_finite());
         let (best, _) = finite.min_by(|a, b| a.1.total_cmp(b.1))?;
         Some(self.proposed.grid.free_unit(best))
     }

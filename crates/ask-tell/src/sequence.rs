@@ -3,14 +3,14 @@
 use super::{Grid, GridPoint, Observation, Optimizer, StopReason};
 use crate::proposed::Proposed;
 
-/// Proposes the points of a sequence, each once, and then the remaining grid points.
+/// Optimizer that proposes the points of a sequence, each once, and then the remaining grid points.
 pub(crate) struct Sequence<I> {
     proposed: Proposed,
     points: I,
 }
 
 impl<I: Iterator<Item = GridPoint>> Sequence<I> {
-    /// `seed` determines the order of the remaining points.
+    /// Creates the optimizer; `seed` determines the order of the remaining points.
     pub fn new(grid: Grid, seed: u64, points: I) -> Self {
         Sequence { proposed: Proposed::new(grid, seed), points }
     }

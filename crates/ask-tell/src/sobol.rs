@@ -17,7 +17,7 @@ pub struct SobolSequence {
 }
 
 impl SobolSequence {
-    /// The sequence of `dimension` axes that `(seed, counter, purpose)` names.
+    /// Creates the sequence of `dimension` axes named by `(seed, counter, purpose)`.
     pub fn new(dimension: usize, seed: u64, counter: u64, purpose: &str) -> Self {
         let mut random = stream(seed, counter, purpose);
         let scrambles =

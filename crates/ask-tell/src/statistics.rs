@@ -69,18 +69,18 @@ pub fn sorted(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     values
 }
 
-/// Returns the quantile of sorted values at probability `share` (0 to 1), rounded to the nearest
-/// rank; `None` without values.
-pub fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
-    let place = share * sorted.len().checked_sub(1)? as f64;
-    sorted.get(place.round() as usize).copied()
+/// Returns the quantile of sorted values at a probability (0 to 1), rounded to the nearest rank;
+/// `None` without values.
+pub fn quantile(sorted: &[f64], probability: f64) -> Option<f64> {
+    let rank = probability * sorted.len().checked_sub(1)? as f64;
+    sorted.get(rank.round() as usize).copied()
 }
 
 /// Returns the quantile of sorted values, interpolated linearly between the two nearest ranks.
-pub fn interpolated_quantile(sorted: &[f64], share: f64) -> Option<f64> {
-    let place = share * sorted.len().checked_sub(1)? as f64;
-    let [low, high] = [place.floor(), place.ceil()].map(|at| sorted.get(at as usize).copied());
-    let part = place - place.floor();
+pub fn interpolated_quantile(sorted: &[f64], probability: f64) -> Option<f64> {
+    let rank = probability * sorted.len().checked_sub(1)? as f64;
+    let [low, high] = [rank.floor(), rank.ceil()].map(|at| sorted.get(at as usize).copied());
+    let part = rank - rank.floor();
     if part == 0.0 { low } else { Some(low? + part * (high? - low?)) }
 }
 

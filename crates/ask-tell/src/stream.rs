@@ -1,11 +1,11 @@
 //! Named random streams: every random number is a function of the study seed,
-//! the evaluation it serves and its purpose, never of what was drawn before.
+//! the evaluation it serves and its purpose, never of earlier draws.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use sha2::{Digest, Sha256};
 
-/// The generator of the stream named by `(study_seed, evaluation, purpose)`.
+/// Returns the generator of the stream named by `(study_seed, evaluation, purpose)`.
 ///
 /// Two different names give independent streams (SHA-256 of the name seeds
 /// ChaCha8); the same name gives the same bits on every platform.

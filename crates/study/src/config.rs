@@ -15,7 +15,7 @@ pub const LARGEST_BUDGET: u64 = 1_000_000;
 /// Largest number of designs proposed at a time.
 pub const LARGEST_BATCH: u64 = 10_000;
 
-/// Everything that determines the evaluations of a study; the number of threads does not.
+/// Settings that determine the evaluations of a study (the number of threads does not).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StudyConfig {
@@ -39,7 +39,7 @@ pub struct StudyConfig {
     /// Name of the distribution of errors, if objective or constraints need one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertainty: Option<String>,
-    /// Whether designs race for the success rate.
+    /// Whether the draws of a design end once its success rate can no longer be the best (racing).
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub race: bool,
     /// Seed of every random stream of the study.
@@ -49,7 +49,7 @@ pub struct StudyConfig {
     pub indifference_mm: f64,
     /// Evaluations of the optimizer; may be raised later, unless there is a polish.
     pub budget: u64,
-    /// Whether the search ends early once no design is expected to gain.
+    /// Whether the search ends early once no design is expected to improve on the best.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub settles: bool,
     /// Method by which designs are selected for confirmation.
@@ -64,7 +64,7 @@ pub struct StudyConfig {
     pub asynchronous: bool,
     /// Settings of the analyses after the search.
     #[serde(default, skip_serializing_if = "is_default")]
-    pub conclusion: Conclusion,
+    pub conclusion: AnalysisSettings,
     /// Provenance at the beginning of the study.
     pub provenance: Provenance,
     /// Search space.
@@ -75,7 +75,7 @@ pub struct StudyConfig {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Confirmation {
-    /// The design that is expected to be the best, until none is expected to gain.
+    /// Next is the design that is expected to be the best, until none is expected to improve on the best so far.
     #[default]
     Expected,
 }
@@ -94,8 +94,8 @@ pub struct BenchEffort {
 /// resumed.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Conclusion {
-    /// Whether the recommended design is not confirmed.
+pub struct AnalysisSettings {
+    /// Whether the confirmation of the best designs is skipped.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub no_confirm: bool,
     /// Effort of the bench prediction, if there are measurements.
@@ -107,7 +107,7 @@ pub struct Conclusion {
     /// Paths of the task files, as given, in the order of the tasks.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub task_files: Vec<String>,
-    /// Project file and the options that it set, if there is one.
+    /// Project file and the options set by it, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub project: Option<String>,
 }
@@ -179,23 +179,23 @@ impl StudyConfig {
         if self.race && !self.can_race() {
             return Err(
                 "race: needs success-rate as the only objective, the aggregate min, and no constraint \
-                        on it; leave it out"
+                        on success-rate; leave it out"
                     .to_owned(),
             );
         }
         Ok(())
     }
 
-    /// Returns whether windows determine the objective, so that confirmation is worthwhile.
-    pub fn by_windows(&self) -> bool {
+    /// Returns whether the only objective is the width of a window, so that confirmation is worthwhile.
+    pub fn optimizes_windows(&self) -> bool {
         matches!(self.objective.single(), Some(Measure::Range | Measure::CentredRange))
     }
 
     /// Returns whether early stopping is available: for a Gaussian process of one objective in mm without
-    /// constraints.
+    /// constraints and polish.
     pub fn can_settle(&self) -> bool {
         let process = self.optimizer.parse() == Ok(OptimizerKind::Gp);
-        self.by_windows() && process && self.constraints.is_empty() && self.polish == 0
+        self.optimizes_windows() && process && self.constraints.is_empty() && self.polish == 0
     }
 
     /// Returns the settings of early stopping: evaluations before the first check, and patience
@@ -206,7 +206,7 @@ impl StudyConfig {
         self.settles.then_some([20 + 4 * free, 12 * free.max(1)])
     }
 
-    /// Returns the expected number of evaluations: with early stopping the smallest possible one, which
+    /// Returns the expected number of evaluations: with early stopping the smallest possible number, which
     /// most studies exceed only slightly.
     pub fn expected_evaluations(&self) -> u64 {
         let least = self.settling().map(|[least, quiet]| (least + quiet) as u64);
@@ -257,7 +257,7 @@ impl StudyConfig {
     }
 }
 
-/// Accepted indifferences, mm; the smallest is the grid of windows.
+/// Accepted indifferences, mm; the smallest is the grid step of windows.
 pub const INDIFFERENCES_MM: RangeInclusive<f64> = 0.1..=10.0;
 
 fn indifference() -> f64 {

@@ -4,15 +4,15 @@
 //! designs with undetected gaps. An end may also depend on whether a corner catches.
 //! Therefore, before a design is recommended,
 //!
-//! 1. its ends are repeated with friction, start and step varied
-//!    ([`firm`](insertion::evaluation::robustness::firm)): next is always the design with the widest expected
-//!    firm window, while it is likely to gain ([`ask_tell::gp::Outlook`]);
-//! 2. the first by the rule on the firm windows is walked step by step; if that gives another window, its
-//!    ends are repeated, too, and step 1 may follow again.
+//! 1. the ends of the design with the widest expected firm window are repeated with friction, start and step
+//!    varied ([`firm`](insertion::evaluation::robustness::firm)); this goes on with the next design until none
+//!    is likely to improve on the best ([`ask_tell::gp::StoppingCriterion`]);
+//! 2. the design that the rule ranks first by the firm windows is walked: its windows are measured step by step.
+//!    If they change, their ends are repeated, too, and step 1 may follow again.
 //!
-//! The recommended design is the first of the walked ones by the rule on the remaining firm windows. Where
-//! the study has the fingers of the paper, each walked design is also measured once with the stiffnesses
-//! computed from its ribs, for comparison only.
+//! The recommended design is the walked one that the rule ranks first by the remaining firm windows. If the
+//! study uses the finger stiffnesses of the paper, each walked design is also measured once with the
+//! stiffnesses computed from its ribs, for comparison only.
 
 use super::folder::read_analysis;
 use super::provenance::Provenance;
@@ -29,11 +29,11 @@ pub(super) const WALK_FILE: &str = "walk.json";
 /// Contents of `walk.json`.
 #[derive(Serialize, Deserialize)]
 pub(super) struct ConfirmationFile {
-    /// Provenance of the confirmation; with another one it is not valid.
+    /// Provenance; the confirmation is valid for no other.
     pub provenance: Provenance,
     /// Whether the confirmation is complete.
     pub complete: bool,
-    /// Evaluations after which the search settled.
+    /// Number of evaluations after which the search settled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub settled_after: Option<u64>,
     /// Confirmed designs, in the order in which they were selected.
@@ -72,7 +72,7 @@ impl ConfirmationFile {
 }
 
 impl Rule<'_> {
-    /// Returns the first design by the rule that inserts anywhere.
+    /// Returns the design that the rule ranks first among those with a positive value.
     pub fn first<'a>(&self, current: &'a [Recorded]) -> Option<&'a Recorded> {
         let ranked = current.iter().map(|recorded| (recorded, self.as_recorded(recorded)));
         let inserting = ranked.filter(|(_, rank)| rank.value().is_some_and(|value| value > 0.0));

@@ -8,7 +8,7 @@ use super::record::{ByRibs, Recorded, first_current};
 use super::rule::{Rank, Rule};
 use super::simulated::Simulated;
 use ask_tell::Grid;
-use ask_tell::gp::{Advice, Outlook};
+use ask_tell::gp::{Advice, StoppingCriterion};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluate, Evaluator};
 use insertion::evaluation::robustness::Plan;
@@ -41,7 +41,7 @@ pub type OnConfirmed<'a> = dyn Fn(ConfirmationStep, &Recorded, [usize; 2]) + Syn
 pub enum ConfirmationStep {
     /// Its ends were repeated.
     Repeated,
-    /// It was walked step by step.
+    /// Its windows were measured step by step.
     Walked,
 }
 
@@ -61,7 +61,7 @@ impl Confirmer<'_> {
         settled: bool,
     ) -> Result<(), StudyError> {
         // The confirmation of a settled study is part of its search and is not repeated.
-        if !study.config.by_windows() || (settled && study.settled()) {
+        if !study.config.optimizes_windows() || (settled && study.settled()) {
             return Ok(());
         }
         self.by_expectation(study, log, study.evaluations.len(), false)?;
@@ -120,13 +120,14 @@ impl Confirmer<'_> {
                 Some(ask_tell::gp::Confirmed { index, value, is_final })
             };
             let confirmed: Vec<_> = current.iter().enumerate().filter_map(known).collect();
-            let outlook = Outlook::new(&grid, &observed, &confirmed, config.indifference_mm);
+            let criterion =
+                StoppingCriterion::new(&grid, &observed, &confirmed, config.indifference_mm);
             let advice = match searching {
-                true => outlook.advise(&places, AT_ONCE),
-                false => outlook.confirm_only(&places, AT_ONCE),
+                true => criterion.advise(&places, AT_ONCE),
+                false => criterion.confirm_only(&places, AT_ONCE),
             };
             let Advice::Confirm(chosen) = &advice else { return Ok(advice) };
-            // Without confirmation the results of the search are taken as they are.
+            // Without confirmation the results of the search are final.
             if config.conclusion.no_confirm {
                 return Ok(Advice::Settled);
             }
@@ -168,16 +169,16 @@ impl Confirmer<'_> {
         Ok((!self.stopped()).then_some((row, true)))
     }
 
-    /// Returns the result of `what` for each design that has one, in their order; calls it in parallel.
+    /// Calls `measure` for each design in parallel and returns the results that there are, in their order.
     fn each<T: Send>(
         &self,
         phase: ConfirmationStep,
         designs: &[&Recorded],
-        what: impl Fn(&Recorded) -> Result<Option<T>, StudyError> + Sync,
+        measure: impl Fn(&Recorded) -> Result<Option<T>, StudyError> + Sync,
     ) -> Result<Vec<T>, StudyError> {
         let count = AtomicUsize::new(0);
         let one = |recorded: &&Recorded| {
-            let result = what(recorded)?;
+            let result = measure(recorded)?;
             let done = count.fetch_add(1, Ordering::Relaxed) + 1;
             (self.done)(phase, recorded, [done, designs.len()]);
             Ok(result)

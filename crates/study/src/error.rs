@@ -108,6 +108,6 @@ pub enum LineError {
     #[error("not a line of this program's journals: {0}")]
     Format(String),
     /// Lines are missing, repeated or in the wrong order.
-    #[error("evaluation {0} stands where evaluation {1} belongs")]
+    #[error("evaluation {0} is in the place of evaluation {1}")]
     Order(u64, u64),
 }

@@ -12,7 +12,7 @@
 //! .lock            lock of the writing process
 //! ```
 
-use super::config::{Conclusion, StudyConfig};
+use super::config::{AnalysisSettings, StudyConfig};
 use super::confirmed;
 use super::error::StudyError;
 use super::journal::{self, Contents, Journal};
@@ -98,7 +98,7 @@ impl Study {
             return Ok(study);
         }
         if has_config(dir)? {
-            // Created without a journal: the batch may follow from who measures.
+            // Created without a journal: the batch may depend on the number of workers.
             let batch = read_config(dir)?.batch;
             check_continues(dir, &StudyConfig { batch, ..config.clone() })?;
         }
@@ -106,7 +106,7 @@ impl Study {
         Study::open_locked(dir, lock, journal_file(dir)?)
     }
 
-    /// Writes a study without a journal to `dir`; a study that is there already stays as it is.
+    /// Writes a study without a journal to `dir`; an existing study is not changed.
     ///
     /// # Errors
     /// If the folder holds a study of another configuration or cannot be written.
@@ -196,7 +196,7 @@ impl Study {
     ///
     /// # Errors
     /// If the configuration cannot be written.
-    pub fn conclude_by(&mut self, conclusion: Conclusion) -> Result<(), StudyError> {
+    pub fn set_analyses(&mut self, conclusion: AnalysisSettings) -> Result<(), StudyError> {
         if self.config.conclusion != conclusion {
             self.config.conclusion = conclusion;
             write_config(&self.dir, &self.config)?;

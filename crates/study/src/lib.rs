@@ -33,7 +33,7 @@ mod work;
 
 pub use cache::Cache;
 pub use config::{
-    BenchEffort, Conclusion, Confirmation, INDIFFERENCES_MM, LARGEST_BATCH, LARGEST_BUDGET,
+    AnalysisSettings, BenchEffort, Confirmation, INDIFFERENCES_MM, LARGEST_BATCH, LARGEST_BUDGET,
     StudyConfig, study_name,
 };
 pub use confirmer::{ConfirmationLog, ConfirmationStep, Confirmer};

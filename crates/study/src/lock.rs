@@ -22,7 +22,7 @@ impl Drop for Lock {
 /// Locks a folder.
 ///
 /// # Errors
-/// If another process has it, or its file cannot be written.
+/// If another process holds the lock, or its file cannot be written.
 pub(super) fn lock(dir: &Path) -> Result<Lock, StudyError> {
     let path = dir.join(LOCK_FILE);
     let mut options = OpenOptions::new();

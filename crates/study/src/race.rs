@@ -9,9 +9,9 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 impl StudyConfig {
-    /// Returns whether a race is exact. With several tasks the aggregate has to be the minimum, so that a design
-    /// below the bar on one of them has lost. With other objectives, or a constraint on it, the success
-    /// rate has to be known exactly.
+    /// Returns whether a race cannot change the best design. It leaves only an upper bound of the success rate of a
+    /// loser, which is not enough with other objectives or with a constraint on the success rate. With several
+    /// tasks the aggregate has to be the minimum, so that a design below the bar on one of them has lost.
     pub fn can_race(&self) -> bool {
         let limited = self.constraints.iter().any(|limit| limit.measure == Measure::SuccessRate);
         let worst = matches!(self.aggregate, None | Some(Aggregate::Min));
@@ -32,9 +32,9 @@ impl Recorded {
 }
 
 impl Study {
-    /// Returns the race of a design proposed after `told` evaluations, a function of the journal: against the
-    /// best one of the current model. The first draws are those in which that one failed, and among these
-    /// and the others those in which most designs failed.
+    /// Returns the race of a design proposed after `told` evaluations against the best evaluation of the current
+    /// model; it depends on the journal alone. Draws in which the best design failed come first, then the others;
+    /// both are sorted by the number of designs that failed in them.
     pub(super) fn race(&self, told: usize) -> Option<Race> {
         let first = first_current(&self.segments) as usize;
         let told = self.evaluations.get(first..told).filter(|_| self.config.race)?;

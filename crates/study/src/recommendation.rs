@@ -3,7 +3,7 @@
 use super::record::{Recorded, StudyRecord};
 use super::rule::Rule;
 use ask_tell::Grid;
-use ask_tell::gp::{Confirmed, Outlook};
+use ask_tell::gp::{Confirmed, StoppingCriterion};
 use insertion::evaluation::objective::Measure;
 
 impl StudyRecord {
@@ -12,7 +12,8 @@ impl StudyRecord {
     pub fn recommendation(&self) -> Option<&Recorded> {
         self.config.objective.single()?;
         let rule = Rule::of(&self.config);
-        let searched = || self.config.by_windows().then(|| rule.first(self.current())).flatten();
+        let searched =
+            || self.config.optimizes_windows().then(|| rule.first(self.current())).flatten();
         let walked = self.walked.first().map(|walked| &walked.recorded);
         walked.or_else(searched).or_else(|| self.best())
     }
@@ -55,10 +56,11 @@ impl StudyRecord {
             return current.iter().map(searched).collect();
         }
         let (grid, observed) = (Grid::new(rule.space.levels()), rule.observed(current));
-        let outlook = Outlook::new(&grid, &observed, &confirmed, self.config.indifference_mm);
+        let criterion =
+            StoppingCriterion::new(&grid, &observed, &confirmed, self.config.indifference_mm);
         let expected = |at: usize| {
             searched(&current[at])?;
-            known(at).or_else(|| outlook.median(at)).map(|mm| (10.0 * mm).round() / 10.0)
+            known(at).or_else(|| criterion.median(at)).map(|mm| (10.0 * mm).round() / 10.0)
         };
         (0..current.len()).map(expected).collect()
     }
@@ -91,7 +93,7 @@ impl StudyRecord {
         let task = tasks.find(|&task| !self.current().iter().any(|r| r.inserts_on(task)))?;
         let margin =
             |recorded: &Recorded| recorded.on(task).map_or(-1.0, |found| found.end_shares[0]);
-        // The first of equal ones.
+        // The first in a tie.
         let nearest = self.current().iter().rev().max_by(|a, b| margin(a).total_cmp(&margin(b)));
         nearest.map(|nearest| (task, nearest))
     }

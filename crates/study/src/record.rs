@@ -38,7 +38,7 @@ pub struct StudyRecord {
     pub evaluations: Vec<Recorded>,
     /// Number of records of other programs in the journal; they are ignored.
     pub foreign: usize,
-    /// Walked designs, best first.
+    /// Walked designs (see [`Walked`]), best first.
     pub walked: Vec<Walked>,
     /// Finger file, if the fingers were computed.
     pub finger: Option<FingerFile>,
@@ -48,18 +48,18 @@ pub struct StudyRecord {
     pub firm_values: BTreeMap<u64, f64>,
     /// Bench prediction, if there are measurements.
     pub on_bench: Option<OnBench>,
-    /// Whether the search has settled: no design was expected to gain.
+    /// Whether the search has settled: no design was expected to improve on the best.
     pub settled: bool,
 }
 
-/// Confirmed design that was walked.
+/// Confirmed design that was walked: its windows were measured step by step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Walked {
     /// Evaluation and score with the windows of the walk.
     pub recorded: Recorded,
-    /// FirmResult part of each window under small variations of friction, start and step.
+    /// Firm part of each window under small variations of friction, start and step.
     pub firm: Vec<FirmResult>,
-    /// Evaluations with stiffnesses computed from the ribs, if the study has those of the paper.
+    /// Evaluations with stiffnesses computed from the ribs, if the study uses those of the paper.
     pub by_ribs: Option<ByRibs>,
 }
 
@@ -80,7 +80,7 @@ pub struct Recorded {
     pub index: u64,
     /// Number of the proposal, from 0, in an asynchronous study.
     pub proposal: Option<u64>,
-    /// The design, in the units its keys carry.
+    /// The design, in the units of its keys.
     pub design: Design,
     /// Objectives and constraints; `None` if any of them has no value.
     pub score: Option<Score>,
@@ -95,9 +95,9 @@ pub struct Recorded {
 /// Times of a measurement.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Timing {
-    /// Begin, UTC, `YYYY-MM-DDTHH:MM:SS.ffffff`.
+    /// Start, UTC, `YYYY-MM-DDTHH:MM:SS.ffffff`.
     pub datetime_start: String,
-    /// End, the same.
+    /// End, in the same format.
     pub datetime_complete: String,
     /// Wall-clock duration, s.
     pub wall_s: f64,
@@ -129,17 +129,17 @@ impl Recorded {
         self.score.as_ref().filter(|score| score.feasible()).map(|score| &score.values[..])
     }
 
-    /// Returns the evaluation on a task, by its index.
+    /// Returns the evaluation on a task, by the task's index.
     pub fn on(&self, task: usize) -> Option<&Evaluation> {
         self.tasks.get(task)
     }
 
-    /// Returns whether it inserts at the nominal start of a task, by its index.
+    /// Returns whether the design inserts at the nominal start of a task, by the task's index.
     pub fn inserts_on(&self, task: usize) -> bool {
         self.on(task).is_some_and(|found| found.window.nominal == Outcome::Inserted)
     }
 
-    /// Returns whether it inserts at the nominal start of any task.
+    /// Returns whether the design inserts at the nominal start of any task.
     pub fn inserts(&self) -> bool {
         (0..self.tasks.len()).any(|task| self.inserts_on(task))
     }
@@ -154,7 +154,7 @@ impl StudyRecord {
     /// Returns warnings about the journal.
     pub fn remarks(&self) -> Vec<String> {
         let foreign = (self.foreign > 0).then(|| {
-            format!("records of other programs in the journal, passed over: {}", self.foreign)
+            format!("records of other programs in the journal, ignored: {}", self.foreign)
         });
         foreign.into_iter().collect()
     }
@@ -196,7 +196,7 @@ pub(super) fn first_current(segments: &[Segment]) -> u64 {
     segments.iter().rev().take_while(alike).last().map_or(0, |segment| segment.first)
 }
 
-/// Returns the evaluation with the smallest sum of constraint violations, the earliest of equal ones.
+/// Returns the evaluation with the smallest sum of constraint violations, the earliest in a tie.
 pub fn nearest(evaluations: &[Recorded]) -> Option<&Recorded> {
     let violation = |recorded: &Recorded| -> Option<f64> {
         let score = recorded.score.as_ref()?;
@@ -239,8 +239,8 @@ pub fn volume(goals: &Goals, evaluations: &[Recorded]) -> Volume {
     Volume { hypervolume: last, reference, so_far }
 }
 
-/// Returns the feasible evaluation with the best first objective, without those that lost a race early; of
-/// equal ones the one that is better in the next objective, then the earliest.
+/// Returns the feasible evaluation with the best first objective, without those that lost a race early. Ties are
+/// broken by the next objectives, then in favour of the earliest evaluation.
 pub fn best<'a>(
     goals: &Goals,
     evaluations: impl IntoIterator<Item = &'a Recorded>,

@@ -250,7 +250,7 @@ impl Scheduler {
         }
     }
 
-    /// Calls `ask` for the next batch; returns the designs of it that the journal does not hold.
+    /// Calls `ask` for the next batch; returns its designs that the journal does not contain.
     fn next_batch(
         &mut self,
         study: &Study,

@@ -25,7 +25,7 @@ pub fn seal(
 ) -> Result<String, serde_json::Error> {
     let mut line = serde_json::to_string(contents)?;
     line.pop();
-    let check = check(&line);
+    let check = checksum(&line);
     let rest = match times {
         Some(times) => format!(",{}", &serde_json::to_string(times)?[1..]),
         None => "}".to_owned(),
@@ -45,7 +45,7 @@ pub fn is_sealed(line: &str) -> bool {
 pub fn unseal(line: &str) -> Result<(String, String), LineError> {
     let (content, rest) = line.rsplit_once(CHECK_KEY).ok_or(LineError::Check)?;
     let (found, rest) = rest.split_once('"').ok_or(LineError::Check)?;
-    if found != check(content) {
+    if found != checksum(content) {
         return Err(LineError::Check);
     }
     let rest = match rest.strip_prefix(',') {
@@ -56,7 +56,7 @@ pub fn unseal(line: &str) -> Result<(String, String), LineError> {
     Ok((format!("{content}}}"), rest))
 }
 
-fn check(content: &str) -> String {
+fn checksum(content: &str) -> String {
     sha256_hex(content.as_bytes())[..16].to_owned()
 }
 

@@ -12,7 +12,7 @@ use calibration::predict::{IntervalKind, predict};
 use clap::Parser;
 use finger_opt::context::Context;
 use finger_opt::failure::Failure;
-use finger_opt::setup::bench::{BenchRequest, DEFAULT_PRIORS, HowCalibrated, Prepared};
+use finger_opt::setup::bench::{BenchRequest, CalibrationRequest, DEFAULT_PRIORS, Prepared};
 use finger_opt::setup::request::{SetupRequest, TaskSource};
 use finger_opt::setup::run::{CacheRequest, EffortRequest};
 use input::shipped::Source;
@@ -61,8 +61,8 @@ struct Found {
     number: u64,
     truth: Truth,
     prints_to_best: usize,
-    /// What the best printed finger, and the finger of the largest expected range, have less than the best one
-    /// after `FEW` prints, mm.
+    /// Ranges by which the best printed finger, and the finger of the largest expected range, fall short of the best
+    /// one after `FEW` prints, mm.
     regrets_mm: [f64; 2],
 }
 
@@ -89,27 +89,27 @@ fn published() -> Vec<Design> {
     infill.map(|design| Design::infill(design.density_percent, design.direction_deg)).collect()
 }
 
-/// Emulator and fingers of a task, with nothing measured.
+/// Returns emulator and fingers of a task without measurements.
 fn prepared(task: &str, cache: &CacheRequest) -> Result<Prepared<'static>, Failure> {
     let tasks = vec![TaskSource::Named(task.to_owned())];
     let bench = BenchRequest {
         setup: SetupRequest { tasks, ..SetupRequest::default() },
         measurements: String::new(),
     };
-    let how = HowCalibrated {
+    let calibration = CalibrationRequest {
         priors: DEFAULT_PRIORS.to_owned(),
         effort: EffortRequest::default(),
         seed: 0,
         cache: cache.clone(),
     };
     let nothing = Source { file: String::new(), text: String::new() };
-    how.prepare((&bench, &nothing), &published(), &Context::silent(&NEVER))
+    calibration.prepare((&bench, &nothing), &published(), &Context::silent(&NEVER))
 }
 
 impl Truth {
     fn new(task: &str, number: u64) -> Self {
         let mut random = stream(number, 0, &format!("bench of {task}"));
-        // Of normal components, so that all directions are equally likely.
+        // Normal components, so that all directions are equally likely.
         let [along, across] = [0, 1].map(|_| along([0, 1].map(|_| random.sample(StandardNormal))));
         let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
         let (level_mm, spread_mm) = (between(4.0, 8.0), between(1.5, 4.0));
@@ -153,7 +153,7 @@ fn unit(values: Vec<f64>) -> Vec<f64> {
     values.iter().map(|value| (value - low) / (high - low)).collect()
 }
 
-/// Prints and measures what is advised until the best finger has been printed.
+/// Prints and measures the recommended fingers until the best finger has been printed.
 fn replay(prepared: &Prepared<'_>, task: &'static str, number: u64) -> Found {
     let truth = Truth::new(task, number);
     let Prepared { subjects, layout, settings } = prepared;

@@ -20,6 +20,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
+/// Simulation of a task: engine with its step, and search.
 #[derive(Clone)]
 pub struct Setting {
     pub name: String,
@@ -39,6 +40,7 @@ pub struct TaskSettings {
     pub settings: Vec<Setting>,
 }
 
+/// Measured finger on a task.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Subject {
     pub task: String,
@@ -54,13 +56,13 @@ impl Subject {
         Subject { task: task.to_owned(), design, finger }
     }
 
-    /// Infill as in `10 %, 30 deg`.
+    /// Returns the infill as in `10 %, 30 deg`.
     pub fn infill(&self) -> String {
         format!("{} %, {} deg", self.design.density_percent, self.design.direction_deg)
     }
 }
 
-/// JSON keys of a finger on a task, the same in every comparison, and of what was measured.
+/// Returns the JSON object of a finger on a task, extended by the fields of `measured`.
 fn subject_json(task: &str, design: &Measurement, measured: Value) -> Value {
     let mut fields = json!({
         "task": task,
@@ -76,7 +78,7 @@ fn subject_json(task: &str, design: &Measurement, measured: Value) -> Value {
     fields
 }
 
-/// Results by task and design, measured in parallel: the number of threads changes nothing.
+/// Calls `measure` for every design on every task in parallel and returns the results in this order.
 pub fn each<T: Send>(
     tasks: &[TaskSettings],
     designs: &[Measurement],
@@ -90,7 +92,7 @@ pub fn each<T: Send>(
     pairs.into_par_iter().map(one).collect()
 }
 
-/// Failure classes at the negative and the positive end; `None` without a window.
+/// Returns the failure classes at the negative and the positive end; `None` without a window.
 fn failures(window: &Window) -> [Option<FailureClass>; 2] {
     [window.end_negative, window.end_positive].map(|end| match (window.nominal, end) {
         (Outcome::Inserted, Some(Outcome::Failed(class))) => Some(class),
@@ -110,7 +112,7 @@ fn window_json(window: &Window) -> Value {
     })
 }
 
-/// Window as in `-1.4 to +5.8`, mm; `none` if the nominal start does not insert.
+/// Formats a window as in `-1.4 to +5.8`, mm; `none` if the nominal start does not insert.
 fn window_words(window: &Window) -> String {
     match window.nominal {
         Outcome::Inserted => {

@@ -7,6 +7,7 @@ use insertion::stiffness::Measurement;
 use report::text_table;
 use serde_json::{Value, json};
 
+/// Windows of a finger in two settings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WindowPair {
     pub subject: Subject,

@@ -100,9 +100,9 @@ impl command::Request for Request {
         let (file, mut cells) = (&self.file, self.cells());
         not_shipped(file)?;
         if cells.is_empty() {
-            cells = asked(&mut io::stdin().lock())?;
+            cells = prompt(&mut io::stdin().lock())?;
         }
-        let lines = added(file, cells, self.dry_run)?.len();
+        let lines = add(file, cells, self.dry_run)?.len();
         let text = format!("{file}: {}\n", input::counted(lines, "line"));
         Ok(Output { value: Added { file: file.clone(), lines }, text, picture: None })
     }
@@ -116,7 +116,7 @@ fn not_shipped(file: &str) -> Result<(), Failure> {
 }
 
 /// Adds a line with these cells, or with `dry_run` only checks it, and returns all lines.
-fn added(
+fn add(
     file: &str,
     mut cells: Vec<(&str, String)>,
     dry_run: bool,
@@ -174,7 +174,7 @@ impl Request {
 }
 
 /// Prompts for each column on standard input until it ends; an empty answer leaves the cell empty.
-fn asked(answers: &mut impl BufRead) -> Result<Vec<(&'static str, String)>, Failure> {
+fn prompt(answers: &mut impl BufRead) -> Result<Vec<(&'static str, String)>, Failure> {
     let failed = |error: io::Error| Failure::running(format!("cannot read the answer: {error}"));
     let mut cells = Vec::new();
     say(&format!("leave unknown values empty; range_mm may be `{NOT_MEASURABLE}`"));

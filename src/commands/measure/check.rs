@@ -29,15 +29,15 @@ pub struct Request {
 pub struct Checked {
     file: String,
     lines: usize,
-    tasks: Vec<OfTask>,
+    tasks: Vec<TaskLines>,
     /// Lines by the columns of the file; null where a column is empty.
     #[serde(skip_serializing_if = "Option::is_none")]
     rows: Option<Vec<Experiment>>,
 }
 
-/// Number of lines of one task.
+/// Numbers of lines of one task.
 #[derive(Debug, Default, Serialize)]
-struct OfTask {
+struct TaskLines {
     task: String,
     lines: usize,
     ranges: usize,
@@ -55,7 +55,7 @@ impl command::Request for Request {
         let own = own.collect::<Result<Vec<_>, Failure>>()?;
         let own: Vec<&str> = own.iter().map(String::as_str).collect();
         let found = measured::read(&self.file, &own)?;
-        let mut tasks: BTreeMap<&str, OfTask> = BTreeMap::new();
+        let mut tasks: BTreeMap<&str, TaskLines> = BTreeMap::new();
         for line in &found {
             let known = tasks.entry(&line.task).or_default();
             known.task.clone_from(&line.task);
@@ -67,8 +67,8 @@ impl command::Request for Request {
                 None => (),
             }
         }
-        let tasks: Vec<OfTask> = tasks.into_values().collect();
-        let line = |OfTask { task, lines, ranges, bounds, .. }: &OfTask| {
+        let tasks: Vec<TaskLines> = tasks.into_values().collect();
+        let line = |TaskLines { task, lines, ranges, bounds, .. }: &TaskLines| {
             let rest = lines - ranges - bounds;
             format!(
                 "{task:<8} {}, {}, {rest:>3} not measurable\n",

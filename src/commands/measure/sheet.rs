@@ -17,8 +17,8 @@ use study::write_file;
 
 /// Largest offset for which outcomes are simulated, mm.
 const FARTHEST_MM: u8 = 12;
-/// Shipped examples of each outcome, for those that the task does not show.
-const EXAMPLES: [At<'_>; 5] = [
+/// Shipped examples of each outcome, for outcomes that do not occur on the task.
+const EXAMPLES: [Example<'_>; 5] = [
     ("ket8", (10.0, 0.0), 0.0, None),
     ("ket8", (10.0, 0.0), 0.0, Some(0.02)),
     ("ket8", (10.0, 0.0), -12.0, None),
@@ -26,8 +26,8 @@ const EXAMPLES: [At<'_>; 5] = [
     ("usb", (10.0, 0.0), -10.0, None),
 ];
 
-/// Task, finger, shift of the start, mm, and force that holds the plug, N, unless it is the task's.
-type At<'a> = (&'a str, (f64, f64), f64, Option<f64>);
+/// Trial to draw: task, infill, shift of the start, mm, and grip force, N, if not that of the task.
+type Example<'a> = (&'a str, (f64, f64), f64, Option<f64>);
 
 /// Write a printable sheet for measuring windows by hand
 #[derive(Debug, Clone, clap::Args)]
@@ -70,8 +70,8 @@ impl command::Request for Request {
         let outward = shifts.filter_map(|shift| Some((self.fingers.first()?, shift)));
         let own = self.fingers.iter().map(|finger| (finger, 0.0)).chain(outward);
         let own = own.map(|(finger, shift)| (&*self.task, *finger, shift, None));
-        let ended = own.chain(EXAMPLES).map(|at| ended(at, context));
-        let mut pictures = ended.collect::<Result<Vec<_>, Failure>>()?;
+        let drawn = own.chain(EXAMPLES).map(|example| draw(example, context));
+        let mut pictures = drawn.collect::<Result<Vec<_>, Failure>>()?;
         pictures.retain(|picture| picture.outcome != Outcome::Diverged);
         pictures.sort_by_key(|picture| picture.outcome.failure());
         pictures.dedup_by_key(|picture| picture.outcome);
@@ -81,8 +81,9 @@ impl command::Request for Request {
     }
 }
 
-fn ended(
-    (task, infill, offset_mm, grip): At<'_>,
+/// Simulates a trial and draws its end.
+fn draw(
+    (task, infill, offset_mm, grip): Example<'_>,
     context: &Context<'_>,
 ) -> Result<Picture, Failure> {
     let tasks = vec![TaskSource::Named(task.to_owned())];

@@ -64,7 +64,7 @@ impl command::Request for Request {
         if let (Some(file), Some(task)) = (&written, &checked.task) {
             write_file(file, &picture::svg(task))?;
         }
-        let mended = checked.mend(&self.robot, self.engine, context.stop)?;
+        let mended = checked.tune(&self.robot, self.engine, context.stop)?;
         Ok(Checked { checked, mended, written })
     }
 }

@@ -5,10 +5,10 @@ use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout::wrapped;
 use crate::setup::bodies::{Named, Pair, pair};
-use crate::setup::mated::{Given, LeftOut, MatedTask, mated};
+use crate::setup::mated::{LeftOut, MateOptions, MatedTask, mated};
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
-use crate::setup::tune::{Tried, begun, brief, chosen};
+use crate::setup::tune::{Tried, brief, chosen, tune_new};
 use connector::body::width;
 use connector::draft::{DENSITY, Size};
 use connector::mesh::axes::{Along, Jaws, Unit, value};
@@ -46,7 +46,7 @@ const DEPTHS_MM: RangeInclusive<f64> = 0.4..=300.0;
     after_help = "Example: optimize task import --plug plug.stl --socket socket.stl --out mine.toml"
 )]
 pub struct Request {
-    /// Mesh of plug and socket in their mated pose; the plug is what can be withdrawn
+    /// Mesh of plug and socket in their mated pose; the plug is the part that can be withdrawn
     #[arg(conflicts_with_all = ["plug", "socket"])]
     pub assembly: Option<PathBuf>,
     /// Mesh of the plug, or of both
@@ -125,7 +125,7 @@ impl command::Request for Request {
         }
         let mut found = self.found(context)?;
         not_stopped(stop)?;
-        let (task, tuned) = begun(found.made.task, self.engine, stop)?;
+        let (task, tuned) = tune_new(found.made.task, self.engine, stop)?;
         found.made.task = task;
         let written = self.write(out, &found)?;
         let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine, stop)?;
@@ -184,10 +184,10 @@ impl Request {
             socket_body: &self.socket_body,
             unit: self.unit,
         };
-        let Pair { triangles: [plug, socket], unit, said } =
+        let Pair { triangles: [plug, socket], unit, finding } =
             pair([&files[0], &files[1]], &named, context)?;
         not_stopped(context.stop)?;
-        let given = Given {
+        let options = MateOptions {
             name: &self.name(),
             unit,
             assembled: self.assembly.is_some(),
@@ -198,9 +198,9 @@ impl Request {
             depth: self.depth_mm.map(|depth| depth * MM),
             closeup: &self.out().with_extension("place.svg"),
         };
-        let mut found = mated([&files[0], &files[1]], [&plug, &socket], &given, context)?;
+        let mut found = mated([&files[0], &files[1]], [&plug, &socket], &options, context)?;
         found.made.task.description = described(&files);
-        found.said.extend(said);
+        found.findings.extend(finding);
         Ok(found)
     }
 
@@ -231,7 +231,7 @@ impl Request {
     }
 }
 
-/// One-line description of a task from these files.
+/// Returns a one-line description of a task from these files.
 fn described(files: &[String; 2]) -> String {
     let name = |file: &String| {
         let name = Path::new(file).file_name();
@@ -277,7 +277,7 @@ impl ImportedTask {
             unit: value(found.unit),
             insert_along: value(found.along),
             jaws: value(found.jaws),
-            found: found.said.iter().map(|(what, why)| format!("{what} {why}")).collect(),
+            found: found.findings.iter().map(|(what, why)| format!("{what} {why}")).collect(),
             clearance_mm: clearance_x_mm.min(clearance_y_mm),
             clearance_x_mm,
             clearance_y_mm,
@@ -307,7 +307,7 @@ impl Serialize for ImportedTask {
 
 impl command::Response for ImportedTask {
     fn verdict(self) -> Result<(), Failure> {
-        self.checked.ended(self.tuned.as_ref())
+        self.checked.check_new(self.tuned.as_ref())
     }
 }
 
@@ -321,7 +321,7 @@ impl fmt::Display for ImportedTask {
             "written       {out}\nplug          {plug_parts} convex parts\nsocket        {socket_parts} convex parts\n\
              clearance     {clearance_y_mm:.3} mm in y, {clearance_x_mm:.3} in x; body {high:.1} x {wide:.1} x {long:.1} mm\n"
         );
-        for (what, why) in &found.said {
+        for (what, why) in &found.findings {
             text.push_str(&format!("{what:<14}{why}\n"));
         }
         for (name, inward) in ["plug", "socket"].into_iter().zip(found.inward) {

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::layout::wrapped;
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
-use crate::setup::tune::{begun, brief, chosen};
+use crate::setup::tune::{brief, chosen, tune_new};
 use connector::draft::{self, DENSITY, Dimensions, Hole, Size};
 use connector::pins::Pins;
 use connector::tune::Tuned;
@@ -125,7 +125,7 @@ impl Serialize for Written {
 
 impl command::Response for Written {
     fn verdict(self) -> Result<(), Failure> {
-        self.checked.ended(self.tuned.as_ref())
+        self.checked.check_new(self.tuned.as_ref())
     }
 }
 
@@ -179,7 +179,7 @@ fn drafted(
         head.push("No dimensions were given: these are of a USB-C plug.".to_owned());
     }
     let mass = format!("Assumed: {DENSITY} kg/m3. Weigh yours.");
-    let (task, tuned) = begun(task, request.engine, stop)?;
+    let (task, tuned) = tune_new(task, request.engine, stop)?;
     Ok((write::task(&task, &Notes { head, mass, ..Notes::default() }), tuned))
 }
 
@@ -190,7 +190,7 @@ fn pins(request: &Request) -> Option<Pins> {
     request.pins.map(|count| Pins { count, pitch, side, length })
 }
 
-/// Returns the size of what goes in.
+/// Returns the size of the inserted part.
 fn tip(request: &Request) -> Option<Size> {
     request.plug.or(request.round).or(pins(request).map(|pins| pins.size()))
 }

@@ -109,17 +109,17 @@ impl command::Request for Request {
         let target = self.target()?;
         if let Some(problem) = problems(&file.task).first() {
             let (file, key, text) = (&file.source.file, &problem.key, &problem.problem);
-            let more = "`optimize task check` says what would be right";
+            let more = "`optimize task check` lists the accepted values";
             let problem = format!("{text}; {more}");
             return Err(Failure::task(Place::file(file).key(key).fault(problem)));
         }
         let robot = robot(&self.robot)?;
         let bench = self.bench(&file.task, &robot, stop)?;
-        let said = |what: &str, cost: usize, done, of| {
+        let report = |what: &str, cost: usize, done, of| {
             context.part(&Part { what: what.to_owned(), done, of, cost: cost as f64 });
         };
         let effort =
-            Effort { last: Stage::Search, until_enough: false, seed: self.seed, tell: &said };
+            Effort { last: Stage::Search, until_enough: false, seed: self.seed, tell: &report };
         let tuned = tune(&bench, &effort).map_err(Failure::input)?;
         if context.check().is_err() {
             return Err(self.interrupted(&file, &tuned, target)?);
@@ -204,7 +204,7 @@ impl Request {
             write_file(svg, &picture::both(&file.task, &after.task))?;
         }
         if let (Some(target), false) = (target, self.dry_run) {
-            // Parts beside the file stay there; elsewhere the task has them with it.
+            // In the same folder the file refers to its parts file; elsewhere it contains the parts.
             let beside = target.parent() == Path::new(&file.source.file).parent();
             let text = &after.source.text;
             write_file(target, if beside { without_parts(text) } else { text })?;

@@ -111,7 +111,7 @@ impl CmaEs {
         run
     }
 
-    /// Standard deviation of coordinate `i`, units of x.
+    /// Returns the standard deviation of coordinate `i`, in units of x.
     fn std(&self, i: usize) -> f64 {
         self.sigma * sqrt(self.c[(i, i)].max(0.0))
     }
@@ -183,7 +183,7 @@ impl CmaEs {
         }
     }
 
-    /// `C^(-1/2) y = B D^-1 B^T y`.
+    /// Returns `C^(-1/2) y = B D^-1 B^T y`.
     fn whiten(&self, y: &DVector<f64>) -> DVector<f64> {
         let along = self.b.tr_mul(y).zip_map(&self.d, |v, d| v / d.max(f64::MIN_POSITIVE));
         &self.b * along

@@ -70,7 +70,9 @@ impl CmaEsOptimizer {
         let mut extra = 0;
         while self.barren_restarts < BARREN_RESTARTS && extra < EXTRA_DRAWS {
             let full = self.generation.len() >= self.restarts.current.lambda;
-            if full && self.generation.iter().all(|(_, point)| self.costs.of.contains_key(point)) {
+            if full
+                && self.generation.iter().all(|(_, point)| self.costs.by_point.contains_key(point))
+            {
                 self.finish_generation();
                 continue;
             }
@@ -91,7 +93,7 @@ impl CmaEsOptimizer {
     }
 
     fn finish_generation(&mut self) {
-        let solution = |(x, point)| Solution { x, value: self.costs.of[&point] };
+        let solution = |(x, point)| Solution { x, value: self.costs.by_point[&point] };
         let told: Vec<Solution> =
             std::mem::take(&mut self.generation).into_iter().map(solution).collect();
         self.restarts.tell(&told);
@@ -131,7 +133,7 @@ impl Optimizer for CmaEsOptimizer {
             self.restarts.current.mean = best.into();
         }
         // A candidate whose value is never told would block its generation.
-        self.generation.retain(|(_, point)| self.costs.of.contains_key(point));
+        self.generation.retain(|(_, point)| self.costs.by_point.contains_key(point));
     }
 
     fn stop(&self) -> Option<StopReason> {

@@ -19,7 +19,7 @@ pub(super) struct Parameters {
     pub chi_n: f64,
 }
 
-/// Default population size, `4 + floor(3 ln n)` (48).
+/// Returns the default population size, `4 + floor(3 ln n)` (48).
 pub(super) fn default_lambda(n: usize) -> usize {
     4 + (3.0 * log(n.max(1) as f64)) as usize
 }
@@ -63,7 +63,7 @@ impl Parameters {
     }
 }
 
-/// Variance-effective selection mass `(sum w)^2 / sum w^2`; zero without weights.
+/// Returns the variance-effective selection mass `(sum w)^2 / sum w^2`; zero without weights.
 fn effective_mass(weights: &[f64]) -> f64 {
     let (sum, squares) = weights.iter().fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w));
     if squares > 0.0 { sum * sum / squares } else { 0.0 }

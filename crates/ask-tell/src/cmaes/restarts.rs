@@ -23,7 +23,7 @@ pub struct Restarts {
 }
 
 impl Restarts {
-    /// The first run starts with the default population size.
+    /// Starts the first run, with the default population size.
     pub fn new(start: StartBox, seed: u64) -> Self {
         let lambda = default_lambda(start.low.len());
         Restarts {
@@ -92,7 +92,7 @@ mod tests {
     use super::super::stop::Tolerances;
     use super::*;
 
-    /// The best value, and the populations of all runs but the last.
+    /// Returns the best value, and the populations of all runs but the last.
     fn minimise(f: fn(&[f64]) -> f64, generations: usize) -> (f64, Vec<usize>) {
         let start = StartBox {
             low: vec![-4.0; 2],

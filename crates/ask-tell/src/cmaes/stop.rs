@@ -54,8 +54,8 @@ impl History {
         recent.len() > 9 && unmoved || self.flat > 3 || self.stagnated(n, lambda)
     }
 
-    /// Stagnation rule of the tutorial: compares the medians of the newest and the oldest 30 % of
-    /// the last `max(120 + 30 n / lambda, 20 % of the run)` generations, at most 20000.
+    /// Returns whether the run stagnates by the rule of the tutorial, which compares the medians of the newest and the
+    /// oldest 30 % of the last `max(120 + 30 n / lambda, 20 % of the run)` generations, at most 20000.
     fn stagnated(&self, n: usize, lambda: usize) -> bool {
         let length = (120 + 30 * n / lambda).max(self.best.len() / 5).min(20_000);
         if self.best.len() <= length {
@@ -72,7 +72,7 @@ impl History {
     }
 }
 
-/// Largest minus smallest value; 0 if all are the same infinity.
+/// Returns the largest minus the smallest value; 0 if all are the same infinity.
 fn range(values: &[f64]) -> f64 {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);

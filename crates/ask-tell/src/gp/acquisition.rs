@@ -7,7 +7,7 @@ use libm::{exp, expm1, log};
 /// Below this the direct formula would lose digits.
 const DIRECT: f64 = -1.5;
 
-/// `log E max(f - best, 0)` for `f` normal with that mean and standard deviation:
+/// Returns `log E max(f - best, 0)` for `f` normal with that mean and standard deviation:
 /// `log_h((mean - best) / std) + log(std)`. Minus infinity where it has no value.
 pub(super) fn log_expected_improvement(mean: f64, std: f64, best: f64) -> f64 {
     let value =
@@ -15,7 +15,7 @@ pub(super) fn log_expected_improvement(mean: f64, std: f64, best: f64) -> f64 {
     if value.is_nan() { f64::NEG_INFINITY } else { value }
 }
 
-/// `log(phi(z) + z Phi(z))`, with phi and Phi the standard normal density and distribution.
+/// Returns `log(phi(z) + z Phi(z))`, with phi and Phi the standard normal density and distribution.
 ///
 /// For `z > -1.5` as it stands. Below, with Mills' ratio `R(x) = Phi(-x) / phi(x)` at `x = -z`,
 /// it is `log phi(x) + log(1 - x R(x))`. Laplace's continued fraction
@@ -39,7 +39,7 @@ fn log_h(z: f64) -> f64 {
     log_density + log(k / (x + k))
 }
 
-/// Log of the probability that a normal number with that mean and standard deviation is at
+/// Returns the log of the probability that a normal number with that mean and standard deviation is at
 /// least `threshold`.
 pub(super) fn log_probability_above(mean: f64, std: f64, threshold: f64) -> f64 {
     if std > 0.0 {
@@ -48,7 +48,7 @@ pub(super) fn log_probability_above(mean: f64, std: f64, threshold: f64) -> f64 
     if mean >= threshold { 0.0 } else { f64::NEG_INFINITY }
 }
 
-/// Log of the volume that a normal vector with independent components is expected to add
+/// Returns the log of the volume that a normal vector with independent components is expected to add
 /// within `cells`, disjoint boxes of the region that is not dominated yet (expected hypervolume
 /// improvement; Emmerich et al. 2011, CEC, doi 10.1109/CEC.2011.5949880).
 ///

@@ -59,7 +59,7 @@ pub(super) fn standardise(values: &[Option<f64>], noise_floor: f64) -> Option<St
 }
 
 impl Standardised {
-    /// The same values under the power transformation that makes them most nearly normal, with
+    /// Returns the values under the power transformation that makes them most nearly normal, with
     /// the noise floor at the scale's average slope; unchanged if there is none. The zero has
     /// no meaning then.
     pub fn warped(self) -> Self {

@@ -44,7 +44,7 @@ pub fn fit(
     fit_until(x, y, noise_floor, warm, (effort, &|| false))
 }
 
-/// Like [`fit`], but ends soon after `stopped` returns true; the result is then meaningless.
+/// Fits as [`fit`] does, but ends soon after `stopped` returns true; the result is then meaningless.
 pub fn fit_until(
     x: &[Vec<f64>],
     y: &[f64],

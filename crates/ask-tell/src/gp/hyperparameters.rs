@@ -12,21 +12,21 @@ pub struct Hyperparameters {
 }
 
 impl Hyperparameters {
-    /// As one vector: length scales, signal, noise.
+    /// Returns all as one vector: length scales, signal, noise.
     pub(super) fn to_vec(&self) -> Vec<f64> {
         let mut theta = self.log_length.clone();
         theta.extend([self.log_signal, self.log_noise]);
         theta
     }
 
-    /// From one vector of at least two numbers.
+    /// Converts such a vector back; it has at least two numbers.
     pub(super) fn from_slice(theta: &[f64]) -> Self {
         let d = theta.len() - 2;
         let log_length = theta[..d].to_vec();
         Hyperparameters { log_length, log_signal: theta[d], log_noise: theta[d + 1] }
     }
 
-    /// `x` in units of the length scales.
+    /// Returns `x` in units of the length scales.
     pub(super) fn scale(&self, x: &[f64]) -> Vec<f64> {
         x.iter().zip(&self.log_length).map(|(x, l)| x * libm::exp(-l)).collect()
     }

@@ -5,7 +5,7 @@ use crate::process::factor::inverse;
 use crate::process::{Process, distance2, matern52, matern52_slope};
 use nalgebra::DMatrix;
 
-/// Mean and standard deviation of the normal prior of each log hyperparameter.
+/// Returns mean and standard deviation of the normal prior of each log hyperparameter.
 ///
 /// Length scales: log-normal prior of Hvarfner et al. 2024 (arXiv 2402.02229), which scales with
 /// the square root of the dimension; the mean here is the logarithm of its mode. Signal and noise

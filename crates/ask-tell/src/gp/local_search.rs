@@ -1,8 +1,8 @@
 //! Search for the largest acquisition with local models.
 
 use super::lbfgs::Limits;
-use super::neighbours::{FEW, Neighbours};
-use super::search::{Memory, Room, Search};
+use super::neighbours::{APPROXIMATE_NEIGHBOURS, Neighbours};
+use super::search::{Memory, Search, SearchRegion};
 use crate::GridPoint;
 
 /// Number of neighbours of the models for L-BFGS and single steps.
@@ -20,38 +20,38 @@ const STEPS: usize = 24;
 
 /// Returns the unseen grid point with the largest acquisition found, by the model near it; `None` if no
 /// unseen point was evaluated or none has a finite acquisition.
-pub(super) fn maximise(known: &Neighbours, room: Room) -> Option<GridPoint> {
-    let candidates = match room.grid().size() {
-        ..=WHOLE_GRID => room.grid().points().collect(),
-        _ => room.candidates(CANDIDATES),
+pub(super) fn maximise(known: &Neighbours, region: SearchRegion) -> Option<GridPoint> {
+    let candidates = match region.grid().size() {
+        ..=WHOLE_GRID => region.grid().points().collect(),
+        _ => region.candidates(CANDIDATES),
     };
     let promise = |point: GridPoint| {
-        let x = room.grid().free_unit(&point);
-        let value = known.near(&x, FEW)?.acquisition(&x);
+        let x = region.grid().free_unit(&point);
+        let value = known.near(&x, APPROXIMATE_NEIGHBOURS)?.acquisition(&x);
         value.is_finite().then_some((value, point))
     };
-    let unseen = candidates.into_iter().filter(|point| !room.proposed.contains(point));
+    let unseen = candidates.into_iter().filter(|point| !region.proposed.contains(point));
     let mut ranked: Vec<(f64, GridPoint)> = unseen.filter_map(promise).collect();
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
     ranked.truncate(STARTS);
-    let ends = ranked.iter().filter_map(|(_, start)| climb(known, room, start));
+    let ends = ranked.iter().filter_map(|(_, start)| climb(known, region, start));
     ends.reduce(|a, b| if b.1 > a.1 { b } else { a }).map(|(point, _)| point)
 }
 
 /// Improves a start by L-BFGS within the trusted box of the model near it, then by single-level steps in the
 /// model near the result.
-fn climb(known: &Neighbours, room: Room, start: &GridPoint) -> Option<(GridPoint, f64)> {
-    let x = room.grid().free_unit(start);
+fn climb(known: &Neighbours, region: SearchRegion, start: &GridPoint) -> Option<(GridPoint, f64)> {
+    let x = region.grid().free_unit(start);
     let reach = known.reach(&x, MANY);
     let side = |by: f64| x.iter().zip(&reach).map(move |(x, r)| (x + by * r).clamp(0.0, 1.0));
     let (low, high): (Vec<f64>, Vec<f64>) = (side(-1.0).collect(), side(1.0).collect());
     let limits = Limits { low: &low, high: &high, evaluations: SLOPES };
     let trained = known.near(&x, MANY)?;
-    let top = Search { trained: &trained, room }.ascend(start, &limits);
-    let trained = known.near(&room.grid().free_unit(&top), MANY)?;
-    let search = Search { trained: &trained, room };
+    let top = Search { trained: &trained, region }.ascend(start, &limits);
+    let trained = known.near(&region.grid().free_unit(&top), MANY)?;
+    let search = Search { trained: &trained, region };
     let mut memory = Memory::new();
     search.value(start, &mut memory);
     search.step_uphill(top, STEPS, &mut memory);
-    room.best_unseen(memory)
+    region.best_unseen(memory)
 }

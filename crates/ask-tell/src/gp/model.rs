@@ -1,7 +1,7 @@
 //! Gaussian process conditioned on observations.
 
 use super::hyperparameters::Hyperparameters;
-use crate::process::factor::half_solved;
+use crate::process::factor::solve_lower;
 use crate::process::{Process, matern52, matern52_slope};
 use nalgebra::{DMatrix, DVector};
 
@@ -31,7 +31,7 @@ impl Scaled {
         self.columns.iter_mut().zip(scaled).for_each(|(column, x)| column.push(x));
     }
 
-    /// Squared distances from a point to all points.
+    /// Returns the squared distances from a point to all points.
     pub fn distances2(&self, x: &[f64]) -> Vec<f64> {
         let mut r2 = vec![0.0; self.columns.first().map_or(0, Vec::len)];
         for (column, x) in self.columns.iter().zip(self.scale(x)) {
@@ -88,19 +88,19 @@ impl Gp {
         None
     }
 
-    /// Number of observations and believed points.
+    /// Returns the number of observations and believed points.
     pub(super) fn len(&self) -> usize {
         self.process.len()
     }
 
-    /// Posterior mean and variance of the function (without noise) at a point; the variance
+    /// Returns posterior mean and variance of the function (without noise) at a point; the variance
     /// includes that of the constant mean (ordinary kriging).
     pub fn predict(&self, x: &[f64]) -> (f64, f64) {
         let k = self.covariances(x);
         (self.process.mean(&k, &ONE), self.process.variance(&k, &ONE, self.signal))
     }
 
-    /// Posterior mean of the function at a point.
+    /// Returns the posterior mean of the function at a point.
     pub fn mean(&self, x: &[f64]) -> f64 {
         self.process.mean(&self.covariances(x), &ONE)
     }
@@ -120,7 +120,7 @@ impl Gp {
         let r2 = points.distances2(x);
         let k = covariances(&r2, self.signal);
         let (factor, constant) = (&self.process.factor, &self.process.mean);
-        let half = half_solved(factor, &k);
+        let half = solve_lower(factor, &k);
         let variance = self.process.variance_of(&k, &ONE, self.signal, &half);
         let mut solved = half;
         factor.l_dirty().ad_solve_lower_triangular_unchecked_mut(&mut solved);
@@ -155,7 +155,7 @@ impl Gp {
     }
 }
 
-/// Lower triangle of the covariance matrix of scaled points, zeros above.
+/// Returns the lower triangle of the covariance matrix of scaled points, zeros above.
 fn lower_covariance(columns: &[Vec<f64>], signal: f64, n: usize) -> DMatrix<f64> {
     let mut covariance = DMatrix::zeros(n, n);
     for (j, column) in covariance.as_mut_slice().chunks_exact_mut(n.max(1)).enumerate() {
@@ -199,7 +199,7 @@ mod tests {
         let expected = 1.0 - k * k / 1.5 + 1.5 * (1.0 - k / 1.5).powi(2);
         assert!((mean - 2.0).abs() < 1e-12);
         assert!((variance - expected).abs() < 1e-12);
-        // Far off nothing is known but that the value was drawn about the same mean.
+        // Far away only the common mean is known.
         assert!((gp.predict(&[99.0]).1 - 2.5).abs() < 1e-12);
     }
 

@@ -7,9 +7,9 @@ use super::model::{Gp, Scaled};
 use super::trained::{Goal, Trained};
 
 /// Number of neighbours for approximate predictions.
-pub(super) const FEW: usize = 24;
+pub(super) const APPROXIMATE_NEIGHBOURS: usize = 24;
 
-/// All observations, for models of some of them (the local approximation of Gramacy and Apley
+/// Observations, from which local models of a few are made (the local approximation of Gramacy and Apley
 /// 2015, J. Comput. Graph. Stat. 24:561, with the nearest points instead of optimised ones).
 #[derive(Debug, Clone)]
 pub(super) struct Neighbours {
@@ -57,7 +57,7 @@ impl Neighbours {
 
     /// Treats the posterior means at a point as observations, as [`Trained::believe`].
     pub fn believe(&mut self, x: &[f64]) {
-        let Some(mut near) = self.near(x, FEW) else { return };
+        let Some(mut near) = self.near(x, APPROXIMATE_NEIGHBOURS) else { return };
         self.scaled.push(x);
         self.x.push(x.to_vec());
         for (data, gp) in self.data.iter_mut().zip(&near.models) {

@@ -1,6 +1,6 @@
 //! Bayesian optimizer.
 
-use super::search::Room;
+use super::search::SearchRegion;
 use super::training::{Model, Training};
 use crate::proposed::Proposed;
 use crate::sobol::SobolSequence;
@@ -40,8 +40,8 @@ pub(crate) struct GpOptimizer {
 }
 
 impl GpOptimizer {
-    /// `noise_floors`: least standard deviation of the noise of each objective, in its units;
-    /// missing or non-positive entries count as zero.
+    /// Creates the optimizer. `noise_floors` are the least standard deviations of the noise of each
+    /// objective, in its units; missing or non-positive entries count as zero.
     pub fn new(grid: Grid, seed: u64, noise_floors: &[f64]) -> Self {
         GpOptimizer {
             design: SobolSequence::new(grid.dimension(), seed, 0, "gp design"),
@@ -61,7 +61,7 @@ impl GpOptimizer {
     /// changed.
     fn train(&mut self, n: usize) -> Option<(Model, Vec<GridPoint>)> {
         let whole = self.told.len() + self.pending.len() + n <= WHOLE;
-        let fits = |(model, _): &(Model, _)| matches!(model, Model::Whole(_)) == whole;
+        let fits = |(model, _): &(Model, _)| matches!(model, Model::Global(_)) == whole;
         if !self.model.as_ref().is_some_and(fits) {
             let x: Vec<Vec<f64>> = self.told.iter().map(|o| self.unit(&o.point)).collect();
             self.model = self.training.model(&self.told, x, whole);
@@ -88,7 +88,7 @@ impl Optimizer for GpOptimizer {
                 }
                 let proposed = &self.proposed;
                 let suggest = |(model, incumbents): &(Model, Vec<GridPoint>)| {
-                    model.suggest(Room { proposed, incumbents })
+                    model.suggest(SearchRegion { proposed, incumbents })
                 };
                 found = model.as_ref().and_then(suggest);
             }

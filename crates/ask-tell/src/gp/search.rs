@@ -23,7 +23,7 @@ const MOST_SLOPES: usize = 40;
 
 /// Search region: the points not yet proposed.
 #[derive(Clone, Copy)]
-pub(super) struct Room<'a> {
+pub(super) struct SearchRegion<'a> {
     pub proposed: &'a Proposed,
     /// Good points to start from, best first.
     pub incumbents: &'a [GridPoint],
@@ -32,7 +32,7 @@ pub(super) struct Room<'a> {
 /// Search for the best unseen point.
 pub(super) struct Search<'a> {
     pub trained: &'a Trained,
-    pub room: Room<'a>,
+    pub region: SearchRegion<'a>,
 }
 
 /// Acquisitions that were computed.
@@ -43,7 +43,7 @@ impl Search<'_> {
     /// evaluated or none has a finite acquisition.
     pub fn maximise(&self) -> Option<GridPoint> {
         let (size, known) =
-            (self.room.grid().size(), self.trained.len() * self.trained.models.len());
+            (self.region.grid().size(), self.trained.len() * self.trained.models.len());
         if size <= EXHAUSTIVE && size.saturating_mul(known as u64) <= EXHAUSTIVE_WORK {
             return self.exhaustive();
         }
@@ -54,9 +54,10 @@ impl Search<'_> {
     /// upper bound of the variance bounds it, and constraints only lower it. Points are evaluated in the
     /// order of decreasing bound until it falls below the best value; few need the triangular solve.
     fn exhaustive(&self) -> Option<GridPoint> {
-        let unseen = self.room.grid().points().filter(|point| !self.room.proposed.contains(point));
+        let unseen =
+            self.region.grid().points().filter(|point| !self.region.proposed.contains(point));
         let bound =
-            |point: GridPoint| (self.trained.bound(&self.room.grid().free_unit(&point)), point);
+            |point: GridPoint| (self.trained.bound(&self.region.grid().free_unit(&point)), point);
         let mut bounds: Vec<(f64, GridPoint)> = unseen.map(bound).collect();
         // Equal bounds stay in lexicographic order: the sort is stable.
         bounds.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -66,7 +67,7 @@ impl Search<'_> {
             if bound <= record {
                 break;
             }
-            let value = self.trained.acquisition(&self.room.grid().free_unit(&point));
+            let value = self.trained.acquisition(&self.region.grid().free_unit(&point));
             if value > record {
                 best = Some((value, point));
             }
@@ -81,20 +82,20 @@ impl Search<'_> {
         // A prediction takes about n^2 / 4 + 15 n nanoseconds; some six milliseconds in all.
         let budget = (6_000_000 / models / (n * n / 4 + 15 * n + 200)).clamp(300, 6000);
         let mut memory = Memory::new();
-        let candidates = self.room.candidates(budget / 3);
+        let candidates = self.region.candidates(budget / 3);
         let value = |point| (self.value(&point, &mut memory), point);
         let mut ranked: Vec<(f64, GridPoint)> = candidates.into_iter().map(value).collect();
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
         ranked.truncate(STARTS);
         let share = (budget - budget / 3) / ranked.len().max(1);
-        let axes = self.room.grid().free_axes().len();
+        let axes = self.region.grid().free_axes().len();
         let evaluations = (share / 2 / COST_OF_SLOPE).min(MOST_SLOPES);
         let limits = Limits { low: &vec![0.0; axes], high: &vec![1.0; axes], evaluations };
         for (_, point) in ranked {
             let top = self.ascend(&point, &limits);
             self.step_uphill(top, share / 2, &mut memory);
         }
-        self.room.best_unseen(memory).map(|(point, _)| point)
+        self.region.best_unseen(memory).map(|(point, _)| point)
     }
 
     /// Returns the grid point nearest to the result of L-BFGS within a box.
@@ -103,14 +104,14 @@ impl Search<'_> {
             let (value, slope) = self.trained.sloped_acquisition(x)?;
             Some((-value, slope.into_iter().map(|g| -g).collect()))
         };
-        let Some((top, _)) = minimise(negated, &self.room.grid().free_unit(from), limits) else {
+        let Some((top, _)) = minimise(negated, &self.region.grid().free_unit(from), limits) else {
             return from.clone();
         };
-        self.room.grid().folded(&top)
+        self.region.grid().folded(&top)
     }
 
     pub fn value(&self, point: &GridPoint, memory: &mut Memory) -> f64 {
-        let acquisition = || self.trained.acquisition(&self.room.grid().free_unit(point));
+        let acquisition = || self.trained.acquisition(&self.region.grid().free_unit(point));
         *memory.entry(point.clone()).or_insert_with(acquisition)
     }
 
@@ -118,10 +119,10 @@ impl Search<'_> {
     /// every point that it evaluates in `memory`.
     pub fn step_uphill(&self, mut at: GridPoint, mut budget: usize, memory: &mut Memory) {
         let mut value = self.value(&at, memory);
-        let free = self.room.grid().free_axes();
+        let free = self.region.grid().free_axes();
         let mut axes_left = free.len();
         for &axis in free.iter().cycle() {
-            let levels = self.room.grid().levels()[axis];
+            let levels = self.region.grid().levels()[axis];
             let beside = [at.0[axis].checked_add(1), at.0[axis].checked_sub(1)];
             let mut improved = false;
             for level in beside.into_iter().flatten().filter(|&k| k < levels) {
@@ -145,7 +146,7 @@ impl Search<'_> {
     }
 }
 
-impl Room<'_> {
+impl SearchRegion<'_> {
     pub fn grid(&self) -> &Grid {
         &self.proposed.grid
     }
@@ -202,8 +203,8 @@ mod tests {
         let best = y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let trained = Trained { models: vec![gp], zeros: Vec::new(), goal: Goal::Improve(best) };
         let proposed = &proposed;
-        let room = Room { proposed, incumbents: &[] };
-        let search = Search { trained: &trained, room };
+        let region = SearchRegion { proposed, incumbents: &[] };
+        let search = Search { trained: &trained, region };
         let found = search.exhaustive().unwrap();
         let mut memory = BTreeMap::new();
         let value = search.value(&found, &mut memory);

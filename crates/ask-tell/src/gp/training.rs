@@ -4,8 +4,8 @@ use super::data::{Standardised, spread, standardise};
 use super::fit::{FitEffort, fit};
 use super::hyperparameters::Hyperparameters;
 use super::local_search;
-use super::neighbours::{FEW, Neighbours};
-use super::search::{Room, Search};
+use super::neighbours::{APPROXIMATE_NEIGHBOURS, Neighbours};
+use super::search::{Search, SearchRegion};
 use super::trained::{Front, Goal, Trained};
 use crate::pareto::front;
 use crate::{GridPoint, Observation};
@@ -15,18 +15,19 @@ const INCUMBENTS: usize = 4;
 /// With local models: number of points with the largest values of which the posterior means are computed.
 const LEADERS: usize = 16;
 /// Largest number of observations to which the hyperparameters are fitted.
-const FITTED: usize = 200;
-/// Beyond [`FITTED`] the hyperparameters are refitted after one in this many observations is new.
+const MAX_FITTED: usize = 200;
+/// Beyond [`MAX_FITTED`] observations the hyperparameters are refitted when their number has grown by the fraction
+/// `1 / REFIT`.
 const REFIT: usize = 20;
-/// Effort of a fit to some of the observations.
+/// Effort of a fit to a subset of the observations.
 const EFFORT: FitEffort = FitEffort { evaluations: 12, restarts: false };
 
-/// Models of the observations told.
+/// Gaussian processes conditioned on the observations.
 #[derive(Debug, Clone)]
 pub(super) enum Model {
-    /// Processes of all points.
-    Whole(Trained),
-    /// Processes of the nearest points, conditioned where they are needed.
+    /// Processes conditioned on all points.
+    Global(Trained),
+    /// Processes conditioned on the points nearest to a location, wherever one is needed.
     Local(Neighbours),
 }
 
@@ -34,16 +35,16 @@ impl Model {
     /// Treats the posterior means at `x` as observations (kriging believer).
     pub fn believe(&mut self, x: &[f64]) {
         match self {
-            Model::Whole(trained) => trained.believe(x),
+            Model::Global(trained) => trained.believe(x),
             Model::Local(known) => known.believe(x),
         }
     }
 
     /// Returns the unseen point with the largest acquisition found.
-    pub fn suggest(&self, room: Room) -> Option<GridPoint> {
+    pub fn suggest(&self, region: SearchRegion) -> Option<GridPoint> {
         match self {
-            Model::Whole(trained) => Search { trained, room }.maximise(),
-            Model::Local(known) => local_search::maximise(known, room),
+            Model::Global(trained) => Search { trained, region }.maximise(),
+            Model::Local(known) => local_search::maximise(known, region),
         }
     }
 }
@@ -56,16 +57,16 @@ pub(super) struct Training {
     /// Hyperparameters of the last fit, of the objectives, then of the constraints.
     thetas: Vec<Hyperparameters>,
     /// Number of observations at the last fit.
-    fitted: usize,
+    last_count: usize,
 }
 
 impl Training {
-    /// `noise_floors`: least standard deviation of the noise of each objective, in its units;
-    /// what is missing or not a positive number counts as zero.
+    /// Creates the settings before the first fit. `noise_floors` are the least standard deviations of the noise of each
+    /// objective, in its units; missing or non-positive entries count as zero.
     pub fn new(noise_floors: &[f64]) -> Self {
         let floor = |&floor: &f64| if floor.is_finite() { floor.max(0.0) } else { 0.0 };
         let noise_floors = noise_floors.iter().map(floor).collect();
-        Training { noise_floors, thetas: Vec::new(), fitted: 0 }
+        Training { noise_floors, thetas: Vec::new(), last_count: 0 }
     }
 
     /// Returns models of the observations `told` at `x`, global (`whole`) or local, and good starting points of
@@ -78,14 +79,14 @@ impl Training {
     ) -> Option<(Model, Vec<GridPoint>)> {
         let (data, zeros) = self.standardised(told)?;
         let (n, constrained) = (x.len(), !zeros.is_empty());
-        let due = whole || n <= FITTED || n >= self.fitted + self.fitted / REFIT;
+        let due = whole || n <= MAX_FITTED || n >= self.last_count + self.last_count / REFIT;
         if due || self.thetas.len() != data.len() {
-            let (some, effort) = match whole || n <= FITTED {
+            let (subset, effort) = match whole || n <= MAX_FITTED {
                 true => ((0..n).collect(), FitEffort::for_observations(n)),
-                false => (some_of(&data[0].values), EFFORT),
+                false => (fitted_subset(&data[0].values), EFFORT),
             };
-            self.thetas = self.fitted(&x, &data, &some, effort);
-            self.fitted = n;
+            self.thetas = self.fit_all(&x, &data, &subset, effort);
+            self.last_count = n;
         }
         let mut known = Neighbours::new(x, data, self.thetas.clone(), zeros);
         if whole {
@@ -96,7 +97,7 @@ impl Training {
             let means = |i: usize| objectives.iter().map(|gp| gp.mean(&x[i])).collect();
             let (goal, starts) = goal(told, constrained, margin, leaders, means)?;
             trained.goal = goal;
-            return Some((Model::Whole(trained), starts));
+            return Some((Model::Global(trained), starts));
         }
         // With many observations their values replace the posterior means.
         let (objectives, margins) = known.data.split_at(known.data.len() - known.zeros.len());
@@ -106,7 +107,7 @@ impl Training {
             margins.fold(f64::INFINITY, f64::min)
         };
         let mean = |i: usize| {
-            let near = known.near(&known.x[i], FEW);
+            let near = known.near(&known.x[i], APPROXIMATE_NEIGHBOURS);
             near.map_or(f64::NEG_INFINITY, |near| near.models[0].mean(&known.x[i]))
         };
         let leaders = |feasible: Vec<usize>| {
@@ -144,32 +145,32 @@ impl Training {
         Some((data, zeros))
     }
 
-    /// Returns the hyperparameters of each model, fitted to some of its values from those of the last fit.
-    fn fitted(
+    /// Fits the hyperparameters of each model to a subset of its values, starting from those of the last fit.
+    fn fit_all(
         &self,
         x: &[Vec<f64>],
         data: &[Standardised],
-        some: &[usize],
+        subset: &[usize],
         effort: FitEffort,
     ) -> Vec<Hyperparameters> {
-        let x: Vec<Vec<f64>> = some.iter().map(|&i| x[i].clone()).collect();
+        let x: Vec<Vec<f64>> = subset.iter().map(|&i| x[i].clone()).collect();
         let of = |(i, data): (usize, &Standardised)| {
-            let y: Vec<f64> = some.iter().map(|&i| data.values[i]).collect();
+            let y: Vec<f64> = subset.iter().map(|&i| data.values[i]).collect();
             fit(&x, &y, data.noise_floor, self.thetas.get(i), effort)
         };
         data.iter().enumerate().map(of).collect()
     }
 }
 
-/// Returns the indices of the values to which hyperparameters are fitted: the largest ones, near which the
-/// search continues, and as many evenly selected from all.
-fn some_of(values: &[f64]) -> Vec<usize> {
+/// Returns the indices of the values to which hyperparameters are fitted: the `MAX_FITTED / 2` largest ones, near
+/// which the search continues, and as many evenly selected from all.
+fn fitted_subset(values: &[f64]) -> Vec<usize> {
     let n = values.len();
-    let leaders = best_first(|i| values[i], 0..n).into_iter().take(FITTED / 2);
-    let mut some: Vec<usize> = spread(n, FITTED / 2).chain(leaders.map(|(_, i)| i)).collect();
-    some.sort_unstable();
-    some.dedup();
-    some
+    let leaders = best_first(|i| values[i], 0..n).into_iter().take(MAX_FITTED / 2);
+    let mut subset: Vec<usize> = spread(n, MAX_FITTED / 2).chain(leaders.map(|(_, i)| i)).collect();
+    subset.sort_unstable();
+    subset.dedup();
+    subset
 }
 
 /// Returns indices with their values, the largest value first.

@@ -2,11 +2,11 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// `K = L L'`.
+/// Cholesky factorisation `K = L L'`.
 pub(crate) type Factor = Cholesky<f64, Dyn>;
 
-/// Least squared pivot relative to the diagonal; smaller ones are dominated by rounding.
-const LEAST_PIVOT: f64 = 1e-14;
+/// Smallest accepted square of a pivot relative to the diagonal; smaller ones are dominated by rounding.
+const MIN_SQUARED_PIVOT: f64 = 1e-14;
 
 /// Factorises a covariance matrix, reading only its lower triangle; `None` if it is not positive
 /// definite to working precision.
@@ -14,7 +14,7 @@ pub(crate) fn factor(covariance: DMatrix<f64>) -> Option<Factor> {
     let diagonal = covariance.diagonal();
     let factor = Cholesky::new(covariance)?;
     let pivots = factor.l_dirty().diagonal();
-    let sound = |(pivot, whole): (&f64, &f64)| pivot * pivot > LEAST_PIVOT * whole;
+    let sound = |(pivot, whole): (&f64, &f64)| pivot * pivot > MIN_SQUARED_PIVOT * whole;
     (pivots.iter().zip(&diagonal).all(sound) && pivots.sum().is_finite()).then_some(factor)
 }
 
@@ -24,11 +24,11 @@ pub(crate) fn with_point(factor: &Factor, covariances: &DVector<f64>, own: f64) 
     let n = covariances.len();
     let grown = factor.insert_column(n, covariances.push(own));
     let pivot = grown.l_dirty()[(n, n)];
-    (pivot * pivot > LEAST_PIVOT * own).then_some(grown)
+    (pivot * pivot > MIN_SQUARED_PIVOT * own).then_some(grown)
 }
 
-/// `L^-1 b`.
-pub(crate) fn half_solved(factor: &Factor, b: &DVector<f64>) -> DVector<f64> {
+/// Returns `L^-1 b`.
+pub(crate) fn solve_lower(factor: &Factor, b: &DVector<f64>) -> DVector<f64> {
     let mut x = b.clone();
     factor.l_dirty().solve_lower_triangular_unchecked_mut(&mut x);
     x

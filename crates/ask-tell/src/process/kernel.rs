@@ -1,26 +1,26 @@
 //! Matern 5/2 correlation (Rasmussen and Williams 2006, equation 4.17).
 
-/// `(1 + s + s^2 / 3) exp(-s)` with `s = sqrt(5) r`, from the squared scaled distance `r^2`.
+/// Returns `(1 + s + s^2 / 3) exp(-s)` with `s = sqrt(5) r`, from the squared scaled distance `r^2`.
 #[inline]
 pub fn matern52(r2: f64) -> f64 {
     let s = (5.0 * r2).sqrt();
     (1.0 + s + s * s / 3.0) * exp_minus(s)
 }
 
-/// `-d matern52 / d(r^2)`, which is `5/6 (1 + s) exp(-s)` and has no singularity at 0.
+/// Returns `-d matern52 / d(r^2)`, which is `5/6 (1 + s) exp(-s)` and has no singularity at 0.
 #[inline]
 pub fn matern52_slope(r2: f64) -> f64 {
     let s = (5.0 * r2).sqrt();
     5.0 / 6.0 * (1.0 + s) * exp_minus(s)
 }
 
-/// Squared distance between two scaled points.
+/// Returns the squared distance between two scaled points.
 #[inline]
 pub fn distance2(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum()
 }
 
-/// `exp(-s)` for `s >= 0`, accurate to a few parts in 1e16. Branch-free, so that loops over it
+/// Returns `exp(-s)` for `s >= 0`, accurate to a few parts in 1e16. Branch-free, so that loops over it
 /// vectorise, and made of additions and products only, so that results are identical on every
 /// machine.
 #[inline]

@@ -55,7 +55,7 @@ impl<const P: usize> LinearMean<P> {
 
     /// Returns `r' A^-1 r`, the variance due to the unknown coefficients.
     pub fn variance(&self, k: &DVector<f64>, h: &[f64; P]) -> f64 {
-        let half = self.half_solved(self.residual(k, h));
+        let half = self.solve_lower(self.residual(k, h));
         let square = |(z, d): (&f64, &f64)| quotient(*z, *d) * quotient(*z, *d) * d;
         half.iter().zip(&self.pivots).map(square).sum()
     }
@@ -71,7 +71,7 @@ impl<const P: usize> LinearMean<P> {
     }
 
     /// Returns `L^-1 b`.
-    fn half_solved(&self, mut b: [f64; P]) -> [f64; P] {
+    fn solve_lower(&self, mut b: [f64; P]) -> [f64; P] {
         for i in 0..P {
             for j in 0..i {
                 b[i] -= self.lower[i][j] * b[j];
@@ -82,7 +82,7 @@ impl<const P: usize> LinearMean<P> {
 
     /// Returns `A^-1 b`.
     fn solved(&self, b: [f64; P]) -> [f64; P] {
-        let half = self.half_solved(b);
+        let half = self.solve_lower(b);
         let mut x: [f64; P] = std::array::from_fn(|i| quotient(half[i], self.pivots[i]));
         for i in (0..P).rev() {
             for j in i + 1..P {

@@ -15,7 +15,7 @@
 //!
 //! at a point of terms `h`, covariances `k` with the values and variance `k(x, x)`. Without terms
 //! (`P = 0`) these are (2.25) and (2.26), the predictions of section 2.2; with the one term 1 they
-//! are ordinary kriging. Coefficients with a normal prior belong into the kernel (2.40).
+//! are ordinary kriging. Coefficients with a normal prior belong in the kernel (2.40).
 //!
 //! Two likelihoods choose a kernel (section 5.4.1):
 //! [`log_likelihood`](Process::log_likelihood), over which the coefficients are integrated out
@@ -50,7 +50,7 @@ mod tests;
 
 pub use kernel::{distance2, matern52, matern52_slope};
 
-use factor::{Factor, factor, half_solved, with_point};
+use factor::{Factor, factor, solve_lower, with_point};
 use mean::LinearMean;
 use nalgebra::{DMatrix, DVector};
 
@@ -73,8 +73,8 @@ impl<const P: usize> Process<P> {
     /// with the mean's terms at its point. Without values the mean is 0.
     ///
     /// `None` if the numbers of rows, columns, terms and values are not the same, if the
-    /// covariance is not positive definite to working precision, if the values do not tell the
-    /// coefficients apart, or if a value is not finite.
+    /// covariance is not positive definite to working precision, if the values do not determine
+    /// the coefficients, or if a value is not finite.
     pub fn new(covariance: DMatrix<f64>, terms: &[[f64; P]], values: &[f64]) -> Option<Self> {
         let n = values.len();
         if covariance.shape() != (n, n) || terms.len() != n {
@@ -98,23 +98,23 @@ impl<const P: usize> Process<P> {
         quadratic.is_finite().then_some(process)
     }
 
-    /// Values and believed points together.
+    /// Returns the number of values and believed points together.
     pub(crate) fn len(&self) -> usize {
         self.weights.len()
     }
 
-    /// Mean at a point of covariances `k` with the values and terms `h`.
+    /// Returns the mean at a point of covariances `k` with the values and terms `h`.
     pub fn mean(&self, k: &DVector<f64>, h: &[f64; P]) -> f64 {
         h.iter().zip(&self.coefficients).map(|(h, b)| h * b).sum::<f64>() + k.dot(&self.weights)
     }
 
-    /// Variance, without noise, at a point of covariances `k`, terms `h` and this prior variance;
-    /// it holds that of the coefficients.
+    /// Returns the variance, without noise, at a point of covariances `k`, terms `h` and this prior
+    /// variance; it includes that of the coefficients.
     pub fn variance(&self, k: &DVector<f64>, h: &[f64; P], prior: f64) -> f64 {
-        self.variance_of(k, h, prior, &half_solved(&self.factor, k))
+        self.variance_of(k, h, prior, &solve_lower(&self.factor, k))
     }
 
-    /// The same with `L^-1 k`.
+    /// Returns the same as [`variance`](Self::variance), given `half` = `L^-1 k`.
     pub(crate) fn variance_of(
         &self,
         k: &DVector<f64>,
@@ -125,37 +125,37 @@ impl<const P: usize> Process<P> {
         (prior - half.norm_squared()).max(0.0) + self.mean.variance(k, h)
     }
 
-    /// `log p(y | X)` less its constant `-(n - P) / 2 log(2 pi)`, the coefficients integrated out.
+    /// Returns `log p(y | X)` less its constant `-(n - P) / 2 log(2 pi)`, the coefficients integrated out.
     pub fn log_likelihood(&self) -> f64 {
         -0.5 * (self.quadratic + self.log_determinant() + self.mean.log_determinant())
     }
 
-    /// The largest `log p(y | X, beta, s)` over the coefficients and the factor `s` on the
+    /// Returns the largest `log p(y | X, beta, s)` over the coefficients and the factor `s` on the
     /// covariance, less a constant: `-n / 2 log((y - H' beta)' K^-1 (y - H' beta) / n) - 1/2 log |K|`.
     pub fn profile_log_likelihood(&self) -> f64 {
         let n = self.len() as f64;
         -0.5 * (n * libm::log(self.quadratic / n) + self.log_determinant())
     }
 
-    /// The factor on the covariance that the values themselves ask for, without bias:
-    /// `(y - H' beta)' K^-1 (y - H' beta) / (n - P)`. Infinite or no number of `P` values or less.
+    /// Returns the unbiased estimate of the factor on the covariance from the values:
+    /// `(y - H' beta)' K^-1 (y - H' beta) / (n - P)`. Infinite or NaN for `P` values or fewer.
     pub fn scale(&self) -> f64 {
         self.quadratic / (self.len() as f64 - P as f64)
     }
 
-    /// `K^-1 b`, of as many numbers as values.
+    /// Returns `K^-1 b`; `b` has one number for each value.
     pub fn solve(&self, b: &DVector<f64>) -> DVector<f64> {
         self.factor.solve(b)
     }
 
-    /// The weights `alpha` of the covariances in the mean.
+    /// Returns the weights `alpha` of the covariances in the mean.
     pub fn weights(&self) -> &DVector<f64> {
         &self.weights
     }
 
-    /// Takes the mean at a point for observed (kriging believer): the mean stays as it is, the
-    /// variance falls. `own` is the point's variance with noise. Nothing changes, and the answer is
-    /// no, if the point cannot be told from those already there.
+    /// Treats the mean at a point as an observation (kriging believer): the mean is unchanged, the
+    /// variance decreases. `own` is the point's variance with noise. Returns false, without a change,
+    /// if the point is numerically a duplicate of another.
     pub(crate) fn believe(&mut self, k: &DVector<f64>, h: &[f64; P], own: f64) -> bool {
         let Some(factor) = with_point(&self.factor, k, own) else { return false };
         self.factor = factor;
@@ -165,7 +165,7 @@ impl<const P: usize> Process<P> {
         true
     }
 
-    /// `log |K|`.
+    /// Returns `log |K|`.
     fn log_determinant(&self) -> f64 {
         self.factor.l_dirty().diagonal().iter().map(|pivot| 2.0 * libm::log(*pivot)).sum()
     }

@@ -23,7 +23,10 @@ pub(super) struct Parameter {
 }
 
 impl Parameter {
-    /// Returns what is wrong with the parameter as an error.
+    /// Checks name, bounds and step.
+    ///
+    /// # Errors
+    /// The first problem found.
     pub fn check(&self) -> Result<(), &'static str> {
         let (span, steps) = (self.high - self.low, self.steps());
         // Neighbours must differ after rounding to binary numbers.

@@ -35,12 +35,12 @@ pub const HIDDEN: [(&str, &str); 5] = [
 
 /// Cell with hidden values.
 pub struct HiddenCell<'a> {
-    /// Number from 1; odd ones do the first task.
+    /// Number from 1; odd cells have the first task, even ones the second.
     pub number: u64,
     /// Draws until the middle finger inserted.
     draws: u32,
     pub evaluator: &'a Evaluator,
-    /// Its task as the file has it.
+    /// Task with the values of its file.
     pub template: &'a Template,
     /// Priors of [`HIDDEN`] and the values drawn: factors, and the radius in mm.
     hidden: Vec<(Parameter, f64)>,
@@ -71,7 +71,7 @@ impl<'a> HiddenCell<'a> {
         self.evaluator.under(self.template, (design, None), &values).map_err(Failure::input)
     }
 
-    /// Returns the hidden values as the tables have them.
+    /// Returns the hidden values in the units of the tables.
     pub fn shown(&self) -> impl Iterator<Item = f64> {
         let nominal = |prior: &Parameter| self.template.numbers.number(&prior.path).unwrap_or(1.0);
         self.hidden.iter().map(move |(prior, value)| nominal(prior) * value)
@@ -81,7 +81,7 @@ impl<'a> HiddenCell<'a> {
 /// Windows of a measured finger in a cell.
 pub struct FingerWindows {
     pub finger: Measurement,
-    /// In MuJoCo; in our engine; in our engine with the cell as the files have it.
+    /// In MuJoCo; in our engine; in our engine with the nominal cell, that of the files.
     windows: [Option<Taught>; 3],
     /// Whether the start that our engine was taught fails in MuJoCo.
     taught_again: bool,
@@ -109,9 +109,9 @@ impl FingerWindows {
         Ok(FingerWindows { finger: *finger, windows, taught_again, elapsed_s })
     }
 
-    /// Returns the tolerable range in one of the three ways, mm; 0 if nothing inserts.
-    pub fn range_mm(&self, way: usize) -> f64 {
-        self.windows[way].as_ref().map_or(0.0, |taught| taught.window.range_mm())
+    /// Returns the tolerable range in one of the three simulations, mm; 0 if nothing inserts.
+    pub fn range_mm(&self, simulation: usize) -> f64 {
+        self.windows[simulation].as_ref().map_or(0.0, |taught| taught.window.range_mm())
     }
 
     /// Returns the taught start and both ends in MuJoCo, mm from the task's own start.
@@ -122,14 +122,14 @@ impl FingerWindows {
     pub fn line(&self, cell: &HiddenCell<'_>) -> String {
         let Measurement { design, density_percent, direction_deg, .. } = self.finger;
         let shown = cell.shown().map(|value| format!("{value:.4},")).collect::<String>();
-        let ways =
+        let windows =
             self.windows.each_ref().map(|taught| taught.as_ref().map_or(",,,0,,".into(), cells));
         format!(
             "{},{design},{},{},{shown}{density_percent},{direction_deg},{},{},{:.1}\n",
             cell.number,
             cell.template.task.name,
             cell.draws,
-            ways.join(","),
+            windows.join(","),
             u8::from(self.taught_again),
             self.elapsed_s
         )

@@ -17,9 +17,9 @@ use study::write_file;
 
 /// Fingers that are logged: percent, degrees.
 pub const LOGGED: [[f64; 2]; 2] = [[10.0, 0.0], [30.0, 0.0]];
-/// Time between two moments, s.
+/// Time between two samples, s.
 const EVERY_S: f64 = 2e-3;
-/// Standard deviations of each axis, N: noise of a moment, bias, drift to the end of a log.
+/// Standard deviations of each axis, N: noise of a sample, bias, drift to the end of a log.
 const NOISE_N: f64 = 0.5;
 const BIAS_N: f64 = 1.0;
 const DRIFT_N: f64 = 1.0;

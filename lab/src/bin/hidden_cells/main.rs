@@ -2,7 +2,7 @@
 //! identified from the logs and judged by its hidden values and by fingers that were not logged.
 //!
 //! Writes two tables: `truth.csv` (a line for each finger in a cell: its window in MuJoCo, in our engine, and in our
-//! engine with the cell as the files have it) and `cells.csv` (a line for each cell).
+//! engine with the nominal cell) and `cells.csv` (a line for each cell).
 
 mod cell;
 mod identified;
@@ -19,14 +19,15 @@ use study::write_file;
 
 /// Tasks of the cells, in turn.
 const TASKS: &str = "usb,ket8";
-const WAYS: [&str; 3] = ["truth", "direct", "nominal"];
-/// Columns of a way after its name. Ends count from the task's own start, not from the taught one.
+/// Names of the three simulations of a window in `truth.csv`.
+const SIMULATIONS: [&str; 3] = ["truth", "direct", "nominal"];
+/// Columns of a simulation, each after its name. Ends are relative to the task's own start, not to the taught one.
 const COLUMNS: [&str; 6] =
     ["start_mm", "negative_mm", "positive_mm", "range_mm", "failure_negative", "failure_positive"];
 
 #[derive(Parser)]
 struct Arguments {
-    /// Numbers of the first and the last cell, from 1; odd ones do usb, even ones ket8
+    /// Numbers of the first and the last cell, from 1; odd cells have usb, even ones ket8
     #[arg(long, required = true, num_args = 2, value_names = ["FIRST", "LAST"])]
     cells: Vec<u64>,
     /// Folder of the tables
@@ -63,9 +64,10 @@ fn main() -> Result<(), Failure> {
 
 fn truth_header() -> String {
     let hidden = HIDDEN.map(|(_, column)| column).join(",");
-    let ways = WAYS.map(|way| COLUMNS.map(|column| format!("{way}_{column}")).join(",")).join(",");
+    let of = |name| COLUMNS.map(|column| format!("{name}_{column}")).join(",");
+    let windows = SIMULATIONS.map(of).join(",");
     format!(
-        "cell,design,task,draws,{hidden},infill_density_percent,infill_direction_deg,{ways},truth_taught_again,\
+        "cell,design,task,draws,{hidden},infill_density_percent,infill_direction_deg,{windows},truth_taught_again,\
          truth_elapsed_s\n"
     )
 }

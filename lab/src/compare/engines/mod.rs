@@ -1,4 +1,4 @@
-//! T9: the same trials in two engines.
+//! Check T9 of `docs/notes/simulation.md`: the same trials in two engines.
 //!
 //! Two engines without common contact code should agree on the outcomes of the same scenes. Trials of
 //! the softest and the stiffest measured finger on every task start at fixed distances from both ends
@@ -24,7 +24,7 @@ pub const AGREEMENT: f64 = 0.9;
 /// Largest mean difference of the windows' ends, mm.
 pub const END_DIFFERENCE_MM: f64 = 0.5;
 
-/// Offsets of the trials about a window, grid steps; if `reduced`, a few far from the ends.
+/// Returns the offsets of the trials about a window, grid steps; if `reduced`, a few far from the ends.
 pub fn offsets(window: &Window, reduced: bool) -> Vec<OffsetStep> {
     let [inside, outside]: [&[OffsetStep]; 2] = match reduced {
         false => [&[1, 3, 10, 20], &[1, 3, 10, 20, 40]],
@@ -56,7 +56,7 @@ impl TrialPair {
     }
 }
 
-/// Whether both inserted the plug, or neither.
+/// Returns whether both inserted the plug, or neither.
 fn alike(outcomes: [Outcome; 2]) -> bool {
     let [first, second] = outcomes.map(|outcome| outcome == Outcome::Inserted);
     first == second
@@ -69,12 +69,12 @@ pub struct CrossCheck {
 }
 
 impl CrossCheck {
-    /// Share of the trials on which the engines agree, 0 to 1.
+    /// Returns the share of the trials on which the engines agree, 0 to 1.
     pub fn agreement(&self) -> f64 {
         self.trials.iter().filter(|pair| pair.agrees()).count() as f64 / self.trials.len() as f64
     }
 
-    /// Mean difference of the windows' ends, mm; `None` without windows.
+    /// Returns the mean difference of the windows' ends, mm; `None` without windows.
     pub fn end_difference_mm(&self) -> Option<f64> {
         pairs::mean_end_difference_mm(&self.windows)
     }
@@ -85,7 +85,7 @@ impl CrossCheck {
     }
 }
 
-/// Results of the first two settings of every task; if `reduced`, of few trials and without windows.
+/// Compares the first two settings of every task; if `reduced`, in few trials and without windows.
 pub fn run(tasks: &[TaskSettings], designs: &[Measurement], reduced: bool) -> CrossCheck {
     let results = each(tasks, designs, |subject, settings| match settings {
         [first, second, ..] => in_both(subject, [first, second], reduced),
@@ -119,7 +119,7 @@ fn in_both(subject: &Subject, settings: [&Setting; 2], reduced: bool) -> CrossCh
     CrossCheck { trials, windows: (!reduced).then(pair).into_iter().collect() }
 }
 
-/// Distance of the tips at the end of a trial that both inserted, mm.
+/// Returns the distance of the tips at the end of a trial that both inserted, mm.
 fn tip_distance(trials: &[Trial; 2]) -> Option<f64> {
     let tip = |trial: &Trial| match trial.outcome {
         Outcome::Inserted => trial.phases.last().map(|end| end.tip_mm),
@@ -192,7 +192,7 @@ pub fn json(check: &CrossCheck, names: [&str; 2]) -> Value {
     })
 }
 
-/// Runs of each trial, of which the median counts.
+/// Runs of each trial; their median time is reported.
 const RUNS: usize = 5;
 
 /// Times of a finger's nominal trial, from the grasp to the end, in both engines.
@@ -206,14 +206,14 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// Wall time per simulated time of the first engine over that of the second.
+    /// Returns the wall time per simulated time of the first engine over that of the second.
     pub fn ratio(&self) -> f64 {
         let [first, second] = [0, 1].map(|i| self.wall_s[i] / self.simulated_s[i]);
         first / second
     }
 }
 
-/// Times of every design on every task in the first two settings, one after the other on this thread.
+/// Measures the times of every design on every task in the first two settings, one after the other on this thread.
 pub fn time(tasks: &[TaskSettings], designs: &[Measurement]) -> Vec<Timing> {
     let timing = |on: &TaskSettings, design: &Measurement| {
         let subject = Subject::new(&on.task.name, &on.task.finger, *design);

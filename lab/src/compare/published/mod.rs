@@ -39,7 +39,7 @@ pub struct Reading {
 }
 
 impl From<&Window> for Reading {
-    /// A start that diverges has no range, one that fails a range of 0; neither has window ends.
+    /// Converts a window; a start that diverges has no range, one that fails a range of 0, and neither has ends.
     fn from(window: &Window) -> Self {
         let range_mm = (window.nominal != Outcome::Diverged).then(|| window.range_mm());
         let [failure_negative, failure_positive] = failures(window);

@@ -1,4 +1,4 @@
-//! Runs of studies to their end, and their output.
+//! Run of a study to its end, and its output.
 
 use super::open::OpenStudy;
 use super::summary::summary;
@@ -15,7 +15,7 @@ use std::fmt;
 /// Output of a study.
 #[derive(Serialize)]
 #[serde(transparent)]
-pub struct Concluded {
+pub struct StudyOutput {
     summary: Value,
     /// Text that follows the answer.
     #[serde(skip)]
@@ -30,7 +30,7 @@ pub struct Concluded {
 ///
 /// # Errors
 /// If a design cannot be simulated or a file cannot be written; if it is cancelled meanwhile.
-pub fn run(open: OpenStudy, context: &Context<'_>, all: bool) -> Result<Concluded, Failure> {
+pub fn run(open: OpenStudy, context: &Context<'_>, all: bool) -> Result<StudyOutput, Failure> {
     context.stop_on_interrupt(open.study.dir())?;
     open.warn(context)?;
     context.begin_study(&open.study);
@@ -50,16 +50,16 @@ pub fn run(open: OpenStudy, context: &Context<'_>, all: bool) -> Result<Conclude
     };
     let (summary, rest) = (summary(&ended, &answer, &found), text::analyses(&found));
     let failure = failure.or_else(|| ended.unusable.take());
-    Ok(Concluded { summary, rest, failure })
+    Ok(StudyOutput { summary, rest, failure })
 }
 
-impl fmt::Display for Concluded {
+impl fmt::Display for StudyOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.rest)
     }
 }
 
-impl command::Response for Concluded {
+impl command::Response for StudyOutput {
     fn verdict(self) -> Result<(), Failure> {
         self.failure.map_or(Ok(()), Err)
     }

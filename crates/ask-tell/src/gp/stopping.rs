@@ -10,7 +10,7 @@ use super::data::{Standardised, spread, standardise};
 use super::fit::{FitEffort, fit};
 use super::model::Gp;
 use super::optimizer::DEFAULT_NOISE_FLOOR;
-use super::search::Room;
+use super::search::SearchRegion;
 use crate::process::{Process, distance2, matern52};
 use crate::proposed::Proposed;
 use crate::statistics::{normal_log_cdf, normal_pdf};
@@ -58,13 +58,13 @@ pub enum Advice {
     Confirm(Vec<usize>),
     /// Continue the search: a point not yet evaluated may be better.
     Search,
-    /// Stop: no point is expected to gain.
+    /// Stop: no point is expected to improve on the best.
     Settled,
 }
 
-/// Models of the observations and of the confirmed points.
+/// Stopping criterion, with the models of the observations and of the drops at the confirmed points.
 #[derive(Debug)]
-pub struct Outlook<'a> {
+pub struct StoppingCriterion<'a> {
     grid: &'a Grid,
     observations: &'a [Observation],
     confirmed: &'a [Confirmed],
@@ -91,8 +91,8 @@ fn kernel(a: &[f64], b: &[f64], length: f64) -> f64 {
     matern52(distance2(a, b) / (length * length))
 }
 
-impl<'a> Outlook<'a> {
-    /// Creates the models from the observations of a single-objective search and its confirmations;
+impl<'a> StoppingCriterion<'a> {
+    /// Creates the criterion with its models from the observations of a single-objective search and its confirmations;
     /// `least_gain` is the least difference that matters, in the objective's unit.
     pub fn new(
         grid: &'a Grid,
@@ -100,9 +100,10 @@ impl<'a> Outlook<'a> {
         confirmed: &'a [Confirmed],
         least_gain: f64,
     ) -> Self {
-        let mut outlook = Outlook { grid, observations, confirmed, least_gain, drop: None };
-        outlook.drop = outlook.drops();
-        outlook
+        let mut criterion =
+            StoppingCriterion { grid, observations, confirmed, least_gain, drop: None };
+        criterion.drop = criterion.drops();
+        criterion
     }
 
     /// Fits the model of the search; `None` if no observation has a value.
@@ -157,7 +158,7 @@ impl<'a> Outlook<'a> {
         self.confirmed.iter().map(|confirmed| confirmed.value).reduce(f64::max)
     }
 
-    /// Returns what to do next in a search without constraints. Ties are broken in favour of the
+    /// Returns the recommended next step of a search without constraints. Ties are broken in favour of the
     /// lower `rank`; at most `at_once` points are returned.
     pub fn advise(&self, rank: &[usize], at_once: usize) -> Advice {
         let Some(best) = self.best() else {
@@ -176,7 +177,7 @@ impl<'a> Outlook<'a> {
         }
     }
 
-    /// Returns what to confirm next, considering only the points already evaluated.
+    /// Returns the points to confirm next, only among those already evaluated.
     pub fn confirm_only(&self, rank: &[usize], at_once: usize) -> Advice {
         self.confirm(self.best().unwrap_or(f64::NEG_INFINITY), rank, at_once)
     }
@@ -196,7 +197,7 @@ impl<'a> Outlook<'a> {
             );
         }
         let leaders = self.confirmed.iter().filter(|confirmed| confirmed.value >= best);
-        // `rank` decides between equal ones.
+        // `rank` breaks ties.
         match leaders.min_by_key(|confirmed| rank[confirmed.index]) {
             Some(leader) if !leader.is_final => Advice::Confirm(vec![leader.index]),
             _ => Advice::Settled,
@@ -267,7 +268,7 @@ impl<'a> Outlook<'a> {
         best.sort_by(|a, b| b.values[0].total_cmp(&a.values[0]));
         let incumbents: Vec<GridPoint> =
             best.into_iter().take(INCUMBENTS).map(|o| o.point.clone()).collect();
-        Room { proposed, incumbents: &incumbents }.candidates(CANDIDATES)
+        SearchRegion { proposed, incumbents: &incumbents }.candidates(CANDIDATES)
     }
 }
 
@@ -286,7 +287,7 @@ mod tests {
 
     const LEAST_GAIN: f64 = 0.3;
 
-    /// A ridge of height 5 at level 3 and one of height 4 at level 16, of 21.
+    /// Returns observations of a ridge of height 5 at level 3 and one of height 4 at level 16, of 21.
     fn observations(levels: impl IntoIterator<Item = u32>) -> Vec<Observation> {
         let value = |k: u32| {
             let x = f64::from(k);
@@ -301,7 +302,7 @@ mod tests {
 
     fn advice(observations: &[Observation], confirmed: &[Confirmed]) -> Advice {
         let rank: Vec<usize> = (0..observations.len()).collect();
-        Outlook::new(&grid(), observations, confirmed, LEAST_GAIN).advise(&rank, 2)
+        StoppingCriterion::new(&grid(), observations, confirmed, LEAST_GAIN).advise(&rank, 2)
     }
 
     #[test]
@@ -326,7 +327,8 @@ mod tests {
         let dropped = [Confirmed { index: 3, value: 2.5, is_final: false }];
         let rank: Vec<usize> = (0..all.len()).collect();
         // Points near the drop may drop as much.
-        let next = Outlook::new(&grid(), &all, &dropped, LEAST_GAIN).confirm_only(&rank, 1);
+        let next =
+            StoppingCriterion::new(&grid(), &all, &dropped, LEAST_GAIN).confirm_only(&rank, 1);
         assert_eq!(next, Advice::Confirm(vec![16]));
         // Values less than 0.3 above the best are no gain.
         let near = [Confirmed { index: 3, value: 4.75, is_final: true }];
@@ -340,11 +342,11 @@ mod tests {
             Confirmed { index: 3, value: 3.0, is_final: false },
             Confirmed { index: 16, value: 4.0, is_final: true },
         ];
-        let outlook = Outlook::new(&grid, &all, &confirmed, LEAST_GAIN);
-        let loss = |at: usize| all[at].values[0] - outlook.confirmed_value(at, 0.0).unwrap().0;
+        let criterion = StoppingCriterion::new(&grid, &all, &confirmed, LEAST_GAIN);
+        let loss = |at: usize| all[at].values[0] - criterion.confirmed_value(at, 0.0).unwrap().0;
         assert!(loss(3) > 1.9 && loss(4) > 1.5 && loss(15) < 0.5, "{} {}", loss(4), loss(15));
-        let sure = outlook.confirmed_value(16, 3.9).unwrap().1;
-        assert!(sure > 0.9 && outlook.confirmed_value(16, 4.1).unwrap().1 == 0.0, "{sure}");
+        let sure = criterion.confirmed_value(16, 3.9).unwrap().1;
+        assert!(sure > 0.9 && criterion.confirmed_value(16, 4.1).unwrap().1 == 0.0, "{sure}");
     }
 
     #[test]

@@ -4,19 +4,19 @@ use ask_tell::pareto::Archive;
 use insertion::evaluation::objective::Goals;
 use study::{Recorded, Study};
 
-/// Front of the feasible designs.
-pub struct Standing {
+/// Pareto front of the feasible designs so far; with a single objective, its best design.
+pub struct BestSoFar {
     goals: Goals,
     /// Gains: larger is better.
     front: Archive,
 }
 
-impl Standing {
+impl BestSoFar {
     /// Returns the front of a study.
     pub fn new(study: &Study) -> Self {
-        let mut standing = Standing { goals: study.config.goals(), front: Archive::default() };
-        study.evaluations.iter().for_each(|recorded| standing.add(recorded));
-        standing
+        let mut best_so_far = BestSoFar { goals: study.config.goals(), front: Archive::default() };
+        study.evaluations.iter().for_each(|recorded| best_so_far.add(recorded));
+        best_so_far
     }
 
     /// Adds a design.

@@ -62,7 +62,7 @@ impl<'a> Context<'a> {
     /// # Errors
     /// If signals cannot be watched.
     pub fn cancel_on_interrupt(&self) -> Result<(), Failure> {
-        if self.shown.is_none() {
+        if self.terminal.is_none() {
             return Ok(());
         }
         watch(|| {

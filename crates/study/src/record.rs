@@ -44,7 +44,7 @@ pub struct StudyRecord {
     pub finger: Option<FingerFile>,
     /// Largest contact forces, from task and robot files.
     pub limits: ForceLimits,
-    /// FirmResult values of the first objective of the designs whose ends were repeated, by evaluation.
+    /// Firm values of the first objective of the designs whose ends were repeated, by evaluation.
     pub firm_values: BTreeMap<u64, f64>,
     /// Bench prediction, if there are measurements.
     pub on_bench: Option<OnBench>,

@@ -48,7 +48,7 @@ pub struct OnTask<'a> {
     pub name: &'a str,
     /// Its evaluation.
     pub measured: &'a Evaluation,
-    /// FirmResult part of the window, if its ends were repeated.
+    /// Firm part of the window, if its ends were repeated.
     pub firm: Option<&'a FirmResult>,
 }
 

@@ -3,7 +3,7 @@
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use connector::body::{extent, width};
-use connector::mating::{Found, Mate, assembled, mates};
+use connector::mating::{Mate, MatingResult, assembled, mates};
 use connector::mesh::axes::{Along, Jaws, Unit, value};
 use connector::mesh::mated::{GAP, HANDLE, Interference, Made, Pair, Request, TOLERANCE, task};
 use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
@@ -241,14 +241,15 @@ fn mate(
     said: &mut Vec<(&'static str, String)>,
 ) -> Result<Mate, Failure> {
     let found = match given.assembled {
-        true => assembled(plug, socket).map(|mate| Found { mates: vec![mate], equal: 1 }),
+        true => assembled(plug, socket).map(|mate| MatingResult { mates: vec![mate], copies: 1 }),
         false => mates(plug, socket, context.stop),
     };
     not_stopped(context.stop)?;
     let nowhere = |why: String| Failure::in_file(files.join(", "), why);
-    let Found { mates: mut all, equal } = found.map_err(|error| nowhere(error.to_string()))?;
-    if equal > 1 {
-        said.push(("symmetry", format!("the first of {equal} equal poses is taken")));
+    let MatingResult { mates: mut all, copies } =
+        found.map_err(|error| nowhere(error.to_string()))?;
+    if copies > 1 {
+        said.push(("symmetry", format!("the first of {copies} equal poses is taken")));
     }
     if let Some(along) = given.along {
         all.retain(|mate| along_of(&-mate.out.into_inner()) == along);

@@ -14,7 +14,7 @@ pub struct Conditions {
     pub yaw: f64,
     /// Shift of the start along x, m.
     pub start_across: f64,
-    /// Turn of the start about x beside the tilt of the search, rad.
+    /// Turn of the start about x in addition to the tilt of the search, rad.
     pub start_tilt: f64,
     /// Factor on the friction finger-plug.
     pub friction_finger: f64,

@@ -3,7 +3,7 @@
 use super::cell::{FingerWindows, HiddenCell};
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
-use calibration::identify::log::{Log, Moment, of_samples};
+use calibration::identify::log::{Log, LogSample, of_samples};
 use finger_opt::failure::Failure;
 use input::units::MM;
 use insertion::evaluation::evaluator::Specimen;
@@ -17,9 +17,9 @@ use study::write_file;
 
 /// Fingers that are logged: percent, degrees.
 pub const LOGGED: [[f64; 2]; 2] = [[10.0, 0.0], [30.0, 0.0]];
-/// Time between two moments, s.
+/// Time between two samples, s.
 const EVERY_S: f64 = 2e-3;
-/// Standard deviations of each axis, N: noise of a moment, bias, drift to the end of a log.
+/// Standard deviations of each axis, N: noise of a sample, bias, drift to the end of a log.
 const NOISE_N: f64 = 0.5;
 const BIAS_N: f64 = 1.0;
 const DRIFT_N: f64 = 1.0;
@@ -81,10 +81,10 @@ fn add_sensor_errors(log: &mut Log, cell: u64, number: u64) {
     let mut normal =
         |sd: f64| Vector3::from_fn(|_, _| sd * random.sample::<f64, _>(StandardNormal));
     let (bias, drift) = (normal(BIAS_N), normal(DRIFT_N));
-    let positions: Vec<Vector3<f64>> = log.moments.iter().map(|moment| moment.position).collect();
+    let positions: Vec<Vector3<f64>> = log.samples.iter().map(|sample| sample.position).collect();
     let accelerations = rates(&rates(&positions));
     let last = (positions.len() - 1) as f64;
-    for (i, Moment { force, .. }) in log.moments.iter_mut().enumerate() {
+    for (i, LogSample { force, .. }) in log.samples.iter_mut().enumerate() {
         let share = i as f64 / last;
         *force += bias + share * drift + normal(NOISE_N) - TOOL_KG * accelerations[i];
     }

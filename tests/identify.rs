@@ -82,7 +82,8 @@ fn a_bad_log_is_named_and_nothing_is_written() {
     folder.file("30-1.csv", bad.replace(line, &format!("{most},NaN")));
     let (cell, page) = (folder.word("cell.toml"), folder.word("page.html"));
     let identify = format!("identify --task usb --runs {runs} --out {cell} --report {page}");
-    optimize_line(&identify).fails(2, &["30-1.csv: line 100: target_z_mm", "is no finite number"]);
+    optimize_line(&identify)
+        .fails(2, &["30-1.csv: line 100: target_z_mm", "is not a finite number"]);
     assert!(!folder.dir("cell.toml").exists() && !folder.dir("page.html").exists());
 }
 

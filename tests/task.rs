@@ -128,7 +128,7 @@ fn each_fault_is_caught_with_its_key_and_what_would_be_right() {
         (shell, wide, "\"metal shell\" y_mm", "15.2 mm wide", "narrower than 15"),
         ("depth_mm = 12.0", "16.0", "success.depth_mm", "stops 12.57 mm", "at most 12"),
         (approach, "[-2.6, 0.0, -4.0]", "\"touch\" move_mm", "above the socket", "longer"),
-        (push, "[0.0, 0.0, -10.0]", "\"assembly\" move_mm", "success asks for 12", "z = -16"),
+        (push, "[0.0, 0.0, -10.0]", "\"assembly\" move_mm", "success requires 12", "z = -16"),
         (push, "[0.0, 0.0, 20.0]", "\"assembly\" move_mm", "goes up", "negative"),
         (touch, "[0.0, 0.0, 3.0]", "\"touch\" move_mm", "goes up", "negative"),
         (start, "[0.0, -0.0012, 0.051]", "strategy.start_mm", "less than", "metres"),
@@ -137,7 +137,7 @@ fn each_fault_is_caught_with_its_key_and_what_would_be_right() {
         (faces, "[-5.0, 5.0]", "grip.faces_y_mm", "inside `grip block`", "[-6.2, 6.2]"),
         (neck, "[37.2, 39.96]", "\"neck\" z_mm", "gap of 1 mm to `taper`", "36.2"),
         (y, "[-9.0, 7.51]", "socket.opening_y_mm", "`wall at -y` begins", "-7.49"),
-        (grip, "20\nshoulder_z_mm = 23.31", "grip.shoulder_z_mm", "plug goes on", "43.31"),
+        (grip, "20\nshoulder_z_mm = 23.31", "grip.shoulder_z_mm", "plug reaches", "43.31"),
         (grip, "60\nshoulder_z_mm = 63.31", "grip.shoulder_z_mm", "no plug", "43.31"),
         (start, "[0.0, -1.2, 35.0]", "strategy.start_mm", "deep in", "z = 46.03"),
         (approach, "[-2.6, 0.0, -12.8]", "\"approach\" move_mm", "runs into", "z = -8.97"),
@@ -368,7 +368,7 @@ fn a_file_may_hold_both() {
         pick(&bodies, &[name.to_owned()], "both.obj").map(|[of, rest]| [of[0][0].x, rest[0][0].x])
     };
     assert_eq!((at("Box"), at("1")), (Ok([5.0, 0.0]), Ok([0.0, 5.0])));
-    assert!(at("Lid").unwrap_err().to_string().contains("`Pin`, `Box`, and 2 shells"));
+    assert!(at("Lid").unwrap_err().to_string().contains("`Pin`, `Box`, and shells 1 to 2"));
 }
 
 /// The paper's usb, whose plug has 3 mm of room: its shoulder meets the housing at 12.57 mm, as tasks/usb.toml says.

@@ -152,7 +152,7 @@ fn measurements_and_logs_are_read() {
     let runs = runs::read(&copy.dir("robot/runs.csv"), None, calibration::identify::read::text)
         .expect("a table of logs");
     assert_eq!((runs.len(), runs[0].ended, runs[0].offset), (1, Ended::Inserted, 0.0));
-    assert_eq!(runs[0].log.moments.len(), 363);
+    assert_eq!(runs[0].log.samples.len(), 363);
 }
 
 #[test]

@@ -12,7 +12,7 @@ use crate::setup::request::SetupRequest;
 use calibration::identify::check::Remark;
 use calibration::identify::frame::Frame;
 use calibration::identify::mount;
-use calibration::identify::question::{Identified, IdentifyDone, Question};
+use calibration::identify::question::{Identification, IdentificationResult, Identified};
 use calibration::identify::runs;
 use input::files::{self, LARGEST_INPUT};
 use input::shipped::PRIORS;
@@ -65,7 +65,7 @@ pub struct Request {
 /// Identified cell.
 pub struct Done {
     /// Identified parameters of the cell.
-    pub done: IdentifyDone,
+    pub done: IdentificationResult,
     written: Vec<PathBuf>,
 }
 
@@ -89,7 +89,7 @@ impl command::Request for Request {
         });
         let frame = frame.transpose()?;
         let runs = runs::read(&self.runs, frame.as_ref(), log_text).map_err(Failure::input)?;
-        let question = Question {
+        let identification = Identification {
             evaluator: &setup.evaluator,
             template,
             priors: &priors,
@@ -99,8 +99,8 @@ impl command::Request for Request {
             stop,
         };
         let file = self.runs.to_string_lossy();
-        let mut remarks = question.remarks(&file).map_err(Failure::input)?;
-        let found = question.answer().map_err(Failure::input)?;
+        let mut remarks = identification.remarks(&file).map_err(Failure::input)?;
+        let found = identification.identify().map_err(Failure::input)?;
         not_stopped(stop)?;
         // Compared curves are still shown, but give no cell.
         if !found.is_informative() && (self.out.is_some() || found.compared.is_empty()) {
@@ -109,7 +109,7 @@ impl command::Request for Request {
         remarks.extend(mount::remark(&file, &found.compared));
         let cell = cell(&setup, &found, runs.len()).checked("the cell").map_err(Failure::input)?;
         let (task, runs) = (template.task.name.clone(), file.into_owned());
-        let done = IdentifyDone { task, runs, remarks, found, cell };
+        let done = IdentificationResult { task, runs, remarks, found, cell };
         if let Some(path) = &self.out {
             let text = toml::to_string(&done.cell).map_err(|error| Failure::Run(error.into()))?;
             write_file(path, &text)?;

@@ -7,7 +7,7 @@ use crate::layout;
 use crate::setup::Setup;
 use crate::setup::finger::FingerRequest;
 use crate::setup::request::SetupRequest;
-use analysis::levers::{Levers, Question};
+use analysis::levers::{LeverAnalysis, Levers};
 use insertion::evaluation::template::Template;
 use insertion::space::Design;
 use insertion::surrogate::Prediction;
@@ -70,9 +70,9 @@ pub(crate) fn levers(
     infill: Option<[f64; 2]>,
     stop: &AtomicBool,
 ) -> Result<Levers, Failure> {
-    let question =
-        Question { evaluator: &setup.evaluator, template, space: &setup.space, design, given };
-    let found = question.levers(infill, stop).map_err(Failure::input)?;
+    let analysis =
+        LeverAnalysis { evaluator: &setup.evaluator, template, space: &setup.space, design, given };
+    let found = analysis.levers(infill, stop).map_err(Failure::input)?;
     not_stopped(stop)?;
     Ok(found)
 }

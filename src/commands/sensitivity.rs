@@ -10,7 +10,7 @@ use insertion::evaluation::objective::Measure;
 use insertion::evaluation::template::Impossible;
 use parameters::plan::saltelli::Sample;
 use rayon::prelude::*;
-use report::sensitivity::{self as shown, Factor, Found};
+use report::sensitivity::{self as shown, Factor, SensitivityResult};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -47,7 +47,7 @@ pub struct Request {
 
 impl command::Request for Request {
     /// Shares of the objective's variance.
-    type Response = Output<Found>;
+    type Response = Output<SensitivityResult>;
     const PROGRESS: bool = true;
 
     /// Simulates the sample and ranks the inputs.
@@ -60,7 +60,7 @@ impl command::Request for Request {
 }
 
 impl Request {
-    fn found(&self, stop: &AtomicBool) -> Result<Found, Failure> {
+    fn found(&self, stop: &AtomicBool) -> Result<SensitivityResult, Failure> {
         if !matches!(self.objective, Measure::Range | Measure::CentredRange) {
             let problem = "has no value where nothing inserts; use range or centred-range";
             return Err(Failure::usage(format!("--objective {} {problem}", self.objective)));
@@ -98,7 +98,7 @@ impl Request {
             );
             Failure::running(format!("{} {problem}", self.objective))
         })?;
-        Ok(Found {
+        Ok(SensitivityResult {
             task: template.task.name.clone(),
             objective: self.objective.to_string(),
             evaluations: values.len(),

@@ -3,7 +3,7 @@
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use connector::body::{extent, width};
-use connector::mating::{Found, Mate, assembled, mates};
+use connector::mating::{Mate, MatingResult, assembled, mates};
 use connector::mesh::axes::{Along, Jaws, Unit, value};
 use connector::mesh::mated::{GAP, HANDLE, Interference, Made, Pair, Request, TOLERANCE, task};
 use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
@@ -251,14 +251,15 @@ fn mate(
     findings: &mut Vec<(&'static str, String)>,
 ) -> Result<Mate, Failure> {
     let found = match options.assembled {
-        true => assembled(plug, socket).map(|mate| Found { mates: vec![mate], equal: 1 }),
+        true => assembled(plug, socket).map(|mate| MatingResult { mates: vec![mate], copies: 1 }),
         false => mates(plug, socket, context.stop),
     };
     not_stopped(context.stop)?;
     let nowhere = |why: String| Failure::in_file(files.join(", "), why);
-    let Found { mates: mut all, equal } = found.map_err(|error| nowhere(error.to_string()))?;
-    if equal > 1 {
-        findings.push(("symmetry", format!("the first of {equal} equal poses is taken")));
+    let MatingResult { mates: mut all, copies } =
+        found.map_err(|error| nowhere(error.to_string()))?;
+    if copies > 1 {
+        findings.push(("symmetry", format!("the first of {copies} equal poses is taken")));
     }
     if let Some(along) = options.along {
         all.retain(|mate| along_of(&-mate.out.into_inner()) == along);

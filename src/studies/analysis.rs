@@ -12,7 +12,7 @@ use crate::setup::files::robot;
 use crate::setup::robots::stiffness_and_lag;
 use ::report::PostAnalysis;
 use ::report::answer::command::own_task;
-use ::report::answer::{Answer, UnderRobot};
+use ::report::answer::{Answer, RobotWindow};
 use analysis::levers::Levers;
 use analysis::map::Axes;
 use insertion::evaluation::Evaluation;
@@ -133,11 +133,11 @@ fn robots(
     answer: &Answer,
     specimen: &Specimen,
     stop: &AtomicBool,
-) -> Result<Vec<UnderRobot>, Failure> {
+) -> Result<Vec<RobotWindow>, Failure> {
     let start = [specimen.task.turn, specimen.task.strategy.tilt];
     let under = |robot: &Robot, measured: Evaluation| {
         let (stiffness_n_per_mm, _) = stiffness_and_lag(robot, start)?;
-        Ok::<_, Failure>(UnderRobot { robot: robot.name.clone(), stiffness_n_per_mm, measured })
+        Ok::<_, Failure>(RobotWindow { robot: robot.name.clone(), stiffness_n_per_mm, measured })
     };
     let known =
         answer.finger_and_evaluations().and_then(|(_, tasks)| tasks.first().copied().cloned());

@@ -7,7 +7,7 @@ use input::files::{self, LARGEST_OWN};
 use insertion::surrogate::Model;
 use report::answer::Answer;
 use report::replay::{ENDS, pair_file, poster_file};
-use report::{self, Beside, printer};
+use report::{self, PageFiles, printer};
 use std::path::Path;
 use study::{EVALUATIONS_CSV, StudyRecord, evaluations_csv, write_own_file};
 
@@ -40,10 +40,10 @@ pub(crate) fn write(dir: &Path, answer: &Answer, model: &Model) -> Result<(), Fa
 }
 
 /// Reads the files that the page shows or links.
-fn beside(dir: &Path, answer: &Answer) -> Beside {
+fn beside(dir: &Path, answer: &Answer) -> PageFiles {
     let read = |name: &str| files::read_text(&dir.join(name), LARGEST_OWN).ok();
     let names = printer::FILES.iter().map(|(name, _)| *name);
-    let mut beside = Beside {
+    let mut beside = PageFiles {
         dir: dir.to_owned(),
         films: Vec::new(),
         files: names.filter(|name| dir.join(name).exists()).collect(),

@@ -1,6 +1,6 @@
 //! Benches of one or several tasks: simulation, measurements, and samples of the posterior.
 
-use super::process::{COORDINATES, Conditioned, Finger, Hyperparameters, Place};
+use super::process::{COORDINATES, Conditioned, Finger, Hyperparameters, StiffnessPoint};
 use ask_tell::normal::StandardNormal;
 use ask_tell::statistics::normal_cdf;
 use rand::{Rng, RngExt};
@@ -9,39 +9,45 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Simulated ranges as a function of the uncertain parameters.
 pub trait Simulator: Sync {
-    /// Returns the ranges of fingers, mm; `shares` are the quantiles of the parameters' priors, 0 to 1.
+    /// Returns the ranges of fingers, mm; `shares` are the levels of the quantiles of the parameters' priors, 0 to 1.
     fn ranges_mm(&self, fingers: &[usize], shares: &[f64]) -> Vec<f64>;
 }
 
+/// Measured range of a finger.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
     pub finger: usize,
     pub range_mm: f64,
+    /// Whether the range is only a lower bound.
     pub at_least: bool,
     /// Number of measurements averaged into the range.
     pub repeats: u32,
 }
 
+/// Bench of a task: its simulator and its observations.
 #[derive(Clone)]
 pub struct Bench<'a> {
     pub simulator: &'a dyn Simulator,
-    pub places: &'a [Place],
+    /// Coordinates of all fingers in the process.
+    pub places: &'a [StiffnessPoint],
     pub observations: Vec<Observation>,
-    /// Unit of the process, mm.
+    /// Scale of the task, the unit of the process, mm.
     pub scale_mm: f64,
     /// Error of the emulator, mm: a discrepancy that no parameter explains.
     pub error_mm: f64,
     /// Coordinates of the simulator's parameters in a sample.
     pub parameters: Vec<usize>,
-    /// First coordinate of its hyperparameters in a sample.
+    /// Index of the first coordinate of the bench's hyperparameters in a sample.
     pub first: usize,
 }
 
 impl Bench<'_> {
+    /// Returns the levels of the quantiles of the parameters' priors at a sample, 0 to 1.
     pub fn shares(&self, state: &[f64]) -> Vec<f64> {
         self.parameters.iter().map(|&coordinate| normal_cdf(state[coordinate])).collect()
     }
 
+    /// Returns fingers with their simulated ranges at a sample.
     pub fn fingers(&self, numbers: &[usize], state: &[f64]) -> Vec<Finger> {
         let ranges_mm = self.simulator.ranges_mm(numbers, &self.shares(state));
         numbers.iter().zip(ranges_mm).map(|(&number, range)| self.finger(number, range)).collect()
@@ -51,22 +57,24 @@ impl Bench<'_> {
         Finger { place: self.places[number], simulated: range_mm / self.scale_mm }
     }
 
+    /// Returns the hyperparameters at a sample.
     pub fn hyperparameters(&self, state: &[f64]) -> Hyperparameters {
         let own = &state[self.first..self.first + COORDINATES];
         Hyperparameters::from_coordinates(own, self.error_mm / self.scale_mm)
     }
 
+    /// Returns the finger of each observation.
     fn measured(&self) -> Vec<usize> {
         self.observations.iter().map(|observation| observation.finger).collect()
     }
 
-    /// Returns the bench at a sample; `None` if its covariance is not positive definite.
+    /// Conditions the process on the observations at a sample; `None` if their covariance is not positive definite.
     pub fn at(&self, state: &[f64]) -> Option<Conditioned> {
         let ranges_mm = self.simulator.ranges_mm(&self.measured(), &self.shares(state));
         self.conditioned(state, &ranges_mm)
     }
 
-    /// Returns the same, given the simulated ranges of the measured fingers.
+    /// Conditions the process on the observations, given their simulated ranges.
     fn conditioned(&self, state: &[f64], ranges_mm: &[f64]) -> Option<Conditioned> {
         let (mut known, mut bounds) = (Vec::new(), Vec::new());
         for (observation, &simulated) in self.observations.iter().zip(ranges_mm) {
@@ -81,7 +89,7 @@ impl Bench<'_> {
     }
 }
 
-/// Returns samples of parameters and hyperparameters: `dimension` coordinates each, whose prior is standard normal.
+/// Samples the posterior of parameters and hyperparameters: `dimension` coordinates each, with standard normal priors.
 pub fn sampled(
     benches: &[Bench<'_>],
     dimension: usize,
@@ -93,18 +101,18 @@ pub fn sampled(
         let own = bench.first..bench.first + COORDINATES;
         bench.parameters.iter().copied().chain(own).for_each(|c| parts[c].push(part));
     }
-    // Most coordinates do not change the simulated ranges.
-    let known: Vec<RefCell<(Vec<f64>, Vec<f64>)>> =
+    // Caches the last simulated ranges of each bench, since most coordinates do not change them.
+    let cached: Vec<RefCell<(Vec<f64>, Vec<f64>)>> =
         benches.iter().map(|_| RefCell::default()).collect();
     let log_likelihood = |part: usize, state: &[f64]| {
         let bench = &benches[part];
         let shares = bench.shares(state);
-        let mut known = known[part].borrow_mut();
-        if known.0 != shares || known.1.len() != bench.observations.len() {
+        let mut cached = cached[part].borrow_mut();
+        if cached.0 != shares || cached.1.len() != bench.observations.len() {
             let ranges = bench.simulator.ranges_mm(&bench.measured(), &shares);
-            *known = (shares, ranges);
+            *cached = (shares, ranges);
         }
-        bench.conditioned(state, &known.1).map_or(f64::NEG_INFINITY, |at| at.log_likelihood())
+        bench.conditioned(state, &cached.1).map_or(f64::NEG_INFINITY, |at| at.log_likelihood())
     };
     sample(&parts, &log_likelihood, settings, random)
 }
@@ -121,7 +129,7 @@ pub struct Settings<'a> {
     pub seed: u64,
     /// Cancellation flag; once it is set, results are invalid.
     pub stop: &'a AtomicBool,
-    /// Progress callback of the leave-one-out calibrations: how many are done, and of how many.
+    /// Progress callback of the leave-one-out calibrations: number done, and total number.
     pub done: &'a (dyn Fn([usize; 2]) + Sync),
 }
 
@@ -133,8 +141,8 @@ const ACCEPTED: f64 = 0.44;
 /// Draws Metropolis samples, one coordinate at a time, with step sizes that adapt during the warm-up (Metropolis et
 /// al. 1953; Roberts and Rosenthal 2009, doi:10.1198/jcgs.2009.06134).
 ///
-/// The prior of each coordinate is standard normal. The log-likelihood is a sum over parts; `parts[c]` lists those
-/// that depend on coordinate `c`.
+/// The prior of each coordinate is standard normal. The log-likelihood is a sum over parts; `parts[c]` lists the
+/// parts that depend on coordinate `c`.
 fn sample(
     parts: &[Vec<usize>],
     log_likelihood: &dyn Fn(usize, &[f64]) -> f64,

@@ -10,7 +10,7 @@
 //! 7. `table`: the results as JSON and CSV, and their summary in a study.
 #![forbid(unsafe_code)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
-// A panic is a defect; what input can reach is an error with a message.
+// A panic is a bug; invalid input must produce an error with a message.
 #![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod bench;

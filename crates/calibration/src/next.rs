@@ -8,7 +8,7 @@
 
 use super::bench::Bench;
 use super::predict::{INTERVAL, draws};
-use super::process::Place;
+use super::process::StiffnessPoint;
 use ask_tell::statistics::{mean, normal_cdf, normal_pdf, quantile, sorted};
 use insertion::space::Design;
 use rand::Rng;
@@ -115,7 +115,8 @@ pub fn advise(
         let tail = |share: f64| quantile(&values, share).unwrap_or(0.0).max(0.0);
         let (low_mm, high_mm) = (tail((1.0 - INTERVAL) / 2.0), tail((1.0 + INTERVAL) / 2.0));
         let expected_mm = told.means[column].max(0.0);
-        let tried: Vec<Place> = printed.iter().map(|&column| bench.places[all[column]]).collect();
+        let tried: Vec<StiffnessPoint> =
+            printed.iter().map(|&column| bench.places[all[column]]).collect();
         let design = designs[all[column]].clone();
         let reason = match &choice {
             Some(widest) if tried.is_empty() && widest.design != design => {
@@ -253,8 +254,8 @@ const FAR: f64 = 0.7;
 
 /// Why a finger at this place is printed after those tried.
 fn reason(
-    own: Place,
-    tried: &[Place],
+    own: StiffnessPoint,
+    tried: &[StiffnessPoint],
     expected_mm: f64,
     high_mm: f64,
     best_mm: Option<f64>,
@@ -280,7 +281,7 @@ fn reason(
 }
 
 /// News that no finger tried before tells.
-fn news(own: Place, tried: &[Place]) -> Option<String> {
+fn news(own: StiffnessPoint, tried: &[StiffnessPoint]) -> Option<String> {
     let difference = |axis: usize| {
         let by = tried.iter().map(|other| own[axis] - other[axis]);
         by.min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
@@ -289,7 +290,7 @@ fn news(own: Place, tried: &[Place]) -> Option<String> {
         true => (0, "compliance"),
         false => (1, "assembly"),
     };
-    let more = |other: &Place| own[axis] > other[axis];
+    let more = |other: &StiffnessPoint| own[axis] > other[axis];
     // The first axis is 1 / ky: more of it is softer.
     let way = match (tried.iter().all(more), tried.iter().any(more), axis) {
         (true, _, 0) | (_, false, 1) => "softer than any tried",

@@ -73,7 +73,7 @@ pub fn predict(
     numbers.par_iter().map(one).collect()
 }
 
-/// Returns the same from joint draws: with lower bounds of ranges there is no closed form.
+/// Returns the predictions from joint draws: with lower bounds of ranges there is no closed form.
 fn from_draws(
     bench: &Bench<'_>,
     posterior: &[Vec<f64>],
@@ -189,7 +189,7 @@ impl Discrepancy {
         let mut feature = || {
             let [a, b]: [f64; 2] = std::array::from_fn(|_| random.sample(StandardNormal));
             let stretch = (chi_squared(FREEDOM, random) / FREEDOM).sqrt();
-            let length = hyperparameters.length * stretch;
+            let length = hyperparameters.length_scale * stretch;
             [a / length, b / length, random.random::<f64>() * std::f64::consts::TAU]
         };
         Discrepancy {

@@ -1,4 +1,4 @@
-//! Model of the bench beside the simulation: trends, a Gaussian process over the
+//! Model of the discrepancy between bench and simulation: trends, a Gaussian process over the
 //! stiffness, and noise (Kennedy and O'Hagan 2001, doi:10.1111/1467-9868.00294).
 //!
 //! In units of the task's scale, the mean simulated range:
@@ -7,8 +7,8 @@
 //! y = 1 + a + (1 + r) (s(theta) - 1) + b1 / ky + b2 kz + d(ky, kz) + noise
 //! ```
 //!
-//! `s` is the simulated range; `a` an offset common to all fingers; `r` says how much of the
-//! simulated differences is true (Kennedy and O'Hagan's regression parameter is `1 + r`); the
+//! `s` is the simulated range; `a` an offset common to all fingers; `1 + r` is the share of the
+//! simulated differences that is real (Kennedy and O'Hagan's regression parameter); the
 //! stiffnesses are standardised over the space. A window widens by the deflection that a contact
 //! force makes, which is linear in `1 / ky`, and by the force that a preload makes, which is linear
 //! in `kz`. Offset, `r`, `b1` and `b2` are normal about 0 and integrated out; `d` is a Matern 5/2
@@ -18,13 +18,13 @@ use ask_tell::process::{Process, distance2, matern52};
 use ask_tell::statistics::normal_log_cdf;
 use nalgebra::{DMatrix, DVector};
 
-/// Place of a finger: its standardised `1 / ky` and `kz`.
-pub type Place = [f64; 2];
+/// Coordinates of a finger in the process: its standardised `1 / ky` and `kz`.
+pub type StiffnessPoint = [f64; 2];
 
-/// Linear terms: offset, share of the simulated differences, `1 / ky`, `kz`.
+/// Number of linear terms: offset, share of the simulated differences, `1 / ky`, `kz`.
 pub const TERMS: usize = 4;
 
-/// Number of coordinates of the sampler from which the hyperparameters follow.
+/// Number of coordinates of the sampler that determine the hyperparameters.
 pub const COORDINATES: usize = 5;
 
 /// Standard deviation of the offset between simulated and measured windows.
@@ -35,18 +35,18 @@ const SHARE_SD: f64 = 1.0;
 const TREND: (f64, f64) = (0.1, 1.0);
 /// Median and logarithmic standard deviation of the standard deviation of the process.
 const PROCESS: (f64, f64) = (0.05, 0.7);
-/// Median and logarithmic standard deviation of its length.
-const LENGTH: (f64, f64) = (1.5, 0.4);
+/// Median and logarithmic standard deviation of the length scale of the process.
+const LENGTH_SCALE: (f64, f64) = (1.5, 0.4);
 /// Median and logarithmic standard deviation of the noise: two windows of one finger differ by some steps of 0.1 mm.
 const NOISE: (f64, f64) = (0.05, 0.7);
 
-/// Standard deviations in units of the task's scale.
+/// Hyperparameters: standard deviations in units of the task's scale, and the length scale of the process.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hyperparameters {
     pub terms: [f64; TERMS],
     pub process: f64,
-    /// Length of the process, in standard deviations of the stiffness.
-    pub length: f64,
+    /// Length scale of the process, in standard deviations of the stiffness.
+    pub length_scale: f64,
     pub noise: f64,
 }
 
@@ -57,15 +57,16 @@ impl Hyperparameters {
         Hyperparameters {
             terms: [OFFSET_SD, SHARE_SD, at(0, TREND), at(1, TREND)],
             process: libm::hypot(at(2, PROCESS), emulator),
-            length: at(3, LENGTH),
+            length_scale: at(3, LENGTH_SCALE),
             noise: at(4, NOISE),
         }
     }
 
+    /// Returns the prior covariance of the discrepancies of two fingers.
     pub fn covariance(&self, a: &Finger, b: &Finger) -> f64 {
         let (x, y) = (a.terms(), b.terms());
         let linear: f64 = (0..TERMS).map(|i| self.terms[i].powi(2) * x[i] * y[i]).sum();
-        let distance2 = distance2(&a.place, &b.place) / self.length.powi(2);
+        let distance2 = distance2(&a.place, &b.place) / self.length_scale.powi(2);
         linear + self.process.powi(2) * matern52(distance2)
     }
 }
@@ -73,11 +74,12 @@ impl Hyperparameters {
 /// Finger with its simulated range, in units of the task's scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finger {
-    pub place: Place,
+    pub place: StiffnessPoint,
     pub simulated: f64,
 }
 
 impl Finger {
+    /// Returns the regressors of the linear terms.
     pub fn terms(&self) -> [f64; TERMS] {
         [1.0, self.simulated - 1.0, self.place[0], self.place[1]]
     }
@@ -88,7 +90,7 @@ impl Finger {
 pub struct Conditioned {
     pub hyperparameters: Hyperparameters,
     pub fingers: Vec<Finger>,
-    /// Fingers with a lower bound of their range.
+    /// Fingers with lower bounds of their ranges.
     pub bounds: Vec<(Finger, f64)>,
     /// Process of the discrepancies from the simulation; its kernel includes the linear terms.
     process: Process<0>,
@@ -97,8 +99,8 @@ pub struct Conditioned {
 }
 
 impl Conditioned {
-    /// Conditions on fingers with their measured values and the number of measurements of each, and on fingers with
-    /// lower bounds; `None` if their covariance is not positive definite.
+    /// Conditions on fingers with their measured values and numbers of measurements, and on fingers with lower bounds;
+    /// `None` if their covariance is not positive definite.
     pub fn new(
         hyperparameters: Hyperparameters,
         known: &[(Finger, f64, f64)],
@@ -115,8 +117,8 @@ impl Conditioned {
             }
             covariance[(j, j)] += noises[j].powi(2);
         }
-        let departures: Vec<f64> = known.iter().map(|(f, y, _)| y - f.simulated).collect();
-        let process = Process::new(covariance, &vec![[]; n], &departures)?;
+        let discrepancies: Vec<f64> = known.iter().map(|(f, y, _)| y - f.simulated).collect();
+        let process = Process::new(covariance, &vec![[]; n], &discrepancies)?;
         Some(Conditioned { hyperparameters, fingers, bounds, process, noises })
     }
 
@@ -129,27 +131,28 @@ impl Conditioned {
         self.process.log_likelihood() + self.bounds.iter().map(bound).sum::<f64>()
     }
 
-    fn towards(&self, finger: &Finger) -> DVector<f64> {
+    /// Returns the covariances of a finger with the measured ones.
+    fn cross_covariances(&self, finger: &Finger) -> DVector<f64> {
         let to = |known: &Finger| self.hyperparameters.covariance(known, finger);
         DVector::from_iterator(self.fingers.len(), self.fingers.iter().map(to))
     }
 
     /// Returns mean and standard deviation of the true range of a finger.
     pub fn predict(&self, finger: &Finger) -> (f64, f64) {
-        let k = self.towards(finger);
+        let k = self.cross_covariances(finger);
         let own = self.hyperparameters.covariance(finger, finger);
         let mean = finger.simulated + self.process.mean(&k, &[]);
         (mean, self.process.variance(&k, &[], own).sqrt())
     }
 
     /// Conditions a draw of the prior on the measurements and returns its values at `fingers` (Matheron's rule; Wilson
-    /// et al. 2020, arXiv 2002.09309). `prior` is the draw's discrepancy from the simulation at `fingers`, `known` that
-    /// at the measured ones with their noise.
+    /// et al. 2020, arXiv 2002.09309). `prior` is the draw's discrepancy from the simulation at `fingers`, `known` its
+    /// discrepancy at the measured fingers, with their noise.
     pub fn update(&self, fingers: &[Finger], prior: &[f64], known: &[f64]) -> Vec<f64> {
         let known = DVector::from_column_slice(known);
         let weights = self.process.weights() - self.process.solve(&known);
         let value = |(finger, prior): (&Finger, &f64)| {
-            finger.simulated + prior + self.towards(finger).dot(&weights)
+            finger.simulated + prior + self.cross_covariances(finger).dot(&weights)
         };
         fingers.iter().zip(prior).map(value).collect()
     }

@@ -15,14 +15,15 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use study::Cache;
 
-/// Shifts of the start, mm, tried in turn if the task's own does not insert: an operator would teach one that does.
+/// Shifts of the start, mm, tried in turn if the trial from the task's start does not insert: an operator would teach a
+/// start that does.
 const SHIFTS_MM: [f64; 4] = [1.0, -1.0, 2.0, -2.0];
 
 /// Simulation of one task with some of its parameters set.
 pub struct Simulation<'a> {
     pub(super) evaluator: &'a Evaluator,
     pub(super) template: &'a Template,
-    /// The parameters that the task and the robot have, in order.
+    /// Parameters that the task and the robot have, in the given order.
     pub parameters: Vec<&'a Parameter>,
     /// Folder of the cache, if windows are cached.
     cache: Option<PathBuf>,
@@ -31,7 +32,7 @@ pub struct Simulation<'a> {
 }
 
 impl<'a> Simulation<'a> {
-    /// Returns a simulation with those of the parameters that the task and the robot have.
+    /// Creates a simulation with the parameters that the task and the robot have; the others are dropped.
     pub fn new(
         evaluator: &'a Evaluator,
         template: &'a Template,
@@ -43,8 +44,8 @@ impl<'a> Simulation<'a> {
         Simulation { evaluator, template, parameters, cache, stop }
     }
 
-    /// Simulates the window of a design with the parameters at these quantiles of their priors; without them, as in
-    /// the files.
+    /// Simulates the window of a design. `shares` are the levels of the quantiles of the parameters' priors; if it is
+    /// empty, the values of the files are used.
     pub fn window(&self, design: &Design, shares: &[f64]) -> Result<Evaluation, Impossible> {
         let values = self.parameters.iter().zip(shares).map(|(p, &share)| (*p, p.at(share)));
         let values: Vec<_> = values.collect();
@@ -65,6 +66,7 @@ impl<'a> Simulation<'a> {
         Ok(own)
     }
 
+    /// Simulates the window of a specimen, or returns the cached one.
     fn measure(&self, specimen: &Specimen, robot: &Robot) -> Result<Evaluation, Impossible> {
         let engine = self.evaluator.engine;
         let cache = self.cache.as_ref().map(|dir| Cache::new(dir, robot, &engine.record()));

@@ -2,7 +2,7 @@
 
 use super::bench::{Bench, Observation, Simulator};
 use super::emulator::{CalibrationError, Emulator, most};
-use super::process::Place;
+use super::process::StiffnessPoint;
 use super::simulation::Simulation;
 use crate::experiments::Experiment;
 use ask_tell::process::distance2;
@@ -29,7 +29,7 @@ pub struct Subject {
     pub emulator: Emulator,
     /// Measurements on this task, each with the number of its finger.
     pub experiments: Vec<(usize, Experiment)>,
-    places: Vec<Place>,
+    places: Vec<StiffnessPoint>,
     /// Shares of the space, as the emulator takes them.
     shares: Vec<Vec<f64>>,
     /// Parameters of its simulation, in order.
@@ -224,7 +224,7 @@ fn shares(space: &Space, design: &Design) -> Vec<f64> {
 }
 
 /// Standardises rows by mean and standard deviation of the first `reference` ones.
-fn standardised(rows: &[[f64; 2]], reference: usize) -> Vec<Place> {
+fn standardised(rows: &[[f64; 2]], reference: usize) -> Vec<StiffnessPoint> {
     let scale = [0, 1].map(|axis| {
         let moments = Moments::of(rows.iter().take(reference).map(|row| row[axis]));
         (moments.mean, moments.deviation().max(f64::MIN_POSITIVE))

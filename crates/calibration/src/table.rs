@@ -9,9 +9,10 @@ use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use serde::Serialize;
 use study::{BenchEffort, BenchFinger, OnBench, Provenance};
 
-/// Standard deviation and mean of a coordinate (prior: 1 and 0) from which on it counts as moved.
+/// Standard deviation of a coordinate below which, and magnitude of its mean above which, it counts as moved (prior: 1
+/// and 0).
 const MOVED: (f64, f64) = (0.75, 0.5);
-/// Correlation from which on two parameters cannot be told apart.
+/// Correlation at which two parameters cannot be told apart.
 const CONFOUNDED: f64 = 0.5;
 
 /// Effect of the measurements on a parameter: the 10th, 50th and 90th percentile before and after, in its own unit.

@@ -2,7 +2,7 @@
 
 use super::bench::{Bench, Observation, Settings, Simulator, sampled};
 use super::predict::{IntervalKind, Predicted, draws, predict};
-use super::process::{COORDINATES, Place};
+use super::process::{COORDINATES, StiffnessPoint};
 use ask_tell::normal::StandardNormal;
 use ask_tell::statistics::{Moments, normal_cdf};
 use ask_tell::stream::stream;
@@ -16,7 +16,7 @@ const SETTINGS: Settings<'_> =
 
 /// A simulator of two parameters, the first of which turns the order of the fingers.
 struct MadeUp {
-    places: Vec<Place>,
+    places: Vec<StiffnessPoint>,
 }
 
 impl Simulator for MadeUp {
@@ -72,7 +72,7 @@ fn calibrated(number: u64, discrepancy: f64, noise: f64) -> Outcome {
     let [a, b, c] = [normal(), normal(), 0.5 * normal()].map(|sd| SCALE_MM * discrepancy * sd);
     let all: Vec<usize> = (0..FINGERS).collect();
     let simulated = simulator.ranges_mm(&all, &hidden.map(normal_cdf));
-    let beside = |[x, y]: &Place| a + b * x + c * libm::sin(2.0 * y);
+    let beside = |[x, y]: &StiffnessPoint| a + b * x + c * libm::sin(2.0 * y);
     let truth: Vec<f64> = simulated
         .iter()
         .zip(&simulator.places)

@@ -3,7 +3,7 @@
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
 use calibration::identify::log::{Ended, Log, Run, of_samples};
-use calibration::identify::question::Question;
+use calibration::identify::question::Identification;
 use calibration::identify::read;
 use finray::printed::PrintedFinger;
 use input::shipped::{FINGERS, PRIORS, ROBOTS, STIFFNESS, TASKS};
@@ -33,12 +33,12 @@ const HIDDEN: [(&str, &str); 5] = [
     ("radius of the edges", "edge_radius_mm"),
 ];
 
-/// Time between two moments, s.
+/// Time between two samples, s.
 const EVERY_S: f64 = 2e-3;
 /// Mass of what hangs on the sensor, kg.
 const TOOL_KG: f64 = 1.0;
 
-/// A log as a table: a row for each moment.
+/// A log as a table: a row for each sample.
 type Table = Vec<Vec<f64>>;
 
 /// A recorded attempt or probe.
@@ -141,7 +141,7 @@ fn sense(log: &mut Log, cell: u64, number: u64) {
     let mut normal =
         |sd: f64| Vector3::from_fn(|_, _| sd * random.sample::<f64, _>(StandardNormal));
     let (bias, drift) = (normal(1.0), normal(1.0));
-    let last = log.moments.len() - 1;
+    let last = log.samples.len() - 1;
     let rates = |of: Vec<Vector3<f64>>| -> Vec<Vector3<f64>> {
         let rate = |i: usize| {
             let (a, b) = (i.saturating_sub(1), (i + 1).min(last));
@@ -149,10 +149,10 @@ fn sense(log: &mut Log, cell: u64, number: u64) {
         };
         (0..=last).map(rate).collect()
     };
-    let accelerations = rates(rates(log.moments.iter().map(|moment| moment.position).collect()));
-    for (i, moment) in log.moments.iter_mut().enumerate() {
+    let accelerations = rates(rates(log.samples.iter().map(|sample| sample.position).collect()));
+    for (i, sample) in log.samples.iter_mut().enumerate() {
         let share = i as f64 / last as f64;
-        moment.force += bias + share * drift + normal(0.5) - TOOL_KG * accelerations[i];
+        sample.force += bias + share * drift + normal(0.5) - TOOL_KG * accelerations[i];
     }
 }
 
@@ -252,7 +252,7 @@ fn said(
         Ok(Run { log, design, offset: one.offset_mm * MM, ended: one.ended, line: 2 })
     };
     let runs = logs.iter().enumerate().map(run).collect::<Result<Vec<_>, String>>()?;
-    let question = Question {
+    let identification = Identification {
         evaluator,
         template: template(evaluator, cell),
         priors: &bench(),
@@ -261,7 +261,12 @@ fn said(
         seed: 0,
         stop: &NEVER,
     };
-    Ok(question.remarks("runs.csv").unwrap().iter().map(|remark| remark.to_string()).collect())
+    Ok(identification
+        .remarks("runs.csv")
+        .unwrap()
+        .iter()
+        .map(|remark| remark.to_string())
+        .collect())
 }
 
 #[test]

@@ -12,7 +12,7 @@ pub fn explain(task: &Task, trial: &Trial) -> String {
     let slip = format!("slip {:.1} mm, allowed {:.1}", trial.slip_mm, task.grip.slip_limit / MM);
     match trial.outcome {
         Outcome::Inserted => format!(
-            "inserted {:.1} mm deep, {:.1} degrees off; {:.1} mm and {:.1} degrees were asked for",
+            "inserted {:.1} mm deep, {:.1} degrees off; required: {:.1} mm and {:.1} degrees",
             trial.depth_mm,
             trial.tilt_deg,
             task.success.depth / MM,
@@ -84,7 +84,7 @@ fn jammed(task: &Task, trial: &Trial) -> String {
              socket.opening_x_mm and socket.opening_y_mm"
         ),
         (false, true) => format!(
-            "{at}: upright, but {depth:.1} mm are asked for; the push ends early or something stops it: \
+            "{at}: upright, but {depth:.1} mm are required; the push ends early or something stops it: \
              look at move_mm of the last phase and at what lies in the way (--svg)"
         ),
         (false, false) if trial.tilt_deg > tilt + 5.0 => format!(

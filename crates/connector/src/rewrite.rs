@@ -10,7 +10,7 @@ const MARK: char = '\u{feff}';
 /// Returns the text of a task file with another strategy; line ends and byte order mark stay.
 ///
 /// # Errors
-/// If the text is no TOML.
+/// If the text is not TOML.
 pub fn strategy(text: &str, task: &Task, after: &Strategy) -> Result<String, TomlError> {
     let mut file: DocumentMut = text.parse()?;
     let changed = Task { strategy: after.clone(), ..task.clone() };

@@ -2,7 +2,9 @@
 //! its ribs, and measured on a robot.
 
 use crate::answer::words::{design, end, ends_mm, interval, mm, on, span};
-use crate::answer::{Answer, Measured, OnTask, Recommended, Trust, UnderRobot, Verdict, lines};
+use crate::answer::{
+    Answer, MeasuredFinger, OnTask, Recommended, RobotWindow, Trust, Verdict, lines,
+};
 use crate::glossary::explained;
 use insertion::evaluation::Window;
 use insertion::outcome::Outcome;
@@ -53,7 +55,7 @@ impl Bar {
 
 /// Returns the bars, task by task, those on other robots below on the same scale; `None` if no finger is
 /// recommended.
-pub(super) fn section(answer: &Answer, robots: &[UnderRobot]) -> Option<Markup> {
+pub(super) fn section(answer: &Answer, robots: &[RobotWindow]) -> Option<Markup> {
     answer.verdict.finger()?;
     let drawn = |task: &str, mut rows: Vec<Bar>| {
         rows.extend(robots.iter().map(on_robot));
@@ -71,7 +73,7 @@ pub(super) fn section(answer: &Answer, robots: &[UnderRobot]) -> Option<Markup> 
 }
 
 /// Returns the bar of the same finger on a robot.
-fn on_robot(robot: &UnderRobot) -> Bar {
+fn on_robot(robot: &RobotWindow) -> Bar {
     let window = &robot.measured.window;
     let inserts = window.nominal == Outcome::Inserted;
     let parts = inserts.then(|| ("light", ends_mm(window))).into_iter().collect();
@@ -101,7 +103,7 @@ fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> V
 }
 
 /// Returns the bar of a published finger, of which only the range is known.
-fn published(Measured { design: finger, range_mm }: &Measured) -> Bar {
+fn published(MeasuredFinger { design: finger, range_mm }: &MeasuredFinger) -> Bar {
     let range = mm(*range_mm);
     let name = format!("measured on a robot, {}: {range}, ends not recorded", design(finger));
     Bar::width_only(name, &[("measured", *range_mm)])

@@ -1,7 +1,7 @@
 //! Files beside the page in the folder of a study.
 
 use super::replay;
-use crate::answer::UnderRobot;
+use crate::answer::RobotWindow;
 use analysis::levers::Levers;
 use analysis::map::CaptureMap;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ const FILMS: usize = 600_000;
 
 /// Files beside the page in the folder of a study.
 #[derive(Debug, Clone, Default)]
-pub struct Beside {
+pub struct PageFiles {
     /// The folder, as given to commands.
     pub dir: PathBuf,
     /// Its films.
@@ -32,7 +32,7 @@ pub struct PostAnalysis {
     /// Outcomes over two errors of the start.
     pub maps: Vec<CaptureMap>,
     /// Windows under the study's robot and under a different one, for a task of the user.
-    pub robots: Vec<UnderRobot>,
+    pub robots: Vec<RobotWindow>,
 }
 
 /// A film at an end of a window.
@@ -48,7 +48,7 @@ pub struct Film {
     pub poster: Option<String>,
 }
 
-impl Beside {
+impl PageFiles {
     /// Adds a film from its page, embedded unless the total size would be too large.
     pub fn add(&mut self, task: usize, end: &'static str, page: &str, poster: Option<String>) {
         let held: usize = self.films.iter().flat_map(|film| &film.data).map(String::len).sum();

@@ -5,7 +5,7 @@ use super::ReportError;
 use super::chart::{Area, Drawn, around, axes, sheet, words};
 use super::drawn::{PLOTTED, drawn, note, turning};
 use super::elements::figure;
-use super::marks::{PointMark, Series, dashed, key, label, line, points, stairs};
+use super::marks::{PointMark, Series, dashed, label, legend_above, line, points, stairs};
 use super::theme::{BLUE, GREEN, MUTED, ORANGE, RED};
 use crate::answer::words::{settled, volume_unit};
 use insertion::evaluation::objective::Measure;
@@ -117,7 +117,7 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
     }
     series.retain(|(points, ..)| !points.is_empty());
     let best_line = ORANGE.rgb().stroke_width(3);
-    let area = key(area, &series, (best_line, name))?;
+    let area = legend_above(area, &series, (best_line, name))?;
     let mut chart = axes(&area, "", x, (&y_label, range))?;
     if record.settled {
         dashed(&mut chart, [bottom, top].map(|value| (last, value)))?;

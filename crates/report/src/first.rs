@@ -1,7 +1,7 @@
 //! The first screen of a page: recommendation, evidence, films, window, drawing and files of the finger,
 //! and the next command.
 
-use super::beside::{Beside, Film};
+use super::beside::{Film, PageFiles};
 use super::elements::{data_url, figure};
 use super::glossary::explained;
 use super::printer::{self, recommended};
@@ -16,7 +16,7 @@ use insertion::outcome::{FailureClass, Outcome};
 use maud::{Markup, PreEscaped, html};
 
 /// Returns the screen, which precedes all sections.
-pub(super) fn screen(answer: &Answer, beside: &Beside) -> Markup {
+pub(super) fn screen(answer: &Answer, beside: &PageFiles) -> Markup {
     let (command, why) = command::next(answer, &beside.dir);
     let stuck = matches!(answer.verdict, Verdict::NothingInserts { .. });
     html! {
@@ -75,14 +75,14 @@ fn drawn(answer: &Answer) -> Option<Markup> {
     Some(html! { div.finger { (figure(&svg, "the finger to print", &caption)) } })
 }
 
-fn files(answer: &Answer, beside: &Beside) -> Option<Markup> {
+fn files(answer: &Answer, beside: &PageFiles) -> Option<Markup> {
     recommended(answer)?;
     let names = printer::FILES.into_iter().filter(|(file, _)| beside.files.contains(file));
     Some(html! { p.files { @for (file, name) in names { a.button href=(file) { (name) } } } })
 }
 
 /// Returns how the design that is nearest to inserting fails, and what to check.
-fn nominal(answer: &Answer, beside: &Beside) -> Markup {
+fn nominal(answer: &Answer, beside: &PageFiles) -> Markup {
     let Verdict::NothingInserts { nearest, fails, .. } = &answer.verdict else { return html! {} };
     html! {
         div.whole {
@@ -119,7 +119,7 @@ pub fn preferred(answer: &Answer) -> &'static str {
 }
 
 /// Returns a player of both trials of an end, and buttons for all ends.
-fn films(answer: &Answer, tasks: &[&Evaluation], beside: &Beside) -> Markup {
+fn films(answer: &Answer, tasks: &[&Evaluation], beside: &PageFiles) -> Markup {
     let films = &beside.films;
     let (shown, linked): (Vec<&Film>, Vec<&Film>) =
         films.iter().partition(|film| film.data.is_some());

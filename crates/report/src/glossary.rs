@@ -18,21 +18,21 @@ pub(crate) const TERMS: [(&str, &str); 5] = [
     ("in repeats", "its repeated range"),
 ];
 
-/// Returns a text with its terms explained.
+/// Returns a text as HTML, with an explanation of each term.
 pub(super) fn explained(text: &str) -> Markup {
-    let found = TERMS.iter().filter_map(|(term, tip)| Some((place(text, term)?, *term, *tip)));
+    let found = TERMS.iter().filter_map(|(term, tip)| Some((position(text, term)?, *term, *tip)));
     let Some((at, term, tip)) = found.min_by_key(|(at, ..)| *at) else { return html! { (text) } };
     let (before, after) = (&text[..at], &text[at + term.len()..]);
     html! {
         (before)
-        // Focus stands for hover where there is no pointer.
+        // Focus replaces hover on devices without a pointer.
         span.term tabindex="0" data-tip=(tip) aria-label={ (term) ": " (tip) } { (term) }
         (explained(after))
     }
 }
 
-/// Returns where a text has a term that is not a part of a word.
-fn place(text: &str, term: &str) -> Option<usize> {
+/// Returns the position of a term in a text; parts of longer words do not count.
+fn position(text: &str, term: &str) -> Option<usize> {
     let apart = |at: &usize| {
         let letter = |c: Option<char>| c.is_some_and(char::is_alphanumeric);
         let (before, after) = (&text[..*at], &text[*at + term.len()..]);

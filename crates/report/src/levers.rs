@@ -4,7 +4,7 @@ use super::chart::{Area, Drawn, around, rows, sheet, words as text_style};
 use super::marks::{bar, dashed, label};
 use super::theme::{BLUE, INK, MUTED, ORANGE};
 use super::{ReportError, text_table};
-use analysis::levers::{Lever, Levers, apart, counts, plain};
+use analysis::levers::{Lever, Levers, difference_mm, is_relevant, plain};
 use plotters::prelude::Color;
 use plotters::style::text_anchor::{HPos, VPos};
 
@@ -32,7 +32,7 @@ fn bars<'a>(levers: &'a Levers) -> Vec<Bar<'a>> {
         Bar { name: &lever.name, span_mm, ends, lever: Some(lever) }
     };
     let mut bars: Vec<_> = levers.levers.iter().map(bar).collect();
-    let span_mm = apart(levers.infill);
+    let span_mm = difference_mm(levers.infill);
     let ends = levers.infill.map(|range| (range, format!("{range:.1} mm")));
     let at = bars.partition_point(|bar| bar.span_mm > span_mm);
     bars.insert(at, Bar { name: "infill", span_mm, ends, lever: None });
@@ -96,7 +96,7 @@ fn draw(area: &Area<'_>, levers: &Levers, bars: &[Bar<'_>]) -> Drawn {
     let now = format!("range (mm), now {base:.1}");
     let mut chart = rows(area, &title, (&now, range), bars.len(), LEFT)?;
     for (row, Bar { name, span_mm, ends, lever }) in bars.iter().enumerate() {
-        let (fill, ink, share) = match (counts(*span_mm), lever) {
+        let (fill, ink, share) = match (is_relevant(*span_mm), lever) {
             (false, _) => (MUTED, MUTED, 0.45),
             (true, None) => (ORANGE, INK, 0.85),
             (true, Some(_)) => (BLUE, INK, 0.85),

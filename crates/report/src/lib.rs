@@ -39,7 +39,7 @@ mod tests;
 mod text_table;
 mod theme;
 
-pub use beside::{Beside, Film, PostAnalysis};
+pub use beside::{Film, PageFiles, PostAnalysis};
 pub use convergence::svg as convergence_svg;
 pub use first::preferred;
 pub use front::svg as front_svg;

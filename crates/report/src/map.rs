@@ -7,7 +7,7 @@ use super::theme::{
     Colour, DIVERGED, INK, INSERTED, JAMMED, LOST, LOST_EARLY, MISSED, MUTED, PAPER,
 };
 use crate::answer::words::outcome as numbered;
-use analysis::map::{Axis, CaptureMap, Mark};
+use analysis::map::{CaptureMap, MapAxis, OutcomeCode};
 use insertion::outcome::{FailureClass, Outcome};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -30,7 +30,7 @@ const LEFT: i32 = 14;
 /// Returns every outcome with its number in a map (0 inserted, 1 to 4 the failure class, -1 diverged), its label,
 /// and its colour on a light page, `#RRGGBB`.
 pub fn outcomes() -> [(i8, &'static str, String); 6] {
-    COLOURS.map(|(outcome, colour)| (Mark(outcome).into(), outcome.label(), colour.hex()))
+    COLOURS.map(|(outcome, colour)| (OutcomeCode(outcome).into(), outcome.label(), colour.hex()))
 }
 
 /// Draws the outcome at each place, with a dot where it was simulated.
@@ -105,9 +105,9 @@ fn draw_head(area: &Area<'_>, [title, legend]: &[Vec<Vec<Entry>>; 2]) -> Drawn {
 }
 
 fn draw(area: &Area<'_>, map: &CaptureMap) -> Drawn {
-    let half = |axis: &Axis| axis.step / 2.0;
-    let range = |axis: &Axis| axis.low - half(axis)..axis.high + half(axis);
-    let name = |axis: &Axis| format!("error of the start: {} ({})", axis.name, axis.unit);
+    let half = |axis: &MapAxis| axis.step / 2.0;
+    let range = |axis: &MapAxis| axis.low - half(axis)..axis.high + half(axis);
+    let name = |axis: &MapAxis| format!("error of the start: {} ({})", axis.name, axis.unit);
     let [first, second] = &map.axes;
     let (x_name, y_name) = (name(first), format!("{} ({})", second.name, second.unit));
     let mut chart = axes(area, "", (&x_name, range(first)), (&y_name, range(second)))?;

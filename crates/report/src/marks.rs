@@ -5,7 +5,7 @@ use super::theme::{Colour, INK, MUTED};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-/// Mark of a point: a circle or a cross of a size in pixels, and its style.
+/// Mark of a point: shape (circle or cross), size in pixels, and style.
 #[derive(Clone, Copy)]
 pub(super) struct PointMark {
     cross: bool,
@@ -19,6 +19,7 @@ impl PointMark {
         PointMark { cross: false, size, style: colour.rgb().mix(0.55).filled() }
     }
 
+    /// Returns an opaque disc.
     pub fn disc(colour: Colour, size: i32) -> Self {
         PointMark { cross: false, size, style: colour.rgb().filled() }
     }
@@ -42,25 +43,25 @@ impl PointMark {
 /// Series of marked points and its name.
 pub(super) type Series<'a> = (Vec<(f64, f64)>, PointMark, &'a str);
 
-/// Height of a line of a key, width of a mark and of a letter, pixels.
-const KEY: [i32; 3] = [22, 26, 8];
-/// Left and right margin of a key, pixels.
-const LEFT: i32 = 16;
+/// Height of a line of a legend, width of a mark and of a letter, pixels.
+const LEGEND: [i32; 3] = [22, 26, 8];
+/// Left and right margin of a legend, pixels.
+const MARGIN: i32 = 16;
 
-/// Draws the names of series and of a line in the upper part of an area; returns the part below.
-pub(super) fn key<'b>(
+/// Draws a legend of series and of a line in the upper part of an area; returns the part below.
+pub(super) fn legend_above<'b>(
     area: &Area<'b>,
     series: &[Series<'_>],
     (style, line): (ShapeStyle, &str),
 ) -> Result<Area<'b>, Problem> {
-    let [height, mark, letter] = KEY;
+    let [height, mark, letter] = LEGEND;
     let names = series.iter().map(|(_, mark, name)| (Some(mark), *name)).chain([(None, line)]);
-    let (right, [mut x, mut y]) = (area.dim_in_pixel().0 as i32 - LEFT, [LEFT, height]);
+    let (right, [mut x, mut y]) = (area.dim_in_pixel().0 as i32 - MARGIN, [MARGIN, height]);
     let text = words(15, INK, HPos::Left, VPos::Center);
     for (of, name) in names {
         let width = mark + letter * name.len() as i32;
-        if x > LEFT && x + width > right {
-            [x, y] = [LEFT, y + height];
+        if x > MARGIN && x + width > right {
+            [x, y] = [MARGIN, y + height];
         }
         let drawn = match of {
             Some(of) => area.draw(&of.at((x + 12, y))),
@@ -108,6 +109,7 @@ pub(super) fn line(
     Ok(())
 }
 
+/// Draws a dashed line between two points.
 pub(super) fn dashed(chart: &mut Chart<'_, '_>, ends: [(f64, f64); 2]) -> Drawn {
     chart.draw_series(DashedLineSeries::new(ends, 5, 4, MUTED.rgb().stroke_width(1)))?;
     Ok(())

@@ -1,6 +1,6 @@
 //! `report.html`: a self-contained page with a small inline script.
 
-use super::beside::{Beside, PostAnalysis};
+use super::beside::{PageFiles, PostAnalysis};
 use super::elements::{definitions, document, figure};
 use super::{
     ReportError, bench, convergence, explore, first, front, levers, map, provenance, set, shape,
@@ -15,9 +15,9 @@ use study::StudyRecord;
 /// a phone.
 pub(super) const PLOT: (u32, u32) = (356, 300);
 
-/// Returns the report of a study as a page that works offline. `model` is the stiffness model of
+/// Returns the report of a study as an HTML page that works offline. `model` is the stiffness model of
 /// the study.
-pub fn page(answer: &Answer, model: &Model, beside: &Beside) -> Result<String, ReportError> {
+pub fn page(answer: &Answer, model: &Model, beside: &PageFiles) -> Result<String, ReportError> {
     let sections = sections(answer, model, beside)?;
     let body = html! {
         main {
@@ -54,7 +54,11 @@ fn title(StudyRecord { config, .. }: &StudyRecord) -> String {
 type Section = (&'static str, String, Markup);
 
 /// Returns id, title and body of each section that applies.
-fn sections(answer: &Answer, model: &Model, beside: &Beside) -> Result<Vec<Section>, ReportError> {
+fn sections(
+    answer: &Answer,
+    model: &Model,
+    beside: &PageFiles,
+) -> Result<Vec<Section>, ReportError> {
     let record = answer.record;
     let section = |id, title: &str, body: Option<Markup>| Some((id, title.to_owned(), body?));
     let set_title = match record.on_bench {

@@ -11,18 +11,18 @@ use plotters::prelude::Color;
 use plotters::style::text_anchor::{HPos, VPos};
 use serde::Serialize;
 
-/// Result of an analysis, as `--json` prints it.
+/// Result of a sensitivity analysis, as `--json` prints it.
 #[derive(Debug, Clone, Serialize)]
-pub struct Found {
+pub struct SensitivityResult {
     /// Name of the task.
     pub task: String,
     /// Name of the measure analysed.
     pub objective: String,
     /// Number of simulated windows.
     pub evaluations: usize,
-    /// Number of them whose nominal start diverged, which count as 0.
+    /// Number of windows whose nominal start diverged; they count as 0.
     pub diverged: usize,
-    /// Number of them whose nominal start fails, which count as 0.
+    /// Number of windows whose nominal start fails; they count as 0.
     pub nominal_start_fails: usize,
     /// The inputs by total index, largest first.
     pub factors: Vec<Factor>,
@@ -63,7 +63,7 @@ impl Factor {
 }
 
 /// Returns the result as a table within 80 columns.
-pub fn text(found: &Found) -> String {
+pub fn text(found: &SensitivityResult) -> String {
     let head = ["input", "total", "95 %", "alone", "95 %"];
     let interval = |low: f64, high: f64| format!("{low:.2} to {high:.2}");
     let rows = found.factors.iter().map(|factor| {
@@ -91,25 +91,25 @@ pub fn text(found: &Found) -> String {
     )
 }
 
-/// Returns a path without the part that all paths of a task have in common.
+/// Returns a path without the prefix `task.strategy.phase.`, or as much of it as the path has.
 fn short(key: &str) -> &str {
     let key = key.strip_prefix("task.").unwrap_or(key);
     key.strip_prefix("strategy.").map_or(key, |rest| rest.strip_prefix("phase.").unwrap_or(rest))
 }
 
-/// Width of the chart, height of a row, of head and foot, and width of the names, pixels.
+/// Width of the chart, height of a row, height of head and foot together, and width of the names, pixels.
 const WIDTH: u32 = 900;
 const ROW: u32 = 34;
 const HEAD_AND_FOOT: u32 = 110;
 const LEFT: u32 = 300;
 
 /// Draws a bar with its interval for each input, largest first.
-pub fn svg(found: &Found) -> Result<String, ReportError> {
+pub fn svg(found: &SensitivityResult) -> Result<String, ReportError> {
     let height = HEAD_AND_FOOT + ROW * found.factors.len() as u32;
     sheet("the sensitivity", (WIDTH, height), |area| draw(area, found))
 }
 
-fn draw(area: &Area<'_>, found: &Found) -> Drawn {
+fn draw(area: &Area<'_>, found: &SensitivityResult) -> Drawn {
     let factors = &found.factors;
     let largest = factors.iter().map(|of| of.total_high.max(of.total)).fold(1e-9, f64::max);
     let title = format!("{} of {}: shares of the variance", found.objective, found.task);

@@ -111,14 +111,15 @@ const PANELS: [(Axis, bool); 4] = [
     (Axis::Assembly, false),
 ];
 
-/// Number of steps along a curve of a model that needs no computation of fingers.
+/// Number of steps along a curve, unless the model computes fingers from their ribs.
 const SAMPLES: u32 = 80;
 
 /// Colours of the curves.
 const SERIES: [Colour; 3] = [BLUE, ORANGE, GREEN];
 
+/// Draws the panel of one axis of stiffness.
 fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> Drawn {
-    // Converts density and direction to the value along x and that of the curve, or back.
+    // Converts (density, direction) to (value along x, value of the curve), or back.
     let swapped = |(density, direction): (f64, f64)| match by_direction {
         true => (direction, density),
         false => (density, direction),
@@ -138,8 +139,8 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> Drawn
     let span = limits.end - limits.start;
     let x = (limits.start - 0.15 * span).max(0.0)..limits.end + 0.2 * span;
     let curves = levels(measured.iter().map(|m| of(m).1));
-    // A model that computes fingers takes a third of a second per point, so its curves are evaluated only at their
-    // ends and at the curves of the other panel.
+    // A model that computes fingers from their ribs takes a third of a second per point, so its curves are evaluated
+    // only at their ends and at the curves of the other panel.
     let places: Vec<f64> = if model.ratios {
         let levels = levels(measured.iter().map(|m| of(m).0));
         [x.start].into_iter().chain(levels).chain([x.end]).collect()

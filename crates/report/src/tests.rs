@@ -45,7 +45,7 @@ fn record(evaluations: Vec<Recorded>) -> StudyRecord {
 }
 
 fn html(study: &StudyRecord) -> String {
-    page(&crate::answer::Answer::of(study), model(), &Beside::default()).unwrap()
+    page(&crate::answer::Answer::of(study), model(), &PageFiles::default()).unwrap()
 }
 
 /// A study of the closed-form rig over a coarse grid in a scattered order.

@@ -12,7 +12,7 @@ pub struct Levers {
     pub task: String,
     /// Design of the finger.
     pub design: Design,
-    /// The finger with all numbers unchanged.
+    /// Baseline.
     pub base: Base,
     /// Smallest and largest range over infills, mm.
     #[serde(rename = "infill_range_mm")]
@@ -45,7 +45,7 @@ pub struct Lever {
     pub unit: String,
     /// Current value.
     pub value: f64,
-    /// Value tried at the lower bound; of a negative stroke the shorter one.
+    /// Value tried at the lower bound; for a negative stroke, the shorter one.
     pub low: f64,
     /// Value tried at the upper bound.
     pub high: f64,
@@ -57,11 +57,11 @@ pub struct Lever {
 }
 
 impl Lever {
-    /// Difference between the largest and the smallest range tried, including the baseline, mm.
+    /// Returns the difference between the largest and the smallest range tried, including the baseline, mm.
     pub fn span_mm(&self, base: Base) -> f64 {
         let [first, second] = self.ends.map(|end| end.unwrap_or(0.0));
         let low = base.range_mm.min(first).min(second);
-        apart([low, base.range_mm.max(first).max(second)])
+        difference_mm([low, base.range_mm.max(first).max(second)])
     }
 
     /// Formats a value with its unit: `5°`, `0.2`, `100 mm/s`.
@@ -96,14 +96,14 @@ impl Levers {
     /// omitted.
     pub fn sentence(&self) -> String {
         let of = |lever: &Lever, end: usize| {
-            (apart([self.base.range_mm, lever.ends[end].unwrap_or(0.0)]), lever.step(end))
+            (difference_mm([self.base.range_mm, lever.ends[end].unwrap_or(0.0)]), lever.step(end))
         };
         let ends = || self.levers.iter().flat_map(|lever| [0, 1].map(|end| of(lever, end)));
         // The first of equals wins.
         let most = |sign: f64| {
             let better =
                 |a: (f64, String), b: (f64, String)| if sign * b.0 > sign * a.0 { b } else { a };
-            ends().reduce(better).filter(|(by, _)| counts(sign * by))
+            ends().reduce(better).filter(|(by, _)| is_relevant(sign * by))
         };
         let task = &self.task;
         match (most(1.0), most(-1.0)) {
@@ -118,7 +118,7 @@ impl Levers {
                 "Nothing widens {task} by {INDIFFERENCE_MM} mm, and {step} narrows it by {:.1} mm.",
                 -by
             ),
-            (None, None) if counts(apart(self.infill)) => {
+            (None, None) if is_relevant(difference_mm(self.infill)) => {
                 format!("Nothing but the infill moves {task} by {INDIFFERENCE_MM} mm.")
             }
             (None, None) => format!("Nothing tried moves {task} by {INDIFFERENCE_MM} mm."),
@@ -126,13 +126,13 @@ impl Levers {
     }
 }
 
-/// Returns whether a difference of ranges matters.
-pub fn counts(by_mm: f64) -> bool {
+/// Returns whether a difference of ranges, mm, is at least the indifference.
+pub fn is_relevant(by_mm: f64) -> bool {
     by_mm >= INDIFFERENCE_MM
 }
 
-/// Returns second minus first, mm, rounded to the 0.1 mm grid.
-pub fn apart([first, second]: [f64; 2]) -> f64 {
+/// Returns the second range minus the first, mm, rounded to the 0.1 mm grid.
+pub fn difference_mm([first, second]: [f64; 2]) -> f64 {
     ((second - first) * 10.0).round() / 10.0
 }
 

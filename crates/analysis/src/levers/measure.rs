@@ -1,7 +1,7 @@
 //! Measurement of the windows of a finger and of its levers.
 
 use super::lever::{Base, Lever, Levers};
-use super::rows::{Row, rows};
+use super::rows::{LeverParameter, lever_parameters};
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::{Impossible, Template};
@@ -21,8 +21,8 @@ use std::sync::atomic::AtomicBool;
 /// Largest number of windows measured.
 const MOST_WINDOWS: usize = 20;
 
-/// Finger and task whose levers are to be measured.
-pub struct Question<'a> {
+/// Inputs of the lever analysis of a finger on a task.
+pub struct LeverAnalysis<'a> {
     /// Evaluator for the windows.
     pub evaluator: &'a Evaluator,
     /// The task; one of the evaluator's.
@@ -38,15 +38,15 @@ pub struct Question<'a> {
 /// Specimen and robot for one window.
 pub(super) type Cell = (Specimen, Robot);
 
-/// Lever to be measured: its row, its end values, and the index of the window of each end. An end
-/// that changes nothing has the index of the baseline.
-struct Tried {
-    row: Row,
+/// Lever to be measured: its parameter, its end values, and the index of the window of each end. An end that changes
+/// nothing has the index of the baseline.
+struct Candidate {
+    parameter: LeverParameter,
     values: [f64; 2],
-    places: [usize; 2],
+    windows: [usize; 2],
 }
 
-impl Question<'_> {
+impl LeverAnalysis<'_> {
     /// Measures the levers, on the threads of the current pool. `infill` is the smallest and the
     /// largest range over infills, mm; if it is not known, the softest and the stiffest infill are
     /// measured. The result is invalid once `stop` is set.
@@ -65,7 +65,7 @@ impl Question<'_> {
             }
         }
         let infills = cells.len();
-        let (tried, left_out) = self.tried(&mut cells)?;
+        let (candidates, left_out) = self.candidates(&mut cells)?;
         let windows = cells.par_iter().map(|(specimen, robot)| self.window(specimen, robot, stop));
         let found = windows.collect::<Result<Vec<_>, _>>()?;
         let ranges: Vec<_> = found.iter().map(range_mm).collect();
@@ -73,7 +73,7 @@ impl Question<'_> {
             range_mm: ranges[0].unwrap_or(0.0),
             taught_start_mm: grid_mm(found[0].taught.unwrap_or(0)),
         };
-        let mut levers: Vec<_> = tried.into_iter().map(|one| one.lever(&ranges)).collect();
+        let mut levers: Vec<_> = candidates.into_iter().map(|one| one.lever(&ranges)).collect();
         // Stable sort: equal levers keep their order.
         levers.sort_by(|a, b| b.span_mm(base).total_cmp(&a.span_mm(base)));
         let over = || {
@@ -93,17 +93,20 @@ impl Question<'_> {
 
     /// Returns the levers to measure and the names of those that exceed the window budget. The
     /// cells of their ends are appended to `cells`, the first of which is the baseline.
-    fn tried(&self, cells: &mut Vec<Cell>) -> Result<(Vec<Tried>, Vec<String>), Impossible> {
+    fn candidates(
+        &self,
+        cells: &mut Vec<Cell>,
+    ) -> Result<(Vec<Candidate>, Vec<String>), Impossible> {
         let base = cells[0].clone();
-        let (mut tried, mut left_out) = (Vec::new(), Vec::new());
-        for row in rows(self, &base.0)? {
-            let (mut more, mut values, mut places) = (Vec::new(), [row.value; 2], [0; 2]);
+        let (mut candidates, mut left_out) = (Vec::new(), Vec::new());
+        for row in lever_parameters(self, &base.0)? {
+            let (mut more, mut values, mut windows) = (Vec::new(), [row.value; 2], [0; 2]);
             for (end, bound) in [End::Low, End::High].into_iter().enumerate() {
                 // A chamfer of 0 describes the same shape differently, which can shift a window.
                 let changed = row.at(self, bound).filter(|(value, _)| *value != row.value);
                 let Some((value, cell)) = changed else { continue };
                 if cell != base {
-                    (values[end], places[end]) = (value, cells.len() + more.len());
+                    (values[end], windows[end]) = (value, cells.len() + more.len());
                     more.push(cell);
                 }
             }
@@ -115,9 +118,9 @@ impl Question<'_> {
                 continue;
             }
             cells.append(&mut more);
-            tried.push(Tried { row, values, places });
+            candidates.push(Candidate { parameter: row, values, windows });
         }
-        Ok((tried, left_out))
+        Ok((candidates, left_out))
     }
 
     fn cell(&self, design: &Design, given: Option<Prediction>) -> Result<Cell, Impossible> {
@@ -126,7 +129,7 @@ impl Question<'_> {
 
     /// Returns the design with the softest and with the stiffest infill of the space.
     fn extremes(&self) -> Result<[Design; 2], Impossible> {
-        let Question { evaluator, space, design, .. } = self;
+        let LeverAnalysis { evaluator, space, design, .. } = self;
         let values = |key: &'static str| {
             let of = space.parameters.iter().filter(move |parameter| parameter.key == key);
             of.flat_map(|parameter| (0..parameter.levels()).map(|level| parameter.value(level)))
@@ -176,22 +179,22 @@ fn range_mm(evaluation: &Evaluation) -> Option<f64> {
 }
 
 /// Rounds a value to 9 decimals to remove floating-point noise.
-fn written(value: f64) -> f64 {
+fn rounded(value: f64) -> f64 {
     (value * 1e9).round() / 1e9
 }
 
-impl Tried {
+impl Candidate {
     fn lever(self, ranges: &[Option<f64>]) -> Lever {
-        let Tried { row: Row { parameter, value }, values, places } = self;
+        let Candidate { parameter: LeverParameter { parameter, value }, values, windows } = self;
         Lever {
             unit: parameter.path.unit().trim().to_owned(),
             key: parameter.path.to_string(),
             name: parameter.name,
-            value: written(value),
-            low: written(values[0]),
-            high: written(values[1]),
+            value: rounded(value),
+            low: rounded(values[0]),
+            high: rounded(values[1]),
             source: parameter.source,
-            ends: places.map(|place| ranges[place]),
+            ends: windows.map(|window| ranges[window]),
         }
     }
 }

@@ -8,5 +8,5 @@ mod lever;
 mod measure;
 mod rows;
 
-pub use lever::{Base, Lever, Levers, apart, counts, plain};
-pub use measure::Question;
+pub use lever::{Base, Lever, Levers, difference_mm, is_relevant, plain};
+pub use measure::LeverAnalysis;

@@ -1,6 +1,6 @@
 //! Levers of a task and a robot, with their bounds.
 
-use super::measure::{Cell, Question};
+use super::measure::{Cell, LeverAnalysis};
 use connector::body::{ConvexBody, width};
 use connector::seat::section;
 use input::shipped::{LEVERS, PRIORS};
@@ -24,35 +24,38 @@ const OF_BENCH: [&str; 5] = [
 /// Rows of `priors/levers.toml` that are listed after all others.
 const LAST: [&str; 2] = ["stroke to the front", "stroke to the back"];
 
-/// Parameter with the current value of the number it sets, in that number's unit.
-pub struct Row {
+/// Parameter of a lever, with the current value of the number that it sets, in that number's unit.
+pub struct LeverParameter {
     pub parameter: Parameter,
     pub value: f64,
 }
 
-/// Returns the rows that apply to the task, finger and robot. A key of the space takes its bounds
-/// from the space.
-pub fn rows(question: &Question<'_>, specimen: &Specimen) -> Result<Vec<Row>, Impossible> {
+/// Returns the parameters of the levers that apply to the task, finger and robot. Bounds of the space take precedence
+/// for the keys that it has.
+pub fn lever_parameters(
+    analysis: &LeverAnalysis<'_>,
+    specimen: &Specimen,
+) -> Result<Vec<LeverParameter>, Impossible> {
     let own = Priors::parse(LEVERS[0].text, LEVERS[0].file)?.parameters;
     let bench = Priors::parse(PRIORS[0].text, PRIORS[0].file)?.parameters;
     let bench = bench.into_iter().filter(|row| OF_BENCH.contains(&&*row.name));
     let (last, first): (Vec<_>, Vec<_>) =
         own.into_iter().partition(|row| LAST.contains(&&*row.name));
-    let row = |mut parameter: Parameter| {
-        let value = present(question, specimen, &parameter.path)?;
-        if let Some(of) = question.space.parameters.iter().find(|of| of.key == parameter.path) {
-            let source = format!("the space `{}`: {}", question.space.name, of.source);
+    let with_value = |mut parameter: Parameter| {
+        let value = current_value(analysis, specimen, &parameter.path)?;
+        if let Some(of) = analysis.space.parameters.iter().find(|of| of.key == parameter.path) {
+            let source = format!("the space `{}`: {}", analysis.space.name, of.source);
             let (low, high) = (of.low, of.high);
             parameter = Parameter { transform: Transform::Value, low, high, source, ..parameter };
         }
-        Some(Row { parameter, value })
+        Some(LeverParameter { parameter, value })
     };
-    Ok(first.into_iter().chain(bench).chain(last).filter_map(row).collect())
+    Ok(first.into_iter().chain(bench).chain(last).filter_map(with_value).collect())
 }
 
 /// Returns the current value of the number that a lever sets; `None` if it does not exist here.
-fn present(question: &Question<'_>, specimen: &Specimen, path: &Path) -> Option<f64> {
-    let Question { evaluator, template, design, .. } = question;
+fn current_value(analysis: &LeverAnalysis<'_>, specimen: &Specimen, path: &Path) -> Option<f64> {
+    let LeverAnalysis { evaluator, template, design, .. } = analysis;
     match path.kind() {
         Kind::File => design.get(path).or_else(|| evaluator.number(template, path)),
         Kind::Added if *path == CLEARANCE => Some(clearance(&specimen.task) / MM),
@@ -73,14 +76,14 @@ fn clearance(task: &Task) -> f64 {
     free(0).min(free(1))
 }
 
-impl Row {
+impl LeverParameter {
     /// Returns the number and the cell at a bound, or at the feasible value nearest to it.
-    pub fn at(&self, question: &Question<'_>, end: End) -> Option<(f64, Cell)> {
-        farthest(&self.parameter, self.value, end, |to| self.changed(question, to))
+    pub fn at(&self, analysis: &LeverAnalysis<'_>, end: End) -> Option<(f64, Cell)> {
+        farthest(&self.parameter, self.value, end, |to| self.changed(analysis, to))
     }
 
-    fn changed(&self, question: &Question<'_>, to: f64) -> Option<(f64, Cell)> {
-        let Question { evaluator, template, design, given, .. } = question;
+    fn changed(&self, analysis: &LeverAnalysis<'_>, to: f64) -> Option<(f64, Cell)> {
+        let LeverAnalysis { evaluator, template, design, given, .. } = analysis;
         let value = self.parameter.applied(self.value, to);
         if self.parameter.path == CLEARANCE && value < self.value.min(0.0) {
             return None;
@@ -104,7 +107,7 @@ mod tests {
     use parameters::numbers::{CENTRE, TILTING};
 
     #[test]
-    fn a_spring_of_the_finger_has_a_present_value() {
+    fn a_spring_of_the_finger_has_a_current_value() {
         let measured = stiffness::parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap();
         let printed = PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
         let evaluator = Evaluator {
@@ -119,14 +122,14 @@ mod tests {
         let stiffness = evaluator.predict(&design).unwrap();
         let specimen = evaluator.specimen(template, &design, stiffness).unwrap();
         let space = Space::parse(SPACES[0].text, SPACES[0].file).unwrap();
-        let question = Question {
+        let analysis = LeverAnalysis {
             evaluator: &evaluator,
             template,
             space: &space,
             design: &design,
             given: None,
         };
-        let value = |path| present(&question, &specimen, &Path::new(path).unwrap());
+        let value = |path| current_value(&analysis, &specimen, &Path::new(path).unwrap());
         assert_eq!(value(TILTING), Some(specimen.finger.rotation[0]));
         assert_eq!(value(CENTRE), Some(specimen.finger.rcc / MM));
         assert_eq!(value("finger.stiffness"), None);

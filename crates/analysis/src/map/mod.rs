@@ -19,9 +19,9 @@ pub struct CaptureMap {
     /// The finger's design; empty if it was given by its springs.
     pub design: Design,
     /// Shift of the start along y, then the other error.
-    pub axes: [Axis; 2],
+    pub axes: [MapAxis; 2],
     /// Outcomes: a row per value of the second axis, ascending; a column per value of the first.
-    pub outcomes: Vec<Vec<Mark>>,
+    pub outcomes: Vec<Vec<OutcomeCode>>,
     /// Whether each outcome was simulated; the others are inferred from their neighbours.
     pub simulated: Vec<Vec<bool>>,
     /// Trials that were simulated.
@@ -37,7 +37,7 @@ pub struct CaptureMap {
 
 /// Axis of a map: a start error and its values on the grid.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Axis {
+pub struct MapAxis {
     /// `y`, `x`, `yaw` or `tilt`.
     pub name: String,
     /// `mm` or `deg`.
@@ -62,8 +62,8 @@ impl CaptureMap {
         CaptureMap {
             task: task.to_owned(),
             design,
-            axes: [0, 1].map(|axis| Axis::new(names[axis], low[axis], high[axis])),
-            outcomes: lattice(*low, *high, |node| Mark(outcome(node))),
+            axes: [0, 1].map(|axis| MapAxis::new(names[axis], low[axis], high[axis])),
+            outcomes: lattice(*low, *high, |node| OutcomeCode(outcome(node))),
             simulated: lattice(*low, *high, |node| nodes.get(&node).is_some_and(|f| f.simulated)),
             trials: *trials,
             traced_step: value(*step),
@@ -82,9 +82,9 @@ impl CaptureMap {
         )
     }
 
-    /// Smallest and largest value of axis 0 or 1 at which any trial inserts, in the axis's unit.
+    /// Returns the smallest and largest value of axis 0 or 1 at which any trial inserts, in the axis's unit.
     pub fn ends(&self, axis: usize) -> Option<[f64; 2]> {
-        let row = |row: &Vec<Mark>| row.iter().any(|mark| mark.0 == Outcome::Inserted);
+        let row = |row: &Vec<OutcomeCode>| row.iter().any(|mark| mark.0 == Outcome::Inserted);
         let column = |at: usize| self.outcomes.iter().any(|row| row[at].0 == Outcome::Inserted);
         let inserts: Vec<bool> = match axis {
             0 => (0..self.outcomes.first()?.len()).map(column).collect(),
@@ -94,8 +94,8 @@ impl CaptureMap {
         Some(ends.map(|at| self.axes[axis].value(at)))
     }
 
-    /// Inserting interval along y around zero error, with no second error, mm. `None` if a trial
-    /// without error fails.
+    /// Returns the interval along y around zero in which the trials without a second error insert, mm; `None` if the
+    /// trial without any error fails.
     pub fn window_mm(&self) -> Option<[f64; 2]> {
         let [zero, other] =
             self.axes.each_ref().map(|axis| (-axis.low / axis.step).round() as usize);
@@ -107,16 +107,16 @@ impl CaptureMap {
     }
 }
 
-/// Evaluates `of` at each grid point, row by row.
+/// Returns the values of a function at all grid points, row by row.
 fn lattice<T>(low: Node, high: Node, of: impl Fn(Node) -> T) -> Vec<Vec<T>> {
     let row = |other| (low[0]..=high[0]).map(|y| of([y, other])).collect();
     (low[1]..=high[1]).map(row).collect()
 }
 
-impl Axis {
+impl MapAxis {
     fn new([name, unit]: [&str; 2], low: i32, high: i32) -> Self {
         let (name, unit) = (name.to_owned(), unit.to_owned());
-        Axis { name, unit, low: value(low), high: value(high), step: value(1) }
+        MapAxis { name, unit, low: value(low), high: value(high), step: value(1) }
     }
 
     /// Returns the value at an index along the axis.
@@ -128,10 +128,10 @@ impl Axis {
 /// Outcome coded as a number: 0 inserted, 1 to 4 the failure class, -1 diverged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "i8", try_from = "i8")]
-pub struct Mark(pub Outcome);
+pub struct OutcomeCode(pub Outcome);
 
-impl From<Mark> for i8 {
-    fn from(Mark(outcome): Mark) -> i8 {
+impl From<OutcomeCode> for i8 {
+    fn from(OutcomeCode(outcome): OutcomeCode) -> i8 {
         match outcome {
             Outcome::Inserted => 0,
             Outcome::Failed(class) => class.number() as i8,
@@ -140,14 +140,16 @@ impl From<Mark> for i8 {
     }
 }
 
-impl TryFrom<i8> for Mark {
+impl TryFrom<i8> for OutcomeCode {
     type Error = String;
 
     fn try_from(number: i8) -> Result<Self, String> {
         match number {
-            -1 => Ok(Mark(Outcome::Diverged)),
-            0 => Ok(Mark(Outcome::Inserted)),
-            class => Ok(Mark(Outcome::Failed(FailureClass::try_from(class.unsigned_abs())?))),
+            -1 => Ok(OutcomeCode(Outcome::Diverged)),
+            0 => Ok(OutcomeCode(Outcome::Inserted)),
+            class => {
+                Ok(OutcomeCode(Outcome::Failed(FailureClass::try_from(class.unsigned_abs())?)))
+            }
         }
     }
 }
@@ -176,13 +178,13 @@ mod tests {
             let map = on(1);
             assert_eq!(map, on(3));
             assert_eq!(map, serde_json::from_str(&serde_json::to_string(&map).unwrap()).unwrap());
-            let node = |of: fn(&Axis) -> f64| {
+            let node = |of: fn(&MapAxis) -> f64| {
                 map.axes
                     .each_ref()
                     .map(|axis| (of(axis) * f64::from(STEPS_PER_UNIT)).round() as i32)
             };
             let full = lattice(node(|axis| axis.low), node(|axis| axis.high), |node| {
-                Mark(plane.outcome(node))
+                OutcomeCode(plane.outcome(node))
             });
             assert_eq!(map.outcomes, full);
             let inside = |[below, above]: [f64; 2]| {

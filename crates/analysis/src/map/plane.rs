@@ -22,7 +22,7 @@ pub enum Axes {
     /// A shift along y, and a turn of the socket about z
     #[value(name = "y,yaw")]
     YYaw,
-    /// A shift along y, and a turn of the part about x beside the tilt of the search
+    /// A shift along y, and a turn of the part about x in addition to the tilt of the search
     #[value(name = "y,tilt")]
     YTilt,
 }

@@ -28,7 +28,7 @@ impl<'a> Cells<'a> {
         at.and_then(|at| self.record.get(at)).unwrap_or("")
     }
 
-    /// Parses the value of a column; a problem is recorded.
+    /// Parses the value of a column; records a problem if it is invalid.
     pub(crate) fn read<T>(
         &mut self,
         column: &str,
@@ -38,7 +38,7 @@ impl<'a> Cells<'a> {
     }
 
     /// Parses the value of a column that may be empty.
-    pub(crate) fn known<T>(
+    pub(crate) fn optional<T>(
         &mut self,
         column: &str,
         value: fn(&str) -> Result<T, String>,
@@ -46,6 +46,7 @@ impl<'a> Cells<'a> {
         if self.text(column).is_empty() { None } else { self.read(column, value) }
     }
 
+    /// Records a problem.
     pub(crate) fn problem(&mut self, column: &str, words: &str) {
         self.problems.push(problem(self.line, column, words));
     }
@@ -56,7 +57,7 @@ impl<'a> Cells<'a> {
         let direction = self.read(DIRECTION_KEY, direction).unwrap_or_default();
         let mut design = Design::infill(density, direction);
         for key in self.header.iter().filter(|name| is_of_space(name)) {
-            design.0.extend(self.known(key, number).map(|value| (key.to_owned(), value)));
+            design.0.extend(self.optional(key, number).map(|value| (key.to_owned(), value)));
         }
         design
     }
@@ -77,21 +78,21 @@ pub(super) fn experiment(cells: &mut Cells<'_>, before: &[Experiment]) -> Experi
         line: cells.line,
         task,
         design: cells.design(),
-        negative_mm: cells.known("negative_mm", length),
-        positive_mm: cells.known("positive_mm", length),
-        range_mm: cells.known("range_mm", range).flatten(),
-        failure_negative: cells.known("failure_negative", failure),
-        failure_positive: cells.known("failure_positive", failure),
-        repeats: cells.known("repeats", repeats).unwrap_or(1),
-        peak_force_n: cells.known("peak_force_n", force),
-        date: cells.known("date", date),
+        negative_mm: cells.optional("negative_mm", length),
+        positive_mm: cells.optional("positive_mm", length),
+        range_mm: cells.optional("range_mm", range).flatten(),
+        failure_negative: cells.optional("failure_negative", failure),
+        failure_positive: cells.optional("failure_positive", failure),
+        repeats: cells.optional("repeats", repeats).unwrap_or(1),
+        peak_force_n: cells.optional("peak_force_n", force),
+        date: cells.optional("date", date),
         note: cells.text("note").to_owned(),
     };
     if cells.problems.is_empty() {
         check_window(cells, &experiment);
     }
     if cells.problems.is_empty() {
-        cells.problems.extend(twice(&experiment, before));
+        cells.problems.extend(duplicate(&experiment, before));
     }
     let ends = experiment.positive_mm.zip(experiment.negative_mm);
     // Without the rounding error of the subtraction.
@@ -112,12 +113,12 @@ fn check_window(cells: &mut Cells<'_>, experiment: &Experiment) {
             format!("is {end}, so that the window excludes 0, the start; it must be 0 or {right}");
         cells.problem(column, &words);
     }
-    let known = positive_mm.unwrap_or(0.0) - negative_mm.unwrap_or(0.0);
+    let width = positive_mm.unwrap_or(0.0) - negative_mm.unwrap_or(0.0);
     let whole = negative_mm.is_some() && positive_mm.is_some();
     if let Some(range) = range_mm
-        && (known - range > ROUNDING_MM || (whole && range - known > ROUNDING_MM))
+        && (width - range > ROUNDING_MM || (whole && range - width > ROUNDING_MM))
     {
-        let words = format!("is {range}, but the window is {known:.2} mm wide; give one of them");
+        let words = format!("is {range}, but the window is {width:.2} mm wide; give one of them");
         cells.problem("range_mm", &words);
     }
     let not_measurable = cells.text("range_mm") == NOT_MEASURABLE;
@@ -127,8 +128,8 @@ fn check_window(cells: &mut Cells<'_>, experiment: &Experiment) {
         cells.problem("range_mm", &words);
     }
     let failure = experiment.failure_negative.or(experiment.failure_positive);
-    let said = not_measurable || failure.is_some();
-    if [negative_mm, positive_mm, range_mm].iter().all(Option::is_none) && !said {
+    let has_other = not_measurable || failure.is_some();
+    if [negative_mm, positive_mm, range_mm].iter().all(Option::is_none) && !has_other {
         let words = format!(
             "nothing was measured; give a range, an end of the window or `{NOT_MEASURABLE}`"
         );
@@ -137,22 +138,22 @@ fn check_window(cells: &mut Cells<'_>, experiment: &Experiment) {
 }
 
 /// Returns a fault if an earlier line has the same finger, task and day.
-fn twice(new: &Experiment, before: &[Experiment]) -> Option<Fault> {
+fn duplicate(new: &Experiment, before: &[Experiment]) -> Option<Fault> {
     let same = |old: &&Experiment| {
         old.task == new.task && old.design == new.design && old.date == new.date
     };
     let old = before.iter().find(same)?;
     let words = format!(
-        "same finger as in line {}; give the mean with the number of `repeats`, or tell the two \
-         apart by `date`",
+        "same finger as in line {}; give the mean with the number of `repeats`, or distinguish the two \
+         by `date`",
         old.line
     );
     Some(problem(new.line, "task", &words))
 }
 
-/// Largest length that is accepted as millimetres: no connector tolerates more.
+/// Largest length that is accepted as millimetres: larger than the tolerance of any connector.
 pub const LARGEST_LENGTH_MM: f64 = 100.0;
-/// Smallest length other than 0, mm: starts are not set more finely.
+/// Smallest length other than 0, mm: finer than the resolution of starts.
 const LEAST_MM: f64 = 0.02;
 /// Largest force that is accepted as newtons.
 pub const LARGEST_FORCE_N: f64 = 5000.0;
@@ -170,7 +171,7 @@ fn density(text: &str) -> Result<f64, String> {
             Err(format!("{share} looks like a share; give percent, as in {}", 100.0 * share))
         }
         percent if percent > 0.0 && percent <= 100.0 => Ok(percent),
-        other => Err(format!("is {other}; it must lie above 0 and at most at 100 percent")),
+        other => Err(format!("is {other}; it must be above 0 and at most 100 percent")),
     }
 }
 
@@ -181,7 +182,7 @@ fn direction(text: &str) -> Result<f64, String> {
             radians.to_degrees()
         )),
         degrees if (0.0..=90.0).contains(&degrees) => Ok(degrees),
-        other => Err(format!("is {other}; it must lie from 0 to 90 degrees")),
+        other => Err(format!("is {other}; it must lie in 0 .. 90 degrees")),
     }
 }
 
@@ -211,7 +212,7 @@ fn range(text: &str) -> Result<Option<f64>, String> {
 pub(crate) fn failure(text: &str) -> Result<FailureClass, String> {
     let class = text.parse::<u8>().ok().and_then(|number| FailureClass::try_from(number).ok());
     let known = FailureClass::ALL.map(|class| format!("{} ({})", class.number(), class.label()));
-    class.ok_or_else(|| format!("`{text}` is no failure class; there are {}", known.join(", ")))
+    class.ok_or_else(|| format!("unknown failure class `{text}`; available: {}", known.join(", ")))
 }
 
 /// Parses the number of measurements averaged into the values.
@@ -241,6 +242,6 @@ fn date(text: &str) -> Result<String, String> {
             Err(format!("{day} is in the future; give the day of the measurement"))
         }
         Ok(day) => Ok(day.to_string()),
-        Err(_) => Err(format!("`{text}` is no day; write it as in 2026-03-31")),
+        Err(_) => Err(format!("`{text}` is not a date; give one like 2026-03-31")),
     }
 }

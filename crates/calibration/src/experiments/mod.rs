@@ -243,14 +243,14 @@ fn check_header(header: &StringRecord, columns: &Columns<'_>, at: u64) -> Result
     for (i, name) in header.iter().enumerate() {
         if !is_of_space(name) && !all.contains(&name) {
             let words = format!(
-                "is no column{}; there are {}, and keys of a space file (task. or finger.)",
+                "is not a known column{}; available: {}, and keys of a space file (task. or finger.)",
                 hint(name, all),
                 all.join(", ")
             );
             return Err(problem(at, name, &words));
         }
         if header.iter().take(i).any(|other| other == name) {
-            return Err(problem(at, name, "is given twice; each column may stand once"));
+            return Err(problem(at, name, "is given twice; each column may occur once"));
         }
     }
     match all[..*required].iter().find(|required| header.iter().all(|name| name != **required)) {

@@ -4,7 +4,7 @@
 use super::check::{Remark, Remarks};
 use super::curves::Curves;
 use super::formulas::{Friction, explained};
-use super::log::{Ended, Moment, Run};
+use super::log::{Ended, LogSample, Run};
 use input::units::MM;
 use insertion::task::{Stage, Task};
 use nalgebra::{Vector2, Vector3};
@@ -95,13 +95,13 @@ pub(super) fn motion(remarks: &mut Remarks<'_>, run: &Run, task: &Task, touched:
     }
 }
 
-/// Compares commanded with measured motion, both from the first moment.
+/// Compares commanded with measured motion, both from the first sample.
 fn commanded(remarks: &mut Remarks<'_>) {
-    let pair = |moment: &Moment| Some((moment.target?.position, moment.position));
-    let moments = &remarks.log.moments;
-    let Some((goal, first)) = pair(&moments[0]) else { return };
+    let pair = |sample: &LogSample| Some((sample.target?.position, sample.position));
+    let samples = &remarks.log.samples;
+    let Some((goal, first)) = pair(&samples[0]) else { return };
     let moves: Vec<Pair> =
-        moments.iter().filter_map(pair).map(|(to, at)| (to - goal, at - first, 1.0)).collect();
+        samples.iter().filter_map(pair).map(|(to, at)| (to - goal, at - first, 1.0)).collect();
     let all = OVER_TABLE.into_iter().chain(IN_HEIGHT).chain([METRES]);
     let found = Comparison::new(all, &moves);
     if let Some(cause) = found.mistake {
@@ -147,10 +147,10 @@ fn search(remarks: &mut Remarks<'_>, task: &Task) {
             at
         }))
     });
-    let at = |moment: &Moment| moment.target.map_or(moment.position, |target| target.position);
-    let moments = &remarks.log.moments;
-    let first = at(&moments[0]);
-    let done = course(moments.iter().map(|moment| at(moment) - first));
+    let at = |sample: &LogSample| sample.target.map_or(sample.position, |target| target.position);
+    let samples = &remarks.log.samples;
+    let first = at(&samples[0]);
+    let done = course(samples.iter().map(|sample| at(sample) - first));
     let length = |course: &Course| course.last().map_or(0.0, |(length, _)| *length);
     let compared =
         planned.iter().filter(|plan| length(&done) > COMPLETE * length(plan)).map(|plan| {
@@ -171,12 +171,12 @@ fn search(remarks: &mut Remarks<'_>, task: &Task) {
 
 /// A second attempt after the first.
 fn twice(remarks: &mut Remarks<'_>, touched: usize) {
-    let moments = &remarks.log.moments;
-    let [first, touch] = [0, touched].map(|at| moments[at].position.z);
+    let samples = &remarks.log.samples;
+    let [first, touch] = [0, touched].map(|at| samples[at].position.z);
     let high = touch + RISES.0 * (first - touch);
-    let up = moments[touched..].iter().position(|moment| moment.position.z > high);
+    let up = samples[touched..].iter().position(|sample| sample.position.z > high);
     let Some(up) = up.map(|at| at + touched).filter(|_| first - touch > RISES.1) else { return };
-    if let Some(down) = moments[up..].iter().position(|moment| moment.position.z <= touch) {
+    if let Some(down) = samples[up..].iter().position(|sample| sample.position.z <= touch) {
         let text = "the tool rises and goes down to the socket once more: there are two attempts in this \
                     log; cut it into one log for each";
         remarks.add(true, Some([up, up + down]), text);

@@ -1,8 +1,8 @@
-//! Checks of a log before the fit; the remarks are sentences for its author.
+//! Checks of the logs before the fit; the remarks are sentences for the user who recorded them.
 
 use super::axes::{cause, motion};
 use super::formulas::runs_of;
-use super::log::{Ended, Log, Moment, Run};
+use super::log::{Ended, Log, LogSample, Run};
 use super::read::median_gap;
 use super::touch::{Air, after, air, any_touch, mean, touch};
 use ask_tell::statistics::Moments;
@@ -14,17 +14,17 @@ use std::ops::Range;
 
 /// Lowest sampling rate, Hz: six samples in a search stroke of 60 ms.
 const SLOWEST_HZ: f64 = 100.0;
-/// Gap between moments that counts as a step of the clock, in median gaps.
+/// Gap between samples that counts as a step of the clock, in median gaps.
 const STEP: f64 = 5.0;
 /// Saturated sensor: smallest number of consecutive samples at an extreme force, and that force beyond the bias, N.
 const SATURATED: (usize, f64) = (10, 10.0);
-/// Bias, N, and drift, N/s, above which there is a remark.
+/// Bias, N, and drift, N/s, above which a remark is made.
 const DRIFT: (f64, f64) = (5.0, 7.0);
 /// Largest distance of the first position from the task's start, m.
 const ASTRAY: f64 = 30.0 * MM;
 /// Largest difference of the tilt from the task's, rad.
 const TILTED: f64 = 2.0 * DEG;
-/// Largest motion of a pose that stands still, and least motion of its target, m.
+/// Largest motion of a pose that counts as standing still, and smallest motion of its target in the meantime, m.
 const STILL: (f64, f64) = (1e-6, 1e-3);
 /// Interval after a touch over which its force is averaged, s: a soft robot oscillates at first.
 const TOUCH_S: [f64; 2] = [0.02, 0.5];
@@ -66,34 +66,34 @@ pub(super) struct Remarks<'a> {
 }
 
 impl Remarks<'_> {
-    /// Adds a remark on the moments between two indices.
+    /// Adds a remark on the samples between two indices.
     pub(super) fn add(
         &mut self,
         serious: bool,
         between: Option<[usize; 2]>,
         text: impl Into<String>,
     ) {
-        let last = self.log.moments.len() - 1;
-        let lines = between.map(|ends| ends.map(|at| self.log.moments[at.min(last)].line));
+        let last = self.log.samples.len() - 1;
+        let lines = between.map(|ends| ends.map(|at| self.log.samples[at.min(last)].line));
         self.found.push(Remark { file: self.log.file.clone(), lines, text: text.into(), serious });
     }
 }
 
-/// Returns the remarks on the logs of the runs of a task; `file` has the runs.
+/// Returns the remarks on the logs of the runs of a task; `file` is the table of the runs.
 pub(super) fn remarks(file: &str, runs: &[Run], task: &Task) -> Vec<Remark> {
-    let frame = turned_frame(file, runs);
+    let frame = rotated_frame(file, runs);
     let each = runs.iter().flat_map(|run| of_log(run, task, frame.is_some()));
     let mut found: Vec<Remark> = each.collect();
     found.extend(frame);
     found
 }
 
-/// Returns the remarks on one log; `turned` if the forces of all are in a turned frame.
-fn of_log(run: &Run, task: &Task, turned: bool) -> Vec<Remark> {
+/// Returns the remarks on one log; `rotated` if the forces of all logs are in a rotated frame.
+fn of_log(run: &Run, task: &Task, rotated: bool) -> Vec<Remark> {
     let mut remarks = Remarks { log: &run.log, found: Vec::new() };
     clock(&mut remarks);
     pose(&mut remarks, run, task);
-    let touched = contact(&mut remarks).filter(|_| !turned);
+    let touched = contact(&mut remarks).filter(|_| !rotated);
     sensor(&mut remarks, touched);
     motion(&mut remarks, run, task, touched);
     if let Some(touched) = touched {
@@ -102,14 +102,14 @@ fn of_log(run: &Run, task: &Task, turned: bool) -> Vec<Remark> {
     remarks.found
 }
 
-/// Returns a remark on forces in another unit; `ratio` is that of measured forces to those of the fingers along the
-/// measured path, `file` has the runs.
+/// Returns a remark on forces in another unit; `ratio` is the ratio of the measured forces to the simulated forces of
+/// the fingers along the measured path, `file` is the table of the runs.
 pub(super) fn force_scale(file: &str, ratio: f64) -> Option<Remark> {
     let factor = ratio.max(1.0 / ratio);
-    let [size, times] = if ratio < 1.0 { ["small", "less"] } else { ["large", "more"] };
+    let [size, times] = if ratio < 1.0 { ["small", "smaller"] } else { ["large", "larger"] };
     let text = format!(
-        "the forces look too {size}, {factor:.1} times {times} than the finger makes along the measured path: check \
-         their unit (1 kgf is 9.8 N, 1 lbf is 4.4 N), or the scale of the sensor"
+        "the forces look too {size}, {factor:.1} times {times} than the simulated force of the finger along \
+         the measured path: check their unit (1 kgf is 9.8 N, 1 lbf is 4.4 N), or the scale of the sensor"
     );
     (factor > SCALED).then(|| Remark { file: file.to_owned(), lines: None, text, serious: true })
 }
@@ -117,8 +117,8 @@ pub(super) fn force_scale(file: &str, ratio: f64) -> Option<Remark> {
 /// Checks sampling rate and steps of the clock.
 fn clock(remarks: &mut Remarks<'_>) {
     let (log, median) = (remarks.log, median_gap(remarks.log));
-    let gap = |i: &usize| log.moments[i + 1].time_s - log.moments[*i].time_s;
-    let gaps = 0..log.moments.len() - 1;
+    let gap = |i: &usize| log.samples[i + 1].time_s - log.samples[*i].time_s;
+    let gaps = 0..log.samples.len() - 1;
     let Some(worst) = gaps.clone().max_by(|a, b| gap(a).total_cmp(&gap(b))) else { return };
     let (rate, largest) = (1.0 / median, 1e3 * gap(&worst));
     if rate < SLOWEST_HZ {
@@ -131,26 +131,26 @@ fn clock(remarks: &mut Remarks<'_>) {
     let steps = gaps.filter(|i| gap(i) > STEP * median).count();
     if steps > 0 {
         let text = format!(
-            "the clock steps by {largest:.0} ms where {:.1} ms are usual, one of {steps} such gaps: \
-             what happened in them is not known",
+            "the clock steps by {largest:.0} ms where {:.1} ms are usual (gaps of this kind: {steps}): \
+             the motion in them is unknown",
             1e3 * median
         );
         remarks.add(steps > 3, Some([worst, worst + 1]), text);
     }
 }
 
-/// Checks first position and tilt against the task, targets, and whether the pose stands still.
+/// Checks the first position and tilt against the task, whether there are targets, and whether the pose stands still.
 fn pose(remarks: &mut Remarks<'_>, run: &Run, task: &Task) {
-    let (log, first) = (remarks.log, remarks.log.moments[0]);
+    let (log, first) = (remarks.log, remarks.log.samples[0]);
     let start = Vector3::from(task.strategy.start) + Vector3::y() * run.offset;
     let far = (first.position - start).norm();
     let probe = run.ended == Ended::Probe;
     if far > ASTRAY {
         let text = format!(
             "it begins at ({}) mm, {:.0} mm from the start of the task and offset, ({}) mm: {}",
-            shown(first.position / MM, 1),
+            formatted(first.position / MM, 1),
             far / MM,
-            shown(start / MM, 1),
+            formatted(start / MM, 1),
             cause(first.position, start)
         );
         remarks.add(!probe, Some([0, 0]), text);
@@ -158,37 +158,37 @@ fn pose(remarks: &mut Remarks<'_>, run: &Run, task: &Task) {
     let (tilt, wanted) = (first.tilt / DEG, task.strategy.tilt / DEG);
     if !probe && (first.tilt - task.strategy.tilt).abs() > TILTED {
         let hint = if (first.tilt + task.strategy.tilt).abs() < TILTED {
-            "its sign, or the direction of x, is turned"
+            "its sign, or the direction of x, is inverted"
         } else if (first.tilt / DEG - task.strategy.tilt).abs() < 0.1 * task.strategy.tilt.abs() {
             "it looks like radians"
         } else {
-            "check the frame, or where the tool is upright"
+            "check the frame, or the orientation in which the tool is upright"
         };
         let text = format!(
-            "the tool is tilted by {tilt:.1} degrees where the task says {wanted:.1}: {hint}"
+            "the tool is tilted by {tilt:.1} degrees, but in the task by {wanted:.1}: {hint}"
         );
         remarks.add(true, Some([0, 0]), text);
     }
     if first.target.is_none() {
         let text = "it has no commanded positions (target columns): the robot's stiffness cannot \
-                    be told from this log";
+                    be identified from this log";
         remarks.add(false, None, text);
     }
-    if let Some([from, to]) = standstill(&log.moments) {
+    if let Some([from, to]) = standstill(&log.samples) {
         let text = "the measured pose stands still while the commanded one moves: the pose is \
-                    recorded too seldom or from another robot";
+                    recorded at too low a rate or from another robot";
         remarks.add(true, Some([from, to]), text);
     }
 }
 
 /// Returns both ends of the first interval in which the pose stands still while the target moves.
-fn standstill(moments: &[Moment]) -> Option<[usize; 2]> {
+fn standstill(samples: &[LogSample]) -> Option<[usize; 2]> {
     let mut from = 0;
-    for (at, now) in moments.iter().enumerate() {
-        if (now.position - moments[from].position).amax() > STILL.0 {
+    for (at, now) in samples.iter().enumerate() {
+        if (now.position - samples[from].position).amax() > STILL.0 {
             from = at;
         }
-        let (old, new) = (moments[from].target?, now.target?);
+        let (old, new) = (samples[from].target?, now.target?);
         if (new.position - old.position).norm() > STILL.1 {
             return Some([from, at]);
         }
@@ -200,20 +200,20 @@ fn standstill(moments: &[Moment]) -> Option<[usize; 2]> {
 fn touch_force(log: &Log) -> Option<([usize; 2], Vector3<f64>)> {
     let from = any_touch(log)?;
     let to = after(log, from, TOUCH_S[1]);
-    let contact = &log.moments[after(log, from, TOUCH_S[0]).min(to - 1)..to];
+    let contact = &log.samples[after(log, from, TOUCH_S[0]).min(to - 1)..to];
     let force = mean(contact) - Air::of(air(log, Some(from))).bias;
     (force.norm() > LEAST_N).then_some(([from, to], force))
 }
 
-/// Returns a remark if most logs have more force along x, or along y, than along z at the touch. A few may: an edge
-/// pushes sideways too.
-fn turned_frame(file: &str, runs: &[Run]) -> Option<Remark> {
+/// Returns a remark if in most logs the force at the touch is larger along x, or along y, than along z. In a few logs
+/// it may be, since an edge also pushes sideways.
+fn rotated_frame(file: &str, runs: &[Run]) -> Option<Remark> {
     let forces = runs.iter().filter_map(|run| Some(touch_force(&run.log)?.1.abs()));
     let largest: Vec<usize> = forces.map(|force| force.imax()).collect();
     let count = |axis: usize| largest.iter().filter(|&&one| one == axis).count();
     let (along, times) = [("x", count(0)), ("y", count(1))].into_iter().max_by_key(|one| one.1)?;
     let text = format!(
-        "the frame looks turned: at the touch the force is along {along} and not along z in {times} of {} logs; check \
+        "the frame looks rotated: at the touch the force is along {along} and not along z in {times} of {} logs; check \
          `axis_angle_rad`, or whether f{along}_n and fz_n are swapped",
         largest.len()
     );
@@ -225,8 +225,8 @@ fn turned_frame(file: &str, runs: &[Run]) -> Option<Remark> {
 fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
     let log = remarks.log;
     let Some(([from, to], force)) = touch_force(log) else {
-        let text = "nothing is touched: the force never leaves the noise of the air for good; the \
-                    log has only the approach, no force, or one in another unit than newtons";
+        let text = "no contact: the force never stays above the noise of the sensor; the log has only the \
+                    approach, no force, or a force in another unit than newtons";
         remarks.add(true, None, text);
         return None;
     };
@@ -234,9 +234,9 @@ fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
         return touch(log);
     }
     let text = format!(
-        "at the touch the force on the tool becomes ({}) N: on a tool that goes down it must be \
-         above 0 along z; turn `force_sign`",
-        shown(force, 1)
+        "at the touch the force on the tool becomes ({}) N: while the tool moves down it must be \
+         above 0 along z; invert `force_sign`",
+        formatted(force, 1)
     );
     remarks.add(true, Some([from, to]), text);
     None
@@ -250,9 +250,9 @@ fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
     let span = touched.map(|_| [0, quiet.len() - 1]);
     if touched.is_some() && bias.norm() > DRIFT.0 {
         let text = format!(
-            "the force in the air is ({}) N and not nought; it is taken off: zero the sensor before \
+            "the force in the air is ({}) N instead of zero; it is subtracted: zero the sensor before \
              an attempt, or give the tool's weight",
-            shown(bias, 1)
+            formatted(bias, 1)
         );
         remarks.add(false, span, text);
     }
@@ -260,19 +260,19 @@ fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
     if touched.is_some() && slope.norm() > DRIFT.1.max(4.0 * error.norm()) {
         let text = format!(
             "the force in the air changes by ({}) N/s: the sensor drifts, or the tool accelerates",
-            shown(slope, 1)
+            formatted(slope, 1)
         );
         remarks.add(false, span, text);
     }
     for (axis, name) in ["fx", "fy", "fz"].into_iter().enumerate() {
-        let all: Vec<f64> = log.moments.iter().map(|moment| moment.force[axis]).collect();
+        let all: Vec<f64> = log.samples.iter().map(|sample| sample.force[axis]).collect();
         let extremes = [f64::max, f64::min].map(|of| all.iter().copied().reduce(of).unwrap_or(0.0));
         for extreme in extremes {
             let runs = runs_of(all.len(), |i| all[i] == extreme).into_iter().rev();
             let longest = runs.max_by_key(Range::len).unwrap_or_default();
             if longest.len() >= SATURATED.0 && (extreme - bias[axis]).abs() > SATURATED.1 {
                 let text = format!(
-                    "{name} stays at {extreme:.1} N, its extreme, for {} moments: the sensor is \
+                    "{name} stays at its extreme value {extreme:.1} N for {} samples: the sensor is \
                      saturated",
                     longest.len()
                 );
@@ -284,42 +284,42 @@ fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
 
 /// Returns the slope of the force over time by least squares, N/s, and its standard deviation.
 fn slope(
-    moments: &[Moment],
+    samples: &[LogSample],
     bias: Vector3<f64>,
     noise: Vector3<f64>,
 ) -> (Vector3<f64>, Vector3<f64>) {
-    let middle = Moments::of(moments.iter().map(|moment| moment.time_s)).mean;
-    let late = |moment: &Moment| moment.time_s - middle;
-    let spread: f64 = moments.iter().map(|moment| late(moment).powi(2)).sum::<f64>().max(1e-12);
-    let sum: Vector3<f64> = moments.iter().map(|moment| (moment.force - bias) * late(moment)).sum();
+    let middle = Moments::of(samples.iter().map(|sample| sample.time_s)).mean;
+    let late = |sample: &LogSample| sample.time_s - middle;
+    let spread: f64 = samples.iter().map(|sample| late(sample).powi(2)).sum::<f64>().max(1e-12);
+    let sum: Vector3<f64> = samples.iter().map(|sample| (sample.force - bias) * late(sample)).sum();
     (sum / spread, noise / spread.sqrt())
 }
 
 /// Checks that the log has the phases of its outcome.
 fn phases(remarks: &mut Remarks<'_>, run: &Run, task: &Task, touched: usize) {
     let log = remarks.log;
-    let depth = |moment: &Moment| task.grip.tcp_z * libm::cos(moment.tilt) - moment.position.z;
-    let deepest = log.moments.iter().map(depth).fold(f64::MIN, f64::max);
-    let last = log.moments.len() - 1;
+    let depth = |sample: &LogSample| task.grip.tcp_z * libm::cos(sample.tilt) - sample.position.z;
+    let deepest = log.samples.iter().map(depth).fold(f64::MIN, f64::max);
+    let last = log.samples.len() - 1;
     if run.ended == Ended::Inserted && deepest < 0.5 * task.success.depth {
         let text = format!(
-            "it is said to be inserted, but by the TCP the tip never is deeper than {:.1} mm where \
-             {:.1} mm count: a phase is missing, or the frame's origin or the outcome is wrong",
+            "its outcome is `inserted`, but according to the TCP the tip is never deeper than {:.1} mm; \
+             {:.1} mm are required: a phase is missing, or the frame's origin or the outcome is wrong",
             deepest / MM,
             task.success.depth / MM
         );
         remarks.add(true, Some([touched, last]), text);
     }
     let seated = matches!(run.ended, Ended::Inserted | Ended::Failed(FailureClass::Jammed));
-    if seated && deepest > 0.0 && depth(&log.moments[last]) < 0.0 {
-        let left = log.moments.iter().rposition(|moment| depth(moment) >= 0.0).unwrap_or(0);
+    if seated && deepest > 0.0 && depth(&log.samples[last]) < 0.0 {
+        let left = log.samples.iter().rposition(|sample| depth(sample) >= 0.0).unwrap_or(0);
         let text = "it ends in the air, above the socket: cut it where the attempt ends";
         remarks.add(false, Some([left, last]), text);
     }
 }
 
 /// Formats a vector.
-fn shown(vector: Vector3<f64>, decimals: usize) -> String {
+fn formatted(vector: Vector3<f64>, decimals: usize) -> String {
     let numbers: Vec<String> = vector.iter().map(|v| format!("{:.decimals$}", v + 0.0)).collect();
     numbers.join(", ")
 }

@@ -1,6 +1,6 @@
 //! Curves of a log or a simulated attempt at regular times.
 
-use super::log::{Log, Moment};
+use super::log::{Log, LogSample};
 use input::units::{DEG, MM};
 use insertion::trial::{Path, Sample, Tcp};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -26,20 +26,20 @@ pub struct Curves {
 impl Curves {
     /// Returns the curves of a log; `bias` is subtracted from the force.
     pub fn of_log(log: &Log, bias: Vector3<f64>) -> Self {
-        let moments = &log.moments;
-        let (first, last) = (moments[0].time_s, moments[moments.len() - 1].time_s);
+        let samples = &log.samples;
+        let (first, last) = (samples[0].time_s, samples[samples.len() - 1].time_s);
         let count = ((last - first) / STEP_S) as usize + 1;
         let mut at = 0;
-        let points: Vec<Moment> = (0..count)
+        let points: Vec<LogSample> = (0..count)
             .map(|i| {
                 let time = first + i as f64 * STEP_S;
-                while at + 2 < moments.len() && moments[at + 1].time_s <= time {
+                while at + 2 < samples.len() && samples[at + 1].time_s <= time {
                     at += 1;
                 }
-                between(&moments[at], &moments[at + 1], time)
+                between(&samples[at], &samples[at + 1], time)
             })
             .collect();
-        let target = |point: &Moment| point.target.map(|target| target.position);
+        let target = |point: &LogSample| point.target.map(|target| target.position);
         Curves {
             tcp: points.iter().map(|point| point.position).collect(),
             target: points.iter().map(target).collect(),
@@ -101,8 +101,8 @@ impl Curves {
     }
 }
 
-/// Interpolates linearly between two moments.
-fn between(a: &Moment, b: &Moment, time: f64) -> Moment {
+/// Interpolates linearly between two samples.
+fn between(a: &LogSample, b: &LogSample, time: f64) -> LogSample {
     let share = ((time - a.time_s) / (b.time_s - a.time_s)).clamp(0.0, 1.0);
     let vector = |a: Vector3<f64>, b: Vector3<f64>| a + share * (b - a);
     let number = |a: f64, b: f64| a + share * (b - a);
@@ -110,7 +110,7 @@ fn between(a: &Moment, b: &Moment, time: f64) -> Moment {
         position: vector(a.position, b.position),
         tilt: number(a.tilt, b.tilt),
     });
-    Moment {
+    LogSample {
         line: a.line,
         time_s: time,
         position: vector(a.position, b.position),

@@ -1,6 +1,6 @@
 //! A log made up for tests.
 
-use super::log::{Log, Moment};
+use super::log::{Log, LogSample};
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
 use input::units::{DEG, MM};
@@ -13,7 +13,7 @@ use rand::RngExt;
 pub fn made(noise: f64, drift: f64) -> Log {
     let mut random = stream(1, 0, "log");
     let mut normal = || -> f64 { random.sample(StandardNormal) };
-    let moments = (0..600).map(|i| {
+    let samples = (0..600).map(|i| {
         let time = f64::from(i) * 2e-3;
         let down = (20.0 * time).min(6.4) + (13.0 * (time - 0.6) / 0.5).clamp(0.0, 13.0);
         let aside = (5.0 * (time - 0.35) / 0.1).clamp(0.0, 5.0);
@@ -25,7 +25,7 @@ pub fn made(noise: f64, drift: f64) -> Log {
         let force = Vector3::new(0.0, rub, press) + error + sway;
         let (tilt, line) = (10.0 * DEG, i as usize + 2);
         let target = Some(Tcp { position: position - Vector3::z() * 1e-5, tilt });
-        Moment { line, time_s: 7.0 + time, position, tilt, target, force }
+        LogSample { line, time_s: 7.0 + time, position, tilt, target, force }
     });
-    Log::new("a.csv", moments.collect()).expect("moments in order")
+    Log::new("a.csv", samples.collect()).expect("samples in order")
 }

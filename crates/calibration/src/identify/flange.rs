@@ -4,9 +4,9 @@ use super::formulas::Flange;
 use input::units::N_PER_MM;
 use insertion::robot::{Drive, Robot, Servo};
 
-/// Relative deviation of the axes of a flange from the proportions of the robot file.
-const ALIKE: f64 = 0.2;
-/// Flange if all axes are identified but the robot file has no servo; masses and rotations are those of
+/// Relative standard deviation of the axes of a flange from the proportions of the robot file.
+const AXIS_SD: f64 = 0.2;
+/// Servo for a robot file without one, if all axes are identified; masses and rotations are those of
 /// `robots/servo.toml`.
 const SOFT: Servo = Servo {
     stiffness: [10.0 * N_PER_MM; 3],
@@ -16,13 +16,14 @@ const SOFT: Servo = Servo {
     damping_ratio: 1.0,
 };
 
-/// Returns the robot with the identified stiffness, and the smallest relative standard deviation of an axis. Each axis
-/// is that of the robot file times a factor; uncertain factors are drawn towards the common one, which rotations have.
-pub fn told(own: &Robot, flange: &[Option<Flange>; 3]) -> (Robot, Option<f64>) {
-    let told = flange.iter().flatten().count();
+/// Returns the robot with the identified stiffness, and the smallest relative standard deviation of an axis. The
+/// stiffness of each axis is that of the robot file times a factor; uncertain factors are shrunk towards the common
+/// factor, which also applies to the rotations.
+pub fn identified_robot(own: &Robot, flange: &[Option<Flange>; 3]) -> (Robot, Option<f64>) {
+    let identified = flange.iter().flatten().count();
     let base = match own.drive {
         Drive::Servo(servo) => servo,
-        _ if told == 3 => SOFT,
+        _ if identified == 3 => SOFT,
         _ => return (own.clone(), None),
     };
     let axis = |i: usize| {
@@ -30,19 +31,19 @@ pub fn told(own: &Robot, flange: &[Option<Flange>; 3]) -> (Robot, Option<f64>) {
         Some((libm::log(stiffness.mean / base.stiffness[i]), stiffness.sd / stiffness.mean))
     };
     let axes = [0, 1, 2].map(axis);
-    let weight = |sd: f64| 1.0 / (sd * sd + ALIKE * ALIKE);
+    let weight = |sd: f64| 1.0 / (sd * sd + AXIS_SD * AXIS_SD);
     let sums = axes
         .iter()
         .flatten()
         .fold((0.0, 0.0), |(sum, all), (log, sd)| (sum + weight(*sd) * log, all + weight(*sd)));
-    if told == 0 {
+    if identified == 0 {
         return (own.clone(), None);
     }
     let common = sums.0 / sums.1;
     let each = axes.map(|axis| match axis {
         None => common,
         Some((log, sd)) => {
-            let (own, others) = (1.0 / (sd * sd), 1.0 / (ALIKE * ALIKE));
+            let (own, others) = (1.0 / (sd * sd), 1.0 / (AXIS_SD * AXIS_SD));
             (own * log + others * common) / (own + others)
         }
     });

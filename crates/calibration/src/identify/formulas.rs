@@ -11,7 +11,7 @@ use std::ops::Range;
 const REACH: usize = 5;
 /// Largest delay of the force, points: 30 ms.
 const DELAYS: usize = 15;
-/// Smallest relative standard deviation of a stiffness: a robot is no ideal spring.
+/// Smallest relative standard deviation of a stiffness: a robot is not an ideal spring.
 const FLOOR: f64 = 0.04;
 
 /// One axis of a compliant flange: F = -k e - c e' + m a, with the lag e of the TCP behind its target and the mass m
@@ -171,7 +171,7 @@ pub struct Friction {
     pub coefficient: Option<Estimate>,
 }
 
-/// Height above the face from which on the part is in the air, m.
+/// Height above the face above which the part is in the air, m.
 const LIFTED: f64 = 1e-3;
 /// Share of the largest speed along y above which the part slides.
 const MOVING: f64 = 0.4;

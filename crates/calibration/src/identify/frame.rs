@@ -11,7 +11,7 @@ use std::f64::consts::{PI, TAU};
 const GRAVITY: f64 = 9.80665;
 /// Distance from the base, mm, below which the unit is taken to be metres.
 const NEAREST_MM: f64 = 10.0;
-/// Rotation of the TCP from upright about y and z, rad, from which on its tilt is not defined.
+/// Largest rotation of the TCP from upright about y and z for which the tilt is defined, rad.
 const ASKEW: f64 = 0.5;
 
 #[derive(Deserialize)]

@@ -8,11 +8,11 @@ use insertion::trial::{Sample, Tcp};
 use nalgebra::Vector3;
 use std::fmt::Write as _;
 
-/// Fewest moments: 0.1 s at 500 Hz.
+/// Fewest samples: 0.1 s at 500 Hz.
 pub const FEWEST: usize = 50;
-/// Most moments: half an hour at 500 Hz, 0.1 GB.
+/// Most samples: half an hour at 500 Hz, 0.1 GB.
 pub const MOST: usize = 1_000_000;
-/// Longest log, s: it is interpolated at regular times, however far apart its moments are.
+/// Longest log, s: it is interpolated at regular times, however far apart its samples are.
 pub const LONGEST_S: f64 = 600.0;
 
 /// Header of [`Log::csv`] without targets: time, TCP and force on the tool, in the task's frame.
@@ -20,9 +20,9 @@ pub const COLUMNS: [&str; 8] = ["t_s", "x_mm", "y_mm", "z_mm", "tilt_deg", "fx_n
 /// Columns of the commanded TCP; a log has all of them or none.
 pub const TARGETS: [&str; 3] = ["target_x_mm", "target_y_mm", "target_z_mm"];
 
-/// One moment of a log, in the task's frame.
+/// One sample of a log, in the task's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Moment {
+pub struct LogSample {
     /// Line in the file, counted from 1.
     pub line: usize,
     /// Time on the recorder's clock, s.
@@ -37,13 +37,13 @@ pub struct Moment {
     pub force: Vector3<f64>,
 }
 
-/// Recorded attempt or probe: finite numbers, increasing times, a target in all moments or in none.
+/// Recorded attempt or probe: finite numbers, increasing times, a target in all samples or in none.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Log {
     /// The file as given.
     pub file: String,
-    /// At least [`FEWEST`] and at most [`MOST`] moments.
-    pub moments: Vec<Moment>,
+    /// At least [`FEWEST`] and at most [`MOST`] samples.
+    pub samples: Vec<LogSample>,
 }
 
 /// How an attempt ended.
@@ -73,45 +73,45 @@ pub struct Run {
 }
 
 impl Log {
-    /// Checks the moments of a log; `file` is named in errors.
+    /// Checks the samples of a log; `file` is named in errors.
     ///
     /// # Errors
     /// If there are too few or too many, a number is not finite, or time does not increase.
-    pub fn new(file: &str, moments: Vec<Moment>) -> Result<Self, Fault> {
+    pub fn new(file: &str, samples: Vec<LogSample>) -> Result<Self, Fault> {
         let whole = |problem: String| Err(Place::file(file).fault(problem));
-        if !(FEWEST..=MOST).contains(&moments.len()) {
-            let count = moments.len();
-            return whole(format!("has {count} moments; it must have {FEWEST} to {MOST}"));
+        if !(FEWEST..=MOST).contains(&samples.len()) {
+            let count = samples.len();
+            return whole(format!("has {count} samples; it must have {FEWEST} to {MOST}"));
         }
-        for (i, moment) in moments.iter().enumerate() {
-            let wrong = match i.checked_sub(1).and_then(|before| moments.get(before)) {
-                _ if !moment.is_finite() => Some("has a number that is not finite".to_owned()),
-                Some(before) if moment.time_s <= before.time_s => Some(format!(
+        for (i, sample) in samples.iter().enumerate() {
+            let wrong = match i.checked_sub(1).and_then(|before| samples.get(before)) {
+                _ if !sample.is_finite() => Some("has a number that is not finite".to_owned()),
+                Some(before) if sample.time_s <= before.time_s => Some(format!(
                     "time goes from {} s in line {} to {} s; it must increase: cut the log where \
                      its clock was set",
-                    before.time_s, before.line, moment.time_s
+                    before.time_s, before.line, sample.time_s
                 )),
                 _ => None,
             };
             if let Some(problem) = wrong {
-                return Err(Place::file(file).line(moment.line).fault(problem));
+                return Err(Place::file(file).line(sample.line).fault(problem));
             }
         }
-        let lasts = moments[moments.len() - 1].time_s - moments[0].time_s;
+        let lasts = samples[samples.len() - 1].time_s - samples[0].time_s;
         if lasts > LONGEST_S {
             return whole(format!(
                 "lasts {lasts:.0} s; an attempt lasts {LONGEST_S} s at most: cut the log, or mend its clock"
             ));
         }
-        Ok(Log { file: file.to_owned(), moments })
+        Ok(Log { file: file.to_owned(), samples })
     }
 
     /// Returns its text with the columns [`COLUMNS`] and, with targets, [`TARGETS`]: lengths to 1e-5 mm,
-    /// tilt to 1e-5 degrees, force to 1e-4 N, time to 1e-6 s. Moment `i` stands in line `i + 2`.
+    /// tilt to 1e-5 degrees, force to 1e-4 N, time to 1e-6 s. Sample `i` is in line `i + 2`.
     /// A commanded tilt is not kept.
     pub fn csv(&self) -> String {
         let mut text = COLUMNS.join(",");
-        if self.moments.iter().any(|moment| moment.target.is_some()) {
+        if self.samples.iter().any(|sample| sample.target.is_some()) {
             text = format!("{text},{}", TARGETS.join(","));
         }
         // Writing to a String cannot fail. What rounds to 0 has no sign.
@@ -119,12 +119,12 @@ impl Log {
             let scale = 10_f64.powi(digits as i32);
             let _ = write!(text, ",{:.digits$}", (value * scale).round() / scale + 0.0);
         };
-        for moment in &self.moments {
-            let _ = write!(text, "\n{:.6}", moment.time_s);
-            moment.position.iter().for_each(|value| fixed(&mut text, value / MM, 5));
-            fixed(&mut text, moment.tilt / DEG, 5);
-            moment.force.iter().for_each(|value| fixed(&mut text, *value, 4));
-            let target = moment.target.iter().flat_map(|target| &target.position);
+        for sample in &self.samples {
+            let _ = write!(text, "\n{:.6}", sample.time_s);
+            sample.position.iter().for_each(|value| fixed(&mut text, value / MM, 5));
+            fixed(&mut text, sample.tilt / DEG, 5);
+            sample.force.iter().for_each(|value| fixed(&mut text, *value, 4));
+            let target = sample.target.iter().flat_map(|target| &target.position);
             target.for_each(|value| fixed(&mut text, value / MM, 5));
         }
         text.push('\n');
@@ -132,7 +132,7 @@ impl Log {
     }
 }
 
-impl Moment {
+impl LogSample {
     fn is_finite(&self) -> bool {
         let target =
             self.target.map_or([0.0; 4], |Tcp { position: p, tilt }| [p.x, p.y, p.z, tilt]);
@@ -147,7 +147,7 @@ impl Moment {
 /// That of [`Log::new`], if the attempt was too short.
 pub fn of_samples(file: &str, samples: &[Sample]) -> Result<Log, Fault> {
     let start = samples.first().map_or(0.0, |sample| sample.time_s);
-    let moment = |(i, sample): (usize, &Sample)| Moment {
+    let converted = |(i, sample): (usize, &Sample)| LogSample {
         line: i + 2,
         time_s: sample.time_s - start,
         position: Vector3::from(sample.tcp_mm) * MM,
@@ -158,5 +158,5 @@ pub fn of_samples(file: &str, samples: &[Sample]) -> Result<Log, Fault> {
         }),
         force: Vector3::from(sample.sensed_n),
     };
-    Log::new(file, samples.iter().enumerate().map(moment).collect())
+    Log::new(file, samples.iter().enumerate().map(converted).collect())
 }

@@ -1,4 +1,4 @@
-//! How far simulated curves are off the measured ones, phase by phase.
+//! Misfit of the simulated curves, per phase of an attempt, and validation by a held-out attempt.
 
 use super::log::Ended;
 use super::question::{Compared, Identified};
@@ -8,70 +8,71 @@ use input::units::MM;
 use insertion::outcome::Outcome;
 use serde::Serialize;
 
+/// Names of the components of the force.
 const FORCES: [&str; 3] = ["fx", "fy", "fz"];
 
-/// Root mean square of (measured less simulated) over its standard deviation, over all attempts.
+/// Root mean square of the residuals (measured minus simulated) of all attempts, in standard deviations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Misfit {
     /// Phase of the attempt: search or push.
     pub phase: &'static str,
     /// Component of the force.
     pub axis: &'static str,
-    /// Under the numbers of the files.
+    /// Misfit with the numbers of the files.
     pub before: f64,
-    /// Under what was identified.
+    /// Misfit with the identified numbers.
     pub after: f64,
 }
 
-/// Ratio of the misfit of what was kept aside to that of what was fitted, from which it is a warning.
+/// Ratio of the misfit of the held-out attempt to that of the fitted attempts above which there is a warning.
 pub const WARNING: f64 = 1.5;
 
-/// Misfit of an attempt that was not fitted beside that of the fitted ones, with the identified numbers; root mean
-/// squares over all components of the force, in standard deviations.
+/// Misfit of the held-out attempt and of the fitted attempts, with the identified numbers: root mean squares over all
+/// components of the force, in standard deviations.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Validation {
-    /// File of its log.
+    /// File of the attempt's log.
     pub log: String,
-    /// Shift of its start, mm.
+    /// Shift of the attempt's start, mm.
     pub offset_mm: f64,
     /// Outcome on the robot.
     pub outcome: &'static str,
     /// Outcome in the identified cell.
     pub outcome_predicted: &'static str,
-    /// Of this attempt.
+    /// Misfit of the held-out attempt.
     pub misfit: f64,
-    /// Of the fitted attempts.
+    /// Misfit of the fitted attempts.
     pub misfit_fitted: f64,
 }
 
 impl Validation {
-    /// Compares the attempt that was kept aside, if there is one.
+    /// Returns the validation by the held-out attempt, if there is one.
     pub fn of(found: &Identified) -> Option<Self> {
-        let aside = found.aside.as_ref()?;
+        let held_out = found.held_out.as_ref()?;
         let after = |compared: &[Compared]| {
             let squares = misfits(compared).into_iter().map(|one| one.after * one.after);
             mean(squares).map_or(0.0, f64::sqrt)
         };
         Some(Validation {
-            log: aside.logged.file.clone(),
-            offset_mm: aside.logged.offset / MM,
-            outcome: match aside.logged.ended {
+            log: held_out.logged.file.clone(),
+            offset_mm: held_out.logged.offset / MM,
+            outcome: match held_out.logged.ended {
                 Ended::Failed(class) => Outcome::Failed(class).word(),
                 Ended::Inserted | Ended::Probe => Outcome::Inserted.word(),
             },
-            outcome_predicted: aside.after.1.word(),
-            misfit: after(std::slice::from_ref(aside)),
+            outcome_predicted: held_out.after.1.word(),
+            misfit: after(std::slice::from_ref(held_out)),
             misfit_fitted: after(&found.compared),
         })
     }
 
-    /// Whether the cell predicts worse than it explains.
+    /// Returns whether the cell predicts the held-out attempt considerably worse than it fits the others.
     pub fn is_doubtful(&self) -> bool {
         self.misfit > WARNING * self.misfit_fitted
     }
 }
 
-/// Of each phase and component of the force.
+/// Returns the misfit of each phase and component of the force.
 pub fn misfits(compared: &[Compared]) -> Vec<Misfit> {
     let phases = [(Phase::Search, "search"), (Phase::Push, "push")];
     let each = phases

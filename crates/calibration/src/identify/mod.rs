@@ -1,6 +1,6 @@
 //! From the logs of attempts to the cell in which they were made. Reads files, writes none.
 //!
-//! 1. `log`: one attempt, moment by moment; `read`: from the formats in which it is recorded.
+//! 1. `log`: one attempt, sample by sample; `read`: from the formats in which it is recorded.
 //! 2. `frame`: the task's frame in the robot's base, and what its force means.
 //! 3. `runs`: which finger, offset and outcome belong to which log.
 //! 4. `touch`: where the tool touches, and the force before.

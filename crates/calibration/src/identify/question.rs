@@ -10,7 +10,7 @@ use super::replay::Logged;
 use super::smoother::{Datum, Predicted, Settings, Smoothed, smooth};
 use super::touch::bias;
 use super::unknown::{
-    Unknown, ValueOrigin, advice, fit, identified, not_fitted, unidentified, values, with,
+    Unknown, ValueOrigin, advice, fit, identified, not_fitted, unidentified, values, with_value,
 };
 use ask_tell::statistics::{Moments, mean, median};
 use input::units::MM;
@@ -24,18 +24,19 @@ use parameters::numbers::{FLANGE, FRICTION, Kind};
 use parameters::{Parameter, Scale, Transform};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Ten members per unknown, four rounds; errors are correlated over 0.1 s.
+/// Settings of the ensemble smoother: ten members per unknown, four iterations; errors are correlated over 0.1 s.
 pub const SETTINGS: Settings = Settings { members: 10, rounds: 4, alike: 10.0, seed: 0 };
-/// Largest number of replayed attempts of a finger; more give little information.
-const EACH: usize = 5;
+/// Largest number of replayed attempts of a finger; more add little information.
+const MAX_ATTEMPTS: usize = 5;
 /// Factor on the time step in the fit: it changes identified values by less than half their standard deviation.
 const COARSE: f64 = 4.0;
-/// Smallest standard deviation of a preload, mm: a touch is detected some ms late.
+/// Smallest standard deviation of a preload, mm: a touch is detected a few ms late.
 const PRELOAD_MM: f64 = 0.02;
+/// Prefix of the paths of the strategy.
 const STRATEGY: &str = "task.strategy.";
 
-/// Logs, unknowns and settings of an identification.
-pub struct Question<'a> {
+/// Inputs of an identification: logs, priors and settings.
+pub struct Identification<'a> {
     /// Evaluator of the fingers, with the initial robot.
     pub evaluator: &'a Evaluator,
     pub template: &'a Template,
@@ -47,18 +48,19 @@ pub struct Question<'a> {
     pub stop: &'a AtomicBool,
 }
 
-/// An attempt, measured and simulated.
+/// Attempt, measured and simulated.
 pub struct Compared {
     pub logged: Logged,
-    /// Simulation with the numbers of the files, and with the identified ones.
+    /// Simulation with the numbers of the files.
     pub before: (Curves, Outcome),
+    /// Simulation with the identified numbers.
     pub after: (Curves, Outcome),
 }
 
 /// Result of an identification.
 pub struct Identified {
     pub robot: Robot,
-    /// Axes x, y and z of the robot, as far as they are identified.
+    /// Flange along x, y and z; `None` for an axis that is not identified.
     pub flange: [Option<Flange>; 3],
     pub preload: Option<Estimate>,
     /// Friction of each probe, by its file.
@@ -66,8 +68,8 @@ pub struct Identified {
     pub unknowns: Vec<Unknown>,
     pub smoothed: Smoothed,
     pub compared: Vec<Compared>,
-    /// Attempt that was not fitted, if there is one.
-    pub aside: Option<Compared>,
+    /// Attempt held out of the fit for validation, if there is one.
+    pub held_out: Option<Compared>,
 }
 
 impl Identified {
@@ -80,21 +82,21 @@ impl Identified {
 }
 
 /// Identified cell, with remarks on the logs.
-pub struct IdentifyDone {
+pub struct IdentificationResult {
     /// Name of the task.
     pub task: String,
     /// File with the table of the logs, to which the remarks on all logs refer.
     pub runs: String,
     /// Remarks on the logs, each a sentence.
     pub remarks: Vec<Remark>,
-    /// Numbers of the cell, and the curves they come from.
+    /// Identified numbers of the cell, and the curves from which they are identified.
     pub found: Identified,
     /// The cell, for `--cell`, `--priors` and `--uncertainty`.
     pub cell: Priors,
 }
 
-impl Question<'_> {
-    /// Returns remarks on the logs, individually and together; `file` has the runs.
+impl Identification<'_> {
+    /// Returns remarks on the logs, individually and together; `file` is the table of the runs.
     ///
     /// # Errors
     /// If a log's finger cannot be simulated.
@@ -115,12 +117,14 @@ impl Question<'_> {
         Ok(found)
     }
 
+    /// Returns the attempts to fit.
     fn attempts(&self) -> Vec<Logged> {
         chosen(self.runs.iter().filter_map(Logged::new).collect())
     }
 
-    /// Returns the attempt to validate by: of those that are not fitted the one farthest from any that is.
-    fn aside(&self, fitted: &[Logged]) -> Option<Logged> {
+    /// Returns the attempt to hold out for validation: among those not fitted, the one farthest from any fitted
+    /// attempt.
+    fn held_out(&self, fitted: &[Logged]) -> Option<Logged> {
         let apart = |one: &Logged| {
             let alike = fitted.iter().filter(|other| other.design == one.design);
             alike.map(|other| (other.offset - one.offset).abs()).fold(f64::INFINITY, f64::min)
@@ -130,20 +134,21 @@ impl Question<'_> {
         rest.max_by(|a, b| apart(a).total_cmp(&apart(b)))
     }
 
-    /// Returns the ratio of measured forces to those of the fingers along the measured path, median over the
-    /// attempts. It does not depend on the stiffness of the robot, which could compensate for a wrong unit.
+    /// Returns the median over the attempts of the ratio of the measured forces to the simulated forces of the fingers
+    /// along the measured path. It does not depend on the stiffness of the robot, which could compensate for a wrong
+    /// unit.
     fn force_scale(&self, attempts: &[Logged]) -> Result<Option<f64>, Impossible> {
         let own = &self.evaluator.robot;
         let rigid = Robot { drive: Drive::Ideal, stop_force: f64::MAX, ..own.clone() };
         let along: Vec<Logged> = attempts.iter().filter_map(Logged::along_measured).collect();
         let replayed = self.replayed((&rigid, 1.0), &along, &[])?;
         let ratio = |(logged, (curves, _)): (&Logged, &(Curves, Outcome))| {
-            let [measured, made] = [&logged.curves.force, &curves.force].map(|forces| {
+            let [measured, simulated] = [&logged.curves.force, &curves.force].map(|forces| {
                 let both = logged.curves.force.len().min(curves.force.len());
                 let touched = forces.get(logged.touch..both).unwrap_or_default();
                 touched.iter().map(|force| force.norm_squared()).sum::<f64>()
             });
-            (measured / made).sqrt()
+            (measured / simulated).sqrt()
         };
         Ok(median(along.iter().zip(&replayed).map(ratio).filter(|ratio| ratio.is_normal())))
     }
@@ -152,16 +157,16 @@ impl Question<'_> {
     ///
     /// # Errors
     /// If a value of a prior is invalid.
-    pub fn answer(&self) -> Result<Identified, Impossible> {
+    pub fn identify(&self) -> Result<Identified, Impossible> {
         let attempts = self.attempts();
         let curves: Vec<Curves> = attempts.iter().map(|one| one.curves.clone()).collect();
         let flange = [0, 1, 2].map(|axis| formulas::flange(&curves, axis));
         let probes = self.probes();
         let preload = formulas::preload(&curves);
-        let (robot, flange_sd) = flange::told(&self.evaluator.robot, &flange);
+        let (robot, flange_sd) = flange::identified_robot(&self.evaluator.robot, &flange);
         let (mut fitted, mut rest) = (Vec::new(), Vec::new());
         for prior in self.rows() {
-            let known = self.known(&prior, flange_sd, preload, &probes, &attempts);
+            let known = self.by_formula(&prior, flange_sd, preload, &probes, &attempts);
             let read = prior.path.starts_with(STRATEGY) || prior.path == FLANGE;
             match (known, read) {
                 (Some(known), true) => rest.push(identified(prior, known, ValueOrigin::Formula)),
@@ -179,13 +184,13 @@ impl Question<'_> {
             .map(|(i, (prior, known))| fit(prior, known.as_ref(), &smoothed, i))
             .chain(rest)
             .collect();
-        let aside = self.aside(&attempts).into_iter().collect();
+        let held_out = self.held_out(&attempts).into_iter().collect();
         let compared = self.compared(&robot, attempts, &unknowns)?;
-        let aside = self.compared(&robot, aside, &unknowns)?.pop();
-        Ok(Identified { robot, flange, preload, probes, unknowns, smoothed, compared, aside })
+        let held_out = self.compared(&robot, held_out, &unknowns)?.pop();
+        Ok(Identified { robot, flange, preload, probes, unknowns, smoothed, compared, held_out })
     }
 
-    /// Returns an unknown that is not fitted: the number of the files with the deviation of its prior.
+    /// Returns an unknown that is not fitted: the number of the files with the standard deviation of its prior.
     fn assumed(&self, prior: Parameter) -> Unknown {
         let own = match prior.path.kind() {
             Kind::File => self.evaluator.number(self.template, &prior.path),
@@ -201,9 +206,10 @@ impl Question<'_> {
         let source = "not fitted: as in the files, with the width of its prior".to_owned();
         let posterior = Parameter { value: Some(value), sd: Some(sd), source, ..prior.clone() };
         let advice = Some(advice(&prior));
-        Unknown { prior, posterior, left: None, from: ValueOrigin::Files, advice }
+        Unknown { prior, posterior, remaining_sd: None, from: ValueOrigin::Files, advice }
     }
 
+    /// Returns the friction of each probe, by its file.
     fn probes(&self) -> Vec<(String, Friction)> {
         let probes = self.runs.iter().filter(|run| run.ended == Ended::Probe);
         let friction = |run: &Run| {
@@ -215,7 +221,7 @@ impl Question<'_> {
 
     /// Returns the priors that apply to the task, as values instead of factors and shifts.
     fn rows(&self) -> Vec<Parameter> {
-        let Question { evaluator, template, .. } = self;
+        let Identification { evaluator, template, .. } = self;
         let of_file = |row: &Parameter| row.path.kind() == Kind::File;
         let as_value = |row: &Parameter| {
             let added = row.path.kind() == Kind::Added;
@@ -243,8 +249,8 @@ impl Question<'_> {
         self.priors.of(&template.task.name).filter(has).map(as_value).collect()
     }
 
-    /// Returns a row identified by a formula, if there is one.
-    fn known(
+    /// Returns the parameter as identified by a formula; `None` if no formula applies.
+    fn by_formula(
         &self,
         prior: &Parameter,
         flange: Option<f64>,
@@ -254,13 +260,14 @@ impl Question<'_> {
     ) -> Option<Parameter> {
         let path = &prior.path;
         let (mean, sd, source) = if *path == FLANGE {
-            let source = "force over how far the TCP is behind its target; [robot] has the values";
+            let source =
+                "force divided by the lag of the TCP behind its target; [robot] has the values";
             let factor =
                 Parameter { transform: Transform::Factor, low: 0.5, high: 2.0, ..prior.clone() };
-            return flange.map(|sd| with(&factor, 1.0, sd, source));
+            return flange.map(|sd| with_value(&factor, 1.0, sd, source));
         } else if path.ends_with("preload_mm") {
             let Estimate { mean, sd } = preload?;
-            let source = "where the target stopped, and where it was sent";
+            let source = "distance from the point where the target stopped to the commanded point";
             (mean / MM, (sd / MM).max(PRELOAD_MM), source)
         } else if path.starts_with(STRATEGY) && path.ends_with("move_mm.y") {
             let stroke = |one: &Logged| {
@@ -269,22 +276,23 @@ impl Question<'_> {
                 Some((target[to].y - target[from].y) / MM)
             };
             let mean = mean(attempts.iter().filter_map(stroke))?;
-            (mean, 0.01, "commanded from the touch to the push")
+            (mean, 0.01, "commanded displacement from the touch to the push")
         } else if *path == FRICTION {
-            let said: Vec<Estimate> =
+            let estimates: Vec<Estimate> =
                 probes.iter().filter_map(|(_, found)| found.coefficient).collect();
-            let sd = mean(said.iter().map(|one| one.sd))?;
-            let means = Moments::of(said.iter().map(|one| one.mean));
+            let sd = mean(estimates.iter().map(|one| one.sd))?;
+            let means = Moments::of(estimates.iter().map(|one| one.mean));
             if means.mean <= 0.0 {
                 return None;
             }
-            (means.mean, libm::hypot(sd, means.deviation()), "probe: slides both ways")
+            (means.mean, libm::hypot(sd, means.deviation()), "probe: slides in both directions")
         } else {
             return None;
         };
-        Some(with(prior, mean, sd, source))
+        Some(with_value(prior, mean, sd, source))
     }
 
+    /// Fits parameters to the curves of the attempts by the ensemble smoother.
     fn smoothed(
         &self,
         robot: &Robot,
@@ -304,6 +312,7 @@ impl Question<'_> {
         smooth(rows.len(), &data, Settings { seed: self.seed, ..SETTINGS }, predict)
     }
 
+    /// Simulates attempts with the numbers of the files and with the identified ones.
     fn compared(
         &self,
         robot: &Robot,
@@ -321,13 +330,13 @@ impl Question<'_> {
     }
 }
 
-/// Returns at most [`EACH`] attempts of each finger with evenly spread starts, grouped by finger.
+/// Returns at most [`MAX_ATTEMPTS`] attempts of each finger with evenly spread starts, grouped by finger.
 fn chosen(mut all: Vec<Logged>) -> Vec<Logged> {
     let key = |one: &Logged| one.design.labelled();
     all.sort_by(|a, b| key(a).cmp(&key(b)).then(a.offset.total_cmp(&b.offset)));
     let fingers = all.chunk_by(|a, b| a.design == b.design);
     let of = |alike: &[Logged]| -> Vec<Logged> {
-        let count = alike.len().min(EACH);
+        let count = alike.len().min(MAX_ATTEMPTS);
         let place = |i: usize| if count > 1 { i * (alike.len() - 1) / (count - 1) } else { 0 };
         (0..count).map(|i| alike[place(i)].clone()).collect()
     };

@@ -1,7 +1,7 @@
 //! Parsing of logs: `t_s,x_mm,..` in the task's frame, or the columns of an RTDE recorder in the base's.
 
 use super::frame::Frame;
-use super::log::{COLUMNS, Log, MOST, Moment, TARGETS};
+use super::log::{COLUMNS, Log, LogSample, MOST, TARGETS};
 use crate::experiments::line::LARGEST_FORCE_N;
 use ask_tell::statistics::median;
 use input::files;
@@ -18,7 +18,7 @@ pub const LARGEST_LOG: u64 = 64 << 20;
 const FARTHEST: f64 = 10.0;
 /// Smallest plausible maximum of the coordinates, mm.
 const NEAREST_MM: f64 = 1.0;
-/// Largest plausible median time between moments, s.
+/// Largest plausible median time between samples, s.
 const SLOWEST_S: f64 = 0.5;
 
 /// Reads the text of a log.
@@ -45,18 +45,18 @@ pub fn parse(text: &str, file: &str, frame: Option<&Frame>) -> Result<Log, Fault
         .ok_or_else(|| whole(format!("is empty; a log begins with {}", COLUMNS.join(","))))?;
     let fault = |at: usize, problem: String| Place::file(file).line(at + 1).fault(problem);
     let table = Table::new(header, frame).map_err(|problem| fault(at, problem))?;
-    let mut moments: Vec<Moment> = Vec::new();
+    let mut samples: Vec<LogSample> = Vec::new();
     for (at, line) in lines.filter(|(_, line)| !bare(line)) {
-        if moments.len() == MOST {
-            return Err(whole(format!("has more than {MOST} moments; cut it to the attempt")));
+        if samples.len() == MOST {
+            return Err(whole(format!("has more than {MOST} samples; cut it to the attempt")));
         }
-        let mut moment = table.moment(at + 1, line).map_err(|problem| fault(at, problem))?;
-        if let (None, Some(target)) = (table.rtde, &mut moment.target) {
-            target.tilt = moments.first().map_or(moment.tilt, |first| first.tilt);
+        let mut sample = table.sample(at + 1, line).map_err(|problem| fault(at, problem))?;
+        if let (None, Some(target)) = (table.rtde, &mut sample.target) {
+            target.tilt = samples.first().map_or(sample.tilt, |first| first.tilt);
         }
-        moments.push(moment);
+        samples.push(sample);
     }
-    let log = Log::new(file, moments)?;
+    let log = Log::new(file, samples)?;
     check_units(&log).map_err(whole)?;
     Ok(log)
 }
@@ -70,7 +70,7 @@ fn check_units(log: &Log) -> Result<(), String> {
                             give seconds"
         ));
     }
-    let far = log.moments.iter().map(|moment| moment.position.amax()).fold(0.0, f64::max);
+    let far = log.samples.iter().map(|sample| sample.position.amax()).fold(0.0, f64::max);
     if far < NEAREST_MM * MM {
         return Err(format!(
             "no coordinate is beyond {} mm, so that they look like metres; give \
@@ -81,9 +81,9 @@ fn check_units(log: &Log) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns the median time between two moments, s.
+/// Returns the median time between two samples, s.
 pub(super) fn median_gap(log: &Log) -> f64 {
-    median(log.moments.windows(2).map(|w| w[1].time_s - w[0].time_s)).unwrap_or(0.0)
+    median(log.samples.windows(2).map(|w| w[1].time_s - w[0].time_s)).unwrap_or(0.0)
 }
 
 /// Columns of a log: time, TCP, force, and the commanded TCP if there is one.
@@ -130,7 +130,7 @@ impl<'a> Table<'a> {
             needed.iter().chain(wanted).map(String::as_str).filter(|name| !has(name)).collect();
         if missing.len() > needed.len() / 2 {
             return Err(format!(
-                "is no header of a log; it would have the columns {}, or `timestamp`, \
+                "is not the header of a log; required are the columns {}, or `timestamp`, \
                  `actual_TCP_pose_0` to `_5` and `actual_TCP_force_0` to `_5`",
                 COLUMNS.join(",")
             ));
@@ -139,7 +139,7 @@ impl<'a> Table<'a> {
             return Err(format!("the header lacks {}", missing.join(", ")));
         }
         if let Some(twice) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
-            return Err(format!("the header has {} twice; each column may stand once", twice.1));
+            return Err(format!("the header has {} twice; each column may occur once", twice.1));
         }
         if is_rtde && frame.is_none() {
             let problem = "its poses are in the robot's base; give the pose of the task's frame \
@@ -152,8 +152,8 @@ impl<'a> Table<'a> {
         Ok(Table { rtde: frame.filter(|_| is_rtde), frame, commas, names, places, targets })
     }
 
-    /// Returns the moment of a line; in the task's frame its commanded tilt is 0.
-    fn moment(&self, line: usize, text: &str) -> Result<Moment, String> {
+    /// Returns the sample of a line; in the task's frame its commanded tilt is 0.
+    fn sample(&self, line: usize, text: &str) -> Result<LogSample, String> {
         let found: Vec<&str> = cells(text, self.commas).collect();
         if found.len() != self.names.len() {
             let (has, header) = (found.len(), self.names.len());
@@ -169,7 +169,7 @@ impl<'a> Table<'a> {
                 _ if cell.is_empty() => {
                     Err(format!("{name}: is empty; give a number, or cut the line"))
                 }
-                _ => Err(format!("{name}: `{}` is no finite number", files::visible(cell))),
+                _ => Err(format!("{name}: `{}` is not a finite number", files::visible(cell))),
             }
         };
         let numbers = |places: &[usize]| places.iter().map(number).collect::<Result<Vec<f64>, _>>();
@@ -204,7 +204,7 @@ impl<'a> Table<'a> {
                 (tcp, target, self.frame.map_or(force, |frame| frame.force(force)))
             }
         };
-        Ok(Moment {
+        Ok(LogSample {
             line,
             time_s: numbers[0],
             position: tcp.position,

@@ -1,8 +1,8 @@
 //! Simulation of logged attempts along their commanded paths, and the data that are compared.
 
 use super::curves::{Curves, STEP_S};
-use super::log::{Ended, Log, Moment, Run};
-use super::question::Question;
+use super::log::{Ended, Log, LogSample, Run};
+use super::question::Identification;
 use super::smoother::{Datum, Predicted};
 use super::touch::{bias, touch};
 use input::units::MM;
@@ -58,13 +58,13 @@ impl Logged {
     /// Returns the attempt of a run; `None` for one that touches nothing, or for a probe.
     pub fn new(run: &Run) -> Option<Self> {
         let touched = touch(&run.log).filter(|_| run.ended != Ended::Probe)?;
-        let touched_s = run.log.moments[touched].time_s;
-        let before = |moment: &Moment| moment.time_s < touched_s - AIR_S;
+        let touched_s = run.log.samples[touched].time_s;
+        let before = |sample: &LogSample| sample.time_s < touched_s - AIR_S;
         // Motion in the air gives no information.
-        let from = run.log.moments.partition_point(before);
-        let log = Log::new(&run.log.file, run.log.moments[from..].to_vec()).ok()?;
+        let from = run.log.samples.partition_point(before);
+        let log = Log::new(&run.log.file, run.log.samples[from..].to_vec()).ok()?;
         let curves = Curves::of_log(&log, bias(&run.log));
-        let since = touched_s - log.moments[0].time_s;
+        let since = touched_s - log.samples[0].time_s;
         let path = curves.path()?;
         Some(Logged {
             file: run.log.file.clone(),
@@ -151,7 +151,7 @@ fn mean(points: &[Vector3<f64>], bin: &Range<usize>) -> Vector3<f64> {
     points[bin.clone()].iter().sum::<Vector3<f64>>() / bin.len() as f64
 }
 
-impl Question<'_> {
+impl Identification<'_> {
     /// Returns curves and outcomes of attempts with these values, on a robot and with a factor on the time step of
     /// the engine; each finger is grasped once.
     pub(super) fn replayed(
@@ -160,7 +160,7 @@ impl Question<'_> {
         attempts: &[Logged],
         values: &[(&Parameter, f64)],
     ) -> Result<Vec<(Curves, Outcome)>, Impossible> {
-        let Question { evaluator, template, .. } = self;
+        let Identification { evaluator, template, .. } = self;
         let mut all = Vec::with_capacity(attempts.len());
         for alike in attempts.chunk_by(|a, b| a.design == b.design) {
             let (specimen, _) = evaluator.under(template, (&alike[0].design, None), values)?;

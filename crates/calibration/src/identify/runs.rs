@@ -1,4 +1,4 @@
-//! `runs.csv`: a line for each log, with the finger, the offset and how it ended.
+//! `runs.csv`: a line for each log, with the finger, the offset and the outcome.
 
 use super::frame::Frame;
 use super::log::{Ended, Log, Run};
@@ -14,11 +14,11 @@ use std::path::Path;
 /// Columns of the table; further ones are keys of a space file.
 pub const COLUMNS: [&str; 7] =
     ["log", DENSITY_KEY, DIRECTION_KEY, "offset_mm", "outcome", "date", "note"];
-/// Most moments of all logs together, 0.2 GB.
-const MOST: usize = 2_000_000;
+/// Largest total number of samples of all logs, 0.2 GB.
+const MAX_SAMPLES: usize = 2_000_000;
 
-/// A line of the table.
-struct Row {
+/// Line of the table.
+struct RunLine {
     log: String,
     design: Design,
     offset_mm: f64,
@@ -26,23 +26,24 @@ struct Row {
     line: u64,
 }
 
-fn row(cells: &mut Cells<'_>, before: &[Row]) -> Row {
+/// Parses a line; problems are recorded in `cells`.
+fn run_line(cells: &mut Cells<'_>, before: &[RunLine]) -> RunLine {
     let log = cells.text("log").to_owned();
     match before.iter().find(|old| old.log == log) {
         _ if log.is_empty() => cells.problem("log", "is empty; name the file of the log"),
         Some(old) => {
-            let words = format!("same log as in line {}; each log stands once", old.line);
+            let words = format!("same log as in line {}; list each log once", old.line);
             cells.problem("log", &words);
         }
         None => {}
     }
     let ended = cells.read("outcome", ended).unwrap_or(Ended::Probe);
     let offset_mm = match ended {
-        Ended::Probe => cells.known("offset_mm", length),
+        Ended::Probe => cells.optional("offset_mm", length),
         _ => cells.read("offset_mm", length),
     };
     let (design, line) = (cells.design(), cells.line);
-    Row { log, design, offset_mm: offset_mm.unwrap_or(0.0), ended, line }
+    RunLine { log, design, offset_mm: offset_mm.unwrap_or(0.0), ended, line }
 }
 
 fn ended(text: &str) -> Result<Ended, String> {
@@ -51,12 +52,12 @@ fn ended(text: &str) -> Result<Ended, String> {
         "probe" => Ok(Ended::Probe),
         class => failure(class)
             .map(Ended::Failed)
-            .map_err(|words| format!("{words}, and `inserted` and `probe`")),
+            .map_err(|words| format!("{words}, `inserted`, `probe`")),
     }
 }
 
-/// Reads a table of runs and its logs, whose paths are from its folder; logs in the robot's base
-/// need `frame`; `text_of` reads the text of a log.
+/// Reads a table of runs and its logs, whose paths are relative to its folder. Logs in the robot's base need `frame`;
+/// `text_of` reads the text of a log.
 ///
 /// # Errors
 /// If the table cannot be read or used, has no attempt, or a log cannot be used.
@@ -68,21 +69,23 @@ pub fn read(
     let file = path.display().to_string();
     let text = files::read_text(path, LARGEST_INPUT)
         .map_err(|error| Place::file(&file).fault(format!("cannot be read: {error}")))?;
-    let why = "a line says of a log which finger it is of, where it started and how it ended";
-    let table = rows(&text, &file, &Columns { all: &COLUMNS, required: 5, why }, row)?;
+    let why = "each line needs a log, the infill of its finger, its offset and its outcome";
+    let table = rows(&text, &file, &Columns { all: &COLUMNS, required: 5, why }, run_line)?;
     if table.iter().all(|row| row.ended == Ended::Probe) {
-        let words = "has no attempt; give one line at least whose outcome is `inserted` or a class";
+        let words =
+            "has no attempt; give at least one line with outcome `inserted` or a failure class";
         return Err(Place::file(file).fault(words).into());
     }
     let folder = path.parent().unwrap_or(Path::new(""));
-    let (mut runs, mut moments) = (Vec::new(), 0);
-    for Row { log, design, offset_mm, ended, line } in table {
+    let (mut runs, mut samples) = (Vec::new(), 0);
+    for RunLine { log, design, offset_mm, ended, line } in table {
         let log = folder.join(log);
         let log: Log = read::parse(&text_of(&log)?, &log.display().to_string(), frame)?;
-        moments += log.moments.len();
-        if moments > MOST {
-            let words =
-                format!("the logs to here have over {MOST} moments; cut them to the attempts");
+        samples += log.samples.len();
+        if samples > MAX_SAMPLES {
+            let words = format!(
+                "the logs up to this line have more than {MAX_SAMPLES} samples; cut them to the attempts"
+            );
             return Err(Problems::of(&file, vec![problem(line, "log", &words)]));
         }
         runs.push(Run { log, design, offset: offset_mm * MM, ended, line: line as usize });

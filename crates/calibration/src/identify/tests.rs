@@ -2,7 +2,7 @@ use super::check::{self, Remark};
 use super::curves::{Curves, STEP_S};
 use super::fixtures::made;
 use super::frame::Frame;
-use super::log::{Ended, Log, Moment, Run};
+use super::log::{Ended, Log, LogSample, Run};
 use super::touch::{bias, touch};
 use super::{read, runs};
 use input::shipped::{ROBOTS, TASKS};
@@ -25,9 +25,9 @@ fn said(log: Log) -> Vec<Remark> {
     check::remarks("runs.csv", &[Run { log, design, offset: 0.0, ended, line: 2 }], &usb())
 }
 
-fn said_of(change: impl FnMut((usize, &mut Moment))) -> String {
+fn said_of(change: impl FnMut((usize, &mut LogSample))) -> String {
     let mut log = made(0.5, 1.0);
-    log.moments.iter_mut().enumerate().for_each(change);
+    log.samples.iter_mut().enumerate().for_each(change);
     said(log).iter().map(|remark| format!("{:?} {}\n", remark.lines, remark.text)).collect()
 }
 
@@ -38,10 +38,11 @@ fn a_log_reads_back_as_it_was_written() {
     assert_eq!(log.csv(), text);
     let spread = text.replace(',', " , ").replace('\n', "\r\n");
     let again = read::parse(&format!("\u{feff}# made\n{spread}"), "a.csv", None).unwrap();
-    let same =
-        |(a, b): (&Moment, &Moment)| Moment { line: a.line, ..*b } == *a && b.line == a.line + 1;
-    assert!(log.moments.iter().zip(&again.moments).all(same));
-    assert_eq!(log.moments[9].line, 11);
+    let same = |(a, b): (&LogSample, &LogSample)| {
+        LogSample { line: a.line, ..*b } == *a && b.line == a.line + 1
+    };
+    assert!(log.samples.iter().zip(&again.samples).all(same));
+    assert_eq!(log.samples[9].line, 11);
 }
 
 const FRAME: &str = "origin_mm = [400, -120, 35]\naxis_angle_rad = [0.02, -0.01, 0.7]\n";
@@ -60,11 +61,11 @@ fn rtde(log: &Log, blank: &str) -> String {
     let names = names.iter().flat_map(|name| (0..6).map(move |i| format!("{name}_{i}")));
     let mut text =
         ["timestamp".to_owned()].into_iter().chain(names).collect::<Vec<_>>().join(blank);
-    for moment in &log.moments {
-        let target = moment.target.unwrap();
-        let (tcp, goal) = (pose(moment.position, moment.tilt), pose(target.position, target.tilt));
-        let force = turn * -moment.force;
-        let all = [moment.time_s].into_iter().chain(tcp).chain(force.iter().copied());
+    for sample in &log.samples {
+        let target = sample.target.unwrap();
+        let (tcp, goal) = (pose(sample.position, sample.tilt), pose(target.position, target.tilt));
+        let force = turn * -sample.force;
+        let all = [sample.time_s].into_iter().chain(tcp).chain(force.iter().copied());
         let cells: Vec<String> = all.chain([0.0; 3]).chain(goal).map(|v| v.to_string()).collect();
         text += &format!("\n{}", cells.join(blank));
     }
@@ -77,7 +78,7 @@ fn both_formats_give_the_same_log() {
     let frame = Frame::parse(&format!("{FRAME}force_sign = -1"), "frame.toml").unwrap();
     for blank in [" ", ","] {
         let found = read::parse(&rtde(&log, blank), "a.csv", Some(&frame)).unwrap();
-        for (a, b) in log.moments.iter().zip(&found.moments) {
+        for (a, b) in log.samples.iter().zip(&found.samples) {
             let (goal, other) = (a.target.unwrap(), b.target.unwrap());
             assert!((a.position - b.position).norm() < 1e-9 && (a.tilt - b.tilt).abs() < 1e-9);
             assert!((a.force - b.force).norm() < 1e-9 && a.time_s == b.time_s && a.line == b.line);
@@ -93,7 +94,7 @@ fn both_formats_give_the_same_log() {
     let heavy = "origin_mm = [400, 0, 0]\naxis_angle_rad = [0, 0, 1]\ntool_mass_kg = 1\ngravity_compensated = false";
     let heavy = Frame::parse(heavy, "frame.toml").unwrap();
     let found = read::parse(&log.csv(), "a.csv", Some(&heavy)).unwrap();
-    assert!((found.moments[0].force.z - log.moments[0].force.z - 9.80665).abs() < 1e-4);
+    assert!((found.samples[0].force.z - log.samples[0].force.z - 9.80665).abs() < 1e-4);
 }
 
 #[test]
@@ -117,9 +118,9 @@ fn what_cannot_be_read_is_told_with_its_line() {
     };
     let short: String = good.lines().take(40).map(|line| format!("{line}\n")).collect();
     let mut metres = made(0.0, 0.0);
-    metres.moments.iter_mut().for_each(|moment| moment.position *= MM);
+    metres.samples.iter_mut().for_each(|sample| sample.position *= MM);
     for (text, words) in [
-        (cell(9, 7, "nan"), "a.csv: line 9: fz_n: `nan` is no finite number"),
+        (cell(9, 7, "nan"), "a.csv: line 9: fz_n: `nan` is not a finite number"),
         (cell(9, 2, ""), "a.csv: line 9: y_mm: is empty"),
         (cell(9, 1, "2e4"), "line 9: a coordinate of 20000 looks like micrometres"),
         (cell(9, 0, "6.9"), "line 9: time goes from 7.012 s in line 8 to 6.9 s"),
@@ -128,8 +129,8 @@ fn what_cannot_be_read_is_told_with_its_line() {
         (good.replace("fz_n", "fz"), "line 1: the header lacks fz_n"),
         (good.replace("target_y_mm", "y_target"), "line 1: the header lacks target_y_mm"),
         (good.replace(',', ";"), "line 1: its columns are separated by `;`"),
-        (good.lines().skip(1).collect::<Vec<_>>().join("\n"), "line 1: is no header of a log"),
-        (short, "has 39 moments; it must have 50"),
+        (good.lines().skip(1).collect::<Vec<_>>().join("\n"), "line 1: is not the header of a log"),
+        (short, "has 39 samples; it must have 50"),
         (String::new(), "a.csv: is empty"),
         (metres.csv(), "look like metres; give millimetres"),
         (scaled(1, 1e3), "looks like millimetres; RTDE records metres"),
@@ -157,7 +158,7 @@ fn what_cannot_be_read_is_told_with_its_line() {
 fn the_touch_is_found_in_noise_and_drift() {
     for (noise, drift) in [(0.0, 0.0), (0.5, 1.0), (0.5, -1.0)] {
         let log = made(noise, drift);
-        let at = log.moments[touch(&log).unwrap()].time_s - 7.3;
+        let at = log.samples[touch(&log).unwrap()].time_s - 7.3;
         assert!(at.abs() < 0.01, "{noise} {drift}: {at}");
         let error = bias(&log) - Vector3::new(0.3, -0.2, 0.8 + drift * 0.15 / 1.2);
         assert!(error.amax() < 0.15, "{error}");
@@ -173,15 +174,15 @@ fn remarks_say_what_is_wrong_and_where() {
             said_of(|(i, m)| m.time_s += if i < 400 { 0.0 } else { 0.1 }),
             "Some([401, 402]) the clock steps by 102 ms",
         ),
-        (said_of(|(_, m)| m.force = -m.force), "turn `force_sign`"),
+        (said_of(|(_, m)| m.force = -m.force), "invert `force_sign`"),
         (said_of(|(_, m)| m.force = m.force.zxy()), "the force is along x"),
-        (said_of(|(_, m)| m.force *= 0.0), "nothing is touched"),
-        (said_of(|(_, m)| m.force.z = m.force.z.min(15.0)), "fz stays at 15.0 N"),
+        (said_of(|(_, m)| m.force *= 0.0), "no contact"),
+        (said_of(|(_, m)| m.force.z = m.force.z.min(15.0)), "fz stays at its extreme value 15.0 N"),
         (said_of(|(_, m)| m.force.x += 9.0), "the force in the air is (9.3"),
-        (said_of(|(_, m)| m.target = None), "stiffness cannot be told"),
-        (said_of(|(_, m)| m.tilt *= -1.0), "-10.0 degrees where the task says 10.0: its sign"),
+        (said_of(|(_, m)| m.target = None), "stiffness cannot be identified"),
+        (said_of(|(_, m)| m.tilt *= -1.0), "-10.0 degrees, but in the task by 10.0: its sign"),
         (said_of(|(_, m)| m.position.x += 0.1), "(100.0, -1.2, 51.0) mm, 100 mm from the start"),
-        (said_of(|(_, m)| m.position.z = m.position.z.max(0.0446)), "the tip never is deeper"),
+        (said_of(|(_, m)| m.position.z = m.position.z.max(0.0446)), "the tip is never deeper"),
         (said_of(|(i, m)| m.position.z += if i > 590 { 0.03 } else { 0.0 }), "ends in the air"),
         (said_of(|(_, m)| m.position = Vector3::new(0.0, -1.2, 51.0) * MM), "stands still"),
     ] {
@@ -190,17 +191,17 @@ fn remarks_say_what_is_wrong_and_where() {
 }
 
 #[test]
-fn a_frame_is_turned_if_most_logs_say_so() {
+fn a_frame_is_rotated_if_it_looks_so_in_most_logs() {
     let run = |sideways: bool| {
         let mut log = made(0.5, 1.0);
-        let turn = |moment: &mut Moment| moment.force = moment.force.zxy();
-        log.moments.iter_mut().filter(|_| sideways).for_each(turn);
+        let turn = |sample: &mut LogSample| sample.force = sample.force.zxy();
+        log.samples.iter_mut().filter(|_| sideways).for_each(turn);
         let (design, ended) = (Design::infill(20.0, 10.0), Ended::Inserted);
         Run { log, design, offset: 0.0, ended, line: 2 }
     };
     let found = |runs: &[Run]| {
         let remarks = check::remarks("runs.csv", runs, &usb()).into_iter();
-        remarks.filter(|one| one.text.contains("looks turned")).collect::<Vec<_>>()
+        remarks.filter(|one| one.text.contains("looks rotated")).collect::<Vec<_>>()
     };
     assert_eq!(found(&[run(true), run(false)]), []);
     let [one] = &found(&[run(true), run(false), run(true)])[..] else { panic!("one remark") };
@@ -222,7 +223,7 @@ fn a_table_of_runs_names_logs_beside_it() {
     assert_eq!((found[0].offset, found[0].line, found[1].ended), (1.5 * MM, 3, Ended::Probe));
     assert_eq!(found[0].ended, Ended::Failed(3_u8.try_into().unwrap()));
     for (lines, words) in [
-        ("a.csv,20,10,1.5,5", "line 3: outcome: `5` is no failure class"),
+        ("a.csv,20,10,1.5,5", "line 3: outcome: unknown failure class `5`"),
         ("a.csv,20,10,,inserted", "line 3: offset_mm: `` is not a number"),
         ("a.csv,20,10,0.001,inserted", "looks like metres"),
         ("a.csv,20,10,1,inserted\na.csv,20,10,2,3", "line 4: log: same log as in line 3"),

@@ -1,11 +1,11 @@
 //! First touch of the tool in a log, and the force in the air before it.
 
-use super::log::{Log, Moment};
+use super::log::{Log, LogSample};
 use nalgebra::Vector3;
 
 /// Shortest time in the air at the beginning of a log, s; a touch before is not detected.
 const FIRST_AIR_S: f64 = 0.05;
-/// Time over which forces are averaged against noise, s; at least three moments.
+/// Time over which forces are averaged against noise, s; at least three samples.
 const MEAN_S: f64 = 0.01;
 /// Shortest touch, s: longer than the starts and stops of a quick move.
 const LASTS_S: f64 = 0.06;
@@ -21,10 +21,10 @@ pub fn bias(log: &Log) -> Vector3<f64> {
     Air::of(air(log, touch(log))).bias
 }
 
-/// Returns the moments in the air, without those next to the touch; never empty.
-pub(super) fn air(log: &Log, touch: Option<usize>) -> &[Moment] {
-    let end = touch.map_or(log.moments.len(), |at| before(log, at, NEAR_AIR_S[1]).max(1));
-    &log.moments[..end]
+/// Returns the samples in the air, without those next to the touch; never empty.
+pub(super) fn air(log: &Log, touch: Option<usize>) -> &[LogSample] {
+    let end = touch.map_or(log.samples.len(), |at| before(log, at, NEAR_AIR_S[1]).max(1));
+    &log.samples[..end]
 }
 
 /// Returns the index of the touch: from there the force along z without bias rises to 1.5 N and 5 times its noise,
@@ -33,66 +33,66 @@ pub fn touch(log: &Log) -> Option<usize> {
     onset(log, |force| force.z)
 }
 
-/// Returns the index from which on there is a lasting force in any direction.
+/// Returns the index of the onset of a lasting force in any direction.
 pub(super) fn any_touch(log: &Log) -> Option<usize> {
     onset(log, |force| force.norm())
 }
 
-/// Mean force and noise of a moment's force in the air, N.
+/// Mean force and noise of a sample's force in the air, N.
 pub(super) struct Air {
     pub bias: Vector3<f64>,
     pub noise: Vector3<f64>,
 }
 
 impl Air {
-    /// Estimates both; the noise is that of differences between successive moments, which drift does not affect.
-    pub fn of(moments: &[Moment]) -> Self {
-        let square = |w: &[Moment]| (w[1].force - w[0].force).map(|step| step * step);
-        let squares: Vector3<f64> = moments.windows(2).map(square).sum();
-        let pairs = moments.len().saturating_sub(1).max(1) as f64;
-        Air { bias: mean(moments), noise: (squares / (2.0 * pairs)).map(f64::sqrt) }
+    /// Estimates both; the noise is that of differences between successive samples, which drift does not affect.
+    pub fn of(samples: &[LogSample]) -> Self {
+        let square = |w: &[LogSample]| (w[1].force - w[0].force).map(|step| step * step);
+        let squares: Vector3<f64> = samples.windows(2).map(square).sum();
+        let pairs = samples.len().saturating_sub(1).max(1) as f64;
+        Air { bias: mean(samples), noise: (squares / (2.0 * pairs)).map(f64::sqrt) }
     }
 }
 
 /// Returns the mean force, N.
-pub(super) fn mean(moments: &[Moment]) -> Vector3<f64> {
-    moments.iter().map(|moment| moment.force).sum::<Vector3<f64>>() / moments.len().max(1) as f64
+pub(super) fn mean(samples: &[LogSample]) -> Vector3<f64> {
+    samples.iter().map(|sample| sample.force).sum::<Vector3<f64>>() / samples.len().max(1) as f64
 }
 
-/// Returns the index of the moment `seconds` before another.
+/// Returns the index of the sample `seconds` before another.
 fn before(log: &Log, at: usize, seconds: f64) -> usize {
-    let since = log.moments[at].time_s - seconds;
-    log.moments[..at].partition_point(|moment| moment.time_s < since)
+    let since = log.samples[at].time_s - seconds;
+    log.samples[..at].partition_point(|sample| sample.time_s < since)
 }
 
-/// Returns the index of the moment `seconds` after another; that of the end if there is none.
+/// Returns the index of the sample `seconds` after another; that of the end if there is none.
 pub(super) fn after(log: &Log, at: usize, seconds: f64) -> usize {
-    let until = log.moments[at].time_s + seconds;
-    at + log.moments[at..].partition_point(|moment| moment.time_s < until)
+    let until = log.samples[at].time_s + seconds;
+    at + log.samples[at..].partition_point(|sample| sample.time_s < until)
 }
 
 fn onset(log: &Log, size: fn(Vector3<f64>) -> f64) -> Option<usize> {
-    let moments = &log.moments;
+    let samples = &log.samples;
     let first = after(log, 0, FIRST_AIR_S).max(5);
-    let over = |air: &Air, from: usize, to: usize| size(mean(&moments[from..to]) - air.bias);
-    let start = Air::of(&moments[..first]);
+    let over = |air: &Air, from: usize, to: usize| size(mean(&samples[from..to]) - air.bias);
+    let start = Air::of(&samples[..first]);
     let noise = |air: &Air, count: usize| size(air.noise) / (count as f64).sqrt();
     let touches = |&at: &usize| {
         let short = after(log, at, MEAN_S).max(at + 3);
         let long = after(log, at, LASTS_S).max(short);
         let least = LEAST[0].max(LEAST[1] * noise(&start, short - at));
-        long < moments.len()
+        long < samples.len()
             && over(&start, at, short) > least
             && over(&start, short, long.max(short + 1)) > least
     };
-    let found = (0..moments.len().saturating_sub(3)).find(touches)?;
+    let found = (0..samples.len().saturating_sub(3)).find(touches)?;
     let found = after(log, found, MEAN_S).max(found + 3) - 1;
     // Goes back to where the force left the noise just before the touch, since the bias may have drifted until then.
     let mut touch = found;
     for _ in 0..3 {
         let near = before(log, touch, NEAR_AIR_S[1]);
         let air = match before(log, touch, NEAR_AIR_S[0]) {
-            from if near >= from + 5 => Air::of(&moments[from..near]),
+            from if near >= from + 5 => Air::of(&samples[from..near]),
             _ => return Some(touch),
         };
         touch = found;

@@ -5,9 +5,9 @@ use ask_tell::statistics::{Moments, normal_cdf};
 use parameters::numbers::{CLEARANCE, FRICTION, Kind, PAD_FRICTION, STIFFNESS};
 use parameters::{Parameter, Scale};
 
-/// Factor on the deviations that the smoother leaves, from the coverage on synthetic cells.
+/// Inflation factor on the posterior standard deviations of the smoother, from the coverage on synthetic cells.
 const INFLATION: f64 = 1.4;
-/// Share of the prior's deviation from which on an unknown keeps its prior.
+/// Posterior standard deviation, as a share of the prior's, above which an unknown keeps its prior.
 const UNIDENTIFIED: f64 = 0.8;
 
 /// Source of a value.
@@ -20,11 +20,11 @@ pub enum ValueOrigin {
     Fit,
     /// Prior, since the logs do not identify it.
     Prior,
-    /// That of the files, not fitted.
+    /// Value of the files, not fitted.
     Files,
 }
 
-/// Number of the cell.
+/// Unknown number of the cell.
 #[derive(Debug, Clone)]
 pub struct Unknown {
     /// Prior.
@@ -32,20 +32,20 @@ pub struct Unknown {
     /// Posterior.
     pub posterior: Parameter,
     /// Expected and actual standard deviation of the posterior, as shares of the prior's.
-    pub left: Option<[f64; 2]>,
+    pub remaining_sd: Option<[f64; 2]>,
     /// Source of the posterior.
     pub from: ValueOrigin,
     /// Measurement that would identify it, if the logs do not.
     pub advice: Option<&'static str>,
 }
 
-/// Returns the values of rows at these standard normal coordinates.
+/// Returns the values of parameters at these standard normal coordinates.
 pub(super) fn values<'a>(rows: &[&'a Parameter], z: &[f64]) -> Vec<(&'a Parameter, f64)> {
     rows.iter().zip(z).map(|(row, &z)| (*row, row.at(normal_cdf(z)))).collect()
 }
 
-/// Returns a row with a measured value; its bounds are widened to include it.
-pub(super) fn with(row: &Parameter, value: f64, sd: f64, source: &str) -> Parameter {
+/// Returns a parameter with a measured value; the bounds are widened to include the value.
+pub(super) fn with_value(row: &Parameter, value: f64, sd: f64, source: &str) -> Parameter {
     Parameter {
         value: Some(value),
         sd: Some(sd),
@@ -58,22 +58,22 @@ pub(super) fn with(row: &Parameter, value: f64, sd: f64, source: &str) -> Parame
 
 /// Returns an unknown with a posterior.
 pub(super) fn identified(prior: Parameter, posterior: Parameter, from: ValueOrigin) -> Unknown {
-    Unknown { prior, posterior, left: None, from, advice: None }
+    Unknown { prior, posterior, remaining_sd: None, from, advice: None }
 }
 
 /// Returns an unknown that keeps its prior, with advice.
-pub(super) fn unidentified(prior: Parameter, left: Option<[f64; 2]>) -> Unknown {
+pub(super) fn unidentified(prior: Parameter, remaining_sd: Option<[f64; 2]>) -> Unknown {
     let advice = advice(&prior);
     Unknown {
         posterior: prior.clone(),
         prior,
-        left,
+        remaining_sd,
         from: ValueOrigin::Prior,
         advice: Some(advice),
     }
 }
 
-/// Returns an unknown after the fit.
+/// Returns an unknown with its fitted posterior; with its prior if the logs do not identify it.
 pub(super) fn fit(
     prior: &Parameter,
     known: Option<&Parameter>,
@@ -83,32 +83,34 @@ pub(super) fn fit(
     let z: Vec<f64> = smoothed.members.iter().map(|member| member[i]).collect();
     let own = Moments::of(&z);
     let (mean, sd) = (own.mean, own.sample_deviation());
-    let left = Some([smoothed.expected_sd[i], INFLATION * sd]);
+    let remaining_sd = Some([smoothed.expected_sd[i], INFLATION * sd]);
     if let Some(known) = known {
         // A value measured directly is not changed to compensate for errors of the model.
-        return Unknown { left, ..identified(prior.clone(), known.clone(), ValueOrigin::Formula) };
+        return Unknown {
+            remaining_sd,
+            ..identified(prior.clone(), known.clone(), ValueOrigin::Formula)
+        };
     }
     if sd > UNIDENTIFIED {
-        return unidentified(prior.clone(), left);
+        return unidentified(prior.clone(), remaining_sd);
     }
-    let row = prior;
-    let at = |z: &f64| row.at(normal_cdf(mean + INFLATION * (z - mean)));
-    let log = row.scale == Scale::Log;
+    let at = |z: &f64| prior.at(normal_cdf(mean + INFLATION * (z - mean)));
+    let log = prior.scale == Scale::Log;
     let drawn: Vec<f64> = z.iter().map(at).map(|v| if log { libm::log(v) } else { v }).collect();
     let moments = Moments::of(&drawn);
     let (mean, sd) = (moments.mean, moments.sample_deviation());
     let (value, sd) = if log { (libm::exp(mean), sd * libm::exp(mean)) } else { (mean, sd) };
     let posterior = Parameter {
-        value: Some(value.clamp(row.low, row.high)),
+        value: Some(value.clamp(prior.low, prior.high)),
         sd: Some(sd),
         source: "curves of the attempts".to_owned(),
-        ..row.clone()
+        ..prior.clone()
     };
-    Unknown { left, ..identified(prior.clone(), posterior, ValueOrigin::Fit) }
+    Unknown { remaining_sd, ..identified(prior.clone(), posterior, ValueOrigin::Fit) }
 }
 
-/// Returns whether a number is excluded from the fit, since it would absorb the errors of other numbers; a weight
-/// on the finger and the grip measure it better.
+/// Returns whether a number is excluded from the fit, since it would absorb the errors of other numbers;
+/// the measurements of [`advice`] determine it better.
 pub(super) fn not_fitted(row: &Parameter) -> bool {
     row.path == PAD_FRICTION || row.path == STIFFNESS
 }
@@ -119,7 +121,7 @@ pub(super) fn advice(row: &Parameter) -> &'static str {
     match path.kind() {
         Kind::Robot => "record target_TCP_pose beside actual_TCP_pose",
         Kind::Springs => {
-            "press the finger with a weight, as its sheet says (`optimize export finger --format sheet`)"
+            "press the finger with a weight, as described on its sheet (`optimize export finger --format sheet`)"
         }
         Kind::Added if *path == CLEARANCE => "measure plug and opening with a caliper",
         Kind::Added => "starts 0.2 mm inside and outside of both ends of the window",

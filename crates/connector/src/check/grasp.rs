@@ -1,12 +1,13 @@
 //! Grasp: pads, roofs and the faces they hold.
 
-use super::{Case, Problem, mm, pair};
+use super::{Case, Problem, interval, mm};
 use crate::hold::{Held, SEAM, find, held};
 use input::units::MM;
 
 /// Smallest height over which a pad must touch its face, m.
 const LEAST_COVER: f64 = 1.0 * MM;
 
+/// Checks the grasp: pads, roofs and TCP.
 pub(super) fn problems(case: &Case) -> Vec<Problem> {
     let grip = &case.task.grip;
     let held = held(&case.plug, grip.shoulder_z, Some(grip.faces_y));
@@ -27,12 +28,13 @@ pub(super) fn problems(case: &Case) -> Vec<Problem> {
         found.push(Problem::new(
             "grip.shoulder_z_mm",
             format!("at the success depth the pads reach {by} mm into the socket"),
-            format!("hold the plug at least {by} mm higher, or ask for less depth"),
+            format!("hold the plug at least {by} mm higher, or reduce success.depth_mm"),
         ));
     }
     found
 }
 
+/// Checks that the stated faces are those of the plug between the pads.
 fn faces(case: &Case, held: &Held) -> Option<Problem> {
     let stated = case.task.grip.faces_y;
     let [low, high] = held.pad_z.map(mm);
@@ -40,7 +42,7 @@ fn faces(case: &Case, held: &Held) -> Option<Problem> {
         return Some(Problem::new(
             "grip.shoulder_z_mm",
             format!("between the pads, at heights of {low} to {high} mm, there is no plug"),
-            better(case),
+            remedy(case),
         ));
     };
     let side = |i: usize| {
@@ -57,7 +59,7 @@ fn faces(case: &Case, held: &Held) -> Option<Problem> {
             }
             false => format!("lies {by} mm inside `{name}`, which reaches {y} mm"),
         };
-        let widest = pair(real.map(|(y, _)| y));
+        let widest = interval(real.map(|(y, _)| y));
         Some(Problem::new(
             "grip.faces_y_mm",
             format!("the face at {label}, {stated} mm, {fault}"),
@@ -67,6 +69,7 @@ fn faces(case: &Case, held: &Held) -> Option<Problem> {
     (0..2).find_map(side)
 }
 
+/// Checks that the pads touch enough of the plug, also at the slip limit.
 fn cover(case: &Case, held: &Held) -> Option<Problem> {
     let grip = &case.task.grip;
     let cover = held.cover[0].min(held.cover[1]);
@@ -75,42 +78,44 @@ fn cover(case: &Case, held: &Held) -> Option<Problem> {
     if cover < LEAST_COVER {
         return Some(Problem::new(
             "grip.shoulder_z_mm",
-            format!("the pads, {low} to {high} mm, meet only {met} mm of the grip block"),
-            better(case),
+            format!("the pads, {low} to {high} mm, touch only {met} mm of the grip block"),
+            remedy(case),
         ));
     }
     (grip.slip_limit > cover + SEAM).then(|| {
         Problem::new(
             "grip.slip_limit_mm",
-            format!("is {limit} mm, but the pads hold only {met} mm of the plug: it has left them by then"),
+            format!("is {limit} mm, but the pads hold only {met} mm of the plug, which slips out of them before that"),
             format!("at most {} mm", mm(0.9 * cover)),
         )
     })
 }
 
-/// Checks that the roofs rest on the plug, which they push in.
+/// Checks that the roofs rest on the plug, so that they can push it in.
 fn roof(case: &Case, held: &Held) -> Option<Problem> {
     let shoulder = case.task.grip.shoulder_z;
     let wrong = |top: &Option<f64>| top.is_none_or(|z| (z - shoulder).abs() > SEAM);
     let top = held.under_roof.iter().find(|top| wrong(top))?;
     let at = mm(shoulder);
-    let rest = format!("the roofs are to rest at {at} mm, but");
+    let rest = format!("the roofs should rest at {at} mm, but");
     let problem = match top.map(|z| (z > shoulder, mm(z))) {
         Some((true, top)) => {
-            format!("{rest} there the plug goes on to {top} mm: they would lie in it")
+            format!("{rest} the plug reaches {top} mm there: they would be inside it")
         }
         Some((false, top)) => {
-            format!("{rest} the plug's shoulder is at {top} mm: nothing carries the push")
+            format!("{rest} the plug's shoulder is at {top} mm: nothing transmits the push")
         }
-        None => format!("at {at} mm there is nothing under the roofs that could carry the push"),
+        None => format!("at {at} mm there is nothing under the roofs that could transmit the push"),
     };
-    Some(Problem::new("grip.shoulder_z_mm", problem, better(case)))
+    Some(Problem::new("grip.shoulder_z_mm", problem, remedy(case)))
 }
 
-fn better(case: &Case) -> String {
+/// Returns advice on a grasp that would hold the plug.
+fn remedy(case: &Case) -> String {
     match find(&case.plug, LEAST_COVER) {
         Some((shoulder, faces)) => {
-            let ([shoulder, tcp], faces) = ([shoulder, shoulder - 3.0 * MM].map(mm), pair(faces));
+            let ([shoulder, tcp], faces) =
+                ([shoulder, shoulder - 3.0 * MM].map(mm), interval(faces));
             format!(
                 "shoulder_z_mm = {shoulder}, tcp_z_mm = {tcp}, faces_y_mm = {faces} would hold it"
             )

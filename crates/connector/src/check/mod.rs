@@ -80,7 +80,7 @@ fn mm(length: f64) -> String {
 }
 
 /// Returns an interval for a message, mm.
-fn pair([from, to]: [f64; 2]) -> String {
+fn interval([from, to]: [f64; 2]) -> String {
     format!("[{}, {}]", mm(from), mm(to))
 }
 

@@ -1,6 +1,6 @@
 //! Opening, walls and depth of insertion.
 
-use super::{Case, Problem, field, mm, pair, part_key};
+use super::{Case, Problem, field, interval, mm, part_key};
 use crate::body::{clipped, extent, width};
 use crate::seat::{Seat, section};
 use input::units::MM;
@@ -9,10 +9,10 @@ use nalgebra::Point3;
 
 /// Depth below the top at which walls are searched for, m.
 const BELOW: f64 = 0.1 * MM;
-/// Tolerance between a wall and the stated edge, m, for polygons that stand for circles and for small chamfers.
+/// Tolerance between a wall and the stated edge, m: allows for small chamfers and polygons that approximate circles.
 const TOLERANCE: f64 = 0.15 * MM;
-/// Number of places along a side at which its wall is searched for, because walls can be slanted or round.
-const PLACES: i32 = 41;
+/// Number of positions along a side at which its wall is searched for, because walls can be slanted or round.
+const POSITIONS: i32 = 41;
 /// Distance from the stated edge up to which a wall is searched for, and the step of the search, m.
 const REACH: f64 = 5.0 * MM;
 const STEP: f64 = 0.0025 * MM;
@@ -47,13 +47,13 @@ fn side(case: &Case, axis: usize, end: usize) -> Option<Problem> {
         case.socket.part_at(&point)
     };
     let begins = |i: i32| {
-        let share = f64::from(2 * i + 1) / f64::from(2 * PLACES);
+        let share = f64::from(2 * i + 1) / f64::from(2 * POSITIONS);
         let solid = |beyond: f64| part_at(stated + outward * beyond, share).is_some();
         solid(TOLERANCE) && !solid(-TOLERANCE)
     };
     let part = |at: f64| part_at(at, 0.5);
     let solid = |beyond: f64| part(stated + outward * beyond).is_some();
-    if solid(TOLERANCE) && (0..PLACES).any(begins) {
+    if solid(TOLERANCE) && (0..POSITIONS).any(begins) {
         return None;
     }
     let name = ["x", "y"][axis];
@@ -64,17 +64,19 @@ fn side(case: &Case, axis: usize, end: usize) -> Option<Problem> {
     let (edge, reach) = (mm(stated), mm(REACH));
     let (problem, remedy) = match face {
         Some(at) => {
-            let right = stated + outward * (at + STEP / 2.0);
-            let wall = part(right + outward * STEP).map_or("", |i| &case.socket.parts[i].name);
-            let right = mm(right);
+            let correct = stated + outward * (at + STEP / 2.0);
+            let wall = part(correct + outward * STEP).map_or("", |i| &case.socket.parts[i].name);
+            let correct = mm(correct);
             (
-                format!("is {edge} mm, but `{wall}` begins at {name} = {right} mm"),
-                format!("{right} mm, or move the wall: the two must agree"),
+                format!("is {edge} mm, but `{wall}` begins at {name} = {correct} mm"),
+                format!("{correct} mm, or move the wall: the two must agree"),
             )
         }
         None if solid(-TOLERANCE) => (
-            format!("at {edge} mm the opening is filled: no free side within {reach} mm"),
-            "let the opening reach from wall to wall where the socket is hollow".to_owned(),
+            format!(
+                "the opening is filled with material at {edge} mm: no wall begins within {reach} mm"
+            ),
+            "state the opening from wall to wall, where the socket is hollow".to_owned(),
         ),
         None => (
             format!("no wall begins at {name} = {edge} mm nor within {reach} mm of it"),
@@ -90,7 +92,7 @@ pub(super) fn depth(case: &Case, seat: &Seat) -> Vec<Problem> {
     if success <= seat.depth + COMPRESSION {
         return Vec::new();
     }
-    let wide: Vec<_> = (0..2).filter_map(|axis| wide(case, seat, axis)).collect();
+    let wide: Vec<_> = (0..2).filter_map(|axis| too_wide(case, seat, axis)).collect();
     if !wide.is_empty() {
         return wide;
     }
@@ -98,16 +100,16 @@ pub(super) fn depth(case: &Case, seat: &Seat) -> Vec<Problem> {
         format!(": `{}` meets `{}`", case.plug.parts[plug].name, case.socket.parts[socket].name)
     });
     let [_, top] = case.plug.extent(2);
-    let (asked, stops) = (mm(success), mm(seat.depth.min(top)));
+    let (required, stops) = (mm(success), mm(seat.depth.min(top)));
     vec![Problem::new(
         "success.depth_mm",
-        format!("is {asked} mm, but the plug stops {stops} mm below the top{by}"),
+        format!("is {required} mm, but the plug stops {stops} mm below the top{by}"),
         format!("at most {:.1} mm; less, if the plug may stay tilted", (0.96 * seat.depth / MM)),
     )]
 }
 
 /// Checks that the plug is not wider than the opening over the depth that it must enter.
-fn wide(case: &Case, seat: &Seat, axis: usize) -> Option<Problem> {
+fn too_wide(case: &Case, seat: &Seat, axis: usize) -> Option<Problem> {
     // A shoulder that rests on the housing is not meant to go in.
     let depth = case.task.success.depth.min(seat.depth + BELOW);
     let (plug, opening) = (section(&case.plug, depth)[axis], case.task.opening[axis]);
@@ -118,12 +120,12 @@ fn wide(case: &Case, seat: &Seat, axis: usize) -> Option<Problem> {
         width(extent(clipped(&part.solid.corners(), 2, [f64::NEG_INFINITY, depth]), axis))
     };
     let part = case.plug.parts.iter().max_by(|a, b| below(a).total_cmp(&below(b)))?;
-    let (name, has, range) = (["x", "y"][axis], mm(width(opening)), pair(opening));
+    let (name, has, range) = (["x", "y"][axis], mm(width(opening)), interval(opening));
     let wide = mm(width(plug));
     Some(Problem::new(
         part_key("plug", &part.name, field(&part.solid, axis)),
         format!(
-            "the plug is {wide} mm wide in {name} where the opening has {has} mm ({range}): it cannot enter"
+            "the plug is {wide} mm wide in {name} where the opening is {has} mm wide ({range}): it cannot enter"
         ),
         format!("make it narrower than {has} mm, or widen socket.opening_{name}_mm and its walls"),
     ))

@@ -1,6 +1,6 @@
 //! Commanded moves: free approach, search over the opening, deep enough push.
 
-use super::{Case, Problem, mm, pair};
+use super::{Case, Problem, interval, mm};
 use crate::body::{Touching, span};
 use crate::seat::{self, Waypoint, section};
 use contact::scene::Pose;
@@ -63,11 +63,11 @@ fn inside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
         (depth > ROUNDING).then_some((depth, names))
     };
     if let Some((depth, [plug, socket])) = collision(way[0].tcp) {
-        let right = way[0].tcp.z + 5.0 * MM - way[0].edge.z;
+        let correct = way[0].tcp.z + 5.0 * MM - way[0].edge.z;
         return Some(Problem::new(
             "strategy.start_mm",
             format!("at the start `{plug}` lies {} mm deep in `{socket}`", mm(depth)),
-            format!("z = {} mm: 5 mm of air below the tip", mm(right)),
+            format!("z = {} mm: 5 mm of air below the tip", mm(correct)),
         ));
     }
     for pair in way.windows(2).take_while(|pair| pair[1].stage == Stage::Approach) {
@@ -105,11 +105,11 @@ fn too_shallow(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     let missing = case.task.success.depth - depth;
     let last = case.task.strategy.phases.last().filter(|_| missing > 0.0)?;
     let z = mm(last.displacement[2] - missing - PRESS);
-    let [depth, asked] = [depth, case.task.success.depth].map(mm);
+    let [depth, required] = [depth, case.task.success.depth].map(mm);
     Some(Problem::new(
         key(&last.name),
-        format!("all moves together bring the tip {depth} mm deep; success asks for {asked}"),
-        format!("z = {z} mm: some mm more than is needed, for the springs give"),
+        format!("all moves together bring the tip {depth} mm deep; success requires {required} mm"),
+        format!("z = {z} mm: a few mm more than needed, since the springs yield"),
     ))
 }
 
@@ -124,27 +124,27 @@ fn beside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     let [left, right] = span(search.iter().map(|point| point.tcp.x));
     let fits = [x[0] - tip[0][0], x[1] - tip[0][1]];
     if right < fits[0].min(fits[1]) || left > fits[0].max(fits[1]) {
-        let at = pair([left, right]);
+        let at = interval([left, right]);
         return Some(Problem::new(
             "strategy.start_mm",
             format!(
                 "in x the plug is searched at {at} mm, but is over its opening at {}",
-                pair(fits)
+                interval(fits)
             ),
             format!("x = {} mm, or longer moves along x", mm((fits[0] + fits[1]) / 2.0)),
         ));
     }
     let [low, high] = span(search.iter().map(|point| point.edge.y));
     if high < y[0] || low > y[1] {
-        let right = way[0].tcp.y + (y[0] + y[1]) / 2.0 - way[0].edge.y;
-        let at = pair([low, high]);
+        let correct = way[0].tcp.y + (y[0] + y[1]) / 2.0 - way[0].edge.y;
+        let at = interval([low, high]);
         return Some(Problem::new(
             "strategy.start_mm",
             format!(
                 "in y the tip's lower edge is searched at {at} mm, but the opening is at {}",
-                pair(y)
+                interval(y)
             ),
-            format!("y = {} mm puts it over the opening's middle", mm(right)),
+            format!("y = {} mm puts it over the opening's middle", mm(correct)),
         ));
     }
     None

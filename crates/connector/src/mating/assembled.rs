@@ -1,6 +1,6 @@
 //! Direction in which the plug of an assembly can be withdrawn.
 
-use super::frame::{Part, Parts, outs, turned};
+use super::frame::{Part, Parts, rotations_to_z, turned};
 use super::refine::{Pose, settled_areas};
 use super::search::{EFFORTS, Scene};
 use super::{MAX_PLAYS, Mate, MatingError, precise};
@@ -20,7 +20,7 @@ pub fn assembled(plug: &[Triangle], socket: &[Triangle]) -> Result<Mate, MatingE
     }
     let parts = Parts { plug: Part { own, triangles: turned(plug, &own) }, socket };
     let scene = Scene::new(&parts, EFFORTS[0]);
-    let poses = (0..outs().len()).map(|out| {
+    let poses = (0..rotations_to_z().len()).map(|out| {
         // The plug is rotated like the socket, whose directions are every fourth rotation.
         let pose = Pose { out, turn: 4 * out, ..Pose::default() };
         settled_areas(&scene, pose, MAX_PLAYS[0])

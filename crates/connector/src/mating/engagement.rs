@@ -1,15 +1,15 @@
 //! Side walls of the plug that face walls of the socket.
 
-use super::map::{Map, NOWHERE};
+use super::map::{HeightMap, NOWHERE};
 
-/// Ratio of overlapping volume to the facing area that it offsets, m.
-const LEDGE: f64 = 0.125e-3;
+/// Overlapping volume that cancels one unit of facing area, m3/m2.
+const OVERLAP_PER_AREA: f64 = 0.125e-3;
 
 /// Area of the plug's walls that look along +x, -x, +y and -y and face a wall of the socket, m2.
-pub type Walls = [f64; 4];
+pub type WallAreas = [f64; 4];
 
-/// Returns the area on the weaker of two opposite sides, the geometric mean over both lateral axes, m2.
-pub fn score(walls: &Walls) -> f64 {
+/// Returns the geometric mean over both lateral axes of the smaller area of two opposite sides, m2.
+pub fn score(walls: &WallAreas) -> f64 {
     (walls[0].min(walls[1]) * walls[2].min(walls[3])).sqrt()
 }
 
@@ -28,14 +28,14 @@ struct Strip {
 
 /// Side walls of a plug.
 #[derive(Debug, Clone)]
-pub struct Sides {
+pub struct PlugWalls {
     strips: Vec<Strip>,
     step: [f64; 2],
 }
 
-impl Sides {
-    /// Finds the side walls in a map that are steeper than 45 degrees.
-    pub fn new(plug: &Map) -> Self {
+impl PlugWalls {
+    /// Finds the side walls of a height map that are steeper than 45 degrees.
+    pub fn new(plug: &HeightMap) -> Self {
         let mut strips = Vec::new();
         for [x, y] in plug.cells() {
             let low = plug.at(x, y);
@@ -43,35 +43,42 @@ impl Sides {
                 continue;
             }
             for (side, [dx, dy]) in SIDES.into_iter().enumerate() {
-                // The neighbour ends higher: between both heights the plug has a wall to its side.
+                // Between the cell's height and its neighbour's the plug has a wall.
                 let high = plug.at(x + dx, y + dy);
                 if high - low > plug.step[side / 2] as f32 {
                     strips.push(Strip { cell: [x, y], side, low, high });
                 }
             }
         }
-        Sides { strips, step: plug.step }
+        PlugWalls { strips, step: plug.step }
     }
 
-    /// Returns the facing walls on the weaker sides, and what both parts fill as an area, m2; `plug` is the lower
-    /// envelope of the plug without the tolerance.
-    pub fn areas(&self, socket: &Faces, plug: &Map, shift: [i32; 2], z: f32) -> [f64; 2] {
+    /// Returns the [`score`] of the facing walls, and the overlapping volume converted to an area, m2; `plug` is the
+    /// lower envelope of the plug without the tolerance.
+    pub fn areas(
+        &self,
+        socket: &SocketWalls,
+        plug: &HeightMap,
+        shift: [i32; 2],
+        z: f32,
+    ) -> [f64; 2] {
         let walls = score(&self.facing(socket, shift, z));
         let heights =
             rests(socket.map, plug, shift).map(|(_, rest)| f64::from((rest - z).max(0.0)));
         let volume = heights.sum::<f64>() * plug.step[0] * plug.step[1];
-        [walls, volume / LEDGE]
+        [walls, volume / OVERLAP_PER_AREA]
     }
 
-    /// Returns the area of the walls that face a wall of the socket, the plug shifted by whole cells and at a height.
-    pub fn facing(&self, socket: &Faces, shift: [i32; 2], z: f32) -> Walls {
+    /// Returns the area of the walls that face a wall of the socket; the plug is shifted by whole cells and at height
+    /// `z`.
+    pub fn facing(&self, socket: &SocketWalls, shift: [i32; 2], z: f32) -> WallAreas {
         let mut sums = [0.0; 4];
         for strip in &self.strips {
             let [dx, dy] = SIDES[strip.side];
             let [x, y] = [strip.cell[0] + shift[0], strip.cell[1] + shift[1]];
             let (low, high) = (strip.low + z, strip.high + z);
             // The socket penetrates the wall: a spring or a latch, not a guide.
-            let into = socket.into[strip.side / 2] + 1;
+            let into = socket.tolerance_cells[strip.side / 2] + 1;
             if socket.map.at(x - into * dx, y - into * dy) > low + socket.tolerance {
                 continue;
             }
@@ -84,43 +91,43 @@ impl Sides {
 }
 
 /// Walls of a socket as seen from the sides of a plug.
-pub struct Faces<'a> {
+pub struct SocketWalls<'a> {
     /// Upper envelope of the socket.
-    map: &'a Map,
+    map: &'a HeightMap,
     /// Largest heights within reach of each side.
-    highest: [Map; 4],
-    /// Depth of tolerated interference in cells along x and y.
-    into: [i32; 2],
+    highest: [HeightMap; 4],
+    /// Depth of the tolerated interference, cells along x and y.
+    tolerance_cells: [i32; 2],
     /// The same depth, m.
     tolerance: f32,
 }
 
-impl<'a> Faces<'a> {
+impl<'a> SocketWalls<'a> {
     /// Creates the walls within `reach` of the plug that penetrate it by at most `tolerance`, m.
-    pub fn new(map: &'a Map, [reach, tolerance]: [f64; 2]) -> Self {
+    pub fn new(map: &'a HeightMap, [reach, tolerance]: [f64; 2]) -> Self {
         let cells = |length: f64| map.step.map(|step| (length / step).ceil() as i32);
-        let (reach, into) = (cells(reach), cells(tolerance));
+        let (reach, tolerance_cells) = (cells(reach), cells(tolerance));
         let highest = [0, 1, 2, 3].map(|side| {
             let axis = side / 2;
             let range = match side % 2 {
-                0 => [-into[axis], reach[axis]],
-                _ => [-reach[axis], into[axis]],
+                0 => [-tolerance_cells[axis], reach[axis]],
+                _ => [-reach[axis], tolerance_cells[axis]],
             };
             map.highest(axis, range)
         });
-        Faces { map, highest, into, tolerance: tolerance as f32 }
+        SocketWalls { map, highest, tolerance_cells, tolerance: tolerance as f32 }
     }
 }
 
-/// Returns the cells that both a shifted plug at a height and the socket fill.
-pub fn shared(socket: &Map, plug: &Map, shift: [i32; 2], z: f32) -> Vec<[i32; 2]> {
+/// Returns the cells in which the socket and the plug, shifted and at height `z`, overlap.
+pub fn overlap(socket: &HeightMap, plug: &HeightMap, shift: [i32; 2], z: f32) -> Vec<[i32; 2]> {
     rests(socket, plug, shift).filter(|(_, rest)| *rest > z).map(|(cell, _)| cell).collect()
 }
 
 /// Returns each cell of a shifted plug with the height at which it would rest on the socket.
 fn rests<'a>(
-    socket: &'a Map,
-    plug: &'a Map,
+    socket: &'a HeightMap,
+    plug: &'a HeightMap,
     shift: [i32; 2],
 ) -> impl Iterator<Item = ([i32; 2], f32)> + 'a {
     plug.cells().map(move |[x, y]| ([x, y], socket.at(x + shift[0], y + shift[1]) - plug.at(x, y)))

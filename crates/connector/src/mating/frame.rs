@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 const PARALLEL: f64 = 0.999_96;
 /// Largest number of directions that are tried as axes.
 const MOST_DIRECTIONS: usize = 12;
-/// Share of the area of the best axes from which on the axes of the file are kept: round parts have many equally good ones.
+/// Smallest share of the best axes' area at which the axes of the file are kept: round parts have many good axes.
 const KEPT: f64 = 0.6;
 
 /// Triangles of a part in its own axes, to which its walls are parallel.
@@ -56,12 +56,12 @@ pub fn turns() -> Vec<Rotation3<f64>> {
     pairs.filter(|(z, x)| z.dot(x) == 0.0).map(|(z, x)| upright(z, x)).collect()
 }
 
-/// Returns six rotations, one for each axis and sense, that map it to z.
-pub fn outs() -> Vec<Rotation3<f64>> {
+/// Returns six rotations, one for each signed axis, that map this axis to the z axis.
+pub fn rotations_to_z() -> Vec<Rotation3<f64>> {
     turns().into_iter().step_by(4).collect()
 }
 
-/// Returns the rotation that maps `z` to z and `x` to x.
+/// Returns the rotation that maps the vector `z` to the z axis and `x` to the x axis.
 fn upright(z: Vector3<f64>, x: Vector3<f64>) -> Rotation3<f64> {
     let rows = [x, z.cross(&x), z].map(|row| row.transpose());
     Rotation3::from_matrix_unchecked(Matrix3::from_rows(&rows))
@@ -90,7 +90,7 @@ fn directions(triangles: &[Triangle]) -> Vec<(Vector3<f64>, f64)> {
     found
 }
 
-/// Returns the axes to which most of the area is perpendicular; those of the file if they are about as good.
+/// Returns the axes to which most of the area is perpendicular; the axes of the file if they are about as good.
 fn axes(directions: &[(Vector3<f64>, f64)]) -> Option<Rotation3<f64>> {
     let area = |turn: &Rotation3<f64>| -> f64 {
         let square = |normal: &Vector3<f64>| (turn * normal).amax() > PARALLEL;

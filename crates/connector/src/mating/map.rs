@@ -10,9 +10,9 @@ pub const NOWHERE: f32 = 1e6;
 /// Side of a part whose heights a map contains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Envelope {
-    /// Highest place of each column.
+    /// Highest point of each column.
     Upper,
-    /// Lowest place of each column.
+    /// Lowest point of each column.
     Lower,
 }
 
@@ -37,9 +37,9 @@ impl Envelope {
 /// Rectangle in x and y, m: lower and upper bound of each axis.
 pub type Window = [[f64; 2]; 2];
 
-/// Heights at the middles of cells, m.
+/// Height map: heights at the centres of cells, m.
 #[derive(Debug, Clone)]
-pub struct Map {
+pub struct HeightMap {
     /// Side of the part.
     pub envelope: Envelope,
     /// Size of a cell in x and y, m.
@@ -57,7 +57,7 @@ pub fn bounds(triangles: &[Triangle]) -> [[f64; 2]; 3] {
     [0, 1, 2].map(|axis| extent(triangles.iter().flatten(), axis))
 }
 
-impl Map {
+impl HeightMap {
     /// Creates the envelope of triangles within a window.
     pub fn new(
         triangles: &[Triangle],
@@ -74,9 +74,9 @@ impl Map {
             usize::try_from(last - first[axis] + 1).unwrap_or(0)
         });
         let heights = vec![envelope.empty(); count[0] * count[1]];
-        let mut map = Map { envelope, step, first, count, heights };
+        let mut map = HeightMap { envelope, step, first, count, heights };
         if !map.heights.is_empty() {
-            triangles.iter().for_each(|triangle| map.draw(triangle));
+            triangles.iter().for_each(|triangle| map.rasterize(triangle));
         }
         map
     }
@@ -86,7 +86,8 @@ impl Map {
         (f64::from(self.first[axis]) + index as f64 + 0.5) * self.step[axis]
     }
 
-    fn draw(&mut self, [a, b, c]: &Triangle) {
+    /// Rasterizes a triangle.
+    fn rasterize(&mut self, [a, b, c]: &Triangle) {
         let area = (b - a).xy().perp(&(c - a).xy());
         let [low, high] = extent([a, b, c], 1);
         let Some([from, to]) = self.between(1, low, high) else { return };
@@ -133,7 +134,7 @@ impl Map {
         (y..y + ny).flat_map(move |y| (x..x + nx).map(move |x| [x, y]))
     }
 
-    /// Returns the height of a cell; outside the map that of a column without material.
+    /// Returns the height of a cell; outside the map, the height of a column without material.
     pub fn at(&self, x: i32, y: i32) -> f32 {
         let [i, j] = [x - self.first[0], y - self.first[1]];
         let inside =
@@ -145,23 +146,23 @@ impl Map {
         }
     }
 
-    /// Erodes the material: each cell gets the innermost height within a radius.
-    pub fn eroded(&self, radius: [usize; 2]) -> Map {
+    /// Returns the map eroded by a radius: the innermost height within it of each cell.
+    pub fn eroded(&self, radius: [usize; 2]) -> HeightMap {
         self.filtered(radius, radius, Envelope::inner)
     }
 
-    /// Dilates the material by a radius.
-    pub fn dilated(&self, radius: [usize; 2]) -> Map {
+    /// Returns the map dilated by a radius: the outermost height within it of each cell.
+    pub fn dilated(&self, radius: [usize; 2]) -> HeightMap {
         self.filtered(radius, radius, Envelope::outer)
     }
 
-    /// Sets each cell to the innermost height of itself, the `back` cells before it and the `on` cells after it.
-    pub fn inner(&self, back: usize, on: usize) -> Map {
-        self.filtered([back; 2], [on; 2], Envelope::inner)
+    /// Returns the innermost height of each cell, the `before` cells before it and the `after` cells after it.
+    pub fn inner(&self, before: usize, after: usize) -> HeightMap {
+        self.filtered([before; 2], [after; 2], Envelope::inner)
     }
 
-    /// Sets each cell to the largest height of the cells from `low` to `high` beside it along an axis.
-    pub fn highest(&self, axis: usize, [low, high]: [i32; 2]) -> Map {
+    /// Returns the largest height of the cells at offsets from `low` to `high` from each cell along an axis.
+    pub fn highest(&self, axis: usize, [low, high]: [i32; 2]) -> HeightMap {
         let wide = usize::try_from(high - low + 1).unwrap_or(1);
         let (mut map, mut done) = (self.clone(), 1);
         while done < wide {
@@ -173,9 +174,9 @@ impl Map {
         map
     }
 
-    /// Sets each cell to the larger height of itself and the cell `by` after it along an axis.
-    fn higher(&self, axis: usize, by: usize) -> Map {
-        let mut map = Map { heights: Vec::new(), ..*self };
+    /// Returns the larger height of each cell and the cell `by` after it along an axis.
+    fn higher(&self, axis: usize, by: usize) -> HeightMap {
+        let mut map = HeightMap { heights: Vec::new(), ..*self };
         map.first[axis] -= by as i32;
         map.count[axis] += by;
         map.heights = vec![-NOWHERE; map.count[0] * map.count[1]];
@@ -192,15 +193,16 @@ impl Map {
         map
     }
 
+    /// Applies a filter along x, then along y, over the cells `before` and `after` each cell.
     fn filtered(
         &self,
-        back: [usize; 2],
-        on: [usize; 2],
+        before: [usize; 2],
+        after: [usize; 2],
         take: fn(Envelope, f32, f32) -> f32,
-    ) -> Map {
+    ) -> HeightMap {
         let [nx, ny] = self.count;
         let mut map = self.clone();
-        if nx == 0 || ny == 0 || (back == [0; 2] && on == [0; 2]) {
+        if nx == 0 || ny == 0 || (before == [0; 2] && after == [0; 2]) {
             return map;
         }
         let (envelope, empty) = (self.envelope, self.envelope.empty());
@@ -208,7 +210,7 @@ impl Map {
             let old = row.to_vec();
             let near = |at: isize| usize::try_from(at).ok().and_then(|at| old.get(at)).copied();
             for (i, cell) in row.iter_mut().enumerate() {
-                for at in i as isize - back[0] as isize..=(i + on[0]) as isize {
+                for at in i as isize - before[0] as isize..=(i + after[0]) as isize {
                     *cell = take(envelope, *cell, near(at).unwrap_or(empty));
                 }
             }
@@ -216,7 +218,7 @@ impl Map {
         map.heights.chunks_mut(nx).for_each(along);
         let old = map.heights.clone();
         for (j, row) in map.heights.chunks_mut(nx).enumerate() {
-            for at in j as isize - back[1] as isize..=(j + on[1]) as isize {
+            for at in j as isize - before[1] as isize..=(j + after[1]) as isize {
                 match usize::try_from(at).ok().filter(|at| *at < ny) {
                     Some(at) => {
                         let other = &old[at * nx..(at + 1) * nx];
@@ -229,8 +231,8 @@ impl Map {
         map
     }
 
-    /// Returns maps whose cells are `factor` times as large: of the outermost and of the innermost heights.
-    pub fn coarser(&self, factor: usize) -> [Map; 2] {
+    /// Returns two maps whose cells are `factor` times as large, with the outermost and with the innermost heights.
+    pub fn coarser(&self, factor: usize) -> [HeightMap; 2] {
         let factor = factor as i32;
         let first = self.first.map(|first| first.div_euclid(factor));
         let last = [0, 1].map(|axis| {
@@ -240,7 +242,7 @@ impl Map {
         let step = self.step.map(|step| step * f64::from(factor));
         [Envelope::outer as fn(Envelope, f32, f32) -> f32, Envelope::inner].map(|take| {
             let envelope = self.envelope;
-            let mut map = Map { envelope, step, first, count, heights: Vec::new() };
+            let mut map = HeightMap { envelope, step, first, count, heights: Vec::new() };
             let height = |[x, y]: [i32; 2]| {
                 let cells = (0..factor * factor).map(|i| [i % factor, i / factor]);
                 let fine = cells.map(|[i, j]| self.at(x * factor + i, y * factor + j));
@@ -253,7 +255,7 @@ impl Map {
 }
 
 /// Returns the height at which a plug shifted by whole cells rests; stops once it reaches `enough`.
-pub fn rest(socket: &Map, plug: &Map, shift: [i32; 2], enough: f32) -> f32 {
+pub fn rest(socket: &HeightMap, plug: &HeightMap, shift: [i32; 2], enough: f32) -> f32 {
     let ([snx, _], [pnx, pny]) = (socket.count, plug.count);
     let span = |axis: usize| {
         let offset = plug.first[axis] + shift[axis] - socket.first[axis];
@@ -299,6 +301,6 @@ fn row_rest(socket: &[f32], plug: &[f32], highest: f32) -> f32 {
 }
 
 /// Creates the maps of a part in several rotations.
-pub fn maps(parts: &[Vec<Triangle>], envelope: Envelope, step: f64) -> Vec<Map> {
-    parts.par_iter().map(|part| Map::new(part, envelope, [step; 2], None)).collect()
+pub fn maps(parts: &[Vec<Triangle>], envelope: Envelope, step: f64) -> Vec<HeightMap> {
+    parts.par_iter().map(|part| HeightMap::new(part, envelope, [step; 2], None)).collect()
 }

@@ -50,11 +50,11 @@ pub struct Mate {
 
 /// Result of the search for a mate.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Found {
+pub struct MatingResult {
     /// Mates of similar engagement, the best first.
     pub mates: Vec<Mate>,
     /// Number of symmetric copies of the only mate, itself included; 1 if there are several mates.
-    pub equal: usize,
+    pub copies: usize,
 }
 
 impl Mate {
@@ -70,11 +70,11 @@ impl Mate {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum MatingError {
     /// Part without area.
-    #[error("the {0} holds no triangles with an area")]
+    #[error("the {0} has no triangles with nonzero area")]
     Empty(&'static str),
     /// No seat that encloses the plug on four sides.
     #[error(
-        "the plug fits into the socket along none of their axes: no pose is at least {} mm deep \
+        "the plug does not fit into the socket along any of their axes: no pose is at least {} mm deep \
          with walls on four sides at most {} mm away; if the parts do mate, give their assembly in the mated pose",
         search::LEAST / MM,
         MAX_PLAYS[2] / MM
@@ -86,7 +86,7 @@ pub enum MatingError {
     )]
     Blocked,
     /// Number of bodies that is out of range for an assembly.
-    #[error("has {0} bodies; plug and socket are told apart in an assembly of 2 to {most}", most = split::MOST_BODIES)]
+    #[error("has {0} bodies; an assembly must have 2 to {most}", most = split::MOST_BODIES)]
     Bodies(usize),
     /// Cancellation by the caller.
     #[error("stopped")]
@@ -94,19 +94,19 @@ pub enum MatingError {
 }
 
 /// Returns an error if the search was cancelled.
-fn check(stop: &AtomicBool) -> Result<(), MatingError> {
+fn check_cancelled(stop: &AtomicBool) -> Result<(), MatingError> {
     if stop.load(Ordering::SeqCst) { Err(MatingError::Stopped) } else { Ok(()) }
 }
 
 /// Finds the mated poses of two parts, each in its own frame, m.
 ///
 /// # Errors
-/// If a part is empty, if no pose fits, or if `stop` is set meanwhile.
+/// If a part is empty, if no pose fits, or if `stop` is set during the search.
 pub fn mates(
     plug: &[Triangle],
     socket: &[Triangle],
     stop: &AtomicBool,
-) -> Result<Found, MatingError> {
+) -> Result<MatingResult, MatingError> {
     let parts = frame::Parts::new(plug, socket)?;
     let mut shallow = None;
     for effort in search::EFFORTS {

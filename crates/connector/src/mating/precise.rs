@@ -1,8 +1,8 @@
 //! Exact seat and play of a pose.
 
 use super::Mate;
-use super::frame::{Parts, outs, turns};
-use super::map::{Envelope, Map, Window, rest};
+use super::frame::{Parts, rotations_to_z, turns};
+use super::map::{Envelope, HeightMap, Window, rest};
 use super::refine::{Fine, Pose};
 use super::search::Scene;
 use crate::mesh::Triangle;
@@ -32,17 +32,17 @@ struct Bench<'a> {
 }
 
 impl Bench<'_> {
-    fn maps(&self, step: [f64; 2]) -> [Map; 2] {
+    fn maps(&self, step: [f64; 2]) -> [HeightMap; 2] {
         let by = Vector3::new(self.shift[0], self.shift[1], 0.0);
         let plug: Vec<Triangle> = self.plug.iter().map(|corners| corners.map(|p| p + by)).collect();
         let mut maps = [(self.socket, Envelope::Upper), (&plug, Envelope::Lower)]
-            .map(|(part, envelope)| Map::new(part, envelope, step, Some(self.window)));
+            .map(|(part, envelope)| HeightMap::new(part, envelope, step, Some(self.window)));
         maps.iter_mut().for_each(|map| self.without(map));
         maps
     }
 
     /// Clears the cells that interfere from a map.
-    fn without(&self, map: &mut Map) {
+    fn without(&self, map: &mut HeightMap) {
         if self.left_out.is_empty() {
             return;
         }
@@ -98,7 +98,7 @@ pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
     let about = move |[x, y]: [i32; 2]| {
         (-margin..=margin).flat_map(move |dy| (-margin..=margin).map(move |dx| [x + dx, y + dy]))
     };
-    let left_out = fine.shared(pose).into_iter().flat_map(about).collect();
+    let left_out = fine.overlap(pose).into_iter().flat_map(about).collect();
     let (socket, plug) = (&scene.sockets[pose.out], &scene.plugs[pose.turn]);
     let mut bench =
         Bench { socket, plug, window: fine.window, left_out, step: fine.step, shift: pose.shift };
@@ -109,7 +109,7 @@ pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
     }
     let rest = bench.rest();
     let z = if pose.through || (rest - pose.z).abs() > LIFT { pose.z } else { rest };
-    let back = (outs()[pose.out] * parts.socket.own).inverse();
+    let back = (rotations_to_z()[pose.out] * parts.socket.own).inverse();
     let own = turns()[pose.turn] * parts.plug.own;
     let moved = Translation3::new(bench.shift[0], bench.shift[1], z)
         * UnitQuaternion::from_rotation_matrix(&own);

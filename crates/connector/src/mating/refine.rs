@@ -1,9 +1,9 @@
 //! Refinement of rough seats: shift, height, interference and engagement.
 
-use super::engagement::{Faces, SIDES, Sides, score, shared};
-use super::map::{Envelope, Map, NOWHERE, Window, bounds, rest};
+use super::engagement::{PlugWalls, SIDES, SocketWalls, overlap, score};
+use super::map::{Envelope, HeightMap, NOWHERE, Window, bounds, rest};
 use super::search::{FINE, Scene, Seat};
-use super::{MatingError, check};
+use super::{MatingError, check_cancelled};
 use input::units::MM;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -73,7 +73,12 @@ fn seated(z: f32, socket: [f64; 2], plug: [f64; 2]) -> (f64, bool) {
 }
 
 /// Returns the shifts near a shift with the lowest resting height, and that height.
-fn lowest(socket: &Map, plug: &Map, about: [i32; 2], radius: i32) -> (Vec<[i32; 2]>, f32) {
+fn lowest(
+    socket: &HeightMap,
+    plug: &HeightMap,
+    about: [i32; 2],
+    radius: i32,
+) -> (Vec<[i32; 2]>, f32) {
     let mut low = NOWHERE;
     let mut rests = Vec::new();
     let mut shifts: Vec<_> =
@@ -101,7 +106,7 @@ fn middle(shifts: &[[i32; 2]]) -> [i32; 2] {
 }
 
 /// Returns the lift that frees the plug towards its lowest side, m.
-fn lift(socket: &Map, plug: &Map, shift: [i32; 2], z: f64, reach: i32) -> f64 {
+fn lift(socket: &HeightMap, plug: &HeightMap, shift: [i32; 2], z: f64, reach: i32) -> f64 {
     let side = |[dx, dy]: [i32; 2]| {
         let path = (1..=reach)
             .map(|r| rest(socket, plug, [shift[0] + r * dx, shift[1] + r * dy], NOWHERE));
@@ -117,7 +122,7 @@ pub fn refined(
     max_play: f64,
     stop: &AtomicBool,
 ) -> Result<Vec<Pose>, MatingError> {
-    check(stop)?;
+    check_cancelled(stop)?;
     let rough = Rough::new(scene, max_play);
     let mut poses: Vec<Pose> = seats.par_iter().filter_map(|seat| rough.pose(seat)).collect();
     poses.sort_by(|a, b| b.walls.total_cmp(&a.walls));
@@ -128,7 +133,7 @@ pub fn refined(
             kept.push(pose);
         }
     }
-    check(stop)?;
+    check_cancelled(stop)?;
     let mut fine: Vec<Pose> =
         kept.par_iter().filter_map(|pose| Fine::new(scene, pose, max_play).best(pose)).collect();
     fine.sort_by(|a, b| b.value().total_cmp(&a.value()));
@@ -150,21 +155,21 @@ pub fn settled_areas(scene: &Scene, pose: Pose, max_play: f64) -> (Pose, f64) {
 /// Maps for a first estimate of the pose in a seat.
 struct Rough<'a> {
     scene: &'a Scene,
-    upper: Vec<[Map; 3]>,
-    lower: Vec<[Map; 3]>,
-    sides: Vec<Sides>,
-    faces: Vec<Faces<'a>>,
+    upper: Vec<[HeightMap; 3]>,
+    lower: Vec<[HeightMap; 3]>,
+    sides: Vec<PlugWalls>,
+    faces: Vec<SocketWalls<'a>>,
 }
 
 impl<'a> Rough<'a> {
     fn new(scene: &'a Scene, max_play: f64) -> Self {
         let radii = [0.0, 0.1 * MM, 0.2 * MM].map(|r| ((r / scene.step).round() as usize).max(1));
-        let eroded = |maps: &Vec<Map>| -> Vec<[Map; 3]> {
+        let eroded = |maps: &Vec<HeightMap>| -> Vec<[HeightMap; 3]> {
             maps.par_iter().map(|map| radii.map(|r| map.eroded([r; 2]))).collect()
         };
-        let sides = scene.lower.par_iter().map(Sides::new).collect();
+        let sides = scene.lower.par_iter().map(PlugWalls::new).collect();
         let limits = [REACH * max_play, scene.step];
-        let faces = scene.upper.par_iter().map(|map| Faces::new(map, limits)).collect();
+        let faces = scene.upper.par_iter().map(|map| SocketWalls::new(map, limits)).collect();
         Rough { scene, upper: eroded(&scene.upper), lower: eroded(&scene.lower), sides, faces }
     }
 
@@ -191,10 +196,10 @@ impl<'a> Rough<'a> {
 pub struct Fine {
     /// Side of a cell, m.
     pub step: f64,
-    upper: Map,
-    lower: Map,
-    tight: Map,
-    sides: Sides,
+    upper: HeightMap,
+    lower: HeightMap,
+    tight: HeightMap,
+    sides: PlugWalls,
     heights: [[f64; 2]; 2],
     /// Rectangle of the socket that the plug can touch, m.
     pub window: Window,
@@ -214,20 +219,20 @@ impl Fine {
         let area: f64 = window.iter().map(|[low, high]| (high - low).max(0.0)).product();
         let step = (area / MOST_CELLS).sqrt().max(LEAST_CELL);
         let back = [0, 1].map(|a| window[a].map(|v| v - pose.shift[a]));
-        let upper = Map::new(socket, Envelope::Upper, [step; 2], Some(window));
-        let lower = Map::new(plug, Envelope::Lower, [step; 2], Some(back));
+        let upper = HeightMap::new(socket, Envelope::Upper, [step; 2], Some(window));
+        let lower = HeightMap::new(plug, Envelope::Lower, [step; 2], Some(back));
         let tight = lower.eroded([(TOLERANCE / step).ceil() as usize; 2]);
         let radius = (1.5 * scene.step / step).ceil() as i32 + 1;
-        let (sides, heights) = (Sides::new(&lower), [sz, pz]);
+        let (sides, heights) = (PlugWalls::new(&lower), [sz, pz]);
         Fine { step, upper, lower, tight, sides, heights, window, radius, max_play }
     }
 
-    fn areas(&self, faces: &Faces, shift: [i32; 2], z: f32) -> [f64; 2] {
+    fn areas(&self, faces: &SocketWalls, shift: [i32; 2], z: f32) -> [f64; 2] {
         self.sides.areas(faces, &self.tight, shift, z)
     }
 
-    fn faces(&self) -> Faces<'_> {
-        Faces::new(&self.upper, [REACH * self.max_play, TOLERANCE])
+    fn faces(&self) -> SocketWalls<'_> {
+        SocketWalls::new(&self.upper, [REACH * self.max_play, TOLERANCE])
     }
 
     /// Returns the shift of a pose in cells.
@@ -274,8 +279,8 @@ impl Fine {
     /// Returns the lowest shift near a shift that has the most facing walls, and its height.
     fn settled(
         &self,
-        [socket, plug]: [&Map; 2],
-        faces: &Faces,
+        [socket, plug]: [&HeightMap; 2],
+        faces: &SocketWalls,
         mut about: [i32; 2],
     ) -> Option<([i32; 2], f32)> {
         let mut found = None;
@@ -298,13 +303,13 @@ impl Fine {
     }
 
     /// Returns the cells that both parts fill at a pose.
-    pub fn shared(&self, pose: &Pose) -> Vec<[i32; 2]> {
-        shared(&self.upper, &self.tight, self.cells(pose), pose.z as f32 + LEVEL)
+    pub fn overlap(&self, pose: &Pose) -> Vec<[i32; 2]> {
+        overlap(&self.upper, &self.tight, self.cells(pose), pose.z as f32 + LEVEL)
     }
 
     /// Returns the width of the region that both parts fill at a pose, m.
     fn interference(&self, pose: &Pose) -> f64 {
-        let mut cells: BTreeSet<[i32; 2]> = self.shared(pose).into_iter().collect();
+        let mut cells: BTreeSet<[i32; 2]> = self.overlap(pose).into_iter().collect();
         let mut width = if cells.is_empty() { 0.0 } else { TOLERANCE };
         while !cells.is_empty() {
             let inner =

@@ -1,9 +1,9 @@
 //! Coarse search for seats over all axes, rotations and shifts, on height maps that bound the resting height.
 
 use super::engagement::SIDES;
-use super::frame::{Parts, outs, turned, turns};
-use super::map::{Envelope, Map, NOWHERE, bounds, maps, rest};
-use super::{MAX_PLAYS, MatingError, check};
+use super::frame::{Parts, rotations_to_z, turned, turns};
+use super::map::{Envelope, HeightMap, NOWHERE, bounds, maps, rest};
+use super::{MAX_PLAYS, MatingError, check_cancelled};
 use crate::body::width;
 use crate::mesh::Triangle;
 use input::units::MM;
@@ -28,7 +28,7 @@ const MOST_SEATS: usize = 300;
 /// Seat found on the coarse maps.
 #[derive(Debug, Clone, Copy)]
 pub struct Seat {
-    /// Index of the direction out of the socket in [`outs`].
+    /// Index of the direction out of the socket in [`rotations_to_z`].
     pub out: usize,
     /// Index of the rotation of the plug in [`turns`].
     pub turn: usize,
@@ -47,16 +47,16 @@ pub struct Scene {
     /// Cell of the fine maps, m.
     pub step: f64,
     /// Upper envelopes of the sockets.
-    pub upper: Vec<Map>,
+    pub upper: Vec<HeightMap>,
     /// Lower envelopes of the plugs.
-    pub lower: Vec<Map>,
+    pub lower: Vec<HeightMap>,
 }
 
 impl Scene {
     /// Creates the maps of both parts for a search of `effort` comparisons.
     pub fn new(parts: &Parts, effort: f64) -> Self {
         let sockets: Vec<_> =
-            outs().iter().map(|turn| turned(&parts.socket.triangles, turn)).collect();
+            rotations_to_z().iter().map(|turn| turned(&parts.socket.triangles, turn)).collect();
         let plugs: Vec<_> =
             turns().iter().map(|turn| turned(&parts.plug.triangles, turn)).collect();
         let step = cell(&sockets, &plugs, effort) / FINE as f64;
@@ -82,12 +82,12 @@ fn cell(sockets: &[Vec<Triangle>], plugs: &[Vec<Triangle>], effort: f64) -> f64 
 
 /// Coarse maps of a part: the outermost height of each cell, and the innermost height of blocks of two by two cells.
 struct Coarse {
-    outer: Map,
-    inner: Map,
+    outer: HeightMap,
+    inner: HeightMap,
 }
 
 impl Coarse {
-    fn new(fine: &Map, erosion: usize) -> Self {
+    fn new(fine: &HeightMap, erosion: usize) -> Self {
         let [outer, inner] = fine.eroded([erosion; 2]).coarser(FINE);
         let inner = match fine.envelope {
             Envelope::Upper => inner.inner(0, 1),
@@ -106,12 +106,12 @@ pub fn seats(
     let mut seats = [const { Vec::new() }; MAX_PLAYS.len()];
     for interference in [0.0, INTERFERENCE] {
         let erosion = (interference / 2.0 / scene.step).round() as usize;
-        let coarse = |fine: &Vec<Map>| -> Vec<Coarse> {
+        let coarse = |fine: &Vec<HeightMap>| -> Vec<Coarse> {
             fine.par_iter().map(|map| Coarse::new(map, erosion)).collect()
         };
         let (sockets, plugs) = (coarse(&scene.upper), coarse(&scene.lower));
         for chunk in pairs.chunks(AT_ONCE) {
-            check(stop)?;
+            check_cancelled(stop)?;
             let of = |pair: &[usize; 2]| {
                 let [out, turn] = *pair;
                 let passed = bounds(&scene.sockets[out])[2][0] - bounds(&scene.plugs[turn])[2][1];
@@ -128,8 +128,8 @@ pub fn seats(
 }
 
 /// Returns lower bounds of the resting height for each shift of the plug; at `passed`, m, it has gone through the socket.
-fn rests(socket: &Coarse, plug: &Coarse, passed: f32) -> Map {
-    let extremes = |map: &Map, take: fn(f32, f32) -> f32| {
+fn rests(socket: &Coarse, plug: &Coarse, passed: f32) -> HeightMap {
+    let extremes = |map: &HeightMap, take: fn(f32, f32) -> f32| {
         map.heights.iter().copied().fold(map.envelope.empty(), take)
     };
     let (s, p) = (&socket.outer, &plug.outer);
@@ -138,7 +138,7 @@ fn rests(socket: &Coarse, plug: &Coarse, passed: f32) -> Map {
     let first = [0, 1].map(|a| s.first[a] - p.first[a] - p.count[a] as i32);
     let count = [0, 1].map(|a| s.count[a] + p.count[a] + 1);
     let mut map =
-        Map { envelope: Envelope::Upper, step: s.step, first, count, heights: Vec::new() };
+        HeightMap { envelope: Envelope::Upper, step: s.step, first, count, heights: Vec::new() };
     let height = |shift: [i32; 2]| {
         let one = rest(s, &plug.inner, shift, range[1]);
         let z = if one < range[1] { one.max(rest(&socket.inner, p, shift, range[1])) } else { one };
@@ -149,7 +149,7 @@ fn rests(socket: &Coarse, plug: &Coarse, passed: f32) -> Map {
 }
 
 /// Finds the seats that the plug can leave to none of four sides without a lift, with at most `max_play` of play, m.
-fn enclosed(rests: &Map, [out, turn]: [usize; 2], max_play: f64) -> Vec<Seat> {
+fn enclosed(rests: &HeightMap, [out, turn]: [usize; 2], max_play: f64) -> Vec<Seat> {
     // Bounds widen the play by up to two cells.
     let radius = (max_play / rests.step[0]).ceil() as i32 + 2;
     let lift = |[x, y]: [i32; 2]| {

@@ -4,10 +4,10 @@ use super::frame::Parts;
 use super::map::{NOWHERE, bounds};
 use super::refine::Pose;
 use super::search::{LEAST, Scene};
-use super::{Found, precise};
+use super::{MatingResult, precise};
 use input::units::MM;
 
-/// Share of the best engagement from which on another one is similar, given the resolution of the maps.
+/// Smallest share of the best engagement that counts as similar, given the resolution of the maps.
 const SIMILAR: f64 = 0.97;
 /// Largest difference in depth between equal mates, m.
 const SAME: f64 = 0.05 * MM;
@@ -23,7 +23,7 @@ pub fn select(
     scene: &Scene,
     poses: &[Pose],
     (pairs, max_play): (&[([usize; 2], usize)], f64),
-) -> Option<Found> {
+) -> Option<MatingResult> {
     let guided = |pose: &&Pose| {
         let [x, y, z] = bounds(&scene.plugs[pose.turn]);
         let size = ((x[1] - x[0]) * (y[1] - y[0])).sqrt();
@@ -42,9 +42,9 @@ pub fn select(
         (pose.depth - best.depth).abs() < SAME && pose.walls > SIMILAR * best.walls
     });
     let mate = |pose: &Pose| precise::mate(parts, scene, pose, max_play);
-    let equal = if others.is_empty() { equal.iter().map(|pose| number(pose)).sum() } else { 1 };
+    let copies = if others.is_empty() { equal.iter().map(|pose| number(pose)).sum() } else { 1 };
     let mates = [*best].into_iter().chain(others.into_iter().copied()).map(mate).collect();
-    Some(Found { mates, equal })
+    Some(MatingResult { mates, copies })
 }
 
 /// Returns the height of the socket just outside the bounds of a plug in x and y, m.

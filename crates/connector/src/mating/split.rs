@@ -1,9 +1,9 @@
 //! Separation of an assembly into plug and socket: the plug is the set of bodies that can be withdrawn together along an axis
 //! between facing walls of the others, and that touches the others least.
 
-use super::engagement::{SIDES, Walls, score};
-use super::frame::{Part, outs, turned};
-use super::map::{Envelope, Map, NOWHERE, bounds, rest};
+use super::engagement::{SIDES, WallAreas, score};
+use super::frame::{Part, rotations_to_z, turned};
+use super::map::{Envelope, HeightMap, NOWHERE, bounds, rest};
 use super::refine::{REACH, TOLERANCE};
 use super::search::LEAST;
 use super::{MAX_PLAYS, MatingError};
@@ -26,9 +26,9 @@ const INTERFERENCES: [f64; 3] = [0.0, 0.2 * MM, 0.6 * MM];
 const TOUCHING: f64 = 5e-3 * MM;
 /// Weight of contact areas perpendicular to the axis (a seat) relative to those parallel to it (a press fit).
 const SEATED: f64 = 0.1;
-/// Share of the best value from which on another one is similar.
+/// Smallest share of the best value that counts as similar.
 const SIMILAR: f64 = 0.8;
-/// Share of the best value from which on another one is equal.
+/// Smallest share of the best value that counts as equal.
 const EQUAL: f64 = 0.97;
 /// Largest number of neighbours that are tried at a time.
 const MOST_TRIED: usize = 6;
@@ -56,7 +56,7 @@ pub fn plugs(bodies: &[Vec<Triangle>]) -> Result<Vec<Vec<usize>>, MatingError> {
     let own = Part::new(&bodies.concat(), "assembly")?.own;
     let bodies: Vec<_> = bodies.iter().map(|body| turned(body, &own)).collect();
     let touching = contacts(&bodies);
-    let axes: Vec<Vec<Leaving>> = outs()
+    let axes: Vec<Vec<Leaving>> = rotations_to_z()
         .par_iter()
         .filter(|turn| (turn.inverse() * Vector3::z()).sum() > 0.5)
         .map(|turn| {
@@ -140,12 +140,12 @@ fn common(face: &Triangle, other: &Triangle) -> (usize, f64) {
 /// Height maps of the bodies along an axis.
 struct Axis {
     step: f64,
-    upper: Vec<Map>,
-    lower: Vec<Map>,
+    upper: Vec<HeightMap>,
+    lower: Vec<HeightMap>,
     bounds: Vec<[[f64; 2]; 3]>,
     contact: BTreeMap<[usize; 2], f64>,
     /// Areas of the walls of the first body that face the second.
-    walls: BTreeMap<[usize; 2], Walls>,
+    walls: BTreeMap<[usize; 2], WallAreas>,
 }
 
 impl Axis {
@@ -153,8 +153,8 @@ impl Axis {
         let bounds: Vec<_> = bodies.iter().map(|body| bounds(body)).collect();
         let side = |axis: usize| width(span(bounds.iter().flat_map(|of| of[axis])));
         let step = (side(0).max(side(1)) / MOST_CELLS).max(LEAST_CELL);
-        let maps = |envelope| -> Vec<Map> {
-            bodies.iter().map(|body| Map::new(body, envelope, [step; 2], None)).collect()
+        let maps = |envelope| -> Vec<HeightMap> {
+            bodies.iter().map(|body| HeightMap::new(body, envelope, [step; 2], None)).collect()
         };
         let (upper, lower) = (maps(Envelope::Upper), maps(Envelope::Lower));
         Axis { step, upper, lower, bounds, contact, walls: BTreeMap::new() }
@@ -287,9 +287,9 @@ fn closure(mut set: Set, above: &[Set]) -> Set {
 
 /// Returns the areas of the walls of a body, by their side, that face a wall of another within a reach, m2; each body is given
 /// by its lower and upper envelope.
-fn walls([lower, upper]: [&Map; 2], other: [&Map; 2], reach: f64) -> Walls {
+fn walls([lower, upper]: [&HeightMap; 2], other: [&HeightMap; 2], reach: f64) -> WallAreas {
     let reach = (reach / lower.step[0]).ceil() as i32;
-    let heights = |[lower, upper]: [&Map; 2], x: i32, y: i32| {
+    let heights = |[lower, upper]: [&HeightMap; 2], x: i32, y: i32| {
         let low = lower.at(x, y);
         (low < NOWHERE).then(|| [low, upper.at(x, y)])
     };

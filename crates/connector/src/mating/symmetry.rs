@@ -1,7 +1,7 @@
 //! Rotations of the parts that are equivalent by their symmetry.
 
-use super::frame::{outs, turned, turns};
-use super::map::{Envelope, Map, bounds};
+use super::frame::{rotations_to_z, turned, turns};
+use super::map::{Envelope, HeightMap, bounds};
 use super::search::Scene;
 use crate::mesh::Triangle;
 use input::units::MM;
@@ -19,19 +19,21 @@ pub fn pairs(scene: &Scene) -> Vec<([usize; 2], usize)> {
     let (turns, count) = (turns(), turns().len());
     let step = 2.0 * scene.step;
     let plugs = maps(&scene.plugs, Envelope::Lower, step);
-    let sockets: Vec<_> =
-        turns.iter().map(|turn| turned(&scene.sockets[0], &(turn * outs()[0].inverse()))).collect();
+    let sockets: Vec<_> = turns
+        .iter()
+        .map(|turn| turned(&scene.sockets[0], &(turn * rotations_to_z()[0].inverse())))
+        .collect();
     let sockets = maps(&sockets, Envelope::Upper, step);
     let number = |turn: Rotation3<f64>| {
         turns.iter().position(|other| (other.matrix() - turn.matrix()).amax() < MM).unwrap_or(0)
     };
-    let mut root: Vec<usize> = (0..outs().len() * count).collect();
+    let mut root: Vec<usize> = (0..rotations_to_z().len() * count).collect();
     let mut join = |a: usize, b: usize| {
         let (a, b) = (root[a], root[b]);
         root.iter_mut().filter(|r| **r == a.max(b)).for_each(|r| *r = a.min(b));
     };
     for (a, b) in alike(&plugs) {
-        (0..outs().len()).for_each(|out| join(out * count + a, out * count + b));
+        (0..rotations_to_z().len()).for_each(|out| join(out * count + a, out * count + b));
     }
     for (a, b) in alike(&sockets).into_iter().filter(|(a, _)| a % 4 == 0) {
         // The second socket turned back about the axis looks out as one of the six.
@@ -45,28 +47,28 @@ pub fn pairs(scene: &Scene) -> Vec<([usize; 2], usize)> {
     first.map(|i| ([i / count, i % count], size(i))).collect()
 }
 
-fn maps(parts: &[Vec<Triangle>], envelope: Envelope, step: f64) -> Vec<Map> {
+fn maps(parts: &[Vec<Triangle>], envelope: Envelope, step: f64) -> Vec<HeightMap> {
     let centred = |part: &Vec<Triangle>| {
         let [x, y, z] = bounds(part);
         let by = Vector3::new((x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0, z[0]);
         let moved: Vec<Triangle> = part.iter().map(|corners| corners.map(|p| p - by)).collect();
-        Map::new(&moved, envelope, [step; 2], None)
+        HeightMap::new(&moved, envelope, [step; 2], None)
     };
     parts.par_iter().map(centred).collect()
 }
 
 /// Returns the pairs of maps that are equal, in both orders.
-fn alike(maps: &[Map]) -> Vec<(usize, usize)> {
-    let ranges: Vec<[Map; 2]> =
+fn alike(maps: &[HeightMap]) -> Vec<(usize, usize)> {
+    let ranges: Vec<[HeightMap; 2]> =
         maps.par_iter().map(|map| [map.eroded([1; 2]), map.dilated([1; 2])]).collect();
-    let within = |a: &Map, [inner, outer]: &[Map; 2]| {
+    let within = |a: &HeightMap, [inner, outer]: &[HeightMap; 2]| {
         let differs = |[x, y]: &[i32; 2]| {
             let (z, one, two) = (a.at(*x, *y), inner.at(*x, *y), outer.at(*x, *y));
             z < one.min(two) - SAME || z > one.max(two) + SAME
         };
         a.cells().filter(differs).count() * RARE <= a.heights.len()
     };
-    let near = |a: &Map, b: &Map| {
+    let near = |a: &HeightMap, b: &HeightMap| {
         (0..2).all(|i| a.count[i].abs_diff(b.count[i]) <= 1 && (a.first[i] - b.first[i]).abs() <= 1)
     };
     let all = (0..maps.len()).flat_map(|a| (0..maps.len()).map(move |b| (a, b)));

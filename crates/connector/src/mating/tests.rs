@@ -58,13 +58,13 @@ fn hidden(mesh: &Mesh, number: usize) -> (Mesh, Isometry3<f64>) {
 /// are equal.
 fn found(plug: &Mesh, socket: &Mesh, number: usize) -> (Mate, usize) {
     let ((plug, p), (socket, s)) = (hidden(plug, number), hidden(socket, 3 * number + 1));
-    let Found { mut mates, equal } = mates(&plug, &socket, &NEVER).expect("mates");
+    let MatingResult { mut mates, copies } = mates(&plug, &socket, &NEVER).expect("mates");
     assert_eq!(mates.len(), 1, "ambiguous: {mates:#?}");
     let mate = mates.remove(0);
     let back = s.inverse();
     let out = Unit::new_normalize(back * mate.out.into_inner());
     let across = mate.across.map(|axis| Unit::new_normalize(back * axis.into_inner()));
-    (Mate { pose: back * mate.pose * p, out, across, ..mate }, equal)
+    (Mate { pose: back * mate.pose * p, out, across, ..mate }, copies)
 }
 
 /// Asserts that the mate leaves a point of the plug, mm, where it was drawn, and its play, mm.

@@ -15,9 +15,9 @@ pub type Triangle = [Point3<f64>; 3];
 /// A body of a file: `solid` of a text STL, `o` or `g` of an OBJ.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
-    /// Its name in the file; may be empty.
+    /// Name in the file; may be empty.
     pub name: String,
-    /// Its triangles.
+    /// Triangles.
     pub triangles: Vec<Triangle>,
 }
 
@@ -39,7 +39,7 @@ pub fn is_step(bytes: &[u8], file: &str) -> bool {
 /// Reads the bodies of a file whose format follows from its content; `file` is its name in errors.
 ///
 /// # Errors
-/// If the bytes are neither STL nor OBJ, or name no finite triangles.
+/// If the bytes are neither STL nor OBJ, or contain no finite triangles.
 pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Body>, Fault> {
     let step = is_step(bytes, file);
     let fail = |problem: &str| {
@@ -51,9 +51,11 @@ pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Body>, Fault> {
         Some(triangles) => vec![Body { name: String::new(), triangles }],
         None => {
             let text = std::str::from_utf8(bytes);
-            let text = text.map_err(|_| fail("a binary file of odd length"))?;
+            let text = text.map_err(|_| {
+                fail("a binary file whose length does not match its number of triangles")
+            })?;
             let stl = text.trim_start().starts_with("solid");
-            parsed(text, stl).map_err(|problem| fail(&problem))?
+            parse(text, stl).map_err(|problem| fail(&problem))?
         }
     };
     let mut corners = bodies.iter().flat_map(|body| body.triangles.iter().flatten()).peekable();
@@ -96,8 +98,8 @@ fn coordinates<'a>(
     }
 }
 
-/// Parses the bodies of a text file, an STL or else an OBJ.
-fn parsed(text: &str, stl: bool) -> Result<Vec<Body>, String> {
+/// Parses the bodies of a text file: STL if `stl`, else OBJ.
+fn parse(text: &str, stl: bool) -> Result<Vec<Body>, String> {
     let mut points = Vec::new();
     let mut bodies: Vec<Body> = Vec::new();
     let mut triangles = Vec::new();
@@ -121,7 +123,8 @@ fn parsed(text: &str, stl: bool) -> Result<Vec<Body>, String> {
             }
             (false, Some("f")) => {
                 let face: Option<Vec<_>> = words.map(|word| vertex(word, &points)).collect();
-                let missing = || format!("line {number}: a face names a vertex that is not there");
+                let missing =
+                    || format!("line {number}: a face refers to a vertex that does not exist");
                 let face = face.ok_or_else(missing)?;
                 triangles.extend(polygon(&face));
             }
@@ -158,10 +161,11 @@ fn polygon(corners: &[Point3<f64>]) -> Vec<Triangle> {
     ears.map(outward).collect()
 }
 
-/// Returns the triangles of the bodies of these names, or of the shells of these numbers, counted from 1; and all others.
+/// Separates the triangles of the selected bodies from all others. If `names` are not names of bodies, they are numbers
+/// of shells, counted from 1.
 ///
 /// # Errors
-/// If the file lacks one of them; the text names those that it has.
+/// If the file lacks one of them; the text lists the available ones.
 pub fn pick(bodies: &[Body], names: &[String], file: &str) -> Result<[Vec<Triangle>; 2], Fault> {
     let named = |name: &String| bodies.iter().position(|body| body.name == *name);
     let of: Vec<Body> = match names.iter().all(|name| named(name).is_some()) {
@@ -172,7 +176,7 @@ pub fn pick(bodies: &[Body], names: &[String], file: &str) -> Result<[Vec<Triang
     if let Some(name) = names.iter().find(|name| of.iter().all(|body| body.name != **name)) {
         let known: Vec<_> = bodies.iter().map(|body| format!("`{}`", body.name)).collect();
         let problem = format!(
-            "has no body `{name}`: it has {}, and {} shells, which are named by their number from 1",
+            "has no body `{name}`; available: {}, and shells 1 to {}",
             known.join(", "),
             of.len()
         );
@@ -189,7 +193,8 @@ pub fn separate(bodies: Vec<Body>) -> Vec<Body> {
     if bodies.len() > 1 { bodies } else { shells(&bodies) }
 }
 
-/// Returns the sets of triangles that are connected by corners, in the order of the file, named by their number from 1.
+/// Returns the shells (connected components: triangles that share corners) in the order of the file, named by their
+/// number from 1.
 fn shells(bodies: &[Body]) -> Vec<Body> {
     let triangles: Vec<_> = bodies.iter().flat_map(|body| body.triangles.iter().copied()).collect();
     let mut at: BTreeMap<[u64; 3], usize> = BTreeMap::new();
@@ -220,7 +225,7 @@ fn vertex(word: &str, points: &[Point3<f64>]) -> Option<Point3<f64>> {
 mod tests {
     use super::*;
 
-    /// Both senses, each corner as the first one: a fan from most of them would cover the notch.
+    /// Both senses, with each corner as the first: a fan from most corners would cover the notch.
     #[test]
     fn a_concave_polygon_keeps_its_notch() {
         let corners = [[0, 0], [4, 0], [4, 4], [2, 1], [0, 4]]

@@ -10,7 +10,7 @@ use std::collections::{BTreeSet, BinaryHeap};
 
 /// Largest distance of the surface from the corners of the file, m.
 pub const TOLERANCE: f64 = 0.01 * MM;
-/// Faces from which on a mesh is reduced.
+/// Largest number of faces of a mesh that is not reduced.
 const MANY_FACES: usize = 2000;
 /// Error of a collapse on a flat side, pm: that of files with 32-bit numbers.
 const FLAT: u64 = 1_000_000;

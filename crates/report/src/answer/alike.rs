@@ -1,29 +1,29 @@
 //! Designs that tie with the recommended one, and the safe choice among them.
 
 use super::force::ExcessForce;
-use super::trust::{Measured, range_mm};
+use super::trust::{MeasuredFinger, range_mm};
 use super::words::extent;
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::Measure;
 use insertion::space::label;
 use study::{Recorded, StudyRecord};
 
-/// Designs whose first objective differs from the recommended one's by less than the indifference of the study.
+/// Designs whose first objective differs from that of the recommended design by less than the study's indifference.
 #[derive(Debug, Clone)]
 pub struct Ties<'a> {
-    /// The designs in the order of their evaluation, the recommended one among them, each with its loss
-    /// in the first objective.
+    /// Designs in the order of their evaluation, including the recommended design, each with its loss in the first
+    /// objective.
     pub designs: Vec<(&'a Recorded, f64)>,
     /// Smallest and largest value of each free parameter of the space.
     pub spread: Vec<Spread<'a>>,
-    /// Share of the space that is nearer to one of them than to any other design, 0 to 1. Their number
+    /// Share of the space that is nearer to a tied design than to any other design, 0 to 1. The number of tied designs
     /// alone is misleading, since a search samples good regions more densely.
     pub share: f64,
     /// Designs that are extreme in another quantity: name, design, value and unit; empty if the
     /// recommended design has no ties.
     pub alternatives: Vec<(&'static str, &'a Recorded, f64, &'static str)>,
     /// Design to take if no other criterion decides; `None` if the recommended design has no ties.
-    pub safe: Option<Safe<'a>>,
+    pub safe: Option<SafeChoice<'a>>,
 }
 
 /// Values of a parameter over a set of designs.
@@ -35,16 +35,16 @@ pub struct Spread<'a> {
     pub values: [f64; 2],
 }
 
-/// The safe choice of a set.
+/// Safe choice among tied designs.
 #[derive(Debug, Clone)]
-pub struct Safe<'a> {
-    /// The design.
+pub struct SafeChoice<'a> {
+    /// Design.
     pub design: &'a Recorded,
-    /// Its range on a robot, mm, if it was measured; else it is the design with the least force.
+    /// Range on a robot, mm; `None` if no eligible design was measured: the choice then has the least force.
     pub measured_mm: Option<f64>,
     /// Largest contact force, N, if any trial inserted.
     pub force_n: Option<f64>,
-    /// Its loss against the recommended design, in the unit of the first objective.
+    /// Loss against the recommended design, in the unit of the first objective.
     pub loss: f64,
 }
 
@@ -63,7 +63,7 @@ impl Spread<'_> {
 }
 
 impl<'a> Ties<'a> {
-    pub(super) fn of(record: &'a StudyRecord, index: u64, measured: &[Measured]) -> Self {
+    pub(super) fn of(record: &'a StudyRecord, index: u64, measured: &[MeasuredFinger]) -> Self {
         let designs = record.as_good(index);
         let force = |r: &Recorded| record.measure(r, Measure::PeakForce);
         let stiffness = |r: &Recorded| r.stiffness.compliance.mean / N_PER_MM;
@@ -80,22 +80,22 @@ impl<'a> Ties<'a> {
             let (design, value) = found?;
             Some((reason, design, value, unit))
         });
-        // Within the limits of connectors and robot.
+        // Keeps the force limits of connectors and robot.
         let within = |(r, _): &&(&Recorded, f64)| ExcessForce::of(record, &r.tasks()).is_none();
-        let safe = |&(design, loss): &(&'a Recorded, f64)| Safe {
+        let safe = |&(design, loss): &(&'a Recorded, f64)| SafeChoice {
             design,
             measured_mm: range_mm(measured, &design.design),
             force_n: force(design),
             loss: (10.0 * loss.max(0.0)).round() / 10.0,
         };
         let all = || among.iter().filter(within).map(safe);
-        let printed = all().filter_map(|safe| Some((safe.measured_mm?, safe)));
-        let printed = printed.max_by(|(a_mm, a), (b_mm, b)| {
+        let measured = all().filter_map(|safe| Some((safe.measured_mm?, safe)));
+        let measured = measured.max_by(|(a_mm, a), (b_mm, b)| {
             a_mm.total_cmp(b_mm).then(b.design.index.cmp(&a.design.index))
         });
         let gentle = all().filter_map(|safe| Some((safe.force_n?, safe)));
         let gentle = gentle.min_by(|a, b| a.0.total_cmp(&b.0));
-        let safe = printed.or(gentle).map(|(_, safe)| safe);
+        let safe = measured.or(gentle).map(|(_, safe)| safe);
         let (spread, share) = (spread(record, &designs), share(record, &designs));
         Ties { spread, share, alternatives: known.collect(), safe, designs }
     }
@@ -104,7 +104,8 @@ impl<'a> Ties<'a> {
 /// Number of points over which the share of the space is estimated.
 const POINTS: u32 = 500;
 
-/// Returns the share of evenly spread points whose nearest design (parameters over their spans) is in the set.
+/// Returns the share of evenly spread points of the unit cube, to which the parameters are scaled, whose nearest design
+/// is in the set.
 fn share(record: &StudyRecord, set: &[(&Recorded, f64)]) -> f64 {
     let space = &record.config.space;
     let unit = |design: &Recorded| -> Vec<f64> {

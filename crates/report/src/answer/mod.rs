@@ -17,13 +17,13 @@ use insertion::evaluation::Evaluation;
 use insertion::space::Design;
 use study::{Recorded, StudyRecord, Volume, Walked, nearest, volume};
 
-pub use alike::{Safe, Spread, Ties};
+pub use alike::{SafeChoice, Spread, Ties};
 pub use force::ExcessForce;
 use recommended::firm_range_mm;
 pub use recommended::{OnTask, Recommended};
-pub use robots::UnderRobot;
+pub use robots::RobotWindow;
 pub use start::Start;
-pub use trust::{Measured, Trust};
+pub use trust::{MeasuredFinger, Trust};
 pub use verdict::{Verdict, expectation};
 
 /// Answer of a study.
@@ -54,7 +54,7 @@ pub struct Answer<'a> {
     pub spread_mm: Option<[f64; 2]>,
     /// Fingers measured on a robot: those given to the study, else the published ones; empty for
     /// several tasks.
-    pub measured: Vec<Measured>,
+    pub measured: Vec<MeasuredFinger>,
     /// Contact force of the finger to print, if it exceeds what connector or robot withstand.
     pub force: Option<ExcessForce>,
     /// Agreement of the simulated with the measured order of fingers, for the tasks with measurements.
@@ -130,10 +130,13 @@ impl<'a> Answer<'a> {
 }
 
 /// Returns the fingers measured on a robot: those given to the study, else the published ones.
-fn measured(record: &StudyRecord) -> Vec<Measured> {
+fn measured(record: &StudyRecord) -> Vec<MeasuredFinger> {
     let given = record.on_bench.as_ref().map(|found| {
         let ranges = found.ranges.iter();
-        ranges.map(|(design, range_mm)| Measured { design: design.clone(), range_mm: *range_mm })
+        ranges.map(|(design, range_mm)| MeasuredFinger {
+            design: design.clone(),
+            range_mm: *range_mm,
+        })
     });
     match (given, &record.config.tasks[..]) {
         (Some(given), _) => given.collect(),

@@ -2,22 +2,21 @@
 
 use super::alike::Ties;
 use super::start::Start;
-use super::trust::Measured;
+use super::trust::MeasuredFinger;
 use super::words;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::FirmResult;
 use study::{ByRibs, Recorded, StudyRecord, Walked};
 
-/// The recommended design of a study. Of several tasks ranges and forces are aggregated, and the
-/// window is the intersection.
+/// Recommended design of a study. For several tasks, ranges and forces are aggregated, and the windows are intersected.
 #[derive(Debug, Clone)]
 pub struct Recommended<'a> {
     /// The design with its confirmed evaluation, if it was confirmed.
     pub design: &'a Recorded,
-    /// The single objective and its value; `None` of a front.
+    /// Single objective and its value; `None` for a Pareto front.
     pub objective: Option<(Measure, f64)>,
-    /// Constrained measures and the design's values in words.
+    /// Constrained measures, each with the design's value in words.
     pub constraints: Vec<(Measure, String)>,
     /// Range, mm; `None` if the nominal start diverged.
     pub range_mm: Option<f64>,
@@ -25,35 +24,35 @@ pub struct Recommended<'a> {
     pub window_mm: [f64; 2],
     /// Width of the window in which all repeats insert, mm; `None` if the ends were not repeated.
     pub firm_range_mm: Option<f64>,
-    /// Both ends of that window, mm; `None` also if a task has no such window.
+    /// Both ends of the window in which all repeats insert, mm; `None` also if there is none for a task.
     pub firm_window_mm: Option<[f64; 2]>,
     /// Largest force between plug and socket over the inserted trials, N.
     pub peak_force_n: Option<f64>,
     /// Evaluation on each task.
     pub tasks: Vec<OnTask<'a>>,
-    /// Evaluations with stiffness computed from its ribs, if there are any.
+    /// Evaluations with the stiffness computed from the finger's ribs, if there are any.
     pub by_ribs: Option<&'a ByRibs>,
-    /// Objective in the search, if the confirmation found another value.
+    /// Objective value in the search, if the confirmation resulted in a different one.
     pub searched: Option<f64>,
     /// Start in the (firm) window; `None` for several tasks.
     pub start: Option<Start>,
-    /// Designs that tie with it; `None` for a front.
+    /// Designs that tie with the recommended one; `None` for a Pareto front.
     pub ties: Option<Ties<'a>>,
 }
 
-/// The recommended design on one task.
+/// Recommended design on one task.
 #[derive(Debug, Clone, Copy)]
 pub struct OnTask<'a> {
     /// Name of the task.
     pub name: &'a str,
-    /// Its evaluation.
+    /// Evaluation on the task.
     pub measured: &'a Evaluation,
     /// Firm part of the window, if its ends were repeated.
     pub firm: Option<&'a FirmResult>,
 }
 
 impl<'a> Recommended<'a> {
-    pub(super) fn of(record: &'a StudyRecord, measured: &[Measured]) -> Option<Self> {
+    pub(super) fn of(record: &'a StudyRecord, measured: &[MeasuredFinger]) -> Option<Self> {
         let (config, found) = (&record.config, record.recommendation());
         let design = found.or_else(|| record.best())?;
         let walked = record.walked.first().filter(|_| found.is_some());
@@ -66,8 +65,8 @@ impl<'a> Recommended<'a> {
             firm: firm.and_then(|firm| firm.get(at)),
         };
         let tasks = design.tasks();
-        let window_mm = common(tasks.iter().map(|task| words::ends_mm(&task.window)));
-        let firm_window_mm = windows.map(|windows| common(windows.into_iter()));
+        let window_mm = intersection(tasks.iter().map(|task| words::ends_mm(&task.window)));
+        let firm_window_mm = windows.map(|windows| intersection(windows.into_iter()));
         let start = Start::of(firm_window_mm.unwrap_or(window_mm));
         let limits = config.constraints.iter();
         Some(Recommended {
@@ -94,11 +93,13 @@ pub(super) fn firm_range_mm(record: &StudyRecord, walked: &Walked) -> f64 {
     record.aggregated(Measure::Range, &ranges)
 }
 
-fn common(windows: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
+/// Returns the intersection of windows, mm.
+fn intersection(windows: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
     windows
         .fold([f64::NEG_INFINITY, f64::INFINITY], |[low, high], [a, b]| [low.max(a), high.min(b)])
 }
 
+/// Returns the objective value in the search, if it differs from the confirmed one.
 fn searched(record: &StudyRecord, design: &Recorded) -> Option<f64> {
     let same = |recorded: &&Recorded| recorded.index == design.index;
     let before = record.current().iter().find(same)?.value()?;

@@ -6,18 +6,18 @@ use serde::{Deserialize, Serialize};
 
 /// Tolerance window of a finger on a robot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct UnderRobot {
+pub struct RobotWindow {
     /// Name of the robot.
     pub robot: String,
-    /// Stiffness along x, y and z, N/mm; `None` of a rigid robot.
+    /// Stiffness along x, y and z, N/mm; `None` for a rigid robot.
     pub stiffness_n_per_mm: Option<[f64; 3]>,
     /// Evaluation on this robot.
     #[serde(flatten)]
     pub measured: Evaluation,
 }
 
-impl UnderRobot {
-    /// Returns robot and window: `ur5e_position (39 N/mm along y): -2.1 to +3.0 mm`.
+impl RobotWindow {
+    /// Returns the robot and the window in words: `ur5e_position (39 N/mm along y): -2.1 to +3.0 mm`.
     pub fn words(&self) -> String {
         let stiffness = self.stiffness_n_per_mm.map(|[_, y, _]| format!("{y:.0} N/mm along y"));
         let stiffness = stiffness.unwrap_or("rigid".to_owned());

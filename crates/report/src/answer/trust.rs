@@ -7,12 +7,12 @@ use insertion::stiffness::Measurement;
 use insertion::stiffness::designs;
 use study::{Recorded, StudyRecord};
 
-/// A finger whose tolerable range was measured on a robot.
+/// Finger whose tolerable range was measured on a robot.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
-    /// The finger.
+pub struct MeasuredFinger {
+    /// Design of the finger.
     pub design: Design,
-    /// Its range, mm.
+    /// Tolerable range, mm.
     pub range_mm: f64,
 }
 
@@ -28,9 +28,9 @@ pub enum Trust {
     },
     /// Simulated on tasks with published measurements.
     Published {
-        /// For each task the measured finger itself, or those of the most similar stiffness, nearest
-        /// first.
-        nearest: Vec<(String, Vec<Measured>)>,
+        /// For each task the finger itself, if it was measured, or the measured fingers of the most similar stiffness,
+        /// nearest first.
+        nearest: Vec<(String, Vec<MeasuredFinger>)>,
         /// Whether the finger itself was measured on all tasks.
         itself: bool,
     },
@@ -41,7 +41,7 @@ pub enum Trust {
     },
 }
 
-/// Number of similar fingers.
+/// Number of similar fingers that are listed.
 const SIMILAR: usize = 2;
 
 impl Trust {
@@ -51,13 +51,13 @@ impl Trust {
             return Trust::Calibrated { fingers: found.measured, error_percent };
         }
         let nearest = |task| {
-            // Measured with the published strategies.
+            // The published fingers were measured with the published strategies.
             let finger = finger?;
             let fingers = if finger.design.changes_task() { Vec::new() } else { published(task) };
             let named = nearest(fingers, finger);
             Some((String::from(task), (!named.is_empty()).then_some(named)?))
         };
-        let nearest: Option<Vec<(String, Vec<Measured>)>> =
+        let nearest: Option<Vec<(String, Vec<MeasuredFinger>)>> =
             record.config.tasks().map(nearest).collect();
         match nearest {
             Some(nearest) => {
@@ -78,7 +78,7 @@ impl Trust {
         }
     }
 
-    /// Returns its name in JSON.
+    /// Returns the name of the evidence in JSON.
     pub fn key(&self) -> &'static str {
         match self {
             Trust::Calibrated { .. } => "calibrated",
@@ -98,7 +98,7 @@ impl Trust {
             Trust::Published { nearest, itself } => {
                 let who = if *itself { "this finger" } else { "similar fingers" };
                 let several = nearest.len() > 1;
-                let of = |(task, fingers): &(String, Vec<Measured>)| {
+                let of = |(task, fingers): &(String, Vec<MeasuredFinger>)| {
                     let on = if several { format!(" on {task}") } else { String::new() };
                     format!("{}{on}", ranges(fingers))
                 };
@@ -113,37 +113,37 @@ impl Trust {
 }
 
 /// Returns the range of a finger, mm, if it is among the measured ones.
-pub(super) fn range_mm(measured: &[Measured], finger: &Design) -> Option<f64> {
+pub(super) fn range_mm(measured: &[MeasuredFinger], finger: &Design) -> Option<f64> {
     measured.iter().find(|measured| measured.design == *finger).map(|found| found.range_mm)
 }
 
 /// Returns the ranges in words: `4.7 and 4.9 mm`.
-fn ranges(fingers: &[Measured]) -> String {
+fn ranges(fingers: &[MeasuredFinger]) -> String {
     let mut mm: Vec<String> =
         fingers.iter().map(|finger| format!("{:.1}", finger.range_mm)).collect();
     mm.dedup();
     format!("{} mm", mm.join(" and "))
 }
 
-/// Returns the published measured fingers of a task with their stiffness; empty for a user's own task.
-pub(super) fn published(task: &str) -> Vec<(Measured, Measurement)> {
+/// Returns the fingers with published measurements on a task, with their stiffness; empty for a user's own task.
+pub(super) fn published(task: &str) -> Vec<(MeasuredFinger, Measurement)> {
     let bench = of_task(task, Origin::Bench);
     let one = |measurement: Measurement| {
         let design = Design::infill(measurement.density_percent, measurement.direction_deg);
         let range_mm = bench.iter().find(|found| found.design == design)?.range_mm?;
-        Some((Measured { design, range_mm }, measurement))
+        Some((MeasuredFinger { design, range_mm }, measurement))
     };
     designs().into_iter().filter_map(one).collect()
 }
 
 /// Returns the finger itself, if it was measured, else those of the most similar stiffness, nearest first
 /// (the simulation distinguishes fingers by stiffness only).
-fn nearest(mut all: Vec<(Measured, Measurement)>, finger: &Recorded) -> Vec<Measured> {
+fn nearest(mut all: Vec<(MeasuredFinger, Measurement)>, finger: &Recorded) -> Vec<MeasuredFinger> {
     if let Some((itself, _)) = all.iter().find(|(found, _)| found.design == finger.design) {
         return vec![itself.clone()];
     }
     let finger = &finger.stiffness;
-    let distance = |(_, found): &(Measured, Measurement)| {
+    let distance = |(_, found): &(MeasuredFinger, Measurement)| {
         let [compliance, assembly] = [
             libm::log(found.compliance / finger.compliance.mean),
             libm::log(found.assembly / finger.assembly.mean),
@@ -159,7 +159,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_measured_finger_vouches_for_itself_and_others_of_its_stiffness_for_the_rest() {
+    fn the_evidence_is_the_finger_itself_if_it_was_measured_else_those_of_similar_stiffness() {
         let record = StudyRecord::load("../../tests/fixtures/study".as_ref()).unwrap();
         let mut finger = record.best().unwrap().clone();
         let all = || published("usb");
@@ -168,7 +168,7 @@ mod tests {
             nearest(all(), &finger).iter().map(|one| one.range_mm).collect::<Vec<_>>(),
             [4.1]
         );
-        // Nobody printed this one; of its stiffness are designs 8 and 11.
+        // This finger was not measured; designs 8 and 11 have similar stiffness.
         finger.design = Design::infill(27.0, 39.0);
         finger.stiffness = insertion::surrogate::Prediction::exact(3.65e3, 31e3);
         assert_eq!(

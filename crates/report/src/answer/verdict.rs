@@ -1,6 +1,6 @@
 //! Recommended action: headline and expected performance.
 
-use super::trust::Measured;
+use super::trust::MeasuredFinger;
 use super::words::{design as finger, evaluated, interval, mm, outcome, span};
 use super::{Answer, Recommended, Ties};
 use ask_tell::statistics::mean;
@@ -9,7 +9,7 @@ use insertion::outcome::Outcome;
 use insertion::space::Design;
 use study::Recorded;
 
-/// Share of the space with ties from which on any of them is recommended.
+/// Smallest share of the space with ties at which any of the tied designs is recommended.
 const MANY: f64 = 0.5;
 
 /// Recommended action.
@@ -56,7 +56,7 @@ pub enum Verdict<'a> {
 }
 
 impl<'a> Verdict<'a> {
-    pub(super) fn of(answer: &Answer<'a>, measured: &[Measured]) -> Self {
+    pub(super) fn of(answer: &Answer<'a>, measured: &[MeasuredFinger]) -> Self {
         if let Some((place, nearest)) = answer.record.unusable() {
             let task = answer.record.config.tasks().nth(place).unwrap_or_default();
             let fails = nearest.on(place).map(|found| found.window.nominal);

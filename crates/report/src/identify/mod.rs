@@ -10,7 +10,7 @@ use crate::answer::words::number;
 use crate::text_table;
 use calibration::identify::formulas::{Flange, Friction};
 use calibration::identify::misfit::{Misfit, Validation, misfits};
-use calibration::identify::question::{Compared, IdentifyDone};
+use calibration::identify::question::{Compared, IdentificationResult};
 use calibration::identify::unknown::{Unknown, ValueOrigin};
 use input::units::{MM, N_PER_MM};
 use insertion::surrogate::Estimate;
@@ -20,7 +20,7 @@ use serde_json::{Map, Value, json};
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Returns the result as JSON.
-pub fn json(done: &IdentifyDone) -> Value {
+pub fn json(done: &IdentificationResult) -> Value {
     let found = &done.found;
     let axis = |(name, flange): (&str, &Option<Flange>)| {
         let flange = flange.as_ref()?;
@@ -68,7 +68,7 @@ pub fn json(done: &IdentifyDone) -> Value {
 }
 
 /// Returns a parameter of the cell, before and after the identification, as JSON.
-fn identified(Unknown { prior, posterior, left, from, advice }: &Unknown) -> Value {
+fn identified(Unknown { prior, posterior, remaining_sd, from, advice }: &Unknown) -> Value {
     json!({
         "name": posterior.name,
         "sets": posterior.path,
@@ -79,14 +79,14 @@ fn identified(Unknown { prior, posterior, left, from, advice }: &Unknown) -> Val
         "sd": posterior.sd,
         "from": from,
         "source": posterior.source,
-        "expected_share_of_prior_sd": left.map(|[expected, _]| expected),
-        "share_of_prior_sd": left.map(|[_, left]| left),
+        "expected_share_of_prior_sd": remaining_sd.map(|[expected, _]| expected),
+        "share_of_prior_sd": remaining_sd.map(|[_, actual]| actual),
         "advice": advice,
     })
 }
 
 /// Returns the result as text for a terminal.
-pub fn text(done: &IdentifyDone) -> String {
+pub fn text(done: &IdentificationResult) -> String {
     let found = &done.found;
     let mut text = String::new();
     for remark in &done.remarks {

@@ -12,7 +12,7 @@ use calibration::identify::curves::{Curves, STEP_S};
 use calibration::identify::formulas::{Flange, Friction};
 use calibration::identify::log::Ended;
 use calibration::identify::misfit::{Misfit, Validation, misfits};
-use calibration::identify::question::{Compared, Identified, IdentifyDone};
+use calibration::identify::question::{Compared, IdentificationResult, Identified};
 use calibration::identify::unknown::{Unknown, ValueOrigin};
 use input::units::MM;
 use insertion::outcome::Outcome;
@@ -24,12 +24,12 @@ use plotters::style::text_anchor::{HPos, VPos};
 /// Largest number of points of a curve, and of points before the first contact (0.1 s).
 const POINTS: usize = 400;
 const AIR: usize = 50;
-/// Ratio of the misfits after and before from which on the page comments.
+/// Smallest ratio of the misfit after to the misfit before that the page comments on.
 const WORSE: f64 = 1.1;
 
 /// Returns the page: numbers of the cell, robot and probes, and every attempt, measured and simulated.
-pub fn html(done: &IdentifyDone) -> String {
-    let IdentifyDone { task, runs, remarks, found, .. } = done;
+pub fn html(done: &IdentificationResult) -> String {
+    let IdentificationResult { task, runs, remarks, found, .. } = done;
     let (serious, notes): (Vec<_>, Vec<_>) = remarks.iter().partition(|remark| remark.serious);
     let (of_all, of_logs): (Vec<&Remark>, Vec<&Remark>) =
         notes.into_iter().partition(|note| note.file == *runs);
@@ -85,7 +85,7 @@ fn counted(found: &Identified, origins: &[ValueOrigin]) -> usize {
     found.unknowns.iter().filter(|one| origins.contains(&one.from)).count()
 }
 
-fn headline(IdentifyDone { task, found, .. }: &IdentifyDone) -> String {
+fn headline(IdentificationResult { task, found, .. }: &IdentificationResult) -> String {
     let identified = counted(found, &[ValueOrigin::Formula, ValueOrigin::Fit]);
     let all = identified + counted(found, &[ValueOrigin::Prior]);
     format!("{task}: {identified} of {all} numbers of the cell identified")
@@ -138,14 +138,14 @@ fn summary(found: &Identified) -> Vec<(String, String)> {
 
 /// Returns a row of the table of numbers.
 fn unknown(one: &Unknown) -> Vec<Markup> {
-    let Unknown { prior, posterior, left, from, advice } = one;
+    let Unknown { prior, posterior, remaining_sd, from, advice } = one;
     let identified = *from != ValueOrigin::Prior;
     let source = posterior.source.strip_prefix(origin(*from)).unwrap_or(&posterior.source);
     let source = source.trim_start_matches([':', ' ']);
-    let (share, expected) = match (left, from) {
+    let (share, expected) = match (remaining_sd, from) {
         // The fit started from the formula's value, so its own share is not of the prior.
         (_, ValueOrigin::Formula) => (deviation(posterior) / deviation(prior), None),
-        (Some([expected, left]), _) => (*left, Some(*expected)),
+        (Some([expected, actual]), _) => (*actual, Some(*expected)),
         (None, _) => (1.0, None),
     };
     let percent = |share: f64| format!("{:.0}%", 100.0 * share.clamp(0.0, 1.0));

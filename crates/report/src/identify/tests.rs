@@ -5,7 +5,7 @@ use calibration::identify::fixtures::made;
 use calibration::identify::formulas::{Friction, Slide};
 use calibration::identify::log::{Ended, Run};
 use calibration::identify::misfit::Validation;
-use calibration::identify::question::{Compared, Identified, IdentifyDone};
+use calibration::identify::question::{Compared, IdentificationResult, Identified};
 use calibration::identify::replay::Logged;
 use calibration::identify::smoother::Smoothed;
 use calibration::identify::unknown::{Unknown, ValueOrigin};
@@ -32,12 +32,12 @@ fn attempt() -> Compared {
 }
 
 /// Twelve attempts and a probe, by which the first number is fitted, and the others are not identifiable.
-fn done() -> IdentifyDone {
+fn done() -> IdentificationResult {
     let cell = Priors::parse(PRIORS[0].text, PRIORS[0].file).unwrap();
     let unknown = |(i, prior): (usize, &parameters::Parameter)| Unknown {
         prior: prior.clone(),
         posterior: prior.clone(),
-        left: Some([0.3, 0.25]),
+        remaining_sd: Some([0.3, 0.25]),
         from: if i == 0 { ValueOrigin::Fit } else { ValueOrigin::Prior },
         advice: (i > 0).then_some("a probe"),
     };
@@ -56,13 +56,19 @@ fn done() -> IdentifyDone {
             compared: 0.9,
         },
         compared: (0..12).map(|_| attempt()).collect(),
-        aside: Some(attempt()),
+        held_out: Some(attempt()),
     };
     let text = "the sensor is saturated".to_owned();
     let remark = Remark { file: FILE.to_owned(), lines: Some([3, 9]), text, serious: true };
     let (file, text) = ("runs.csv".to_owned(), "the tool sinks".to_owned());
     let of_all = Remark { file: file.clone(), lines: None, text, serious: false };
-    IdentifyDone { task: "usb".to_owned(), runs: file, remarks: vec![remark, of_all], found, cell }
+    IdentificationResult {
+        task: "usb".to_owned(),
+        runs: file,
+        remarks: vec![remark, of_all],
+        found,
+        cell,
+    }
 }
 
 #[test]
@@ -70,13 +76,13 @@ fn a_cell_that_predicts_worse_than_it_explains_is_doubtful() {
     let mut done = done();
     let same = Validation::of(&done.found).unwrap();
     assert!((same.misfit - same.misfit_fitted).abs() < 1e-9 && !same.is_doubtful());
-    let aside = attempt();
-    done.found.aside = Some(Compared { after: aside.before.clone(), ..aside });
+    let held_out = attempt();
+    done.found.held_out = Some(Compared { after: held_out.before.clone(), ..held_out });
     let worse = Validation::of(&done.found).unwrap();
     assert!(worse.is_doubtful(), "{worse:?}");
     assert!(html(&done).contains("do not trust predictions of this cell"));
     assert!(super::text(&done).contains("warning: An attempt that was not fitted"));
-    done.found.aside = None;
+    done.found.held_out = None;
     assert!(!html(&done).contains("not fitted ("));
 }
 

@@ -3,7 +3,7 @@
 use super::cell::{FingerWindows, HiddenCell};
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
-use calibration::identify::log::{Log, Moment, of_samples};
+use calibration::identify::log::{Log, LogSample, of_samples};
 use finger_opt::failure::Failure;
 use input::units::MM;
 use insertion::evaluation::evaluator::Specimen;
@@ -81,10 +81,10 @@ fn add_sensor_errors(log: &mut Log, cell: u64, number: u64) {
     let mut normal =
         |sd: f64| Vector3::from_fn(|_, _| sd * random.sample::<f64, _>(StandardNormal));
     let (bias, drift) = (normal(BIAS_N), normal(DRIFT_N));
-    let positions: Vec<Vector3<f64>> = log.moments.iter().map(|moment| moment.position).collect();
+    let positions: Vec<Vector3<f64>> = log.samples.iter().map(|sample| sample.position).collect();
     let accelerations = rates(&rates(&positions));
     let last = (positions.len() - 1) as f64;
-    for (i, Moment { force, .. }) in log.moments.iter_mut().enumerate() {
+    for (i, LogSample { force, .. }) in log.samples.iter_mut().enumerate() {
         let share = i as f64 / last;
         *force += bias + share * drift + normal(NOISE_N) - TOOL_KG * accelerations[i];
     }

@@ -1,4 +1,4 @@
-//! Picture of a place at which parts and drawing differ.
+//! Picture of a point at which convex parts and drawn shape differ.
 
 use crate::mesh::Triangle;
 use crate::picture::VIEWS;
@@ -11,13 +11,14 @@ use nalgebra::{Point2, Point3};
 /// Size of a panel with the gap to the next, and without it, pixels.
 const PANEL: f64 = 460.0;
 const INSIDE: f64 = PANEL - 10.0;
-/// Distance from the place to the sides of a panel, m.
+/// Distance from the point to the sides of a panel, m.
 const AROUND: f64 = 1.0 * MM;
 const DRAWN: [Style; 2] = [Style::line("#8a5a10", 2.0), Style::line("#56657d", 2.0)];
 const PARTS: [Style; 2] =
     [Style::line("#e8a33d", 1.0).dashed(), Style::line("#1c5fb0", 1.0).dashed()];
 
-/// Draws sections through a place, task frame: faces and parts of plug, at a pose, and socket.
+/// Draws sections through a point in the task frame: the drawn faces and the convex parts of the plug, at its pose, and
+/// of the socket.
 pub fn svg(
     drawn: [&[Triangle]; 2],
     parts: [&[Part]; 2],
@@ -59,13 +60,12 @@ pub fn svg(
             drawing.disc(Point2::new(INSIDE / 2.0, INSIDE / 2.0), 4.0, Style::line("#a01818", 1.5));
         });
     }
-    let legend =
-        "lines: drawn plug (brown) and socket (grey); dashed: their convex parts; red: the place";
+    let legend = "lines: drawn plug (brown) and socket (grey); dashed: their convex parts; red: the point of the title";
     drawing.text(Point2::new(10.0, PANEL + 75.0), legend, Font::new(13.0));
     drawing.svg([VIEWS.len() as f64 * PANEL, PANEL + 90.0], "")
 }
 
-/// Ends of the line in which a triangle crosses a plane, if it does.
+/// Returns the ends of the segment in which a triangle crosses a plane; empty if it does not cross it.
 fn cut(face: &Triangle, axis: usize, at: f64) -> Vec<Point3<f64>> {
     let above = |p: &Point3<f64>| p[axis] - at;
     let edge = |i: usize| {

@@ -22,9 +22,9 @@ pub const GAP: f64 = 0.025 * MM;
 const LEAST: f64 = 1e-3 * MM;
 /// Step along the way, m.
 const STEP: f64 = 0.2 * MM;
-/// Component of a normal along the axis from which on an overlap is one of a stop.
+/// Smallest component of a normal along the axis at which an overlap belongs to a stop.
 const ALONG: f64 = 0.7;
-/// Height above the mated pose from which on nothing may be in the way, m.
+/// Height above the mated pose above which nothing may be in the way, m.
 const STOP: f64 = 0.3 * MM;
 
 /// Parts of one body that overlap the other in the mated pose or on the way to it, and gave way.

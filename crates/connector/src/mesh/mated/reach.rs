@@ -15,7 +15,7 @@ const ABOVE: f64 = 0.6 * MM;
 const SEARCHED: f64 = 1.5 * MM;
 /// Largest distance of the search moves from the opening, m.
 const SEARCH: f64 = 4.0 * MM;
-/// Sine of the slope from which on a face looks away from the other body: one that moves along the axis, tilted, does
+/// Sine of the slope beyond which a face looks away from the other body: a body that moves along the axis, tilted, does
 /// not come from behind.
 const AWAY: f64 = 0.35;
 /// Largest number of cells along one side of a map.

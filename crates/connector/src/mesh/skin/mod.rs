@@ -22,7 +22,7 @@ use rapier3d_f64::parry;
 const THICK: f64 = 0.25 * MM;
 /// Smallest thickness of a slab, m.
 const THIN: f64 = 10e-3 * MM;
-/// Length of a side from which on a polygon is cut in pieces, m.
+/// Smallest length of a side at which a polygon is cut into pieces, m.
 const LEAST_PIECE: f64 = 0.2 * MM;
 /// Smallest size of a solid along an axis, m.
 const LEAST_SIZE: f64 = 2e-3 * MM;
@@ -38,7 +38,7 @@ const CONVEX: f64 = 2e-3 * MM;
 const MOST_CORNERS: usize = 400;
 /// Cosine between the normals of a film's two sides, which do not cut one another.
 const FILM: f64 = 0.9999;
-/// Corners of a cut hull from which on those inside it are dropped.
+/// Number of corners of a cut hull at and above which those inside it are dropped.
 const MANY: usize = 32;
 
 /// Returns convex solids whose outer surface is that of the triangles, m, as far as `reached` accepts them; a slab that

@@ -4,7 +4,7 @@ mod common;
 
 use ask_tell::OptimizerKind;
 use ask_tell::stream::stream;
-use common::{SLOW, Studies, end, fake, read, run, start};
+use common::{SLOW, Studies, end, optimize_line, read, run, start};
 use rand::RngExt;
 use std::fs;
 use std::io::Write;
@@ -457,8 +457,8 @@ fn the_next_command_names_the_file_of_ones_own_task() {
     let studies = Studies::new();
     let text = include_str!("../tasks/usb.toml").replace("name = \"usb\"", "name = \"mine\"");
     let own = studies.file("mine.toml", text);
-    let line =
-        format!("--task {own} --budget 4 --no-levers --no-map --json --out {}", studies.word("s"));
-    let next = &fake(&line).json()["answer"]["next"]["command"];
+    let more = "--engine fake --budget 4 --no-levers --no-map --json --out";
+    let found = optimize_line(&format!("--task {own} {more} {}", studies.word("s"))).json();
+    let next = &found["answer"]["next"]["command"];
     assert_eq!(next, &format!("optimize measure add bench.csv --task {own}"));
 }

@@ -588,9 +588,9 @@ def next_print(
     """Recommend the finger to print next, or to stop printing, as ``optimize next`` does.
 
     It is the finger whose measurement is expected to improve the final choice most, by simulation and
-    measurements: because it may be the best, or because it decides between others. In a space with numbers
-    of the task (codesign) it is a finger with a strategy; another strategy for a printed finger costs no
-    print. The file of measurements may be empty or missing.
+    measurements: because it may be the best, or because it decides between others. In a space that varies
+    the task as well (codesign) it is a finger with a strategy; another strategy for a printed finger needs
+    no new print. The file of measurements may be empty or missing.
 
     Args:
         measurements: Bench measurements: published, or the path of a file.
@@ -891,7 +891,8 @@ def tune_task(
 
     First the start is taught with a medium finger; then the strategies of the shipped tasks are tried,
     scaled to this opening; then tilt, strokes, preload and push speed are optimized for the smallest range
-    of a soft, a medium and a stiff finger. Exit code 1 if nothing inserts.
+    of a soft, a medium and a stiff finger. Exit code 1 if nothing inserts. Ctrl-C writes the best strategy
+    so far.
 
     Args:
         task: Task file, which is rewritten; or the name of a shipped task, with out.

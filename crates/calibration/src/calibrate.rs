@@ -99,8 +99,7 @@ impl Calibration {
     pub fn new(layout: Layout, subjects: &[Subject], settings: &Settings<'_>) -> Self {
         let benches = layout.benches(subjects);
         let dimension = layout.dimension();
-        let mut random = stream(settings.seed, 0, "calibrate");
-        let posterior = sampled(&benches, dimension, settings, &mut random);
+        let posterior = posterior(&benches, dimension, settings);
         let task = |(i, subject): (usize, &Subject)| {
             let mut random = stream(settings.seed, i as u64, "draws");
             let fingers: Vec<usize> = (0..subject.of_space).collect();
@@ -130,6 +129,15 @@ impl Calibration {
         let tasks = subjects.iter().enumerate().map(task).collect();
         Calibration { layout, posterior, tasks }
     }
+}
+
+/// Returns samples of the posterior given all measurements; all predictions from the same files use the same samples.
+pub fn posterior(
+    benches: &[Bench<'_>],
+    dimension: usize,
+    settings: &Settings<'_>,
+) -> Vec<Vec<f64>> {
+    sampled(benches, dimension, settings, &mut stream(settings.seed, 0, "calibrate"))
 }
 
 /// Returns the share of the draws in which each finger is the best, 0 to 1.

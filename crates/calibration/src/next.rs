@@ -7,7 +7,7 @@
 //! if those before it had given the expected ranges (kriging believer; Ginsbourger et al. 2010).
 
 use super::bench::Bench;
-use super::predict::{INTERVAL, draws};
+use super::predict::{INTERVAL, IntervalKind, draws, predict};
 use super::process::StiffnessPoint;
 use ask_tell::statistics::{mean, normal_cdf, normal_pdf, quantile, sorted};
 use insertion::space::Design;
@@ -81,23 +81,29 @@ pub fn advise(
     let measured: BTreeSet<usize> = bench.observations.iter().map(|one| one.finger).collect();
     let known: BTreeSet<usize> = measured.union(failed).copied().collect();
     let new = among.iter().filter(|finger| !known.contains(finger));
-    let failed = failed.difference(&measured);
-    let all: Vec<usize> = measured.iter().chain(failed).chain(new).copied().collect();
+    let unmeasured = failed.difference(&measured);
+    let all: Vec<usize> = measured.iter().chain(unmeasured).chain(new).copied().collect();
     let drawn = draws(bench, posterior, &all, DRAWS, random);
     let noises = posterior.iter().map(|state| bench.hyperparameters(state).noise * bench.scale_mm);
     let mut ranges = Ranges::new(&drawn, mean(noises.map(|noise| noise * noise)).unwrap_or(0.0));
     (measured.len()..known.len()).for_each(|column| ranges.observe(column, 0.0));
     let told = ranges.clone();
     let mut printed: Vec<usize> = (0..known.len()).collect();
+    // In closed form, as a study predicts them, so that both name the same finger; it does not know failed fingers.
+    let predicted = failed.is_empty().then(|| predict(bench, posterior, &all, IntervalKind::Truth));
+    let means = predicted.map_or_else(
+        || told.means.clone(),
+        |predicted| predicted.iter().map(|range| range.mean_mm).collect(),
+    );
     let best = |columns: &[usize]| {
         let first = columns.iter().rev().copied();
-        first.max_by(|&a, &b| told.means[a].total_cmp(&told.means[b]))
+        first.max_by(|&a, &b| means[a].total_cmp(&means[b]))
     };
-    let best_known_mm = best(&printed[..measured.len()]).map(|column| told.means[column]);
+    let best_known_mm = best(&printed[..measured.len()]).map(|column| means[column]);
     let insert = (0..measured.len()).chain(known.len()..all.len());
     let choice = best(&insert.collect::<Vec<_>>()).map(|column| Choice {
         design: designs[all[column]].clone(),
-        expected_mm: told.means[column].max(0.0),
+        expected_mm: means[column].max(0.0),
         measured: column < measured.len(),
     });
     let mut next: Vec<Print> = Vec::new();

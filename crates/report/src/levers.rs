@@ -102,8 +102,8 @@ fn draw(area: &Area<'_>, levers: &Levers, bars: &[Bar<'_>]) -> Drawn {
             (true, Some(_)) => (BLUE, INK, 0.85),
         };
         let y = -(row as f64);
-        let now = lever.map(|lever| format!(", now at {}", lever.amount(lever.value)));
-        let moves = format!("moves {span_mm:.1} mm{}", now.unwrap_or_default());
+        let now = lever.map(|lever| format!(", now {}", lever.amount(lever.value)));
+        let moves = format!("span {span_mm:.1} mm{}", now.unwrap_or_default());
         for (words, ink, x, side) in
             [(*name, ink, left, HPos::Left), (&moves, MUTED, right, HPos::Right)]
         {

@@ -227,6 +227,14 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
     line("measure check own/bench.csv").succeeds();
     let next = line(&format!("next {few} own/bench.csv"));
     assert!(next.succeeds().starts_with("mine: 2 fingers measured"), "{}", next.stdout);
+    // A study recommends the finger that `next` would choose without a further print.
+    let choice = line(&format!("next --json {few} own/bench.csv")).json()["choice"].clone();
+    let study = "--budget 4 --no-levers --no-map --json --out s --task own/mine.toml";
+    let study = line(&format!("{study} {few} own/bench.csv")).json();
+    for (key, value) in study["recommended"]["values"].as_object().expect("a finger") {
+        assert_eq!(choice[key], *value, "{choice} {}", study["recommended"]);
+    }
+    assert_eq!(choice["expected_mm"], study["recommended"]["bench"]["range_mm"]);
     let found = line(&format!("calibrate --json {few} own/bench.csv")).json();
     assert_eq!(found["tasks"][0]["task"], "mine");
     let text = folder.read("own/bench.csv").replace("# task mine: mine.toml\n", "");

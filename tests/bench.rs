@@ -211,7 +211,8 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
     assert!(next.succeeds().starts_with(words), "{}", next.stdout);
     let first = "bench.csv does not exist: fingers are chosen by simulation alone\n";
     assert!(next.stderr.starts_with(first), "{}", next.stderr);
-    line(&format!("next {few} bench.csv")).fails(2, &["bench.csv: has no line", "give --task"]);
+    line(&format!("next {few} bench.csv"))
+        .fails(2, &["bench.csv: has no measurements yet", "give --task"]);
     line(&format!("calibrate --task ket8 {few} bench.csv")).fails(2, &["bench.csv: cannot read"]);
     line(&format!("next --task ket8 {few} bensh")).fails(2, &["unknown measurement file `bensh`"]);
     assert!(!folder.dir("bench.csv").exists());

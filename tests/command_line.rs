@@ -405,7 +405,7 @@ fn a_number_of_task_or_finger_can_be_set() {
         ("finger.rcc_mm=nan", &["finger.rcc_mm must lie between 15 and 27"]),
         ("finger.rcc_mm=28", &["finger.rcc_mm must lie between 15 and 27"]),
         ("finger.mass_g=0", &["finger.mass_g: is 0; it must lie in"]),
-        ("task.success.tilt_deg=-1", &["tasks/usb.toml", "success.tilt_deg", "must lie in"]),
+        ("task.success.tilt_deg=-1", &["design: task.success.tilt_deg: is -1", "must lie in"]),
         ("task.grip.force=1", &["task.grip.force:", "continues with faces_y_mm, force_n"]),
         ("infill_density_percent=11", &["--density"]),
     ] {

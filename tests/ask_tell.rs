@@ -234,7 +234,7 @@ fn what_is_known_can_be_told_and_is_not_asked_again() {
             json!({"id": null, "values": {"x": 0.0, "n": 3.0}, "value": 3.0})
         );
         for (told, part) in [
-            (r#"{"values":{"x":0,"n":3},"value":1}"#, "though it is known"),
+            (r#"{"values":{"x":0,"n":3},"value":1}"#, "told twice"),
             (r#"{"values":{"x":0},"value":1}"#, "`n` is missing"),
             (
                 r#"{"values":{"x":0.5,"n":1},"value":1}"#,

@@ -178,7 +178,7 @@ fn bad_lines_are_answered_and_change_nothing() {
         (r#"{"tell":[{"id":0,"value":NaN}]}"#, "not a line of JSON"),
         (r#"{"tell":[{"id":0,"value":1e999}]}"#, "not a line of JSON"),
         (r#"{"tell":[{"id":0,"value":"1"}]}"#, "`tell`"),
-        (&header("gp", "minimize", None).to_string(), "given already"),
+        (&header("gp", "minimize", None).to_string(), "already defined"),
     ] {
         talk.error(line, part);
     }

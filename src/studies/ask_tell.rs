@@ -6,6 +6,7 @@ use super::optimizer::optimizer;
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::setup::Setup;
+use crate::setup::run::RunRequest;
 use ask_tell::Optimizer;
 use insertion::evaluation::objective::Measure;
 use insertion::trial::NEVER;
@@ -200,9 +201,7 @@ fn set_up(work: &Work) -> Result<Arc<Setup>, Failure> {
 pub fn perform(bytes: &[u8], worker: &str, stop: &AtomicBool) -> Result<Vec<u8>, Failure> {
     // One thread, since the caller has a worker for each processor; and a new one, since a forked process
     // lacks the threads of the shared pool.
-    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    let alone =
-        alone.map_err(|error| Failure::running(format!("cannot start a thread: {error}")))?;
+    let alone = RunRequest { threads: Some(1), ..RunRequest::default() }.pool()?;
     alone.install(|| {
         let work = Work::decode(bytes).map_err(Failure::input)?;
         let setup = set_up(&work)?;

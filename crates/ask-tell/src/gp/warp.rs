@@ -29,15 +29,11 @@ impl Warp {
 /// exponent is the most likely one of -1, -0.9 .. 3 (1 is the identity) for `sample`, a subset of
 /// the values. Returns `None` if no exponent gives finite values that differ.
 pub(super) fn warp(values: &[f64], sample: &[f64]) -> Option<(Vec<f64>, Warp)> {
-    let mut best: Option<(f64, f64)> = None;
-    for step in 0..=40 {
-        let lambda = f64::from(step - 10) / 10.0;
-        let (likelihood, ..) = warped(sample, lambda);
-        if likelihood.is_finite() && best.is_none_or(|(record, _)| likelihood > record) {
-            best = Some((likelihood, lambda));
-        }
-    }
-    let (likelihood, values, warp) = warped(values, best?.1);
+    let lambdas = (-10..=30).map(|tenths| f64::from(tenths) / 10.0);
+    let scored = lambdas.map(|lambda| (warped(sample, lambda).0, lambda));
+    let finite = scored.filter(|(likelihood, _)| likelihood.is_finite());
+    let (_, lambda) = finite.reduce(|best, next| if next.0 > best.0 { next } else { best })?;
+    let (likelihood, values, warp) = warped(values, lambda);
     likelihood.is_finite().then_some((values, warp))
 }
 

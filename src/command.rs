@@ -1,5 +1,5 @@
-//! The form of a command: a request, which the command line or keywords give, and a response, which is printed as
-//! text or as JSON.
+//! Interface of a command: a request, parsed from the command line or from keywords, and a response, printed as text
+//! or as JSON.
 
 use crate::context::{Context, Program};
 use crate::failure::Failure;
@@ -87,7 +87,7 @@ impl<T: Serialize> Response for Output<T> {
     }
 }
 
-/// Result that is only a text.
+/// Result that consists of text alone.
 pub type Text = Output<String>;
 
 impl From<String> for Text {
@@ -98,7 +98,7 @@ impl From<String> for Text {
 
 /// Result of a command for other programs.
 #[derive(Debug)]
-pub struct Called {
+pub struct CallResult {
     /// Output of `--json`.
     pub json: String,
     /// SVG or page that shows the result, if there is one.
@@ -115,7 +115,7 @@ pub struct Command {
     /// Runs it and prints its result; fails if the request does, or by [`Response::verdict`].
     pub print: fn(&ArgMatches, Program) -> Result<(), Failure>,
     /// Runs it for another program.
-    pub call: fn(&ArgMatches, &Context<'_>) -> Result<Called, Failure>,
+    pub call: fn(&ArgMatches, &Context<'_>) -> Result<CallResult, Failure>,
 }
 
 const JSON: &str = "json";
@@ -143,10 +143,10 @@ fn augment<R: Request>(command: clap::Command) -> clap::Command {
     command.args(json.into_iter().chain(quiet))
 }
 
-/// Reads a request from words of the command line, the command's name left out.
+/// Parses a request from the words of a command line after the command's name.
 ///
 /// # Errors
-/// If they are not such a request.
+/// If they are not valid options of the request.
 pub fn parse<R: Request>(
     words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
 ) -> Result<R, Failure> {
@@ -172,9 +172,9 @@ fn print<R: Request>(matches: &ArgMatches, program: Program) -> Result<(), Failu
     response.verdict()
 }
 
-fn call<R: Request>(matches: &ArgMatches, context: &Context<'_>) -> Result<Called, Failure> {
+fn call<R: Request>(matches: &ArgMatches, context: &Context<'_>) -> Result<CallResult, Failure> {
     let response = request::<R>(matches)?.run(context)?;
-    Ok(Called { json: to_json(&response)?, picture: response.picture()? })
+    Ok(CallResult { json: to_json(&response)?, picture: response.picture()? })
 }
 
 fn to_json(response: &impl Serialize) -> Result<String, Failure> {

@@ -56,8 +56,8 @@ impl<'a> Context<'a> {
         })
     }
 
-    /// Lets Ctrl-C or SIGTERM cancel a command of the terminal, which then keeps what it has; a second one ends the
-    /// process.
+    /// Lets Ctrl-C or SIGTERM cancel a command of the terminal, which then keeps its results so far; a second one ends
+    /// the process.
     ///
     /// # Errors
     /// If signals cannot be watched.

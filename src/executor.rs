@@ -1,7 +1,7 @@
-//! `--executor WHERE`: passes the command to the installed Python package, which has the executors.
+//! `--executor WHERE`: passes the command to the installed Python package, which contains the executors.
 
 use crate::failure::Failure;
-use crate::python::{PYTHON, command, interpreter};
+use crate::python::{PYTHON, command, interpreter, output};
 use std::ffi::OsString;
 use std::process::{ChildStdin, ExitCode, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -14,20 +14,15 @@ const SOURCES_KEY: &str = "FINGER_OPT_SOURCES";
 /// exit code.
 pub fn run(executor: &str, words: &[OsString]) -> Result<ExitCode, Failure> {
     let python = interpreter();
-    let missing = |said: &str| {
+    let missing = |message: &str| {
         Failure::running(format!(
-            "--executor {executor} needs the Python package of finger-opt ({}: {said}); in \
+            "--executor {executor} needs the Python package of finger-opt ({}: {message}); in \
              the project's folder: pip install './python[dask,slurm]'. {PYTHON} names another \
              interpreter",
             python.display()
         ))
     };
-    let found = command("import finger_opt").stdin(Stdio::null()).output();
-    let found = found.map_err(|error| missing(&error.to_string()))?;
-    if !found.status.success() {
-        let said = String::from_utf8_lossy(&found.stderr);
-        return Err(missing(said.lines().last().unwrap_or("nothing")));
-    }
+    output(&mut command("import finger_opt")).map_err(|message| missing(&message))?;
     // The package ends the study when its standard input closes, also if this process is killed. The handler is set
     // first, since a signal may come as soon as the package runs.
     let input = Arc::new(Mutex::new(Input { stopped: false, pipe: None }));
@@ -49,7 +44,7 @@ pub fn run(executor: &str, words: &[OsString]) -> Result<ExitCode, Failure> {
     }
 }
 
-/// Standard input of the interpreter.
+/// Standard input of the interpreter, and whether the run was cancelled.
 struct Input {
     stopped: bool,
     pipe: Option<ChildStdin>,

@@ -14,7 +14,7 @@ use std::fmt;
 use std::ops::RangeInclusive;
 use study::StudyError;
 
-/// Error of a request. The texts name options of the command line; Python's keywords are the same words.
+/// Error of a request. Texts name options of the command line; the keywords of Python have the same names.
 #[derive(Debug)]
 pub enum Failure {
     /// Bad usage or a bad input file: exit code 2.
@@ -194,7 +194,7 @@ impl fmt::Display for Failure {
         match self {
             // Not `{error:#}`: the texts already include their causes.
             Failure::Input(error) | Failure::Task(error) | Failure::Run(error) => {
-                f.write_str(&short(&error.to_string()))
+                f.write_str(&truncated(&error.to_string()))
             }
             Failure::Interrupted(None) => f.write_str("interrupted"),
             Failure::Interrupted(Some(hint)) => write!(f, "interrupted; {hint}"),
@@ -202,7 +202,7 @@ impl fmt::Display for Failure {
     }
 }
 
-/// Returns the options of a usage as clap prints it: `--plug` or `--round` of `<--plug <WxHxL>|--round <DxL>>`.
+/// Returns the options in a usage text of clap: `--plug` or `--round` of `<--plug <WxHxL>|--round <DxL>>`.
 fn options(usage: &str) -> String {
     let names = usage.split(['<', '>', '|', ' ', '[', ']']);
     let names: Vec<&str> = names.filter(|name| name.starts_with("--")).collect();
@@ -214,16 +214,17 @@ fn options(usage: &str) -> String {
 }
 
 /// Largest length of a line of a message, characters; a message may quote a file.
-const LONGEST_LINE: usize = 600;
+const MAX_LINE_LENGTH: usize = 600;
 /// Largest number of lines of a message.
-const MOST_LINES: usize = 60;
+const MAX_LINES: usize = 60;
 
-fn short(text: &str) -> String {
-    let line = |line: &str| match line.char_indices().nth(LONGEST_LINE) {
+/// Shortens a message to the largest length and number of lines.
+fn truncated(text: &str) -> String {
+    let line = |line: &str| match line.char_indices().nth(MAX_LINE_LENGTH) {
         Some((end, _)) => format!("{} .. (cut)", &line[..end]),
         None => line.to_owned(),
     };
-    let left_out = text.lines().count().saturating_sub(MOST_LINES);
+    let left_out = text.lines().count().saturating_sub(MAX_LINES);
     let more = (left_out > 0).then(|| format!(".. and {left_out} lines more"));
-    text.lines().take(MOST_LINES).map(line).chain(more).collect::<Vec<_>>().join("\n")
+    text.lines().take(MAX_LINES).map(line).chain(more).collect::<Vec<_>>().join("\n")
 }

@@ -5,9 +5,10 @@ use clap::builder::styling::{AnsiColor, Style, Styles};
 use clap::{Arg, ArgAction, Command};
 use std::fmt::Write;
 
+/// Styles of headings, of words to be typed, and of placeholders.
 const TITLE: Style = AnsiColor::Green.on_default().bold();
 const WORD: Style = AnsiColor::Cyan.on_default().bold();
-const PLACE: Style = AnsiColor::Cyan.on_default();
+const PLACEHOLDER: Style = AnsiColor::Cyan.on_default();
 
 /// Commands by purpose, for the short help.
 const COMMANDS: [(&str, &[&str]); 5] = [
@@ -17,10 +18,10 @@ const COMMANDS: [(&str, &[&str]); 5] = [
     ("Bench", &["measure", "next", "identify", "calibrate"]),
     ("Files", &["export", "config", "ask-tell", "completions", "man"]),
 ];
-/// Largest width of the description of a command.
+/// Largest width of a command's description, columns.
 const MAX_WIDTH: usize = 65;
 /// Options of the short help.
-const FEW: [(&str, &str); 6] = [
+const MAIN_OPTIONS: [(&str, &str); 6] = [
     ("--task <NAME>", "Task of a study: `optimize tasks`, or the path of a task file"),
     ("--budget <N>", "Number of evaluations [default: until no gain is expected]"),
     ("--robot <NAME>", "Robot: `optimize robots`, or the path of a robot file"),
@@ -47,10 +48,10 @@ const HEADINGS: [(&str, &str); 5] = [
 
 /// Returns the styles of help and usage errors.
 pub fn styles() -> Styles {
-    Styles::styled().header(TITLE).usage(TITLE).literal(WORD).placeholder(PLACE)
+    Styles::styled().header(TITLE).usage(TITLE).literal(WORD).placeholder(PLACEHOLDER)
 }
 
-/// Sets the headings of the options of a command that has many options.
+/// Sets the headings of the options of a command with more than eight options.
 pub fn with_headings(command: Command) -> Command {
     let group = |arg: &Arg| {
         let long = arg.get_long().unwrap_or_default();
@@ -77,11 +78,12 @@ pub fn no_config() -> Arg {
 pub fn short(program: &Command) -> String {
     let mut text = String::new();
     let about = program.get_about().map(ToString::to_string).unwrap_or_default();
-    let usage =
-        format!("{TITLE}Usage:{TITLE:#} {WORD}optimize --task{WORD:#} {PLACE}<NAME>{PLACE:#}");
+    let usage = format!(
+        "{TITLE}Usage:{TITLE:#} {WORD}optimize --task{WORD:#} {PLACEHOLDER}<NAME>{PLACEHOLDER:#}"
+    );
     let _ = writeln!(
         text,
-        "{about}\n\n{usage} [OPTIONS]\n       {WORD}optimize{WORD:#} {PLACE}<COMMAND>{PLACE:#}"
+        "{about}\n\n{usage} [OPTIONS]\n       {WORD}optimize{WORD:#} {PLACEHOLDER}<COMMAND>{PLACEHOLDER:#}"
     );
     for (title, names) in COMMANDS {
         let _ = writeln!(text, "\n{TITLE}{title}:{TITLE:#}");
@@ -95,7 +97,7 @@ pub fn short(program: &Command) -> String {
         }
     }
     let _ = writeln!(text, "\n{TITLE}Options:{TITLE:#}");
-    for (option, about) in FEW {
+    for (option, about) in MAIN_OPTIONS {
         let _ = writeln!(text, "  {WORD}{option:<15}{WORD:#} {about}");
     }
     let _ = write!(text, "\nExample: optimize --task usb --budget 200");

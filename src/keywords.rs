@@ -1,6 +1,6 @@
 //! Commands called by another program, with their options as keywords.
 
-use crate::command::{Called, Command};
+use crate::command::{CallResult, Command};
 use crate::context::Context;
 use crate::failure::Failure;
 use clap::{Arg, ArgAction, Args};
@@ -10,7 +10,7 @@ use std::ffi::OsString;
 /// Runs a command by its name (`task new`) with its options as keywords, with underscores for hyphens. Keywords
 /// with a dot are those of `--set`; `null` and `false` leave an option out.
 ///
-/// They are read as a command line, so that defaults and bounds are declared once.
+/// The keywords are parsed as a command line, so that defaults and bounds are declared once.
 ///
 /// # Errors
 /// If there is no such command or option, a value cannot be used, or the command fails.
@@ -19,7 +19,7 @@ pub fn call(
     name: &str,
     keywords: &Map<String, Value>,
     context: &Context<'_>,
-) -> Result<Called, Failure> {
+) -> Result<CallResult, Failure> {
     let path: Vec<&str> = name.split(' ').collect();
     let command = commands.iter().find(|command| command.path == path);
     let command = command.ok_or_else(|| Failure::usage(format!("unknown command `{name}`")))?;
@@ -55,11 +55,11 @@ fn words(program: &clap::Command, keywords: &Map<String, Value>) -> Result<Vec<O
             |arg: &&Arg| arg.get_long().unwrap_or(arg.get_id().as_str()).replace('_', "-") == name;
         let arg = program.get_arguments().find(named);
         let arg = arg.ok_or_else(|| Failure::usage(format!("unknown option `{keyword}`")))?;
-        let several: Vec<String> = match value {
+        let values: Vec<String> = match value {
             Value::Null | Value::Bool(false) => continue,
-            Value::Array(values) if values.is_empty() => continue,
-            Value::Array(values) if several(arg) => {
-                values.iter().map(|value| joined(value, arg)).collect()
+            Value::Array(items) if items.is_empty() => continue,
+            Value::Array(items) if takes_several(arg) => {
+                items.iter().map(|item| joined(item, arg)).collect()
             }
             Value::Object(fields) if name == "set" => {
                 fields.iter().map(|(key, value)| format!("{key}={}", text(value))).collect()
@@ -68,18 +68,18 @@ fn words(program: &clap::Command, keywords: &Map<String, Value>) -> Result<Vec<O
         };
         // The default value is accepted even without the other options that the keyword requires.
         let default = arg.get_default_values().iter().map(|value| value.to_string_lossy());
-        if several.iter().map(String::as_str).eq(default) {
+        if values.iter().map(String::as_str).eq(default) {
             continue;
         }
         match (arg.is_positional(), arg.get_action()) {
-            (true, _) => positional.extend(several),
+            (true, _) => positional.extend(values),
             (false, ArgAction::SetTrue) => words.push(format!("--{name}")),
             (false, _) if *value == Value::Bool(true) => words.push(format!("--{name}")),
             (false, ArgAction::Append) if min_values(arg) > 1 => {
                 words.push(format!("--{name}"));
-                words.extend(several);
+                words.extend(values);
             }
-            (false, _) => words.extend(several.iter().map(|value| format!("--{name}={value}"))),
+            (false, _) => words.extend(values.iter().map(|value| format!("--{name}={value}"))),
         }
     }
     // Positional arguments follow.
@@ -87,7 +87,8 @@ fn words(program: &clap::Command, keywords: &Map<String, Value>) -> Result<Vec<O
     Ok(words.into_iter().chain(positional).map(OsString::from).collect())
 }
 
-fn several(arg: &Arg) -> bool {
+/// Returns whether an option takes several values.
+fn takes_several(arg: &Arg) -> bool {
     let many = arg.get_num_args().is_some_and(|count| count.max_values() > 1);
     matches!(arg.get_action(), ArgAction::Append) && arg.get_value_delimiter().is_none() || many
 }
@@ -96,7 +97,7 @@ fn min_values(arg: &Arg) -> usize {
     arg.get_num_args().map_or(1, |count| count.min_values())
 }
 
-/// Joins the parts of a value as the option takes them: by `x` (`WxHxL`), else by commas.
+/// Joins the parts of a value by `x` if the option takes `WxHxL`, else by commas.
 fn joined(value: &Value, arg: &Arg) -> String {
     let Value::Array(parts) = value else { return text(value) };
     let by_x =

@@ -113,7 +113,7 @@ impl Progress {
         }
     }
 
-    /// Counts a part of this cost that took so long; returns the time left, by the parts that were no cached results.
+    /// Counts a part of this cost that took so long; returns the time left, by the parts that were not cached.
     fn time_left(&mut self, cost: f64, took: Duration) -> Duration {
         self.done += cost;
         self.left = (self.left - cost).max(0.0);

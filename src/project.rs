@@ -38,19 +38,19 @@ pub struct Settings {
     pub threads: Option<u16>,
 }
 
-/// A project file that was found.
+/// Project file and its contents.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Project {
     /// Its path.
     pub file: String,
-    /// Its keys, with paths as a command takes them.
+    /// Its keys; relative paths are changed to paths from the current folder.
     pub settings: Settings,
 }
 
 /// Default of an option, from a project file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OptionDefault {
-    /// Option, or positional argument of a measurement file.
+    /// Name of the option, or of the positional argument for a measurement file.
     pub option: &'static str,
     /// Its value.
     pub value: String,
@@ -139,7 +139,7 @@ impl OptionDefault {
     }
 }
 
-/// Returns the path of a file in the folder of the project, or the name as it is if there is none.
+/// Returns the path of a file in the folder of the project, or the unchanged name if it is not a path.
 fn beside(folder: &Path, name: &str) -> String {
     let path = folder.join(name);
     let is_path = path.is_file() || name.contains(['.', '/']);
@@ -160,7 +160,7 @@ pub fn with_defaults(program: Command, path: &[String], defaults: &[OptionDefaul
         let Some(id) = program.get_arguments().find(of).map(|arg| arg.get_id().clone()) else {
             return program;
         };
-        // clap keeps defaults as long as the program runs.
+        // clap requires a default with a static lifetime.
         let value: &'static str = set.value.clone().leak();
         program.mut_arg(id, |arg| arg.required(false).default_value(value))
     })

@@ -1,4 +1,4 @@
-//! The interpreter in which the Python package is installed.
+//! Python interpreter with the installed package.
 
 use input::{Fault, Place};
 use std::ffi::OsString;
@@ -6,17 +6,18 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
-/// Environment variable for another interpreter than `python3`.
+/// Environment variable with the path of another interpreter than `python3`.
 pub const PYTHON: &str = "FINGER_OPT_PYTHON";
 /// Environment variable that excludes the current folder from imports, also in child processes.
 const SAFE_PATH: (&str, &str) = ("PYTHONSAFEPATH", "1");
-/// The same for Python 3.10, which ignores the variable.
+/// Code with the same effect for Python 3.10, which ignores the variable.
 const SAFE: &str = "import sys; sys.path[:] = filter(None, sys.path); ";
 
 /// Interpreter in which this library is loaded.
 pub static OWN: OnceLock<OsString> = OnceLock::new();
 
-/// Returns the interpreter.
+/// Returns the interpreter: that of the environment variable, else that in which this library is loaded, else
+/// `python3`.
 pub fn interpreter() -> OsString {
     let own = || OWN.get().cloned().unwrap_or_else(|| "python3".into());
     std::env::var_os(PYTHON).unwrap_or_else(own)
@@ -24,28 +25,28 @@ pub fn interpreter() -> OsString {
 
 /// Format of files that the package reads by one of its extras.
 pub struct Format {
-    /// Noun phrase with its article: `a STEP file`.
+    /// Name with its article: `a STEP file`.
     pub name: &'static str,
     /// Extra of the package.
     pub extra: &'static str,
     /// Code that prints the contents of the file `sys.argv[1]`, or exits with an error of one line.
     pub reader: &'static str,
-    /// Alternative without the package, the last clause of the error.
+    /// Alternative without the package, as the last clause of the error.
     pub otherwise: &'static str,
 }
 
 impl Format {
-    /// Returns the output of the reader for a file, and its warnings; errors call the file `file`.
+    /// Returns the output of the reader for the file at `path`, and its warnings; messages name it `file`.
     ///
     /// # Errors
     /// If it cannot read the file, or the package or its extra is not installed.
     pub fn read(&self, path: &Path, file: &str) -> Result<(Vec<u8>, Vec<String>), Fault> {
         let Format { name, extra, reader, otherwise } = self;
         let python = interpreter();
-        let called = |said: &str| said.replace(&path.display().to_string(), file);
-        let fail = |said: &str| {
+        let renamed = |text: &str| text.replace(&path.display().to_string(), file);
+        let fail = |message: &str| {
             // An error of the reader begins with the file; any other means that the package is missing.
-            let named = called(said);
+            let named = renamed(message);
             let problem = match named.strip_prefix(file) {
                 Some(problem) => problem.trim_start_matches(':').trim_start().to_owned(),
                 None => format!(
@@ -56,14 +57,22 @@ impl Format {
             };
             Place::file(file).fault(problem)
         };
-        let run = command(reader).arg(path).stdin(Stdio::null()).output();
-        let found = run.map_err(|error| fail(&error.to_string()))?;
-        let said = String::from_utf8_lossy(&found.stderr);
-        if found.status.success() {
-            let warnings = said.lines().filter(|line| line.starts_with("warning: "));
-            return Ok((found.stdout, warnings.map(called).collect()));
-        }
-        Err(fail(said.lines().last().unwrap_or("nothing")))
+        let (output, messages) = output(command(reader).arg(path)).map_err(|error| fail(&error))?;
+        let warnings = messages.lines().filter(|line| line.starts_with("warning: "));
+        Ok((output, warnings.map(renamed).collect()))
+    }
+}
+
+/// Runs a command without input and returns its standard output and standard error.
+///
+/// # Errors
+/// If it fails, with the last line of its standard error.
+pub fn output(command: &mut Command) -> Result<(Vec<u8>, String), String> {
+    let done = command.stdin(Stdio::null()).output().map_err(|error| error.to_string())?;
+    let messages = String::from_utf8_lossy(&done.stderr).into_owned();
+    match done.status.success() {
+        true => Ok((done.stdout, messages)),
+        false => Err(messages.lines().last().unwrap_or("no message").to_owned()),
     }
 }
 

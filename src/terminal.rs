@@ -8,8 +8,7 @@ use std::io::{self, IsTerminal, Write};
 /// Prints to standard output; a closed pipe (`| head`) is not an error.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    let text = if takes_colours(&out) { coloured(&shown(text)) } else { shown(text) };
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(shown(text, &out).as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::running(format!("cannot write the output: {error}")))
         }
@@ -17,15 +16,16 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Returns text with control characters escaped; a carriage return would overwrite the line.
-fn shown(text: &str) -> String {
-    visible(text).replace('\r', "\\r")
+/// Returns text for a stream: control characters escaped (a carriage return would overwrite the line), and coloured if
+/// the stream takes colours.
+fn shown(text: &str, stream: &impl IsTerminal) -> String {
+    let text = visible(text).replace('\r', "\\r");
+    if takes_colours(stream) { coloured(&text) } else { text }
 }
 
 /// Writes a line on standard error; a failure is ignored, so that it does not end a study.
 pub fn say(text: &str) {
-    let text = if takes_colours(&io::stderr()) { coloured(&shown(text)) } else { shown(text) };
-    let _ = writeln!(io::stderr(), "{text}");
+    let _ = writeln!(io::stderr(), "{}", shown(text, &io::stderr()));
 }
 
 /// Returns whether a stream takes colours: a terminal, unless `NO_COLOR` is set or `TERM` is dumb.

@@ -178,7 +178,7 @@ fn bad_lines_are_answered_and_change_nothing() {
         (r#"{"tell":[{"id":0,"value":NaN}]}"#, "not a line of JSON"),
         (r#"{"tell":[{"id":0,"value":1e999}]}"#, "not a line of JSON"),
         (r#"{"tell":[{"id":0,"value":"1"}]}"#, "`tell`"),
-        (&header("gp", "minimize", None).to_string(), "given already"),
+        (&header("gp", "minimize", None).to_string(), "already defined"),
     ] {
         talk.error(line, part);
     }
@@ -234,7 +234,7 @@ fn what_is_known_can_be_told_and_is_not_asked_again() {
             json!({"id": null, "values": {"x": 0.0, "n": 3.0}, "value": 3.0})
         );
         for (told, part) in [
-            (r#"{"values":{"x":0,"n":3},"value":1}"#, "though it is known"),
+            (r#"{"values":{"x":0,"n":3},"value":1}"#, "told twice"),
             (r#"{"values":{"x":0},"value":1}"#, "`n` is missing"),
             (
                 r#"{"values":{"x":0.5,"n":1},"value":1}"#,

@@ -192,9 +192,9 @@ fn measurements_that_a_study_cannot_use_are_refused_before_it_begins() {
     refused("ket8,50,0,5.7\n", &["--task", "ket8"], &["line 2", "infill_density_percent: 50"]);
     refused(line, &["--task", "ket8,rj45"], &["--measurements", "give one --task"]);
     let objective = ["--task", "ket8", "--objective", "centred-range"];
-    refused(line, &objective, &["centred-range is not known on the bench"]);
+    refused(line, &objective, &["centred-range is not measured on the bench"]);
     let constraint = ["--task", "ket8", "--constraint", "peak-force<=30"];
-    refused(line, &constraint, &["a --constraint is not known on the bench"]);
+    refused(line, &constraint, &["a --constraint is not measured on the bench"]);
 }
 
 #[test]

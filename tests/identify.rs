@@ -128,7 +128,7 @@ fn a_fault_of_the_columns_is_a_remark_and_logs_that_tell_nothing_are_an_error() 
     }
     for (by, cause) in [(-1.0, "`force_sign`"), (1.0 / 9.80665, "another unit than newtons")] {
         folder.file("a.csv", scaled(&log, &forces, by));
-        let nothing = "these logs tell nothing of the cell";
+        let nothing = "these logs determine no parameter of the cell";
         optimize_line(&format!("{identify} --out {cell}")).fails(1, &[nothing, cause]);
         assert!(!folder.dir("cell.toml").exists());
     }

@@ -8,7 +8,7 @@ use common::Studies;
 use common::memory::{self, Memory};
 use finger_opt::command::parse;
 use finger_opt::commands::study;
-use finger_opt::studies::ask_tell::{AskTellStudy, Order, perform};
+use finger_opt::studies::ask_tell::{AskTellStudy, NextStep, perform};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluate, Measured};
 use insertion::evaluation::robustness::race::{self, Race};
@@ -147,7 +147,7 @@ fn by_workers(studies: &Studies, errors: &str) -> String {
     let mut request: study::Request = parse(words).unwrap();
     request.out = Some(studies.dir("workers"));
     let Ok(mut guided) = request.open(None).and_then(AskTellStudy::new) else { panic!("no study") };
-    while let Ok(Order::Measure(works)) = guided.order(&AtomicBool::new(false)) {
+    while let Ok(NextStep::Measure(works)) = guided.next_step(&AtomicBool::new(false)) {
         for (proposal, work) in works.into_iter().rev() {
             let result = perform(&work, "a worker", &NEVER).unwrap_or_else(|e| panic!("{e}"));
             assert!(matches!(guided.take(proposal, &result), Ok(true)));

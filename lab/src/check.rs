@@ -1,4 +1,4 @@
-//! `lab check`: an engine against closed formulas, its windows at finer steps and other searches.
+//! `lab check`: compares an engine with closed formulas, or its windows with those at finer steps or by another search.
 
 use crate::compare::{Setting, TaskSettings, pairs};
 use crate::validate::{Fingers, search_name, tasks};
@@ -48,7 +48,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let engine = arguments.engine;
     if !engine.simulates() {
         let name = engine.name();
-        return Err(Failure::usage(format!("--engine {name} simulates no contacts to be checked")));
+        return Err(Failure::usage(format!("--engine {name} does not simulate contacts")));
     }
     if arguments.convergence || arguments.searches {
         return arguments.windows();
@@ -81,7 +81,7 @@ impl Arguments {
     }
 }
 
-/// Returns the engine as it is and its finer variants, as settings of a task.
+/// Returns the settings of a task with the engine itself and with its finer variants.
 fn finer(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskSettings, Failure> {
     let finer = engine.finer();
     let settings = std::iter::once(("production", engine)).chain(finer).map(|(name, engine)| {
@@ -92,6 +92,7 @@ fn finer(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskSetti
     Ok(TaskSettings { task, settings })
 }
 
+/// Returns the settings of a task with both searches.
 fn searches(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskSettings, Failure> {
     let rig = Arc::new(EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?);
     let setting =
@@ -100,9 +101,9 @@ fn searches(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskSe
     Ok(TaskSettings { task, settings })
 }
 
-fn verdict(what: &str, failed: usize, all: usize) -> Result<(), Failure> {
+fn verdict(checks: &str, failed: usize, all: usize) -> Result<(), Failure> {
     match failed {
         0 => Ok(()),
-        failed => Err(Failure::running(format!("{failed} of {all} {what} failed"))),
+        failed => Err(Failure::running(format!("{failed} of {all} {checks} failed"))),
     }
 }

@@ -1,6 +1,6 @@
 //! `lab`: verification of the models by analytic checks, other engines and published tables.
 #![forbid(unsafe_code)]
-// Printing panics once the reader has closed the pipe: `finger_opt::terminal` prints.
+// These macros panic if the stream is closed; `finger_opt::terminal` prints instead.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 #![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 

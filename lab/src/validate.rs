@@ -16,6 +16,7 @@ use serde_json::json;
 use std::path::PathBuf;
 use study::write_file;
 
+/// Selection of measured fingers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Fingers {
     /// All 11
@@ -45,13 +46,13 @@ pub struct Arguments {
     /// Measured fingers
     #[arg(long, value_enum, default_value = "all")]
     fingers: Fingers,
-    /// Robot: see `optimize tasks`, or the path of a robot file
+    /// Robot: see `optimize robots`, or the path of a robot file
     #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
     robot: String,
     /// Contact engine
     #[arg(long, value_enum, default_value_t)]
     engine: EngineKind,
-    /// Coarse-to-fine search, every 0.5 mm and bisection: a third of the trials, blind to narrower gaps
+    /// Coarse-to-fine search, every 0.5 mm and bisection: a third of the trials, but it misses narrower gaps
     #[arg(long)]
     strides: bool,
     #[command(flatten)]
@@ -59,7 +60,7 @@ pub struct Arguments {
     /// How the nominal start is chosen, in place of the task file's rule
     #[arg(long, value_enum)]
     start: Option<StartRule>,
-    /// Folder that tables are written to
+    /// Folder of the tables
     #[arg(long, value_name = "DIR", default_value = "results/validation")]
     out: PathBuf,
     /// Print the result as JSON
@@ -97,7 +98,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
          tables are in {}\n",
         robot.name,
         search_name(search),
-        // The units stand above.
+        // The second line already names the units.
         accuracy.replace(" mm", "").replace(" %", "").replace(" of ", "/"),
         arguments.out.display(),
     ))
@@ -110,7 +111,10 @@ pub fn search_name(search: Search) -> &'static str {
     }
 }
 
-/// Reads the task of a name, or `all`; refuses tasks without published windows.
+/// Reads the task with this name, or for `all` every shipped task.
+///
+/// # Errors
+/// If a task has no published windows or cannot be read.
 pub fn tasks(name: &str) -> Result<Vec<Task>, Failure> {
     let names = match name {
         "all" => TASKS.iter().map(|shipped| shipped.name).collect(),
@@ -125,7 +129,7 @@ fn task(name: &str) -> Result<Task, Failure> {
         let names = TASKS.iter().map(|shipped| shipped.name).collect::<Vec<_>>().join(", ");
         let (file, task) = (source.file, task.name);
         return Err(Failure::usage(format!(
-            "{file}: nothing is published of the task `{task}`; there are {names}"
+            "{file}: task `{task}` has no published windows; available: {names}"
         )));
     }
     Ok(task)

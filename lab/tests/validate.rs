@@ -57,7 +57,7 @@ fn a_task_that_is_not_published_is_refused() {
     std::fs::write(&mine, text.replacen("name = \"usb\"", "name = \"mine\"", 1)).unwrap();
     let mine = mine.to_str().unwrap();
     validate(&["--task", mine], &folder.path().join("b"))
-        .fails(2, &["mine.toml", "nothing is published"]);
+        .fails(2, &["mine.toml", "has no published windows"]);
 }
 
 const REFERENCE: &str = "../results/reference/validation";

@@ -97,8 +97,8 @@ class Asked:
                 it continues, else 4, with executor the number of its workers].
             async_: Propose a new design after each result, so that no worker waits for the slowest of a batch;
                 the journal then depends on the order of the results.
-            out: Folder of the study [default: results/<task>-<optimizer>-seed<seed>, with what else is asked
-                for].
+            out: Folder of the study [default: results/<task>-<optimizer>-seed<seed>, extended by further
+                settings].
             threads: Threads [default: one per processor]; changes no result.
             cache: Folder of evaluations that studies share; safe to delete [default: results/.cache].
             no_cache: Measure every design again and store nothing.

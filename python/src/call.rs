@@ -1,7 +1,7 @@
 //! Commands, run without the interpreter's lock.
 
-use crate::errors::{InputError, StudyError, not_forked, raise, signalled};
-use finger_opt::command::Called;
+use crate::errors::{InputError, StudyError, check_not_forked, exception, signalled};
+use finger_opt::command::CallResult;
 use finger_opt::commands::COMMANDS;
 use finger_opt::context::Context;
 use finger_opt::keywords;
@@ -16,7 +16,7 @@ const SIGNAL_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Runs `work`, which may use the shared threads, without the interpreter's lock.
 pub fn released<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
-    not_forked()?;
+    check_not_forked()?;
     Ok(py.allow_threads(work))
 }
 
@@ -25,7 +25,7 @@ pub fn interruptible<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(&AtomicBool) -> T + Send,
 ) -> PyResult<T> {
-    not_forked()?;
+    check_not_forked()?;
     let stop = AtomicBool::new(false);
     watched(py, &stop, || work(&stop))
 }
@@ -73,6 +73,6 @@ pub fn call(py: Python<'_>, command: &str, keywords: &str) -> PyResult<(String, 
     let called = interruptible(py, |stop| {
         keywords::call(COMMANDS, command, &keywords, &Context::silent(stop))
     })?;
-    let Called { json, picture } = called.map_err(raise)?;
+    let CallResult { json, picture } = called.map_err(exception)?;
     Ok((json, picture))
 }

@@ -1,4 +1,4 @@
-//! Failures as exceptions, with the texts of the command line.
+//! Conversion of failures to exceptions, with the texts of the command line.
 
 use finger_opt::failure::Failure;
 use input::Place;
@@ -53,15 +53,15 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 }
 
 /// Number of the process that owns the shared threads of all simulations; 0 before they exist.
-static PROCESS: AtomicU32 = AtomicU32::new(0);
+static OWNER: AtomicU32 = AtomicU32::new(0);
 
 /// Checks that the threads of the library belong to this process.
 ///
 /// # Errors
 /// After a fork, which does not copy threads: this process would wait for them forever.
-pub fn not_forked() -> PyResult<()> {
+pub fn check_not_forked() -> PyResult<()> {
     let own = std::process::id();
-    match PROCESS.compare_exchange(0, own, Ordering::SeqCst, Ordering::SeqCst) {
+    match OWNER.compare_exchange(0, own, Ordering::SeqCst, Ordering::SeqCst) {
         Err(other) if other != own => Err(StudyError::new_err(
             "this process was forked after finger_opt had started threads; use the spawn or \
              forkserver start method",
@@ -70,10 +70,10 @@ pub fn not_forked() -> PyResult<()> {
     }
 }
 
-/// Returns the exception of a failure.
-pub fn raise(failure: Failure) -> PyErr {
+/// Converts a failure to an exception.
+pub fn exception(failure: Failure) -> PyErr {
     let (text, place) = (failure.to_string(), failure.place());
-    placed(
+    with_place(
         place,
         match failure {
             Failure::Input(_) => InputError::new_err(text),
@@ -84,8 +84,8 @@ pub fn raise(failure: Failure) -> PyErr {
     )
 }
 
-/// Returns an exception with a place.
-pub fn placed(place: Place, error: PyErr) -> PyErr {
+/// Sets the place of an exception.
+pub fn with_place(place: Place, error: PyErr) -> PyErr {
     let Place { file, line, key } = place;
     let set = Python::with_gil(|py| {
         let value = error.value(py);

@@ -1,7 +1,7 @@
 //! Trial driven from Python.
 
 use crate::call::{interruptible, read};
-use crate::errors::{InputError, placed, raise};
+use crate::errors::{InputError, exception, with_place};
 use finger_opt::commands::evaluate::Request;
 use finger_opt::keywords::request;
 use finger_opt::setup::driven;
@@ -18,7 +18,7 @@ pub struct Insertion(Mutex<driven::Insertion>);
 type StateTuple = (Vec<f64>, Option<&'static str>, Option<u8>);
 
 impl Insertion {
-    fn open(&self) -> MutexGuard<'_, driven::Insertion> {
+    fn lock(&self) -> MutexGuard<'_, driven::Insertion> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -33,30 +33,28 @@ impl Insertion {
             let Request { setup, finger, .. } = request(&keywords)?;
             driven::Insertion::new(&setup, &finger, stop)
         })?;
-        Ok(Insertion(Mutex::new(made.map_err(raise)?)))
+        Ok(Insertion(Mutex::new(made.map_err(exception)?)))
     }
 
     /// Restarts with the start shifted along y, mm.
     fn start(&self, py: Python<'_>, offset_mm: f64) -> PyResult<StateTuple> {
-        finite("offset_mm", &[offset_mm])?;
-        Ok(state_tuple(&py.allow_threads(|| self.open().start(offset_mm))))
+        check_finite("offset_mm", &[offset_mm])?;
+        Ok(state_tuple(&py.allow_threads(|| self.lock().start(offset_mm))))
     }
 
     /// Runs a control step.
     fn step(&self, py: Python<'_>, velocity_mm_per_s: [f64; 3]) -> PyResult<StateTuple> {
-        finite("velocity", &velocity_mm_per_s)?;
-        Ok(state_tuple(&py.allow_threads(|| self.open().step(velocity_mm_per_s))))
+        check_finite("velocity", &velocity_mm_per_s)?;
+        Ok(state_tuple(&py.allow_threads(|| self.lock().step(velocity_mm_per_s))))
     }
 }
 
-fn finite(name: &str, numbers: &[f64]) -> PyResult<()> {
-    match numbers.iter().all(|number| number.is_finite()) {
-        true => Ok(()),
-        false => {
-            let error = InputError::new_err(format!("{name}: must be finite"));
-            Err(placed(Place::default().key(name), error))
-        }
+fn check_finite(name: &str, numbers: &[f64]) -> PyResult<()> {
+    if numbers.iter().all(|number| number.is_finite()) {
+        return Ok(());
     }
+    let error = InputError::new_err(format!("{name}: must be finite"));
+    Err(with_place(Place::default().key(name), error))
 }
 
 fn state_tuple(state: &State) -> StateTuple {

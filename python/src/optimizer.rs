@@ -1,4 +1,4 @@
-//! Optimizers by ask and tell.
+//! Ask-and-tell session with an optimizer.
 
 use crate::errors::InputError;
 use ask_tell::protocol;

@@ -1,7 +1,7 @@
 //! Studies: records, and studies whose designs Python measures.
 
 use crate::call::{interruptible, read, released, watched};
-use crate::errors::{InputError, Refused, StudyError, raise};
+use crate::errors::{InputError, Refused, StudyError, exception};
 use ::study::{SOURCES, StudyRecord, evaluations_csv};
 use finger_opt::command::parse;
 use finger_opt::commands::resume;
@@ -9,7 +9,7 @@ use finger_opt::context::Context;
 use finger_opt::failure::Failure;
 use finger_opt::keywords::request;
 use finger_opt::program::program;
-use finger_opt::studies::ask_tell::{self, Order, RejectedResult};
+use finger_opt::studies::ask_tell::{self, NextStep, RejectedResult};
 use finger_opt::studies::recommended;
 use finger_opt::studies::request::AnyStudy;
 use finger_opt::studies::summary::summary;
@@ -39,7 +39,7 @@ impl Stop {
     }
 }
 
-/// Performs a unit of work, bytes in, bytes out; ends early once `stop` is set.
+/// Measures a unit of work, given as bytes, and returns its result as bytes; ends early once `stop` is set.
 #[pyfunction]
 pub fn perform<'py>(
     py: Python<'py>,
@@ -52,7 +52,7 @@ pub fn perform<'py>(
     // Cancelled by `stop`, not by Ctrl-C.
     let failed = |failure| match failure {
         Failure::Interrupted(_) => StudyError::new_err(failure.to_string()),
-        failure => raise(failure),
+        failure => exception(failure),
     };
     Ok(PyBytes::new(py, &done.map_err(failed)?))
 }
@@ -90,22 +90,19 @@ impl StudyRequest {
     /// Creates the request for a study with these keywords.
     #[new]
     fn new(keywords: &str) -> PyResult<Self> {
-        let request = request(&read(keywords)?).map_err(raise)?;
+        let request = request(&read(keywords)?).map_err(exception)?;
         Ok(StudyRequest::of(AnyStudy::asked(request)))
     }
 
     /// Creates the request to continue the study in a folder with these keywords.
     #[staticmethod]
     fn resumed(folder: PathBuf, keywords: &str) -> PyResult<Self> {
-        let run = request(&read(keywords)?).map_err(raise)?;
-        Ok(StudyRequest::of(AnyStudy::Resumed(resume::Request {
-            dir: folder,
-            run,
-            verbose: false,
-        })))
+        let run = request(&read(keywords)?).map_err(exception)?;
+        let request = resume::Request { dir: folder, run, verbose: false };
+        Ok(StudyRequest::of(AnyStudy::Resumed(request)))
     }
 
-    /// Parses words of the command line.
+    /// Creates the request from the words of a command line.
     #[staticmethod]
     fn in_words(words: Vec<OsString>) -> PyResult<Self> {
         let has = |flag: &str| words.iter().any(|word| word == flag);
@@ -115,7 +112,7 @@ impl StudyRequest {
             Some((first, rest)) if first == "study" => parse(rest).map(AnyStudy::asked),
             _ => parse(&words).map(AnyStudy::asked),
         };
-        let study = read.map_err(raise)?;
+        let study = read.map_err(exception)?;
         let (run, verbose) = study.run_options();
         let (executor, format) = (run.executor.clone(), OutputFormat { json, verbose });
         Ok(StudyRequest { study, executor, quiet, format })
@@ -135,7 +132,7 @@ impl StudyRequest {
 
     /// Writes the study without measuring and returns its folder.
     fn create(&self, py: Python<'_>) -> PyResult<PathBuf> {
-        released(py, || self.study.create())?.map_err(raise)
+        released(py, || self.study.create())?.map_err(exception)
     }
 
     /// Starts or continues the study.
@@ -145,7 +142,7 @@ impl StudyRequest {
             open.warn(&Context::terminal(self.format.json, true, program))?;
             ask_tell::AskTellStudy::new(open)
         };
-        let opened = released(py, open)?.map_err(raise)?;
+        let opened = released(py, open)?.map_err(exception)?;
         Ok(AskTellStudy { open: Mutex::new(Some(opened)), format: self.format })
     }
 }
@@ -162,7 +159,7 @@ impl Recorded {
     #[new]
     fn new(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
         let read = py.allow_threads(|| StudyRecord::load(&folder));
-        let record = read.map_err(|error| raise(error.into()))?;
+        let record = read.map_err(|error| exception(error.into()))?;
         Ok(Recorded { folder, record })
     }
 
@@ -190,7 +187,7 @@ impl Recorded {
 
     /// Returns the text of `evaluations.csv`.
     fn table(&self) -> PyResult<String> {
-        evaluations_csv(&self.folder, &self.record).map_err(|error| raise(error.into()))
+        evaluations_csv(&self.folder, &self.record).map_err(|error| exception(error.into()))
     }
 
     /// Returns the answer as an HTML fragment.
@@ -207,7 +204,7 @@ pub struct AskTellStudy {
     format: OutputFormat,
 }
 
-/// Work to be measured, empty if a result is pending, and the ending, if there is one.
+/// Work to be measured, empty if the caller has to wait for a result, and the ending once the study has ended.
 type Next<'py> = (Vec<(u64, Bound<'py, PyBytes>)>, Option<String>);
 
 impl AskTellStudy {
@@ -229,17 +226,17 @@ impl AskTellStudy {
 #[pymethods]
 impl AskTellStudy {
     fn next<'py>(&self, py: Python<'py>) -> PyResult<Next<'py>> {
-        let order = interruptible(py, |stop: &AtomicBool| {
-            self.study().as_mut().map(|study| study.order(stop))
+        let step = interruptible(py, |stop: &AtomicBool| {
+            self.study().as_mut().map(|study| study.next_step(stop))
         })?;
-        let order = order.ok_or_else(|| StudyError::new_err("the study is closed"))?;
-        Ok(match order.map_err(raise)? {
-            Order::Wait => (Vec::new(), None),
-            Order::Measure(work) => {
+        let step = step.ok_or_else(|| StudyError::new_err("the study is closed"))?;
+        Ok(match step.map_err(exception)? {
+            NextStep::Wait => (Vec::new(), None),
+            NextStep::Measure(work) => {
                 let bytes = |(proposal, work): (u64, Vec<u8>)| (proposal, PyBytes::new(py, &work));
                 (work.into_iter().map(bytes).collect(), None)
             }
-            Order::Finish(ending) => {
+            NextStep::Finish(ending) => {
                 let ending = json!(ending).as_str().map(str::to_owned);
                 (Vec::new(), ending)
             }
@@ -250,7 +247,7 @@ impl AskTellStudy {
         let result = result.to_vec();
         self.with(py, |study| study.take(proposal, &result))?.map_err(|why| match why {
             RejectedResult::Refused(error) => Refused::new_err(error.to_string()),
-            RejectedResult::Failed(failure) => raise(failure),
+            RejectedResult::Failed(failure) => exception(failure),
         })
     }
 
@@ -274,11 +271,11 @@ impl AskTellStudy {
             |stop: &AtomicBool| self.study().as_mut().map(|study| study.finish(ending, stop));
         let done = interruptible(py, finish)?;
         let ended = done.ok_or_else(|| StudyError::new_err("the study is closed"))?;
-        let ended = ended.map_err(raise)?;
+        let ended = ended.map_err(exception)?;
         let unusable = ended.unusable.as_ref().map(ToString::to_string);
         let answer = Answer::of(&ended.record);
         let analyse = |stop: &AtomicBool| ended.analyse(&answer, stop);
-        let analyses = interruptible(py, analyse)?.map_err(raise)?;
+        let analyses = interruptible(py, analyse)?.map_err(exception)?;
         let text = match self.format.json {
             true => summary(&ended, &answer, &analyses).to_string() + "\n",
             false => text::ended(&ended, &answer, self.format.verbose) + &text::analyses(&analyses),

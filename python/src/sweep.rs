@@ -1,7 +1,7 @@
 //! Windows of many fingers as columns.
 
 use crate::call::{read, released, watched};
-use crate::errors::{InputError, not_forked, raise};
+use crate::errors::{InputError, check_not_forked, exception};
 use crate::study::Stop;
 use finger_opt::commands::evaluate::Request;
 use finger_opt::keywords::request;
@@ -15,12 +15,12 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
-/// Columns of text.
-const WORDS: [&str; 6] = ["task", "robot", "cell", "finger_model", "rcc_from", "nominal"];
+/// Names of the columns of text.
+const TEXT_COLUMNS: [&str; 6] = ["task", "robot", "cell", "finger_model", "rcc_from", "nominal"];
 
 /// Settings of the measurement.
 #[derive(clap::Args)]
-struct Windows {
+struct SweepRequest {
     #[command(flatten)]
     setup: SetupRequest,
     #[arg(long)]
@@ -42,10 +42,10 @@ impl Sweep {
     fn new(py: Python<'_>, keywords: &str) -> PyResult<Self> {
         let keywords = read(keywords)?;
         let sweep = released(py, || {
-            let Windows { setup, walk, run } = request(&keywords)?;
+            let SweepRequest { setup, walk, run } = request(&keywords)?;
             sweep::Sweep::new(&Request { setup, walk, ..Request::default() }, &run)
         })?;
-        Ok(Sweep(sweep.map_err(raise)?))
+        Ok(Sweep(sweep.map_err(exception)?))
     }
 
     /// Returns the number of windows that were in the cache.
@@ -66,20 +66,20 @@ impl Sweep {
         let fingers = fingers(&columns)?;
         let own = AtomicBool::new(false);
         let stop = stop.map_or(&own, |Stop(stop)| stop);
-        not_forked()?;
+        check_not_forked()?;
         let done = watched(py, stop, || {
             let found = self.0.measure(&fingers, stop)?;
             Ok(found.iter().map(|found| flat(json!(found))).collect::<Vec<_>>())
         })?;
-        let rows: Vec<BTreeMap<String, Value>> = done.map_err(raise)?;
+        let rows: Vec<BTreeMap<String, Value>> = done.map_err(exception)?;
         let numbers = PyDict::new(py);
         let mut names: Vec<&String> = rows.iter().flat_map(BTreeMap::keys).collect();
         names.sort_unstable();
         names.dedup();
-        for name in names.into_iter().filter(|name| !WORDS.contains(&name.as_str())) {
+        for name in names.into_iter().filter(|name| !TEXT_COLUMNS.contains(&name.as_str())) {
             let number = |row: &BTreeMap<String, Value>| match row.get(name) {
                 Some(Value::Bool(flag)) => f64::from(u8::from(*flag)),
-                // Diverged, as in a capture map.
+                // The outcome `diverged`, by its number in a capture map.
                 Some(Value::String(_)) => -1.0,
                 value => value.and_then(Value::as_f64).unwrap_or(f64::NAN),
             };
@@ -88,11 +88,11 @@ impl Sweep {
         }
         let word = |row: &BTreeMap<String, Value>, name| Some(row.get(name)?.as_str()?.to_owned());
         let column = |name| (name, rows.iter().map(|row| word(row, name)).collect());
-        Ok((numbers, WORDS.into_iter().map(column).collect()))
+        Ok((numbers, TEXT_COLUMNS.into_iter().map(column).collect()))
     }
 }
 
-/// Returns the fingers of the rows.
+/// Returns a finger for each row of the columns.
 fn fingers(columns: &BTreeMap<String, Vec<f64>>) -> PyResult<Vec<FingerRequest>> {
     let rows = columns.values().next().map_or(0, Vec::len);
     let mut fingers = vec![FingerRequest::default(); rows];

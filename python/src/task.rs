@@ -1,6 +1,6 @@
 //! Task and space files, and the words for outcomes.
 
-use crate::errors::{InputError, raise};
+use crate::errors::{InputError, exception};
 use ask_tell::stream::stream;
 use finger_opt::setup::task::{TaskFile, read_space, read_task};
 use input::shipped::{PRIORS, ROBOTS, Source};
@@ -20,7 +20,7 @@ pub fn outcomes() -> Vec<(i8, &'static str, String)> {
 /// Returns the parameters of a space in the form of the first line of `ask-tell`, as JSON.
 #[pyfunction]
 pub fn space(name: &str) -> PyResult<String> {
-    let space = read_space(name).map_err(raise)?;
+    let space = read_space(name).map_err(exception)?;
     let line = |parameter: &Variable| {
         let Variable { key, low, high, step, .. } = parameter;
         json!({"name": key, "low": low, "high": high, "step": step})
@@ -31,14 +31,14 @@ pub fn space(name: &str) -> PyResult<String> {
 /// Reads and checks the task file of this name or path; returns its name in messages and its text.
 #[pyfunction]
 pub fn task(name: &str) -> PyResult<(String, String)> {
-    let Source { file, text } = read_task(name).map_err(raise)?.source;
+    let Source { file, text } = read_task(name).map_err(exception)?.source;
     Ok((file, text))
 }
 
 /// Checks a task file and returns its fields as JSON.
 #[pyfunction]
 pub fn task_fields(file: String, text: String) -> PyResult<String> {
-    let fields = TaskFile::fields(Source { file, text }).map_err(raise)?;
+    let fields = TaskFile::fields(Source { file, text }).map_err(exception)?;
     Ok(json!(fields).to_string())
 }
 
@@ -47,7 +47,7 @@ pub fn task_fields(file: String, text: String) -> PyResult<String> {
 pub fn task_text(file: &str, fields: &str) -> PyResult<String> {
     let fields: Value = serde_json::from_str(fields)
         .map_err(|error| InputError::new_err(format!("{file}: {error}")))?;
-    Ok(TaskFile::of_fields(file, &fields).map_err(raise)?.source.text)
+    Ok(TaskFile::of_fields(file, &fields).map_err(exception)?.source.text)
 }
 
 /// Draws a cell from the shipped priors; returns the text of its file, and its parameters as JSON.

@@ -137,7 +137,7 @@ def test_the_program_reads_step_by_the_package(occ, parts, meshes, tmp_path, com
     code, _, errors = command("task", "import", *words)
     assert code == 0, errors
     code, _, errors = command("task", "import", *words[:-1], str(tmp_path / "in.toml"), "--unit", "in")
-    assert code == 2 and "STEP names its unit" in errors
+    assert code == 2 and "STEP files contain their unit" in errors
 
 
 def test_the_program_and_a_lack_of_open_cascade_name_the_extra(parts, meshes, fake, tmp_path, command, monkeypatch):

@@ -91,7 +91,7 @@ def test_known_results_are_dictionaries_and_an_optimizer_can_be_pickled(name):
     optimizer = fo.Optimizer(SPACE, name, 3, batch=4)
     optimizer.tell(known, [value(point) for point in known])
     assert optimizer.best == {"id": None, "values": {"x": 1.0, "n": 5.0}, "value": 0.0}
-    with pytest.raises(fo.InputError, match="though it is known"):
+    with pytest.raises(fo.InputError, match="told twice"):
         optimizer.tell(known[0], 1.0)
     points = [*optimizer.ask(2), *optimizer.ask(1)]
     optimizer.tell(points[0], value(points[0]))

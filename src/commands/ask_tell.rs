@@ -11,7 +11,7 @@ use std::io::{self, BufRead, Read};
 #[derive(Debug, clap::Args)]
 #[command(
     display_order = 40,
-    after_help = "Example: optimize ask-tell < session.jsonl; docs/guide/python.md has the lines"
+    after_help = "Example: optimize ask-tell < session.jsonl; docs/guide/python.md describes the lines"
 )]
 pub struct Request {}
 

@@ -45,10 +45,8 @@ fn check(Project { file, settings }: &Project) -> Result<(), Failure> {
     let tasks = task.iter().flat_map(|tasks| tasks.split(',')).map(|name| read_task(name).err());
     let robot = of_robot.iter().map(|name| robot(name).err());
     let space = space.iter().map(|name| read_space(name).err());
-    match tasks.chain(robot).chain(space).flatten().next() {
-        Some(problem) => Err(Failure::in_file(file, problem)),
-        None => Ok(()),
-    }
+    let problem = tasks.chain(robot).chain(space).flatten().next();
+    problem.map_or(Ok(()), |problem| Err(Failure::in_file(file, problem)))
 }
 
 impl CurrentSettings {

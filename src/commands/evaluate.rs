@@ -101,7 +101,7 @@ impl command::Request for Request {
 }
 
 impl Request {
-    /// Returns the setup and the plan of draws.
+    /// Returns the setup, and the plan of the measurements under drawn errors.
     pub(crate) fn prepared(&self) -> Result<(Setup, Plan), Failure> {
         let mut setup = self.setup.setup()?;
         if let Some(name) = &self.uncertainty {
@@ -151,7 +151,7 @@ fn computed<S: Serializer>(by_ribs: &Option<ByRibs>, serializer: S) -> Result<S:
 impl command::Response for Evaluated {}
 
 impl Evaluated {
-    /// Returns a remark if the two finger models give ranges of which one is less than half the other.
+    /// Returns a remark if the ranges by the two finger models differ by more than a factor of two.
     fn disagreement(&self) -> Option<&'static str> {
         let Some(ByRibs::Measured(tasks)) = &self.by_ribs else { return None };
         let range_mm = self.evaluation.window.range_mm();
@@ -159,7 +159,7 @@ impl Evaluated {
             let other_mm = ribs.window.range_mm();
             range_mm.min(other_mm) < 0.5 * range_mm.max(other_mm)
         };
-        let remark = "less than half of the other: measure a finger before you rely on either";
+        let remark = "the ranges differ by more than a factor of two: measure a finger before you rely on either";
         tasks.iter().any(apart).then_some(remark)
     }
 }

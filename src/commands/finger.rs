@@ -5,7 +5,7 @@ use crate::context::Context;
 use crate::failure::Failure;
 use crate::setup::files::DEFAULT_FINGER;
 use crate::setup::finger::{InfillRequest, setting};
-use crate::setup::printed::{finger_file, measured_model};
+use crate::setup::printed::{finger_file, predicted_stiffness};
 use finray::geometry::Geometry;
 use finray::mechanics::{self, FingerStiffness};
 use finray::picture;
@@ -111,7 +111,7 @@ impl command::Request for Request {
         let mut design = Design::infill(density, direction);
         design.0.extend(set.0);
         let value =
-            ComputedFinger::new(&geometry, &computed, measured_model(&file.finger, &design)?);
+            ComputedFinger::new(&geometry, &computed, predicted_stiffness(&file.finger, &design)?);
         let svg = picture::svg(&geometry, self.load_n).map_err(Failure::input)?;
         let text = value.text(&geometry);
         Output::drawn((value, text), svg, self.svg.as_ref())

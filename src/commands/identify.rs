@@ -104,7 +104,7 @@ impl command::Request for Request {
         not_stopped(stop)?;
         // Compared curves are still shown, but give no cell.
         if !found.is_informative() && (self.out.is_some() || found.compared.is_empty()) {
-            return Err(nothing_learnt(&remarks));
+            return Err(undetermined(&remarks));
         }
         remarks.extend(mount::remark(&file, &found.compared));
         let cell = cell(&setup, &found, runs.len()).checked("the cell").map_err(Failure::input)?;
@@ -140,11 +140,13 @@ impl fmt::Display for Done {
     }
 }
 
-/// Returns the error for logs that determine nothing of their cell, with their serious remarks.
-fn nothing_learnt(remarks: &[Remark]) -> Failure {
+/// Returns the error for logs that determine no parameter of their cell, with their serious remarks.
+fn undetermined(remarks: &[Remark]) -> Failure {
     let serious = remarks.iter().filter(|remark| remark.serious).take(SHOWN);
     let lines: String = serious.map(|remark| format!("\n{remark}")).collect();
-    Failure::running(format!("these logs tell nothing of the cell; no cell is written{lines}"))
+    Failure::running(format!(
+        "these logs determine no parameter of the cell; no cell is written{lines}"
+    ))
 }
 
 /// Returns the identified cell as a cell file.

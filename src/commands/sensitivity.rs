@@ -4,7 +4,7 @@ use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
 use crate::failure::{Failure, wide};
 use crate::setup::request::SetupRequest;
-use crate::setup::words::Words;
+use crate::setup::words::WordParser;
 use analysis::sensitivity::{evaluate, inputs};
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::template::Impossible;
@@ -29,7 +29,7 @@ pub struct Request {
     pub setup: SetupRequest,
     /// Measure to analyse
     #[arg(long, value_name = "NAME", default_value = "range",
-          value_parser = Words::<Measure>::new([Measure::Range, Measure::CentredRange].map(Measure::name)))]
+          value_parser = WordParser::<Measure>::new([Measure::Range, Measure::CentredRange].map(Measure::name)))]
     pub objective: Measure,
     /// Errors of the cell to vary as well: typical, none, or the path of a file
     #[arg(long, value_name = "NAME", default_value = "typical")]

@@ -7,7 +7,7 @@ use crate::setup::bench::DEFAULT_PRIORS;
 use crate::setup::files::{DEFAULT_FINGER, find};
 use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE, SetupRequest};
 use crate::setup::run::RunRequest;
-use crate::setup::words::Words;
+use crate::setup::words::WordParser;
 use crate::setup::{Setup, measured};
 use crate::studies::on_bench;
 use crate::studies::open::OpenStudy;
@@ -62,15 +62,15 @@ pub struct Request {
     pub indifference_mm: f64,
     /// Optimizer
     #[arg(long, value_name = "NAME", default_value = "gp",
-          value_parser = Words::<OptimizerKind>::new(OptimizerKind::all().map(OptimizerKind::name)))]
+          value_parser = WordParser::<OptimizerKind>::new(OptimizerKind::all().map(OptimizerKind::name)))]
     pub optimizer: OptimizerKind,
     /// Measure to optimize; two or three, separated by commas, give a Pareto front
     #[arg(long, value_name = "NAME", default_value = "range",
-          value_parser = Words::<Objectives>::new(Measure::ALL.map(Measure::name)))]
+          value_parser = WordParser::<Objectives>::new(Measure::ALL.map(Measure::name)))]
     pub objective: Objectives,
     /// Constraint, for example 'peak-force<=30' or 'success-rate>=0.9'; may be given several times
     #[arg(long = "constraint", value_name = "LIMIT", hide_possible_values = true,
-          value_parser = Words::<Constraint>::new(Measure::ALL.map(Measure::name)))]
+          value_parser = WordParser::<Constraint>::new(Measure::ALL.map(Measure::name)))]
     pub constraints: Vec<Constraint>,
     /// Errors for success-rate and robust-range: typical, or the path of a file [default: typical]
     #[arg(long, value_name = "NAME")]
@@ -106,7 +106,7 @@ pub struct Request {
     #[arg(
         long,
         value_name = "DIR",
-        help = "Folder of the study [default: results/<task>-<optimizer>-seed<seed>, with what else is asked for]"
+        help = "Folder of the study [default: results/<task>-<optimizer>-seed<seed>, extended by further settings]"
     )]
     pub out: Option<PathBuf>,
     /// Options of the run.

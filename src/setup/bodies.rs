@@ -11,13 +11,13 @@ use std::path::Path;
 /// Largest mesh file, bytes.
 const LARGEST_FILE: u64 = 200 << 20;
 
-/// Files of a plug and its socket, and their bodies as a user names them.
-pub struct Named<'a> {
+/// Requested files and bodies of a plug and its socket.
+pub struct PartsRequest<'a> {
     /// File of the plug, or of both.
     pub plug: &'a Path,
     /// File of the socket.
     pub socket: &'a Path,
-    /// Whether the file has both in their mated pose.
+    /// Whether one file contains both in their mated pose.
     pub assembled: bool,
     /// Bodies of the plug.
     pub plug_body: &'a [String],
@@ -27,28 +27,33 @@ pub struct Named<'a> {
     pub unit: Option<Unit>,
 }
 
-/// Plug and socket as they were read.
-pub struct Pair {
+/// Meshes of a plug and its socket.
+pub struct Parts {
     /// Triangles of plug and of socket, in the unit of the files.
     pub triangles: [Vec<Triangle>; 2],
     /// Unit, if it is known.
     pub unit: Option<Unit>,
-    /// Finding about the bodies of an assembly.
+    /// Finding about the bodies of an assembly: its title and text.
     pub finding: Option<(&'static str, String)>,
 }
 
-/// Reads plug and socket; in a file with both, the bodies that are not named belong to the other part.
+/// Reads plug and socket; if one file contains both, the bodies that are not named belong to the other part.
 ///
 /// # Errors
-/// If a file cannot be read or has no such body, or if the body of the plug is unknown.
-pub fn pair(files: Files, named: &Named, context: &Context<'_>) -> Result<Pair, Failure> {
-    let (plug, plug_step) = bodies(named.plug, files[0], context)?;
-    let both = named.socket == named.plug;
+/// If a file cannot be read or lacks a named body, or if the bodies of the plug are unknown.
+pub fn parts(
+    files: Files,
+    request: &PartsRequest,
+    context: &Context<'_>,
+) -> Result<Parts, Failure> {
+    let (plug, plug_step) = bodies(request.plug, files[0], context)?;
+    let both = request.socket == request.plug;
     let (socket, socket_step) =
-        if both { (plug.clone(), plug_step) } else { bodies(named.socket, files[1], context)? };
-    let unit = if plug_step || socket_step { Some(Unit::Mm) } else { named.unit };
-    if let Some(other) = named.unit.filter(|given| Some(*given) != unit) {
-        let problem = format!("--unit {}: STEP names its unit, and is read in mm", value(other));
+        if both { (plug.clone(), plug_step) } else { bodies(request.socket, files[1], context)? };
+    let unit = if plug_step || socket_step { Some(Unit::Mm) } else { request.unit };
+    if let Some(other) = request.unit.filter(|given| Some(*given) != unit) {
+        let problem =
+            format!("--unit {}: STEP files contain their unit; leave it out", value(other));
         return Err(Failure::usage(problem));
     }
     let mut finding = None;
@@ -56,14 +61,14 @@ pub fn pair(files: Files, named: &Named, context: &Context<'_>) -> Result<Pair, 
         let picked = (!names.is_empty()).then(|| pick(of, names, file));
         picked.transpose().map_err(Failure::input)
     };
-    let plug_body = pick(&plug, named.plug_body, files[0])?;
-    let socket_body = pick(&socket, named.socket_body, files[1])?;
+    let plug_body = pick(&plug, request.plug_body, files[0])?;
+    let socket_body = pick(&socket, request.socket_body, files[1])?;
     let all = |bodies: Vec<Body>| bodies.into_iter().flat_map(|body| body.triangles).collect();
     let triangles = match (plug_body, socket_body) {
         (Some([plug, _]), Some([socket, _])) => [plug, socket],
         (Some([plug, rest]), None) => [plug, if both { rest } else { all(socket) }],
         (None, Some([socket, rest])) => [if both { rest } else { all(plug) }, socket],
-        (None, None) if named.assembled => {
+        (None, None) if request.assembled => {
             let (parts, names) = split(files[0], plug, unit)?;
             finding = Some(("plug's bodies", format!("{names}; --plug-body names others")));
             parts
@@ -78,10 +83,10 @@ pub fn pair(files: Files, named: &Named, context: &Context<'_>) -> Result<Pair, 
         }
         (None, None) => [all(plug), all(socket)],
     };
-    Ok(Pair { triangles, unit, finding })
+    Ok(Parts { triangles, unit, finding })
 }
 
-/// Bodies of a file, and whether it is STEP, which names its unit and is read in mm.
+/// Reads the bodies of a file; returns them, and whether the file is STEP, which is converted to mm.
 fn bodies(path: &Path, file: &str, context: &Context<'_>) -> Result<(Vec<Body>, bool), Failure> {
     let unreadable =
         |error: std::io::Error| Failure::in_file(file, format!("cannot read the mesh: {error}"));

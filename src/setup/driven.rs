@@ -23,7 +23,7 @@ pub struct Insertion {
 }
 
 impl Insertion {
-    /// Returns a part between these fingers.
+    /// Grasps the part of the task with this finger, in front of its socket.
     ///
     /// # Errors
     /// If task, robot and finger cannot be simulated, or the engine has no driven simulation; if `stop` is

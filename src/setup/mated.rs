@@ -15,7 +15,7 @@ use std::path::Path;
 use study::write_file;
 
 /// Largest number of overlaps that are listed.
-const MOST_SHOWN: usize = 4;
+const MAX_SHOWN: usize = 4;
 
 /// Options of the task of a mated pair.
 pub struct MateOptions<'a> {
@@ -205,7 +205,7 @@ fn described(
     if mate.through {
         let depth = options.depth.unwrap_or(mate.engaged_m) / MM;
         findings
-            .push(("through", format!("nothing stops the plug: {depth:.2} mm are to be reached")));
+            .push(("through", format!("nothing stops the plug: {depth:.2} mm must be reached")));
     }
     if made.handle {
         let [x, y, z] = options.handle.unwrap_or(HANDLE).map(|side| side / MM);
@@ -217,7 +217,7 @@ fn described(
     }
     let mut left_out: Vec<LeftOut> = made.interference.iter().map(LeftOut::from).collect();
     left_out.sort_by(|a, b| b.depth_mm.total_cmp(&a.depth_mm));
-    let more = left_out.split_off(left_out.len().min(MOST_SHOWN));
+    let more = left_out.split_off(left_out.len().min(MAX_SHOWN));
     for left in left_out {
         let round = |p: [f64; 3]| p.map(|v| (v * 100.0).round() / 100.0);
         let why = format!(

@@ -95,7 +95,7 @@ pub fn task(source: &Source) -> Result<TaskSource, Failure> {
 }
 
 /// Largest number of fingers of a task; sampling a Gaussian process of so many takes a minute.
-const MOST_FINGERS: usize = 200;
+const MAX_FINGERS: usize = 200;
 
 /// Reads the measurements of a file and sorts them, since their order determines the random draws. Their tasks are
 /// shipped ones, those in `more`, or have a comment line.
@@ -108,10 +108,10 @@ pub fn lines(source: &Source, more: &[&str]) -> Result<Vec<Experiment>, Failure>
     found.sort_by(Experiment::order);
     for of_task in found.chunk_by(|a, b| a.task == b.task) {
         let fingers = of_task.chunk_by(|a, b| a.design == b.design).count();
-        if fingers > MOST_FINGERS {
+        if fingers > MAX_FINGERS {
             let (file, task) = (&source.file, &of_task[0].task);
             let problem = format!(
-                "has {fingers} different fingers of the task `{task}`; at most {MOST_FINGERS} are \
+                "has {fingers} different fingers of the task `{task}`; at most {MAX_FINGERS} are \
                  accepted: keep those nearest to the best"
             );
             return Err(Failure::in_file(file, problem));

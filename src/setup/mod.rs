@@ -127,8 +127,8 @@ impl Setup {
         Ok(Setup { inputs, evaluator, fingers, uncertainty, measured, space, task_files })
     }
 
-    /// Returns the evaluator with stiffnesses computed from the ribs of the shipped finger, if its own are those
-    /// of the paper and space, tasks and engine support computed ones.
+    /// Returns an evaluator with stiffnesses computed from the ribs of the shipped finger; `None` if the setup does
+    /// not use the stiffnesses of the paper, or if space, tasks or engine do not support computed ones.
     pub(crate) fn by_ribs(&self) -> Option<Evaluator> {
         let own = &self.evaluator;
         if own.fingers.kind() != FingerModelKind::Paper {
@@ -146,7 +146,7 @@ impl Setup {
         Some(evaluator)
     }
 
-    /// Returns the setup in a cell with the cell's robot.
+    /// Returns the setup with this cell and its robot.
     pub(crate) fn with_cell(mut self, source: Source, cell: Priors) -> Result<Self, Failure> {
         for row in &cell.parameters {
             self.evaluator.robot.change(row, row.middle());
@@ -260,7 +260,7 @@ fn check_distinct(templates: &[Template]) -> Result<(), Failure> {
     }
 }
 
-/// Parses the file of a cell, which has to contain a robot.
+/// Parses the file of a cell; it must contain a robot.
 pub(crate) fn cell(Source { file, text }: &Source) -> Result<Priors, Failure> {
     let cell = Priors::parse(text, file).map_err(Failure::input)?;
     match cell.robot {
@@ -281,10 +281,8 @@ fn missing(role: &str) -> Failure {
 /// # Errors
 /// If it is missing.
 pub fn input(inputs: &Inputs, role: &str) -> Result<Source, Failure> {
-    match inputs.get(role) {
-        Some(text) => Ok(Source { file: format!("inputs/{role}"), text: text.clone() }),
-        None => Err(missing(role)),
-    }
+    let text = inputs.get(role).cloned().ok_or_else(|| missing(role))?;
+    Ok(Source { file: format!("inputs/{role}"), text })
 }
 
 /// Returns the finger file in a study's folder, if its fingers are computed.

@@ -32,7 +32,7 @@ pub struct PrintRequest {
 }
 
 impl PrintRequest {
-    /// Returns its geometry.
+    /// Returns the geometry of the finger.
     ///
     /// # Errors
     /// If a file is invalid, the study recommends no design, or the finger cannot be built.
@@ -42,14 +42,14 @@ impl PrintRequest {
         Geometry::new(&finger, &infill(&design, self.phase_mm)).map_err(Failure::input)
     }
 
-    /// Returns its stiffness by the model of measured fingers: as the study predicted it, else by the table that
-    /// the finger file names; `None` without a table.
+    /// Returns the stiffness that the model of measured fingers predicts: in the study, else by the table given in
+    /// the finger file; `None` without a table.
     ///
     /// # Errors
     /// See [`PrintRequest::geometry`].
-    pub fn measured_model(&self) -> Result<Option<Prediction>, Failure> {
+    pub fn predicted_stiffness(&self) -> Result<Option<Prediction>, Failure> {
         let (design, file, of_study) = self.chosen()?;
-        of_study.map_or_else(|| measured_model(&file.finger, &design), |found| Ok(Some(found)))
+        of_study.map_or_else(|| predicted_stiffness(&file.finger, &design), |found| Ok(Some(found)))
     }
 
     /// Returns the design, its finger file, and the stiffness that a study predicted.
@@ -83,9 +83,9 @@ pub(crate) fn finger_file(name: &str) -> Result<FingerFile, Failure> {
     FingerFile::parse(&source.text, &source.file).map_err(Failure::input)
 }
 
-/// Returns the stiffness by the model of the table of measured fingers that a finger file names; `None` without
-/// a table, for an infill outside of the model, or for another shape than the measured one.
-pub(crate) fn measured_model(
+/// Returns the stiffness predicted by the model of measured fingers whose table the finger file gives; `None`
+/// without a table, for an infill outside the model, or for another shape than the measured one.
+pub(crate) fn predicted_stiffness(
     finger: &PrintedFinger,
     design: &Design,
 ) -> Result<Option<Prediction>, Failure> {

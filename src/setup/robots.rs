@@ -6,7 +6,7 @@ use input::units::N_PER_MM;
 use insertion::robot::{Flange, Robot};
 use serde::{Deserialize, Serialize};
 
-/// Shipped robot and the cell it represents; the file contains only what the robot file does not.
+/// Shipped robot and the cell that it represents. `cells.toml` contains only the fields that the robot file lacks.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct CellRobot {
     /// Description of the cell.

@@ -55,12 +55,12 @@ pub struct EffortRequest {
 }
 
 impl EffortRequest {
-    /// Returns the simulations per task where there is no study.
-    pub(crate) fn count(self) -> usize {
+    /// Returns the given or default number of simulations per task, for a command without a study.
+    pub(crate) fn simulations(self) -> usize {
         usize::from(self.simulations.unwrap_or(EFFORT.simulations))
     }
 
-    /// Returns the effort, completed by that of the study.
+    /// Returns the effort; values not given are those of the study, or else the defaults.
     pub(crate) fn completed(self, of_study: Option<BenchEffort>) -> BenchEffort {
         let other = of_study.unwrap_or(EFFORT);
         BenchEffort {
@@ -97,7 +97,7 @@ pub struct RunRequest {
     /// best design is then taken from that segment
     #[arg(long)]
     pub accept_changed: bool,
-    /// Executor that measures designs, by the installed Python package: dask://HOST:PORT, slurm,
+    /// Executor that measures designs, through the installed Python package: dask://HOST:PORT, slurm,
     /// slurm:JOBS, processes or processes:N [default: the threads of this process]
     #[arg(long, value_name = "WHERE", value_parser = executor)]
     pub executor: Option<String>,

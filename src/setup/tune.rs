@@ -1,4 +1,4 @@
-//! Strategies of a new task.
+//! Tuning of a task's strategy, and its result as text.
 
 use super::files::robot;
 use super::request::DEFAULT_ROBOT;

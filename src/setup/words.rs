@@ -9,26 +9,20 @@ use std::marker::PhantomData;
 use std::str::FromStr;
 
 /// Parser of one word of a list, or of several separated by commas; the list is shown in help texts.
-#[derive(Debug)]
-pub struct Words<T> {
+#[derive(Debug, Clone)]
+pub struct WordParser<T> {
     words: Vec<&'static str>,
     value: PhantomData<fn() -> T>,
 }
 
-impl<T> Words<T> {
+impl<T> WordParser<T> {
     /// Returns the parser for these words.
     pub fn new(words: impl IntoIterator<Item = &'static str>) -> Self {
-        Words { words: words.into_iter().collect(), value: PhantomData }
+        WordParser { words: words.into_iter().collect(), value: PhantomData }
     }
 }
 
-impl<T> Clone for Words<T> {
-    fn clone(&self) -> Self {
-        Words { words: self.words.clone(), value: PhantomData }
-    }
-}
-
-impl<T: FromStr<Err: Display> + Clone + Send + Sync + 'static> TypedValueParser for Words<T> {
+impl<T: FromStr<Err: Display> + Clone + Send + Sync + 'static> TypedValueParser for WordParser<T> {
     type Value = T;
 
     fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<T, Error> {

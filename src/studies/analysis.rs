@@ -30,12 +30,12 @@ use study::{Provenance, read_analysis, write_analysis};
 const LEVERS: &str = "levers.json";
 const MAPS: &str = "maps.json";
 const ROBOTS: &str = "robots.json";
-/// Axes of the maps: the error along y and a second one.
+/// Axes of the maps: the error along y and a second error.
 const MAPPED: [Axes; 2] = [Axes::YX, Axes::YYaw];
-/// Stiffness along y below which a robot counts as compliant: above `servo`, below `ur5e_position`.
+/// Stiffness along y below which a robot counts as compliant; it lies between those of `servo` and `ur5e_position`.
 const COMPLIANT_N_PER_MM: f64 = 20.0;
 
-/// Contents of a file: an analysis, valid for this provenance and design.
+/// Contents of a file: an analysis with the provenance and design for which it is valid.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Stored<T> {
@@ -135,19 +135,19 @@ fn robots(
     stop: &AtomicBool,
 ) -> Result<Vec<RobotWindow>, Failure> {
     let start = [specimen.task.turn, specimen.task.strategy.tilt];
-    let under = |robot: &Robot, measured: Evaluation| {
+    let window_with = |robot: &Robot, measured: Evaluation| {
         let (stiffness_n_per_mm, _) = stiffness_and_lag(robot, start)?;
         Ok::<_, Failure>(RobotWindow { robot: robot.name.clone(), stiffness_n_per_mm, measured })
     };
     let known =
         answer.finger_and_evaluations().and_then(|(_, tasks)| tasks.first().copied().cloned());
     let Some(known) = known else { return Ok(Vec::new()) };
-    let own = under(&setup.evaluator.robot, known)?;
+    let own = window_with(&setup.evaluator.robot, known)?;
     let compliant = own.stiffness_n_per_mm.is_some_and(|[_, y, _]| y < COMPLIANT_N_PER_MM);
     setup.evaluator.robot = robot(if compliant { "ur5e_position" } else { "servo" })?;
     let (evaluator, plan) = (&setup.evaluator, &Plan::WINDOW);
     let found = evaluator.measure_or_teach(specimen, Search::Walk, plan, stop);
     let found = found.map_err(Failure::input)?;
     not_stopped(stop)?;
-    Ok(vec![own, under(&evaluator.robot, found)?])
+    Ok(vec![own, window_with(&evaluator.robot, found)?])
 }

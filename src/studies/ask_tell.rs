@@ -1,11 +1,12 @@
-//! Study whose designs are measured by the caller: a process pool, a cluster.
+//! Study whose designs are measured by the caller, for example in a process pool or on a cluster.
 
 use super::best_so_far::BestSoFar;
-use super::open::{Ended, OpenStudy, confirmer, hint, resume_hint, simulated};
+use super::open::{Ended, OpenStudy, cached_evaluator, confirmer, hint, resume_hint};
 use super::optimizer::optimizer;
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::setup::Setup;
+use crate::setup::run::RunRequest;
 use ask_tell::Optimizer;
 use insertion::evaluation::objective::Measure;
 use insertion::trial::NEVER;
@@ -14,8 +15,8 @@ use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 use study::{
-    ConfirmationLog, Ending, Next, Proposal, ProposalResult, Scheduler, Simulated, Timing, Work,
-    WorkError,
+    CachedEvaluator, ConfirmationLog, Ending, Next, Proposal, ProposalResult, Scheduler, Timing,
+    Work, WorkError,
 };
 
 /// Open study with its scheduler and the work that is being measured.
@@ -30,8 +31,8 @@ pub struct AskTellStudy {
 }
 
 /// Next step of the caller.
-pub enum Order {
-    /// Measure these: number of the proposal, and the bytes for [`perform`].
+pub enum NextStep {
+    /// Measure these proposals: their numbers, and the bytes for [`perform`].
     Measure(Vec<(u64, Vec<u8>)>),
     /// Wait for a result.
     Wait,
@@ -64,11 +65,11 @@ impl AskTellStudy {
     ///
     /// # Errors
     /// If the journal holds other designs than are proposed, or cannot be written.
-    pub fn order(&mut self, stop: &AtomicBool) -> Result<Order, Failure> {
+    pub fn next_step(&mut self, stop: &AtomicBool) -> Result<NextStep, Failure> {
         loop {
             match self.scheduler.next(&self.open.study, &mut *self.optimizer)? {
-                Next::Wait => return Ok(Order::Wait),
-                Next::Ended(ending) => return Ok(Order::Finish(ending)),
+                Next::Wait => return Ok(NextStep::Wait),
+                Next::Ended(ending) => return Ok(NextStep::Finish(ending)),
                 Next::CheckGain(told) => {
                     let (pool, context) = (self.open.run.pool()?, Context::silent(stop));
                     let OpenStudy { study, setup, cache, .. } = &self.open;
@@ -80,12 +81,12 @@ impl AskTellStudy {
                 Next::Measure(proposals) => {
                     let mut unknown = Vec::new();
                     for proposal in proposals {
-                        if !self.recall(&proposal)? {
+                        if !self.accept_cached(&proposal)? {
                             unknown.push(self.assign(proposal)?);
                         }
                     }
                     if !unknown.is_empty() {
-                        return Ok(Order::Measure(unknown));
+                        return Ok(NextStep::Measure(unknown));
                     }
                 }
             }
@@ -93,18 +94,22 @@ impl AskTellStudy {
     }
 
     /// Returns the evaluator of designs with its cache.
-    fn simulated(&self) -> Simulated<'_> {
+    fn evaluator(&self) -> CachedEvaluator<'_> {
         let OpenStudy { setup, cache, plan, .. } = &self.open;
-        simulated(setup, cache.as_ref(), plan, &NEVER)
+        cached_evaluator(setup, cache.as_ref(), plan, &NEVER)
     }
 
-    /// Takes the evaluation of a design from the cache; returns false if it is not there.
-    fn recall(&mut self, Proposal { number, design, race }: &Proposal) -> Result<bool, Failure> {
-        let (known, timing) = Timing::of(|| self.simulated().known(design, race.as_ref()));
+    /// Accepts the evaluation of a design from the cache; returns false if the cache does not contain it.
+    fn accept_cached(
+        &mut self,
+        Proposal { number, design, race }: &Proposal,
+    ) -> Result<bool, Failure> {
+        let (known, timing) = Timing::of(|| self.evaluator().cached(design, race.as_ref()));
         let Some(measured) = known else { return Ok(false) };
         self.accept(ProposalResult { number: *number, measured, timing })
     }
 
+    /// Returns the number of a proposal and the bytes of its work.
     fn assign(&mut self, proposal: Proposal) -> Result<(u64, Vec<u8>), Failure> {
         let OpenStudy { study, setup, .. } = &self.open;
         let (number, goals) = (proposal.number, study.config.goals());
@@ -124,14 +129,14 @@ impl AskTellStudy {
     /// Accepts the result of a proposal; returns false if it came before.
     ///
     /// # Errors
-    /// If the result is not one of this work, or the journal cannot be written.
+    /// If the result does not belong to the proposal, or the journal cannot be written.
     pub fn take(&mut self, number: u64, result: &[u8]) -> Result<bool, RejectedResult> {
         let Some(work) = self.measuring.get(&number) else { return Ok(false) };
         let Proposal { design, race, .. } = &work.proposal;
         let impossible = |error| RejectedResult::Failed(Failure::input(error));
         let stiffness = self.open.setup.evaluator.predict(design).map_err(impossible)?;
         let result = work.check(result, stiffness).map_err(RejectedResult::Refused)?;
-        self.simulated().keep(design, race.as_ref(), &result.measured);
+        self.evaluator().store(design, race.as_ref(), &result.measured);
         let taken = self.accept(result).map_err(RejectedResult::Failed)?;
         self.measuring.remove(&number);
         Ok(taken)
@@ -171,24 +176,24 @@ impl AskTellStudy {
     }
 }
 
-/// Last setup, by the inputs that determine it: a worker measures many designs of one study.
+/// Last setup with the inputs that determine it: a worker measures many designs of one study.
 static LAST: Mutex<Option<(Value, Arc<Setup>)>> = Mutex::new(None);
 
 fn set_up(work: &Work) -> Result<Arc<Setup>, Failure> {
-    let name = json!([work.inputs, work.provenance.engine.name]);
+    let key = json!([work.inputs, work.provenance.engine.name]);
     let mut last = LAST.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((known, setup)) = &*last
-        && *known == name
+        && *known == key
     {
         return Ok(Arc::clone(setup));
     }
     let setup = Arc::new(Setup::from_inputs(&work.inputs, &work.provenance.engine.name)?);
-    *last = Some((name, Arc::clone(&setup)));
+    *last = Some((key, Arc::clone(&setup)));
     Ok(setup)
 }
 
-/// Measures the work of an [`AskTellStudy`] and returns its result. It depends on nothing else and may be
-/// repeated; `worker` is the host and process that runs it.
+/// Measures the work of an [`AskTellStudy`] and returns its result, which depends only on the work; `worker` is the
+/// host and process that runs it.
 ///
 /// # Errors
 /// If the bytes are invalid, this program has another provenance than the study, or the design cannot be
@@ -196,9 +201,7 @@ fn set_up(work: &Work) -> Result<Arc<Setup>, Failure> {
 pub fn perform(bytes: &[u8], worker: &str, stop: &AtomicBool) -> Result<Vec<u8>, Failure> {
     // One thread, since the caller has a worker for each processor; and a new one, since a forked process
     // lacks the threads of the shared pool.
-    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    let alone =
-        alone.map_err(|error| Failure::running(format!("cannot start a thread: {error}")))?;
+    let alone = RunRequest { threads: Some(1), ..RunRequest::default() }.pool()?;
     alone.install(|| {
         let work = Work::decode(bytes).map_err(Failure::input)?;
         let setup = set_up(&work)?;
@@ -208,7 +211,7 @@ pub fn perform(bytes: &[u8], worker: &str, stop: &AtomicBool) -> Result<Vec<u8>,
             Measure::RobustRange => work.robust_range,
             _ => false,
         })?;
-        let result = work.proposal.measure(&simulated(&setup, None, &plan, stop))?;
+        let result = work.proposal.measure(&cached_evaluator(&setup, None, &plan, stop))?;
         not_stopped(stop)?;
         work.result(result).map_err(|error| Failure::running(error.to_string()))
     })

@@ -34,12 +34,10 @@ pub(crate) fn boundary(
         for (end, outward) in ENDS {
             let files = [pair_file(at, end), poster_file(at, end)].map(|file| dir.join(file));
             let on_task = found.as_ref().and_then(|(design, tasks)| Some((design, tasks.get(at)?)));
-            let texts = match on_task {
-                None => None,
-                Some((design, measured)) => {
-                    pair(setup, (template, design), measured, (end, outward), (pool, stop))?
-                }
-            };
+            let texts = on_task.map(|(design, measured)| {
+                pair(setup, (template, design), measured, (end, outward), (pool, stop))
+            });
+            let texts = texts.transpose()?.flatten();
             // After cancellation trials may have been skipped.
             if stop.load(Ordering::SeqCst) {
                 return Ok(());
@@ -60,8 +58,8 @@ pub(crate) fn boundary(
     Ok(())
 }
 
-/// Returns a page of both trials, and a picture of how the second ended; `None` if no trial failed there, or the
-/// engine records nothing.
+/// Returns a page of both trials, and a picture of the end of the second; `None` if no trial failed there, or the
+/// engine does not record trials.
 fn pair(
     setup: &Setup,
     (template, design): (&Template, &Design),

@@ -24,9 +24,9 @@ pub(crate) fn check(config: &StudyConfig) -> Result<(), Failure> {
     match (&config.objective, config.several_tasks(), config.constraints.is_empty()) {
         (_, true, _) => refused("give one --task"),
         (objective, ..) if *objective != Objectives::of(Measure::Range) => {
-            refused(&format!("--objective {objective} is not known on the bench; leave it out"))
+            refused(&format!("--objective {objective} is not measured on the bench; leave it out"))
         }
-        (.., false) => refused("a --constraint is not known on the bench; leave it out"),
+        (.., false) => refused("a --constraint is not measured on the bench; leave it out"),
         _ => Ok(()),
     }
 }
@@ -60,8 +60,8 @@ pub(crate) fn predict(
         let calibration = Calibration::new(layout, &subjects, &settings);
         context.check()?;
         let nothing = || Failure::running("the space has no finger to predict");
-        let one = subjects.first().zip(calibration.tasks.first());
-        let (subject, result) = one.ok_or_else(nothing)?;
+        let task = subjects.first().zip(calibration.tasks.first());
+        let (subject, result) = task.ok_or_else(nothing)?;
         let best = by_range(result).first().copied().ok_or_else(nothing)?;
         let (task, cache) = (setup.only_task()?, known.cache.clone());
         let simulation = Simulation::new(&setup.evaluator, task, [].iter(), cache, context.stop);

@@ -23,11 +23,11 @@ use rayon::ThreadPool;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use study::{
-    Cache, ConfirmationLog, ConfirmationStep, Confirmer, Ending, Recorded, Runner, Simulated,
+    Cache, CachedEvaluator, ConfirmationLog, ConfirmationStep, Confirmer, Ending, Recorded, Runner,
     Study, StudyConfig, StudyError, StudyRecord,
 };
 
-/// Study that is open; no other process can open it.
+/// Open study, locked against other processes.
 pub struct OpenStudy {
     pub(crate) study: Study,
     pub(crate) setup: Setup,
@@ -67,9 +67,9 @@ impl OpenStudy {
         Ok(OpenStudy { study, setup, run, plan, cache, new_measurements: 0 })
     }
 
-    /// Shows new measurements and warnings before the study starts: for each task to which a part of the
-    /// cell does not apply, and, before the first evaluation, for each whose given nominal start fails with the
-    /// finger of medium stiffness.
+    /// Shows the number of new measurements, and a warning for each task to which a part of the cell does not
+    /// apply. Before the first evaluation, it also warns of each given nominal start that fails with the finger of
+    /// medium stiffness.
     ///
     /// # Errors
     /// If the nominal start cannot be simulated.
@@ -111,7 +111,7 @@ impl OpenStudy {
         let mut log = ConfirmationLog::open(&self.study);
         let OpenStudy { study, setup, plan, cache, .. } = &mut self;
         let cache = cache.as_ref();
-        let evaluator = &simulated(setup, cache, plan, context.stop);
+        let evaluator = &cached_evaluator(setup, cache, plan, context.stop);
         let confirmer = || confirmer(setup, cache, &pool, context);
         let mut stagnates = |study: &_, told| confirmer().stagnates(study, &mut log, told);
         let runner = Runner { evaluator, pool: &pool, stop: context.stop };
@@ -155,10 +155,8 @@ impl OpenStudy {
         }
         printable::write(&dir, &answer, &setup.evaluator)?;
         // Before the page, which shows its picture.
-        let unusable = match interrupted() {
-            true => None,
-            false => unusable::check(&dir, &record, setup, stop).err(),
-        };
+        let problem = || unusable::check(&dir, &record, setup, stop).err();
+        let unusable = if interrupted() { None } else { problem() };
         report::write(&dir, &answer, &setup.evaluator.surrogate)?;
         if interrupted() {
             return Err(Failure::Interrupted(Some(resume_hint(study))));
@@ -168,14 +166,14 @@ impl OpenStudy {
 }
 
 /// Returns the evaluator of a study's designs with its cache.
-pub(super) fn simulated<'a>(
+pub(super) fn cached_evaluator<'a>(
     setup: &'a Setup,
     cache: Option<&'a Cache>,
     plan: &'a Plan,
     stop: &'a AtomicBool,
-) -> Simulated<'a> {
+) -> CachedEvaluator<'a> {
     let (evaluator, search) = (&setup.evaluator, Search::default());
-    Simulated { evaluator, search, plan, cache, stop }
+    CachedEvaluator { evaluator, search, plan, cache, stop }
 }
 
 /// Returns the confirmer of a study's best designs.
@@ -193,8 +191,8 @@ pub(super) fn confirmer<'a>(
         let what = format!("{word} {}", short(recorded));
         context.part(&Part { what, done, of, cost });
     };
-    let walker = simulated(setup, cache, &Plan::WINDOW, context.stop);
-    let walker = Simulated { search: Search::Walk, ..walker };
+    let walker = cached_evaluator(setup, cache, &Plan::WINDOW, context.stop);
+    let walker = CachedEvaluator { search: Search::Walk, ..walker };
     Confirmer { walker, by_ribs: setup.by_ribs(), pool, done: Box::new(done) }
 }
 

@@ -21,11 +21,11 @@ pub(crate) fn optimizer(
     let floors: Vec<f64> = measures.map(|measure| measure.rounding(trials)).collect();
     let search = ask_tell::build_for(kind, grid.clone(), config.seed, &floors);
     let points: Vec<GridPoint> =
-        own_point(setup).into_iter().chain(measured_points(setup)).collect();
+        task_point(setup).into_iter().chain(measured_points(setup)).collect();
     let search = match points {
         points if kind == OptimizerKind::Gp && !points.is_empty() => {
-            let own = setup.space.parameters.len() + 1;
-            Box::new(SeededOptimizer::new(search, own, points)) as Box<dyn Optimizer + Send>
+            let before = setup.space.parameters.len() + 1;
+            Box::new(SeededOptimizer::new(search, before, points)) as Box<dyn Optimizer + Send>
         }
         _ => search,
     };
@@ -35,9 +35,9 @@ pub(crate) fn optimizer(
     })
 }
 
-/// Returns the point nearest to the numbers of the (first) task, where the space changes them: the strategy to
-/// improve on; other parameters are in their middle.
-fn own_point(setup: &Setup) -> Option<GridPoint> {
+/// Returns the point nearest to the numbers of the (first) task if the space changes them: the strategy to improve
+/// on; other parameters are at the middle of their range.
+fn task_point(setup: &Setup) -> Option<GridPoint> {
     let (parameters, template) = (&setup.space.parameters, setup.evaluator.templates.first()?);
     if !setup.space.changes_task() {
         return None;

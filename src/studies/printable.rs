@@ -11,7 +11,7 @@ use report::printer::{ORCA_PROJECT, PROJECT, SHEET, SURFACE, THREE_MF, recommend
 use std::path::Path;
 use study::write_own_file;
 
-/// Writes surface, solid and sheet; nothing if no finger is recommended or it cannot be printed.
+/// Writes STL, 3MF, slicer projects and sheet of the recommended finger, as far as it can be printed.
 pub(crate) fn write(dir: &Path, answer: &Answer, evaluator: &Evaluator) -> Result<(), Failure> {
     let Some(geometry) = recommended(answer) else { return Ok(()) };
     if let Ok(prism) = Prism::finger(&geometry) {

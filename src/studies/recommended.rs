@@ -4,7 +4,7 @@ use insertion::evaluation::objective::{Measure, Objectives};
 use report::answer::{Answer, Ties, Trust, command, expectation, lines};
 use serde_json::{Map, Value, json};
 use std::path::Path;
-use study::{ByRibs, OnBench, StudyRecord};
+use study::{BenchPrediction, ByRibs, StudyRecord};
 
 /// Returns the recommended design, with measurements the one predicted to be the best on the bench, and
 /// the number of equivalent designs.
@@ -84,7 +84,7 @@ fn simulated(answer: &Answer) -> Value {
 
 /// Returns the finger that is predicted to be the best on the bench; numbers outside of `bench` are
 /// simulated.
-fn on_bench(record: &StudyRecord, found: &OnBench) -> Value {
+fn on_bench(record: &StudyRecord, found: &BenchPrediction) -> Value {
     let Some(best) = found.best.first() else { return Value::Null };
     let evaluated = record.current().iter().find(|recorded| recorded.design == best.design);
     let (range, window) = (Measure::Range.value(&found.simulated), &found.simulated.window);
@@ -107,7 +107,7 @@ fn on_bench(record: &StudyRecord, found: &OnBench) -> Value {
 }
 
 /// Returns effort and validation of a prediction for the bench.
-fn bench(found: &OnBench) -> Value {
+fn bench(found: &BenchPrediction) -> Value {
     json!({
         "measured": found.measured,
         "designs": found.fingers,

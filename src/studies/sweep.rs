@@ -12,7 +12,7 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
-use study::{Cache, Simulated};
+use study::{Cache, CachedEvaluator};
 
 /// Evaluator of fingers on a task, with its own threads and the cache of the studies.
 pub struct Sweep {
@@ -51,13 +51,13 @@ impl Sweep {
     ) -> Result<Vec<Evaluated>, Failure> {
         let Sweep { setup, search, plan, .. } = self;
         let (evaluator, cache) = (&setup.evaluator, self.cache.as_ref());
-        let simulated = Simulated { evaluator, search: *search, plan, cache, stop };
+        let evaluator = CachedEvaluator { evaluator, search: *search, plan, cache, stop };
         let one = |finger: &FingerRequest| {
             not_stopped(stop)?;
             let clock = Instant::now();
             let chosen = finger.choose(setup)?;
             let (evaluation, _) =
-                simulated.measure(&chosen.specimen, plan).map_err(Failure::input)?;
+                evaluator.measure(&chosen.specimen, plan).map_err(Failure::input)?;
             let wall_s = clock.elapsed().as_secs_f64();
             Ok(Evaluated { chosen, evaluation, bands: None, by_ribs: None, wall_s })
         };

@@ -13,7 +13,7 @@ use study::{Ending, Recorded, StudyRecord};
 /// Returns the output of a study that has ended, with `all` numbers of the answer if requested.
 pub fn ended(ended: &Ended, answer: &Answer, all: bool) -> String {
     let verbose = if all { verbose(answer, ended.ending, ended.cached) } else { String::new() };
-    shown(answer, &ended.dir, &verbose)
+    answer_text(answer, &ended.dir, &verbose)
 }
 
 /// Returns the text of the analyses after a study.
@@ -23,9 +23,9 @@ pub fn analyses(PostAnalysis { levers, robots, .. }: &PostAnalysis) -> String {
     layout::wrapped(&levers.chain(robots).collect::<String>())
 }
 
-/// Returns the answer and the next command.
-fn shown(answer: &Answer, dir: &Path, verbose: &str) -> String {
-    // First, since the following lines may recommend to print the finger.
+/// Returns the text of the answer and the next command.
+fn answer_text(answer: &Answer, dir: &Path, verbose: &str) -> String {
+    // First, since the following lines may recommend printing the finger.
     let mut text = layout::lines(lines::force(answer));
     text += &format!("{}\n{}\n", answer.verdict.headline(), expectation(answer));
     text += &layout::lines(lines::brief(answer));
@@ -104,7 +104,7 @@ mod tests {
         for task in ["ket8", "rj45", "usb"] {
             let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/reference").join(task);
             let record = StudyRecord::load(&dir).unwrap();
-            let lines = shown(&Answer::of(&record), &dir, "");
+            let lines = answer_text(&Answer::of(&record), &dir, "");
             let (lines, _) = lines.split_once("study   ").unwrap();
             let file = dir.join("summary.txt");
             if std::env::var_os("RENEW").is_some() {

@@ -1,4 +1,4 @@
-//! Diagnosis of a study of which no design inserts at the nominal start.
+//! Diagnosis of a study in which no design inserts at the nominal start.
 
 use crate::context::not_stopped;
 use crate::failure::Failure;

@@ -9,7 +9,7 @@ use connector::mesh::{Surface, read};
 use finger_opt::command::parse;
 use finger_opt::commands::study;
 use finger_opt::failure::Failure;
-use finger_opt::studies::ask_tell::{AskTellStudy, Order, RejectedResult, perform};
+use finger_opt::studies::ask_tell::{AskTellStudy, NextStep, RejectedResult, perform};
 use input::units::MM;
 use insertion::trial::NEVER;
 use nalgebra::Point3;
@@ -208,10 +208,10 @@ fn damaged_results(mutations: &[Mutation], out: &Path) -> How {
     let mut guided = request.open(None).and_then(AskTellStudy::new).map_err(failed)?;
     let mut how = "accepted";
     loop {
-        let works = match guided.order(&NEVER).map_err(failed)? {
-            Order::Measure(works) => works,
-            Order::Wait => bail!("it waits for a result that nobody was asked for"),
-            Order::Finish(ending) => {
+        let works = match guided.next_step(&NEVER).map_err(failed)? {
+            NextStep::Measure(works) => works,
+            NextStep::Wait => bail!("it waits for a result that nobody was asked for"),
+            NextStep::Finish(ending) => {
                 guided.finish(ending, &NEVER).map_err(failed)?;
                 break;
             }

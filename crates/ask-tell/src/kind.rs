@@ -45,12 +45,12 @@ impl OptimizerKind {
         KINDS[self as usize].1
     }
 
-    /// Returns the largest number of parameters.
-    pub fn most_parameters(self) -> usize {
+    /// Returns the largest accepted number of parameters.
+    pub fn max_parameters(self) -> usize {
         KINDS[self as usize].2
     }
 
-    /// Returns whether it can search for a Pareto front of several objectives: it has a model of each of
+    /// Returns whether the optimizer can search for a Pareto front of several objectives: it models each of
     /// them, or its points do not depend on values.
     pub fn takes_several_objectives(self) -> bool {
         self != Self::CmaEs
@@ -79,8 +79,8 @@ pub fn build(kind: OptimizerKind, grid: Grid, seed: u64) -> Box<dyn Optimizer + 
     build_for(kind, grid, seed, &[DEFAULT_NOISE_FLOOR])
 }
 
-/// Returns the optimizer as [`build`] does, for this least standard deviation of the noise of each objective (for
-/// example from rounding), in its unit.
+/// Returns the optimizer of this kind over `grid`; `noise_floors` are the smallest standard deviations of the noise
+/// of each objective (for example from rounding), in its unit.
 pub fn build_for(
     kind: OptimizerKind,
     grid: Grid,

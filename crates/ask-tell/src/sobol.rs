@@ -3,9 +3,9 @@
 use crate::stream::stream;
 use rand::Rng;
 
-/// Points in one sequence of `sobol_burley`.
+/// Number of points in a sequence of `sobol_burley`.
 const SEQUENCE_LENGTH: u32 = 1 << 16;
-/// Axes that share one scramble; further axes take another (the crate ends at 256).
+/// Axes that share one scramble; `sobol_burley` has 256 dimensions, further axes use another scramble.
 const AXES_PER_SCRAMBLE: usize = 256;
 
 /// An Owen-scrambled Sobol sequence (Burley 2020, JCGT 9(4)) of up to 65536 points.

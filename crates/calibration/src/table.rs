@@ -7,7 +7,7 @@ use ask_tell::statistics::{Moments, normal_cdf, pearson, quantile, sorted};
 use insertion::evaluation::Evaluation;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use serde::Serialize;
-use study::{BenchEffort, BenchFinger, OnBench, Provenance};
+use study::{BenchEffort, BenchFinger, BenchPrediction, Provenance};
 
 /// Standard deviation of a coordinate below which, and magnitude of its mean above which, it counts as moved (prior: 1
 /// and 0).
@@ -260,7 +260,7 @@ pub fn on_bench(
     simulated: Evaluation,
     provenance: Provenance,
     effort: BenchEffort,
-) -> OnBench {
+) -> BenchPrediction {
     let finger = |one: &&Prediction| BenchFinger {
         design: one.design.clone(),
         range_mm: one.range_mm,
@@ -275,7 +275,7 @@ pub fn on_bench(
     let bound = |(design, line): (&Design, &Experiment)| {
         (design.clone(), line.extent().map(|(least_mm, _)| least_mm))
     };
-    OnBench {
+    BenchPrediction {
         provenance,
         effort,
         measured: subject.measured().len(),

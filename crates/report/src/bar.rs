@@ -9,7 +9,7 @@ use crate::glossary::explained;
 use insertion::evaluation::Window;
 use insertion::outcome::Outcome;
 use maud::{Markup, html};
-use study::{ByRibs, OnBench};
+use study::{BenchPrediction, ByRibs};
 
 /// Share of the width on either side that is reserved for the labels of a bar's ends.
 const ROOM: f64 = 0.2;
@@ -109,7 +109,7 @@ fn published(MeasuredFinger { design: finger, range_mm }: &MeasuredFinger) -> Ba
     Bar::width_only(name, &[("measured", *range_mm)])
 }
 
-fn on_bench(answer: &Answer, bench: &OnBench) -> Vec<Bar> {
+fn on_bench(answer: &Answer, bench: &BenchPrediction) -> Vec<Bar> {
     let Some(best) = bench.best.first() else { return Vec::new() };
     let interval = interval([best.low_mm, best.high_mm]);
     let name = format!("on the bench: {} ({interval})", mm(best.range_mm));

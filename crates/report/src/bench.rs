@@ -4,7 +4,7 @@ use super::elements::table;
 use crate::answer::words::{design, interval, mm};
 use insertion::outcome::FailureClass;
 use maud::{Markup, html};
-use study::{BenchFinger, OnBench, StudyRecord};
+use study::{BenchFinger, BenchPrediction, StudyRecord};
 
 /// File with the predictions for every finger of the space, next to the page.
 const TABLE: &str = "bench_predictions.csv";
@@ -33,7 +33,7 @@ fn row(finger: &BenchFinger) -> Vec<String> {
     ]
 }
 
-fn how(found: &OnBench) -> String {
+fn how(found: &BenchPrediction) -> String {
     let simulations = found.effort.simulations;
     format!(
         "From {simulations} simulations with drawn friction, preload, robot and print, and the \

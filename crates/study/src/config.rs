@@ -75,7 +75,7 @@ pub struct StudyConfig {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Confirmation {
-    /// Next is the design that is expected to be the best, until none is expected to improve on the best so far.
+    /// The design that is expected to be the best is confirmed next, until none is expected to improve on the best.
     #[default]
     Expected,
 }
@@ -155,7 +155,7 @@ impl StudyConfig {
         let kind: OptimizerKind =
             self.optimizer.parse().map_err(|error| format!("optimizer: {error}"))?;
         if self.objective.single().is_none() && !kind.takes_several_objectives() {
-            return Err(format!("optimizer: {kind} takes one objective only"));
+            return Err(format!("optimizer: {kind} accepts one objective only"));
         }
         if self.settles && !self.can_settle() {
             return Err(
@@ -164,10 +164,10 @@ impl StudyConfig {
             );
         }
         if self.objective.single().is_none() && self.polish > 0 {
-            return Err("polish: takes one objective only".to_owned());
+            return Err("polish: accepts one objective only".to_owned());
         }
         if self.tasks.is_empty() || self.several_tasks() != self.aggregate.is_some() {
-            return Err("tasks: one is needed, or several and an aggregate".to_owned());
+            return Err("tasks: must be one, or several with an aggregate".to_owned());
         }
         if let Some(Aggregate::Weighted(weights)) = &self.aggregate {
             Aggregate::weighted(weights.clone(), self.tasks.len())
@@ -194,22 +194,22 @@ impl StudyConfig {
     /// Returns whether early stopping is available: for a Gaussian process of one objective in mm without
     /// constraints and polish.
     pub fn can_settle(&self) -> bool {
-        let process = self.optimizer.parse() == Ok(OptimizerKind::Gp);
-        self.optimizes_windows() && process && self.constraints.is_empty() && self.polish == 0
+        let gp = self.optimizer.parse() == Ok(OptimizerKind::Gp);
+        self.optimizes_windows() && gp && self.constraints.is_empty() && self.polish == 0
     }
 
     /// Returns the settings of early stopping: evaluations before the first check, and patience
     /// (consecutive evaluations without an expected gain). Tuned on recorded landscapes
     /// (`docs/notes/optimizers.md`).
-    pub fn settling(&self) -> Option<[usize; 2]> {
+    pub fn early_stopping(&self) -> Option<[usize; 2]> {
         let free = self.space.levels().into_iter().filter(|&levels| levels > 1).count();
         self.settles.then_some([20 + 4 * free, 12 * free.max(1)])
     }
 
-    /// Returns the expected number of evaluations: with early stopping the smallest possible number, which
-    /// most studies exceed only slightly.
+    /// Returns the expected number of evaluations; with early stopping the smallest possible number, which most
+    /// studies exceed only slightly.
     pub fn expected_evaluations(&self) -> u64 {
-        let least = self.settling().map(|[least, quiet]| (least + quiet) as u64);
+        let least = self.early_stopping().map(|[least, patience]| (least + patience) as u64);
         least.unwrap_or(u64::MAX).min(self.evaluations())
     }
 
@@ -246,14 +246,14 @@ impl StudyConfig {
     /// Returns the fields in which a study on disk differs from a new request, one line each. Ignored are a
     /// raised budget (unless there is a polish), a budget for a study with early stopping, and whether
     /// there is a race. Provenance is compared by [`Provenance::differences`].
-    pub fn differences(&self, asked: &StudyConfig) -> Option<String> {
-        let may_rise = asked.polish == 0 && (asked.budget > self.budget || self.settles);
-        let budget = if may_rise { asked.budget } else { self.budget };
-        let provenance = asked.provenance.clone();
-        let conclusion = asked.conclusion.clone();
-        let &StudyConfig { race, settles, .. } = asked;
+    pub fn differences(&self, requested: &StudyConfig) -> Option<String> {
+        let may_rise = requested.polish == 0 && (requested.budget > self.budget || self.settles);
+        let budget = if may_rise { requested.budget } else { self.budget };
+        let provenance = requested.provenance.clone();
+        let conclusion = requested.conclusion.clone();
+        let &StudyConfig { race, settles, .. } = requested;
         let raised = StudyConfig { budget, provenance, conclusion, race, settles, ..self.clone() };
-        differences(&raised, asked, ["the study", "now"])
+        differences(&raised, requested, ["the study", "now"])
     }
 }
 

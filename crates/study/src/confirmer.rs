@@ -1,12 +1,12 @@
 //! Measurements that confirm the best designs of a study; see `confirmed.rs`.
 
+use super::cached_evaluator::CachedEvaluator;
 use super::confirmed::{ConfirmationFile, ConfirmedDesign, WALK_FILE, Walk, with_windows};
 use super::error::StudyError;
 use super::folder::{Study, write_analysis};
 use super::provenance::Provenance;
 use super::record::{ByRibs, Recorded, first_current};
 use super::rule::{Rank, Rule};
-use super::simulated::Simulated;
 use ask_tell::Grid;
 use ask_tell::gp::{Advice, StoppingCriterion};
 use insertion::evaluation::Evaluation;
@@ -23,17 +23,17 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Evaluators and settings of the confirmation.
 pub struct Confirmer<'a> {
-    /// Walks a design.
-    pub walker: Simulated<'a>,
-    /// Evaluator of computed fingers, if the study's fingers are those of the paper.
+    /// Evaluator that measures windows step by step (walks).
+    pub walker: CachedEvaluator<'a>,
+    /// Evaluator with stiffnesses computed from the ribs, if the study uses those of the paper.
     pub by_ribs: Option<Evaluator>,
-    /// Threads that simulate.
+    /// Threads of the simulations.
     pub pool: &'a ThreadPool,
     /// Progress callback.
     pub done: Box<OnConfirmed<'a>>,
 }
 
-/// Callback for a confirmed design, with the numbers of designs done and of all.
+/// Progress callback: confirmation step, design, and numbers of confirmed designs and of all.
 pub type OnConfirmed<'a> = dyn Fn(ConfirmationStep, &Recorded, [usize; 2]) + Sync + 'a;
 
 /// Kind of confirmation of a design.
@@ -45,8 +45,8 @@ pub enum ConfirmationStep {
     Walked,
 }
 
-/// Designs confirmed at a time, independent of the number of threads.
-const AT_ONCE: usize = 2;
+/// Number of designs confirmed at a time, independent of the number of threads.
+const BATCH: usize = 2;
 
 impl Confirmer<'_> {
     /// Confirms the best designs of a study that has ended, and writes each to the log; `settled` is whether
@@ -64,7 +64,7 @@ impl Confirmer<'_> {
         if !study.config.optimizes_windows() || (settled && study.settled()) {
             return Ok(());
         }
-        self.by_expectation(study, log, study.evaluations.len(), false)?;
+        self.confirm_as_advised(study, log, study.evaluations.len(), false)?;
         if self.stopped() {
             return Ok(());
         }
@@ -82,14 +82,15 @@ impl Confirmer<'_> {
         log: &mut ConfirmationLog,
         told: usize,
     ) -> Result<bool, StudyError> {
-        Ok(self.by_expectation(study, log, told, true)? == Advice::Settled)
+        Ok(self.confirm_as_advised(study, log, told, true)? == Advice::Settled)
     }
 
     fn stopped(&self) -> bool {
         self.walker.stop.load(Ordering::SeqCst)
     }
 
-    fn by_expectation(
+    /// Confirms designs as long as the stopping criterion advises it; returns its last advice.
+    fn confirm_as_advised(
         &self,
         study: &Study,
         log: &mut ConfirmationLog,
@@ -123,8 +124,8 @@ impl Confirmer<'_> {
             let criterion =
                 StoppingCriterion::new(&grid, &observed, &confirmed, config.indifference_mm);
             let advice = match searching {
-                true => criterion.advise(&places, AT_ONCE),
-                false => criterion.confirm_only(&places, AT_ONCE),
+                true => criterion.advise(&places, BATCH),
+                false => criterion.confirm_only(&places, BATCH),
             };
             let Advice::Confirm(chosen) = &advice else { return Ok(advice) };
             // Without confirmation the results of the search are final.
@@ -134,8 +135,8 @@ impl Confirmer<'_> {
             let chosen: Vec<&Recorded> = chosen.iter().map(|&at| &current[at]).collect();
             let walking = chosen.iter().any(|found| log.get(found).is_some());
             let phase = if walking { ConfirmationStep::Walked } else { ConfirmationStep::Repeated };
-            let further = |found: &Recorded| self.further(found, log, config.seed);
-            let results = self.each(phase, &chosen, further)?;
+            let confirm = |found: &Recorded| self.confirm_design(found, log, config.seed);
+            let results = self.in_parallel(phase, &chosen, confirm)?;
             log.add(results)?;
             if self.stopped() {
                 return Ok(Advice::Search);
@@ -143,9 +144,9 @@ impl Confirmer<'_> {
         }
     }
 
-    /// Repeats a design or, if it was repeated, walks it; a result of an earlier run is used again. Returns
+    /// Repeats the ends of a design or, if that was done, walks it; reuses a result of an earlier run. Returns
     /// the result and whether it is new; `None` after cancellation.
-    fn further(
+    fn confirm_design(
         &self,
         found: &Recorded,
         log: &ConfirmationLog,
@@ -169,8 +170,8 @@ impl Confirmer<'_> {
         Ok((!self.stopped()).then_some((row, true)))
     }
 
-    /// Calls `measure` for each design in parallel and returns the results that there are, in their order.
-    fn each<T: Send>(
+    /// Calls `measure` for each design in parallel and returns its results other than `None`, in order.
+    fn in_parallel<T: Send>(
         &self,
         phase: ConfirmationStep,
         designs: &[&Recorded],
@@ -222,14 +223,14 @@ impl Confirmer<'_> {
         }
     }
 
-    /// Returns the firm windows of a design on all tasks; `known` ones are not measured again.
+    /// Measures the firm windows of a design on all tasks; `known` ones are not measured again.
     fn firm(
         &self,
         recorded: &Recorded,
         known: &[Option<FirmResult>],
         seed: u64,
     ) -> Result<Vec<FirmResult>, StudyError> {
-        let Simulated { evaluator, stop, .. } = self.walker;
+        let CachedEvaluator { evaluator, stop, .. } = self.walker;
         let measure = |(at, (template, task)): (usize, (&Template, &Evaluation))| {
             if let Some(Some(firm)) = known.get(at) {
                 return Ok(*firm);
@@ -266,7 +267,7 @@ impl ConfirmationLog {
         self.designs.iter().find(|design| design.evaluation == recorded.index)
     }
 
-    /// Adds or replaces results, each with whether it is new; writes the file if any is.
+    /// Adds or replaces results, each with a flag whether it is new; writes the file if any is new.
     fn add(&mut self, results: Vec<(ConfirmedDesign, bool)>) -> Result<(), StudyError> {
         let any_new = results.iter().any(|(_, new)| *new);
         for (result, _) in results {
@@ -278,7 +279,8 @@ impl ConfirmationLog {
         if any_new { self.write(None) } else { Ok(()) }
     }
 
-    /// Writes the file; `finished` holds the evaluations after which a complete study settled.
+    /// Writes the file. `finished` is `Some` if the confirmation is complete; it then contains the number of
+    /// evaluations after which the search settled, if it did.
     fn write(&self, finished: Option<Option<u64>>) -> Result<(), StudyError> {
         let (provenance, designs) = (self.provenance.clone(), self.designs.clone());
         let (complete, settled_after) = (finished.is_some(), finished.flatten());

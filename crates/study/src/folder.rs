@@ -18,7 +18,7 @@ use super::error::StudyError;
 use super::journal::{self, Contents, Journal};
 use super::limits::ForceLimits;
 use super::lock::{Lock, UNKNOWN_OWNER, lock};
-use super::on_bench::OnBench;
+use super::on_bench::BenchPrediction;
 use super::provenance::{Provenance, Segment};
 use super::record::{Recorded, StudyRecord, first_current};
 use super::rule::Rule;
@@ -266,7 +266,7 @@ impl StudyRecord {
             inputs.get(FINGER).and_then(|text| FingerFile::parse(text, "inputs/finger").ok());
         let limits = ForceLimits::of(&inputs, config.tasks.len());
         let provenance = segments.last().map(|segment| &segment.provenance);
-        let on_bench = provenance.and_then(|provenance| OnBench::read(dir, provenance));
+        let on_bench = provenance.and_then(|provenance| BenchPrediction::read(dir, provenance));
         let current = evaluations.get(first_current(&segments) as usize..).unwrap_or_default();
         let (walked, firm_values) = confirmed::read(dir, &Rule::of(&config), provenance, current);
         let settled = config.settles && confirmed::settled(dir, provenance, evaluations.len());

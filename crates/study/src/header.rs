@@ -14,12 +14,13 @@ use std::collections::BTreeMap;
 /// Version of the journal's format.
 pub const SCHEMA_VERSION: u64 = 2;
 
+/// Optuna's operation codes and codes of directions.
 const CREATE_STUDY: u8 = 0;
 const STUDY_USER_ATTRIBUTE: u8 = 2;
 const MINIMISE: u8 = 1;
 const MAXIMISE: u8 = 2;
-/// Name of our only attribute.
-const OURS: &str = "finger_opt";
+/// Name of the only attribute of a study.
+const ATTRIBUTE: &str = "finger_opt";
 
 /// Study attribute of Optuna, one per line.
 #[derive(Serialize, Deserialize)]
@@ -40,13 +41,13 @@ fn attribute(name: String, value: impl Serialize) -> Result<String, serde_json::
     seal(&line, None)
 }
 
-/// Returns the configuration without the fields that may change for a journal: the analyses after the search,
-/// and without a polish the budget.
+/// Returns the configuration without the fields that may change while the journal stays valid: the analyses after
+/// the search, and the budget of a study without a polish.
 fn identity(config: &StudyConfig) -> Result<Value, serde_json::Error> {
     let mut fields = serde_json::to_value(config)?;
     let mut identity = json!({"schema_version": SCHEMA_VERSION});
     if let (Value::Object(fields), Value::Object(identity)) = (&mut fields, &mut identity) {
-        // Keeps the order of the others.
+        // `remove` would change the order of the other fields.
         fields.shift_remove("settles");
         fields.remove("conclusion");
         if config.polish == 0 {
@@ -69,7 +70,7 @@ pub fn encode(config: &StudyConfig) -> Result<String, serde_json::Error> {
         "study_name": config.name(),
         "directions": config.objective.measures().iter().map(direction).collect::<Vec<_>>(),
     });
-    Ok(seal(&create, None)? + &attribute(OURS.to_owned(), identity(config)?)?)
+    Ok(seal(&create, None)? + &attribute(ATTRIBUTE.to_owned(), identity(config)?)?)
 }
 
 /// Returns the line that begins the segment with this number, counted from 1.
@@ -77,7 +78,7 @@ pub fn encode(config: &StudyConfig) -> Result<String, serde_json::Error> {
 /// # Errors
 /// If it cannot be serialized.
 pub fn encode_segment(number: usize, segment: &Segment) -> Result<String, serde_json::Error> {
-    attribute(format!("{OURS}_segment_{number}"), segment)
+    attribute(format!("{ATTRIBUTE}_segment_{number}"), segment)
 }
 
 /// Returns the segment that a line begins; `None` for other lines.
@@ -99,14 +100,14 @@ pub fn decode_segment(line: &str) -> Result<Option<Segment>, LineError> {
 /// Checks the header of a journal of this configuration.
 ///
 /// # Errors
-/// The difference.
+/// The problem, without the file: damage, another schema version, or the fields that differ.
 pub fn check(first: &str, second: &str, config: &StudyConfig) -> Result<(), String> {
     let damaged = |n: u8| format!("line {n} is damaged, or was not written by this program");
     unseal(first).map_err(|_| damaged(1))?;
     let (attributes, _) = unseal(second).map_err(|_| damaged(2))?;
     let mut line: AttributeLine<Value> =
         serde_json::from_str(&attributes).map_err(|error| format!("line 2: {error}"))?;
-    let found = line.user_attr.remove(OURS).unwrap_or_default();
+    let found = line.user_attr.remove(ATTRIBUTE).unwrap_or_default();
     match found["schema_version"].as_u64() {
         Some(SCHEMA_VERSION) => {}
         Some(other) => {

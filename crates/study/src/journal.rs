@@ -56,22 +56,19 @@ impl Journal {
         let mut journal =
             Journal { path: path.to_owned(), store, len: parsed.whole as u64, broken: false };
         if parsed.whole == 0 {
-            let header = header::encode(config).map_err(|error| journal.failed(error.into()))?;
-            journal.write(&header)?;
+            journal.write(header::encode(config))?;
         }
         Ok((journal, parsed))
     }
 
     /// Appends an evaluation; it then survives a power failure.
     pub fn append(&mut self, recorded: &Recorded, space: &Space) -> Result<(), StudyError> {
-        let line = line::encode(recorded, space);
-        self.write(&line.map_err(|error| self.failed(error.into()))?)
+        self.write(line::encode(recorded, space))
     }
 
     /// Begins the segment of this number, counted from 1.
     pub(super) fn begin_segment(&mut self, n: usize, segment: &Segment) -> Result<(), StudyError> {
-        let line = header::encode_segment(n, segment);
-        self.write(&line.map_err(|error| self.failed(error.into()))?)
+        self.write(header::encode_segment(n, segment))
     }
 
     /// Checks that the journal was not changed by another program.
@@ -81,23 +78,20 @@ impl Journal {
             .map_err(|problem| StudyError::Interfered { path: self.path.clone(), problem })
     }
 
-    fn write(&mut self, lines: &str) -> Result<(), StudyError> {
+    fn write(&mut self, lines: serde_json::Result<String>) -> Result<(), StudyError> {
+        let lines = lines.map_err(|error| self.failed(error.into()))?;
         if self.broken {
             return Err(self.failed(io::Error::other("an earlier write failed")));
         }
         self.check()?;
-        match self.store.append(lines.as_bytes()) {
-            Ok(()) => {
-                self.len += lines.len() as u64;
-                Ok(())
-            }
-            Err(error) => {
-                self.broken = true;
-                // If this fails, too, the torn line is cut off when the journal is opened again.
-                let _ = self.store.truncate(self.len);
-                Err(self.failed(error))
-            }
+        if let Err(error) = self.store.append(lines.as_bytes()) {
+            self.broken = true;
+            // If this fails, too, the torn line is cut off when the journal is opened again.
+            let _ = self.store.truncate(self.len);
+            return Err(self.failed(error));
         }
+        self.len += lines.len() as u64;
+        Ok(())
     }
 
     fn failed(&self, source: io::Error) -> StudyError {
@@ -105,7 +99,7 @@ impl Journal {
     }
 }
 
-/// Reads a journal without writing to it; a torn last line is ignored, and a study without one is empty.
+/// Reads a journal without writing to it; a torn last line is ignored, and a missing file counts as empty.
 pub fn read(path: &Path, config: &StudyConfig) -> Result<Contents, StudyError> {
     let read = File::open(path).and_then(|file| files::read_up_to(file, LARGEST_JOURNAL));
     let bytes = match read {

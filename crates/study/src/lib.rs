@@ -6,6 +6,7 @@
 #![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 mod cache;
+mod cached_evaluator;
 mod config;
 mod confirmed;
 mod confirmer;
@@ -26,12 +27,12 @@ mod rule;
 mod runner;
 mod scheduler;
 mod seal;
-mod simulated;
 mod store;
 mod table;
 mod work;
 
 pub use cache::Cache;
+pub use cached_evaluator::CachedEvaluator;
 pub use config::{
     AnalysisSettings, BenchEffort, Confirmation, INDIFFERENCES_MM, LARGEST_BATCH, LARGEST_BUDGET,
     StudyConfig, study_name,
@@ -42,13 +43,12 @@ pub use folder::{CELL, FINGER, Inputs, Study, has_begun, input_path, read_analys
 pub use folder::{sha256, write_analysis, write_file, write_own_file};
 pub use limits::ForceLimits;
 pub use line::{decode, encode};
-pub use on_bench::{BENCH_FILE, BenchFinger, LeaveOneOut, OnBench};
+pub use on_bench::{BENCH_FILE, BenchFinger, BenchPrediction, LeaveOneOut};
 pub use provenance::{BENCH_ROLES, Provenance, SOURCES, Segment};
 pub use record::{ByRibs, Recorded, StudyRecord, Timing, Volume, Walked, best, nearest, volume};
 pub use runner::Runner;
 pub use scheduler::{Ending, Next, Proposal, ProposalResult, Scheduler};
 pub use seal::{sha256_hex, strip_times};
-pub use simulated::Simulated;
 pub use store::Store;
 pub use table::{EVALUATIONS_CSV, evaluations_csv};
 pub use work::{Work, WorkError};

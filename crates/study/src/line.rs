@@ -45,7 +45,7 @@ struct TrialLine {
     intermediate_values: Empty,
 }
 
-/// Data without a field in Optuna.
+/// Data for which a trial of Optuna has no field.
 #[derive(Serialize, Deserialize)]
 struct UserAttributes {
     stiffness: Prediction,

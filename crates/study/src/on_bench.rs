@@ -13,11 +13,11 @@ use std::path::Path;
 /// File of the prediction in the folder of a study.
 pub const BENCH_FILE: &str = "bench.json";
 
-/// The prediction of a calibration for the fingers of a study.
+/// Bench ranges of a study's fingers, predicted by calibration to measurements.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct OnBench {
-    /// Provenance of the prediction; with another one it is not valid.
+pub struct BenchPrediction {
+    /// Provenance for which the prediction is valid.
     pub provenance: Provenance,
     /// Effort of the prediction.
     pub effort: BenchEffort,
@@ -41,10 +41,10 @@ pub struct OnBench {
     pub simulated: Evaluation,
 }
 
-impl OnBench {
+impl BenchPrediction {
     /// Reads the prediction in `dir`; returns `None` if it is missing, damaged or of another provenance.
-    pub(super) fn read(dir: &Path, provenance: &Provenance) -> Option<OnBench> {
-        let found: OnBench = read_analysis(dir, BENCH_FILE)?;
+    pub(super) fn read(dir: &Path, provenance: &Provenance) -> Option<BenchPrediction> {
+        let found: BenchPrediction = read_analysis(dir, BENCH_FILE)?;
         (found.provenance == *provenance && !found.best.is_empty()).then_some(found)
     }
 }

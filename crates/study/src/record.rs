@@ -2,7 +2,7 @@
 
 use super::StudyConfig;
 use super::limits::ForceLimits;
-use super::on_bench::OnBench;
+use super::on_bench::BenchPrediction;
 use super::provenance::Segment;
 use ask_tell::pareto;
 use insertion::evaluation::Evaluation;
@@ -47,7 +47,7 @@ pub struct StudyRecord {
     /// Firm values of the first objective of the designs whose ends were repeated, by evaluation.
     pub firm_values: BTreeMap<u64, f64>,
     /// Bench prediction, if there are measurements.
-    pub on_bench: Option<OnBench>,
+    pub on_bench: Option<BenchPrediction>,
     /// Whether the search has settled: no design was expected to improve on the best.
     pub settled: bool,
 }

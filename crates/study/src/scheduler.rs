@@ -57,7 +57,7 @@ const MAX_FAILED_STARTS: usize = 12;
 
 /// Largest absolute value of an objective; a larger one, or NaN, counts as failed.
 const LARGEST_VALUE: f64 = 1e15;
-/// Largest violation, as a share of a limit, which may be small.
+/// Largest violation relative to its limit; the limit may be close to 0.
 const LARGEST_VIOLATION: f64 = 1e30;
 
 /// Design to be measured.
@@ -101,7 +101,8 @@ pub struct ProposalResult {
 /// Scheduler of a study: a state machine that is replayed from the journal.
 pub struct Scheduler {
     batch: usize,
-    /// Proposals without `tell`, by number, each with the number of evaluations told before it.
+    /// Proposals whose results were not passed to `tell` yet, by number, each with the number of evaluations that were
+    /// passed to `tell` before it.
     open: BTreeMap<u64, (GridPoint, usize)>,
     /// Number of proposals so far.
     proposed: u64,
@@ -109,7 +110,7 @@ pub struct Scheduler {
     told: usize,
     /// Designs being measured, by the number of the proposal.
     measuring: BTreeMap<u64, Design>,
-    /// Results that wait for earlier ones, still being measured, to be written; by index.
+    /// Results that are written once all earlier ones have arrived, by index.
     waiting: BTreeMap<u64, Recorded>,
     early_stopping: Option<EarlyStopping>,
     ended: Option<Ending>,
@@ -133,7 +134,7 @@ impl Scheduler {
     /// Returns the scheduler of a study, to be used with a new optimizer.
     pub fn new(study: &Study) -> Self {
         let settled = study.settled();
-        let early_stopping = study.config.settling().map(|[min_evaluations, patience]| {
+        let early_stopping = study.config.early_stopping().map(|[min_evaluations, patience]| {
             EarlyStopping { min_evaluations, patience, stagnant: 0, checked: 0, settled }
         });
         Scheduler {
@@ -222,7 +223,7 @@ impl Scheduler {
             false => (number, None),
         };
         let goals = study.config.goals();
-        let score = goals.score(&tasks.iter().collect::<Vec<_>>()).filter(is_finite);
+        let score = goals.score(&tasks.iter().collect::<Vec<_>>()).filter(is_bounded);
         let timing = Timing { cached, ..timing };
         let recorded = Recorded { index, proposal, design, score, stiffness, tasks, timing };
         self.waiting.insert(index, recorded);
@@ -266,11 +267,10 @@ impl Scheduler {
         }
         let mut proposals = self.proposals(study);
         for Proposal { number, design, .. } in &proposals {
-            match study.evaluations.get(*number as usize) {
-                Some(found) if found.design != *design => {
-                    return Err(study.other_design(found, &design.to_string()));
-                }
-                _ => {}
+            if let Some(found) = study.evaluations.get(*number as usize)
+                && found.design != *design
+            {
+                return Err(study.other_design(found, &design.to_string()));
             }
         }
         let known = study.evaluations.len();
@@ -336,7 +336,7 @@ impl Scheduler {
         }
     }
 
-    /// Returns the proposals within the limit whose results were not told yet.
+    /// Returns the proposals within the limit whose results were not passed to `tell` yet.
     fn proposals(&self, study: &Study) -> Vec<Proposal> {
         let limit = Self::limit(study) as u64;
         let within = self.open.iter().filter(|(number, _)| **number < limit);
@@ -348,8 +348,8 @@ impl Scheduler {
     }
 }
 
-/// Returns whether all values are finite and small enough for sums and plots.
-fn is_finite(score: &Score) -> bool {
+/// Returns whether all values are numbers small enough for sums and plots.
+fn is_bounded(score: &Score) -> bool {
     score.values.iter().all(|value| value.abs() <= LARGEST_VALUE)
         && score.violations.iter().all(|share| share.abs() <= LARGEST_VIOLATION)
 }
@@ -364,17 +364,17 @@ fn exhausted(optimizer: &dyn Optimizer) -> Ending {
 impl Study {
     /// Returns the result of a point for the optimizer.
     fn observation(&self, point: GridPoint, recorded: &Recorded) -> Observation {
-        let told = || {
+        let values = || {
             let score = recorded.score.as_ref()?;
             Some((self.config.goals().interpolated(&recorded.tasks())?, score.violations.clone()))
         };
-        match told() {
+        match values() {
             None => Observation::new(point, None),
             Some((values, violations)) => Observation { point, values, violations },
         }
     }
 
-    /// Returns the error for an evaluation of the journal in place of which another design is proposed.
+    /// Returns the error for an evaluation of the journal whose design differs from the proposed one.
     fn other_design(&self, found: &Recorded, proposed: &str) -> StudyError {
         let problem = format!(
             "evaluation {} is of {}, but this version of the program proposes {proposed}: the journal \

@@ -9,10 +9,10 @@ use std::path::Path;
 
 /// File of the table in the folder of a study.
 pub const EVALUATIONS_CSV: &str = "evaluations.csv";
-/// Lists with a value for each draw, which are not columns.
-const DRAWN: [&str; 2] = ["robust_ranges_mm", "success_failed_draws"];
+/// Keys of lists with a value for each draw, which are left out of the table.
+const PER_DRAW: [&str; 2] = ["robust_ranges_mm", "success_failed_draws"];
 
-/// Columns and cells in order.
+/// Names of the columns with their cells, in order.
 type Row = Vec<(String, String)>;
 
 /// Returns the text of `evaluations.csv`; `dir` is named in errors.
@@ -45,10 +45,7 @@ fn row(record: &StudyRecord, recorded: &Recorded) -> Result<Row, serde_json::Err
     let mut row = vec![("evaluation".to_owned(), recorded.index.to_string())];
     for parameter in &config.space.parameters {
         let value = recorded.design.get(&parameter.key);
-        row.push((
-            parameter.key.to_string(),
-            value.map_or(String::new(), |value| value.to_string()),
-        ));
+        row.push((parameter.key.to_string(), value.map(|v| v.to_string()).unwrap_or_default()));
     }
     let score = |of: fn(&Score) -> &[f64], i: usize| {
         let value = recorded.score.as_ref().and_then(|score| of(score).get(i));
@@ -71,10 +68,10 @@ fn row(record: &StudyRecord, recorded: &Recorded) -> Result<Row, serde_json::Err
     Ok(row)
 }
 
-/// Adds the fields of a flat value; elements of a list are numbered from 1.
+/// Adds the fields of an object that contains no objects; elements of a list are numbered from 1.
 fn cells(prefix: &str, value: &impl Serialize, row: &mut Row) -> Result<(), serde_json::Error> {
     let Value::Object(fields) = serde_json::to_value(value)? else { return Ok(()) };
-    for (key, value) in fields.into_iter().filter(|(key, _)| !DRAWN.contains(&&**key)) {
+    for (key, value) in fields.into_iter().filter(|(key, _)| !PER_DRAW.contains(&&**key)) {
         match value {
             Value::Array(values) => {
                 for (i, value) in (1..).zip(values) {
@@ -87,7 +84,7 @@ fn cells(prefix: &str, value: &impl Serialize, row: &mut Row) -> Result<(), serd
     Ok(())
 }
 
-/// Returns a cell, empty without a value.
+/// Formats a cell; `null` gives an empty one.
 fn cell(value: Value) -> String {
     match value {
         Value::Null => String::new(),

@@ -53,7 +53,7 @@ impl WorkError {
     }
 }
 
-/// Contents and times of a line with a checksum.
+/// Returns content and times of a line with a checksum.
 fn read<T: DeserializeOwned, U: DeserializeOwned>(
     bytes: &[u8],
     kind: &str,

@@ -1,5 +1,5 @@
-//! Counts how many prints `optimize next` takes to the best of the eleven published fingers on synthetic benches
-//! with known ranges: linear in the stiffness, curved, or with a step; noise of 0.1 to 0.5 mm; every task.
+//! Counts the prints that `optimize next` needs to find the best of the eleven published fingers on synthetic benches
+//! of every task. Their true ranges are linear in the stiffness, curved, or have a step; noise is 0.1 to 0.5 mm.
 //!
 //! Writes two tables: `benches.csv` (a line for each bench) and `summary.csv` (means for each task and shape).
 
@@ -26,11 +26,11 @@ use std::path::PathBuf;
 use study::write_file;
 
 const TASKS: [&str; 4] = ["usb", "ket8", "ket12", "rj45"];
-/// Shapes of the true ranges over the stiffness, in turn.
+/// Shapes of the true ranges as functions of the stiffness, used in turn.
 const SHAPES: [&str; 4] = ["linear", "curved", "linear", "step"];
 const NOISES_MM: [f64; 4] = [0.1, 0.2, 0.3, 0.5];
-/// Prints after which the regret is taken.
-const FEW: usize = 3;
+/// Number of prints after which the regret is computed.
+const REGRET_PRINTS: usize = 3;
 const HEADER: &str =
     "task,shape,bench,noise_mm,spread_mm,prints_to_best,regret_printed_mm,regret_named_mm\n";
 
@@ -48,7 +48,7 @@ struct Arguments {
 }
 
 /// Synthetic bench.
-struct Truth {
+struct SyntheticBench {
     shape: &'static str,
     noise_mm: f64,
     /// True ranges of the published fingers.
@@ -56,20 +56,20 @@ struct Truth {
 }
 
 /// Result on one bench.
-struct Found {
+struct BenchResult {
     task: &'static str,
     number: u64,
-    truth: Truth,
+    truth: SyntheticBench,
     prints_to_best: usize,
-    /// Ranges by which the best printed finger, and the finger of the largest expected range, fall short of the best
-    /// one after `FEW` prints, mm.
+    /// Regrets after `REGRET_PRINTS` prints, mm: of the best printed finger, and of the finger with the largest
+    /// expected range.
     regrets_mm: [f64; 2],
 }
 
 fn main() -> Result<(), Failure> {
     let Arguments { benches, out, cache } = Arguments::parse();
     let cache = CacheRequest { dir: cache, off: false };
-    let mut found: Vec<Found> = Vec::new();
+    let mut found: Vec<BenchResult> = Vec::new();
     for task in TASKS {
         let prepared = prepared(task, &cache)?;
         let one = |number: u64| replay(&prepared, task, number);
@@ -80,8 +80,7 @@ fn main() -> Result<(), Failure> {
         &out.join("benches.csv"),
         &(HEADER.to_owned() + &found.iter().map(line).collect::<String>()),
     )?;
-    write_file(&out.join("summary.csv"), &summary(&found))?;
-    Ok(())
+    Ok(write_file(&out.join("summary.csv"), &summary(&found))?)
 }
 
 fn published() -> Vec<Design> {
@@ -106,7 +105,7 @@ fn prepared(task: &str, cache: &CacheRequest) -> Result<Prepared<'static>, Failu
     calibration.prepare((&bench, &nothing), &published(), &Context::silent(&NEVER))
 }
 
-impl Truth {
+impl SyntheticBench {
     fn new(task: &str, number: u64) -> Self {
         let mut random = stream(number, 0, &format!("bench of {task}"));
         // Normal components, so that all directions are equally likely.
@@ -121,11 +120,11 @@ impl Truth {
             "step" => 0.5 * x + f64::from(u8::from(*y > edge)) * 0.5,
             _ => *x,
         };
-        let heights = unit(along.iter().zip(&across).map(height).collect());
+        let heights = scaled(along.iter().zip(&across).map(height).collect());
         // The ends of a window lie on a grid of 0.1 mm.
         let range_mm = |height: &f64| tenths(level_mm + spread_mm * (height - 0.5));
         let ranges_mm = heights.iter().map(range_mm).collect();
-        Truth { shape, noise_mm, ranges_mm }
+        SyntheticBench { shape, noise_mm, ranges_mm }
     }
 
     fn best_mm(&self) -> f64 {
@@ -133,12 +132,12 @@ impl Truth {
     }
 }
 
-/// Places of the published fingers along a direction in the plane of both standardised stiffnesses, 0 to 1.
+/// Returns the positions of the published fingers along a direction in the plane of both scaled stiffnesses, 0 to 1.
 fn along([x, y]: [f64; 2]) -> Vec<f64> {
     let all = designs();
-    let compliance = unit(all.iter().map(|design| design.compliance).collect());
-    let assembly = unit(all.iter().map(|design| design.assembly).collect());
-    unit(compliance.iter().zip(&assembly).map(|(ky, kz)| x * ky + y * kz).collect())
+    let compliance = scaled(all.iter().map(|design| design.compliance).collect());
+    let assembly = scaled(all.iter().map(|design| design.assembly).collect());
+    scaled(compliance.iter().zip(&assembly).map(|(ky, kz)| x * ky + y * kz).collect())
 }
 
 /// Rounds to 0.1 mm.
@@ -146,16 +145,16 @@ fn tenths(mm: f64) -> f64 {
     (10.0 * mm).round() / 10.0
 }
 
-/// Moves and scales values to 0 to 1.
-fn unit(values: Vec<f64>) -> Vec<f64> {
+/// Scales values linearly to the range from 0 to 1.
+fn scaled(values: Vec<f64>) -> Vec<f64> {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     values.iter().map(|value| (value - low) / (high - low)).collect()
 }
 
 /// Prints and measures the recommended fingers until the best finger has been printed.
-fn replay(prepared: &Prepared<'_>, task: &'static str, number: u64) -> Found {
-    let truth = Truth::new(task, number);
+fn replay(prepared: &Prepared<'_>, task: &'static str, number: u64) -> BenchResult {
+    let truth = SyntheticBench::new(task, number);
     let Prepared { subjects, layout, settings } = prepared;
     let subject = &subjects[0];
     let among: Vec<usize> =
@@ -165,11 +164,11 @@ fn replay(prepared: &Prepared<'_>, task: &'static str, number: u64) -> Found {
     let mut printed: Vec<usize> = Vec::new();
     let mut regrets_mm = [0.0; 2];
     let mut prints_to_best = None;
-    while prints_to_best.is_none() || printed.len() <= FEW {
+    while prints_to_best.is_none() || printed.len() <= REGRET_PRINTS {
         let mut random = stream(settings.seed, 0, "next");
         let posterior =
             sampled(std::slice::from_ref(&bench), layout.dimension(), settings, &mut random);
-        if printed.len() == FEW {
+        if printed.len() == REGRET_PRINTS {
             let best = printed.iter().map(|&at| truth.ranges_mm[at]).fold(0.0, f64::max);
             let expected = predict(&bench, &posterior, &among, IntervalKind::Truth);
             let named = (0..among.len())
@@ -195,36 +194,32 @@ fn replay(prepared: &Prepared<'_>, task: &'static str, number: u64) -> Found {
             prints_to_best = prints_to_best.or(Some(printed.len()));
         }
     }
-    Found { task, number, truth, prints_to_best: prints_to_best.unwrap_or(0), regrets_mm }
+    BenchResult { task, number, truth, prints_to_best: prints_to_best.unwrap_or(0), regrets_mm }
 }
 
-fn line(found: &Found) -> String {
-    let Found { task, number, truth, prints_to_best, regrets_mm: [printed, named] } = found;
-    let Truth { shape, noise_mm, ranges_mm } = truth;
+fn line(found: &BenchResult) -> String {
+    let BenchResult { task, number, truth, prints_to_best, regrets_mm: [printed, named] } = found;
+    let SyntheticBench { shape, noise_mm, ranges_mm } = truth;
     let spread_mm = truth.best_mm() - ranges_mm.iter().copied().fold(f64::INFINITY, f64::min);
     format!(
         "{task},{shape},{number},{noise_mm},{spread_mm:.2},{prints_to_best},{printed:.2},{named:.2}\n"
     )
 }
 
-fn summary(found: &[Found]) -> String {
+fn summary(found: &[BenchResult]) -> String {
     let mut text =
         "task,shape,benches,prints_to_best,regret_printed_mm,regret_named_mm\n".to_owned();
     for task in TASKS.into_iter().chain(["all"]) {
         for shape in ["linear", "curved", "step"] {
-            let own = || {
-                found
-                    .iter()
-                    .filter(|one| (task == "all" || one.task == task) && one.truth.shape == shape)
-            };
+            let of_task = found.iter().filter(|result| task == "all" || result.task == task);
+            let own: Vec<_> = of_task.filter(|result| result.truth.shape == shape).collect();
             let means = [
-                mean(own().map(|one| one.prints_to_best as f64)),
-                mean(own().map(|one| one.regrets_mm[0])),
-                mean(own().map(|one| one.regrets_mm[1])),
+                mean(own.iter().map(|result| result.prints_to_best as f64)),
+                mean(own.iter().map(|result| result.regrets_mm[0])),
+                mean(own.iter().map(|result| result.regrets_mm[1])),
             ];
             let [prints, printed, named] = means.map(|mean| mean.unwrap_or(0.0));
-            text +=
-                &format!("{task},{shape},{},{prints:.2},{printed:.2},{named:.2}\n", own().count());
+            text += &format!("{task},{shape},{},{prints:.2},{printed:.2},{named:.2}\n", own.len());
         }
     }
     text

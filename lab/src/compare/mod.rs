@@ -1,4 +1,4 @@
-//! Windows of the same fingers by another search, step or engine, and as published.
+//! Comparison of the windows of the same fingers with another search, step or engine, and with the published ones.
 
 pub mod engines;
 pub mod pairs;

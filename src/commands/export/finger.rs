@@ -185,7 +185,7 @@ fn page(request: &PrintRequest, geometry: &Geometry, out: &Path) -> Result<Strin
         }
     };
     let ribs = mechanics::compute(geometry).map_err(Failure::input)?;
-    let measured = request.measured_model()?.map(|prediction| prediction.at_pad());
+    let measured = request.predicted_stiffness()?.map(|prediction| prediction.at_pad());
     Ok(write(geometry, &AtPad { ribs: &ribs, measured }))
 }
 

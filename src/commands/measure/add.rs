@@ -98,7 +98,10 @@ impl command::Request for Request {
 
     fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
         let (file, mut cells) = (&self.file, self.cells());
-        not_shipped(file)?;
+        if MEASUREMENTS.iter().any(|shipped| shipped.name == file) {
+            let problem = format!("`{file}` is shipped; give the path of your own file");
+            return Err(Failure::usage(problem));
+        }
         if cells.is_empty() {
             cells = prompt(&mut io::stdin().lock())?;
         }
@@ -106,13 +109,6 @@ impl command::Request for Request {
         let text = format!("{file}: {}\n", input::counted(lines, "line"));
         Ok(Output { value: Added { file: file.clone(), lines }, text, picture: None })
     }
-}
-
-fn not_shipped(file: &str) -> Result<(), Failure> {
-    if MEASUREMENTS.iter().any(|shipped| shipped.name == file) {
-        return Err(Failure::usage(format!("`{file}` is shipped; give the path of your own file")));
-    }
-    Ok(())
 }
 
 /// Adds a line with these cells, or with `dry_run` only checks it, and returns all lines.
@@ -135,7 +131,7 @@ fn add(
     }
     // Read last, since others may have added lines meanwhile.
     let unusable = |error| Failure::in_file(file, format!("cannot add a line: {error}"));
-    let full = |error| Failure::running(format!("{file}: cannot write: {error}"));
+    let unwritable = |error| Failure::running(format!("{file}: cannot write: {error}"));
     let mut table = LockedFile::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
     parse(table.text(), file).map_err(Failure::input)?;
     let new =
@@ -144,7 +140,7 @@ fn add(
     let new = appended(table.text(), &comment, &cells).map_err(Failure::input)?;
     let found = parse(&new, file).map_err(Failure::input)?;
     if !dry_run {
-        table.replace(&new).map_err(full)?;
+        table.replace(&new).map_err(unwritable)?;
     }
     Ok(found)
 }

@@ -86,7 +86,7 @@ impl fmt::Display for Checked {
             true => {
                 format!("{}next          optimize task tune {file}\n", brief("mended by", tuned))
             }
-            false => format!("mended by     nothing that was tried: {}\n", tried(tuned)),
+            false => format!("mended by     none of the strategies tried: {}\n", tried(tuned)),
         });
         let text = self.checked.text() + &remedy + &layout::wrote(&self.written);
         f.write_str(&layout::wrapped(&text))

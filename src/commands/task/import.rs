@@ -4,7 +4,7 @@ use crate::command;
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout::wrapped;
-use crate::setup::bodies::{Named, Pair, pair};
+use crate::setup::bodies::{Parts, PartsRequest, parts};
 use crate::setup::mated::{LeftOut, MateOptions, MatedTask, mated};
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
@@ -28,7 +28,7 @@ const RESOLUTIONS: [u32; 2] = [8, 1000];
 /// Voxels unless said otherwise.
 const RESOLUTION: u32 = 64;
 /// Most parts that are written into the task file.
-const MOST_INLINE: usize = 30;
+const MAX_INLINE: usize = 30;
 /// Depths to be reached in a through hole, mm.
 const DEPTHS_MM: RangeInclusive<f64> = 0.4..=300.0;
 
@@ -152,7 +152,7 @@ impl Request {
     fn write(&self, out: &Path, found: &MatedTask) -> Result<TaskFile, Failure> {
         let (task, mut notes) = (&found.made.task, self.notes(found));
         let file = out.display().to_string();
-        if task.plug.parts.len() + task.socket.len() <= MOST_INLINE {
+        if task.plug.parts.len() + task.socket.len() <= MAX_INLINE {
             let written = TaskFile::parse(Source { file, text: write::task(task, &notes) })?;
             write_file(out, &written.source.text)?;
             return Ok(written);
@@ -176,7 +176,7 @@ impl Request {
     fn found(&self, context: &Context<'_>) -> Result<MatedTask, Failure> {
         let like = self.like.as_deref().map(read_task).transpose()?;
         let files = self.called();
-        let named = Named {
+        let request = PartsRequest {
             plug: self.plug(),
             socket: self.socket(),
             assembled: self.assembly.is_some(),
@@ -184,8 +184,8 @@ impl Request {
             socket_body: &self.socket_body,
             unit: self.unit,
         };
-        let Pair { triangles: [plug, socket], unit, finding } =
-            pair([&files[0], &files[1]], &named, context)?;
+        let Parts { triangles: [plug, socket], unit, finding } =
+            parts([&files[0], &files[1]], &request, context)?;
         not_stopped(context.stop)?;
         let options = MateOptions {
             name: &self.name(),

@@ -1,4 +1,4 @@
-//! Strategy parameters: table 1 and equations (49) to (58) of the tutorial.
+//! Strategy parameters: table 1 and equations (49) to (58) of Hansen's tutorial (see `cmaes`).
 
 use libm::{log, sqrt};
 

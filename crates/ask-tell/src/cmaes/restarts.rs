@@ -50,7 +50,7 @@ impl Restarts {
         (0..self.current.lambda).map(|_| self.current.sample()).collect()
     }
 
-    /// Tells a generation, and starts the next run if this one has a reason to stop.
+    /// Updates the current run with a generation, and starts the next run if this one has a reason to stop.
     pub fn tell(&mut self, solutions: &[Solution]) {
         self.current.tell(solutions);
         self.evaluations += solutions.len() as u64;

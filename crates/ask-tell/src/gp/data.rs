@@ -74,7 +74,7 @@ impl Standardised {
     /// each other, but not to it.
     pub fn of(&self, value: f64) -> f64 {
         let standard = (value - self.mean) / self.deviation;
-        self.warp.map_or(standard, |warp| warp.of(standard))
+        self.warp.map_or(standard, |warp| warp.apply(standard))
     }
 }
 

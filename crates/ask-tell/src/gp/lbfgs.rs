@@ -16,7 +16,7 @@ const FIRST_STEP: f64 = 0.3;
 /// Smallest distance of the start from the faces, where the derivative of the sine is zero, in radians.
 const OFF_THE_FACE: f64 = 0.1;
 /// Relative change of the value below which the run ends.
-const LEAST_GAIN: f64 = 1e-7;
+const MIN_GAIN: f64 = 1e-7;
 
 /// A value and its derivatives.
 type WithSlope = (f64, Vec<f64>);
@@ -61,7 +61,7 @@ pub(super) fn minimise(
     let scaled = |value: f64, slope: Vec<f64>| -> WithSlope {
         (unit * value, slope.iter().map(|g| unit * g).collect())
     };
-    let tolerance = LEAST_GAIN * unit * value.abs().max(1.0);
+    let tolerance = MIN_GAIN * unit * value.abs().max(1.0);
     let best = RefCell::new((x, value));
     // argmin evaluates value and gradient of a point separately.
     let last = RefCell::new((start.clone(), scaled(value, slope)));

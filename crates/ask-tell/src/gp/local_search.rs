@@ -5,8 +5,8 @@ use super::neighbours::{APPROXIMATE_NEIGHBOURS, Neighbours};
 use super::search::{Memory, Search, SearchRegion};
 use crate::GridPoint;
 
-/// Number of neighbours of the models for L-BFGS and single steps.
-const MANY: usize = 90;
+/// Number of neighbours of the models for L-BFGS and single-level steps.
+const NEIGHBOURS: usize = 90;
 /// Number of candidates on large grids.
 const CANDIDATES: usize = 200;
 /// Grids up to this size are evaluated completely.
@@ -14,44 +14,44 @@ const WHOLE_GRID: u64 = 1000;
 /// Number of candidates that are improved.
 const STARTS: usize = 4;
 /// Largest number of gradient evaluations from one start.
-const SLOPES: usize = 20;
+const MAX_GRADIENTS: usize = 20;
 /// Largest number of single-level steps from one start.
-const STEPS: usize = 24;
+const MAX_STEPS: usize = 24;
 
-/// Returns the unseen grid point with the largest acquisition found, by the model near it; `None` if no
+/// Returns the unseen grid point with the largest acquisition, each by the model near it; `None` if no
 /// unseen point was evaluated or none has a finite acquisition.
 pub(super) fn maximise(known: &Neighbours, region: SearchRegion) -> Option<GridPoint> {
     let candidates = match region.grid().size() {
         ..=WHOLE_GRID => region.grid().points().collect(),
         _ => region.candidates(CANDIDATES),
     };
-    let promise = |point: GridPoint| {
+    let scored = |point: GridPoint| {
         let x = region.grid().free_unit(&point);
         let value = known.near(&x, APPROXIMATE_NEIGHBOURS)?.acquisition(&x);
         value.is_finite().then_some((value, point))
     };
     let unseen = candidates.into_iter().filter(|point| !region.proposed.contains(point));
-    let mut ranked: Vec<(f64, GridPoint)> = unseen.filter_map(promise).collect();
+    let mut ranked: Vec<(f64, GridPoint)> = unseen.filter_map(scored).collect();
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
     ranked.truncate(STARTS);
     let ends = ranked.iter().filter_map(|(_, start)| climb(known, region, start));
     ends.reduce(|a, b| if b.1 > a.1 { b } else { a }).map(|(point, _)| point)
 }
 
-/// Improves a start by L-BFGS within the trusted box of the model near it, then by single-level steps in the
+/// Improves a start by L-BFGS within the trust region of the model near it, then by single-level steps in the
 /// model near the result.
 fn climb(known: &Neighbours, region: SearchRegion, start: &GridPoint) -> Option<(GridPoint, f64)> {
     let x = region.grid().free_unit(start);
-    let reach = known.reach(&x, MANY);
-    let side = |by: f64| x.iter().zip(&reach).map(move |(x, r)| (x + by * r).clamp(0.0, 1.0));
+    let half_widths = known.trust_region(&x, NEIGHBOURS);
+    let side = |by: f64| x.iter().zip(&half_widths).map(move |(x, r)| (x + by * r).clamp(0.0, 1.0));
     let (low, high): (Vec<f64>, Vec<f64>) = (side(-1.0).collect(), side(1.0).collect());
-    let limits = Limits { low: &low, high: &high, evaluations: SLOPES };
-    let trained = known.near(&x, MANY)?;
+    let limits = Limits { low: &low, high: &high, evaluations: MAX_GRADIENTS };
+    let trained = known.near(&x, NEIGHBOURS)?;
     let top = Search { trained: &trained, region }.ascend(start, &limits);
-    let trained = known.near(&region.grid().free_unit(&top), MANY)?;
+    let trained = known.near(&region.grid().free_unit(&top), NEIGHBOURS)?;
     let search = Search { trained: &trained, region };
     let mut memory = Memory::new();
     search.value(start, &mut memory);
-    search.step_uphill(top, STEPS, &mut memory);
+    search.step_uphill(top, MAX_STEPS, &mut memory);
     region.best_unseen(memory)
 }

@@ -149,7 +149,7 @@ impl Gp {
         (self.process.mean(&k, &ONE), given + self.process.mean.variance(&k, &ONE))
     }
 
-    /// Covariances between a point of the unit cube and all observations.
+    /// Returns the covariances between a point of the unit cube and all observations.
     fn covariances(&self, x: &[f64]) -> DVector<f64> {
         covariances(&self.points.distances2(x), self.signal)
     }
@@ -169,7 +169,7 @@ fn lower_covariance(columns: &[Vec<f64>], signal: f64, n: usize) -> DMatrix<f64>
     covariance
 }
 
-/// Covariances at these squared distances.
+/// Returns the covariances at these squared distances.
 fn covariances(r2: &[f64], signal: f64) -> DVector<f64> {
     DVector::from_iterator(r2.len(), r2.iter().map(|&r2| signal * matern52(r2)))
 }

@@ -9,8 +9,8 @@ use super::trained::{Goal, Trained};
 /// Number of neighbours for approximate predictions.
 pub(super) const APPROXIMATE_NEIGHBOURS: usize = 24;
 
-/// Observations, from which local models of a few are made (the local approximation of Gramacy and Apley
-/// 2015, J. Comput. Graph. Stat. 24:561, with the nearest points instead of optimised ones).
+/// Observations for local models, each of a subset near a location (the local approximation of Gramacy and
+/// Apley 2015, J. Comput. Graph. Stat. 24:561, with the nearest points instead of optimised ones).
 #[derive(Debug, Clone)]
 pub(super) struct Neighbours {
     /// Coordinates of the points on the free axes.
@@ -26,7 +26,7 @@ pub(super) struct Neighbours {
 }
 
 impl Neighbours {
-    /// Stores the values at `x` of at least one objective; the goal is any feasible point.
+    /// Creates the models of at least one objective with values at `x`; the initial goal is any feasible point.
     pub fn new(
         x: Vec<Vec<f64>>,
         data: Vec<Standardised>,
@@ -67,14 +67,14 @@ impl Neighbours {
         self.goal = near.goal;
     }
 
-    /// Returns the half widths of a box around a location in which the model of its `count` nearest points is
-    /// trusted: half the distance to the farthest of them.
-    pub fn reach(&self, location: &[f64], count: usize) -> Vec<f64> {
+    /// Returns the half widths of the trust region around a location for the model of its `count` nearest points:
+    /// half the distance to the farthest of them.
+    pub fn trust_region(&self, location: &[f64], count: usize) -> Vec<f64> {
         let far = self.by_distance(location, count).last().map_or(0.0, |&(r2, _)| r2.sqrt());
         self.scaled.inverse_length.iter().map(|i| 0.5 * far / i).collect()
     }
 
-    /// Returns the indices of the points of a model at a location, ascending.
+    /// Returns the ascending indices of the points of the model at a location.
     fn chosen(&self, location: &[f64], count: usize) -> Vec<usize> {
         let near = self.by_distance(location, count).into_iter().map(|(_, i)| i);
         let mut chosen: Vec<usize> = near.chain(spread(self.x.len(), count / 3)).collect();
@@ -130,8 +130,8 @@ mod tests {
         let near = known.by_distance(&[0.5, 0.5], 6);
         let farthest = near.iter().map(|n| n.0).fold(0.0, f64::max);
         assert!(near.len() == 6 && near.last().unwrap().0 == farthest);
-        let reach = known.reach(&[0.5, 0.5], 6);
-        assert!((reach[1] / reach[0] - libm::exp(1.0)).abs() < 1e-12, "{reach:?}");
+        let region = known.trust_region(&[0.5, 0.5], 6);
+        assert!((region[1] / region[0] - libm::exp(1.0)).abs() < 1e-12, "{region:?}");
         let chosen = known.chosen(&[0.5, 0.5], 6);
         assert!(chosen.contains(&0) && (6..=8).contains(&chosen.len()), "{chosen:?}");
     }

@@ -9,8 +9,8 @@ use crate::{Grid, GridPoint, Observation, Optimizer, StopReason};
 /// Default least standard deviation of the noise, in objective units: that of a value rounded
 /// to steps of 0.1, 0.1 / sqrt(12).
 pub const DEFAULT_NOISE_FLOOR: f64 = 0.1 * 0.288_675_134_594_812_9;
-/// Largest number of points, told and pending, for which the process is conditioned on all.
-const WHOLE: usize = 250;
+/// Largest number of observed and pending points up to which one global process is conditioned on all of them.
+const MAX_GLOBAL_POINTS: usize = 250;
 
 /// Bayesian optimization over a grid. **Maximises.**
 ///
@@ -32,7 +32,7 @@ pub(crate) struct GpOptimizer {
     training: Training,
     design: SobolSequence,
     told: Vec<Observation>,
-    /// Points asked but not yet told.
+    /// Proposed points without a result so far.
     pending: Vec<GridPoint>,
     /// Models of all observations, and good starting points for the search, best first; `None` if
     /// they have to be rebuilt.
@@ -60,11 +60,11 @@ impl GpOptimizer {
     /// Returns the models for an ask of `n` points, fitted and conditioned only if the data have
     /// changed.
     fn train(&mut self, n: usize) -> Option<(Model, Vec<GridPoint>)> {
-        let whole = self.told.len() + self.pending.len() + n <= WHOLE;
-        let fits = |(model, _): &(Model, _)| matches!(model, Model::Global(_)) == whole;
+        let global = self.told.len() + self.pending.len() + n <= MAX_GLOBAL_POINTS;
+        let fits = |(model, _): &(Model, _)| matches!(model, Model::Global(_)) == global;
         if !self.model.as_ref().is_some_and(fits) {
             let x: Vec<Vec<f64>> = self.told.iter().map(|o| self.unit(&o.point)).collect();
-            self.model = self.training.model(&self.told, x, whole);
+            self.model = self.training.model(&self.told, x, global);
         }
         self.model.clone()
     }
@@ -110,13 +110,12 @@ impl Optimizer for GpOptimizer {
 
     fn tell(&mut self, observations: &[Observation]) {
         for o in observations {
-            if !self.proposed.grid.contains(&o.point) {
-                continue;
+            if self.proposed.grid.contains(&o.point) {
+                self.proposed.insert(&o.point);
+                self.pending.retain(|p| *p != o.point);
+                self.told.push(o.clone());
+                self.model = None;
             }
-            self.proposed.insert(&o.point);
-            self.pending.retain(|p| *p != o.point);
-            self.told.push(o.clone());
-            self.model = None;
         }
     }
 

@@ -19,7 +19,7 @@ const STARTS: usize = 4;
 /// Cost of an acquisition with its gradient, in acquisitions.
 const COST_OF_SLOPE: usize = 3;
 /// Largest number of gradient evaluations from one start.
-const MOST_SLOPES: usize = 40;
+const MAX_GRADIENTS: usize = 40;
 
 /// Search region: the points not yet proposed.
 #[derive(Clone, Copy)]
@@ -89,7 +89,7 @@ impl Search<'_> {
         ranked.truncate(STARTS);
         let share = (budget - budget / 3) / ranked.len().max(1);
         let axes = self.region.grid().free_axes().len();
-        let evaluations = (share / 2 / COST_OF_SLOPE).min(MOST_SLOPES);
+        let evaluations = (share / 2 / COST_OF_SLOPE).min(MAX_GRADIENTS);
         let limits = Limits { low: &vec![0.0; axes], high: &vec![1.0; axes], evaluations };
         for (_, point) in ranked {
             let top = self.ascend(&point, &limits);

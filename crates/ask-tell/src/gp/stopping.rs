@@ -30,7 +30,7 @@ const CANDIDATES: usize = 6000;
 /// Measured points around which candidates are drawn.
 const INCUMBENTS: usize = 4;
 /// Probability below which a gain is disregarded.
-const LEAST_PROBABILITY: f64 = 0.02;
+const MIN_PROBABILITY: f64 = 0.02;
 /// Nodes (in standard deviations) and weights of the Gauss-Hermite rule of five points.
 const NODES: [(f64, f64); 5] = [
     (-2.856_970_013_872_806, 0.011_257_411_327_720_69),
@@ -186,7 +186,7 @@ impl<'a> StoppingCriterion<'a> {
         let known = |at: usize| self.confirmed.iter().any(|confirmed| confirmed.index == at);
         let contender = |at: usize| {
             let (expected, probability) = self.confirmed_value(at, best + self.least_gain)?;
-            (probability >= LEAST_PROBABILITY).then_some((expected, at))
+            (probability >= MIN_PROBABILITY).then_some((expected, at))
         };
         let mut contenders: Vec<(f64, usize)> =
             (0..self.observations.len()).filter(|&at| !known(at)).filter_map(contender).collect();
@@ -245,21 +245,21 @@ impl<'a> StoppingCriterion<'a> {
     }
 
     /// Returns whether the confirmed value at an unevaluated point exceeds `threshold` with at least
-    /// [`LEAST_PROBABILITY`].
+    /// [`MIN_PROBABILITY`].
     fn may_exceed(&self, searched: &Model, x: &[f64], threshold: f64) -> bool {
         let Model { gp, data } = searched;
         let above = |(mean, variance): (f64, f64), threshold: f64| {
             exp(normal_log_cdf((mean - data.of(threshold)) / sqrt(variance)))
         };
         let rough = gp.bound(x);
-        if rough.0 < data.of(threshold) && above(rough, threshold) < LEAST_PROBABILITY {
+        if rough.0 < data.of(threshold) && above(rough, threshold) < MIN_PROBABILITY {
             return false;
         }
         let (own, (mean, deviation)) = (gp.predict(x), self.drop_at(x));
         let at = |(node, weight): (f64, f64)| {
             weight * above(own, threshold + (mean + node * deviation).max(0.0))
         };
-        NODES.into_iter().map(at).sum::<f64>() >= LEAST_PROBABILITY
+        NODES.into_iter().map(at).sum::<f64>() >= MIN_PROBABILITY
     }
 
     fn candidates(&self, proposed: &Proposed) -> Vec<GridPoint> {
@@ -285,7 +285,7 @@ fn positive_part(mean: f64, deviation: f64) -> f64 {
 mod tests {
     use super::*;
 
-    const LEAST_GAIN: f64 = 0.3;
+    const MIN_GAIN: f64 = 0.3;
 
     /// Returns observations of a ridge of height 5 at level 3 and one of height 4 at level 16, of 21.
     fn observations(levels: impl IntoIterator<Item = u32>) -> Vec<Observation> {
@@ -302,7 +302,7 @@ mod tests {
 
     fn advice(observations: &[Observation], confirmed: &[Confirmed]) -> Advice {
         let rank: Vec<usize> = (0..observations.len()).collect();
-        StoppingCriterion::new(&grid(), observations, confirmed, LEAST_GAIN).advise(&rank, 2)
+        StoppingCriterion::new(&grid(), observations, confirmed, MIN_GAIN).advise(&rank, 2)
     }
 
     #[test]
@@ -327,8 +327,7 @@ mod tests {
         let dropped = [Confirmed { index: 3, value: 2.5, is_final: false }];
         let rank: Vec<usize> = (0..all.len()).collect();
         // Points near the drop may drop as much.
-        let next =
-            StoppingCriterion::new(&grid(), &all, &dropped, LEAST_GAIN).confirm_only(&rank, 1);
+        let next = StoppingCriterion::new(&grid(), &all, &dropped, MIN_GAIN).confirm_only(&rank, 1);
         assert_eq!(next, Advice::Confirm(vec![16]));
         // Values less than 0.3 above the best are no gain.
         let near = [Confirmed { index: 3, value: 4.75, is_final: true }];
@@ -342,7 +341,7 @@ mod tests {
             Confirmed { index: 3, value: 3.0, is_final: false },
             Confirmed { index: 16, value: 4.0, is_final: true },
         ];
-        let criterion = StoppingCriterion::new(&grid, &all, &confirmed, LEAST_GAIN);
+        let criterion = StoppingCriterion::new(&grid, &all, &confirmed, MIN_GAIN);
         let loss = |at: usize| all[at].values[0] - criterion.confirmed_value(at, 0.0).unwrap().0;
         assert!(loss(3) > 1.9 && loss(4) > 1.5 && loss(15) < 0.5, "{} {}", loss(4), loss(15));
         let sure = criterion.confirmed_value(16, 3.9).unwrap().1;

@@ -14,43 +14,39 @@ pub(super) struct Warp {
     lambda: f64,
     mean: f64,
     deviation: f64,
-    /// Geometric mean of the slope over the values it was fitted to.
+    /// Geometric mean of its slope over the training values.
     pub slope: f64,
 }
 
 impl Warp {
-    /// Warps a standardised value.
-    pub fn of(&self, value: f64) -> f64 {
+    /// Transforms a standardised value.
+    pub fn apply(&self, value: f64) -> f64 {
         (yeo_johnson(value, self.lambda) - self.mean) / self.deviation
     }
 }
 
-/// Fits the transformation to standardised values and returns the warped values with it. The
+/// Fits the transformation to standardised values and returns the transformed values with it. The
 /// exponent is the most likely one of -1, -0.9 .. 3 (1 is the identity) for `sample`, a subset of
 /// the values. Returns `None` if no exponent gives finite values that differ.
 pub(super) fn warp(values: &[f64], sample: &[f64]) -> Option<(Vec<f64>, Warp)> {
-    let mut best: Option<(f64, f64)> = None;
-    for step in 0..=40 {
-        let lambda = f64::from(step - 10) / 10.0;
-        let (likelihood, ..) = warped(sample, lambda);
-        if likelihood.is_finite() && best.is_none_or(|(record, _)| likelihood > record) {
-            best = Some((likelihood, lambda));
-        }
-    }
-    let (likelihood, values, warp) = warped(values, best?.1);
+    let lambdas = (-10..=30).map(|tenths| f64::from(tenths) / 10.0);
+    let scored = lambdas.map(|lambda| (warped(sample, lambda).0, lambda));
+    let finite = scored.filter(|(likelihood, _)| likelihood.is_finite());
+    let (_, lambda) = finite.reduce(|best, next| if next.0 > best.0 { next } else { best })?;
+    let (likelihood, values, warp) = warped(values, lambda);
     likelihood.is_finite().then_some((values, warp))
 }
 
-/// Returns the log likelihood of one exponent, the warped values, and the transformation.
+/// Returns the log likelihood of one exponent, the transformed values, and the transformation.
 fn warped(values: &[f64], lambda: f64) -> (f64, Vec<f64>, Warp) {
     let n = values.len() as f64;
     // log of the transformation's slope is (lambda - 1) times this, summed over the values.
     let log_slope: f64 = values.iter().map(|y| y.signum() * log1p(y.abs())).sum();
-    let bent: Vec<f64> = values.iter().map(|&y| yeo_johnson(y, lambda)).collect();
-    let moments = Moments::of(&bent);
+    let transformed: Vec<f64> = values.iter().map(|&y| yeo_johnson(y, lambda)).collect();
+    let moments = Moments::of(&transformed);
     let likelihood = -0.5 * n * log(moments.variance()) + (lambda - 1.0) * log_slope;
     let (mean, deviation) = (moments.mean, moments.deviation());
-    let values = bent.iter().map(|t| (t - mean) / deviation).collect();
+    let values = transformed.iter().map(|t| (t - mean) / deviation).collect();
     let slope = exp((lambda - 1.0) * log_slope / n) / deviation;
     (likelihood, values, Warp { lambda, mean, deviation, slope })
 }
@@ -87,7 +83,7 @@ mod tests {
         let deviation = (raw.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 30.0).sqrt();
         let standard: Vec<f64> = raw.iter().map(|v| (v - mean) / deviation).collect();
         let (values, warp) = warp(&standard, &standard).unwrap();
-        assert!(standard.iter().zip(&values).all(|(&y, t)| (warp.of(y) - t).abs() < 1e-12));
+        assert!(standard.iter().zip(&values).all(|(&y, t)| (warp.apply(y) - t).abs() < 1e-12));
         let skew = |v: &[f64]| v.iter().map(|t| t.powi(3)).sum::<f64>() / 30.0;
         assert!(skew(&standard) > 1.0 && skew(&values).abs() < 0.5);
         assert!(warp.slope > 0.0 && warp.slope.is_finite());

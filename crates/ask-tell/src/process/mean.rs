@@ -18,7 +18,7 @@ pub(crate) struct LinearMean<const P: usize> {
 }
 
 /// Smallest pivot relative to the diagonal element; smaller ones are dominated by rounding errors.
-const LEAST_RELATIVE_PIVOT: f64 = 1e-9;
+const MIN_RELATIVE_PIVOT: f64 = 1e-9;
 
 impl<const P: usize> LinearMean<P> {
     /// Factorises `A` for terms whose values at the points are the columns of `H'`.
@@ -36,7 +36,7 @@ impl<const P: usize> LinearMean<P> {
                     lower[i][j] = quotient(whole - known, pivots[j]);
                 } else {
                     pivots[i] = (whole - known).max(0.0);
-                    determined &= pivots[i] > LEAST_RELATIVE_PIVOT * whole;
+                    determined &= pivots[i] > MIN_RELATIVE_PIVOT * whole;
                 }
             }
         }

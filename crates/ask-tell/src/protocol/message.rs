@@ -60,7 +60,7 @@ impl Problem {
         }
         let kind: OptimizerKind =
             self.optimizer.parse().map_err(|error| format!("optimizer: {error}"))?;
-        let most = kind.most_parameters();
+        let most = kind.max_parameters();
         if count > most {
             return Err(format!("parameters: there are {count}; {kind} takes {most} at most"));
         }
@@ -104,7 +104,7 @@ pub(super) struct Asked {
 /// Best result so far.
 #[derive(Clone, Serialize)]
 pub(super) struct Best {
-    /// `None` for a point that was not asked.
+    /// `None` for a point that was not proposed.
     pub id: Option<usize>,
     pub values: Map<String, Value>,
     pub value: f64,

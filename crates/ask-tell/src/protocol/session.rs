@@ -52,7 +52,7 @@ impl Session {
             }
             (Line::Problem(_), Some(_)) => {
                 return Err(
-                    "the parameters are given already; for others start another process".to_owned()
+                    "the problem is already defined; start another process for another".to_owned()
                 );
             }
             (_, None) => {
@@ -173,10 +173,9 @@ impl Search {
             },
             (None, Some(values)) => {
                 let point = self.grid_point(&values).map_err(|error| format!("tell: {error}"))?;
-                let told = "a point is told by its values though it is";
                 match self.proposals.iter().position(|proposal| proposal.point == point) {
-                    Some(id) => format!("{told} asked as id {id}"),
-                    None if self.known.contains(&point) => format!("{told} known"),
+                    Some(id) => format!("these values were asked as id {id}; give the id"),
+                    None if self.known.contains(&point) => "these values are told twice".into(),
                     None => return Ok(point),
                 }
             }
@@ -198,7 +197,7 @@ impl Search {
         Ok(GridPoint(self.parameters.iter().map(level).collect::<Result<_, _>>()?))
     }
 
-    /// Keeps the better result; ties go to the lower id or the earlier result.
+    /// Updates the best result; of equal results, the lower id or the earlier one is kept.
     fn update_best(&mut self, id: Option<usize>, point: &GridPoint, value: Option<f64>) {
         let Some(value) = value else { return };
         let merit = |value| self.direction.merit(value);

@@ -10,7 +10,7 @@ use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
 use insertion::outcome::Outcome;
 use insertion::surrogate::Prediction;
 use std::iter;
-use study::{ByRibs, OnBench, Recorded, StudyRecord};
+use study::{BenchPrediction, ByRibs, Recorded, StudyRecord};
 
 /// Name, empty if it continues the line above, and text.
 pub type Line = (String, String);
@@ -271,7 +271,7 @@ fn robot((task, order): &(&str, Order)) -> Line {
 }
 
 /// Returns the probability that the finger is the best on the bench, and its simulated window.
-fn on_bench(found: &OnBench) -> Vec<Line> {
+fn on_bench(found: &BenchPrediction) -> Vec<Line> {
     let chance = found.best.first().map(|best| {
         let [percent, of] = [100.0 * best.probability_best, found.fingers as f64];
         line("probability", format!("{percent:.0} % to be the best of all {of} fingers"))
@@ -283,7 +283,7 @@ fn on_bench(found: &OnBench) -> Vec<Line> {
 }
 
 /// Returns how well the measured fingers are predicted.
-pub fn accuracy(found: &OnBench) -> Line {
+pub fn accuracy(found: &BenchPrediction) -> Line {
     let (trust, count) = (&found.trust, found.measured);
     let Some(deviation) = trust.mean_deviation_percent else {
         return line("measured", format!("{count} fingers"));

@@ -1,4 +1,4 @@
-//! Cells whose unknowns are drawn, and the windows of the measured fingers in them.
+//! Cells with randomly drawn parameters, and the windows of the measured fingers in them.
 
 use ask_tell::stream::stream;
 use finger_opt::failure::Failure;
@@ -21,10 +21,10 @@ use std::time::Instant;
 
 /// Seed of the streams that cells are drawn from.
 const SEED: u64 = 0;
-/// Finger that has to insert from some start, or the cell is drawn again: percent, degrees.
+/// Infill, percent and degrees, of the finger that must insert from some start; otherwise the cell is drawn again.
 const MIDDLE: [f64; 2] = [20.0, 20.0];
 const MAX_DRAWS: u32 = 100;
-/// Hidden values: their names in the shipped priors and their columns.
+/// Names of the hidden values in the shipped priors, and their columns.
 pub const HIDDEN: [(&str, &str); 5] = [
     ("friction plug-socket", "friction_plug_socket"),
     ("stiffness of the flange", "flange_stiffness_factor"),
@@ -37,7 +37,7 @@ pub const HIDDEN: [(&str, &str); 5] = [
 pub struct HiddenCell<'a> {
     /// Number from 1; odd cells have the first task, even ones the second.
     pub number: u64,
-    /// Draws until the middle finger inserted.
+    /// Number of draws until the middle finger inserted.
     draws: u32,
     pub evaluator: &'a Evaluator,
     /// Task with the values of its file.
@@ -81,9 +81,9 @@ impl<'a> HiddenCell<'a> {
 /// Windows of a measured finger in a cell.
 pub struct FingerWindows {
     pub finger: Measurement,
-    /// In MuJoCo; in our engine; in our engine with the nominal cell, that of the files.
+    /// Windows in MuJoCo, in our engine, and in our engine with the nominal cell, that of the files.
     windows: [Option<Taught>; 3],
-    /// Whether the start that our engine was taught fails in MuJoCo.
+    /// Whether the start that was taught in our engine fails in MuJoCo.
     taught_again: bool,
     elapsed_s: f64,
 }
@@ -152,7 +152,7 @@ fn cells(taught: &Taught) -> String {
     format!("{start},{negative},{positive},{},{below},{above}", window.range_mm())
 }
 
-/// Returns the window about a start that inserts: `near`, or else a taught one; `None` if none inserts.
+/// Measures the window around a start that inserts: `near`, or else a taught one; returns `None` if none inserts.
 pub fn window(
     specimen: &Specimen,
     robot: &Robot,

@@ -1,4 +1,4 @@
-//! Logs of attempts in hidden cells, as a robot with a real sensor writes them.
+//! Logs of attempts in hidden cells, with the errors of a real force sensor.
 
 use super::cell::{FingerWindows, HiddenCell};
 use ask_tell::normal::StandardNormal;
@@ -15,7 +15,7 @@ use rand::RngExt;
 use std::path::Path;
 use study::write_file;
 
-/// Fingers that are logged: percent, degrees.
+/// Infills of the logged fingers, percent and degrees.
 pub const LOGGED: [[f64; 2]; 2] = [[10.0, 0.0], [30.0, 0.0]];
 /// Time between two samples, s.
 const EVERY_S: f64 = 2e-3;

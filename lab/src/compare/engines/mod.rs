@@ -34,7 +34,7 @@ pub fn offsets(window: &Window, reduced: bool) -> Vec<OffsetStep> {
     let near = inside.iter().filter(|&by| 2 * by <= high - low);
     let inner = near.flat_map(|by| [low + by, high - by]);
     let outer = outside.iter().flat_map(|by| [low - by, high + by]);
-    // Sorted, each once.
+    // A set, since two offsets may be equal.
     let all: BTreeSet<_> = inner.chain(outer).chain([(low + high).div_euclid(2)]).collect();
     all.into_iter().collect()
 }
@@ -91,14 +91,12 @@ pub fn run(tasks: &[TaskSettings], designs: &[Measurement], reduced: bool) -> Cr
         [first, second, ..] => in_both(subject, [first, second], reduced),
         _ => CrossCheck::default(),
     });
-    let mut all = CrossCheck::default();
-    for result in results {
-        all.trials.extend(result.trials);
-        all.windows.extend(result.windows);
-    }
-    all
+    let results = results.into_iter().map(|result| (result.trials, result.windows));
+    let (trials, windows): (Vec<_>, Vec<_>) = results.unzip();
+    CrossCheck { trials: trials.concat(), windows: windows.concat() }
 }
 
+/// Compares a finger in both settings.
 fn in_both(subject: &Subject, settings: [&Setting; 2], reduced: bool) -> CrossCheck {
     let reference = settings[0].evaluate(&subject.finger);
     let window = &reference.window;

@@ -10,8 +10,9 @@ use insertion::evaluation::tolerance::Search;
 use insertion::space::Design;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Evaluator with a cache.
-pub struct Simulated<'a> {
+/// Evaluator with a cache and cancellation.
+pub struct CachedEvaluator<'a> {
+    /// Evaluator without a cache.
     pub evaluator: &'a Evaluator,
     /// Method of the search for the ends of a window.
     pub search: Search,
@@ -25,21 +26,21 @@ pub struct Simulated<'a> {
 
 // The key of a cache entry includes the plan with its race. A raced evaluation is therefore found only by the
 // same race, and the cache changes no journal.
-impl Evaluate for Simulated<'_> {
+impl Evaluate for CachedEvaluator<'_> {
     fn evaluate(&self, design: &Design, race: Option<&Race>) -> Result<Measured, Impossible> {
         let (plan, mut cached) = (self.plan.against(race), Vec::new());
         let measured = self.evaluator.evaluate_by(design, |specimen| {
-            let (evaluation, known) = self.measure(specimen, &plan)?;
-            cached.push(known);
+            let (evaluation, was_cached) = self.measure(specimen, &plan)?;
+            cached.push(was_cached);
             Ok(evaluation)
         })?;
         Ok(Measured { cached, ..measured })
     }
 }
 
-impl Simulated<'_> {
-    /// Returns the cached measurements of a design without simulating; `None` unless all are there.
-    pub fn known(&self, design: &Design, race: Option<&Race>) -> Option<Measured> {
+impl CachedEvaluator<'_> {
+    /// Returns the measurements of a design if those of all tasks are in the cache.
+    pub fn cached(&self, design: &Design, race: Option<&Race>) -> Option<Measured> {
         let (cache, plan) = (self.cache?, self.plan.against(race));
         let stiffness = self.evaluator.predict(design).ok()?;
         let on = |template| {
@@ -52,7 +53,7 @@ impl Simulated<'_> {
     }
 
     /// Stores measurements of a worker in the cache.
-    pub fn keep(&self, design: &Design, race: Option<&Race>, measured: &Measured) {
+    pub fn store(&self, design: &Design, race: Option<&Race>, measured: &Measured) {
         let Some(cache) = self.cache else { return };
         let plan = self.plan.against(race);
         for (template, evaluation) in self.evaluator.templates.iter().zip(&measured.tasks) {
@@ -66,7 +67,7 @@ impl Simulated<'_> {
         cache.key(&(specimen, self.search, plan))
     }
 
-    /// Returns the evaluation, and whether it was in the cache.
+    /// Evaluates a specimen; returns the evaluation, and whether it was in the cache.
     ///
     /// # Errors
     /// If the design cannot be simulated.
@@ -75,13 +76,13 @@ impl Simulated<'_> {
         specimen: &Specimen,
         plan: &Plan,
     ) -> Result<(Evaluation, bool), Impossible> {
-        let keep = self.cache.map(|cache| (cache, self.key(cache, specimen, plan)));
-        if let Some(found) = keep.as_ref().and_then(|(cache, key)| cache.get(key)) {
+        let entry = self.cache.map(|cache| (cache, self.key(cache, specimen, plan)));
+        if let Some(found) = entry.as_ref().and_then(|(cache, key)| cache.get(key)) {
             return Ok((found, true));
         }
         let evaluation = self.evaluator.measure(specimen, self.search, plan, self.stop)?;
         // After cancellation trials may have been skipped.
-        if let Some((cache, key)) = keep.filter(|_| !self.stop.load(Ordering::SeqCst)) {
+        if let Some((cache, key)) = entry.filter(|_| !self.stop.load(Ordering::SeqCst)) {
             cache.put(&key, &evaluation);
         }
         Ok((evaluation, false))

@@ -118,7 +118,7 @@ pub fn mates(
         // edge.
         for (max_play, seats) in MAX_PLAYS.into_iter().zip(seats) {
             let poses = refine::refined(&scene, &seats, max_play, stop)?;
-            match select::select(&parts, &scene, &poses, (&pairs, max_play)) {
+            match select::select(&parts, &scene, &poses, &pairs, max_play) {
                 Some(found) if found.mates.iter().any(|mate| mate.is_inserted(plug)) => {
                     return Ok(found);
                 }

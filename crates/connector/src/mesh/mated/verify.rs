@@ -3,7 +3,7 @@
 
 use crate::body::ConvexBody;
 use crate::mesh::Triangle;
-use crate::mesh::skin::written;
+use crate::mesh::skin::snapped_hull;
 use input::units::MM;
 use insertion::task::{Part, Solid, geometry};
 use nalgebra::{Point3, Vector3};
@@ -62,7 +62,7 @@ impl<'a> Drawn<'a> {
         let moved =
             |place: &Point3<f64>| self.outside(place).map_or(*place, |(nearest, _)| nearest);
         let moved: Vec<_> = corners.iter().map(moved).collect();
-        let solid = if moved == corners { solid } else { written(&moved)? };
+        let solid = if moved == corners { solid } else { snapped_hull(&moved)? };
         self.protrusion(&solid).is_none().then_some(solid)
     }
 

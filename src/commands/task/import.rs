@@ -11,7 +11,7 @@ use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{Tried, brief, chosen, tune_new};
 use connector::body::width;
 use connector::draft::{DENSITY, Size};
-use connector::mesh::axes::{Along, Jaws, Unit, value_name};
+use connector::mesh::axes::{Along, Jaws, Unit, value};
 use connector::tune::Tuned;
 use connector::write::{self, Notes};
 use input::shipped::Source;
@@ -222,7 +222,7 @@ impl Request {
     fn notes(&self, MatedTask { made, unit, along, jaws, .. }: &MatedTask) -> Notes {
         let [plug, socket] = self.called();
         let mass = format!("Assumed: {DENSITY} kg/m3. Weigh yours.");
-        let [unit, along, jaws] = [value_name(*unit), value_name(*along), value_name(*jaws)];
+        let [unit, along, jaws] = [value(*unit), value(*along), value(*jaws)];
         let head = format!(
             "Imported from {plug} and {socket}, in {unit}, inserted along {along}, jaws along {jaws}."
         );
@@ -274,9 +274,9 @@ impl ImportedTask {
             parts: plug_parts + socket_parts,
             plug_parts,
             socket_parts,
-            unit: value_name(found.unit),
-            insert_along: value_name(found.along),
-            jaws: value_name(found.jaws),
+            unit: value(found.unit),
+            insert_along: value(found.along),
+            jaws: value(found.jaws),
             found: found.findings.iter().map(|(what, why)| format!("{what} {why}")).collect(),
             clearance_mm: clearance_x_mm.min(clearance_y_mm),
             clearance_x_mm,

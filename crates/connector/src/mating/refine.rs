@@ -62,7 +62,8 @@ impl Pose {
     }
 }
 
-/// Returns the height of a seated plug, and whether it passes through the socket: then its tip is placed at the far side.
+/// Returns the height of a seated plug, and whether it passes through the socket: then its tip is placed at the far
+/// side.
 fn seated(z: f32, socket: [f64; 2], plug: [f64; 2]) -> (f64, bool) {
     let z = f64::from(z);
     if z + plug[1] < socket[0] {

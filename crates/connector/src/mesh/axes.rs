@@ -59,7 +59,7 @@ pub enum Jaws {
     Z,
 }
 
-/// Returns the name of an enum value on the command line.
-pub fn value_name(value: impl ValueEnum) -> String {
-    value.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned())
+/// Returns the name of an option's value on the command line.
+pub fn value(of: impl ValueEnum) -> String {
+    of.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned())
 }

@@ -67,8 +67,8 @@ impl SearchVariable {
     }
 }
 
-/// Returns the task's strategy with its variables at these shares of their ranges, rounded as in files, and a list of the
-/// changed values. The position of the tip's lower edge at the start does not change.
+/// Returns the task's strategy with its variables at these shares of their ranges, rounded as in files, and a list of
+/// the changed values. The position of the tip's lower edge at the start does not change.
 pub fn strategy_at(task: &Task, variables: &[SearchVariable], unit: &[f64]) -> (Strategy, String) {
     let mut strategy = task.strategy.clone();
     let mut changes = Vec::new();

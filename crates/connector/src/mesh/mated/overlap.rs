@@ -1,5 +1,5 @@
-//! Interference of plug and socket on the way to the mated pose: drawings show contact springs unloaded, ribs uncrushed,
-//! and press fits with their oversize.
+//! Interference of plug and socket on the way to the mated pose: drawings show contact springs unloaded, ribs
+//! uncrushed, and press fits with their oversize.
 
 use crate::body::{ConvexBody, Touching, clipped, extent, longest_side, span};
 use crate::mesh::skin::cut_below;
@@ -53,8 +53,8 @@ impl Interference {
 }
 
 /// Removes the interference on the way of the plug to its mated pose, `depth` below the top, m: of two parts that
-/// overlap deeply the smaller one is left out, and faces that overlap sideways by no more than a press fit are cut back,
-/// as are those of a `tight` fit, which is drawn without play.
+/// overlap deeply the smaller one is left out, and faces that overlap sideways by no more than a press fit are cut
+/// back, as are those of a `tight` fit, which is drawn without play.
 pub fn cut(
     plug: &mut Vec<Part>,
     socket: &mut Vec<Part>,

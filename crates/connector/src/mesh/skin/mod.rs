@@ -18,8 +18,8 @@ use parry::partitioning::{Bvh, BvhBuildStrategy};
 use rapier3d_f64::parry;
 use std::collections::BTreeSet;
 
-/// Largest thickness of a slab, m: more than the gap at which contacts are predicted, so that a body that slides along a
-/// face past its edge meets the side of the slab, not its edge.
+/// Largest thickness of a slab, m: more than the gap at which contacts are predicted, so that a body that slides along
+/// a face past its edge meets the side of the slab, not its edge.
 const THICK: f64 = 0.25 * MM;
 /// Smallest thickness of a slab, m.
 const THIN: f64 = 10e-3 * MM;

@@ -397,7 +397,7 @@ fn the_order_on_the_bench_says_whose_it_is() {
     for (name, other) in [("ribs", ["--finger-model", "computed"]), ("robot", ["--robot", "rigid"])]
     {
         let found = studies.study(name, 4, &[&other[..], &["--no-confirm", "--verbose"]].concat());
-        let words = "our validation, though of paper fingers on servo, ranked";
+        let words = "our validation (paper fingers on servo) ranked";
         // Long lines are wrapped.
         let said: Vec<&str> = found.succeeds().split_whitespace().collect();
         assert!(said.join(" ").contains(words), "{}", found.stdout);

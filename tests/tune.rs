@@ -80,7 +80,7 @@ fn an_interrupt_leaves_what_was_tried_until_then() {
     let (robot, stop) = (robot("servo").unwrap(), AtomicBool::new(false));
     let bench = bench(&task, &robot, EngineKind::Direct, &stop).unwrap();
     let quiet = |_: &str, _, _, _| ();
-    let effort = |last, tell| Effort { last, until_enough: false, seed: 0, tell };
+    let effort = |last, progress| Effort { last, until_enough: false, seed: 0, progress };
     let whole = tune(&bench, &effort(Stage::Families, &quiet)).unwrap();
     // In the middle of the search, whose first candidates have been told by then.
     let stop_in_search = |_: &str, _, windows, _| {
@@ -89,7 +89,7 @@ fn an_interrupt_leaves_what_was_tried_until_then() {
     let cut = tune(&bench, &effort(Stage::Search, &stop_in_search)).unwrap();
     assert_eq!(cut.steps[..whole.steps.len()], whole.steps);
     assert!(cut.inserts() && cut.best > 0, "{:?}", cut.best());
-    assert_eq!(cut.kept, []);
+    assert_eq!(cut.robustness, []);
     let costs: usize = cut.steps.iter().map(|step| step.tried.cost).sum();
     assert_eq!(cut.windows, costs);
 }

@@ -112,7 +112,7 @@ impl command::Request for Request {
         let failed = subject.not_measurable();
         let fingers = Fingers {
             designs: &subject.designs,
-            among: &among,
+            printable: &among,
             failed: &failed,
             printed: &subject.printed(),
         };

@@ -59,7 +59,7 @@ pub fn tune_until_success(
     stop: &AtomicBool,
 ) -> Result<Tuned, Failure> {
     let robot = robot(robot_name)?;
-    let effort = Effort { last, until_enough: true, seed: 0, tell: &|_, _, _, _| () };
+    let effort = Effort { last, until_enough: true, seed: 0, progress: &|_, _, _, _| () };
     let tuned = tune(&bench(task, &robot, engine, stop)?, &effort).map_err(Failure::input)?;
     not_stopped(stop)?;
     Ok(tuned)
@@ -76,10 +76,10 @@ pub struct Tried<'a> {
 }
 
 impl<'a> From<&'a Step> for Tried<'a> {
-    fn from(Step { stage, what, tried, turned_mm }: &'a Step) -> Self {
+    fn from(Step { stage, change, tried, turned_mm }: &'a Step) -> Self {
         Tried {
             stage: *stage,
-            what,
+            what: change,
             least_range_mm: tried.inserts().then_some(tried.score),
             range_mm: tried.windows.iter().map(Window::range_mm).collect(),
             turned_least_range_mm: *turned_mm,
@@ -96,7 +96,7 @@ pub fn chosen(tuned: &Tuned) -> Option<Tried<'_>> {
 pub fn brief(name: &str, tuned: &Tuned) -> String {
     let step = tuned.best();
     let range = outcome(step);
-    let text = format!("{}: {range} with a soft, a medium and a stiff finger", step.what);
+    let text = format!("{}: {range} with a soft, a medium and a stiff finger", step.change);
     layout::lines([(name.to_owned(), text)])
 }
 
@@ -104,7 +104,7 @@ pub fn brief(name: &str, tuned: &Tuned) -> String {
 pub fn tried(tuned: &Tuned) -> String {
     let searched = tuned.steps.iter().filter(|step| step.stage == Stage::Search).count();
     let named = tuned.steps.iter().filter(|step| step.stage != Stage::Search);
-    let mut all: Vec<_> = named.map(|step| step.what.clone()).collect();
+    let mut all: Vec<_> = named.map(|step| step.change.clone()).collect();
     if searched > 0 {
         all.push(format!("{searched} variations of tilt, strokes, preload and speed"));
     }

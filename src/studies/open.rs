@@ -9,7 +9,7 @@ use crate::setup::Setup;
 use crate::setup::run::RunRequest;
 use crate::setup::task::nominal_start;
 use ::report::answer::Answer;
-use ::report::answer::command::mend;
+use ::report::answer::command::repair;
 use ::report::answer::words::outcome;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::robustness::Plan;
@@ -91,7 +91,7 @@ impl OpenStudy {
                 && trial.outcome != Outcome::Inserted
             {
                 let (name, ends) = (&task.name, outcome(trial.outcome));
-                let (command, why) = mend(&record, self.study.dir(), place);
+                let (command, why) = repair(&record, self.study.dir(), place);
                 warn(&format!(
                     "{name}: with the medium finger the nominal start ends with {ends}; {command} {why}"
                 ));

@@ -35,15 +35,15 @@ pub(crate) fn write(dir: &Path, answer: &Answer, model: &Model) -> Result<(), Fa
     if let Some(front) = report::front_svg(record, FILE)? {
         write_own_file(&dir.join("front.svg"), &front)?;
     }
-    write_own_file(&dir.join(PAGE), &report::page(answer, model, &beside(dir, answer))?)?;
+    write_own_file(&dir.join(PAGE), &report::page(answer, model, &page_files(dir, answer))?)?;
     Ok(())
 }
 
 /// Reads the files that the page shows or links.
-fn beside(dir: &Path, answer: &Answer) -> PageFiles {
+fn page_files(dir: &Path, answer: &Answer) -> PageFiles {
     let read = |name: &str| files::read_text(&dir.join(name), LARGEST_OWN).ok();
     let names = printer::FILES.iter().map(|(name, _)| *name);
-    let mut beside = PageFiles {
+    let mut files = PageFiles {
         dir: dir.to_owned(),
         films: Vec::new(),
         files: names.filter(|name| dir.join(name).exists()).collect(),
@@ -57,8 +57,8 @@ fn beside(dir: &Path, answer: &Answer) -> PageFiles {
     let tasks = 0..answer.record.config.tasks.len();
     for (task, end) in tasks.flat_map(|task| ends.map(|end| (task, end))) {
         if let Some(page) = read(&pair_file(task, end)) {
-            beside.add(task, end, &page, read(&poster_file(task, end)));
+            files.add(task, end, &page, read(&poster_file(task, end)));
         }
     }
-    beside
+    files
 }

@@ -1,10 +1,10 @@
-//! Which finger to print next: the one whose measurement is expected to improve the final choice most.
+//! Selection of the fingers to print next: those whose measurement is expected to improve the final choice most.
 //!
-//! Joint draws of the true ranges give their means and covariances. The value of a print is what it is expected to
-//! make of the best expected range, once of all fingers (knowledge gradient; Frazier et al. 2009,
-//! doi:10.1287/ijoc.1080.0314), since the next print can be the best of them, and once of the printed ones alone, in
-//! case this is the last print. Both are exact for normally distributed ranges. Of several prints each is chosen as
-//! if those before it had given the expected ranges (kriging believer; Ginsbourger et al. 2010).
+//! Joint draws of the true ranges give their means and covariances. The value of a print is the sum of two expected
+//! gains: that of the largest expected range of all fingers (knowledge gradient; Frazier et al. 2009,
+//! doi:10.1287/ijoc.1080.0314), since any of them can be printed next, and that of the printed fingers alone, in case
+//! this print is the last. Both are exact for normally distributed ranges. Of several prints each is selected as if
+//! the measurements of those before it had been the expected ranges (kriging believer; Ginsbourger et al. 2010).
 
 use super::bench::Bench;
 use super::predict::{INTERVAL, IntervalKind, draws, predict};
@@ -24,9 +24,9 @@ pub struct Print {
     pub expected_mm: f64,
     pub low_mm: f64,
     pub high_mm: f64,
-    /// Expected gain of the largest expected range of all fingers by this print.
+    /// Expected increase of the largest expected range of all fingers by this print.
     pub expected_gain_mm: f64,
-    /// Whether it has to be printed; else only the strategy changes.
+    /// Whether the finger has to be printed; otherwise only the strategy changes.
     pub needs_print: bool,
     pub reason: String,
 }
@@ -48,7 +48,7 @@ pub struct Advice {
     pub next: Vec<Print>,
     /// The finger to use if nothing more is printed; `None` without fingers.
     pub choice: Option<Choice>,
-    /// Whether no print is expected to gain as much as it costs.
+    /// Whether the expected gain of every print is below its cost.
     pub stop: bool,
 }
 
@@ -58,41 +58,41 @@ const DRAWS: usize = 4;
 /// Fingers to choose from.
 #[derive(Debug, Clone, Copy)]
 pub struct Fingers<'a> {
-    /// Designs of all fingers, by their numbers.
+    /// Designs of all fingers; the other fields are indices of them.
     pub designs: &'a [Design],
     /// Fingers that may be printed.
-    pub among: &'a [usize],
-    /// Fingers that were printed and insert from no start: a range of 0 mm, which no window was measured of.
+    pub printable: &'a [usize],
+    /// Printed fingers that insert from no start; their range counts as 0 mm.
     pub failed: &'a BTreeSet<usize>,
-    /// Fingers that need no print: another strategy with a printed one.
+    /// Fingers that need no print: they differ from a printed finger in the strategy only.
     pub printed: &'a BTreeSet<usize>,
 }
 
-/// Returns which fingers to print, `count` at a time; a print must promise a gain of `cost_mm`, and between prints and
-/// other strategies for printed fingers those cost nothing.
+/// Returns the `count` fingers to print next. Printing a finger costs `cost_mm` of the expected gain; another strategy
+/// for a printed finger costs nothing.
 pub fn advise(
     bench: &Bench<'_>,
     posterior: &[Vec<f64>],
-    Fingers { designs, among, failed, printed: at_hand }: Fingers<'_>,
+    Fingers { designs, printable, failed, printed: at_hand }: Fingers<'_>,
     count: usize,
     cost_mm: f64,
     random: &mut impl Rng,
 ) -> Advice {
     let measured: BTreeSet<usize> = bench.observations.iter().map(|one| one.finger).collect();
     let known: BTreeSet<usize> = measured.union(failed).copied().collect();
-    let new = among.iter().filter(|finger| !known.contains(finger));
+    let new = printable.iter().filter(|finger| !known.contains(finger));
     let unmeasured = failed.difference(&measured);
     let all: Vec<usize> = measured.iter().chain(unmeasured).chain(new).copied().collect();
     let drawn = draws(bench, posterior, &all, DRAWS, random);
     let noises = posterior.iter().map(|state| bench.hyperparameters(state).noise * bench.scale_mm);
     let mut ranges = Ranges::new(&drawn, mean(noises.map(|noise| noise * noise)).unwrap_or(0.0));
     (measured.len()..known.len()).for_each(|column| ranges.observe(column, 0.0));
-    let told = ranges.clone();
+    let given = ranges.clone();
     let mut printed: Vec<usize> = (0..known.len()).collect();
     // In closed form, as a study predicts them, so that both name the same finger; it does not know failed fingers.
     let predicted = failed.is_empty().then(|| predict(bench, posterior, &all, IntervalKind::Truth));
     let means = predicted.map_or_else(
-        || told.means.clone(),
+        || given.means.clone(),
         |predicted| predicted.iter().map(|range| range.mean_mm).collect(),
     );
     let best = |columns: &[usize]| {
@@ -116,17 +116,17 @@ pub fn advise(
         let first = gains.iter().rev().max_by(|a, b| net(a).total_cmp(&net(b)));
         let Some(&Gain { column, choice_mm, .. }) = first else { break };
         stop &= !next.is_empty() || gains.iter().all(|gain| gain.choice_mm < cost_mm);
-        let departures = told.departures.iter().map(|draw| draw[column]);
-        let values = sorted(departures.map(|departure| told.means[column] + departure));
+        let deviations = given.deviations.iter().map(|draw| draw[column]);
+        let values = sorted(deviations.map(|deviation| given.means[column] + deviation));
         let tail = |share: f64| quantile(&values, share).unwrap_or(0.0).max(0.0);
         let (low_mm, high_mm) = (tail((1.0 - INTERVAL) / 2.0), tail((1.0 + INTERVAL) / 2.0));
-        let expected_mm = told.means[column].max(0.0);
+        let expected_mm = given.means[column].max(0.0);
         let tried: Vec<StiffnessPoint> =
             printed.iter().map(|&column| bench.places[all[column]]).collect();
         let design = designs[all[column]].clone();
         let reason = match &choice {
             Some(widest) if tried.is_empty() && widest.design != design => {
-                "its range tells most of the others".to_owned()
+                "its range is the most informative about the others".to_owned()
             }
             _ => reason(bench.places[all[column]], &tried, expected_mm, high_mm, best_known_mm),
         };
@@ -149,18 +149,18 @@ pub fn advise(
 #[derive(Clone)]
 struct Ranges {
     means: Vec<f64>,
-    /// Departures from the means, a vector for each draw.
-    departures: Vec<Vec<f64>>,
-    /// Variance of a measurement.
+    /// Deviations from the means, a vector for each draw.
+    deviations: Vec<Vec<f64>>,
+    /// Noise variance of a measurement.
     noise2: f64,
 }
 
 /// Expected gains by the print of a finger, mm.
 struct Gain {
     column: usize,
-    /// Gain of the largest expected range of all fingers.
+    /// Increase of the largest expected range of all fingers.
     choice_mm: f64,
-    /// The same, and the gain of that of the printed fingers.
+    /// Sum of `choice_mm` and the increase of the largest expected range of the printed fingers.
     value_mm: f64,
 }
 
@@ -169,24 +169,24 @@ impl Ranges {
         let columns = drawn.first().map_or(0, Vec::len);
         let average = |column| mean(drawn.iter().map(|draw| draw[column])).unwrap_or(0.0);
         let means: Vec<f64> = (0..columns).map(average).collect();
-        let departure = |draw: &Vec<f64>| draw.iter().zip(&means).map(|(a, b)| a - b).collect();
-        let departures = drawn.iter().map(departure).collect();
-        Ranges { means, departures, noise2 }
+        let deviation = |draw: &Vec<f64>| draw.iter().zip(&means).map(|(a, b)| a - b).collect();
+        let deviations = drawn.iter().map(deviation).collect();
+        Ranges { means, deviations, noise2 }
     }
 
-    /// How far a measurement one standard deviation above its mean raises each finger's mean.
+    /// Returns the increase of each finger's mean by a measurement one standard deviation above its own mean.
     fn slopes(&self, column: usize) -> Vec<f64> {
         let mut slopes = vec![0.0; self.means.len()];
-        for draw in &self.departures {
+        for draw in &self.deviations {
             slopes.iter_mut().zip(draw).for_each(|(sum, other)| *sum += draw[column] * other);
         }
-        let count = self.departures.len() as f64;
+        let count = self.deviations.len() as f64;
         let sd = (slopes[column] / count + self.noise2).sqrt().max(f64::MIN_POSITIVE);
         slopes.iter_mut().for_each(|sum| *sum /= count * sd);
         slopes
     }
 
-    /// Gains by each finger that is not printed.
+    /// Returns the gains by each finger that is not printed.
     fn gains(&self, printed: &[usize]) -> Vec<Gain> {
         let gain = |column: usize| {
             let slopes = self.slopes(column);
@@ -213,27 +213,27 @@ impl Ranges {
         self.condition(column);
     }
 
-    /// Conditions the ranges on a measurement that gives the expected value.
+    /// Conditions the ranges on a measurement equal to its expected value.
     fn condition(&mut self, column: usize) {
         let slopes = self.slopes(column);
         let own = slopes[column].max(f64::MIN_POSITIVE);
         // Scales the component along the measured range so that the covariances become those after it.
         let left = 1.0 - (self.noise2 / (self.noise2 + self.variance(column))).sqrt();
-        for draw in &mut self.departures {
+        for draw in &mut self.deviations {
             let part = draw[column] / own * left;
             draw.iter_mut().zip(&slopes).for_each(|(value, slope)| *value -= slope * part);
         }
     }
 
     fn variance(&self, column: usize) -> f64 {
-        mean(self.departures.iter().map(|draw| draw[column].powi(2))).unwrap_or(0.0)
+        mean(self.deviations.iter().map(|draw| draw[column].powi(2))).unwrap_or(0.0)
     }
 }
 
-/// `E max(mean + slope Z)` over lines `(slope, mean)` and a standard normal `Z`, along their upper envelope.
+/// Returns `E max(mean + slope Z)` over lines `(slope, mean)` and a standard normal `Z`, along their upper envelope.
 fn expected_maximum(mut lines: Vec<(f64, f64)>) -> f64 {
     lines.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    // Each line, and where it begins to be the highest.
+    // Lines of the envelope, each with the left end of its segment.
     let mut envelope: Vec<((f64, f64), f64)> = Vec::new();
     for line in lines {
         let mut from = f64::NEG_INFINITY;
@@ -255,10 +255,10 @@ fn expected_maximum(mut lines: Vec<(f64, f64)>) -> f64 {
     envelope.iter().zip(ends).map(part).sum()
 }
 
-/// A finger this far from all others, in standard deviations of the space, tells something new.
-const FAR: f64 = 0.7;
+/// Smallest distance from all tried fingers at which a finger is informative, in standard deviations of the space.
+const INFORMATIVE: f64 = 0.7;
 
-/// Why a finger at this place is printed after those tried.
+/// Returns the reason to print a finger at this place after those tried.
 fn reason(
     own: StiffnessPoint,
     tried: &[StiffnessPoint],
@@ -267,27 +267,27 @@ fn reason(
     best_mm: Option<f64>,
 ) -> String {
     if tried.is_empty() {
-        return "the widest that the simulation expects".to_owned();
+        return "the largest simulated range".to_owned();
     }
-    let news = news(own, tried);
+    let side = side(own, tried);
     let Some(best_mm) = best_mm else {
-        return format!("wide as simulated, and {}", news.as_deref().unwrap_or("near the first"));
+        return format!("wide as simulated, and {}", side.as_deref().unwrap_or("near the first"));
     };
-    match (expected_mm - best_mm, news) {
-        (gain, Some(news)) if gain > 0.0 => {
-            format!("expected {gain:.1} mm wider than the best measured, and {news}")
+    match (expected_mm - best_mm, side) {
+        (gain, Some(side)) if gain > 0.0 => {
+            format!("expected {gain:.1} mm wider than the best measured, and {side}")
         }
         (gain, None) if gain > 0.0 => format!("expected {gain:.1} mm wider than the best measured"),
-        (_, Some(news)) => format!("{news}; may reach {high_mm:.1} mm"),
+        (_, Some(side)) => format!("{side}; may reach {high_mm:.1} mm"),
         (_, None) if high_mm > best_mm => {
             format!("may reach {high_mm:.1} mm, more than the best measured")
         }
-        (_, None) => "near those measured, and hardly wider than the best of them".to_owned(),
+        (_, None) => "close to those measured, and hardly wider than the best of them".to_owned(),
     }
 }
 
-/// News that no finger tried before tells.
-fn news(own: StiffnessPoint, tried: &[StiffnessPoint]) -> Option<String> {
+/// Returns the side of the tried fingers on which a finger lies, in words; `None` if it is close to one of them.
+fn side(own: StiffnessPoint, tried: &[StiffnessPoint]) -> Option<String> {
     let difference = |axis: usize| {
         let by = tried.iter().map(|other| own[axis] - other[axis]);
         by.min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
@@ -303,7 +303,7 @@ fn news(own: StiffnessPoint, tried: &[StiffnessPoint]) -> Option<String> {
         (true, ..) | (_, false, _) => "stiffer than any tried",
         _ => "between those tried",
     };
-    (difference(axis).abs() > FAR).then(|| format!("tells soft from stiff in {name} ({way})"))
+    (difference(axis).abs() > INFORMATIVE).then(|| format!("informative about {name} ({way})"))
 }
 
 #[cfg(test)]
@@ -364,12 +364,12 @@ mod tests {
     #[test]
     fn a_reason_says_on_which_side_of_the_tried_fingers_one_lies() {
         let all = [[-1.0, 0.0], [1.0, 0.0], [2.0, 0.0], [-2.0, 0.0], [0.0, 0.1], [1.1, 0.0]];
-        let news = |finger: usize| news(all[finger], &all[..2]).unwrap_or_default();
+        let side = |finger: usize| side(all[finger], &all[..2]).unwrap_or_default();
         // More of 1 / ky is softer.
         for (finger, words) in [(2, "(softer than"), (3, "(stiffer than"), (4, "(between those")] {
-            assert!(news(finger).contains(words), "{finger}: {}", news(finger));
+            assert!(side(finger).contains(words), "{finger}: {}", side(finger));
         }
-        assert_eq!(news(5), "");
+        assert_eq!(side(5), "");
         let reason = |high_mm| reason(all[5], &all[..2], 7.0, high_mm, Some(7.9));
         assert!(reason(7.5).contains("hardly wider"));
         assert!(reason(8.5).contains("may reach 8.5 mm"));

@@ -9,14 +9,15 @@ use insertion::finger::model::FingerModelKind;
 use serde::Deserialize;
 use study::StudyRecord;
 
-/// Our windows beside those of the bench: columns of the last committed `validation.csv`.
+/// Simulated and measured ranges: columns of the last committed `validation.csv`.
 const VALIDATION: &str = include_str!("../../../data/simulated_ranges.csv");
 
 /// A rank correlation of simulated and measured ranges.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Order {
-    /// Spearman's, +1 for the same order, -1 for the opposite one.
+pub struct RankCorrelation {
+    /// Spearman's coefficient, +1 for the same order, -1 for the opposite one.
     pub spearman: f64,
+    /// Number of fingers.
     pub fingers: usize,
     /// Source of the simulated ranges, in words.
     pub source: &'static str,
@@ -25,15 +26,17 @@ pub struct Order {
 /// The robot of the committed validation; its fingers are the paper's.
 const VALIDATION_ROBOT: &str = "servo";
 
+/// Row of the committed validation.
 #[derive(Deserialize)]
-struct Validated {
+struct ValidationRow {
     task: String,
     range_mm: Option<f64>,
     bench_range_mm: Option<f64>,
 }
 
-/// The order on a task: of the study's own ranges where it simulated all measured fingers.
-pub fn order_on_bench(record: &StudyRecord, task: usize) -> Option<Order> {
+/// Returns the rank correlation on a task, of the study's own ranges if it simulated all measured fingers, else of the
+/// committed validation.
+pub fn rank_correlation(record: &StudyRecord, task: usize) -> Option<RankCorrelation> {
     let name = record.config.tasks().nth(task)?;
     let bench = of_task(name, Origin::Bench);
     let pair = |bench: &Experiment| {
@@ -47,22 +50,23 @@ pub fn order_on_bench(record: &StudyRecord, task: usize) -> Option<Order> {
         config.finger_model == FingerModelKind::Paper && config.robot == VALIDATION_ROBOT;
     let (pairs, source) = match (own.len() == all, like_validation) {
         (true, _) => (own, "this study"),
-        (false, true) => (validated(name), "our validation"),
-        (false, false) => (validated(name), "our validation, though of paper fingers on servo,"),
+        (false, true) => (validation(name), "our validation"),
+        (false, false) => (validation(name), "our validation (paper fingers on servo)"),
     };
-    Some(Order { spearman: spearman(&pairs)?, fingers: pairs.len(), source })
+    Some(RankCorrelation { spearman: spearman(&pairs)?, fingers: pairs.len(), source })
 }
 
-fn validated(task: &str) -> Vec<(f64, f64)> {
+/// Returns the simulated and the measured range of each finger in the committed validation.
+fn validation(task: &str) -> Vec<(f64, f64)> {
     let rows = csv::Reader::from_reader(VALIDATION.as_bytes()).into_deserialize();
-    let own = rows.flatten().filter(|row: &Validated| row.task == task);
+    let own = rows.flatten().filter(|row: &ValidationRow| row.task == task);
     own.filter_map(|row| row.range_mm.zip(row.bench_range_mm)).collect()
 }
 
-/// Least and largest mean of `|simulated - measured| / measured` of the tasks, percent.
+/// Returns the smallest and the largest mean of `|simulated - measured| / measured` of the tasks, percent.
 pub fn errors_percent() -> [f64; 2] {
     let errors = TASKS.iter().filter_map(|task| {
-        let pairs = validated(task.name);
+        let pairs = validation(task.name);
         let missed = pairs.iter().map(|(ours, bench)| (ours - bench).abs() / bench);
         mean(missed).map(|mean| 100.0 * mean)
     });
@@ -73,17 +77,17 @@ pub fn errors_percent() -> [f64; 2] {
 mod tests {
     use super::*;
 
-    /// The table of the README, computed from the committed ranges.
+    /// Recomputes the table of the README from the committed ranges.
     #[test]
-    fn the_committed_validation_tells_the_order() {
+    fn the_committed_validation_has_these_rank_correlations() {
         for (task, pairs, rank) in
             [("ket8", 11, -0.62), ("ket12", 7, 0.85), ("rj45", 11, 0.58), ("usb", 11, -0.07)]
         {
-            let found = validated(task);
+            let found = validation(task);
             assert_eq!(found.len(), pairs, "{task}");
             assert!((spearman(&found).unwrap() - rank).abs() < 0.005, "{task}");
         }
-        assert!(validated("mine").is_empty());
+        assert!(validation("mine").is_empty());
     }
 
     #[test]

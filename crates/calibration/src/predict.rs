@@ -18,9 +18,10 @@ const FEATURES: usize = 64;
 const TRIES: usize = 20;
 /// Degrees of freedom of the Matern 5/2 kernel's spectrum, a Student t.
 const FREEDOM: f64 = 5.0;
-/// Draws per sample of the posterior where there is no closed form.
+/// Draws per sample of the posterior if there is no closed form.
 const DRAWS_PER_SAMPLE: usize = 5;
 
+/// Predicted range of a finger.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Predicted {
     pub mean_mm: f64,

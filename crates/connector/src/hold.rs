@@ -87,8 +87,8 @@ fn under_roof(plug: &ConvexBody, shoulder: f64, face: f64, side: usize) -> Optio
     plug.stiff().filter_map(|(_, part)| top(part)).max_by(f64::total_cmp)
 }
 
-/// Finds the default grasp of a plug, shoulder and faces in m: the highest shoulder on which both roofs can rest, and faces
-/// that the pads touch over at least `least_cover`, m. Flat faces are preferred to round ones such as cables.
+/// Finds the default grasp of a plug, shoulder and faces in m: the highest shoulder on which both roofs can rest, and
+/// faces that the pads touch over at least `least_cover`, m. Flat faces are preferred to round ones such as cables.
 pub fn find(plug: &ConvexBody, least_cover: f64) -> Option<(f64, [f64; 2])> {
     let mut tops: Vec<f64> =
         plug.stiff().map(|(_, part)| extent(part.solid.corners(), 2)[1]).collect();

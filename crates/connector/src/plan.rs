@@ -77,7 +77,8 @@ pub fn complete(task: &Task) -> Result<Task, PlanError> {
     Ok(planned(task.clone(), &plug, &socket, &seat))
 }
 
-/// Returns the task with grasp point, strategy and success derived from shapes, opening, shoulder, faces and mated pose.
+/// Returns the task with grasp point, strategy and success derived from shapes, opening, shoulder, faces and mated
+/// pose.
 pub fn mated(task: &Task) -> Task {
     let (plug, socket) = (ConvexBody::new(&task.plug.parts), ConvexBody::new(&task.socket));
     let seat = Seating::new(task, &plug, &socket).deepest();
@@ -108,8 +109,8 @@ fn planned(mut task: Task, plug: &ConvexBody, socket: &ConvexBody, seat: &Seat) 
     task
 }
 
-/// Returns a strategy that sets the plug down upright over its seat, sweeps it along y until it drops in, and pushes. Drawn
-/// connectors have a lead-in, and pins and tongues that a tilted plug would meet first.
+/// Returns a strategy that sets the plug down upright over its seat, sweeps it along y until it drops in, and pushes.
+/// Drawn connectors have a lead-in, and pins and tongues that a tilted plug would meet first.
 fn straight(task: &Task, mated: &Mated) -> Strategy {
     let [x, y, z] = mated.tip;
     let start = [x, y, task.grip.tcp_z + AIR[0]].map(round_mm);

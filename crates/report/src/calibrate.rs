@@ -15,7 +15,7 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
     let accuracy = result.trust(subject.emulator.error_mm);
     let emulator = &subject.emulator;
     let mut text = format!(
-        "{}: {} measured fingers; {} simulations, emulated within {:.2} mm ({} fresh ones)\n",
+        "{}: {} measured fingers; {} simulations, emulated within {:.2} mm ({} held out)\n",
         subject.task,
         subject.measured().len(),
         emulator.simulations,
@@ -60,7 +60,7 @@ pub fn parameters_text(calibration: &Calibration) -> String {
     let head = ["parameter (10 % to 90 %)", "before", "after", "moved"];
     let alike = confounded(calibration).into_iter().map(|pair| {
         let ([a, b], correlation) = (pair.parameters, pair.correlation);
-        format!("not told apart: {a} and {b} (correlation {correlation:+.2})\n")
+        format!("not distinguished: {a} and {b} (correlation {correlation:+.2})\n")
     });
     text_table(1, head, moved(calibration).into_iter().map(row)) + &alike.collect::<String>()
 }

@@ -3,7 +3,7 @@
 use super::ReportError;
 use super::theme::{Colour, INK, LINES, MUTED, PAPER};
 use crate::answer::words::extent;
-use analysis::levers::plain;
+use analysis::levers::thousandths;
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -82,8 +82,8 @@ fn framed<'a, 'b>(
         .y_desc(y.0)
         .x_labels(7)
         .y_labels(7)
-        .x_label_formatter(&|v| plain(*v))
-        .y_label_formatter(&|v| plain(*v))
+        .x_label_formatter(&|v| thousandths(*v))
+        .y_label_formatter(&|v| thousandths(*v))
         .axis_style(MUTED.rgb())
         .bold_line_style(LINES.rgb())
         .light_line_style(TRANSPARENT)

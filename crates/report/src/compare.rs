@@ -1,4 +1,4 @@
-//! Studies of the same problem beside each other: optimizers against evaluations.
+//! Comparison of optimizers over studies of the same problem.
 
 use super::chart::{Area, Drawn, around, axes, legend, sheet};
 use super::convergence::best_so_far;
@@ -15,7 +15,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use study::{StudyConfig, StudyRecord};
 
-/// Distance below the best known value at which a study has reached it, mm.
+/// Distance of the target below the best known value, mm.
 const TOLERANCE_MM: f64 = 0.1;
 /// Rounding error of values, which are multiples of 0.1 mm.
 const ROUNDING_MM: f64 = 1e-9;
@@ -65,7 +65,7 @@ pub struct OptimizerGroup {
     pub best_so_far_mm: Vec<Quartiles>,
 }
 
-/// Studies side by side; serialized it is what `optimize compare --json` prints.
+/// Comparison of studies, as printed by `optimize compare --json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
     /// Task of the studies.
@@ -86,13 +86,13 @@ pub struct Comparison {
 /// # Errors
 /// If their problems differ, a study is given twice, or none has a value.
 pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, String> {
-    let (first, _) = studies.split_first().ok_or("give at least one study to compare")?;
-    studies.iter().try_for_each(|study| alike(first, study))?;
+    let first = studies.first().ok_or("give at least one study to compare")?;
+    studies.iter().try_for_each(|study| check_same_problem(first, study))?;
     let objective = &first.1.config.objective;
     if !objective.single().is_some_and(|measure| measure.key() == "mm" && measure.sense() > 0.0) {
         return Err(format!(
-            "{} has the objective {objective}; only studies of one objective in mm that is to be \
-             large can be compared: range, centred-range or robust-range",
+            "{} has the objective {objective}; only studies of one objective in mm that is \
+             maximized can be compared: range, centred-range or robust-range",
             first.0
         ));
     }
@@ -137,6 +137,7 @@ pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, String> 
     })
 }
 
+/// Returns the parts of a study's problem, each with its name.
 fn problem(config: &StudyConfig) -> [(&'static str, String); 7] {
     let limits: Vec<String> = config.constraints.iter().map(Constraint::to_string).collect();
     let aggregate = config.aggregate.as_ref().map_or("none".to_owned(), Aggregate::to_string);
@@ -151,7 +152,8 @@ fn problem(config: &StudyConfig) -> [(&'static str, String); 7] {
     ]
 }
 
-fn alike(
+/// Checks that two studies have the same problem.
+fn check_same_problem(
     (first, ours): &(String, StudyRecord),
     (second, theirs): &(String, StudyRecord),
 ) -> Result<(), String> {
@@ -167,9 +169,9 @@ fn alike(
 
 /// Returns the number of evaluations until a value of at least `target`, mm.
 fn reached(record: &StudyRecord, target: f64) -> Option<u64> {
-    let values = record.evaluations.iter().map(|r| r.feasible()?.first().copied());
-    let place = values.into_iter().position(|v| v.is_some_and(|v| v >= target - ROUNDING_MM));
-    place.map(|index| index as u64 + 1)
+    let mut values = record.evaluations.iter().map(|r| r.feasible()?.first().copied());
+    let index = values.position(|v| v.is_some_and(|v| v >= target - ROUNDING_MM))?;
+    Some(index as u64 + 1)
 }
 
 /// Returns the best so far after each evaluation; minus infinity before the first value.
@@ -226,7 +228,7 @@ pub fn page(comparison: &Comparison) -> Result<String, ReportError> {
         },
     );
     let rows: Vec<_> = groups.iter().map(|group| group.row("–").to_vec()).collect();
-    let course = sheet("the comparison", PLOT, |area| draw(area, comparison, ""))?;
+    let convergence = sheet("the comparison", PLOT, |area| draw(area, comparison, ""))?;
     let caption = "Best so far: the median as a line, the quartiles as a band.";
     let body = html! {
         main {
@@ -239,7 +241,7 @@ pub fn page(comparison: &Comparison) -> Result<String, ReportError> {
                 }
             }
             section { h2 { "Evaluations" } (table(&HEAD, &rows)) }
-            section { h2 { "Course" } (figure(&course, "best so far by optimizer", caption)) }
+            section { h2 { "Convergence" } (figure(&convergence, "best so far by optimizer", caption)) }
         }
     };
     Ok(document(&format!("{task}: optimizers compared"), body))
@@ -284,9 +286,9 @@ fn draw(area: &Area<'_>, comparison: &Comparison, title: &str) -> Drawn {
 }
 
 /// Returns one of the quartiles as stairs, from the first evaluation at which it is known.
-fn quartile(group: &OptimizerGroup, which: usize) -> Vec<(f64, f64)> {
+fn quartile(group: &OptimizerGroup, index: usize) -> Vec<(f64, f64)> {
     let numbered = (1..).zip(&group.best_so_far_mm);
-    stairs(numbered.filter_map(|(n, quartiles)| Some((f64::from(n), quartiles.all()[which]?))))
+    stairs(numbered.filter_map(|(n, quartiles)| Some((f64::from(n), quartiles.all()[index]?))))
 }
 
 #[cfg(test)]

@@ -3,9 +3,9 @@
 
 use super::ReportError;
 use super::chart::{Area, Drawn, around, axes, sheet, words};
-use super::drawn::{PLOTTED, drawn, note, turning};
 use super::elements::figure;
 use super::marks::{PointMark, Series, dashed, label, legend_above, line, points, stairs};
+use super::selection::{PLOTTED, note, selected, turning};
 use super::theme::{BLUE, GREEN, MUTED, ORANGE, RED};
 use crate::answer::words::{settled, volume_unit};
 use insertion::evaluation::objective::Measure;
@@ -88,7 +88,7 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
         let style = words(17, MUTED, HPos::Center, VPos::Center);
         return label(&mut chart, (0.5, 0.5), (0, 0), "no evaluations yet", &style);
     }
-    let shown = drawn(record, &record.evaluations, PLOTTED);
+    let shown = selected(record, &record.evaluations, PLOTTED);
     let of = |which: &dyn Fn(&Recorded) -> bool| -> Vec<(f64, f64)> {
         shown.iter().copied().filter(|&found| which(found)).filter_map(at).collect()
     };

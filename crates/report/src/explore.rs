@@ -1,8 +1,8 @@
 //! The explorer of all designs: a surface of the model, a table, and the selected one or two designs. A
 //! script draws it; without scripts the table has the best designs.
 
-use super::drawn::{LISTED, drawn};
 use super::elements::table;
+use super::selection::{LISTED, selected};
 use super::surface;
 use crate::answer::words::{self, end, ends_mm, mm, rounded, span, success};
 use crate::answer::{Answer, command};
@@ -113,7 +113,7 @@ fn data(answer: &Answer, model: Option<&surface::Model>, dir: &Path) -> Value {
         };
         json!({"label": label, "unit": unit, "low": p.low, "high": p.high, "option": option})
     };
-    let shown = drawn(record, record.current(), LISTED);
+    let shown = selected(record, record.current(), LISTED);
     let robot = |found: &&Recorded| Some((found.index, answer.on_robot(&found.design)?));
     let confirmed = answer.walked.iter().map(|(found, mm)| (found.index, *mm));
     let finger = answer.verdict.finger();

@@ -2,9 +2,9 @@
 
 use super::ReportError;
 use super::chart::{Area, Drawn, around, axes, legend, sheet};
-use super::drawn::{PLOTTED, drawn};
 use super::elements::{figure, table};
 use super::marks::{PointMark, line, points};
+use super::selection::{PLOTTED, selected};
 use super::theme::{BLUE, MUTED, ORANGE};
 use crate::answer::words::{ACROSS, design, stiffness, volume_unit};
 use crate::answer::{Answer, Front};
@@ -40,7 +40,7 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
         Some([x, y, ..]) => Some((*x, *y)),
         _ => None,
     };
-    let shown = drawn(record, &record.evaluations, PLOTTED);
+    let shown = selected(record, &record.evaluations, PLOTTED);
     let all = || shown.iter().filter_map(|&r| Some((r, point(r)?)));
     let [first, second] = [first, second].map(|measure| measure.label());
     let x = (first.as_str(), around(all().map(|(_, p)| p.0), 0.08));

@@ -4,7 +4,7 @@ use super::chart::{Area, Drawn, around, rows, sheet, words as text_style};
 use super::marks::{bar, dashed, label};
 use super::theme::{BLUE, INK, MUTED, ORANGE};
 use super::{ReportError, text_table};
-use analysis::levers::{Lever, Levers, difference_mm, is_relevant, plain};
+use analysis::levers::{Lever, Levers, difference_mm, is_relevant, thousandths};
 use plotters::prelude::Color;
 use plotters::style::text_anchor::{HPos, VPos};
 
@@ -52,7 +52,7 @@ pub fn text(levers: &Levers) -> String {
     let rows = bars(levers).into_iter().map(|bar| {
         let Bar { name, span_mm, ends: [(low, _), (high, _)], lever } = bar;
         let interval = lever.map_or(String::new(), |lever| {
-            let [low, now] = [lever.low, lever.value].map(plain);
+            let [low, now] = [lever.low, lever.value].map(thousandths);
             sources += &format!("  {name}: {}\n", lever.source);
             format!("{low} .. {now} .. {}", lever.amount(lever.high))
         });

@@ -9,27 +9,26 @@
 pub mod answer;
 mod bar;
 mod bench;
-mod beside;
 pub mod calibrate;
 mod chart;
 pub mod compare;
 mod convergence;
-mod drawn;
 mod elements;
 mod explore;
-mod first;
 mod front;
 mod glossary;
 pub mod identify;
 pub mod levers;
 pub mod map;
 mod marks;
+mod overview;
 mod page;
+mod page_files;
 pub mod printer;
 mod provenance;
 pub mod replay;
+mod selection;
 pub mod sensitivity;
-mod set;
 mod shape;
 pub mod sheet;
 pub mod stiffness;
@@ -38,12 +37,13 @@ mod surface;
 mod tests;
 mod text_table;
 mod theme;
+mod ties;
 
-pub use beside::{Film, PageFiles, PostAnalysis};
 pub use convergence::svg as convergence_svg;
-pub use first::preferred;
 pub use front::svg as front_svg;
+pub use overview::preferred;
 pub use page::{card, page};
+pub use page_files::{Film, PageFiles, PostAnalysis};
 pub use text_table::text_table;
 
 /// Error of the drawing library.

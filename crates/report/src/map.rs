@@ -1,4 +1,4 @@
-//! The capture map as a picture.
+//! Picture of a capture map.
 
 use super::ReportError;
 use super::chart::{Area, Drawn, axes, sheet, words};
@@ -12,7 +12,7 @@ use insertion::outcome::{FailureClass, Outcome};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-/// Every outcome with its colour, in the order of the legend.
+/// Outcomes and their colours, in the order of the legend.
 const COLOURS: [(Outcome, Colour); 6] = [
     (Outcome::Inserted, INSERTED),
     (Outcome::Failed(FailureClass::ContactLossBeforeSearch), LOST_EARLY),
@@ -21,7 +21,7 @@ const COLOURS: [(Outcome, Colour); 6] = [
     (Outcome::Failed(FailureClass::ContactLossInInsertion), LOST),
     (Outcome::Diverged, DIVERGED),
 ];
-/// Width, and height without title and legend, pixels: on a phone the text stays legible.
+/// Width, and height without title and legend, pixels; narrow, so that the text stays legible on a phone.
 const SIZE: (u32, u32) = (356, 300);
 /// Height of a row of the title and of the legend, pixels.
 const ROW: i32 = 22;
@@ -33,7 +33,7 @@ pub fn outcomes() -> [(i8, &'static str, String); 6] {
     COLOURS.map(|(outcome, colour)| (OutcomeCode(outcome).into(), outcome.label(), colour.hex()))
 }
 
-/// Draws the outcome at each place, with a dot where it was simulated.
+/// Draws the outcome of each cell, with a dot if it was simulated.
 ///
 /// # Errors
 /// If the drawing library fails.
@@ -51,8 +51,8 @@ pub fn svg(map: &CaptureMap) -> Result<String, ReportError> {
 /// Text of title or legend with its colour and its left end, pixels.
 type Entry = (String, Option<Colour>, i32);
 
-/// Places texts in rows, each after `before` pixels; no row is wider than the map.
-fn placed(
+/// Arranges texts, each after `before` pixels, in rows that are no wider than the map.
+fn wrapped(
     texts: impl IntoIterator<Item = (String, Option<Colour>)>,
     before: i32,
 ) -> Vec<Vec<Entry>> {
@@ -77,11 +77,11 @@ fn head(map: &CaptureMap) -> [Vec<Vec<Entry>>; 2] {
     let design = map.design.labelled();
     let of = [&*map.task, &design].into_iter().filter(|text| !text.is_empty());
     let of = of.flat_map(|text| text.split(", ")).map(|part| format!("{part},"));
-    let title = placed(of.chain([area]).map(|text| (text, None)), 0);
-    let met = |outcome| map.outcomes.iter().flatten().any(|mark| mark.0 == outcome);
-    let met = COLOURS.into_iter().filter(|(outcome, _)| met(*outcome));
-    let entries = met.map(|(outcome, colour)| (numbered(outcome), Some(colour)));
-    [title, placed(entries.chain([("simulated".to_owned(), None)]), 20)]
+    let title = wrapped(of.chain([area]).map(|text| (text, None)), 0);
+    let occurs = |outcome| map.outcomes.iter().flatten().any(|mark| mark.0 == outcome);
+    let shown = COLOURS.into_iter().filter(|(outcome, _)| occurs(*outcome));
+    let entries = shown.map(|(outcome, colour)| (numbered(outcome), Some(colour)));
+    [title, wrapped(entries.chain([("simulated".to_owned(), None)]), 20)]
 }
 
 fn draw_head(area: &Area<'_>, [title, legend]: &[Vec<Vec<Entry>>; 2]) -> Drawn {
@@ -114,11 +114,10 @@ fn draw(area: &Area<'_>, map: &CaptureMap) -> Drawn {
     for (at, row) in map.outcomes.iter().enumerate() {
         let y = second.value(at);
         let mut from = 0;
-        // Neighbours with equal outcomes are one rectangle.
+        // Adjacent cells with equal outcomes become one rectangle.
         for stretch in row.chunk_by(|a, b| a == b) {
             let to = from + stretch.len();
-            let outcome = stretch.first().map(|mark| mark.0);
-            let colour = COLOURS.into_iter().find(|(of, _)| Some(*of) == outcome);
+            let colour = COLOURS.into_iter().find(|(outcome, _)| *outcome == stretch[0].0);
             let x = [from, to].map(|at| first.value(at) - half(first));
             let style = colour.map_or(PAPER, |(_, colour)| colour).rgb().filled();
             bar(&mut chart, x, [y - half(second), y + half(second)], style)?;

@@ -1,9 +1,9 @@
 //! `report.html`: a self-contained page with a small inline script.
 
-use super::beside::{PageFiles, PostAnalysis};
 use super::elements::{definitions, document, figure};
+use super::page_files::{PageFiles, PostAnalysis};
 use super::{
-    ReportError, bench, convergence, explore, first, front, levers, map, provenance, set, shape,
+    ReportError, bench, convergence, explore, front, levers, map, overview, provenance, shape, ties,
 };
 use crate::answer::{Answer, command, expectation, lines};
 use insertion::surrogate::Model;
@@ -17,11 +17,11 @@ pub(super) const PLOT: (u32, u32) = (356, 300);
 
 /// Returns the report of a study as an HTML page that works offline. `model` is the stiffness model of
 /// the study.
-pub fn page(answer: &Answer, model: &Model, beside: &PageFiles) -> Result<String, ReportError> {
-    let sections = sections(answer, model, beside)?;
+pub fn page(answer: &Answer, model: &Model, files: &PageFiles) -> Result<String, ReportError> {
+    let sections = sections(answer, model, files)?;
     let body = html! {
         main {
-            (first::screen(answer, beside))
+            (overview::screen(answer, files))
             nav aria-label="contents" {
                 @for (id, title, _) in &sections { a href=(format!("#{id}")) { (title) } }
             }
@@ -57,7 +57,7 @@ type Section = (&'static str, String, Markup);
 fn sections(
     answer: &Answer,
     model: &Model,
-    beside: &PageFiles,
+    files: &PageFiles,
 ) -> Result<Vec<Section>, ReportError> {
     let record = answer.record;
     let section = |id, title: &str, body: Option<Markup>| Some((id, title.to_owned(), body?));
@@ -65,7 +65,7 @@ fn sections(
         None => "Ties",
         Some(_) => "Ties by simulation alone",
     };
-    let PostAnalysis { levers, maps, .. } = &beside.analyses;
+    let PostAnalysis { levers, maps, .. } = &files.analyses;
     let captioned = |svg: Result<String, ReportError>, caption: String| {
         svg.map(|svg| figure(&svg, &caption, &caption))
     };
@@ -77,12 +77,12 @@ fn sections(
         (!maps.is_empty()).then(|| html! { div.views.maps { @for figure in maps { (figure) } } });
     let sections = [
         section("bench", "Predicted for the bench", bench::section(record)),
-        section("set", set_title, set::section(answer)),
+        section("set", set_title, ties::section(answer)),
         section("front", "Pareto front", front::section(answer, PLOT)?),
         section("shape", "Beyond the infill", shape::section(record)),
         section("levers", "Sensitivity of the window", levers),
         section("maps", "Capture maps", maps),
-        section("explore-views", "All designs", explore::section(answer, &beside.dir)),
+        section("explore-views", "All designs", explore::section(answer, &files.dir)),
         section("convergence", "Convergence", Some(convergence::section(record, PLOT)?)),
         section("failures", "How the trials ended", Some(provenance::outcomes(record))),
         section("provenance", "Provenance", Some(provenance::section(answer, model))),

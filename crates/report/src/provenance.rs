@@ -45,7 +45,7 @@ pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
             a href="evaluations.csv" { "evaluations.csv" } ", " a href="journal.jsonl" { "journal.jsonl" }
             ". The same study again, in its folder:"
         }
-        pre { code { (command::again(answer.record).join(" ")) } }
+        pre { code { (command::rerun(answer.record).join(" ")) } }
     }
 }
 

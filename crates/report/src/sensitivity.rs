@@ -4,7 +4,7 @@ use super::chart::{Area, Drawn, rows, sheet, words};
 use super::marks::{bar, label, line};
 use super::theme::{BLUE, INK};
 use super::{ReportError, text_table};
-use analysis::levers::plain;
+use analysis::levers::thousandths;
 use parameters::Parameter;
 use parameters::plan::saltelli::Indices;
 use plotters::prelude::Color;
@@ -126,7 +126,7 @@ fn draw(area: &Area<'_>, found: &SensitivityResult) -> Drawn {
         let [low, high] = [factor.total_low, factor.total_high].map(|share| (share.max(0.0), y));
         line(&mut chart, vec![low, high], INK.rgb().stroke_width(2), "")?;
         let name = short(&factor.name);
-        let name = format!("{name} ({} to {})", plain(factor.low), plain(factor.high));
+        let name = format!("{name} ({} to {})", thousandths(factor.low), thousandths(factor.high));
         let style = words(13, INK, HPos::Right, VPos::Center);
         label(&mut chart, (0.0, y), (-8, 0), &name, &style)?;
         let style = words(14, INK, HPos::Left, VPos::Center);

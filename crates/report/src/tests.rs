@@ -77,7 +77,7 @@ fn of_very_many_evaluations_the_best_and_some_are_drawn() {
         Recorded { index, ..one.clone() }
     });
     let many = record(many.collect());
-    let shown = super::drawn::drawn(&many, &many.evaluations, super::drawn::LISTED);
+    let shown = super::selection::selected(&many, &many.evaluations, super::selection::LISTED);
     assert!((4000..5100).contains(&shown.len()), "{}", shown.len());
     assert!(shown.windows(2).all(|pair| pair[0].index < pair[1].index));
     let best = many.recommended().unwrap().index;
@@ -320,7 +320,7 @@ fn the_command_that_repeats_a_study_names_all_that_decides() {
     study.config.tasks.push("mine".to_owned());
     study.config.aggregate = Some(Aggregate::weighted(vec![2.0, 1.0], 2).unwrap());
     study.config.finger_model = insertion::finger::model::FingerModelKind::Computed;
-    let command = crate::answer::command::again(&study).join(" ");
+    let command = crate::answer::command::rerun(&study).join(" ");
     assert_eq!(
         command,
         "optimize --task usb,inputs/task_2.toml --space infill --robot rigid --stiffness-data \

@@ -181,7 +181,7 @@ fn replay(prepared: &Prepared<'_>, task: &'static str, number: u64) -> BenchResu
         }
         let none = BTreeSet::new();
         let fingers =
-            Fingers { designs: &subject.designs, among: &among, failed: &none, printed: &none };
+            Fingers { designs: &subject.designs, printable: &among, failed: &none, printed: &none };
         let advice = advise(&bench, &posterior, fingers, 1, 0.1, &mut random);
         let first = advice.next.first();
         let Some(finger) = first.and_then(|print| subject.finger(&print.design)) else { break };

@@ -119,7 +119,7 @@ impl command::Request for Request {
             context.part(&Part { what: what.to_owned(), done, of, cost: cost as f64 });
         };
         let effort =
-            Effort { last: Stage::Search, until_enough: false, seed: self.seed, tell: &report };
+            Effort { last: Stage::Search, until_enough: false, seed: self.seed, progress: &report };
         let tuned = tune(&bench, &effort).map_err(Failure::input)?;
         if context.check().is_err() {
             return Err(self.interrupted(&file, &tuned, target)?);
@@ -326,9 +326,9 @@ impl Serialize for Done {
             windows: tuned.windows,
             before: State::new(&task.strategy, &first.windows, first.force_n, fingers),
             after: after.as_ref().map(state),
-            by: By { stage: best.stage, what: &best.what },
+            by: By { stage: best.stage, what: &best.change },
             steps: tuned.steps.iter().map(Tried::from).collect(),
-            kept: &tuned.kept,
+            kept: &tuned.robustness,
             nearest: tuned.nearest(task),
             out: written.as_ref().map(|path| path.display().to_string()),
         };
@@ -370,7 +370,7 @@ fn text(done: &Done) -> String {
     all.extend(steps(tuned));
     match after {
         None => all.extend(tuned.nearest(task).map(|nearest| {
-            let met = nearest.met.map_or(String::new(), |[plug, socket]| {
+            let met = nearest.parts.map_or(String::new(), |[plug, socket]| {
                 format!(", where `{plug}` meets `{socket}`")
             });
             let (depth, tilt) = (nearest.depth_mm, nearest.tilt_deg);
@@ -379,9 +379,9 @@ fn text(done: &Done) -> String {
         })),
         Some(after) => {
             let best = tuned.best();
-            all.push(line("chosen", format!("{}: {}", best.what, ranges(&after.windows))));
+            all.push(line("chosen", format!("{}: {}", best.change, ranges(&after.windows))));
             all.push(line("push", change(done, after.force_n)));
-            all.extend(tuned.kept.iter().enumerate().map(|(i, kept)| {
+            all.extend(tuned.robustness.iter().enumerate().map(|(i, kept)| {
                 let name = if i == 0 { "other fingers" } else { "" };
                 let change = if i == 0 { String::new() } else { format!(", {}", kept.change) };
                 line(name, format!("at least {:.1} mm{change}", kept.least_range_mm))
@@ -416,13 +416,13 @@ fn steps(tuned: &Tuned) -> Vec<(String, String)> {
             } else {
                 NAMES[step.stage as usize]
             };
-            found.push((name.to_owned(), format!("{}: {}", step.what, outcome(step))));
+            found.push((name.to_owned(), format!("{}: {}", step.change, outcome(step))));
         }
     }
     let searched = tuned.steps.iter().filter(|step| step.stage == Stage::Search);
     let best = searched.max_by(|a, b| a.tried.score.total_cmp(&b.tried.score));
     found.extend(best.map(|step| {
-        (NAMES[Stage::Search as usize].to_owned(), format!("{}: {}", step.what, outcome(step)))
+        (NAMES[Stage::Search as usize].to_owned(), format!("{}: {}", step.change, outcome(step)))
     }));
     found
 }

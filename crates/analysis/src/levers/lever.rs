@@ -67,7 +67,7 @@ impl Lever {
     /// Formats a value with its unit: `5°`, `0.2`, `100 mm/s`.
     pub fn amount(&self, value: f64) -> String {
         let space = if self.unit.is_empty() || self.unit == "°" { "" } else { " " };
-        format!("{}{space}{}", plain(value), self.unit)
+        format!("{}{space}{}", thousandths(value), self.unit)
     }
 
     /// Describes the step from the current value to an end: `5° more tilt`.
@@ -136,8 +136,8 @@ pub fn difference_mm([first, second]: [f64; 2]) -> f64 {
     ((second - first) * 10.0).round() / 10.0
 }
 
-/// Formats a number with at most three decimals.
-pub fn plain(value: f64) -> String {
+/// Formats a number rounded to thousandths.
+pub fn thousandths(value: f64) -> String {
     // Adding 0 turns -0 into 0.
     format!("{}", (value * 1e3).round() / 1e3 + 0.0)
 }

@@ -1,7 +1,7 @@
 //! Measurement of the windows of a finger and of its levers.
 
+use super::bounds::{LeverParameter, lever_parameters};
 use super::lever::{Base, Lever, Levers};
-use super::rows::{LeverParameter, lever_parameters};
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::{Impossible, Template};
@@ -36,7 +36,7 @@ pub struct LeverAnalysis<'a> {
 }
 
 /// Specimen and robot for one window.
-pub(super) type Cell = (Specimen, Robot);
+pub(super) type Setup = (Specimen, Robot);
 
 /// Lever to be measured: its parameter, its end values, and the index of the window of each end. An end that changes
 /// nothing has the index of the baseline.
@@ -58,22 +58,23 @@ impl LeverAnalysis<'_> {
         infill: Option<[f64; 2]>,
         stop: &AtomicBool,
     ) -> Result<Levers, Impossible> {
-        let mut cells = vec![self.cell(self.design, self.given)?];
+        let mut setups = vec![self.setup(self.design, self.given)?];
         if infill.is_none() {
             for design in self.extremes()? {
-                cells.push(self.cell(&design, None)?);
+                setups.push(self.setup(&design, None)?);
             }
         }
-        let infills = cells.len();
-        let (candidates, left_out) = self.candidates(&mut cells)?;
-        let windows = cells.par_iter().map(|(specimen, robot)| self.window(specimen, robot, stop));
+        let infills = setups.len();
+        let (candidates, left_out) = self.candidates(&mut setups)?;
+        let windows = setups.par_iter().map(|(specimen, robot)| self.window(specimen, robot, stop));
         let found = windows.collect::<Result<Vec<_>, _>>()?;
         let ranges: Vec<_> = found.iter().map(range_mm).collect();
         let base = Base {
             range_mm: ranges[0].unwrap_or(0.0),
             taught_start_mm: grid_mm(found[0].taught.unwrap_or(0)),
         };
-        let mut levers: Vec<_> = candidates.into_iter().map(|one| one.lever(&ranges)).collect();
+        let mut levers: Vec<_> =
+            candidates.into_iter().map(|candidate| candidate.lever(&ranges)).collect();
         // Stable sort: equal levers keep their order.
         levers.sort_by(|a, b| b.span_mm(base).total_cmp(&a.span_mm(base)));
         let over = || {
@@ -87,43 +88,43 @@ impl LeverAnalysis<'_> {
             infill: infill.unwrap_or_else(over),
             levers,
             left_out,
-            windows: cells.len(),
+            windows: setups.len(),
         })
     }
 
     /// Returns the levers to measure and the names of those that exceed the window budget. The
-    /// cells of their ends are appended to `cells`, the first of which is the baseline.
+    /// setups of their ends are appended to `setups`, the first of which is the baseline.
     fn candidates(
         &self,
-        cells: &mut Vec<Cell>,
+        setups: &mut Vec<Setup>,
     ) -> Result<(Vec<Candidate>, Vec<String>), Impossible> {
-        let base = cells[0].clone();
+        let base = setups[0].clone();
         let (mut candidates, mut left_out) = (Vec::new(), Vec::new());
-        for row in lever_parameters(self, &base.0)? {
-            let (mut more, mut values, mut windows) = (Vec::new(), [row.value; 2], [0; 2]);
+        for lever in lever_parameters(self, &base.0)? {
+            let (mut more, mut values, mut windows) = (Vec::new(), [lever.value; 2], [0; 2]);
             for (end, bound) in [End::Low, End::High].into_iter().enumerate() {
                 // A chamfer of 0 describes the same shape differently, which can shift a window.
-                let changed = row.at(self, bound).filter(|(value, _)| *value != row.value);
-                let Some((value, cell)) = changed else { continue };
-                if cell != base {
-                    (values[end], windows[end]) = (value, cells.len() + more.len());
-                    more.push(cell);
+                let changed = lever.at(self, bound).filter(|(value, _)| *value != lever.value);
+                let Some((value, setup)) = changed else { continue };
+                if setup != base {
+                    (values[end], windows[end]) = (value, setups.len() + more.len());
+                    more.push(setup);
                 }
             }
             if more.is_empty() {
                 continue;
             }
-            if cells.len() + more.len() > MOST_WINDOWS {
-                left_out.push(row.parameter.name);
+            if setups.len() + more.len() > MOST_WINDOWS {
+                left_out.push(lever.parameter.name);
                 continue;
             }
-            cells.append(&mut more);
-            candidates.push(Candidate { parameter: row, values, windows });
+            setups.append(&mut more);
+            candidates.push(Candidate { parameter: lever, values, windows });
         }
         Ok((candidates, left_out))
     }
 
-    fn cell(&self, design: &Design, given: Option<Prediction>) -> Result<Cell, Impossible> {
+    fn setup(&self, design: &Design, given: Option<Prediction>) -> Result<Setup, Impossible> {
         self.evaluator.under(self.template, (design, given), &[])
     }
 
@@ -142,16 +143,13 @@ impl LeverAnalysis<'_> {
             }
         }
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let with = |of: Option<&(f64, f64, f64)>| match of {
-            Some(&(_, density, direction)) => {
-                design.with(DENSITY_KEY, density).with(DIRECTION_KEY, direction)
-            }
-            None => (*design).clone(),
+        let with = |&(_, density, direction): &(f64, f64, f64)| {
+            design.with(DENSITY_KEY, density).with(DIRECTION_KEY, direction)
         };
-        Ok([with(all.first()), with(all.last())])
+        Ok([all.first(), all.last()].map(|of| of.map_or_else(|| (*design).clone(), with)))
     }
 
-    /// Measures the window around the start taught for this cell.
+    /// Measures the window around the start taught for this setup.
     fn window(
         &self,
         specimen: &Specimen,

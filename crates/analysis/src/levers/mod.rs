@@ -4,9 +4,9 @@
 //! One-at-a-time sensitivity analysis: each number is set to both ends of its interval, with the
 //! start taught again each time.
 
+mod bounds;
 mod lever;
 mod measure;
-mod rows;
 
-pub use lever::{Base, Lever, Levers, difference_mm, is_relevant, plain};
+pub use lever::{Base, Lever, Levers, difference_mm, is_relevant, thousandths};
 pub use measure::LeverAnalysis;

@@ -24,7 +24,7 @@ pub struct CaptureMap {
     pub outcomes: Vec<Vec<OutcomeCode>>,
     /// Whether each outcome was simulated; the others are inferred from their neighbours.
     pub simulated: Vec<Vec<bool>>,
-    /// Trials that were simulated.
+    /// Number of simulated trials.
     pub trials: usize,
     /// Resolution along either axis at which the border of the inserting region was traced, in the
     /// axis's unit: the step of the grid unless the trials ran out.
@@ -53,20 +53,19 @@ pub struct MapAxis {
 impl CaptureMap {
     /// Traces the map of a finger on its task: at most 300 trials.
     pub fn trace(task: &str, design: Design, plane: &Plane<'_>) -> Self {
-        let outcome = |node| plane.outcome(node);
-        let traced = grid::trace(LIMIT, &outcome);
-        let TracedMap { low, high, nodes, trials, step, .. } = &traced;
+        let TracedMap { low, high, nodes, trials, step, .. } =
+            grid::trace(LIMIT, &|node| plane.outcome(node));
         let inserting = nodes.values().filter(|found| found.outcome == Outcome::Inserted).count();
-        let names = plane.axes.names();
+        let names = [["y", "mm"], plane.axes.second().0];
         let outcome = |node| nodes.get(&node).map_or(Outcome::Diverged, |found| found.outcome);
         CaptureMap {
             task: task.to_owned(),
             design,
             axes: [0, 1].map(|axis| MapAxis::new(names[axis], low[axis], high[axis])),
-            outcomes: lattice(*low, *high, |node| OutcomeCode(outcome(node))),
-            simulated: lattice(*low, *high, |node| nodes.get(&node).is_some_and(|f| f.simulated)),
-            trials: *trials,
-            traced_step: value(*step),
+            outcomes: lattice(low, high, |node| OutcomeCode(outcome(node))),
+            simulated: lattice(low, high, |node| nodes.get(&node).is_some_and(|f| f.simulated)),
+            trials,
+            traced_step: value(step),
             area: inserting as f64 * value(1) * value(1),
             area_unit: format!("mm {}", names[1][1]).replace("mm mm", "mm2"),
         }
@@ -77,7 +76,7 @@ impl CaptureMap {
         let [first, second] = self.axes.each_ref().map(|axis| &axis.name);
         let (area, unit) = (self.area, self.area_unit.replace('2', "²"));
         format!(
-            "Capture range over errors of the start in {first} and {second}: {area:.1} {unit} insert, by {} trials",
+            "Capture range over errors of the start in {first} and {second}: {area:.1} {unit}, from {} trials",
             self.trials
         )
     }
@@ -144,13 +143,11 @@ impl TryFrom<i8> for OutcomeCode {
     type Error = String;
 
     fn try_from(number: i8) -> Result<Self, String> {
-        match number {
-            -1 => Ok(OutcomeCode(Outcome::Diverged)),
-            0 => Ok(OutcomeCode(Outcome::Inserted)),
-            class => {
-                Ok(OutcomeCode(Outcome::Failed(FailureClass::try_from(class.unsigned_abs())?)))
-            }
-        }
+        Ok(OutcomeCode(match number {
+            -1 => Outcome::Diverged,
+            0 => Outcome::Inserted,
+            class => Outcome::Failed(FailureClass::try_from(class.unsigned_abs())?),
+        }))
     }
 }
 

@@ -12,7 +12,7 @@ use std::sync::OnceLock;
 /// Largest extent of a map along both axes, in grid steps: 16 mm, and 8 mm or degrees.
 pub(super) const LIMIT: Node = [16 * STEPS_PER_UNIT, 8 * STEPS_PER_UNIT];
 
-/// Pair of errors of a map: a shift of the start along y, and another.
+/// Pair of errors of a map: a shift of the start along y, and a second error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum Axes {
     /// Shifts of the start along y and x
@@ -29,21 +29,16 @@ pub enum Axes {
 
 impl Axes {
     /// Returns the name and unit of the second error, and the path of its number.
-    fn second(self) -> ([&'static str; 2], &'static str) {
+    pub(super) fn second(self) -> ([&'static str; 2], &'static str) {
         match self {
             Axes::YX => (["x", "mm"], START_ACROSS),
             Axes::YYaw => (["yaw", "deg"], SOCKET_YAW),
             Axes::YTilt => (["tilt", "deg"], START_TILT),
         }
     }
-
-    /// Returns the names and units of both errors.
-    pub(super) fn names(self) -> [[&'static str; 2]; 2] {
-        [["y", "mm"], self.second().0]
-    }
 }
 
-/// Trials of a finger under two errors of the start. The part is grasped once for each value of the second.
+/// Trials of a finger under two errors of the start. The part is grasped once for each value of the second error.
 pub struct Plane<'a> {
     rig: &'a dyn Rig,
     grasp: Grasp<'a>,

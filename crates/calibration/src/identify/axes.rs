@@ -1,5 +1,5 @@
-//! Checks that commanded motion, measured motion and force of the logs agree with each other and with the task:
-//! columns that are mirrored, swapped or in another unit, and two attempts in one log.
+//! Checks that commanded motion, measured motion and force of the logs agree with each other and with the task. They
+//! find columns that are mirrored, swapped or in another unit, and two attempts in one log.
 
 use super::check::{Remark, Remarks};
 use super::curves::Curves;
@@ -11,13 +11,13 @@ use nalgebra::{Vector2, Vector3};
 
 /// Mean distance between two paths below which they agree, m.
 const AGREES: f64 = 0.5 * MM;
-/// Share of what a correction changes by which the paths have to come nearer to each other.
+/// Smallest reduction of the distance by a correction, as a share of the change that it makes.
 const CORRECTS: f64 = 0.5;
-/// Share of the task's search that a log has to make before its direction is compared.
+/// Smallest length of a path that is compared with the task's search, as a share of the length of that.
 const COMPLETE: f64 = 0.7;
-/// Share of the descent to the touch that a tool rises before another attempt, and least descent, m.
+/// Smallest rise before a second attempt, as a share of the descent to the touch, and smallest such descent, m.
 const RISES: (f64, f64) = (0.5, 1.0 * MM);
-/// Share of the force along one axis that the springs of the robot have to explain better after a correction.
+/// Smallest increase, by a correction, of the share of the force that the springs of the robot explain.
 const EXPLAINS: f64 = 0.5;
 
 /// Correction of a vector.
@@ -29,14 +29,14 @@ const MIRRORED_X_AND_Y: Correction = |v| Vector3::new(-v.x, -v.y, v.z);
 /// Mistake in the columns of a vector: its likely cause, and its correction.
 type Mistake = (&'static str, Correction);
 
-/// Mistakes that a path over the table shows.
+/// Mistakes in x and y.
 const OVER_TABLE: [Mistake; 4] = [
     ("x looks mirrored", MIRRORED_X),
     ("y looks mirrored", MIRRORED_Y),
     ("x and y look mirrored", MIRRORED_X_AND_Y),
     ("x and y look swapped", |v| v.yxz()),
 ];
-/// Mistakes that change heights.
+/// Mistakes in z.
 const IN_HEIGHT: [Mistake; 3] = [
     ("z looks mirrored", |v| Vector3::new(v.x, v.y, -v.z)),
     ("x and z look swapped", |v| v.zyx()),
@@ -44,15 +44,15 @@ const IN_HEIGHT: [Mistake; 3] = [
 ];
 const METRES: Mistake = ("the commanded positions look like metres; give millimetres", |v| v * 1e3);
 
-/// A place, where it should be, and its weight.
+/// Position, its expected value, and the weight of the pair.
 type Pair = (Vector3<f64>, Vector3<f64>, f64);
 
-/// Comparison of places with where they should be.
+/// Comparison of positions with their expected values.
 struct Comparison {
     /// Mean distance, m.
-    apart: f64,
-    /// The same after the best correction, if that is less.
-    left: f64,
+    distance: f64,
+    /// Mean distance after the best correction, if that is smaller, m.
+    corrected: f64,
     /// Mistake that explains the distance.
     mistake: Option<&'static str>,
 }
@@ -60,19 +60,19 @@ struct Comparison {
 impl Comparison {
     fn new(mistakes: impl IntoIterator<Item = Mistake>, pairs: &[Pair]) -> Self {
         let all: f64 = pairs.iter().map(|(.., weight)| weight).sum();
-        let mean = |distance: &dyn Fn(&Pair) -> Vector3<f64>| {
-            pairs.iter().map(|pair| pair.2 * distance(pair).lp_norm(1)).sum::<f64>() / all
+        let mean = |difference: &dyn Fn(&Pair) -> Vector3<f64>| {
+            pairs.iter().map(|pair| pair.2 * difference(pair).lp_norm(1)).sum::<f64>() / all
         };
-        let apart = mean(&|(is, wanted, _)| is - wanted);
+        let distance = mean(&|(is, expected, _)| is - expected);
         let tried = mistakes.into_iter().map(|(cause, corrected)| {
-            let left = mean(&|(is, wanted, _)| corrected(*is) - wanted);
+            let left = mean(&|(is, expected, _)| corrected(*is) - expected);
             let change = mean(&|(is, ..)| corrected(*is) - is);
-            (left, cause, apart - left > CORRECTS * change && change > AGREES)
+            (left, cause, distance - left > CORRECTS * change && change > AGREES)
         });
         let best = tried.min_by(|a, b| a.0.total_cmp(&b.0));
         Comparison {
-            apart,
-            left: best.map_or(apart, |(left, ..)| left.min(apart)),
+            distance,
+            corrected: best.map_or(distance, |(left, ..)| left.min(distance)),
             mistake: best.filter(|best| best.2).map(|(_, cause, _)| cause),
         }
     }
@@ -90,12 +90,12 @@ pub(super) fn motion(remarks: &mut Remarks<'_>, run: &Run, task: &Task, touched:
     if run.ended != Ended::Probe {
         search(remarks, task);
         if let Some(touched) = touched {
-            twice(remarks, touched);
+            second_attempt(remarks, touched);
         }
     }
 }
 
-/// Compares commanded with measured motion, both from the first sample.
+/// Adds a remark if commanded and measured motion, both relative to the first sample, disagree.
 fn commanded(remarks: &mut Remarks<'_>) {
     let pair = |sample: &LogSample| Some((sample.target?.position, sample.position));
     let samples = &remarks.log.samples;
@@ -106,19 +106,19 @@ fn commanded(remarks: &mut Remarks<'_>) {
     let found = Comparison::new(all, &moves);
     if let Some(cause) = found.mistake {
         let text = format!(
-            "measured and commanded positions, counted from their first, are {:.1} mm apart on average: \
+            "measured and commanded positions, relative to their first, are {:.1} mm apart on average: \
              {cause}{}",
-            found.apart / MM,
+            found.distance / MM,
             if cause == METRES.0 { "" } else { " in one of the two" }
         );
         remarks.add(true, None, text);
     }
 }
 
-/// A path over the table: its length so far and its place, from its beginning.
-type Course = Vec<(f64, Vector2<f64>)>;
+/// Path in x and y: the length up to each point, and its position relative to the first one.
+type PlanarPath = Vec<(f64, Vector2<f64>)>;
 
-fn course(places: impl Iterator<Item = Vector3<f64>>) -> Course {
+fn planar_path(places: impl Iterator<Item = Vector3<f64>>) -> PlanarPath {
     let (mut length, mut at) = (0.0, Vector2::zeros());
     let step = |place: Vector3<f64>| {
         length += (place.xy() - at).norm();
@@ -128,21 +128,21 @@ fn course(places: impl Iterator<Item = Vector3<f64>>) -> Course {
     std::iter::once(Vector3::zeros()).chain(places).map(step).collect()
 }
 
-/// Returns the place on a course after a length of it.
-fn place(course: &Course, length: f64) -> Vector2<f64> {
-    let next = course.partition_point(|(at, _)| *at < length).max(1);
-    let (from, begin) = course[next - 1];
-    let Some((to, end)) = course.get(next) else { return begin };
+/// Returns the position on a path at a length.
+fn position_at(path: &PlanarPath, length: f64) -> Vector2<f64> {
+    let next = path.partition_point(|(at, _)| *at < length).max(1);
+    let (from, begin) = path[next - 1];
+    let Some((to, end)) = path.get(next) else { return begin };
     begin + (end - begin) * ((length - from) / (to - from).max(f64::MIN_POSITIVE))
 }
 
-/// Compares the path over the table with the task's search, from its start or from the end of its approach.
+/// Adds a remark if the path in x and y disagrees with the task's search, from its start or the end of its approach.
 fn search(remarks: &mut Remarks<'_>, task: &Task) {
     let phases = &task.strategy.phases;
     let near = phases.iter().take_while(|phase| phase.stage == Stage::Approach).count();
     let planned = [0, near].map(|skipped| {
         let mut at = Vector3::zeros();
-        course(phases.iter().skip(skipped).map(|phase| {
+        planar_path(phases.iter().skip(skipped).map(|phase| {
             at += Vector3::from(phase.displacement);
             at
         }))
@@ -150,40 +150,39 @@ fn search(remarks: &mut Remarks<'_>, task: &Task) {
     let at = |sample: &LogSample| sample.target.map_or(sample.position, |target| target.position);
     let samples = &remarks.log.samples;
     let first = at(&samples[0]);
-    let done = course(samples.iter().map(|sample| at(sample) - first));
-    let length = |course: &Course| course.last().map_or(0.0, |(length, _)| *length);
+    let done = planar_path(samples.iter().map(|sample| at(sample) - first));
+    let length = |path: &PlanarPath| path.last().map_or(0.0, |(length, _)| *length);
     let compared =
         planned.iter().filter(|plan| length(&done) > COMPLETE * length(plan)).map(|plan| {
             let pairs = done.windows(2).map(|pair| {
                 let [(before, _), (length, at)] = [pair[0], pair[1]];
-                (at.push(0.0), place(plan, length).push(0.0), length - before)
+                (at.push(0.0), position_at(plan, length).push(0.0), length - before)
             });
             Comparison::new(OVER_TABLE, &pairs.collect::<Vec<_>>())
         });
-    let nearest = compared.min_by(|a, b| a.left.total_cmp(&b.left));
-    if let Some(Comparison { apart, mistake: Some(cause), .. }) = nearest {
-        let apart = apart / MM;
-        let text =
-            format!("its search is {apart:.1} mm beside that of the task on average: {cause}");
+    let nearest = compared.min_by(|a, b| a.corrected.total_cmp(&b.corrected));
+    if let Some(Comparison { distance, mistake: Some(cause), .. }) = nearest {
+        let off = distance / MM;
+        let text = format!("its search differs from the task's by {off:.1} mm on average: {cause}");
         remarks.add(true, None, text);
     }
 }
 
-/// A second attempt after the first.
-fn twice(remarks: &mut Remarks<'_>, touched: usize) {
+/// Adds a remark if a second attempt follows the first.
+fn second_attempt(remarks: &mut Remarks<'_>, touched: usize) {
     let samples = &remarks.log.samples;
     let [first, touch] = [0, touched].map(|at| samples[at].position.z);
     let high = touch + RISES.0 * (first - touch);
     let up = samples[touched..].iter().position(|sample| sample.position.z > high);
     let Some(up) = up.map(|at| at + touched).filter(|_| first - touch > RISES.1) else { return };
     if let Some(down) = samples[up..].iter().position(|sample| sample.position.z <= touch) {
-        let text = "the tool rises and goes down to the socket once more: there are two attempts in this \
-                    log; cut it into one log for each";
+        let text = "the tool rises and descends to the socket again: this log contains two attempts; split it \
+                    into one log for each";
         remarks.add(true, Some([up, up + down]), text);
     }
 }
 
-/// Mistakes in the force, or in the positions against it.
+/// Mistakes in the force, or in the positions relative to it.
 const IN_FORCE: [Mistake; 5] = [
     ("along x; x_mm or fx_n looks mirrored", MIRRORED_X),
     ("along y; y_mm or fy_n looks mirrored", MIRRORED_Y),
@@ -192,8 +191,8 @@ const IN_FORCE: [Mistake; 5] = [
     ("along x and y; fx_n and fy_n look swapped", |v| v.yxz()),
 ];
 
-/// Returns a remark on the direction in which the robot gives way to the force, over all attempts; `file` has
-/// the runs.
+/// Returns a remark if the robot does not give way in the direction of the force, over all attempts; `file` lists the
+/// runs.
 pub(super) fn springs(file: &str, attempts: &[Curves]) -> Option<Remark> {
     let score = |corrected: Correction| {
         let with = |one: &Curves| {
@@ -209,7 +208,7 @@ pub(super) fn springs(file: &str, attempts: &[Curves]) -> Option<Remark> {
     (best - explained(attempts) > EXPLAINS).then_some(remark)
 }
 
-/// Returns a remark on a probe along whose slides the force drives the motion.
+/// Returns a remark on a probe with negative friction, whose force drives the slides.
 pub(super) fn slides((file, found): &(String, Friction)) -> Option<Remark> {
     let friction = found.coefficient.map(|one| one.mean).filter(|mean| *mean < 0.0)?;
     let text = format!(

@@ -1,4 +1,4 @@
-//! Curves of a log or a simulated attempt at regular times.
+//! Curves of a log or a simulated attempt, sampled at regular times.
 
 use super::log::{Log, LogSample};
 use input::units::{DEG, MM};

@@ -1,4 +1,4 @@
-//! A log made up for tests.
+//! Synthetic log for tests.
 
 use super::log::{Log, LogSample};
 use ask_tell::normal::StandardNormal;
@@ -8,9 +8,10 @@ use insertion::trial::Tcp;
 use nalgebra::Vector3;
 use rand::RngExt;
 
-/// Down at 20 mm/s onto a face at 45 mm and 0.4 mm into it, 5 mm aside and 13 mm down, at 500 Hz;
-/// stiffness 50 N/mm, friction 0.2, so much noise and drift, N. The touch is at 0.3 s.
-pub fn made(noise: f64, drift: f64) -> Log {
+/// Returns a log at 500 Hz of a descent at 20 mm/s onto a face at 45 mm and 0.4 mm into it, a slide of 5 mm and a
+/// descent of
+/// 13 mm; stiffness 50 N/mm, friction 0.2, standard deviation of the noise and drift in N. The touch is at 0.3 s.
+pub fn synthetic(noise: f64, drift: f64) -> Log {
     let mut random = stream(1, 0, "log");
     let mut normal = || -> f64 { random.sample(StandardNormal) };
     let samples = (0..600).map(|i| {

@@ -1,4 +1,4 @@
-//! Numbers read from the logs by formulas: stiffness of the robot, preload, friction.
+//! Closed-form estimates from the logs: stiffness of the robot, preload, friction.
 
 use super::curves::{Curves, STEP_S, accelerations, rates, smoothed};
 use ask_tell::statistics::{Moments, mean};
@@ -69,8 +69,8 @@ pub(super) fn explained(all: &[Curves]) -> f64 {
     (0..3).map(along).sum()
 }
 
-/// Subtracts a straight line from a column: bias and drift of the sensor.
-fn level(column: DVector<f64>) -> DVector<f64> {
+/// Subtracts the fitted straight line from a column: bias and drift of the sensor.
+fn detrended(column: DVector<f64>) -> DVector<f64> {
     let count = column.len() as f64;
     let middle = 0.5 * (count - 1.0);
     let times = DVector::from_fn(column.len(), |i, _| i as f64 - middle);
@@ -99,7 +99,7 @@ impl Sums {
         let behind: Vec<Vector3<f64>> = target.iter().zip(&tcp).map(|(to, at)| to - at).collect();
         let (rate, acceleration) = (rates(&behind), accelerations(&tcp));
         let column = |values: &[Vector3<f64>], from: usize, sign: f64| {
-            level(DVector::from_fn(count, |i, _| sign * values[i + from][axis]))
+            detrended(DVector::from_fn(count, |i, _| sign * values[i + from][axis]))
         };
         let columns = [(&behind, -1.0), (&rate, -1.0), (&acceleration, 1.0)];
         let columns = columns.map(|(values, sign)| column(values, 0, sign));
@@ -112,6 +112,7 @@ impl Sums {
     }
 }
 
+/// Solves the least-squares problem of several attempts.
 fn solve<'a>(sums: impl Iterator<Item = &'a Sums>) -> Option<Fit> {
     let (mut a, mut b, mut force) = (DMatrix::zeros(3, 3), DVector::zeros(3), 0.0);
     for sums in sums {
@@ -153,7 +154,7 @@ fn estimate(values: &[f64]) -> Option<Estimate> {
 /// One slide of a probe.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Slide {
-    /// Whether it goes along +y.
+    /// Whether the slide is along +y.
     #[serde(skip)]
     pub forth: bool,
     /// Tangential force over normal force while sliding.

@@ -31,22 +31,23 @@ pub fn text(path: &Path) -> Result<String, Fault> {
     files::read_text(path, LARGEST_LOG).map_err(cannot)
 }
 
-/// Reads and checks a log's text; one in the base's frame needs `frame`; `file` is named in errors. Lines that begin with `#` are comments.
+/// Parses and checks the text of a log; a log in the base's frame needs `frame`, and `file` is named in errors. Lines
+/// that begin with `#` are comments.
 ///
 /// # Errors
-/// If it has no known header, a cell cannot be used or looks like one in another unit, or
-/// [`Log::new`] refuses it.
+/// If the header is unknown, a cell is invalid or looks like a value in another unit, or [`Log::new`] rejects the
+/// samples.
 pub fn parse(text: &str, file: &str, frame: Option<&Frame>) -> Result<Log, Fault> {
     let whole = |problem: String| Place::file(file).fault(problem);
     let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate();
-    let bare = |line: &str| line.trim().is_empty() || line.trim_start().starts_with('#');
+    let ignored = |line: &str| line.trim().is_empty() || line.trim_start().starts_with('#');
     let (at, header) = lines
-        .find(|(_, line)| !bare(line))
+        .find(|(_, line)| !ignored(line))
         .ok_or_else(|| whole(format!("is empty; a log begins with {}", COLUMNS.join(","))))?;
     let fault = |at: usize, problem: String| Place::file(file).line(at + 1).fault(problem);
     let table = Table::new(header, frame).map_err(|problem| fault(at, problem))?;
     let mut samples: Vec<LogSample> = Vec::new();
-    for (at, line) in lines.filter(|(_, line)| !bare(line)) {
+    for (at, line) in lines.filter(|(_, line)| !ignored(line)) {
         if samples.len() == MOST {
             return Err(whole(format!("has more than {MOST} samples; cut it to the attempt")));
         }
@@ -61,20 +62,18 @@ pub fn parse(text: &str, file: &str, frame: Option<&Frame>) -> Result<Log, Fault
     Ok(log)
 }
 
-/// Checks the units that only a whole log reveals.
+/// Checks the units of time and position by the values of a whole log.
 fn check_units(log: &Log) -> Result<(), String> {
     let gap = median_gap(log);
     if gap > SLOWEST_S {
         return Err(format!(
-            "the time between its lines is {gap}, which looks like milliseconds; \
-                            give seconds"
+            "the time between its lines is {gap}, which looks like milliseconds; give seconds"
         ));
     }
     let far = log.samples.iter().map(|sample| sample.position.amax()).fold(0.0, f64::max);
     if far < NEAREST_MM * MM {
         return Err(format!(
-            "no coordinate is beyond {} mm, so that they look like metres; give \
-                            millimetres",
+            "no coordinate exceeds {} mm, so that they look like metres; give millimetres",
             shown(far / MM)
         ));
     }
@@ -86,14 +85,17 @@ pub(super) fn median_gap(log: &Log) -> f64 {
     median(log.samples.windows(2).map(|w| w[1].time_s - w[0].time_s)).unwrap_or(0.0)
 }
 
-/// Columns of a log: time, TCP, force, and the commanded TCP if there is one.
+/// Columns of a log: time, TCP, force, and the commanded TCP if it was recorded.
 struct Table<'a> {
     /// Frame, if the log is in the robot's base, as RTDE recorders write it.
     rtde: Option<&'a Frame>,
     frame: Option<&'a Frame>,
+    /// Whether commas separate the cells; otherwise white space does.
     commas: bool,
     names: Vec<&'a str>,
+    /// Indices of the columns of time, TCP and force.
     places: Vec<usize>,
+    /// Indices of the columns of the commanded TCP.
     targets: Vec<usize>,
 }
 
@@ -113,9 +115,8 @@ impl<'a> Table<'a> {
         let names: Vec<&str> = cells(header, commas).collect();
         let axes =
             |name: &str, count: usize| (0..count).map(move |i| format!("{name}_{i}")).collect();
-        let rtde: [Vec<String>; 3] =
+        let [pose, force, goal]: [Vec<String>; 3] =
             [axes("actual_TCP_pose", 6), axes("actual_TCP_force", 3), axes("target_TCP_pose", 6)];
-        let [pose, force, goal] = rtde;
         let rtde = [vec!["timestamp".to_owned()], pose, force].concat();
         let has = |name: &&str| names.contains(name);
         let known = |all: &[String]| all.iter().filter(|name| has(&name.as_str())).count();
@@ -158,8 +159,7 @@ impl<'a> Table<'a> {
         if found.len() != self.names.len() {
             let (has, header) = (found.len(), self.names.len());
             return Err(format!(
-                "has {has} cells where the header has {header}; complete the line, \
-                                or cut it"
+                "has {has} cells where the header has {header}; complete or delete the line"
             ));
         }
         let number = |place: &usize| {
@@ -167,7 +167,7 @@ impl<'a> Table<'a> {
             match cell.parse::<f64>() {
                 Ok(value) if value.is_finite() => Ok(value),
                 _ if cell.is_empty() => {
-                    Err(format!("{name}: is empty; give a number, or cut the line"))
+                    Err(format!("{name}: is empty; give a number, or delete the line"))
                 }
                 _ => Err(format!("{name}: `{}` is not a finite number", files::visible(cell))),
             }
@@ -180,7 +180,7 @@ impl<'a> Table<'a> {
             return Err(format!("a force of {large} looks like millinewtons; give newtons"));
         }
         let vector = Vector3::from_column_slice;
-        let (tcp, target, force) = match self.rtde {
+        let (Tcp { position, tilt }, target, force) = match self.rtde {
             Some(frame) => {
                 let target = (!goal.is_empty()).then(|| of_base(frame, &goal)).transpose()?;
                 let tcp = of_base(frame, &numbers[1..7])?;
@@ -204,18 +204,11 @@ impl<'a> Table<'a> {
                 (tcp, target, self.frame.map_or(force, |frame| frame.force(force)))
             }
         };
-        Ok(LogSample {
-            line,
-            time_s: numbers[0],
-            position: tcp.position,
-            tilt: tcp.tilt,
-            target,
-            force,
-        })
+        Ok(LogSample { line, time_s: numbers[0], position, tilt, target, force })
     }
 }
 
-/// Converts a pose of six numbers, m and rad in the base.
+/// Converts a pose of six numbers, m and rad, from the base to the task's frame.
 fn of_base(frame: &Frame, pose: &[f64]) -> Result<Tcp, String> {
     let (place, turn) = pose.split_at(3);
     if let Some(far) = place.iter().find(|m| m.abs() > FARTHEST) {

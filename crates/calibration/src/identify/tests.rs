@@ -1,6 +1,6 @@
 use super::check::{self, Remark};
 use super::curves::{Curves, STEP_S};
-use super::fixtures::made;
+use super::fixtures::synthetic;
 use super::frame::Frame;
 use super::log::{Ended, Log, LogSample, Run};
 use super::touch::{bias, touch};
@@ -26,14 +26,14 @@ fn said(log: Log) -> Vec<Remark> {
 }
 
 fn said_of(change: impl FnMut((usize, &mut LogSample))) -> String {
-    let mut log = made(0.5, 1.0);
+    let mut log = synthetic(0.5, 1.0);
     log.samples.iter_mut().enumerate().for_each(change);
     said(log).iter().map(|remark| format!("{:?} {}\n", remark.lines, remark.text)).collect()
 }
 
 #[test]
 fn a_log_reads_back_as_it_was_written() {
-    let text = made(0.5, 1.0).csv();
+    let text = synthetic(0.5, 1.0).csv();
     let log = read::parse(&text, "a.csv", None).unwrap();
     assert_eq!(log.csv(), text);
     let spread = text.replace(',', " , ").replace('\n', "\r\n");
@@ -74,7 +74,7 @@ fn rtde(log: &Log, blank: &str) -> String {
 
 #[test]
 fn both_formats_give_the_same_log() {
-    let log = made(0.5, 0.0);
+    let log = synthetic(0.5, 0.0);
     let frame = Frame::parse(&format!("{FRAME}force_sign = -1"), "frame.toml").unwrap();
     for blank in [" ", ","] {
         let found = read::parse(&rtde(&log, blank), "a.csv", Some(&frame)).unwrap();
@@ -99,7 +99,7 @@ fn both_formats_give_the_same_log() {
 
 #[test]
 fn what_cannot_be_read_is_told_with_its_line() {
-    let good = made(0.5, 1.0).csv();
+    let good = synthetic(0.5, 1.0).csv();
     let line = |at: usize| good.lines().nth(at - 1).unwrap().to_owned();
     let changed = |at: usize, to: &str| good.replace(&line(at), to);
     let cell = |at: usize, column: usize, to: &str| {
@@ -109,7 +109,7 @@ fn what_cannot_be_read_is_told_with_its_line() {
         changed(at, &cells.join(","))
     };
     let frame = Frame::parse(FRAME, "frame.toml").unwrap();
-    let ur = rtde(&made(0.5, 0.0), " ");
+    let ur = rtde(&synthetic(0.5, 0.0), " ");
     let scaled = |column: usize, factor: f64| {
         let line = ur.lines().nth(8).unwrap();
         let mut cells: Vec<String> = line.split(' ').map(str::to_owned).collect();
@@ -117,7 +117,7 @@ fn what_cannot_be_read_is_told_with_its_line() {
         ur.replace(line, &cells.join(" "))
     };
     let short: String = good.lines().take(40).map(|line| format!("{line}\n")).collect();
-    let mut metres = made(0.0, 0.0);
+    let mut metres = synthetic(0.0, 0.0);
     metres.samples.iter_mut().for_each(|sample| sample.position *= MM);
     for (text, words) in [
         (cell(9, 7, "nan"), "a.csv: line 9: fz_n: `nan` is not a finite number"),
@@ -157,13 +157,13 @@ fn what_cannot_be_read_is_told_with_its_line() {
 #[test]
 fn the_touch_is_found_in_noise_and_drift() {
     for (noise, drift) in [(0.0, 0.0), (0.5, 1.0), (0.5, -1.0)] {
-        let log = made(noise, drift);
+        let log = synthetic(noise, drift);
         let at = log.samples[touch(&log).unwrap()].time_s - 7.3;
         assert!(at.abs() < 0.01, "{noise} {drift}: {at}");
         let error = bias(&log) - Vector3::new(0.3, -0.2, 0.8 + drift * 0.15 / 1.2);
         assert!(error.amax() < 0.15, "{error}");
     }
-    assert!(said(made(0.5, 1.0)).is_empty(), "{:?}", said(made(0.5, 1.0)));
+    assert!(said(synthetic(0.5, 1.0)).is_empty(), "{:?}", said(synthetic(0.5, 1.0)));
 }
 
 #[test]
@@ -193,7 +193,7 @@ fn remarks_say_what_is_wrong_and_where() {
 #[test]
 fn a_frame_is_rotated_if_it_looks_so_in_most_logs() {
     let run = |sideways: bool| {
-        let mut log = made(0.5, 1.0);
+        let mut log = synthetic(0.5, 1.0);
         let turn = |sample: &mut LogSample| sample.force = sample.force.zxy();
         log.samples.iter_mut().filter(|_| sideways).for_each(turn);
         let (design, ended) = (Design::infill(20.0, 10.0), Ended::Inserted);
@@ -212,7 +212,7 @@ fn a_frame_is_rotated_if_it_looks_so_in_most_logs() {
 fn a_table_of_runs_names_logs_beside_it() {
     let folder = tempfile::tempdir().unwrap();
     let (path, log) = (folder.path().join("runs.csv"), folder.path().join("a.csv"));
-    std::fs::write(&log, made(0.5, 1.0).csv()).unwrap();
+    std::fs::write(&log, synthetic(0.5, 1.0).csv()).unwrap();
     std::fs::copy(&log, folder.path().join("p.csv")).unwrap();
     let of = |lines: &str| {
         let head = "log,infill_density_percent,infill_direction_deg,offset_mm,outcome";

@@ -1,4 +1,4 @@
-//! Grasp: pads, roofs and the faces they hold.
+//! Checks of the grasp: pads, roofs, and the faces between the pads.
 
 use super::{Case, Problem, interval, mm};
 use crate::hold::{Held, SEAM, find, held};
@@ -55,7 +55,7 @@ fn faces(case: &Case, held: &Held) -> Option<Problem> {
         let (label, by, stated, y) = (["-y", "+y"][i], mm(off.abs()), mm(stated[i]), mm(y));
         let fault = match off > 0.0 {
             true => {
-                format!("is {by} mm off the plug: between the pads it ends with `{name}` at {y} mm")
+                format!("is {by} mm outside `{name}`, which ends at {y} mm between the pads")
             }
             false => format!("lies {by} mm inside `{name}`, which reaches {y} mm"),
         };
@@ -69,7 +69,7 @@ fn faces(case: &Case, held: &Held) -> Option<Problem> {
     (0..2).find_map(side)
 }
 
-/// Checks that the pads touch enough of the plug, also at the slip limit.
+/// Checks that the pads cover enough of the plug, also at the slip limit.
 fn cover(case: &Case, held: &Held) -> Option<Problem> {
     let grip = &case.task.grip;
     let cover = held.cover[0].min(held.cover[1]);
@@ -85,7 +85,7 @@ fn cover(case: &Case, held: &Held) -> Option<Problem> {
     (grip.slip_limit > cover + SEAM).then(|| {
         Problem::new(
             "grip.slip_limit_mm",
-            format!("is {limit} mm, but the pads hold only {met} mm of the plug, which slips out of them before that"),
+            format!("is {limit} mm, but the pads cover only {met} mm of the plug, so that it slips out at a smaller slip"),
             format!("at most {} mm", mm(0.9 * cover)),
         )
     })
@@ -110,7 +110,7 @@ fn roof(case: &Case, held: &Held) -> Option<Problem> {
     Some(Problem::new("grip.shoulder_z_mm", problem, remedy(case)))
 }
 
-/// Returns advice on a grasp that would hold the plug.
+/// Returns a grasp that would hold the plug, as advice.
 fn remedy(case: &Case) -> String {
     match find(&case.plug, LEAST_COVER) {
         Some((shoulder, faces)) => {

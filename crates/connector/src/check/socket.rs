@@ -33,8 +33,8 @@ pub(super) fn walls(case: &Case) -> Vec<Problem> {
     sides.filter_map(|(axis, end)| side(case, axis, end)).collect()
 }
 
-/// Checks one side of the opening: the socket must be solid just outside the middle of the side, and the wall must begin
-/// at the stated edge somewhere along the side. The correct value is measured at the middle.
+/// Checks one side of the opening: the socket must be solid just outside the middle of the side, and the wall must
+/// begin at the stated edge somewhere along the side. The correct value is measured at the middle.
 fn side(case: &Case, axis: usize, end: usize) -> Option<Problem> {
     let opening = case.task.opening;
     let stated = opening[axis][end];

@@ -6,9 +6,9 @@ use super::search::{EFFORTS, Scene};
 use super::{MAX_PLAYS, Mate, MatingError, precise};
 use crate::mesh::Triangle;
 
-/// Finds the direction in which the plug of an assembly can be withdrawn; both parts in the frame of the assembly, m. Among
-/// several directions it selects the one with the largest facing area less interference, and among equal ones that in which
-/// the plug protrudes further.
+/// Finds the direction in which the plug of an assembly can be withdrawn; both parts in the frame of the assembly, m.
+/// Among several directions it selects the one with the largest facing area less interference, and among equal ones
+/// that in which the plug protrudes further.
 ///
 /// # Errors
 /// If a part is empty, or the plug is blocked or loose in every direction.

@@ -25,7 +25,8 @@ use nalgebra::{Isometry3, Unit, Vector3};
 pub use split::plugs;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Limits of the total play of a plug in its seat, m: for connectors, for toys and enlarged models, and for the paper's usb.
+/// Limits of the total play of a plug in its seat, m: for connectors, for toys and enlarged models, and for the paper's
+/// usb.
 const MAX_PLAYS: [f64; 3] = [0.5 * MM, 2.0 * MM, 4.0 * MM];
 
 /// Engagement below which the plug is only caught on an edge, as a share of its length.
@@ -114,11 +115,11 @@ pub fn mates(
         let pairs = symmetry::pairs(&scene);
         let representatives: Vec<_> = pairs.iter().map(|(pair, _)| *pair).collect();
         let seats = search::seats(&scene, &representatives, stop)?;
-        // The tightest fit is preferred: a looser one is used only if there is none, or if the plug is only caught on an
-        // edge.
+        // The tightest fit is preferred: a looser one is used only if there is none, or if the plug is only caught on
+        // an edge.
         for (max_play, seats) in MAX_PLAYS.into_iter().zip(seats) {
             let poses = refine::refined(&scene, &seats, max_play, stop)?;
-            match select::select(&parts, &scene, &poses, (&pairs, max_play)) {
+            match select::select(&parts, &scene, &poses, &pairs, max_play) {
                 Some(found) if found.mates.iter().any(|mate| mate.is_inserted(plug)) => {
                     return Ok(found);
                 }

@@ -11,7 +11,7 @@ use std::sync::atomic::AtomicBool;
 
 /// Largest distance between walls that face each other, as a share of the play.
 pub const REACH: f64 = 0.6;
-/// Interferences that are tried, m.
+/// Tried interferences, m.
 const OVERLAPS: [f64; 10] =
     [0.0, 0.02e-3, 0.05e-3, 0.1e-3, 0.15e-3, 0.2e-3, 0.3e-3, 0.5e-3, 0.8e-3, 1.25e-3];
 /// Interference of faces that touch, m.
@@ -23,11 +23,11 @@ const LEAST_CELL: f64 = 0.01 * MM;
 const MOST_CELLS: f64 = 1e6;
 /// Largest number of moves of the search window.
 const MOST_MOVES: usize = 4;
-/// Largest number of seats that are refined, and the smallest share of the best facing area with which they are.
+/// Largest number of refined seats, and their smallest facing area as a share of the best one.
 const MOST: usize = 24;
 const SHARE: f64 = 0.4;
 
-/// Pose on the maps, refined.
+/// Refined pose of the plug.
 #[derive(Debug, Clone, Default)]
 pub struct Pose {
     /// Index of the direction out of the socket.
@@ -42,16 +42,16 @@ pub struct Pose {
     pub through: bool,
     /// Area of facing walls on the weaker sides, m2.
     pub walls: f64,
-    /// Volume that both parts fill, as an area, m2.
-    pub jam: f64,
+    /// Penalty for the overlapping volume, as an area, m2.
+    pub penalty: f64,
     /// Lift that frees the plug towards its lowest side, m.
     pub depth: f64,
 }
 
 impl Pose {
-    /// Returns the facing area less a penalty for interference, m2.
+    /// Returns the facing area minus the penalty, m2.
     pub fn value(&self) -> f64 {
-        self.walls - self.jam
+        self.walls - self.penalty
     }
 
     fn near(&self, other: &Pose, max_play: f64) -> bool {
@@ -62,7 +62,8 @@ impl Pose {
     }
 }
 
-/// Returns the height of a seated plug, and whether it has gone through: then its tip is at the far side of the socket.
+/// Returns the height of a seated plug, and whether it passes through the socket: then its tip is placed at the far
+/// side.
 fn seated(z: f32, socket: [f64; 2], plug: [f64; 2]) -> (f64, bool) {
     let z = f64::from(z);
     if z + plug[1] < socket[0] {
@@ -140,16 +141,16 @@ pub fn refined(
     Ok(fine)
 }
 
-/// Returns a given pose with its areas, and the distance of the middle of the plug out of that of the socket, m.
+/// Returns a pose with its areas and depth, and the height of the middle of the plug above that of the socket, m.
 pub fn settled_areas(scene: &Scene, pose: Pose, max_play: f64) -> (Pose, f64) {
     let fine = Fine::new(scene, &pose, max_play);
     let [socket, plug] = fine.heights;
     let at = fine.cells(&pose);
-    let [walls, jam] = fine.areas(&fine.faces(), at, pose.z as f32 + LEVEL);
+    let [walls, penalty] = fine.areas(&fine.faces(), at, pose.z as f32 + LEVEL);
     let lowest = f64::from(rest(&fine.upper, &fine.tight, at, NOWHERE));
     let through = seated(lowest.min(pose.z) as f32, socket, plug).1;
     let outside = pose.z + (plug[0] + plug[1] - socket[0] - socket[1]) / 2.0;
-    (fine.measured(Pose { walls, jam, through, ..pose }), outside)
+    (fine.with_depth(Pose { walls, penalty, through, ..pose }), outside)
 }
 
 /// Maps for a first estimate of the pose in a seat.
@@ -183,10 +184,10 @@ impl<'a> Rough<'a> {
             let (shifts, z) = lowest(s, p, seat.shift, FINE as i32 / 2 + 1);
             let cells = middle(&shifts);
             let (z, through) = seated(z, socket, plug);
-            let [walls, jam] = sides.areas(faces, &lower[0], cells, z as f32);
+            let [walls, penalty] = sides.areas(faces, &lower[0], cells, z as f32);
             let shift = cells.map(|cell| f64::from(cell) * step);
             let Seat { out, turn, depth, .. } = *seat;
-            Pose { out, turn, shift, z, through, walls, jam, depth }
+            Pose { out, turn, shift, z, through, walls, penalty, depth }
         });
         poses.max_by(|a, b| a.walls.total_cmp(&b.walls))
     }
@@ -240,7 +241,7 @@ impl Fine {
         pose.shift.map(|v| (v / self.step).round() as i32)
     }
 
-    /// Returns the pose with the amount of interference at which it is best.
+    /// Returns the best of the poses refined with each tried interference.
     fn best(&self, pose: &Pose) -> Option<Pose> {
         let faces = self.faces();
         let mut about = self.cells(pose);
@@ -254,26 +255,26 @@ impl Fine {
             let p = self.lower.eroded([cells - cells / 2; 2]);
             let Some((shift, z)) = self.settled([&s, &p], &faces, about) else { continue };
             let (z, through) = seated(z, self.heights[0], self.heights[1]);
-            let [walls, jam] = self.areas(&faces, shift, z as f32);
+            let [walls, penalty] = self.areas(&faces, shift, z as f32);
             let at = shift.map(|v| f64::from(v) * self.step);
-            let next = Pose { shift: at, z, through, walls, jam, ..*pose };
+            let next = Pose { shift: at, z, through, walls, penalty, ..*pose };
             if best.as_ref().is_none_or(|best| next.value() > best.value()) {
                 about = shift;
                 best = Some(next);
             }
         }
-        best.map(|best| self.measured(best))
+        best.map(|best| self.with_depth(best))
     }
 
     /// Returns the pose with its depth.
-    fn measured(&self, best: Pose) -> Pose {
-        let shift = self.cells(&best);
-        let overlap = self.interference(&best);
+    fn with_depth(&self, pose: Pose) -> Pose {
+        let shift = self.cells(&pose);
+        let overlap = self.interference(&pose);
         let side = ((self.max_play + 2.0 * overlap) / self.step).ceil() as i32;
         let free = (overlap / self.step).ceil() as usize;
         let (s, p) = (self.upper.eroded([free / 2; 2]), self.tight.eroded([free - free / 2; 2]));
-        let depth = lift(&s, &p, shift, best.z, side);
-        Pose { depth, ..best }
+        let depth = lift(&s, &p, shift, pose.z, side);
+        Pose { depth, ..pose }
     }
 
     /// Returns the lowest shift near a shift that has the most facing walls, and its height.
@@ -293,7 +294,7 @@ impl Fine {
             let good = level.iter().zip(&scores).filter(|(_, score)| **score >= 0.99 * most);
             let shift = middle(&good.map(|(shift, _)| *shift).collect::<Vec<_>>());
             found = Some((shift, z));
-            // The best place may lie beyond the shifts tried.
+            // The best shift may lie beyond the tried ones.
             if (0..2).all(|a| (shift[a] - about[a]).abs() < self.radius) {
                 break;
             }

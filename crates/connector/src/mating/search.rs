@@ -127,7 +127,8 @@ pub fn seats(
     Ok(seats)
 }
 
-/// Returns lower bounds of the resting height for each shift of the plug; at `passed`, m, it has gone through the socket.
+/// Returns lower bounds of the resting height for each shift of the plug; at `passed`, m, it has gone through the
+/// socket.
 fn rests(socket: &Coarse, plug: &Coarse, passed: f32) -> HeightMap {
     let extremes = |map: &HeightMap, take: fn(f32, f32) -> f32| {
         map.heights.iter().copied().fold(map.envelope.empty(), take)

@@ -17,23 +17,25 @@ const GUIDED: f64 = 0.25;
 /// Width of the rim about the plug within which the height of the socket is measured, m.
 const RIM: f64 = 2.0 * MM;
 
-/// Selects the mates among poses that are sorted, the best first; `None` if no pose guides the plug.
+/// Selects the mates among poses, the best first; `None` if no pose guides the plug. `pairs` are the searched
+/// directions and rotations, each with the number of equivalent ones.
 pub fn select(
     parts: &Parts,
     scene: &Scene,
     poses: &[Pose],
-    (pairs, max_play): (&[([usize; 2], usize)], f64),
+    pairs: &[([usize; 2], usize)],
+    max_play: f64,
 ) -> Option<MatingResult> {
     let guided = |pose: &&Pose| {
         let [x, y, z] = bounds(&scene.plugs[pose.turn]);
         let size = ((x[1] - x[0]) * (y[1] - y[0])).sqrt();
-        // A plug that sinks in entirely could not be held; a ring on a longer post can.
+        // A plug that sinks in entirely could not be grasped; a ring on a longer post can.
         let held = pose.depth < z[1] - z[0] || z[1] + pose.z > beside(scene, pose, [x, y]);
         pose.depth >= LEAST && held && pose.walls >= LEAST * GUIDED * size
     };
     let poses: Vec<_> = poses.iter().filter(guided).collect();
     let best = poses.first()?;
-    let number = |pose: &Pose| {
+    let equivalent = |pose: &Pose| {
         let pair = pairs.iter().find(|(pair, _)| *pair == [pose.out, pose.turn]);
         pair.map_or(1, |(_, count)| *count)
     };
@@ -42,7 +44,8 @@ pub fn select(
         (pose.depth - best.depth).abs() < SAME && pose.walls > SIMILAR * best.walls
     });
     let mate = |pose: &Pose| precise::mate(parts, scene, pose, max_play);
-    let copies = if others.is_empty() { equal.iter().map(|pose| number(pose)).sum() } else { 1 };
+    let copies =
+        if others.is_empty() { equal.iter().map(|pose| equivalent(pose)).sum() } else { 1 };
     let mates = [*best].into_iter().chain(others.into_iter().copied()).map(mate).collect();
     Some(MatingResult { mates, copies })
 }

@@ -1,5 +1,5 @@
-//! Separation of an assembly into plug and socket: the plug is the set of bodies that can be withdrawn together along an axis
-//! between facing walls of the others, and that touches the others least.
+//! Separation of an assembly into plug and socket: the plug is the set of bodies that can be withdrawn together along
+//! an axis between facing walls of the others, and that touches the others least.
 
 use super::engagement::{SIDES, WallAreas, score};
 use super::frame::{Part, rotations_to_z, turned};
@@ -160,7 +160,8 @@ impl Axis {
         Axis { step, upper, lower, bounds, contact, walls: BTreeMap::new() }
     }
 
-    /// Returns the sets of bodies that can be withdrawn upward, at the tightest fit and the least interference that allow any.
+    /// Returns the sets of bodies that can be withdrawn upward, at the tightest fit and the least interference that
+    /// allow any.
     fn leaving(&mut self) -> Vec<Leaving> {
         for max_play in MAX_PLAYS {
             self.face(REACH * max_play);
@@ -285,8 +286,8 @@ fn closure(mut set: Set, above: &[Set]) -> Set {
     set
 }
 
-/// Returns the areas of the walls of a body, by their side, that face a wall of another within a reach, m2; each body is given
-/// by its lower and upper envelope.
+/// Returns the areas of the walls of a body, by their side, that face a wall of another within a reach, m2; each body
+/// is given by its lower and upper envelope.
 fn walls([lower, upper]: [&HeightMap; 2], other: [&HeightMap; 2], reach: f64) -> WallAreas {
     let reach = (reach / lower.step[0]).ceil() as i32;
     let heights = |[lower, upper]: [&HeightMap; 2], x: i32, y: i32| {

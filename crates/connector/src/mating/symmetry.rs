@@ -13,8 +13,8 @@ const SAME: f32 = 0.05e-3;
 /// Number of cells of which one may differ.
 const RARE: usize = 1000;
 
-/// Returns a representative of each class of equivalent pairs of a direction out of the socket and a rotation of the plug,
-/// and the size of the class.
+/// Returns a representative of each class of equivalent pairs of a direction out of the socket and a rotation of the
+/// plug, and the size of the class.
 pub fn pairs(scene: &Scene) -> Vec<([usize; 2], usize)> {
     let (turns, count) = (turns(), turns().len());
     let step = 2.0 * scene.step;

@@ -15,7 +15,7 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// Returns its length, m.
+    /// Returns the length of the unit, m.
     pub fn metres(self) -> f64 {
         match self {
             Unit::Mm => MM,
@@ -59,7 +59,7 @@ pub enum Jaws {
     Z,
 }
 
-/// Returns the name of a value on the command line.
+/// Returns the name of an option's value on the command line.
 pub fn value(of: impl ValueEnum) -> String {
     of.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned())
 }

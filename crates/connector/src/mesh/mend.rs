@@ -1,5 +1,5 @@
-//! Gaps of a surface, closed: files have corners that miss one another by rounding, and corners in the
-//! middle of a neighbour's edge.
+//! Closing of gaps in a surface: in files, common corners can differ by rounding, and a corner can lie in the middle
+//! of a neighbour's edge.
 
 use input::units::MM;
 use nalgebra::Point3;
@@ -7,16 +7,16 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Widest gap that is closed, m.
 pub const GAP: f64 = 0.1 * MM;
-/// Largest number of corners on open edges, all pairs of which are compared.
-const MOST: usize = 4000;
-/// Largest number of rounds in which edges are split, and so of corners that lie on one edge.
+/// Largest number of corners on open edges; all pairs of them are compared.
+const MOST_CORNERS: usize = 4000;
+/// Largest number of passes that split edges, and therefore of corners on one edge.
 const ROUNDS: usize = 16;
 
-/// Joins corners of open edges that are near to one another, and splits open edges at corners near to
-/// them. Returns whether any edge was open.
+/// Joins corners of open edges that are close together, and splits open edges at corners close to them. Returns whether
+/// any edge was open.
 pub fn mend(points: &[Point3<f64>], faces: &mut Vec<[usize; 3]>) -> bool {
-    let corners: BTreeSet<usize> = open(faces).into_keys().flatten().collect();
-    if corners.is_empty() || corners.len() > MOST {
+    let corners: BTreeSet<usize> = open_edges(faces).into_keys().flatten().collect();
+    if corners.is_empty() || corners.len() > MOST_CORNERS {
         return false;
     }
     let mut kept: Vec<usize> = Vec::new();
@@ -36,11 +36,11 @@ pub fn mend(points: &[Point3<f64>], faces: &mut Vec<[usize; 3]>) -> bool {
     let solid = |[a, b, c]: &[usize; 3]| a != b && b != c && c != a;
     faces.retain(solid);
     for _ in 0..ROUNDS {
-        let open = open(faces);
+        let open = open_edges(faces);
         let corners: BTreeSet<usize> = open.keys().flatten().copied().collect();
         let mut changed = BTreeSet::new();
         for (edge, face) in open {
-            let near = corners.iter().filter_map(|&c| Some((beside(points, edge, c)?, c)));
+            let near = corners.iter().filter_map(|&c| Some((edge_distance(points, edge, c)?, c)));
             let Some((_, corner)) = near.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
             if changed.insert(face) {
                 let whole = faces[face];
@@ -57,8 +57,8 @@ pub fn mend(points: &[Point3<f64>], faces: &mut Vec<[usize; 3]>) -> bool {
     true
 }
 
-/// Edges with an odd number of faces, each with its last face.
-fn open(faces: &[[usize; 3]]) -> BTreeMap<[usize; 2], usize> {
+/// Returns the open edges, those with an odd number of faces, each with the last of its faces.
+fn open_edges(faces: &[[usize; 3]]) -> BTreeMap<[usize; 2], usize> {
     let mut edges: BTreeMap<[usize; 2], (usize, usize)> = BTreeMap::new();
     for (number, face) in faces.iter().enumerate() {
         for i in 0..3 {
@@ -72,7 +72,7 @@ fn open(faces: &[[usize; 3]]) -> BTreeMap<[usize; 2], usize> {
 }
 
 /// Returns the distance of a corner from an edge, m, if it is close to the edge and between its ends.
-fn beside(points: &[Point3<f64>], [a, b]: [usize; 2], corner: usize) -> Option<f64> {
+fn edge_distance(points: &[Point3<f64>], [a, b]: [usize; 2], corner: usize) -> Option<f64> {
     if corner == a || corner == b {
         return None;
     }

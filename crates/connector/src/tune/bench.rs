@@ -51,10 +51,9 @@ pub struct Measured {
 /// Result of a strategy.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tried {
-    /// The strategy, its start where it was taught.
+    /// The strategy, with its taught start.
     pub strategy: Strategy,
-    /// Windows of the soft, the medium and the stiff finger; of none where the medium one
-    /// inserts from no start.
+    /// Windows of the soft, the medium and the stiff finger; empty if the medium one inserts from no start.
     pub windows: Vec<Window>,
     /// Largest force of their insertions, N.
     pub force_n: f64,
@@ -63,7 +62,7 @@ pub struct Tried {
     pub score: f64,
     /// Trial of the medium finger with the largest margin, if all starts fail.
     pub nearest: Option<Box<Trial>>,
-    /// Windows that were measured for this.
+    /// Number of windows measured.
     pub cost: usize,
 }
 
@@ -96,7 +95,7 @@ impl<'a> Bench<'a> {
         Some(Bench { task, robot, engine, fingers, others, limits, stop })
     }
 
-    /// Returns whether it was stopped; what was measured last is then invalid.
+    /// Returns whether tuning was stopped; the last result is then invalid.
     pub(super) fn stopped(&self) -> bool {
         self.stop.load(Ordering::SeqCst)
     }
@@ -144,8 +143,7 @@ impl<'a> Bench<'a> {
         match teach(&*rig, &medium, self.stop) {
             Ok(taught) => {
                 strategy.start[1] += offset(taught.shift);
-                let others = self.windows(&strategy, &[soft, stiff], Conditions::NOMINAL)?;
-                let mut found = others;
+                let mut found = self.windows(&strategy, &[soft, stiff], Conditions::NOMINAL)?;
                 let (window, force_n) = (taught.window, taught.peak_force_n);
                 found.insert(1, Measured { window, margin: 0.0, force_n });
                 Ok(self.tried(strategy, found))
@@ -162,18 +160,18 @@ impl<'a> Bench<'a> {
 
     /// Returns a strategy and, if its force is above the limit, the same with a slower push: the force grows about
     /// with the speed.
-    pub fn with_slower_push(&self, what: String, tried: Tried) -> Vec<(String, Tried)> {
+    pub fn with_slower_push(&self, change: String, tried: Tried) -> Vec<(String, Tried)> {
         let limit = self.limits.force.unwrap_or(f64::INFINITY);
-        let mut all = vec![(what, tried)];
-        let (what, tried) = &all[0];
+        let mut all = vec![(change, tried)];
+        let (change, tried) = &all[0];
         let mut strategy = tried.strategy.clone();
         let Some(push) = strategy.phases.last_mut().filter(|_| tried.force_n > limit) else {
             return all;
         };
         push.speed = (push.speed * SLOWER * limit / tried.force_n / MM).floor() * MM;
-        let what = format!("{what}, push slowed to {:.0} mm/s", push.speed / MM);
+        let change = format!("{change}, push slowed to {:.0} mm/s", push.speed / MM);
         if push.speed > 0.0 {
-            all.extend(self.taught(&strategy).ok().map(|tried| (what, tried)));
+            all.extend(self.taught(&strategy).ok().map(|tried| (change, tried)));
         }
         all
     }
@@ -185,7 +183,7 @@ impl<'a> Bench<'a> {
         let windows: Vec<_> = found.into_iter().map(|found| found.window).collect();
         let least = windows.iter().map(Window::range_mm).fold(f64::INFINITY, f64::min);
         let score = match self.limits.force {
-            // A nominal start that fails by nothing is no success.
+            // A nominal start that fails with a margin of 0 is not a success, either.
             _ if !inserts => worst - f64::EPSILON,
             Some(limit) if force_n > limit => 1.0 - force_n / limit,
             _ => least,

@@ -1,7 +1,7 @@
 //! Search for a strategy that inserts with a soft, a medium and a stiff finger.
 
 mod bench;
-mod knobs;
+mod variables;
 
 pub use bench::{Bench, ENOUGH_MM, Measured, Tried};
 
@@ -21,26 +21,26 @@ use std::ops::Range;
 
 /// Largest number of windows that are measured.
 pub const MOST_WINDOWS: usize = 150;
-/// Candidates that are proposed at a time: a number of its own, so that threads decide nothing.
+/// Number of candidates proposed at a time; fixed, so that results do not depend on the number of threads.
 const BATCH: usize = 4;
-/// Windows of a candidate.
+/// Number of windows measured for a candidate: one for each finger.
 const EACH: usize = 3;
-/// Turn of the socket that is checked, degrees, and factors on its friction.
+/// Turn of the socket, degrees, and factors on its friction under which the recommended strategy is checked.
 pub const YAW_DEG: f64 = 1.0;
 const FRICTION: [f64; 2] = [0.8, 1.2];
-/// Changes that are checked, no change among them, and those of them that turn the socket.
+/// Number of checked changes, including the unchanged setup, and the indices of those that turn the socket.
 const CHANGES: usize = 5;
 const TURNED: Range<usize> = 1..3;
-/// Most strategies that are checked with a turned socket and one finger, and those of one tilt that may keep
-/// nothing there before the others of that tilt are passed over: neighbours in a search fail alike.
+/// Largest number of strategies checked with a turned socket and one finger, and number of failures at one tilt after
+/// which other strategies with that tilt are skipped, since similar strategies fail alike.
 const FINALISTS: usize = 12;
-const ALIKE: usize = 2;
+const MOST_FAILED: usize = 2;
 
 /// Stage of tuning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Stage {
-    /// The strategy as the file has it.
+    /// The strategy of the file.
     AsItIs,
     /// A start taught with the medium finger.
     Start,
@@ -55,11 +55,11 @@ pub enum Stage {
 pub struct Step {
     /// The stage that tried it.
     pub stage: Stage,
-    /// Name of the change: `like a key`.
-    pub what: String,
+    /// Change to the strategy: `like a key`.
+    pub change: String,
     /// Result.
     pub tried: Tried,
-    /// Smallest range of another finger with the socket turned in either direction, mm, if that was checked.
+    /// Smallest range of another finger with the socket turned in either direction, mm, if it was checked.
     pub turned_mm: Option<f64>,
 }
 
@@ -76,13 +76,13 @@ pub struct Robustness {
 /// A tuned strategy.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tuned {
-    /// All that was tried, in its order; the first is the strategy as it was.
+    /// Strategies tried, in order; the first is the unchanged one.
     pub steps: Vec<Step>,
     /// Index of the recommended step.
     pub best: usize,
-    /// Ranges of other fingers under changes; empty unless requested.
-    pub kept: Vec<Robustness>,
-    /// Windows measured for all this.
+    /// Ranges of other fingers under changes; empty unless checked.
+    pub robustness: Vec<Robustness>,
+    /// Number of windows measured.
     pub windows: usize,
 }
 
@@ -90,28 +90,27 @@ pub struct Tuned {
 pub struct Effort<'a> {
     /// The last stage.
     pub last: Stage,
-    /// Whether to stop after the first stage that is enough.
+    /// Whether to stop after the first stage with a sufficient window ([`ENOUGH_MM`]).
     pub until_enough: bool,
     /// Seed of the search.
     pub seed: u64,
-    /// Progress callback: what was tried, its windows, windows measured so far, and their maximum.
-    pub tell: &'a (dyn Fn(&str, usize, usize, usize) + Sync),
+    /// Progress callback: the change tried, its number of windows, windows measured so far, and their maximum.
+    pub progress: &'a (dyn Fn(&str, usize, usize, usize) + Sync),
 }
 
 /// Tunes the strategy of the bench's task.
 ///
-/// If `bench.stop` is set meanwhile, the result is what was tried until then; nothing else is in `steps`, and `kept` is
-/// empty.
+/// If `bench.stop` is set meanwhile, `steps` contains only the strategies tried before, and `robustness` is empty.
 ///
 /// # Errors
 /// If the task cannot be simulated as it is.
 pub fn tune(bench: &Bench, effort: &Effort) -> Result<Tuned, Impossible> {
-    let mut tuned = Tuned { steps: Vec::new(), best: 0, kept: Vec::new(), windows: 0 };
+    let mut tuned = Tuned { steps: Vec::new(), best: 0, robustness: Vec::new(), windows: 0 };
     let given = bench.given(&bench.task.strategy)?;
     tuned.add(Stage::AsItIs, [("as it is".to_owned(), given)], effort);
     for stage in [Stage::Start, Stage::Families, Stage::Search] {
-        let tried = stage > Stage::Start && effort.until_enough;
-        let enough = tried && tuned.best().tried.is_enough();
+        let can_end = stage > Stage::Start && effort.until_enough;
+        let enough = can_end && tuned.best().tried.is_enough();
         if stage > effort.last || enough || bench.stopped() {
             break;
         }
@@ -146,22 +145,22 @@ impl Tuned {
         tried.map(|tried| tried.force_n).filter(|force| *force > 0.0).min_by(f64::total_cmp)
     }
 
-    /// Adds strategies that were tried. To become the best, one of a later stage must be better by [`INDIFFERENCE_MM`]; any
-    /// improvement is enough within a stage, or if the best one fails.
+    /// Adds strategies that were tried. A strategy of a later stage becomes the best one if its score is larger by
+    /// [`INDIFFERENCE_MM`]; within a stage, or if the best one fails, any improvement is enough.
     fn add(
         &mut self,
         stage: Stage,
         tried: impl IntoIterator<Item = (String, Tried)>,
         effort: &Effort,
     ) {
-        for (what, last) in tried {
+        for (change, last) in tried {
             self.windows += last.cost;
-            (effort.tell)(&what, last.cost, self.windows, MOST_WINDOWS);
+            (effort.progress)(&change, last.cost, self.windows, MOST_WINDOWS);
             let second = self.steps.len() == 1;
             let better = self.steps.get(self.best).is_some_and(|best| {
                 let (own, best) = (best.stage == stage, &best.tried);
                 let margin = if best.inserts() && !own { INDIFFERENCE_MM } else { 0.0 };
-                // A middle is worth more than a start near the end of as wide a window.
+                // A centred start is preferred to one near the end of an equally wide window.
                 let centred = second
                     && last.side_mm() >= best.side_mm() + INDIFFERENCE_MM
                     && last.score >= best.score - INDIFFERENCE_MM;
@@ -170,18 +169,18 @@ impl Tuned {
             if better {
                 self.best = self.steps.len();
             }
-            self.steps.push(Step { stage, what, tried: last, turned_mm: None });
+            self.steps.push(Step { stage, change, tried: last, turned_mm: None });
         }
     }
 
-    /// Tries a taught start and, beside an upright sweep, a tilted tip: about one opening it finds the seat from farther
+    /// Tries a taught start and, if the sweep is upright, also a tilted tip, which finds a single opening from farther
     /// away.
     fn start(&mut self, bench: &Bench, effort: &Effort) -> Result<(), Impossible> {
         let own = &bench.task.strategy;
         let tried = bench.taught(own)?;
-        let what =
+        let change =
             format!("start taught, {:+.1} mm in y", (tried.strategy.start[1] - own.start[1]) / MM);
-        let slowed = bench.with_slower_push(what, tried);
+        let slowed = bench.with_slower_push(change, tried);
         if bench.stopped() {
             return Ok(());
         }
@@ -197,27 +196,25 @@ impl Tuned {
     }
 
     fn families(&mut self, bench: &Bench, effort: &Effort) {
+        let tried = |family: &Family| {
+            let tried = bench.taught(&family.of(bench.task)?).ok()?;
+            Some(bench.with_slower_push(family.name(), tried))
+        };
         let families: Vec<_> = Family::all().collect();
-        let tried: Vec<Option<Vec<_>>> = families
-            .par_iter()
-            .map(|family| {
-                let tried = bench.taught(&family.of(bench.task)?).ok()?;
-                Some(bench.with_slower_push(family.name(), tried))
-            })
-            .collect();
+        let tried: Vec<_> = families.par_iter().filter_map(tried).collect();
         if !bench.stopped() {
-            self.add(Stage::Families, tried.into_iter().flatten().flatten(), effort);
+            self.add(Stage::Families, tried.into_iter().flatten(), effort);
         }
     }
 
     fn search(&mut self, bench: &Bench, effort: &Effort) -> Result<(), InputError> {
         let from = self.best().tried.strategy.clone();
         let task = Task { strategy: from, limits: bench.limits, ..bench.task.clone() };
-        let knobs = knobs::knobs(&task.strategy)?;
-        let grid = Grid::new(vec![knobs::LEVELS; knobs.len()]);
+        let free = variables::variables(&task.strategy)?;
+        let grid = Grid::new(vec![variables::LEVELS; free.len()]);
         let mut optimizer = ask_tell::build(OptimizerKind::Gp, grid.clone(), effort.seed);
         let limit = MOST_WINDOWS - Self::CHECKS - EACH;
-        let middle = grid.snap(&vec![0.5; knobs.len()]);
+        let middle = grid.snap(&vec![0.5; free.len()]);
         optimizer.tell(&[Observation::new(middle, Some(self.best().tried.score))]);
         while self.windows + BATCH * EACH <= limit {
             let points = optimizer.ask(BATCH);
@@ -227,8 +224,9 @@ impl Tuned {
             let tried: Vec<_> = points
                 .par_iter()
                 .map(|point| {
-                    let (strategy, what) = knobs::turned(&task, &knobs, &grid.unit(point));
-                    (what, bench.taught(&strategy).ok())
+                    let (strategy, change) =
+                        variables::strategy_at(&task, &free, &grid.unit(point));
+                    (change, bench.taught(&strategy).ok())
                 })
                 .collect();
             if bench.stopped() {
@@ -241,14 +239,14 @@ impl Tuned {
                 .map(|(point, (_, tried))| Observation::new(point, score(tried)))
                 .collect();
             optimizer.tell(&told);
-            let tried = tried.into_iter().filter_map(|(what, tried)| Some((what, tried?)));
+            let tried = tried.into_iter().filter_map(|(change, tried)| Some((change, tried?)));
             self.add(Stage::Search, tried, effort);
         }
         Ok(())
     }
 
-    /// Windows of the check.
-    const CHECKS: usize = CHANGES * EACH + TURNED.end * FINALISTS - TURNED.start * FINALISTS;
+    /// Largest number of windows measured by [`Tuned::check`].
+    const CHECKS: usize = CHANGES * EACH + (TURNED.end - TURNED.start) * FINALISTS;
 
     /// Recommends the strategy with the widest range under a turned socket, and measures it under all changes.
     fn check(&mut self, bench: &Bench) -> Result<(), Impossible> {
@@ -256,27 +254,28 @@ impl Tuned {
         let mut order: Vec<_> = (0..self.steps.len()).filter(inserts).collect();
         let score: Vec<_> = self.steps.iter().map(|step| step.tried.score).collect();
         order.sort_by(|&a, &b| score[b].total_cmp(&score[a]));
-        // First the best that was not searched for: what is no wider when turned does not replace it.
-        let plain = order.iter().position(|&place| self.steps[place].stage < Stage::Search);
-        plain.iter().for_each(|&at| order[..=at].rotate_right(1));
+        // The best strategy of the earlier stages comes first: a searched one replaces it only if its range under a
+        // turned socket is larger.
+        let earlier = order.iter().position(|&place| self.steps[place].stage < Stage::Search);
+        earlier.iter().for_each(|&at| order[..=at].rotate_right(1));
         let mut most = (self.best, f64::NEG_INFINITY);
         let (mut checked, mut failed) = (0, Vec::new());
         for place in order {
             let strategy = &self.steps[place].tried.strategy;
-            let alike = failed.iter().filter(|&&tilt| tilt == strategy.tilt).count();
+            let with_tilt = failed.iter().filter(|&&tilt| tilt == strategy.tilt).count();
             if checked == FINALISTS || score[place] <= most.1 + INDIFFERENCE_MM {
                 break;
             }
-            if alike == ALIKE {
+            if with_tilt == MOST_FAILED {
                 continue;
             }
             checked += 1;
-            let kept = self.kept(bench, strategy, &bench.others[1..2], TURNED)?;
+            let turned = robustness(bench, strategy, &bench.others[1..2], TURNED)?;
             if bench.stopped() {
                 return Ok(());
             }
-            self.windows += kept.len();
-            let turned = kept.iter().map(|kept| kept.least_range_mm).fold(f64::INFINITY, f64::min);
+            self.windows += turned.len();
+            let turned = turned.iter().map(|one| one.least_range_mm).fold(f64::INFINITY, f64::min);
             if turned <= 0.0 {
                 failed.push(strategy.tilt);
             }
@@ -287,51 +286,23 @@ impl Tuned {
             }
         }
         self.best = most.0;
-        let kept = self.kept(bench, &self.best().tried.strategy, &bench.others, 0..CHANGES)?;
+        let kept = robustness(bench, &self.best().tried.strategy, &bench.others, 0..CHANGES)?;
         if !bench.stopped() {
             self.windows += kept.len() * bench.others.len();
-            self.kept = kept;
+            self.robustness = kept;
         }
         Ok(())
     }
 
-    /// Measures the smallest range of fingers under turned sockets and other friction.
-    fn kept(
-        &self,
-        bench: &Bench,
-        strategy: &Strategy,
-        fingers: &[Finger],
-        which: Range<usize>,
-    ) -> Result<Vec<Robustness>, Impossible> {
-        let nominal = Conditions::NOMINAL;
-        let yaw = |degrees: f64| Conditions { yaw: degrees * DEG, ..nominal };
-        let friction = |factor| Conditions { friction_socket: factor, ..nominal };
-        let [less, more] = FRICTION;
-        let changes: [_; CHANGES] = [
-            ("none".to_owned(), nominal),
-            (format!("socket turned by {YAW_DEG}°"), yaw(YAW_DEG)),
-            (format!("socket turned by -{YAW_DEG}°"), yaw(-YAW_DEG)),
-            (format!("friction plug-socket times {less}"), friction(less)),
-            (format!("friction plug-socket times {more}"), friction(more)),
-        ];
-        let under = |(change, conditions): &(String, Conditions)| {
-            let windows = bench.windows(strategy, fingers, *conditions)?;
-            let ranges = windows.iter().map(|found| found.window.range_mm());
-            let least_range_mm = ranges.fold(f64::INFINITY, f64::min);
-            Ok(Robustness { change: change.clone(), least_range_mm })
-        };
-        changes[which].par_iter().map(under).collect()
-    }
-
-    /// Returns where the start that failed least clearly came to its end, of strategies without any that
-    /// inserts.
+    /// Returns the end of the trial with the largest margin among the strategies of which no start inserts; `None` if
+    /// there are none.
     pub fn nearest(&self, task: &Task) -> Option<Stopped> {
         let failed = self.steps.iter().filter_map(|step| step.tried.nearest.as_ref());
         let trial = failed.max_by(|a, b| a.margin.total_cmp(&b.margin))?;
         let phase = trial.phases.last()?;
         let strongest =
             phase.contacts.iter().max_by(|a, b| a.force.norm().total_cmp(&b.force.norm()));
-        let met = strongest.map(|contact| {
+        let parts = strongest.map(|contact| {
             let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
             let here = phase.poses.plug.inverse() * contact.point;
             let name = |body: &ConvexBody, point| {
@@ -345,15 +316,42 @@ impl Tuned {
             phase: phase.name.clone(),
             depth_mm: trial.depth_mm,
             tilt_deg: trial.tilt_deg,
-            met,
+            parts,
         })
     }
 }
 
-/// Distance within which a part is at a contact point, m.
+/// Measures the smallest range of fingers under each of a range of changes.
+fn robustness(
+    bench: &Bench,
+    strategy: &Strategy,
+    fingers: &[Finger],
+    which: Range<usize>,
+) -> Result<Vec<Robustness>, Impossible> {
+    let nominal = Conditions::NOMINAL;
+    let yaw = |degrees: f64| Conditions { yaw: degrees * DEG, ..nominal };
+    let friction = |factor| Conditions { friction_socket: factor, ..nominal };
+    let [less, more] = FRICTION;
+    let changes: [_; CHANGES] = [
+        ("none".to_owned(), nominal),
+        (format!("socket turned by {YAW_DEG}°"), yaw(YAW_DEG)),
+        (format!("socket turned by -{YAW_DEG}°"), yaw(-YAW_DEG)),
+        (format!("friction plug-socket times {less}"), friction(less)),
+        (format!("friction plug-socket times {more}"), friction(more)),
+    ];
+    let under = |(change, conditions): &(String, Conditions)| {
+        let windows = bench.windows(strategy, fingers, *conditions)?;
+        let ranges = windows.iter().map(|found| found.window.range_mm());
+        let least_range_mm = ranges.fold(f64::INFINITY, f64::min);
+        Ok(Robustness { change: change.clone(), least_range_mm })
+    };
+    changes[which].par_iter().map(under).collect()
+}
+
+/// Largest distance of a part from a contact point on it, m.
 const TOUCHING: f64 = 0.05 * MM;
 
-/// End of the trial with the largest margin, if all failed.
+/// End of a failed trial.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Stopped {
     /// Kind of failure.
@@ -366,5 +364,5 @@ pub struct Stopped {
     pub tilt_deg: f64,
     /// The parts of plug and socket between which the largest force acts.
     #[serde(rename = "plug_and_socket_part")]
-    pub met: Option<[String; 2]>,
+    pub parts: Option<[String; 2]>,
 }

@@ -12,20 +12,27 @@ use std::path::Path;
 use study::{CELL, FINGER, Provenance, StudyRecord, input_path, sha256_hex};
 
 /// Inputs of a study as command arguments: shipped ones by name, others by their copies in `dir`.
-struct Named<'a> {
+struct InputArguments<'a> {
     record: &'a StudyRecord,
     dir: &'a Path,
 }
 
-impl Named<'_> {
+impl InputArguments<'_> {
     fn provenance(&self) -> &Provenance {
         let StudyRecord { config, segments, .. } = self.record;
         segments.last().map_or(&config.provenance, |last| &last.provenance)
     }
 
+    /// Returns the name of the shipped file that is identical to an input.
+    fn shipped(&self, role: &str, shipped: &[Shipped]) -> Option<&'static str> {
+        let hash = self.provenance().input_sha256.get(role)?;
+        let same = |file: &&Shipped| sha256_hex(file.text.as_bytes()) == *hash;
+        shipped.iter().find(same).map(|file| file.name)
+    }
+
     fn input(&self, role: &str, shipped: &[Shipped]) -> String {
         let segment = self.record.segments.len().max(1);
-        match name(self.provenance(), role, shipped) {
+        match self.shipped(role, shipped) {
             Some(name) => name.to_owned(),
             None => input_path(self.dir, segment, role).display().to_string(),
         }
@@ -37,11 +44,10 @@ impl Named<'_> {
         tasks.collect::<Vec<_>>().join(",")
     }
 
-    /// Returns the user's own file of the task at `place`; a task passed as text from Python has none.
+    /// Returns the user's own file of the task at `place`; `None` if it was passed as text from Python.
     fn own_file(&self, place: usize) -> Option<&String> {
-        let role = format!("task_{}", place + 1);
+        let own = self.shipped(&format!("task_{}", place + 1), TASKS).is_none();
         let files = &self.record.config.conclusion.task_files;
-        let own = name(self.provenance(), &role, TASKS).is_none();
         files.get(place).filter(|file| own && file.ends_with(".toml"))
     }
 }
@@ -51,25 +57,25 @@ const PRINTS: usize = 3;
 
 /// Returns the next step as a complete command, and its purpose; `dir` is the study's folder.
 pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
-    let named = Named { record: answer.record, dir };
+    let inputs = InputArguments { record: answer.record, dir };
     let several = answer.record.config.several_tasks();
     // Measurements belong to the user's file, not to its copy.
-    let task = named.own_file(0).cloned().unwrap_or_else(|| named.input("task_1", TASKS));
+    let task = inputs.own_file(0).cloned().unwrap_or_else(|| inputs.input("task_1", TASKS));
     match (&answer.verdict, &answer.trust) {
-        (Verdict::NothingInserts { place, .. }, _) => mend(answer.record, dir, *place),
+        (Verdict::NothingInserts { place, .. }, _) => repair(answer.record, dir, *place),
         (Verdict::NoneFeasible, _) => (
             format!("optimize report {}", dir.display()),
             "see by how much each design violates the constraints",
         ),
-        (_, Trust::Calibrated { .. }) | (_, Trust::Published { .. }) if !several => {
+        (_, Trust::Calibrated { .. } | Trust::Published { .. }) if !several => {
             let given = answer.record.config.conclusion.measurements.clone();
             let shipped = match answer.record.on_bench {
                 None => Some(MEASUREMENTS[0].name),
-                Some(_) => name(named.provenance(), "measurements", MEASUREMENTS),
+                Some(_) => inputs.shipped("measurements", MEASUREMENTS),
             };
             let file = shipped.map(str::to_owned).or(given);
-            let file = file.unwrap_or_else(|| named.input("measurements", MEASUREMENTS));
-            let asked = format!("--task {task} --measurements {file} --count {PRINTS}");
+            let file = file.unwrap_or_else(|| inputs.input("measurements", MEASUREMENTS));
+            let options = format!("--task {task} --measurements {file} --count {PRINTS}");
             let why = match (&answer.verdict, &answer.record.on_bench) {
                 (Verdict::MeasuredBefore { .. }, _) => {
                     "check whether printing another finger is worth it"
@@ -77,46 +83,47 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
                 (_, Some(_)) => "choose the prints with the largest expected gain",
                 (_, None) => "choose the first prints from measurements as well",
             };
-            (format!("optimize next {asked}"), why)
+            (format!("optimize next {options}"), why)
         }
         _ => {
             let task = if several { String::new() } else { format!(" --task {task}") };
-            (format!("optimize measure add bench.csv{task}"), "enter what your robot measured")
+            (
+                format!("optimize measure add bench.csv{task}"),
+                "enter the measurements of your robot",
+            )
         }
     }
 }
 
 /// Returns the command for a task whose nominal start fails, and its purpose; `place` is the index
 /// of the task. A user's own file is tuned in place.
-pub fn mend(record: &StudyRecord, dir: &Path, place: usize) -> (String, &'static str) {
-    let (named, role) = (Named { record, dir }, format!("task_{}", place + 1));
-    if let Some(shipped) = name(named.provenance(), &role, TASKS) {
+pub fn repair(record: &StudyRecord, dir: &Path, place: usize) -> (String, &'static str) {
+    let (inputs, role) = (InputArguments { record, dir }, format!("task_{}", place + 1));
+    if let Some(shipped) = inputs.shipped(&role, TASKS) {
         return (format!("optimize task check {shipped}"), "find out why nothing inserts");
     }
-    let file = named.own_file(place).cloned().unwrap_or_else(|| {
-        format!("{} --out {}.toml", named.input(&role, TASKS), record.config.tasks[place])
+    let file = inputs.own_file(place).cloned().unwrap_or_else(|| {
+        format!("{} --out {}.toml", inputs.input(&role, TASKS), record.config.tasks[place])
     });
     (format!("optimize task tune {file}"), "find a start and a strategy that insert")
 }
 
-/// Returns whether the first task of a study is a user's own, not a shipped one.
+/// Returns whether the first task of a study is not a shipped one.
 pub fn own_task(record: &StudyRecord) -> bool {
-    let named = Named { record, dir: Path::new("") };
-    name(named.provenance(), "task_1", TASKS).is_none()
+    InputArguments { record, dir: Path::new("") }.shipped("task_1", TASKS).is_none()
 }
 
 /// Returns the command that runs a study again from its folder, one option per element.
-pub fn again(record: &StudyRecord) -> Vec<String> {
+pub fn rerun(record: &StudyRecord) -> Vec<String> {
     let config = &record.config;
-    let named = Named { record, dir: Path::new("") };
-    let mut words = vec!["optimize".to_owned(), format!("--task {}", named.tasks())];
-    words.extend(setup(&named));
-    let named = |role: &str, shipped| named.input(role, shipped);
+    let inputs = InputArguments { record, dir: Path::new("") };
+    let mut words = vec!["optimize".to_owned(), format!("--task {}", inputs.tasks())];
+    words.extend(setup(&inputs));
     words.push(format!("--optimizer {}", config.optimizer));
     words.push(format!("--objective {}", config.objective));
     words.extend(config.constraints.iter().map(|limit| format!("--constraint '{limit}'")));
     if config.uncertainty.is_some() {
-        words.push(format!("--uncertainty {}", named("uncertainty", UNCERTAINTIES)));
+        words.push(format!("--uncertainty {}", inputs.input("uncertainty", UNCERTAINTIES)));
     }
     words.extend(config.aggregate.as_ref().map(aggregate));
     if config.indifference_mm != INDIFFERENCE_MM {
@@ -139,44 +146,37 @@ pub fn again(record: &StudyRecord) -> Vec<String> {
 /// Returns the command of a trial of the first task, without the design and the offset; `dir` is
 /// the study's folder.
 pub fn trial(record: &StudyRecord, dir: &Path) -> String {
-    let named = Named { record, dir };
+    let inputs = InputArguments { record, dir };
     let mut words =
-        vec!["optimize trial".to_owned(), format!("--task {}", named.input("task_1", TASKS))];
-    words.extend(setup(&named).into_iter().filter(|word| !USUAL.contains(&word.as_str())));
+        vec!["optimize trial".to_owned(), format!("--task {}", inputs.input("task_1", TASKS))];
+    words.extend(setup(&inputs).into_iter().filter(|word| !DEFAULTS.contains(&word.as_str())));
     words.join(" ")
 }
 
 /// Default options of a trial, which are omitted.
-const USUAL: [&str; 2] = ["--space infill", "--robot servo"];
+const DEFAULTS: [&str; 2] = ["--space infill", "--robot servo"];
 
 /// Returns the options from the space to the engine.
-fn setup(named: &Named) -> Vec<String> {
-    let provenance = named.provenance();
+fn setup(inputs: &InputArguments) -> Vec<String> {
+    let provenance = inputs.provenance();
     // A cell includes its robot.
     let robot = match provenance.input_sha256.contains_key(CELL) {
-        true => format!("--cell {}", named.input(CELL, &[])),
-        false => format!("--robot {}", named.input("robot", ROBOTS)),
+        true => format!("--cell {}", inputs.input(CELL, &[])),
+        false => format!("--robot {}", inputs.input("robot", ROBOTS)),
     };
-    let mut words = vec![format!("--space {}", named.input("space", SPACES)), robot];
-    if name(provenance, "stiffness", STIFFNESS).is_none() {
-        words.push(format!("--stiffness-data {}", named.input("stiffness", &[])));
+    let mut words = vec![format!("--space {}", inputs.input("space", SPACES)), robot];
+    if inputs.shipped("stiffness", STIFFNESS).is_none() {
+        words.push(format!("--stiffness-data {}", inputs.input("stiffness", &[])));
     }
-    words.push(format!("--finger-model {}", named.record.config.finger_model.name()));
+    words.push(format!("--finger-model {}", inputs.record.config.finger_model.name()));
     if provenance.input_sha256.contains_key(FINGER) {
-        words.push(format!("--finger {}", named.input(FINGER, FINGERS)));
+        words.push(format!("--finger {}", inputs.input(FINGER, FINGERS)));
     }
     let engine = &provenance.engine.name;
     if engine != EngineKind::Direct.name() {
         words.push(format!("--engine {engine}"));
     }
     words
-}
-
-/// Returns the name of the shipped file that is identical to an input.
-fn name(provenance: &Provenance, role: &str, shipped: &[Shipped]) -> Option<&'static str> {
-    let hash = provenance.input_sha256.get(role)?;
-    let own = |one: &&Shipped| sha256_hex(one.text.as_bytes()) == *hash;
-    shipped.iter().find(own).map(|one| one.name)
 }
 
 fn aggregate(aggregate: &Aggregate) -> String {

@@ -1,9 +1,9 @@
-//! An answer line by line, each a name and a text, for terminal and page alike.
+//! Lines of an answer, each with a name and a text, for the terminal and the page.
 
 use super::words::{self, ends_mm, evaluated, interval, mm, span};
 use super::{Answer, Front, OnTask, Recommended, Spread, Ties};
 use ask_tell::statistics::mean;
-use calibration::order::Order;
+use calibration::order::RankCorrelation;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::REPEATS;
 use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
@@ -12,14 +12,14 @@ use insertion::surrogate::Prediction;
 use std::iter;
 use study::{BenchPrediction, ByRibs, Recorded, StudyRecord};
 
-/// Name, empty if it continues the line above, and text.
+/// Name and text; the name is empty if the text continues the line above.
 pub type Line = (String, String);
 
 fn line(name: &str, text: impl Into<String>) -> Line {
     (name.to_owned(), text.into())
 }
 
-/// Returns the answer in few lines, to follow headline and expectation.
+/// Returns the short form of the answer, which follows headline and expectation.
 pub fn brief(answer: &Answer) -> Vec<Line> {
     let record = answer.record;
     let mut lines: Vec<Line> = record.on_bench.iter().flat_map(on_bench).collect();
@@ -66,7 +66,8 @@ pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
     found.tasks.iter().flat_map(of_task).chain(limits).chain(why).chain(tied).chain(safe).collect()
 }
 
-/// Returns the best design of the search and its value in the repeats, if it was repeated and another one is recommended.
+/// Returns the best design of the search with its value in the repeats, if it was repeated and another design is
+/// recommended.
 pub fn widest(answer: &Answer, found: &Recommended) -> Option<Line> {
     let (measure, _) = found.objective.filter(|(measure, _)| measure.unit() == "mm")?;
     let named =
@@ -92,7 +93,7 @@ fn members(record: &StudyRecord, front: &Front) -> Vec<Line> {
 /// Number of designs of a front that are printed.
 const MEMBERS: usize = 4;
 
-/// Returns what to correct or to know before the finger is printed.
+/// Returns advice on the start and warnings to read before the finger is printed.
 pub fn caveats(answer: &Answer) -> Vec<Line> {
     let found = simulated_finger(answer);
     let advice = found.and_then(|found| found.start?.advice()).map(|text| line("start", text));
@@ -101,7 +102,7 @@ pub fn caveats(answer: &Answer) -> Vec<Line> {
     advice.into_iter().chain(found.and_then(extrapolated)).chain(warnings).collect()
 }
 
-/// Returns the force that connector or robot do not withstand, and what to do about it.
+/// Returns a contact force that the connector or the robot does not withstand, with a remedy.
 pub fn force(answer: &Answer) -> Option<Line> {
     let excess = answer.force.as_ref()?;
     let ties = answer.recommended.as_ref().and_then(|found| found.ties.as_ref());
@@ -126,7 +127,7 @@ fn acceptable(answer: &Answer) -> f64 {
     each.fold(f64::INFINITY, f64::min).floor()
 }
 
-/// Returns tasks, optimizer, number of evaluations, and the forces of contact springs in them.
+/// Returns tasks, optimizer, number of evaluations, and the mating forces of the connectors.
 pub fn searched(answer: &Answer) -> String {
     let record = answer.record;
     let (task, method) = (record.config.task_name(), record.config.method());
@@ -140,7 +141,7 @@ pub fn searched(answer: &Answer) -> String {
     format!("{task} with {method}: {evaluated}; mating force {}", forces.join(", "))
 }
 
-/// Returns how many designs tie with the recommended one, and their parameters.
+/// Returns the number of designs that tie with the recommended one, and their parameters.
 pub fn tied(answer: &Answer, ties: &Ties) -> Line {
     let (count, of) = (ties.designs.len(), answer.designs);
     let within = match answer.record.config.objective.first().unit() {
@@ -169,7 +170,7 @@ pub fn safe(ties: &Ties) -> Option<Line> {
     Some(line("safe choice", format!("{}: {why}{loss}", words::design(&safe.design.design))))
 }
 
-/// Returns how far the range varies over the designs.
+/// Returns the interval of the range over the designs.
 pub fn spread(answer: &Answer) -> Option<String> {
     let spread = interval(answer.spread_mm?);
     Some(format!("changes the range from {spread} over {} designs", answer.designs))
@@ -183,7 +184,7 @@ fn extrapolated(found: &Recommended) -> Option<Line> {
     (!found.design.stiffness.inside_hull()).then(|| line("warning", text))
 }
 
-/// Returns the numbers behind the recommendation by simulation that [`brief`] leaves out.
+/// Returns the details of the recommendation by simulation that [`brief`] omits.
 pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
     let config = &answer.record.config;
     let mut lines = vec![line("best design", evaluated(found.design))];
@@ -217,9 +218,9 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
     }));
     lines.extend(stiffness(&found.design.stiffness));
     if let Some((measure, _)) = found.objective.filter(|_| !answer.walked.is_empty()) {
-        let before = found.searched.map_or(String::new(), |before| {
-            format!("; the search found {} for this one", measure.show(before))
-        });
+        let before = found
+            .searched
+            .map_or(String::new(), |before| format!("; {} in the search", measure.show(before)));
         let count = answer.walked.len();
         let plural = if count == 1 { "" } else { "s" };
         lines.push(line("walked", format!("step by step: {count} design{plural}{before}")));
@@ -232,14 +233,14 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
         line(&format!("  {reason}"), format!("{}: {value:.1} {unit}", evaluated(found)))
     }));
     lines.extend(raced(answer));
-    lines.extend(answer.orders.iter().map(robot));
-    if answer.orders.is_empty() && answer.record.on_bench.is_none() {
+    lines.extend(answer.rank_correlations.iter().map(robot));
+    if answer.rank_correlations.is_empty() && answer.record.on_bench.is_none() {
         lines.push(line("robot", "no measurements are known: print and measure the best few"));
     }
     lines
 }
 
-/// Returns how many designs were stopped early by the race.
+/// Returns the number of designs that the race stopped early.
 fn raced(answer: &Answer) -> Option<Line> {
     let raced = || answer.record.current().iter().filter(|recorded| recorded.raced());
     let rates = raced().flat_map(|recorded| &recorded.tasks).flat_map(|task| &task.success);
@@ -252,11 +253,11 @@ fn raced(answer: &Answer) -> Option<Line> {
     })
 }
 
-/// Returns how the order of the fingers on the robot agrees with the simulated one.
-fn robot((task, order): &(&str, Order)) -> Line {
+/// Returns the rank correlation of simulated and measured ranges.
+fn robot((task, found): &(&str, RankCorrelation)) -> Line {
     // A random order of n fingers has a rank correlation of mean 0 and variance 1 / (n - 1), taken as
-    // normal: it does as well in less than 5 % of cases.
-    let beyond_chance = order.spearman * (order.fingers as f64 - 1.0).sqrt() > 1.645;
+    // normal: it exceeds this bound in less than 5 % of cases.
+    let beyond_chance = found.spearman * (found.fingers as f64 - 1.0).sqrt() > 1.645;
     let chance = match beyond_chance {
         true => "",
         false => "; not significant: measure the best few",
@@ -265,7 +266,7 @@ fn robot((task, order): &(&str, Order)) -> Line {
         "robot",
         format!(
             "on {task} {} ranked {} printed fingers with Spearman {:+.2} to the bench{chance}",
-            order.source, order.fingers, order.spearman
+            found.source, found.fingers, found.spearman
         ),
     )
 }
@@ -274,7 +275,7 @@ fn robot((task, order): &(&str, Order)) -> Line {
 fn on_bench(found: &BenchPrediction) -> Vec<Line> {
     let chance = found.best.first().map(|best| {
         let [percent, of] = [100.0 * best.probability_best, found.fingers as f64];
-        line("probability", format!("{percent:.0} % to be the best of all {of} fingers"))
+        line("probability", format!("{percent:.0} % of being the best of all {of} fingers"))
     });
     let range = Measure::Range.value(&found.simulated).map_or("no range".to_owned(), mm);
     let mut simulated = window(&found.simulated);
@@ -282,7 +283,7 @@ fn on_bench(found: &BenchPrediction) -> Vec<Line> {
     chance.into_iter().chain(simulated).collect()
 }
 
-/// Returns how well the measured fingers are predicted.
+/// Returns the accuracy of the predictions of the measured fingers.
 pub fn accuracy(found: &BenchPrediction) -> Line {
     let (trust, count) = (&found.trust, found.measured);
     let Some(deviation) = trust.mean_deviation_percent else {
@@ -294,14 +295,14 @@ pub fn accuracy(found: &BenchPrediction) -> Line {
     line("measured", format!("{count} fingers; {error}, {inside}"))
 }
 
-/// Returns the window of an evaluation and what ended it.
+/// Returns the window of an evaluation and the outcomes at its ends.
 pub fn window(evaluation: &Evaluation) -> Vec<Line> {
     let window = &evaluation.window;
-    let end = |outcome: Option<Outcome>| outcome.map_or("limit of the search", Outcome::label);
     if window.nominal != Outcome::Inserted {
-        let nominal = end(Some(window.nominal));
+        let nominal = window.nominal.label();
         return vec![line("window", format!("none: the nominal start ends with {nominal}"))];
     }
+    let end = |outcome: Option<Outcome>| outcome.map_or("limit of the search", Outcome::label);
     let [below, above] = [window.end_negative, window.end_positive].map(end);
     vec![
         line("window", format!("{} mm", span(ends_mm(window)))),
@@ -320,7 +321,7 @@ pub fn stiffness(prediction: &Prediction) -> [Line; 2] {
     [line("stiffness", stiffness), line("", hull)]
 }
 
-/// Returns success rate and robust range, as far as they were evaluated.
+/// Returns success rate and robust range, if they were evaluated.
 pub fn drawn(evaluation: &Evaluation) -> Vec<Line> {
     let success = evaluation.success.as_ref().map(|success| {
         let [rate, failures] = words::success(success);

@@ -1,28 +1,28 @@
-//! Answer of a study, computed once from its record and shown by terminal, page, JSON and Python.
+//! Answer of a study, computed once from its record for terminal, page, JSON and Python.
 //! Lengths in mm, forces in N.
 
-mod alike;
 pub mod command;
 mod force;
 pub mod lines;
 mod recommended;
 mod robots;
 mod start;
+mod ties;
 mod trust;
 mod verdict;
 pub mod words;
 
-use calibration::order::{Order, order_on_bench};
+use calibration::order::{RankCorrelation, rank_correlation};
 use insertion::evaluation::Evaluation;
 use insertion::space::Design;
 use study::{Recorded, StudyRecord, Volume, Walked, nearest, volume};
 
-pub use alike::{SafeChoice, Spread, Ties};
 pub use force::ExcessForce;
 use recommended::firm_range_mm;
 pub use recommended::{OnTask, Recommended};
 pub use robots::RobotWindow;
 pub use start::Start;
+pub use ties::{SafeChoice, Spread, Ties};
 pub use trust::{MeasuredFinger, Trust};
 pub use verdict::{Verdict, expectation};
 
@@ -57,8 +57,8 @@ pub struct Answer<'a> {
     pub measured: Vec<MeasuredFinger>,
     /// Contact force of the finger to print, if it exceeds what connector or robot withstand.
     pub force: Option<ExcessForce>,
-    /// Agreement of the simulated with the measured order of fingers, for the tasks with measurements.
-    pub orders: Vec<(&'a str, Order)>,
+    /// Rank correlation of simulated and measured ranges, for each task with measurements.
+    pub rank_correlations: Vec<(&'a str, RankCorrelation)>,
 }
 
 /// Pareto front: no design dominates another.
@@ -76,7 +76,7 @@ impl<'a> Answer<'a> {
         let (config, current) = (&record.config, record.current());
         let front = || Front { designs: record.front(), volume: volume(&config.goals(), current) };
         let walked = |walked: &'a Walked| (&walked.recorded, firm_range_mm(record, walked));
-        let order = |(at, task)| Some((task, order_on_bench(record, at)?));
+        let correlation = |(at, task)| Some((task, rank_correlation(record, at)?));
         let measured = measured(record);
         let recommended = Recommended::of(record, &measured);
         let mut answer = Answer {
@@ -95,9 +95,9 @@ impl<'a> Answer<'a> {
             spread_mm: record.spread_mm(),
             measured,
             force: None,
-            orders: config.tasks().enumerate().filter_map(order).collect(),
+            rank_correlations: config.tasks().enumerate().filter_map(correlation).collect(),
         };
-        answer.verdict = Verdict::of(&answer, &answer.measured);
+        answer.verdict = Verdict::of(&answer);
         answer.trust = Trust::of(record, answer.design_to_print());
         answer.force =
             answer.finger_and_evaluations().and_then(|(_, tasks)| ExcessForce::of(record, &tasks));
@@ -124,22 +124,19 @@ impl<'a> Answer<'a> {
         let finger = self.verdict.finger()?;
         match &self.record.on_bench {
             Some(bench) => Some((finger, vec![&bench.simulated])),
-            None => self.design_to_print().map(|named| (finger, named.tasks())),
+            None => self.design_to_print().map(|design| (finger, design.tasks())),
         }
     }
 }
 
 /// Returns the fingers measured on a robot: those given to the study, else the published ones.
 fn measured(record: &StudyRecord) -> Vec<MeasuredFinger> {
-    let given = record.on_bench.as_ref().map(|found| {
-        let ranges = found.ranges.iter();
-        ranges.map(|(design, range_mm)| MeasuredFinger {
-            design: design.clone(),
-            range_mm: *range_mm,
-        })
-    });
-    match (given, &record.config.tasks[..]) {
-        (Some(given), _) => given.collect(),
+    let finger = |(design, range_mm): &(Design, f64)| MeasuredFinger {
+        design: design.clone(),
+        range_mm: *range_mm,
+    };
+    match (&record.on_bench, &record.config.tasks[..]) {
+        (Some(bench), _) => bench.ranges.iter().map(finger).collect(),
         (None, [task]) => trust::published(task).into_iter().map(|(found, _)| found).collect(),
         (None, _) => Vec::new(),
     }

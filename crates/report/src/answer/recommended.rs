@@ -1,7 +1,7 @@
 //! The recommended design, its windows and its ties.
 
-use super::alike::Ties;
 use super::start::Start;
+use super::ties::Ties;
 use super::trust::MeasuredFinger;
 use super::words;
 use insertion::evaluation::Evaluation;

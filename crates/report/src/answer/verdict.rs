@@ -1,6 +1,5 @@
 //! Recommended action: headline and expected performance.
 
-use super::trust::MeasuredFinger;
 use super::words::{design as finger, evaluated, interval, mm, outcome, span};
 use super::{Answer, Recommended, Ties};
 use ask_tell::statistics::mean;
@@ -56,7 +55,7 @@ pub enum Verdict<'a> {
 }
 
 impl<'a> Verdict<'a> {
-    pub(super) fn of(answer: &Answer<'a>, measured: &[MeasuredFinger]) -> Self {
+    pub(super) fn of(answer: &Answer<'a>) -> Self {
         if let Some((place, nearest)) = answer.record.unusable() {
             let task = answer.record.config.tasks().nth(place).unwrap_or_default();
             let fails = nearest.on(place).map(|found| found.window.nominal);
@@ -64,7 +63,7 @@ impl<'a> Verdict<'a> {
         }
         if let Some(best) = answer.record.on_bench.as_ref().and_then(|found| found.best.first()) {
             let design = &best.design;
-            let own = measured.iter().filter(|measured| measured.design == *design);
+            let own = answer.measured.iter().filter(|measured| measured.design == *design);
             // A finger may be measured on several days.
             let range_mm = mean(own.map(|one| one.range_mm));
             let mut bounds = answer.record.on_bench.iter().flat_map(|found| &found.bounds);

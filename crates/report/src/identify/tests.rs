@@ -1,7 +1,7 @@
 use super::html;
 use calibration::identify::check::Remark;
 use calibration::identify::curves::Curves;
-use calibration::identify::fixtures::made;
+use calibration::identify::fixtures::synthetic;
 use calibration::identify::formulas::{Friction, Slide};
 use calibration::identify::log::{Ended, Run};
 use calibration::identify::misfit::Validation;
@@ -19,7 +19,7 @@ use insertion::surrogate::Estimate;
 const FILE: &str = "<b>1.csv";
 
 fn attempt() -> Compared {
-    let mut log = made(0.5, 1.0);
+    let mut log = synthetic(0.5, 1.0);
     log.file = FILE.to_owned();
     let design = Design::infill(10.0, 0.0);
     let run = Run { log, design, offset: 0.0022, ended: Ended::Inserted, line: 2 };

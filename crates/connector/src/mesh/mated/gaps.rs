@@ -1,4 +1,5 @@
-//! Check of the gap between plug and socket: by their convex parts and by the drawn faces, at poses about the mated one.
+//! Check of the gap between plug and socket: by their convex parts and by the drawn faces, at poses about the mated
+//! one.
 
 use super::{Interference, TOLERANCE};
 use crate::body::ConvexBody;

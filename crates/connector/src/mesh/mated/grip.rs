@@ -70,7 +70,8 @@ fn faces(plug: &[Triangle], sign: f64) -> Vec<Face> {
     found
 }
 
-/// Returns the grasp at two opposite faces, and the area that the pads touch; `None` if the fingers cannot hold it there.
+/// Returns the grasp at two opposite faces, and the area that the pads touch; `None` if the fingers cannot hold it
+/// there.
 fn grasp_at(plug: &[Triangle], low: &Face, high: &Face, free: f64) -> Option<(f64, Grasp)> {
     let common = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].min(b[1])];
     let (x, z) = (common(low.x, high.x), common(low.z, high.z));
@@ -108,7 +109,8 @@ fn grasp_at(plug: &[Triangle], low: &Face, high: &Face, free: f64) -> Option<(f6
     Some((width(held) * width(common(x, PAD_X)), Grasp { shoulder, faces, part }))
 }
 
-/// Returns the grasp of a handle of a size (x, y, z), m, which is added to the top of the plug and stays above `free`, m.
+/// Returns the grasp of a handle of a size (x, y, z), m, which is added to the top of the plug and stays above `free`,
+/// m.
 pub fn handle(plug: &[Triangle], [x, y, z]: [f64; 3], free: f64) -> Grasp {
     let [_, top] = extent(plug.iter().flatten(), 2);
     let low = (top - ENCLOSED).max(free + CLEAR);

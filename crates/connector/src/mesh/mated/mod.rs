@@ -229,8 +229,8 @@ fn raised(solid: Solid, by: f64) -> Solid {
     }
 }
 
-/// Returns the opening that leaves the plug its play, m, about all of the plug that goes below the top, without a shoulder that
-/// rests on it.
+/// Returns the opening that leaves the plug its play, m, about all of the plug that goes below the top, without a
+/// shoulder that rests on it.
 fn opening(plug: &[Triangle], depth: f64, play: [f64; 2]) -> [[f64; 2]; 2] {
     let below = [f64::NEG_INFINITY, depth - plan::BELOW_TOP];
     let below: Vec<Point3<f64>> = plug.iter().flat_map(|face| clipped(face, 2, below)).collect();

@@ -1,5 +1,5 @@
-//! Interference of plug and socket on the way to the mated pose: contact springs are drawn unloaded, ribs uncrushed, press fits
-//! with their oversize.
+//! Interference of plug and socket on the way to the mated pose: drawings show contact springs unloaded, ribs
+//! uncrushed, and press fits with their oversize.
 
 use crate::body::{ConvexBody, Touching, clipped, extent, longest_side, span};
 use crate::mesh::skin::cut_below;
@@ -9,14 +9,15 @@ use insertion::task::geometry::outline_by;
 use insertion::task::{Part, Solid, geometry};
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Overlap that rounding and facets explain, m.
 pub const ROUNDING: f64 = 0.02 * MM;
-/// Deepest overlap of a press fit, m: a pin of 0.64 mm in a hole of 0.6 mm with springs that narrow it by as much again.
+/// Deepest overlap of a press fit, m: a pin of 0.64 mm in a hole of 0.6 mm with springs that narrow it by as much
+/// again.
 const FIT: f64 = 0.1 * MM;
-/// Gap of the faces of a press fit, m: rigid walls stand for ones that yield, and a play of 0.05 mm is the
-/// least with which strategies are known to insert.
+/// Gap to which the faces of a press fit are cut back, m: the simulated walls do not yield, and 0.05 mm is the smallest
+/// play with which strategies are known to insert.
 pub const GAP: f64 = 0.025 * MM;
 /// Smallest overlap that is considered, m.
 const LEAST: f64 = 1e-3 * MM;
@@ -27,46 +28,47 @@ const ALONG: f64 = 0.7;
 /// Height above the mated pose above which nothing may be in the way, m.
 const STOP: f64 = 0.3 * MM;
 
-/// Parts of one body that overlap the other in the mated pose or on the way to it, and gave way.
+/// Parts of one body that were left out or cut back, since they overlap the other body in the mated pose or on the way
+/// to it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interference {
-    /// Body that gave way: 0 plug, 1 socket.
+    /// Body of the parts: 0 plug, 1 socket.
     pub body: usize,
-    /// Whether its faces were cut back by the overlap, as those of a press fit; else the parts were left out.
+    /// Whether the faces of the parts were cut back, as for a press fit; else the parts were left out.
     pub cut_back: bool,
-    /// Number of its parts that gave way.
+    /// Number of the parts.
     pub parts: usize,
     /// Deepest overlap, m.
     pub depth: f64,
-    /// Smallest and largest corner, task frame, plug mated, m.
+    /// Smallest and largest corner of the bounding box, task frame, plug mated, m.
     pub bounds: [Point3<f64>; 2],
 }
 
 impl Interference {
-    /// Returns whether a place, task frame, plug mated, is within a distance of its bounds, m.
-    pub fn is_near(&self, place: &Point3<f64>, distance: f64) -> bool {
+    /// Returns whether a point, task frame, plug mated, is within a distance of the bounding box, m.
+    pub fn is_near(&self, point: &Point3<f64>, distance: f64) -> bool {
         let [low, high] = self.bounds;
-        (0..3).all(|i| (low[i] - distance..=high[i] + distance).contains(&place[i]))
+        (0..3).all(|i| (low[i] - distance..=high[i] + distance).contains(&point[i]))
     }
 }
 
-/// Makes way for the plug to its mated pose, `depth` below the top, m: of two parts that overlap deeply the smaller one is
-/// left out, and faces that overlap sideways by no more than a press fit are cut back; those of a `tight` fit, drawn
-/// without play, too.
+/// Removes the interference on the way of the plug to its mated pose, `depth` below the top, m: of two parts that
+/// overlap deeply the smaller one is left out, and faces that overlap sideways by no more than a press fit are cut
+/// back, as are those of a `tight` fit, which is drawn without play.
 pub fn cut(
     plug: &mut Vec<Part>,
     socket: &mut Vec<Part>,
     depth: f64,
     tight: bool,
 ) -> Vec<Interference> {
-    let mut gone = left_out(plug, socket, depth, FIT);
+    let mut gone = leave_out(plug, socket, depth, FIT);
     gone.extend(cut_back(plug, socket, depth, tight));
-    gone.extend(left_out(plug, socket, depth, ROUNDING));
+    gone.extend(leave_out(plug, socket, depth, ROUNDING));
     gone
 }
 
-/// Leaves out what overlaps by more than `least`, m: of two parts the smaller one.
-fn left_out(
+/// Leaves out the smaller of two parts that overlap by more than `least`, m.
+fn leave_out(
     plug: &mut Vec<Part>,
     socket: &mut Vec<Part>,
     depth: f64,
@@ -76,7 +78,7 @@ fn left_out(
         parts.iter().map(|part| geometry::volume(&part.solid)).collect()
     });
     let mut out = [vec![0.0_f64; plug.len()], vec![0.0_f64; socket.len()]];
-    for Touching { depth, parts: [i, j], .. } in met(plug, socket, depth, least, [0.0; 2]) {
+    for Touching { depth, parts: [i, j], .. } in overlaps([plug, socket], depth, least, [0.0; 2]) {
         let body = usize::from(volumes[0][i] > volumes[1][j]);
         let part = [i, j][body];
         out[body][part] = out[body][part].max(depth);
@@ -92,8 +94,9 @@ fn left_out(
     gone
 }
 
-/// Cuts faces that meet the other body sideways back to the gap of a press fit, if any overlaps by more than facets explain: of
-/// two parts the smaller one, so that a rib does not move a wall. Parts without a rest are dropped.
+/// Cuts faces that touch the other body sideways back to the gap of a press fit, if any overlap is more than facets
+/// explain. Of two parts the smaller one is cut, so that a rib does not move a wall; a part of which nothing is left is
+/// dropped.
 fn cut_back(
     plug: &mut Vec<Part>,
     socket: &mut Vec<Part>,
@@ -104,10 +107,8 @@ fn cut_back(
         true => (GAP, &[[GAP, 0.0], [-GAP, 0.0], [0.0, GAP], [0.0, -GAP]][..]),
         false => (0.0, &[[0.0; 2]][..]),
     };
-    let met = aside.iter().flat_map(|&aside| met(plug, socket, depth, LEAST, aside));
-    let mut pairs: Vec<[usize; 2]> = met.map(|touch| touch.parts).collect();
-    pairs.sort_unstable();
-    pairs.dedup();
+    let touching = aside.iter().flat_map(|&aside| overlaps([plug, socket], depth, LEAST, aside));
+    let pairs: BTreeSet<[usize; 2]> = touching.map(|touch| touch.parts).collect();
     let mut left = [&*plug, &*socket].map(|parts| -> Vec<Option<Solid>> {
         parts.iter().map(|part| Some(part.solid.clone())).collect()
     });
@@ -117,10 +118,11 @@ fn cut_back(
         let [Some(own), Some(its)] = [&left[0][i], &left[1][j]] else { continue };
         let fit = Fit::new(own, its, depth);
         let Some(fit) = fit.filter(|fit| (-room..FIT).contains(&fit.depth)) else { continue };
-        let below = |solid, at: f64, normal| cut_below(solid, &Point3::from(fit.way * at), &normal);
+        let below =
+            |solid, at: f64, normal| cut_below(solid, &Point3::from(fit.direction * at), &normal);
         let (body, part, rest) = match geometry::volume(own) < geometry::volume(its) {
-            true => (0, i, below(own, fit.faces[1] - GAP, fit.way)),
-            false => (1, j, below(its, fit.faces[0] + GAP, -fit.way)),
+            true => (0, i, below(own, fit.faces[1] - GAP, fit.direction)),
+            false => (1, j, below(its, fit.faces[0] + GAP, -fit.direction)),
         };
         left[body][part] = rest;
         let deepest = cut[body].entry(part).or_insert(0.0_f64);
@@ -145,8 +147,8 @@ struct Fit {
     /// Depth, m; negative with a gap.
     depth: f64,
     /// Direction from the plug to the socket.
-    way: Vector3<f64>,
-    /// Place of the plug's face and of the socket's along it, m.
+    direction: Vector3<f64>,
+    /// Coordinates of the faces of plug and socket along this direction, m.
     faces: [f64; 2],
 }
 
@@ -162,18 +164,19 @@ impl Fit {
             let across = outline.iter().zip(next).map(|(p, q)| (q - p).cross(&Vector3::z()));
             across.filter_map(|v| (v * sign).try_normalize(0.0)).collect()
         };
-        let fit = |way: Vector3<f64>| {
-            let along = |points: &[Point3<f64>]| span(points.iter().map(|p| p.coords.dot(&way)));
+        let fit = |direction: Vector3<f64>| {
+            let along =
+                |points: &[Point3<f64>]| span(points.iter().map(|p| p.coords.dot(&direction)));
             let faces = [along(&own)[1], along(&its)[0]];
-            Fit { depth: faces[0] - faces[1], way, faces }
+            Fit { depth: faces[0] - faces[1], direction, faces }
         };
         let all = normals(&own, 1.0).into_iter().chain(normals(&its, -1.0)).map(fit);
         all.min_by(|a, b| a.depth.total_cmp(&b.depth))
     }
 }
 
-/// Returns the parts of a body that gave way, each with its overlap, m, as one interference for each set of parts that lie
-/// near to one another.
+/// Groups parts of a body, each with its overlap, m, into one interference for each set of parts that are close
+/// together.
 fn grouped(parts: Vec<(f64, Solid)>, body: usize, cut_back: bool, depth: f64) -> Vec<Interference> {
     let mut groups: Vec<Interference> = Vec::new();
     for (depth, solid) in parts {
@@ -199,9 +202,10 @@ fn grouped(parts: Vec<(f64, Solid)>, body: usize, cut_back: bool, depth: f64) ->
     groups
 }
 
-/// Overlaps by more than `least`, m, on the way down that are not those of the stop, the plug aside by so much, m.
-fn met(plug: &[Part], socket: &[Part], depth: f64, least: f64, [x, y]: [f64; 2]) -> Vec<Touching> {
-    let (plug, socket) = (ConvexBody::new(plug), ConvexBody::new(socket));
+/// Returns the overlaps deeper than `least`, m, on the way down, except those at the stop; the plug is shifted by x and
+/// y, m.
+fn overlaps(parts: [&[Part]; 2], depth: f64, least: f64, [x, y]: [f64; 2]) -> Vec<Touching> {
+    let [plug, socket] = parts.map(ConvexBody::new);
     let steps = (depth / STEP).ceil() as usize;
     let at = |i: usize| {
         let above = i as f64 * STEP;

@@ -7,7 +7,8 @@ use nalgebra::Vector3;
 
 /// Side of a cell of the height maps, m.
 const CELL: f64 = 0.12 * MM;
-/// Distance in front of a face within which the other body must pass, m: an allowance for tilt and misfit beyond the play.
+/// Distance in front of a face within which the other body must pass, m: an allowance for tilt and misfit beyond the
+/// play.
 const ASIDE: f64 = 0.6 * MM;
 /// Allowance in height, m.
 const ABOVE: f64 = 0.6 * MM;

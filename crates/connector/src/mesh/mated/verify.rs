@@ -1,9 +1,9 @@
-//! Comparison of convex parts with the drawn body that they approximate: samples of its faces must lie near a part, and the
-//! corners of the parts must not lie outside it.
+//! Comparison of convex parts with the drawn body that they approximate: samples of its faces must lie near a part, and
+//! the corners of the parts must not lie outside it.
 
 use crate::body::ConvexBody;
 use crate::mesh::Triangle;
-use crate::mesh::skin::written;
+use crate::mesh::skin::snapped_hull;
 use input::units::MM;
 use insertion::task::{Part, Solid, geometry};
 use nalgebra::{Point3, Vector3};
@@ -45,8 +45,8 @@ impl<'a> Drawn<'a> {
         Drawn { triangles, mesh: TriMesh::new(points, faces).ok() }
     }
 
-    /// Returns the nearest point of the surface and its distance, m; `None` for a place that is inside the body or outside by
-    /// no more than the tolerance.
+    /// Returns the nearest point of the surface and its distance, m; `None` for a place that is inside the body or
+    /// outside by no more than the tolerance.
     fn outside(&self, place: &Point3<f64>) -> Option<(Point3<f64>, f64)> {
         let point: Vector = (place.coords / MM).into();
         let near = self.mesh.as_ref()?.project_local_point(point, false).point;
@@ -55,14 +55,14 @@ impl<'a> Drawn<'a> {
             .then(|| (Point3::from(Vector3::from(near) * MM), distance))
     }
 
-    /// Moves the corners of a slab that are outside the body to its surface; `None` if the slab still protrudes, as it can
-    /// behind a sharp edge.
+    /// Moves the corners of a slab that are outside the body to its surface; `None` if the slab still protrudes, as it
+    /// can behind a sharp edge.
     pub fn trimmed(&self, solid: Solid) -> Option<Solid> {
         let corners = solid.corners();
         let moved =
             |place: &Point3<f64>| self.outside(place).map_or(*place, |(nearest, _)| nearest);
         let moved: Vec<_> = corners.iter().map(moved).collect();
-        let solid = if moved == corners { solid } else { written(&moved)? };
+        let solid = if moved == corners { solid } else { snapped_hull(&moved)? };
         self.protrusion(&solid).is_none().then_some(solid)
     }
 
@@ -108,7 +108,8 @@ fn samples([a, b, c]: &Triangle) -> Vec<Point3<f64>> {
     found
 }
 
-/// Returns the generalized winding number of oriented triangles about a point (Jacobson et al. 2013): 1 inside, 0 outside.
+/// Returns the generalized winding number of oriented triangles about a point (Jacobson et al. 2013): 1 inside, 0
+/// outside.
 fn winding(triangles: &[Triangle], place: &Point3<f64>) -> f64 {
     let angle = |triangle: &Triangle| {
         let [a, b, c] = triangle.map(|p| p - place);

@@ -1,5 +1,5 @@
-//! Convex slabs from the skin of a body: each flat face, cut into convex polygons and extruded into the material. Cavities and
-//! slits stay open, and no closed surface is needed, only normals that point outward.
+//! Convex slabs from the skin of a body: each flat face is cut into convex polygons, which are extruded into the
+//! material. Cavities and slits stay open, and the surface need not be closed; its normals must point outward.
 
 mod facets;
 mod polygons;
@@ -16,9 +16,10 @@ use nalgebra::{Point3, Vector3};
 use parry::bounding_volume::{Aabb, BoundingVolume};
 use parry::partitioning::{Bvh, BvhBuildStrategy};
 use rapier3d_f64::parry;
+use std::collections::BTreeSet;
 
-/// Largest thickness of a slab, m: more than the gap at which contacts are foreseen, so that a body that comes along a
-/// face towards its edge meets the side of the slab, not its edge.
+/// Largest thickness of a slab, m: more than the gap at which contacts are predicted, so that a body that slides along
+/// a face past its edge meets the side of the slab, not its edge.
 const THICK: f64 = 0.25 * MM;
 /// Smallest thickness of a slab, m.
 const THIN: f64 = 10e-3 * MM;
@@ -28,21 +29,21 @@ const LEAST_PIECE: f64 = 0.2 * MM;
 const LEAST_SIZE: f64 = 2e-3 * MM;
 /// Smallest volume of a solid, m3, with a margin for the rounding in files.
 const LEAST_VOLUME: f64 = 10.0 * FLAT;
-/// Distance from the sides of a polygon within which what is behind it does not count, m.
+/// Width of the border of a polygon behind which faces do not limit the thickness, m.
 const BESIDE: f64 = 5e-3 * MM;
-/// Depth below which a face that is met is the polygon's own, m.
+/// Smallest depth of a face that limits the thickness, m; shallower ones are the polygon's own.
 const BEHIND: f64 = 5e-3 * MM;
-/// Tolerance of a convex body, m.
+/// Largest height of a corner above a plane that still counts as below it, m.
 const CONVEX: f64 = 2e-3 * MM;
 /// Largest number of corners of a convex body that becomes one part.
 const MOST_CORNERS: usize = 400;
-/// Cosine between the normals of a film's two sides, which do not cut one another.
+/// Largest cosine between opposite faces that are cut at their common edge; above it, they are the two sides of a film.
 const FILM: f64 = 0.9999;
 /// Number of corners of a cut hull at and above which those inside it are dropped.
 const MANY: usize = 32;
 
-/// Returns convex solids whose outer surface is that of the triangles, m, as far as `reached` accepts them; a slab that
-/// `fitted` refuses is made thinner.
+/// Returns convex solids whose outer surface is that of the triangles, m, for which `reached` is true; a slab that
+/// `fitted` rejects is made thinner.
 pub fn skin(
     triangles: &[Triangle],
     reached: impl Fn(&Triangle, &Vector3<f64>) -> bool,
@@ -60,8 +61,8 @@ pub fn skin(
             solids.extend(shell.iter().any(|&face| reached[face]).then_some(solid));
         }
     }
-    let (flats, of) = facets.flats();
-    let walls = Walls::new(&facets, &of);
+    let (flats, flat_of) = facets.flats();
+    let faces = FaceIndex::new(&facets, &flat_of);
     for flat in &flats {
         let normal = facets.normals[flat[0]];
         let kept: Vec<usize> =
@@ -70,20 +71,18 @@ pub fn skin(
             continue;
         }
         for polygon in polygons::polygons(&facets, &kept, &normal) {
-            solids.extend(walls.slabs(flat, &polygon, &normal, &fitted));
+            solids.extend(faces.slabs(flat, &polygon, &normal, &fitted));
         }
     }
     solids
 }
 
-/// Returns the hull of a closed shell that is its own hull.
+/// Returns a closed shell as one solid if it is convex.
 fn convex_body(facets: &Facets, shell: &[usize]) -> Option<Solid> {
     if shell.iter().any(|&face| facets.across[face].contains(&None)) {
         return None;
     }
-    let mut corners: Vec<usize> = shell.iter().flat_map(|&face| facets.faces[face]).collect();
-    corners.sort_unstable();
-    corners.dedup();
+    let corners: BTreeSet<usize> = shell.iter().flat_map(|&face| facets.faces[face]).collect();
     let flat = |&face: &usize| {
         let (normal, origin) = (facets.normals[face], facets.corners(face)[0]);
         corners.iter().all(|&corner| (facets.points[corner] - origin).dot(&normal) < CONVEX)
@@ -94,23 +93,23 @@ fn convex_body(facets: &Facets, shell: &[usize]) -> Option<Solid> {
     solid_of(&corners.iter().map(|&corner| facets.points[corner]).collect::<Vec<_>>())
 }
 
-/// Faces in the order of space.
-struct Walls<'a> {
+/// Spatial index of the triangles.
+struct FaceIndex<'a> {
     facets: &'a Facets,
-    /// Number of the flat face of each triangle.
-    of: &'a [usize],
+    /// Index of the flat face of each triangle.
+    flat_of: &'a [usize],
     tree: Bvh,
 }
 
-impl<'a> Walls<'a> {
-    fn new(facets: &'a Facets, of: &'a [usize]) -> Self {
+impl<'a> FaceIndex<'a> {
+    fn new(facets: &'a Facets, flat_of: &'a [usize]) -> Self {
         let boxes: Vec<_> =
-            (0..facets.faces.len()).map(|face| around(&facets.corners(face))).collect();
-        Walls { facets, of, tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) }
+            (0..facets.faces.len()).map(|face| bounding_box(&facets.corners(face))).collect();
+        FaceIndex { facets, flat_of, tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) }
     }
 
-    /// Returns a polygon of a flat face extruded into the material, in pieces if not as a whole: along a sharp edge the
-    /// material is too thin for a polygon that is wide elsewhere.
+    /// Extrudes a polygon of a flat face into the material, in pieces if the whole does not fit: along a sharp edge the
+    /// material can be too thin for a slab that fits elsewhere.
     fn slabs(
         &self,
         flat: &[usize],
@@ -137,7 +136,8 @@ impl<'a> Walls<'a> {
         found
     }
 
-    /// Planes of the faces that meet a polygon at less than a right angle: their flat face, a point and the normal.
+    /// Returns the planes of the faces that meet a polygon at less than a right angle: index of the flat face, a point,
+    /// and the normal.
     fn sharp(
         &self,
         flat: &[usize],
@@ -154,9 +154,9 @@ impl<'a> Walls<'a> {
                     continue;
                 };
                 let side = self.facets.normals[other];
-                let (flat, origin) = (self.of[other], self.facets.points[ends[0]]);
+                let (flat, origin) = (self.flat_of[other], self.facets.points[ends[0]]);
                 let convex = |p: Point3<f64>| (p - origin).dot(normal) < CONVEX;
-                // The plane at a short edge of a line that bends slightly inward would cut off all beyond it.
+                // The plane at a short edge of an outline that bends slightly inward would cut off too much.
                 let below = |&i: &usize| (self.facets.points[i] - origin).dot(&side) < CONVEX;
                 if (-FILM..-1e-6).contains(&side.dot(normal))
                     && self.facets.corners(other).into_iter().all(convex)
@@ -170,7 +170,7 @@ impl<'a> Walls<'a> {
         found
     }
 
-    /// Returns half of the wall behind a polygon, m, at most [`THICK`].
+    /// Returns half of the wall thickness behind a polygon, m, at most [`THICK`].
     fn thickness(
         &self,
         corners: &[Point3<f64>],
@@ -190,12 +190,12 @@ impl<'a> Walls<'a> {
         planes.push((corners[0] - normal * BEHIND, *normal));
         planes.push((corners[0] - normal * (2.0 * THICK), -normal));
         let back: Vec<_> = corners.iter().map(|p| p - normal * (2.0 * THICK)).collect();
-        let boxed = around(&corners.iter().chain(&back).copied().collect::<Vec<_>>());
+        let boxed = bounding_box(&corners.iter().chain(&back).copied().collect::<Vec<_>>());
         let mut least = 2.0 * THICK;
         for face in self.tree.intersect_aabb(&boxed) {
             let face = face as usize;
             if self.facets.normals[face].dot(normal) > -0.02
-                || sharp.iter().any(|(flat, ..)| *flat == self.of[face])
+                || sharp.iter().any(|(flat, ..)| *flat == self.flat_of[face])
             {
                 continue;
             }
@@ -210,7 +210,7 @@ impl<'a> Walls<'a> {
     }
 }
 
-/// Halves of a polygon across its longest side; `None` if it is small.
+/// Cuts a polygon in half across its longest side; `None` if it is small.
 fn halves(corners: &[Point3<f64>]) -> Option<[Vec<Point3<f64>>; 2]> {
     let ends = |i: usize| [corners[i], corners[(i + 1) % corners.len()]];
     let [a, b] = (0..corners.len())
@@ -218,7 +218,7 @@ fn halves(corners: &[Point3<f64>]) -> Option<[Vec<Point3<f64>>; 2]> {
         .max_by(|[a, b], [c, d]| (b - a).norm().total_cmp(&(d - c).norm()))
         .filter(|[a, b]| (b - a).norm() > LEAST_PIECE)?;
     let middle = nalgebra::center(&a, &b);
-    Some([b - a, a - b].map(|way| cut(corners.to_vec(), &middle, &way)))
+    Some([b - a, a - b].map(|normal| cut(corners.to_vec(), &middle, &normal)))
 }
 
 /// Extrudes a polygon into the material, below the planes of faces at sharp edges.
@@ -232,16 +232,16 @@ fn extruded(
     for (_, origin, side) in sharp {
         points = below(points, origin, side);
     }
-    written(&points)
+    snapped_hull(&points)
 }
 
-/// Returns the part of a solid below a plane, on the grid of files; `None` if it holds no volume.
+/// Returns the part of a solid below a plane, rounded to the grid of files; `None` if it is too thin.
 pub fn cut_below(solid: &Solid, origin: &Point3<f64>, normal: &Vector3<f64>) -> Option<Solid> {
-    written(&below(solid.corners(), origin, normal))
+    snapped_hull(&below(solid.corners(), origin, normal))
 }
 
-/// Returns the hull of points on the grid of files; `None` if it holds no volume.
-pub fn written(points: &[Point3<f64>]) -> Option<Solid> {
+/// Returns the hull of points rounded to the grid of files; `None` if it is too thin.
+pub fn snapped_hull(points: &[Point3<f64>]) -> Option<Solid> {
     let points: Vec<_> = points.iter().map(|p| Point3::from(p.coords.map(snap))).collect();
     solid_of(&points).filter(is_thick)
 }
@@ -252,8 +252,8 @@ fn is_thick(solid: &Solid) -> bool {
         && volume(solid) >= LEAST_VOLUME
 }
 
-/// Returns the bounding box of points in millimetres, for which parry's tolerances are made.
-fn around(points: &[Point3<f64>]) -> Aabb {
+/// Returns the bounding box of points in millimetres, the magnitude that parry's tolerances are made for.
+fn bounding_box(points: &[Point3<f64>]) -> Aabb {
     let points = points.iter().map(|p| (p.coords / MM).into());
     Aabb::from_points(points).loosened(1e-3)
 }

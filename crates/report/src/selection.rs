@@ -9,7 +9,7 @@ pub(super) const PLOTTED: usize = 1000;
 
 /// Selects about `most` of the evaluations `all`, in their order: all of them if there are no more,
 /// otherwise the best (a tenth of `most`), the recommended one and others at even intervals.
-pub(super) fn drawn<'a>(
+pub(super) fn selected<'a>(
     record: &StudyRecord,
     all: &'a [Recorded],
     most: usize,
@@ -36,7 +36,7 @@ pub(super) fn note(record: &StudyRecord) -> Option<String> {
     let all = record.evaluations.len();
     (all > PLOTTED).then(|| {
         let [listed, plotted] =
-            [LISTED, PLOTTED].map(|most| drawn(record, &record.evaluations, most).len());
+            [LISTED, PLOTTED].map(|most| selected(record, &record.evaluations, most).len());
         format!(
             "Of {all} evaluations {listed} are listed and {plotted} plotted: the best, and others \
              evenly taken. evaluations.csv has all."

@@ -1,4 +1,4 @@
-//! Files beside the page in the folder of a study.
+//! Files shown or linked by the page of a study.
 
 use super::replay;
 use crate::answer::RobotWindow;
@@ -9,14 +9,14 @@ use std::path::PathBuf;
 /// Largest total size of embedded films, bytes; further ones are linked.
 const FILMS: usize = 600_000;
 
-/// Files beside the page in the folder of a study.
+/// Files of a study's folder that its page shows or links.
 #[derive(Debug, Clone, Default)]
 pub struct PageFiles {
     /// The folder, as given to commands.
     pub dir: PathBuf,
-    /// Its films.
+    /// Films in the folder.
     pub films: Vec<Film>,
-    /// Those of [`printer::FILES`](super::printer::FILES) that exist.
+    /// Files of [`printer::FILES`](super::printer::FILES) that exist.
     pub files: Vec<&'static str>,
     /// SVG of the nominal start of the design that is nearest to inserting, if nothing inserts.
     pub nominal: Option<String>,
@@ -44,7 +44,7 @@ pub struct Film {
     pub end: &'static str,
     /// Its recordings as JSON without `<`; `None` if it is linked.
     pub data: Option<String>,
-    /// SVG of how its failed trial ended.
+    /// SVG of the end of its failed trial.
     pub poster: Option<String>,
 }
 

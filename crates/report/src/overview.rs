@@ -1,9 +1,9 @@
 //! The first screen of a page: recommendation, evidence, films, window, drawing and files of the finger,
 //! and the next command.
 
-use super::beside::{Film, PageFiles};
 use super::elements::{data_url, figure};
 use super::glossary::explained;
+use super::page_files::{Film, PageFiles};
 use super::printer::{self, recommended};
 use super::replay::{ENDS, pair_file, viewer};
 use super::{bar, explore};
@@ -16,8 +16,8 @@ use insertion::outcome::{FailureClass, Outcome};
 use maud::{Markup, PreEscaped, html};
 
 /// Returns the screen, which precedes all sections.
-pub(super) fn screen(answer: &Answer, beside: &PageFiles) -> Markup {
-    let (command, why) = command::next(answer, &beside.dir);
+pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
+    let (command, why) = command::next(answer, &files.dir);
     let stuck = matches!(answer.verdict, Verdict::NothingInserts { .. });
     html! {
         header {
@@ -34,12 +34,12 @@ pub(super) fn screen(answer: &Answer, beside: &PageFiles) -> Markup {
             @for (_, text) in lines::caveats(answer) { p.warn { (text) } }
         }
         div.first {
-            @if stuck { (nominal(answer, beside)) }
-            @else if let Some((_, tasks)) = answer.finger_and_evaluations() { (films(answer, &tasks, beside)) }
+            @if stuck { (nominal(answer, files)) }
+            @else if let Some((_, tasks)) = answer.finger_and_evaluations() { (films(answer, &tasks, files)) }
             div {
-                (bar::section(answer, &beside.analyses.robots).unwrap_or_default())
+                (bar::section(answer, &files.analyses.robots).unwrap_or_default())
                 (drawn(answer).unwrap_or_default())
-                (files(answer, beside).unwrap_or_default())
+                (printed(answer, files).unwrap_or_default())
             }
         }
         div.next { h2 { "Next step: " (why) } pre { code { (command) } } }
@@ -75,14 +75,14 @@ fn drawn(answer: &Answer) -> Option<Markup> {
     Some(html! { div.finger { (figure(&svg, "the finger to print", &caption)) } })
 }
 
-fn files(answer: &Answer, beside: &PageFiles) -> Option<Markup> {
+fn printed(answer: &Answer, files: &PageFiles) -> Option<Markup> {
     recommended(answer)?;
-    let names = printer::FILES.into_iter().filter(|(file, _)| beside.files.contains(file));
+    let names = printer::FILES.into_iter().filter(|(file, _)| files.files.contains(file));
     Some(html! { p.files { @for (file, name) in names { a.button href=(file) { (name) } } } })
 }
 
 /// Returns how the design that is nearest to inserting fails, and what to check.
-fn nominal(answer: &Answer, beside: &PageFiles) -> Markup {
+fn nominal(answer: &Answer, files: &PageFiles) -> Markup {
     let Verdict::NothingInserts { nearest, fails, .. } = &answer.verdict else { return html! {} };
     html! {
         div.whole {
@@ -92,7 +92,7 @@ fn nominal(answer: &Answer, beside: &PageFiles) -> Markup {
                     Its nominal start ends with " b { (outcome(*fails)) } ". " (remedy(*fails)) "."
                 }
             }
-            @if let Some(svg) = &beside.nominal {
+            @if let Some(svg) = &files.nominal {
                 // The first text of the drawing describes the trial; it is escaped in the file.
                 @let text = svg.split_once("<text").and_then(|(_, rest)| rest.split_once('>'));
                 @let text = text.and_then(|(_, rest)| rest.split('<').next()).unwrap_or_default();
@@ -119,8 +119,8 @@ pub fn preferred(answer: &Answer) -> &'static str {
 }
 
 /// Returns a player of both trials of an end, and buttons for all ends.
-fn films(answer: &Answer, tasks: &[&Evaluation], beside: &PageFiles) -> Markup {
-    let films = &beside.films;
+fn films(answer: &Answer, tasks: &[&Evaluation], files: &PageFiles) -> Markup {
+    let films = &files.films;
     let (shown, linked): (Vec<&Film>, Vec<&Film>) =
         films.iter().partition(|film| film.data.is_some());
     html! {

@@ -1,6 +1,6 @@
 //! Levers of a task and a robot, with their bounds.
 
-use super::measure::{Cell, LeverAnalysis};
+use super::measure::{LeverAnalysis, Setup};
 use connector::body::{ConvexBody, width};
 use connector::seat::section;
 use input::shipped::{LEVERS, PRIORS};
@@ -13,7 +13,7 @@ use parameters::numbers::{CLEARANCE, Kind};
 use parameters::plan::one_at_a_time::{End, farthest};
 use parameters::{Parameter, Path, Transform};
 
-/// Rows of `priors/bench.toml` that a user can change; the others belong to fingers and pads.
+/// Parameters of `priors/bench.toml` that a user can change; the others belong to fingers and pads.
 const OF_BENCH: [&str; 5] = [
     "friction plug-socket",
     "preload",
@@ -21,7 +21,7 @@ const OF_BENCH: [&str; 5] = [
     "clearance",
     "stiffness of the flange",
 ];
-/// Rows of `priors/levers.toml` that are listed after all others.
+/// Parameters of `priors/levers.toml` that are listed after all others.
 const LAST: [&str; 2] = ["stroke to the front", "stroke to the back"];
 
 /// Parameter of a lever, with the current value of the number that it sets, in that number's unit.
@@ -69,7 +69,7 @@ fn current_value(analysis: &LeverAnalysis<'_>, specimen: &Specimen, path: &Path)
     }
 }
 
-/// Clearance: width of the opening minus that of the plug, the smaller of x and y, m.
+/// Returns the clearance: width of the opening minus that of the plug, the smaller of x and y, m.
 fn clearance(task: &Task) -> f64 {
     let plug = section(&ConvexBody::plug(&task.plug), task.success.depth);
     let free = |axis: usize| width(task.opening[axis]) - width(plug[axis]);
@@ -77,21 +77,20 @@ fn clearance(task: &Task) -> f64 {
 }
 
 impl LeverParameter {
-    /// Returns the number and the cell at a bound, or at the feasible value nearest to it.
-    pub fn at(&self, analysis: &LeverAnalysis<'_>, end: End) -> Option<(f64, Cell)> {
-        farthest(&self.parameter, self.value, end, |to| self.changed(analysis, to))
-    }
-
-    fn changed(&self, analysis: &LeverAnalysis<'_>, to: f64) -> Option<(f64, Cell)> {
+    /// Returns the number and the setup at a bound, or at the feasible value nearest to it.
+    pub fn at(&self, analysis: &LeverAnalysis<'_>, end: End) -> Option<(f64, Setup)> {
         let LeverAnalysis { evaluator, template, design, given, .. } = analysis;
-        let value = self.parameter.applied(self.value, to);
-        if self.parameter.path == CLEARANCE && value < self.value.min(0.0) {
-            return None;
-        }
-        let set = [(&self.parameter, to)];
-        let cell = evaluator.under(template, (design, *given), &set).ok()?;
-        evaluator.engine.rig(&cell.0.task, &cell.1, &cell.0.finger, 1.0).ok()?;
-        Some((value, cell))
+        let changed = |to: f64| {
+            let value = self.parameter.applied(self.value, to);
+            if self.parameter.path == CLEARANCE && value < self.value.min(0.0) {
+                return None;
+            }
+            let set = [(&self.parameter, to)];
+            let setup = evaluator.under(template, (design, *given), &set).ok()?;
+            evaluator.engine.rig(&setup.0.task, &setup.1, &setup.0.finger, 1.0).ok()?;
+            Some((value, setup))
+        };
+        farthest(&self.parameter, self.value, end, changed)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Designs as good as the recommended one, and reasons to choose another.
+//! Designs that tie with the recommended one, and reasons to choose another.
 
 use super::elements::stacked;
 use crate::answer::words::{ACROSS, design, mm, stiffness};

@@ -77,10 +77,9 @@ impl<'a> Ties<'a> {
             ("stiffest", stiffnesses().max_by(value), "N/mm"),
         ];
         let known = named.into_iter().filter_map(|(reason, found, unit)| {
-            let (design, value) = found?;
-            Some((reason, design, value, unit))
+            found.map(|(design, value)| (reason, design, value, unit))
         });
-        // Keeps the force limits of connectors and robot.
+        // Whether a design satisfies the force limits of connectors and robot.
         let within = |(r, _): &&(&Recorded, f64)| ExcessForce::of(record, &r.tasks()).is_none();
         let safe = |&(design, loss): &(&'a Recorded, f64)| SafeChoice {
             design,

@@ -213,9 +213,8 @@ impl Serialize for Chosen {
             "stiffness": stiffness,
         });
         if let Some(cell) = &self.cell {
-            subject["cell_applied"] = cell.of(&task.name).map(|row| row.path.as_str()).collect();
-            subject["cell_not_applied"] =
-                cell.not_of(&task.name).map(|row| row.path.as_str()).collect();
+            subject["cell_applied"] = cell.of(&task.name).map(|row| &*row.path).collect();
+            subject["cell_not_applied"] = cell.not_of(&task.name).map(|row| &*row.path).collect();
         }
         subject.serialize(serializer)
     }

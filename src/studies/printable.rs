@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use finray::export::prism::Prism;
-use finray::export::sheet::{self, AtPad};
+use finray::export::sheet::{self, PadStiffness};
 use finray::export::{slicer, title};
 use finray::mechanics;
 use insertion::evaluation::evaluator::Evaluator;
@@ -31,7 +31,7 @@ pub(crate) fn write(dir: &Path, answer: &Answer, evaluator: &Evaluator) -> Resul
     if let Ok(ribs) = mechanics::compute(&geometry) {
         let design = answer.verdict.finger();
         let measured = design.and_then(|design| evaluator.predict(design).ok()).map(|p| p.at_pad());
-        let at_pad = AtPad { ribs: &ribs, measured };
+        let at_pad = PadStiffness { ribs: &ribs, measured };
         write_own_file(&dir.join(SHEET), &sheet::html(&geometry, &at_pad))?;
     }
     Ok(())

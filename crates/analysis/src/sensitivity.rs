@@ -48,7 +48,7 @@ pub fn evaluate(
     let predicted = evaluator.predict(&design)?;
     let specimen = evaluator.specimen(template, &design, predicted)?;
     let rig = evaluator.rig(&specimen, evaluator.taught(&specimen, stop)?, 1.0)?;
-    let draw = Draw::under(errors.iter().map(|(one, value)| (one.path.as_str(), *value)));
+    let draw = Draw::under(errors.iter().map(|(one, value)| (&*one.path, *value)));
     let finger = draw.finger(&specimen.finger, &predicted);
     let grasp = Grasp { finger, conditions: draw.conditions, stop };
     Ok(tolerance::evaluate_in(&*rig, grasp, Search::Strides))

@@ -78,7 +78,7 @@ fn unsupported_parts(scene: &Scene) -> impl DoubleEndedIterator<Item = (&str, &'
     let coupled = |joint: &&Joint| matches!(joint.springs, Springs::Coupled { .. });
     let mechanism = |body: &&Body| matches!(body.motion, Motion::Mechanism(_));
     let joint = scene.joints.iter().find(coupled).map(|joint| joint.name.as_str());
-    let patch = scene.patched().map(|pair| scene.bodies[pair.first.0].name.as_str());
+    let patch = scene.first_patch().map(|pair| scene.bodies[pair.first.0].name.as_str());
     let body = scene.bodies.iter().find(mechanism).map(|body| body.name.as_str());
     let parts = [
         joint.map(|name| (name, "springs that couple the axes of a joint")),

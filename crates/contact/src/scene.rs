@@ -46,7 +46,7 @@ pub enum Shape {
 /// Shape on a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geom {
-    /// Name for pictures, exports and errors.
+    /// Name in pictures, exports and errors.
     pub name: String,
     /// Shape in its own frame.
     pub shape: Shape,
@@ -97,7 +97,8 @@ pub enum Torsion {
     /// 15:557). It adds to the moment that several points have due to their distances. With a radius of 0 a
     /// point rotates freely. Engines without torsional friction ignore it.
     Radius(f64),
-    /// Contact patch spanned by the contact points, whose friction moment is that of the evenly pressed patch alone.
+    /// Contact patch spanned by the contact points; its friction moment is only that of the patch under uniform
+    /// pressure.
     Patch,
 }
 
@@ -130,7 +131,7 @@ impl ContactPair {
     }
 
     /// Returns whether a body is in the pair.
-    pub fn has(&self, body: BodyId) -> bool {
+    pub fn contains(&self, body: BodyId) -> bool {
         self.first == body || self.second == body
     }
 }
@@ -200,9 +201,9 @@ impl Spring {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a scene has a handful of joints")]
 pub enum Springs {
-    /// One for each axis, none if it is locked: translations x, y, z, rotations x, y, z.
+    /// Spring of each axis, `None` if the axis is locked: translations x, y, z, rotations x, y, z.
     Axes([Option<Spring>; 6]),
-    /// Coupled ones; coordinates as above, the rotations as a rotation vector.
+    /// Coupled springs of all axes, in the same order; the rotations are a rotation vector.
     Coupled {
         /// Stiffness, symmetric, positive definite: N/m, N/rad (N m/m) and N m/rad.
         stiffness: Matrix6<f64>,
@@ -250,7 +251,7 @@ impl AxialFriction {
 
     /// Returns the largest force at these poses of parent and child, N: linear between the depths, 0 above the
     /// first, and the last one below the last.
-    pub fn largest(&self, parent: &Pose, child: &Pose) -> f64 {
+    pub fn limit(&self, parent: &Pose, child: &Pose) -> f64 {
         let at = parent.inverse_transform_point(&child.translation.vector.into());
         let inside =
             |axis: usize| (self.region[axis][0]..=self.region[axis][1]).contains(&at[axis]);
@@ -300,8 +301,8 @@ impl Scene {
         self.contacts.push(ContactPair { first, second, friction });
     }
 
-    /// Returns the first pair of bodies whose friction is that of a contact patch.
-    pub fn patched(&self) -> Option<&ContactPair> {
+    /// Returns the first pair of bodies with the torsional friction of a contact patch.
+    pub fn first_patch(&self) -> Option<&ContactPair> {
         self.contacts.iter().find(|pair| pair.friction.torsion == Torsion::Patch)
     }
 
@@ -396,8 +397,7 @@ mod tests {
         let (parent, child) = (BodyId(0), BodyId(1));
         let force = vec![[1e-3, 4.0], [2e-3, 12.0], [6e-3, 8.0]];
         let friction = AxialFriction { parent, child, region: [[-1e-3, 1e-3]; 2], force };
-        let at =
-            |x: f64, z: f64| friction.largest(&Pose::identity(), &Pose::translation(x, 0.0, z));
+        let at = |x: f64, z: f64| friction.limit(&Pose::identity(), &Pose::translation(x, 0.0, z));
         for (x_mm, depth_mm, expected) in [
             (0.0, -1.0, 0.0),
             (0.0, 0.9, 0.0),

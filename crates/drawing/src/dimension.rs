@@ -1,6 +1,6 @@
 //! Dimension lines, scale bars and arrows.
 
-use super::{Drawing, Font, Style, escape, number};
+use super::{Drawing, Font, Style, escape, rounded};
 use nalgebra::{Point2, Vector2, center};
 
 /// Overhang of an extension line over its dimension line, and half a tick.
@@ -11,8 +11,8 @@ const GAP: f64 = 1.0;
 const LINE: Style = Style::line("#444", 0.18);
 
 impl Drawing {
-    /// Draws a dimension line for two points of a part, at a distance to their left, with a text above its middle;
-    /// for drawings in mm.
+    /// Draws a dimension line for two points of a part, at a distance to the left of the line between them, with a text
+    /// above its middle; for drawings in mm.
     pub fn dimension(&mut self, ends: [Point2<f64>; 2], distance: f64, words: &str) {
         let along = (ends[1] - ends[0]).normalize();
         let left = Vector2::new(along.y, -along.x) * distance.signum();
@@ -31,7 +31,7 @@ impl Drawing {
         let (at, along) = (center(&a, &b), b - a);
         let back = along.x < -1e-9 || (along.x < 1e-9 && along.y > 0.0);
         let along = if back { -along } else { along };
-        let [x, y, turn] = [at.x, at.y, libm::atan2(along.y, along.x).to_degrees()].map(number);
+        let [x, y, turn] = [at.x, at.y, libm::atan2(along.y, along.x).to_degrees()].map(rounded);
         let font = Font::new(3.2).middle().fitting(words, along.norm(), 2.0);
         self.element(&format!(
             "<text transform=\"translate({x},{y}) rotate({turn})\" y=\"-1.2\"{font}>{}</text>",

@@ -39,7 +39,7 @@ impl Drawing {
     /// Returns the drawing as a stand-alone SVG with a width and height. They are its true size in `unit` (`mm`); if
     /// `unit` is empty, the viewer chooses the size.
     pub fn svg(self, [width, height]: [f64; 2], unit: &str) -> String {
-        let [wide, high] = [width, height].map(number);
+        let [wide, high] = [width, height].map(rounded);
         let size = match unit {
             "" => String::new(),
             unit => format!(" width=\"{wide}{unit}\" height=\"{high}{unit}\""),
@@ -65,7 +65,7 @@ impl Drawing {
 
     /// Draws a panel with a border at which its elements are clipped; their origin is its upper left corner.
     pub fn panel(&mut self, corner: Point2<f64>, size: [f64; 2], draw: impl FnOnce(&mut Self)) {
-        let [x, y, width, height] = [corner.x, corner.y, size[0], size[1]].map(number);
+        let [x, y, width, height] = [corner.x, corner.y, size[0], size[1]].map(rounded);
         self.element(&format!("<svg x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\">"));
         self.element("<rect width=\"100%\" height=\"100%\" fill=\"none\" stroke=\"#ccc\"/>");
         draw(self);
@@ -74,7 +74,7 @@ impl Drawing {
 
     /// Writes a text at a point.
     pub fn text(&mut self, at: Point2<f64>, words: &str, font: Font) {
-        let [x, y] = [at.x, at.y].map(number);
+        let [x, y] = [at.x, at.y].map(rounded);
         self.element(&format!("<text x=\"{x}\" y=\"{y}\"{font}>{}</text>", escape(words)));
     }
 
@@ -106,7 +106,7 @@ impl Drawing {
     pub fn rectangle(&mut self, [a, b]: [Point2<f64>; 2], radius: f64, style: Style) {
         let (corner, size) = (a.inf(&b), (b - a).abs());
         let [x, y, width, height, radius] =
-            [corner.x, corner.y, size.x, size.y, radius].map(number);
+            [corner.x, corner.y, size.x, size.y, radius].map(rounded);
         self.element(&format!(
             "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"{radius}\"{style}/>"
         ));
@@ -114,7 +114,7 @@ impl Drawing {
 
     /// Draws a disc.
     pub fn disc(&mut self, at: Point2<f64>, radius: f64, style: Style) {
-        let [x, y, radius] = [at.x, at.y, radius].map(number);
+        let [x, y, radius] = [at.x, at.y, radius].map(rounded);
         self.element(&format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"{style}/>"));
     }
 
@@ -132,7 +132,7 @@ impl Drawing {
 fn path(points: impl IntoIterator<Item = Point2<f64>>) -> String {
     let mut data = String::new();
     for (i, point) in points.into_iter().enumerate() {
-        let [x, y] = [point.x, point.y].map(number);
+        let [x, y] = [point.x, point.y].map(rounded);
         // Writing to a string cannot fail.
         let _ = write!(data, "{}{x},{y}", if i == 0 { 'M' } else { 'L' });
     }
@@ -140,7 +140,7 @@ fn path(points: impl IntoIterator<Item = Point2<f64>>) -> String {
 }
 
 /// Rounds to three decimals, finer than the eye can resolve; adding 0 turns -0 into 0.
-fn number(value: f64) -> f64 {
+fn rounded(value: f64) -> f64 {
     (value * 1e3).round() / 1e3 + 0.0
 }
 

@@ -49,7 +49,7 @@ impl Display for Style {
             write!(f, " stroke=\"{}\" stroke-width=\"{}\"", self.stroke, self.width)?;
         }
         if self.dashed {
-            let [dash, gap] = [5.0, 3.0].map(|widths| super::number(widths * self.width));
+            let [dash, gap] = [5.0, 3.0].map(|widths| super::rounded(widths * self.width));
             write!(f, " stroke-dasharray=\"{dash} {gap}\"")?;
         }
         Ok(())
@@ -100,7 +100,7 @@ impl Font {
 
 impl Display for Font {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        write!(f, " font-size=\"{}\" fill=\"{}\"", super::number(self.size), self.colour)?;
+        write!(f, " font-size=\"{}\" fill=\"{}\"", super::rounded(self.size), self.colour)?;
         if self.anchor != "start" {
             write!(f, " text-anchor=\"{}\"", self.anchor)?;
         }

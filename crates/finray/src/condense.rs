@@ -21,8 +21,8 @@ const LEAF: usize = 8;
 pub trait Element {
     /// Number of degrees of freedom of a node.
     const DOFS: usize;
-    /// Returns the stiffness matrix of a triangle, square, row by row, by the degrees of freedom of its six nodes; only the
-    /// lower half is used.
+    /// Returns the stiffness matrix of a triangle, square, row by row, by the degrees of freedom of its six nodes; only
+    /// the lower half is used.
     fn stiffness(&self, corners: [Point2<f64>; 3]) -> Vec<f64>;
     /// Returns the displacements of a node per unit of the three motions of a rigid pad, a row for each degree of
     /// freedom; `place` is the position of the node along y and z, from the middle of the pad, m.
@@ -34,9 +34,9 @@ pub trait Element {
 pub enum Role {
     /// Eliminated: it carries no load.
     Free,
-    /// Clamped.
+    /// Clamped: it does not move.
     Fixed,
-    /// Condensed onto.
+    /// Kept: the mesh is condensed onto it.
     Kept,
 }
 
@@ -74,7 +74,7 @@ pub fn condense<E: Element>(
         places: vec![0; mesh.nodes.len()],
         steps: remember.then(Vec::new),
     };
-    let root = work.part(0..mesh.triangles.len())?;
+    let root = work.condense(0..mesh.triangles.len())?;
     let stiffness = DMatrix::from_fn(root.size(), root.size(), |i, j| root.at(i.max(j), i.min(j)));
     Ok(Condensed {
         nodes: root.nodes,
@@ -87,7 +87,7 @@ pub fn condense<E: Element>(
 
 impl Condensed {
     /// Returns the displacement of every node (`DOFS` numbers each, m or rad) from those of the kept
-    /// nodes, in the order of the matrix. Free nodes stay at 0 unless they were remembered.
+    /// nodes, in the order of the matrix. Those of free nodes are 0 unless `remember` was set.
     pub fn expand(&self, kept: &DVector<f64>) -> Vec<f64> {
         let mut all = vec![0.0; self.count * self.dofs];
         for (&node, from) in self.nodes.iter().zip(kept.as_slice().chunks(self.dofs)) {
@@ -108,7 +108,7 @@ struct Condensation<'a, E> {
     /// First and last place in `order` of the triangles of a node.
     spans: Vec<[u32; 2]>,
     roles: &'a [Role],
-    /// Scratch: place of each node in the present frontal matrix.
+    /// Scratch: index of each node in the current frontal matrix.
     places: Vec<u32>,
     steps: Option<Vec<Frontal>>,
 }
@@ -116,7 +116,7 @@ struct Condensation<'a, E> {
 impl<E: Element> Condensation<'_, E> {
     /// Returns the stiffness of the triangles at these places of the order, condensed onto the nodes they share with
     /// others.
-    fn part(&mut self, range: Range<usize>) -> Result<Frontal, MeshError> {
+    fn condense(&mut self, range: Range<usize>) -> Result<Frontal, MeshError> {
         let cut = if range.len() > LEAF { self.cuts.next() } else { None };
         let parts: Vec<(Vec<u32>, Vec<f64>)> = match cut.map(|cut| range.start + cut) {
             None => {
@@ -126,7 +126,7 @@ impl<E: Element> Condensation<'_, E> {
                 };
                 self.order[range.clone()].iter().map(triangle).collect()
             }
-            Some(cut) => [self.part(range.start..cut)?, self.part(cut..range.end)?]
+            Some(cut) => [self.condense(range.start..cut)?, self.condense(cut..range.end)?]
                 .map(|half| (half.nodes, half.values))
                 .into(),
         };
@@ -146,7 +146,7 @@ impl<E: Element> Condensation<'_, E> {
         Ok(rest)
     }
 
-    /// Returns the zero matrix of these nodes, those first that belong to no triangle outside the range.
+    /// Creates a frontal matrix of zeros; nodes that belong to no triangle outside the range come first.
     fn frontal(&mut self, mut nodes: Vec<u32>, range: &Range<usize>) -> Frontal {
         nodes.sort_unstable();
         nodes.dedup();

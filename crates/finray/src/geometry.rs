@@ -14,7 +14,7 @@ use input::{Check, InputError};
 pub struct Geometry {
     /// Finger file, with the numbers that the design sets in it.
     pub finger: PrintedFinger,
-    /// Infill.
+    /// Infill of the finger.
     pub design: InfillDesign,
     /// Centre lines of the ribs.
     pub lines: RibLines,
@@ -33,16 +33,15 @@ impl Geometry {
     /// Creates the checked profile of a finger with an infill.
     ///
     /// # Errors
-    /// If its parts do not fit one another; the message names file and key.
+    /// If the parts of the finger do not fit together; the message names file and key.
     pub fn new(finger: &PrintedFinger, design: &InfillDesign) -> Result<Self, FingerError> {
         let lines = RibLines::new(finger, design);
         let check = Check { file: &finger.file };
         check_outline(check, &finger.outline)?;
         check_ribs(check, finger, design, lines.pitch)?;
-        finger
-            .holes
-            .iter()
-            .try_for_each(|holes| holes.check(check, &finger.outline, finger.line_width))?;
+        if let Some(holes) = &finger.holes {
+            holes.check(check, &finger.outline, finger.line_width)?;
+        }
         let outer = without_repeats(&ring(&finger.outline, 0.0, finger.outline.length), 1e-9);
         let ribbed = finger.outline.length - finger.outline.solid;
         let inside = ring(&finger.outline, finger.skin, ribbed);
@@ -102,7 +101,7 @@ fn gaps(inside: &Ring, finger: &PrintedFinger, lines: &RibLines) -> Vec<(i64, Ve
 
 type Checked = Result<(), InputError>;
 
-/// Refuses a value of the key, m, that is not below a limit.
+/// Checks that a value, m, is below a limit, m; `because` explains the limit.
 fn below(check: Check<'_>, key: &str, value: f64, limit: f64, because: &str) -> Checked {
     if value < limit {
         return Ok(());
@@ -129,7 +128,7 @@ fn check_outline(check: Check<'_>, outline: &Outline) -> Checked {
         let (end, base) = (centre.x / MM, ribbed / MM);
         let problem = format!(
             "is {radius:.3}; the arc would end at X = {end:.3}, in the solid base that begins \
-             at {base:.3}: a smaller radius, or a longer finger"
+             at {base:.3}: choose a smaller radius or a longer finger"
         );
         return check.fail("outline.back_radius_mm", problem);
     }
@@ -137,7 +136,7 @@ fn check_outline(check: Check<'_>, outline: &Outline) -> Checked {
     below(check, "notch.pad_mm", pad, to_side, "the pad ends behind the front")?;
     let to_base = ribbed / libm::cos(outline.pad_angle);
     below(check, "notch.pad_mm", pad, to_base, "the notch ends before the solid base")?;
-    below(check, "notch.roof_mm", roof, outline.roof_length(), "the roof is no longer")
+    below(check, "notch.roof_mm", roof, outline.roof_length(), "that is the length of the roof")
 }
 
 /// Checks that ribs at this pitch, m, can be printed and leave room between them.
@@ -161,8 +160,8 @@ fn check_ribs(
         let most = ribs.line_spacing / (ribs.thickness + gap) / PERCENT;
         let problem = format!(
             "is {:.3}; at {density_percent} % infill the ribs lie {:.3} mm apart and merge, \
-             their gaps below print.smallest_gap_mm = {:.3}: thinner ribs, or a density of at \
-             most {most:.1} %",
+             their gaps below print.smallest_gap_mm = {:.3}: choose thinner ribs, or a density \
+             of at most {most:.1} %",
             ribs.thickness / MM,
             pitch / MM,
             gap / MM,
@@ -193,8 +192,8 @@ fn check_rings(check: Check<'_>, finger: &PrintedFinger, outer: &Ring, inside: &
     let hollow = inside.first().is_some_and(|tip| tip.x < finger.outline.corner().x);
     if !finite || !hollow || polygon::crosses_itself(inside) || polygon::area(inside) <= 0.0 {
         let problem = format!(
-            "is {:.3}; it is thicker than the tip and leaves no room for ribs behind the pad: a \
-             thinner one",
+            "is {:.3}; it is thicker than the tip and leaves no room for ribs behind the pad: \
+             choose a thinner skin",
             finger.skin / MM
         );
         return check.fail("skin.thickness_mm", problem);

@@ -1,11 +1,11 @@
-//! Nested dissection of a mesh: an order of its triangles by cuts that few nodes lie on.
+//! Nested dissection of a mesh: an order of its triangles by recursive cuts across few nodes.
 
 use super::mesh::Mesh;
 use nalgebra::Point2;
 
-/// Halves a mesh recursively into parts of at most `leaf` triangles. Returns the order of the triangles in which
-/// each part is contiguous, and the number of triangles before each cut: first that of the whole, then those of its
-/// first half, then those of its second half.
+/// Halves a mesh recursively into parts of at most `leaf` triangles. Returns an order of the triangles in which each
+/// part is contiguous, and the number of triangles before each cut, in pre-order: the cut of the whole, the cuts of
+/// its first part, the cuts of its second part.
 pub(super) fn halve(mesh: &Mesh, leaf: usize) -> (Vec<u32>, Vec<usize>) {
     let centre = |t| mesh.corners(t).iter().fold(Point2::origin(), |sum, p| sum + p.coords / 3.0);
     let centres: Vec<_> = (0..mesh.triangles.len()).map(centre).collect();
@@ -26,9 +26,7 @@ pub(super) fn halve(mesh: &Mesh, leaf: usize) -> (Vec<u32>, Vec<usize>) {
 fn ranks(centres: &[Point2<f64>], [x, y]: [f64; 2]) -> Vec<u32> {
     let places: Vec<f64> = centres.iter().map(|centre| x * centre.x + y * centre.y).collect();
     let mut sorted: Vec<u32> = (0..centres.len() as u32).collect();
-    sorted.sort_unstable_by(|&a, &b| {
-        places[a as usize].total_cmp(&places[b as usize]).then(a.cmp(&b))
-    });
+    sorted.sort_by(|&a, &b| places[a as usize].total_cmp(&places[b as usize]));
     let mut ranks = vec![0; centres.len()];
     for (rank, t) in sorted.into_iter().enumerate() {
         ranks[t as usize] = rank as u32;
@@ -53,7 +51,7 @@ struct Halving {
 const DIRECTIONS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [0.7, 0.7], [0.7, -0.7]];
 /// Shares of the triangles that may lie before a cut.
 const SHARES: [f64; 3] = [0.5, 0.4, 0.6];
-/// Number of triangles below which a set is halved along x or y, whichever is longer.
+/// Number of triangles below which only the cut into halves along x or y is tried.
 const FEW: usize = 30;
 
 /// Direction, and number of the triangles that lie first along it.
@@ -65,7 +63,7 @@ impl Halving {
             order.sort_unstable();
             return;
         }
-        let cut = if order.len() < FEW { self.longest(order) } else { self.best(order) };
+        let cut = if order.len() < FEW { self.halves(order) } else { self.best(order) };
         self.cut(order, cut);
         self.cuts.push(cut.1);
         let (first, second) = order.split_at_mut(cut.1);
@@ -79,7 +77,8 @@ impl Halving {
         order.select_nth_unstable_by_key(first, |&t| ranks[t as usize]);
     }
 
-    fn longest(&self, order: &[u32]) -> Cut {
+    /// Returns the cut into halves along x or y, whichever is longer.
+    fn halves(&self, order: &[u32]) -> Cut {
         let extent = |of: fn(&Point2<f64>) -> f64| {
             let places = order.iter().map(|&t| of(&self.centres[t as usize]));
             let (low, high) =
@@ -103,7 +102,7 @@ impl Halving {
         cuts.min_by_key(shared).unwrap_or_default()
     }
 
-    /// Returns the number of corners that both parts of an order touch.
+    /// Returns the number of corners in both parts of an order.
     fn shared(&mut self, order: &[u32], first: usize) -> usize {
         let of = |t: &u32| self.corners[*t as usize];
         let (first, second) = order.split_at(first);

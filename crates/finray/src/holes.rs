@@ -1,5 +1,5 @@
-//! Holes for the screws that hold a finger, and the block beyond its end that contains those which do not
-//! run through its depth. The gripper holds this part rigidly: the mechanical model ignores it.
+//! Screw holes of a finger, through the depth of its base or in a block beyond its end. The gripper holds this
+//! part rigidly: the mechanical model ignores it.
 
 use super::polygon::Ring;
 use crate::outline::Outline;
@@ -9,7 +9,7 @@ use nalgebra::Point2;
 use serde::Deserialize;
 use std::f64::consts::{PI, TAU};
 
-/// Direction along which a finger is measured; as a number, the place of its coordinate.
+/// Axis of a finger; as a number, the index of its coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Direction {
@@ -38,19 +38,19 @@ impl Direction {
 /// Row of equal holes, m.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Holes {
-    /// Direction in which they run.
+    /// Direction along which the holes run.
     pub axis: Direction,
     /// Direction of their row.
     pub row: Direction,
     /// Number of holes.
     pub count: u32,
-    /// Distance from one middle to the next.
+    /// Distance from centre to centre.
     pub spacing: f64,
     /// Diameter of a hole.
     pub diameter: f64,
     /// Offset of the middle of the row from the middle of the base or block, along the row and across it.
     pub offset: [f64; 2],
-    /// Block that contains them; if `None`, they are in the held base.
+    /// Block that contains the holes; if `None`, they are in the held base.
     pub block: Option<Block>,
 }
 
@@ -89,16 +89,16 @@ impl Holes {
     }
 
     /// Returns the centres of the holes, m.
-    pub fn middles(&self, outline: &Outline) -> Vec<[f64; 3]> {
-        let centre = self.carrier(outline).map(|[low, high]| (low + high) / 2.0);
+    pub fn centres(&self, outline: &Outline) -> Vec<[f64; 3]> {
+        let middle = self.carrier(outline).map(|[low, high]| (low + high) / 2.0);
         let first = self.offset[0] - self.spacing * f64::from(self.count - 1) / 2.0;
-        let middle = |i: u32| {
-            let mut middle = centre;
-            middle[self.row as usize] += first + self.spacing * f64::from(i);
-            middle[self.beside()] += self.offset[1];
-            middle
+        let centre = |i: u32| {
+            let mut centre = middle;
+            centre[self.row as usize] += first + self.spacing * f64::from(i);
+            centre[self.beside()] += self.offset[1];
+            centre
         };
-        (0..self.count).map(middle).collect()
+        (0..self.count).map(centre).collect()
     }
 
     /// Returns the low and high end of each hole along each direction, m.
@@ -109,7 +109,7 @@ impl Holes {
             ends[self.axis as usize] = self.carrier(outline)[self.axis as usize];
             ends
         };
-        self.middles(outline).into_iter().map(boxed).collect()
+        self.centres(outline).into_iter().map(boxed).collect()
     }
 
     /// Returns the holes, clockwise in the plane of [`Direction::across`], m.
@@ -125,7 +125,7 @@ impl Holes {
             };
             (0..flats).map(|i| corner(angle(i))).collect()
         };
-        self.middles(outline).into_iter().map(ring).collect()
+        self.centres(outline).into_iter().map(ring).collect()
     }
 
     /// Returns the index of the coordinate perpendicular to holes and row.
@@ -133,7 +133,7 @@ impl Holes {
         3 - self.axis as usize - self.row as usize
     }
 
-    /// Checks that the holes fit into an outline printed with lines of that width, m.
+    /// Checks that the holes fit into an outline that is printed with lines of a width, m.
     pub(super) fn check(
         &self,
         check: Check<'_>,
@@ -142,7 +142,7 @@ impl Holes {
     ) -> Result<(), InputError> {
         if self.row == self.axis {
             let [one, other] = self.axis.across().map(Direction::word);
-            let problem = format!("is that of the holes; it must be \"{one}\" or \"{other}\"");
+            let problem = format!("is the axis of the holes; it must be \"{one}\" or \"{other}\"");
             return check.fail("holes.row", problem);
         }
         if self.block.is_none() && self.axis != Direction::Depth {
@@ -173,7 +173,7 @@ impl Holes {
         if let Some((place, wall)) = walls.into_iter().find(|(_, wall)| *wall < least - EPSILON) {
             let problem = format!(
                 "leave a wall of {} mm {place}; it must be at least {} mm, {WALL_LINES} printed \
-                 lines: by another diameter_mm, spacing_mm, offset_mm or count, or more room",
+                 lines; change diameter_mm, spacing_mm, offset_mm or count, or make more room",
                 mm(wall),
                 mm(least)
             );
@@ -182,16 +182,16 @@ impl Holes {
         let covered = |middle: &[f64; 3]| {
             [0.0, -outline.width].iter().any(|side| (middle[1] - side).abs() < diameter / 2.0)
         };
-        if axis == Direction::Length && self.middles(outline).iter().any(covered) {
-            let problem = "lets the finger's end cover a part of a hole; a hole lies behind the \
-                           finger, and ends there, or passes beside it";
+        if axis == Direction::Length && self.centres(outline).iter().any(covered) {
+            let problem = "puts a part of a hole behind the finger's end; a hole must lie completely \
+                           behind it or completely beside it";
             return check.fail("holes.offset_mm", problem);
         }
         Ok(())
     }
 }
 
-/// The table of a finger file.
+/// Table `holes` of a finger file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawHoles {

@@ -32,11 +32,11 @@ mod tests;
 /// Error of a printed finger.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FingerError {
-    /// A number of the finger file or the design out of range, parts that do not fit, a finger that
-    /// cannot be meshed, or a stiffness that is not plausible.
+    /// A number of the finger file or the design is out of range, parts do not fit together, the finger cannot be
+    /// meshed, or its stiffness is not plausible.
     #[error(transparent)]
     Value(#[from] input::InputError),
-    /// A task whose file couples springs that are computed.
+    /// The task file couples springs, but they are computed from the ribs.
     #[error(
         "the task `{task}`: finger.coupling goes with --finger-model paper; the springs of a \
          computed finger are coupled by its ribs"
@@ -57,7 +57,7 @@ impl input::Placed for FingerError {
 }
 
 impl FingerError {
-    /// Creates the error of a finger as a whole, of no single value.
+    /// Creates an error about a finger as a whole, not about one of its values.
     pub fn finger(finger: &printed::PrintedFinger, problem: String) -> Self {
         let file = finger.file.clone();
         FingerError::Value(input::InputError { file, line: None, key: None, problem })

@@ -33,7 +33,7 @@ pub enum MeshError {
     /// Details much smaller than the triangles.
     #[error("its mesh needs more than {MAX_VERTICES} vertices: a wall or gap is too thin")]
     TooFine,
-    /// Nodes that are not supported.
+    /// Nodes that are not connected to the base.
     #[error("a part of the finger is not connected to its base")]
     Disconnected,
     /// A stiffness matrix that is not positive definite.
@@ -92,11 +92,8 @@ impl Mesh {
         if !refined.refinement_complete {
             return Err(MeshError::TooFine);
         }
-        let mut solid = vec![true; cdt.num_all_faces()];
-        for face in &refined.excluded_faces {
-            solid[face.index()] = false;
-        }
-        let faces = cdt.inner_faces().filter(|face| solid[face.fix().index()]);
+        let outside: BTreeSet<_> = refined.excluded_faces.iter().map(|face| face.index()).collect();
+        let faces = cdt.inner_faces().filter(|face| !outside.contains(&face.fix().index()));
         Ok(Mesh::quadratic(faces.map(|face| {
             face.adjacent_edges().map(|edge| {
                 let at = edge.from().position();

@@ -28,7 +28,7 @@ const POINTS: [(f64, f64); 2] = [
 type Strains = [f64; 5];
 
 impl Element for MindlinPlate {
-    /// Deflection out of the plane (along X x Y) and the turns about X and Y.
+    /// Deflection out of the plane (along X x Y) and the rotations about X and Y.
     const DOFS: usize = 3;
 
     fn stiffness(&self, corners: [Point2<f64>; 3]) -> Vec<f64> {
@@ -54,6 +54,7 @@ impl Element for MindlinPlate {
 }
 
 impl MindlinPlate {
+    /// Adds the contribution of an integration point to the lower half of the stiffness matrix.
     fn add(&self, matrix: &mut [f64], shape: &Shape, weight: f64) {
         let strains: Vec<Strains> = (0..18).map(|i| strains(shape, i)).collect();
         for (i, of_i) in strains.iter().enumerate() {
@@ -65,7 +66,7 @@ impl MindlinPlate {
         }
     }
 
-    /// Returns the moments and shear forces by unit of length.
+    /// Returns the moments and shear forces per unit length.
     fn stress(&self, [xx, yy, xy, x, y]: &Strains) -> Strains {
         let Slab { modulus, poisson: nu, thickness } = self.0;
         let bending = modulus * thickness.powi(3) / 12.0 / (1.0 - nu * nu);
@@ -80,7 +81,7 @@ impl MindlinPlate {
     }
 }
 
-/// Strains under a unit of one degree of freedom.
+/// Returns the strains for a unit value of one degree of freedom.
 fn strains(shape: &Shape, freedom: usize) -> Strains {
     let value = shape.values[freedom / 3];
     let [dx, dy] = shape.gradients[freedom / 3];

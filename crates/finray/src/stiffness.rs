@@ -94,7 +94,7 @@ impl CrossStiffness {
 mod tests {
     use super::*;
 
-    /// Springs that sit at a centre away from the pad, seen from the pad's middle.
+    /// Springs at a remote centre, expressed at the pad's middle.
     #[test]
     fn springs_at_a_remote_centre_are_found_again() {
         let (ky, kz, kt, below, ahead) = (2e3, 4e4, 5.0, 0.02, 0.004);

@@ -26,7 +26,7 @@ const ABANDONED: Duration = Duration::from_secs(3600);
 /// # Errors
 /// If it cannot be read, is not UTF-8 or is longer than `limit` bytes.
 pub fn read_text(path: &Path, limit: u64) -> io::Result<String> {
-    text(read_up_to(File::open(path)?, limit)?)
+    utf8(read_up_to(File::open(path)?, limit)?)
 }
 
 /// Returns the bytes of an open file.
@@ -43,7 +43,7 @@ pub fn read_up_to(file: impl Read, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn text(bytes: Vec<u8>) -> io::Result<String> {
+fn utf8(bytes: Vec<u8>) -> io::Result<String> {
     let problem = "stream did not contain valid UTF-8";
     String::from_utf8(bytes).map_err(|_| io::Error::new(io::ErrorKind::InvalidData, problem))
 }
@@ -80,7 +80,7 @@ pub fn write_atomic(path: &Path, content: &[u8]) -> io::Result<()> {
 
 fn write_whole(path: &Path, content: &[u8], mode: Option<Permissions>) -> io::Result<()> {
     let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-    let (temporary, mut file) = temporary(folder.unwrap_or(Path::new(".")))?;
+    let (temporary, mut file) = create_temporary(folder.unwrap_or(Path::new(".")))?;
     let written = (|| {
         // Set before the file has any content.
         mode.map_or(Ok(()), |mode| file.set_permissions(mode))?;
@@ -124,7 +124,7 @@ impl LockedFile {
             file.lock()?;
             // The previous owner of the lock may have removed or replaced the file.
             if fs::metadata(path).is_ok_and(|now| is_open_file(&now, &file).unwrap_or(false)) {
-                let text = text(read_up_to(&file, limit)?)?;
+                let text = utf8(read_up_to(&file, limit)?)?;
                 return Ok(LockedFile { file, path: path.to_owned(), text, created });
             }
         }
@@ -191,7 +191,7 @@ impl Drop for LockedFile {
 }
 
 /// Creates a file under a name that no other thread, process or machine uses.
-fn temporary(folder: &Path) -> io::Result<(PathBuf, File)> {
+fn create_temporary(folder: &Path) -> io::Result<(PathBuf, File)> {
     static WRITES: AtomicU64 = AtomicU64::new(0);
     let [begin, end] = TEMPORARY;
     loop {

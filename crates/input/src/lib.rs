@@ -121,8 +121,8 @@ impl<'a> Document<'a> {
         Ok(value)
     }
 
-    /// Checks that no array has more elements than are used. The deserializer of a text ignores the others: of
-    /// `[-4,175, 4,175]`, with decimal commas, it would take -4 and 175.
+    /// Checks that no array is too long. The deserializer of TOML text ignores surplus elements: it would read
+    /// `[-4,175, 4,175]`, with decimal commas, as -4 and 175.
     fn check_lengths<T: DeserializeOwned>(&self, table: toml::Table) -> Result<(), InputError> {
         T::deserialize(toml::Value::Table(table)).map(|_| ()).map_err(|error| InputError {
             file: self.file.to_owned(),
@@ -258,7 +258,7 @@ impl Check<'_> {
     /// # Errors
     /// If it does not.
     pub fn finite(&self, key: &str, value: f64) -> Result<f64, InputError> {
-        // Written so that a NaN is outside.
+        // A NaN fails the comparison.
         let fits = value.abs() <= LARGEST;
         self.require(key, value, fits, "be a finite number of magnitude 1e9 or less")
     }

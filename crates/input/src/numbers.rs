@@ -8,11 +8,11 @@ use toml::{Table, Value};
 /// Check for values of a design, which are not in a file.
 pub const DESIGN: Check<'static> = Check { file: "design" };
 
+/// Names of the numbers in a vector.
 const VECTOR: [&str; 3] = ["x", "y", "z"];
 
-/// A TOML file as read. A number's key is the root, then its path in the file: tables and keys as
-/// written in the file; one of several tables by its `name`; a number of a vector by `x`, `y`, `z`, of
-/// any other list by its index, from 0.
+/// TOML file as read. The key of a number is the root, then the path in the file. One of several tables is
+/// identified by its `name`, a number in a vector by `x`, `y` or `z`, and one in any other list by its index, from 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NumberFile {
     root: &'static str,
@@ -47,10 +47,10 @@ impl NumberFile {
         number.as_float().or_else(|| number.as_integer().map(|whole| whole as f64))
     }
 
-    /// Returns the table with these numbers in place of its own.
+    /// Returns the table with new values of some of its numbers.
     ///
     /// # Errors
-    /// If a key sets no number or two; the message suggests keys of the file and of `elsewhere`.
+    /// If a key matches no number or two numbers; the message suggests keys of the file and of `elsewhere`.
     pub fn with<'k>(
         &self,
         values: impl IntoIterator<Item = (&'k str, f64)>,
@@ -70,7 +70,7 @@ impl NumberFile {
                 (None, _) => {
                     let keys = numbers.iter().map(|(name, _)| name.as_str());
                     let keys: Vec<&str> = keys.chain(elsewhere.iter().copied()).collect();
-                    return DESIGN.fail(key, unknown(key, &keys));
+                    return DESIGN.fail(key, unknown_path(key, &keys));
                 }
             }
         }
@@ -104,7 +104,7 @@ fn numbers<'a>(path: &str, value: &'a mut Value) -> Vec<(String, &'a mut Value)>
 
 /// Returns the error message for a path that is not in `paths`: the nearest path, and the words that can follow its
 /// longest known prefix.
-pub fn unknown(path: &str, paths: &[&str]) -> String {
+pub fn unknown_path(path: &str, paths: &[&str]) -> String {
     let near = nearest(path, paths).map(|near| format!("; did you mean `{near}`?"));
     let hint = near.as_deref().unwrap_or(";");
     let mut end = path.len();

@@ -60,7 +60,7 @@ impl TryFrom<u8> for FailureClass {
     }
 }
 
-/// Outcome of one trial, in files `inserted`, `diverged` or the number of the failure class.
+/// Outcome of one trial; serialized as `inserted`, `diverged` or the number of the failure class.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
@@ -83,7 +83,7 @@ impl Outcome {
         }
     }
 
-    /// Returns the name for texts; for a failure that of its class.
+    /// Returns the name for texts; for a failure, the name of its class.
     pub fn label(self) -> &'static str {
         match self {
             Outcome::Failed(class) => class.label(),

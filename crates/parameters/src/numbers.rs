@@ -229,10 +229,8 @@ pub fn problem(path: &str, value: f64) -> Option<String> {
 
 /// Returns whether a path matches a pattern; a name in place of `*` may contain dots.
 fn matches(pattern: &str, path: &str) -> bool {
-    let (word, rest) = match pattern.split_once('.') {
-        Some((word, rest)) => (word, Some(rest)),
-        None => (pattern, None),
-    };
+    let split = pattern.split_once('.');
+    let (word, rest) = (split.map_or(pattern, |(word, _)| word), split.map(|(_, rest)| rest));
     let goes_on = |after: &str| match (rest, after.strip_prefix('.')) {
         (Some(rest), Some(path)) => matches(rest, path),
         (rest, _) => rest.is_none() && after.is_empty(),
@@ -258,14 +256,11 @@ pub fn check(check: Check<'_>, path: &str, value: f64) -> Result<(), InputError>
 /// # Errors
 /// If a number is out of bounds; the error is about the first one.
 pub fn check_file(root: &str, table: &toml::Table, file: &str) -> Result<(), InputError> {
-    let rows: Vec<PartialMatch> = NUMBERS
-        .iter()
-        .filter_map(|number| Some((number, number.pattern.strip_prefix(root)?.strip_prefix('.')?)))
-        .collect();
-    check_table(Check { file }, "", table, &rows)
+    let all: Vec<_> = NUMBERS.iter().map(|number| (number, number.pattern)).collect();
+    check_table(Check { file }, "", table, &advance(&all, |word| word == root))
 }
 
-/// Entry of the table whose pattern begins with the path so far, and the rest of the pattern.
+/// Entry of the table whose pattern begins like the path, and the rest of the pattern.
 type PartialMatch = (&'static NumberSpec, &'static str);
 
 /// Returns the entries whose patterns continue with a matching word, advanced by this word.
@@ -312,20 +307,18 @@ fn check_value(
             below.extend(rows.iter().filter(|(_, rest)| rest.is_empty()));
             items.iter().try_for_each(|item| check_value(check, key, item, &below))
         }
-        Value::Integer(_) | Value::Float(_) => {
-            let number = value.as_float().or(value.as_integer().map(|whole| whole as f64));
-            match (number, rows.iter().find(|(_, rest)| rest.is_empty())) {
-                (Some(value), Some((row, _))) => out_of_bounds(value, row.bounds)
-                    .map_or(Ok(()), |problem| check.fail(key, problem)),
-                _ => Ok(()),
-            }
+        Value::Integer(whole) => check_value(check, key, &Value::Float(*whole as f64), rows),
+        Value::Float(number) => {
+            let row = rows.iter().find(|(_, rest)| rest.is_empty());
+            let problem = row.and_then(|(row, _)| out_of_bounds(*number, row.bounds));
+            problem.map_or(Ok(()), |problem| check.fail(key, problem))
         }
         _ => Ok(()),
     }
 }
 
 fn out_of_bounds(value: f64, [low, high]: [f64; 2]) -> Option<String> {
-    // Written so that a NaN is outside.
+    // A NaN is outside.
     let outside = !(low..=high).contains(&value);
     outside.then(|| {
         let [value, low, high] = [value, low, high].map(shown);

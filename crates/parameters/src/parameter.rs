@@ -140,7 +140,7 @@ impl Parameter {
             return check.fail(name, problem);
         }
         if self.source.trim().is_empty() {
-            return check.fail(name, "source is empty; say where the bounds come from");
+            return check.fail(name, "source is empty; state where the bounds come from");
         }
         let (value, sd) = match (self.value, self.sd) {
             (None, None) => return Ok(()),
@@ -199,7 +199,7 @@ pub fn draws(parameters: &[Parameter], seed: u64, count: u32) -> Vec<Vec<f64>> {
     let draw = |i: u32| {
         let share =
             |path: &Path| stream(seed, u64::from(i), &format!("{PURPOSE}{path}")).random::<f64>();
-        parameters.iter().map(|one| one.at(share(&one.path))).collect()
+        parameters.iter().map(|parameter| parameter.at(share(&parameter.path))).collect()
     };
     (0..count).map(draw).collect()
 }

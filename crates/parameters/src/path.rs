@@ -1,7 +1,7 @@
 //! Paths of numbers, checked against the table of all numbers.
 
 use crate::numbers::{Kind, NUMBERS, NumberSpec};
-use input::numbers::unknown;
+use input::numbers::unknown_path;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::Deref;
@@ -36,14 +36,9 @@ impl Path {
             Some((_, number)) => Ok(Path { text, number }),
             None => {
                 let known: Vec<&str> = known.iter().map(|(path, _)| path.as_str()).collect();
-                Err(UnknownPath(unknown(&text, &known)))
+                Err(UnknownPath(unknown_path(&text, &known)))
             }
         }
-    }
-
-    /// Returns the path as text.
-    pub fn as_str(&self) -> &str {
-        &self.text
     }
 
     /// Returns the object on which the number is set.

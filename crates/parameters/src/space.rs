@@ -36,9 +36,9 @@ impl Variable {
     fn problem(&self) -> Option<String> {
         let Variable { low, high, step, .. } = *self;
         let [least, most] = self.key.bounds();
-        let (linear, levels) = (is_linear(&self.scale), self.steps());
+        let (linear, steps) = (is_linear(&self.scale), self.steps());
         let wide = linear && high > low && step > (high - low) * (1.0 + 1e-9);
-        let uneven = (levels - levels.round()).abs() > 1e-6 || levels > 1e6;
+        let uneven = (steps - steps.round()).abs() > 1e-6 || steps > 1e6;
         let within = format!("must lie in {} .. {}", shown(least), shown(most));
         let log = "on a log scale step must be above 1 and low above 0";
         let settable = matches!(self.key.kind(), Kind::Infill | Kind::File | Kind::Finger);
@@ -61,7 +61,7 @@ impl Variable {
         problems.into_iter().find(|(wrong, _)| *wrong).map(|(_, problem)| problem.to_owned())
     }
 
-    /// Returns the number of distinct values.
+    /// Returns the number of levels.
     pub fn levels(&self) -> u32 {
         self.steps().round() as u32 + 1
     }
@@ -109,7 +109,6 @@ impl Variable {
         let last = self.levels() - 1;
         let zero = (-self.low / self.step).round().clamp(0.0, f64::from(last)) as u32;
         let mut levels = vec![0, zero, last];
-        levels.sort_unstable();
         levels.dedup();
         levels.into_iter().map(|level| self.value(level)).collect()
     }
@@ -122,11 +121,9 @@ pub fn corners<'a>(parameters: impl IntoIterator<Item = &'a Variable>, most: usi
     for parameter in parameters {
         let values = parameter.extremes();
         if values.len() <= most / designs.len() {
-            let with = |mut design: Design, value| {
-                design.0.insert(parameter.key.to_string(), value);
-                design
+            let each = |design: &Design| {
+                values.iter().map(|&value| design.with(&parameter.key, value)).collect()
             };
-            let each = |design: &Design| values.iter().map(|&v| with(design.clone(), v)).collect();
             designs = designs.iter().flat_map::<Vec<Design>, _>(each).collect();
         }
     }
@@ -224,7 +221,7 @@ struct RawSpace {
     parameter: Vec<Variable>,
 }
 
-/// Space inside another file; the reader of that file adds its name to errors.
+/// Conversion of a space inside another file; the reader of that file adds its name to errors.
 impl TryFrom<RawSpace> for Space {
     type Error = InputError;
     fn try_from(raw: RawSpace) -> Result<Self, InputError> {

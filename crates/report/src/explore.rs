@@ -106,7 +106,7 @@ fn data(answer: &Answer, model: Option<&surface::Model>, dir: &Path) -> Value {
     let measure = config.objective.first();
     let parameter = |p: &Variable| {
         let (label, unit) = label(&p.key);
-        let option = match p.key.as_str() {
+        let option = match &*p.key {
             DENSITY_KEY => "--density ".to_owned(),
             DIRECTION_KEY => "--direction ".to_owned(),
             key => format!("--set {key}="),

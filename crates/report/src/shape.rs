@@ -19,7 +19,7 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     let file = finger_file(record)?;
     let of_file: Vec<(&str, f64)> = shape
         .iter()
-        .filter_map(|p| Some((p.key.as_str(), p.value(p.nearest(file.numbers.number(&p.key)?)))))
+        .filter_map(|p| Some((&*p.key, p.value(p.nearest(file.numbers.number(&p.key)?)))))
         .collect();
     let has_finger_of_file = |recorded: &&Recorded| {
         of_file.iter().all(|(key, value)| recorded.design.get(key) == Some(*value))

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::setup::printed::PrintRequest;
 use clap::ValueEnum;
 use finray::export::prism::Prism;
-use finray::export::sheet::AtPad;
+use finray::export::sheet::PadStiffness;
 use finray::export::{self, profile, sheet, slicer};
 use finray::geometry::Geometry;
 use finray::mechanics;
@@ -186,7 +186,7 @@ fn page(request: &PrintRequest, geometry: &Geometry, out: &Path) -> Result<Strin
     };
     let ribs = mechanics::compute(geometry).map_err(Failure::input)?;
     let measured = request.predicted_stiffness()?.map(|prediction| prediction.at_pad());
-    Ok(write(geometry, &AtPad { ribs: &ribs, measured }))
+    Ok(write(geometry, &PadStiffness { ribs: &ribs, measured }))
 }
 
 /// Writes settings for a slicer, and next to them outline and base.

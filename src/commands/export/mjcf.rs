@@ -60,7 +60,7 @@ impl Request {
         let robot = &setup.evaluator.robot;
         let mounted = robot.mount(task.turn, task.strategy.tilt).map_err(Failure::input)?;
         let scene = cell::build(&task, &mounted, &finger).scene;
-        let instead = match scene.patched() {
+        let instead = match scene.first_patch() {
             Some(_) => "give finger_plug_torsion_mm in mm",
             None => "--robot servo and --robot rigid need none of it",
         };

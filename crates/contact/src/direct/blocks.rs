@@ -9,6 +9,7 @@ use nalgebra::{Cholesky, Const, Matrix6, SVector};
 /// Velocity (linear of the centre of mass, angular) or impulse, world axes.
 pub(super) type Vector6 = SVector<f64, 6>;
 
+/// Index of a block that is always zero.
 const NONE: usize = usize::MAX;
 
 /// Symmetric matrix of 6x6 blocks with a fixed pattern, as its lower half.
@@ -16,9 +17,9 @@ const NONE: usize = usize::MAX;
 pub(super) struct Blocks {
     /// Number of bodies.
     size: usize,
-    /// Number of the first bodies, which are eliminated.
+    /// Number of eliminated bodies, which come first.
     pub eliminated: usize,
-    /// Place in `blocks` of a block (row >= column).
+    /// Index in `blocks` of each block (row >= column).
     index: Vec<usize>,
     blocks: Vec<Matrix6<f64>>,
     factors: Vec<Cholesky<f64, Const<6>>>,
@@ -120,16 +121,16 @@ impl Blocks {
 
     /// Copies the remaining matrix into a dense one, row by row, with both halves.
     pub fn remainder(&self, dense: &mut [Six]) {
-        let sixes = self.size - self.eliminated;
+        let remaining = self.size - self.eliminated;
         dense.fill([0.0; 6]);
-        for i in 0..sixes {
+        for i in 0..remaining {
             for j in 0..=i {
                 let (row, column) = (i + self.eliminated, j + self.eliminated);
                 let Some(block) = self.get(row, column) else { continue };
                 for r in 0..6 {
                     for c in 0..6 {
-                        dense[(6 * i + r) * sixes + j][c] = block[(r, c)];
-                        dense[(6 * j + c) * sixes + i][r] = block[(r, c)];
+                        dense[(6 * i + r) * remaining + j][c] = block[(r, c)];
+                        dense[(6 * j + c) * remaining + i][r] = block[(r, c)];
                     }
                 }
             }

@@ -2,8 +2,8 @@
 //!
 //! A plug of 20 g meets a corner of 0.55 N/um within 0.3 ms. A step that is longer than that spreads the
 //! impulse, the pads hold it by friction, and the plug slips less in the grasp than it should. With sharp
-//! edges windows do not depend on that; on round rims the plug then turns instead of sliding, and ends
-//! move by up to 1.2 mm (`docs/notes/simulation.md`, "Round edges").
+//! edges windows do not depend on that; on round rims the plug then turns instead of sliding, and the
+//! ends of windows move by up to 1.2 mm (`docs/notes/simulation.md`, "Round edges").
 
 use super::body::{Kind, MovingBody};
 use super::world::DirectWorld;
@@ -11,7 +11,7 @@ use crate::ContactForce;
 use crate::scene::Pose;
 use nalgebra::Vector3;
 
-/// Number of parts of a divided step.
+/// Number of parts into which a step is divided.
 const PARTS: usize = 8;
 /// Number of steps that are divided after an impact begins: that of the impact and three more.
 const DIVIDED: usize = 4;
@@ -32,7 +32,7 @@ impl DirectWorld {
         divided
     }
 
-    /// Returns whether two surfaces meet at speed within the step.
+    /// Returns whether two surfaces meet within the step, faster than `IMPACT`.
     fn has_impact(&self) -> bool {
         self.touches.iter().any(|touch| {
             let pair = &self.pairs[touch.pair];

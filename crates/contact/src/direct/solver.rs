@@ -36,8 +36,8 @@ pub(super) fn lever(arm: &Vector3<f64>, patch: &Vector3<f64>) -> Matrix4x3<f64> 
     lever
 }
 
-/// Returns the lever of a contact point for friction that acts at an offset `aside` from it, m: rotation about the
-/// normal moves the point at this offset.
+/// Returns the lever of a contact point whose friction acts at an offset `aside`, m: its linear velocity then
+/// includes that of the offset point due to rotation about the normal.
 pub(super) fn offset_lever(
     lever: &Matrix4x3<f64>,
     aside: &Vector3<f64>,
@@ -57,7 +57,7 @@ pub(super) fn point_velocity(lever: &Matrix4x3<f64>, v: &Six) -> Vector4<f64> {
 /// Contact of the solver. Velocities and impulses have the four components of [`super::cone`].
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Contact {
-    /// Places of the first and second body in the reduced system; `None` for a fixed or driven body.
+    /// Indices of the first and second body in the reduced system; `None` for a fixed or driven body.
     pub place: [Option<usize>; 2],
     /// Matrix from the angular velocity of each body to the velocity of the contact point, m; see [`lever`].
     pub lever: [Matrix4x3<f64>; 2],
@@ -69,7 +69,7 @@ pub(super) struct Contact {
     pub bias: f64,
     /// Friction cone of the contact law.
     pub cone: Cone,
-    /// De Saxce's term, m/s.
+    /// De Saxce's sliding term, `mu |u_t|`, m/s.
     pub slide: f64,
     /// Relative velocity, m/s.
     pub velocity: Vector4<f64>,
@@ -95,11 +95,8 @@ impl Contact {
 
     /// Returns the relative velocity after a step of length `along` in the search direction, split for the contact law.
     fn split(&self, along: f64) -> SplitVelocity {
-        SplitVelocity::new(
-            &(self.velocity + self.change * along),
-            &self.normal,
-            self.bias + self.slide,
-        )
+        let velocity = self.velocity + self.change * along;
+        SplitVelocity::new(&velocity, &self.normal, self.bias + self.slide)
     }
 
     /// Updates the split velocity and the impulse for the current velocity.
@@ -308,11 +305,8 @@ fn add_stiffness(hessian: &mut [Six], bodies: usize, contact: &Contact, k: &Matr
             }
         }
     };
-    for (side, place) in [(0, first), (1, second)] {
-        if let Some(i) = place {
-            add([side, side], [i, i]);
-        }
-    }
+    first.into_iter().for_each(|i| add([0, 0], [i, i]));
+    second.into_iter().for_each(|i| add([1, 1], [i, i]));
     if let (Some(i), Some(j)) = (first, second) {
         if i < j { add([0, 1], [i, j]) } else { add([1, 0], [j, i]) }
     }

@@ -64,7 +64,7 @@ impl DirectWorld {
             axial_friction: scene.axial_friction.clone(),
             pairs: scene.contacts.clone(),
             forces: vec![ContactForce::default(); scene.contacts.len()],
-            patched: scene.patched().is_some(),
+            patched: scene.first_patch().is_some(),
             patches: Vec::new(),
             detector,
             system: Blocks::new(size, eliminated, &coupled),
@@ -189,7 +189,7 @@ impl DirectWorld {
             return;
         };
         let [parent, child] = [along.parent, along.child].map(|body| &self.bodies[body.0].pose);
-        joint.set_friction(along.largest(parent, child), self.settings.stick_damping);
+        joint.set_friction(along.limit(parent, child), self.settings.stick_damping);
     }
 
     /// Takes a step with the detected contacts.
@@ -235,7 +235,7 @@ impl DirectWorld {
 /// dynamic bodies. Bodies without contacts come first, in the order of their number of joints: little fill-in.
 fn places(scene: &Scene) -> (Vec<usize>, usize, usize) {
     let dynamic = |i: &usize| !matches!(scene.bodies[*i].motion, Motion::Fixed | Motion::Driven);
-    let touching = |i: &usize| scene.contacts.iter().any(|pair| pair.has(BodyId(*i)));
+    let touching = |i: &usize| scene.contacts.iter().any(|pair| pair.contains(BodyId(*i)));
     let joints =
         |i: &usize| scene.joints.iter().filter(|j| j.parent.0 == *i || j.child.0 == *i).count();
     let mut order: Vec<usize> = (0..scene.bodies.len()).filter(dynamic).collect();

@@ -10,7 +10,7 @@ use crate::scene::{
 use crate::shapes::extended;
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 
-/// Colours of the bodies in turn: red, green, blue.
+/// Colours that the bodies take in turn: red, green and blue, 0 to 1.
 const COLOURS: [[f64; 3]; 6] = [
     [0.30, 0.45, 0.69],
     [0.87, 0.52, 0.32],
@@ -24,7 +24,7 @@ const THIN: f64 = 1e-6;
 /// Opacity of fixed bodies.
 const SEE_THROUGH: f64 = 0.5;
 
-/// Returns the bodies, those on joints inside their parents.
+/// Returns the `worldbody`: a light, and the bodies, with each child of a joint inside its parent.
 pub(super) fn world(scene: &Scene) -> Element {
     let names = geom_names(scene);
     let is_root = |body: &usize| !scene.joints.iter().any(|joint| joint.child.0 == *body);
@@ -33,48 +33,49 @@ pub(super) fn world(scene: &Scene) -> Element {
         Element::new("light").numbers("pos", [0.1, -0.2, 0.5]).numbers("dir", [-0.2, 0.4, -1.0]);
     let list = roots.map(|body| {
         let root = &scene.bodies[body];
-        let placed = element(root, &root.pose);
+        let placed = body_element(root, &root.pose);
         let rooted = match root.motion {
             // Movable, since the trial shifts the socket and removes the stand.
             Motion::Fixed => placed.with("mocap", "true"),
-            // Slides along and hinges about the axes of its first pose.
+            // Slides along and hinges about the axes of its initial pose.
             Motion::Driven => placed.with_children(
-                (0..6).map(|axis| joint(&driven_axis_name(root, axis), &Pose::identity(), axis)),
+                (0..6).map(|i| joint_element(&driven_axis_name(root, i), &Pose::identity(), i)),
             ),
             _ => placed.with_children([Element::new("freejoint")]),
         };
-        rooted.with_children(inside(scene, body, &names))
+        rooted.with_children(contents(scene, body, &names))
     });
     Element::new("worldbody").with_children([light]).with_children(list)
 }
 
-/// Returns the children of a body after its joints: inertia, geoms and the bodies it carries.
-fn inside(scene: &Scene, body: usize, names: &[Vec<String>]) -> Vec<Element> {
+/// Returns the elements of a body after its joints: inertia, geoms, sites and the bodies on its joints.
+fn contents(scene: &Scene, body: usize, names: &[Vec<String>]) -> Vec<Element> {
     let mut list: Vec<Element> = inertial(&scene.bodies[body].motion).into_iter().collect();
     let geoms = scene.bodies[body].geoms.iter().zip(&names[body]);
     list.extend(geoms.map(|(geom, name)| geom_element(scene, body, geom, name)));
-    list.extend(scene.axial_friction.iter().flat_map(|along| sites(along, BodyId(body))));
+    list.extend(scene.axial_friction.iter().flat_map(|friction| sites(friction, BodyId(body))));
     for joint in scene.joints.iter().filter(|joint| joint.parent.0 == body) {
         let child = joint.child.0;
-        let carried = element(&scene.bodies[child], &zero(joint));
-        list.push(carried.with_children(joints(joint)).with_children(inside(scene, child, names)));
+        let carried = body_element(&scene.bodies[child], &zero_pose(joint));
+        let carried = carried.with_children(joint_elements(joint));
+        list.push(carried.with_children(contents(scene, child, names)));
     }
     list
 }
 
 /// Returns the ends of the tendon with the axial friction that are on a body.
-fn sites(along: &AxialFriction, body: BodyId) -> impl Iterator<Item = Element> {
-    let ends = [(along.parent, ANCHOR, -FAR), (along.child, MATING_FORCE, 0.0)];
+fn sites(friction: &AxialFriction, body: BodyId) -> impl Iterator<Item = Element> {
+    let ends = [(friction.parent, ANCHOR, -FAR), (friction.child, MATING_FORCE, 0.0)];
     let own = ends.into_iter().filter(move |(of, ..)| *of == body);
     own.map(|(_, name, z)| Element::new("site").with("name", name).numbers("pos", [0.0, 0.0, z]))
 }
 
 /// Returns the pose of the child in the frame of the parent when all coordinates are zero.
-pub(super) fn zero(joint: &Joint) -> Pose {
+fn zero_pose(joint: &Joint) -> Pose {
     joint.in_parent * joint.in_child.inverse()
 }
 
-fn element(Body { name, motion, .. }: &Body, pose: &Pose) -> Element {
+fn body_element(Body { name, motion, .. }: &Body, pose: &Pose) -> Element {
     let element = Element::new("body").with("name", name);
     let compensated = matches!(motion, Motion::Carried(_) | Motion::Driven);
     placed(if compensated { element.with("gravcomp", 1) } else { element }, pose)
@@ -102,12 +103,12 @@ fn inertial(motion: &Motion) -> Option<Element> {
 }
 
 /// Returns the slides and hinges of a joint; the slides come first, so that their axes are those of the parent.
-fn joints(tie: &Joint) -> Vec<Element> {
+fn joint_elements(joint: &Joint) -> Vec<Element> {
     // `supports` rejects coupled springs.
-    let Springs::Axes(axes) = &tie.springs else { return Vec::new() };
+    let Springs::Axes(axes) = &joint.springs else { return Vec::new() };
     let element = |(i, axis): (usize, &Option<Spring>)| {
         let spring = axis.as_ref()?;
-        let element = joint(&axis_name(tie, i), &tie.in_child, i);
+        let element = joint_element(&axis_name(joint, i), &joint.in_child, i);
         // A servo is an actuator.
         if spring.limit.is_finite() {
             return Some(element);
@@ -119,7 +120,7 @@ fn joints(tie: &Joint) -> Vec<Element> {
     axes.iter().enumerate().filter_map(element).collect()
 }
 
-fn joint(name: &str, frame: &Pose, axis: usize) -> Element {
+fn joint_element(name: &str, frame: &Pose, axis: usize) -> Element {
     let along = frame.rotation * Vector3::ith(axis % 3, 1.0);
     let kind = if axis < AXES.len() / 2 { "slide" } else { "hinge" };
     let element = Element::new("joint").with("name", name).with("type", kind);
@@ -137,7 +138,7 @@ fn geom_element(scene: &Scene, body: usize, geom: &Geom, name: &str) -> Element 
         Shape::Cylinder { half_height, radius } => {
             element.with("type", "cylinder").numbers("size", [*radius, *half_height])
         }
-        Shape::RoundBox { core, radius } if mesh(&geom.shape).is_none() => {
+        Shape::RoundBox { core, radius } if mesh_points(&geom.shape).is_none() => {
             let element = element.with("type", if core.max() > 0.0 { "capsule" } else { "sphere" });
             element.numbers("size", [*radius, core.max()])
         }
@@ -160,8 +161,8 @@ fn upright(geom: &Geom) -> Pose {
     Pose::from_parts(Translation3::identity(), turn.unwrap_or_default())
 }
 
-/// Returns the points of a geom that is a mesh in MuJoCo.
-fn mesh(shape: &Shape) -> Option<Vec<Point3<f64>>> {
+/// Returns the points of a shape that is a mesh in MuJoCo; `None` for other shapes.
+fn mesh_points(shape: &Shape) -> Option<Vec<Point3<f64>>> {
     match shape {
         Shape::Hull { points } => Some(points.clone()),
         // A box with a margin has no contact at its edges; MuJoCo rejects a flat mesh.
@@ -172,20 +173,20 @@ fn mesh(shape: &Shape) -> Option<Vec<Point3<f64>>> {
     }
 }
 
-/// Returns the contact margin of a geom, m: the radius if its mesh is only the core, else 0.
+/// Returns the contact margin of a shape, m: the radius if its mesh is only the core, otherwise 0.
 pub(super) fn margin(shape: &Shape) -> f64 {
     match shape {
-        Shape::RoundBox { radius, .. } if mesh(shape).is_some() => *radius,
+        Shape::RoundBox { radius, .. } if mesh_points(shape).is_some() => *radius,
         _ => 0.0,
     }
 }
 
-/// Returns the meshes of the hulls and cores.
+/// Returns the `asset` element with the meshes of hulls and cores.
 pub(super) fn assets(scene: &Scene) -> Element {
     let names = geom_names(scene);
     let geoms = scene.bodies.iter().flat_map(|body| &body.geoms).zip(names.iter().flatten());
     let mesh = |(geom, name): (&Geom, &String)| {
-        let points = mesh(&geom.shape)?;
+        let points = mesh_points(&geom.shape)?;
         let corners = points.iter().flat_map(|point| <[f64; 3]>::from(point.coords));
         Some(Element::new("mesh").with("name", mesh_name(name)).numbers("vertex", corners))
     };
@@ -195,6 +196,6 @@ pub(super) fn assets(scene: &Scene) -> Element {
 /// Returns whether the initial coordinates of a joint are zero.
 pub(super) fn at_zero(scene: &Scene, joint: &Joint) -> bool {
     let pose = |body: BodyId| scene.bodies[body.0].pose;
-    let off = (pose(joint.parent) * zero(joint)).inv_mul(&pose(joint.child));
+    let off = (pose(joint.parent) * zero_pose(joint)).inv_mul(&pose(joint.child));
     off.translation.vector.norm() < 1e-9 && off.rotation.angle() < 1e-9
 }

@@ -2,14 +2,14 @@
 //!
 //! MuJoCo solves for the acceleration `a` of a contact point (along its normal, apart) and the
 //! force `f` with `R f = -k x - b v - a`: `x` is the gap, `v` its rate, `R = A (1 - d)/d` with the
-//! impedance `d`, and `A` the inverse mass that MuJoCo itself gives the pair (Todorov 2014, ICRA;
+//! impedance `d`, and `A` the inverse mass that MuJoCo assigns to the pair (Todorov 2014, ICRA;
 //! MuJoCo documentation, "Solver parameters"). So a contact is a spring `k/R`, a damper `b/R`, and
-//! a mass `1/R` while the surfaces move against each other. With the usual one `d` for all pairs
+//! a mass `1/R` while the surfaces move against each other. With one `d` for all pairs, as usual,
 //! the same `solref` is a hundred times stiffer on a steel key than on a fingertip. Here the `d`
 //! of every pair makes `R`, and so stiffness and damping, the same, whatever the masses.
 //!
 //! The friction rows have `R/impratio` and a `b` of their own, `b_f`: a sticking point creeps
-//! under a force `F` at `F R/(impratio b_f)`. A sliding one floats: the convex cone lifts it until
+//! under a force `F` at `F R/(impratio b_f)`. A sliding point floats: the convex cone lifts it until
 //! `k x = mu b_f v` (the surfaces then touch on and off, with the right force on average), so
 //! `b_f` must be small. With MuJoCo's choice, `b_f = b`, a plug that slides at 100 mm/s with
 //! friction 0.2 would float at 0.055 mm, near a connector's clearance; here at 0.011 mm.
@@ -22,7 +22,7 @@ use crate::scene::{
 };
 use nalgebra::{DMatrix, Matrix3, Point3, Vector3, Vector6};
 
-/// Depth over which an impedance may vary, m; ours is constant.
+/// Depth over which an impedance may vary, m; here it is constant.
 const WIDTH: f64 = 1e-3;
 /// Smallest and largest impedance in MuJoCo.
 const IMPEDANCES: [f64; 2] = [1e-4, 0.9999];
@@ -40,14 +40,14 @@ pub(super) fn pairs(scene: &Scene, settings: &MjcfSettings) -> Element {
         // MuJoCo divides both by the impedance.
         let scale = impedance / settings.contact_mass;
         let solref = [settings.contact_stiffness, settings.contact_damping].map(|by| -by * scale);
-        // Friction knows no gap; its stiffness only has to be negative, too.
+        // Friction has no gap, so its stiffness has no effect; MuJoCo requires a negative number.
         let friction = [solref[0], -settings.friction_rate * impedance];
         let element = Element::new("pair").with("geom1", &names[pair.first]);
         let element = match margins[pair.first] + margins[pair.second] {
             0.0 => element,
             margin => element.with("margin", margin),
         };
-        rough(element.with("geom2", &names[pair.second]), pair.friction)
+        with_friction(element.with("geom2", &names[pair.second]), pair.friction)
             .numbers("solref", solref)
             .numbers("solreffriction", friction)
             .numbers("solimp", [impedance, impedance, WIDTH])
@@ -56,7 +56,7 @@ pub(super) fn pairs(scene: &Scene, settings: &MjcfSettings) -> Element {
 }
 
 /// Adds the friction of a pair.
-fn rough(pair: Element, Friction { coefficient, torsion }: Friction) -> Element {
+fn with_friction(pair: Element, Friction { coefficient, torsion }: Friction) -> Element {
     if coefficient <= 0.0 {
         return pair.with("condim", 1);
     }
@@ -69,8 +69,8 @@ fn rough(pair: Element, Friction { coefficient, torsion }: Friction) -> Element 
     }
 }
 
-/// Returns the inverse mass that MuJoCo gives a body, 1/kg: the mean over the three axes of the inverse mass at
-/// its centre of mass, 0 for an axis that is locked to a parent on a joint of its own.
+/// Returns the inverse mass that MuJoCo assigns to a body, 1/kg: the mean over the three axes of the inverse mass at
+/// its centre of mass, 0 for an axis that is locked to a parent which is itself the child of a joint.
 pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
     let Body { motion, .. } = &scene.bodies[body.0];
     let inertia = match motion {
@@ -79,19 +79,21 @@ pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
         Motion::Free(inertia) | Motion::Carried(inertia) => inertia,
     };
     let alone = 1.0 / inertia.mass;
-    let Some(joint) = scene.joints.iter().find(|joint| joint.child == body) else { return alone };
+    let Some(joint) = scene.joints.iter().find(|joint| joint.child == body) else {
+        return alone;
+    };
     let Springs::Axes(axes) = &joint.springs else { return alone };
     let free = axes[..3].iter().flatten().count();
-    let loose = !scene.joints.iter().any(|other| other.child == joint.parent);
+    let parent_is_root = !scene.joints.iter().any(|other| other.child == joint.parent);
     match scene.bodies[joint.parent.0].motion {
-        Motion::Free(parent) | Motion::Carried(parent) if free < 3 && loose => {
+        Motion::Free(parent) | Motion::Carried(parent) if free < 3 && parent_is_root => {
             on_free_body(scene, joint, axes, [&parent, inertia])
         }
         _ => free as f64 / 3.0 / inertia.mass,
     }
 }
 
-/// Returns the inverse mass of a body on a joint of a free one (a latch on its plug): the mean over the axes of
+/// Returns the inverse mass of a body on a joint of a free body (a latch on its plug): the mean over the axes of
 /// `J M^-1 J^T`, `M` the mass matrix in the velocity of the parent and the rates of the free axes.
 fn on_free_body(
     scene: &Scene,
@@ -117,24 +119,24 @@ fn on_free_body(
         0..6 => f64::from(u8::from(row == i)),
         _ => columns[i - 6][row],
     });
-    let mut mass = rates.transpose() * spatial(&below, child, &at) * &rates;
-    let own = spatial(&above, parent, &at);
+    let mut mass = rates.transpose() * mass_matrix(&below, child, &at) * &rates;
+    let own = mass_matrix(&above, parent, &at);
     mass.view_mut((0, 0), (6, 6)).zip_apply(&own, |sum, more| *sum += more);
     let linear = rates.rows(0, 3).transpose();
-    // Inertias are positive.
+    // Inertias are positive, so the factorization succeeds.
     let answer = mass.cholesky().map(|factor| factor.solve(&linear));
     answer.map_or(0.0, |answer| (rates.rows(0, 3) * answer).trace() / 3.0)
 }
 
-/// Returns the mass matrix of a body for the linear velocity at a point of it and its angular velocity.
-fn spatial(pose: &Pose, inertia: &Inertia, at: &Point3<f64>) -> DMatrix<f64> {
+/// Returns the mass matrix of a body for the linear velocity of a point on it and the angular velocity.
+fn mass_matrix(pose: &Pose, inertia: &Inertia, at: &Point3<f64>) -> DMatrix<f64> {
     let arm = (pose * inertia.centre - at).cross_matrix();
     let turn = pose.rotation.to_rotation_matrix().into_inner();
     let about = turn * Matrix3::from_diagonal(&inertia.moments) * turn.transpose();
-    let mut made = DMatrix::zeros(6, 6);
-    made.view_mut((0, 0), (3, 3)).copy_from(&(Matrix3::identity() * inertia.mass));
-    made.view_mut((0, 3), (3, 3)).copy_from(&(-arm * inertia.mass));
-    made.view_mut((3, 0), (3, 3)).copy_from(&(arm * inertia.mass));
-    made.view_mut((3, 3), (3, 3)).copy_from(&(about - arm * arm * inertia.mass));
-    made
+    let mut matrix = DMatrix::zeros(6, 6);
+    matrix.view_mut((0, 0), (3, 3)).copy_from(&(Matrix3::identity() * inertia.mass));
+    matrix.view_mut((0, 3), (3, 3)).copy_from(&(-arm * inertia.mass));
+    matrix.view_mut((3, 0), (3, 3)).copy_from(&(arm * inertia.mass));
+    matrix.view_mut((3, 3), (3, 3)).copy_from(&(about - arm * arm * inertia.mass));
+    matrix
 }

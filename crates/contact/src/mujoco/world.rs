@@ -1,4 +1,4 @@
-//! World of `mujoco`.
+//! World of the engine `mujoco`.
 
 use crate::mjcf::{HEAVY, MATING_FORCE, axis_name, driven_axis_name, geom_names, servo};
 use crate::scene::{
@@ -12,15 +12,15 @@ use std::sync::Arc;
 /// Largest speed or coordinate, SI, of a state that has not diverged.
 const HUGE: f64 = 1e6;
 
-/// Scene in motion.
+/// Scene simulated by MuJoCo.
 #[derive(Clone)]
 pub(super) struct MujocoWorld {
-    /// State, and model, which snapshots share until a spring is replaced.
+    /// State and model; snapshots share the model until it is changed.
     data: MjData<Arc<MjModel>>,
-    bodies: Vec<BodyPlaces>,
-    /// Servos by joint and axis.
+    bodies: Vec<BodyIndices>,
+    /// Servo of each axis of each joint.
     servos: Vec<[Option<Servo>; 6]>,
-    /// Body of the scene that a geom belongs to.
+    /// Body to which each geom of the model belongs.
     owners: Vec<BodyId>,
     pairs: Vec<ContactPair>,
     /// Forces of the pairs over the last step.
@@ -28,30 +28,30 @@ pub(super) struct MujocoWorld {
     axial_friction: Option<MatingForce>,
 }
 
-/// Friction along an axis, as a tendon.
+/// Axial friction, modelled as the friction of a tendon.
 #[derive(Clone)]
 struct MatingForce {
     along: AxialFriction,
     tendon: usize,
-    /// First of the three places of the child's linear velocity.
+    /// Index of the first component of the child's linear velocity.
     velocity: usize,
-    /// Sign of each pair: 1 if its force acts on the child or a body attached to it, -1 if its reaction does.
+    /// Sign of each pair: 1 if its force acts on the child or a body attached to the child, -1 if its reaction does.
     signs: Vec<f64>,
 }
 
-/// Places of a body in MuJoCo's arrays.
+/// Indices of a body in MuJoCo's arrays.
 #[derive(Clone)]
-struct BodyPlaces {
+struct BodyIndices {
     id: usize,
     mocap: Option<usize>,
     driven: Option<Driven>,
 }
 
-/// Coordinates of a driven body, from its first pose.
+/// Coordinates of a driven body, relative to its initial pose.
 #[derive(Clone)]
 struct Driven {
     start: Pose,
-    /// Places of its six joints in MuJoCo's positions and velocities.
+    /// Indices of its six joints in MuJoCo's positions and velocities.
     position: [usize; 6],
     velocity: [usize; 6],
     /// Positions at the end of the next step.
@@ -78,7 +78,7 @@ impl MujocoWorld {
                 model.actuator_biasprm_mut()[actuator].fill(0.0);
             }
         }
-        let bodies = scene.bodies.iter().map(|body| body_places(&model, body)).collect();
+        let bodies = scene.bodies.iter().map(|body| body_indices(&model, body)).collect();
         let servos = |joint| std::array::from_fn(|axis| servo_of(&model, joint, axis));
         let servos = scene.joints.iter().map(servos).collect();
         let mut owners = vec![BodyId(usize::MAX); model.geom_bodyid().len()];
@@ -104,10 +104,10 @@ impl MujocoWorld {
         MujocoWorld { data, bodies, servos, owners, pairs, forces, axial_friction }
     }
 
-    /// Sets the limit of the axial friction at the present poses.
+    /// Sets the limit of the axial friction for the current poses.
     fn update_axial_friction(&mut self) {
         let Some(MatingForce { along, tendon, .. }) = &self.axial_friction else { return };
-        let limit = along.largest(&self.pose(along.parent), &self.pose(along.child));
+        let limit = along.limit(&self.pose(along.parent), &self.pose(along.child));
         let tendon = *tendon;
         if self.data.model().tendon_frictionloss()[tendon] != limit {
             self.change(|model| model.tendon_frictionloss_mut()[tendon] = limit);
@@ -135,10 +135,10 @@ impl MujocoWorld {
         }
     }
 
-    /// Pushes the driven bodies to their velocities. MuJoCo's coordinates are relative: a velocity
-    /// that is merely set takes along all that hangs on the body, as if it weighed nothing. So a
-    /// force makes it, against a mass beside which the rest is light.
-    fn steer(&mut self) {
+    /// Applies the forces that bring the driven bodies to their velocities. MuJoCo's coordinates are relative: to set
+    /// a velocity would also set that of all attached bodies, as if they had no mass. So a force accelerates the
+    /// driven body, whose mass is large compared to theirs.
+    fn push_driven(&mut self) {
         let step = self.step_s();
         for driven in self.bodies.iter().filter_map(|body| body.driven.as_ref()) {
             for axis in 0..6 {
@@ -151,8 +151,8 @@ impl MujocoWorld {
         }
     }
 
-    /// Sets the driven bodies' coordinates without rounding.
-    fn arrive(&mut self) {
+    /// Moves the driven bodies exactly to their commanded poses.
+    fn place_driven(&mut self) {
         for driven in self.bodies.iter().filter_map(|body| body.driven.as_ref()) {
             for (position, next) in driven.position.into_iter().zip(driven.next) {
                 self.data.qpos_mut()[position] = next;
@@ -160,27 +160,28 @@ impl MujocoWorld {
         }
     }
 
-    fn add_forces(&mut self) {
+    /// Sums the contact forces of each pair.
+    fn sum_forces(&mut self) {
         self.forces.fill(ContactForce::default());
         for (i, contact) in self.data.contact().iter().enumerate() {
             // MuJoCo's normal points from the first geom to the second.
             let [from, to] = contact.geom.map(|geom| self.owners[geom as usize]);
-            let signs = self.pairs.iter().enumerate();
-            let mut signs = signs.filter_map(|(place, pair)| Some((place, pair.sign(from, to)?)));
-            let Some((place, sign)) = signs.next() else { continue };
+            let signed = |(i, pair): (usize, &ContactPair)| Some((i, pair.sign(from, to)?));
+            let found = self.pairs.iter().enumerate().find_map(signed);
+            let Some((pair, sign)) = found else { continue };
             let [normal, first, second, ..] = self.data.contact_force(i);
             let axes = Matrix3::from_column_slice(&contact.frame);
-            self.forces[place].net += axes * Vector3::new(normal, first, second) * sign;
-            self.forces[place].normal_sum += normal;
+            self.forces[pair].net += axes * Vector3::new(normal, first, second) * sign;
+            self.forces[pair].normal_sum += normal;
         }
     }
 
     fn is_finite(&self) -> bool {
-        // Written so that a NaN is outside.
+        // A NaN fails the comparison.
         self.data.qpos().iter().chain(self.data.qvel()).all(|value| value.abs() < HUGE)
     }
 
-    /// Changes the model; snapshots keep the one they have.
+    /// Changes a copy of the model; snapshots keep the old one.
     fn change(&mut self, change: impl FnOnce(&mut MjModel)) {
         let mut model = self.data.model().clone();
         change(&mut model);
@@ -190,13 +191,13 @@ impl MujocoWorld {
 
 impl World for MujocoWorld {
     fn step(&mut self) -> Result<(), Diverged> {
-        self.steer();
+        self.push_driven();
         self.update_axial_friction();
         self.data.step();
-        self.add_forces();
+        self.sum_forces();
         self.add_axial_friction();
-        self.arrive();
-        // Poses of the end of the step, where MuJoCo's are of its start.
+        self.place_driven();
+        // MuJoCo's step leaves the poses of its start.
         self.data.kinematics();
         if self.is_finite() { Ok(()) } else { Err(Diverged) }
     }
@@ -262,13 +263,15 @@ impl World for MujocoWorld {
     }
 }
 
+/// Returns the index of a named object of the model.
+///
 /// # Panics
-/// If there is none: the model was written from the scene.
+/// If there is no such object: the model was generated from the scene.
 pub(super) fn id(model: &MjModel, kind: MjtObjBase, name: &str) -> usize {
     model.name_to_id(kind, name).unwrap_or_else(|| panic!("the model has no `{name}`"))
 }
 
-fn body_places(model: &MjModel, body: &Body) -> BodyPlaces {
+fn body_indices(model: &MjModel, body: &Body) -> BodyIndices {
     let index = id(model, MjtObjBase::mjOBJ_BODY, &body.name);
     let driven = (body.motion == Motion::Driven).then(|| {
         let name = |axis| driven_axis_name(body, axis);
@@ -281,7 +284,7 @@ fn body_places(model: &MjModel, body: &Body) -> BodyPlaces {
             next: [0.0; 6],
         }
     });
-    BodyPlaces { id: index, mocap: usize::try_from(model.body_mocapid()[index]).ok(), driven }
+    BodyIndices { id: index, mocap: usize::try_from(model.body_mocapid()[index]).ok(), driven }
 }
 
 fn servo_of(model: &MjModel, joint: &Joint, axis: usize) -> Option<Servo> {
@@ -290,7 +293,7 @@ fn servo_of(model: &MjModel, joint: &Joint, axis: usize) -> Option<Servo> {
     Some(Servo { actuator, gain: model.actuator_gainprm()[actuator][0], spring })
 }
 
-/// Returns the translations, and the angles of turns about x, then y, then z.
+/// Returns the translations, and the angles of successive rotations about x, y and z of the rotated frame.
 fn coordinates(pose: &Pose) -> [f64; 6] {
     let at = pose.translation.vector;
     let turn: Rotation3<f64> = pose.rotation.to_rotation_matrix();

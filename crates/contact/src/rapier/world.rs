@@ -68,7 +68,7 @@ impl RapierWorld {
     /// Sets the limit of the axial friction at the present poses.
     fn update_axial_friction(&mut self) {
         let Some((along, joint)) = &self.axial_friction else { return };
-        let limit = along.largest(&self.pose(along.parent), &self.pose(along.child));
+        let limit = along.limit(&self.pose(along.parent), &self.pose(along.child));
         if let Some(joint) = self.world.impulse_joints.get_mut(*joint, true) {
             let damper = Spring { limit, ..Spring::new(0.0, Direct::default().stick_damping) };
             set_motor(&mut joint.data, rp::JointAxis::LinZ, &damper);
@@ -221,7 +221,7 @@ fn parameters(settings: &Rapier) -> rp::IntegrationParameters {
 fn groups(scene: &Scene) -> Vec<rp::InteractionGroups> {
     let bit = |i: usize| rp::Group::from_bits_truncate(1 << i);
     let group = |i| {
-        let own = scene.contacts.iter().filter(|pair| pair.has(BodyId(i)));
+        let own = scene.contacts.iter().filter(|pair| pair.contains(BodyId(i)));
         let both = own.map(|pair| bit(pair.first.0) | bit(pair.second.0));
         let filter = both.fold(rp::Group::empty(), |all, two| all | two).difference(bit(i));
         rp::InteractionGroups::new(bit(i), filter, rp::InteractionTestMode::And)

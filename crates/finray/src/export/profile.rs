@@ -13,12 +13,8 @@ pub fn svg(geometry: &Geometry, title: &str) -> String {
     let (length, width) = (outline.length / MM, outline.width / MM);
     let mut drawing = Drawing::default();
     drawing.title(title);
-    profile(
-        &mut drawing,
-        geometry,
-        View { origin: Point2::origin(), scale: 1.0 },
-        Style::fill("#33507a"),
-    );
+    let view = View { origin: Point2::origin(), scale: 1.0 };
+    profile(&mut drawing, geometry, view, Style::fill("#33507a"));
     drawing.svg([length, width], "mm")
 }
 

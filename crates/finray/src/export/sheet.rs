@@ -21,15 +21,15 @@ const CORNER: [f64; 2] = [38.0, 58.0];
 
 /// Stiffness of a finger at its pad, across and along it.
 #[derive(Debug, Clone, Copy)]
-pub struct AtPad<'a> {
-    /// Computed from its ribs.
+pub struct PadStiffness<'a> {
+    /// Stiffness computed from the ribs.
     pub ribs: &'a FingerStiffness,
-    /// Mean and standard deviation by the model of measured fingers, N/m; `None` without any.
+    /// Mean and standard deviation across and along the pad by the model of measured fingers, N/m, if there is one.
     pub measured: Option<[[f64; 2]; 2]>,
 }
 
 /// Returns the print sheet as a page of HTML that prints on one sheet of paper.
-pub fn html(geometry: &Geometry, stiffness: &AtPad) -> String {
+pub fn html(geometry: &Geometry, stiffness: &PadStiffness) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -45,7 +45,7 @@ pub fn html(geometry: &Geometry, stiffness: &AtPad) -> String {
 }
 
 /// Returns the print sheet as an SVG of an A4 page.
-pub fn svg(geometry: &Geometry, stiffness: &AtPad) -> String {
+pub fn svg(geometry: &Geometry, stiffness: &PadStiffness) -> String {
     let [beyond, wing] = block(geometry);
     let size = geometry.finger.outline;
     let [long, wide] = [size.length / MM + beyond, size.width / MM + 2.0 * wing];
@@ -63,29 +63,29 @@ pub fn svg(geometry: &Geometry, stiffness: &AtPad) -> String {
     drawing.text(Point2::new(15.0, 24.0), &about, Font::new(3.6));
     let lengths = format!("lengths in mm, drawn {drawn}");
     drawing.text(Point2::new(282.0, 17.0), &lengths, Font::new(3.6).end());
-    finger_with_lengths(&mut drawing, geometry, view);
-    column(&mut drawing, 15.0, "Finger", &finger(geometry));
-    column(&mut drawing, 95.0, "Print", &print(geometry));
-    column(&mut drawing, 200.0, "Check the print", &check(geometry, stiffness));
+    draw_finger(&mut drawing, geometry, view);
+    write_column(&mut drawing, 15.0, "Finger", &finger_rows(geometry));
+    write_column(&mut drawing, 95.0, "Print", &print_rows(geometry));
+    write_column(&mut drawing, 200.0, "Check the print", &check_rows(geometry, stiffness));
     drawing.svg(PAPER, "mm")
 }
 
-/// Returns the finger as the sheet draws it, with its lengths (in a group of class `lengths`) and infill
+/// Returns the drawing of the finger on the sheet, with its dimensions (in a group of class `lengths`) and infill
 /// directions, as a separate SVG.
 pub fn part(geometry: &Geometry) -> String {
     let ([beyond, wing], outline) = (block(geometry), &geometry.finger.outline);
     let scale = ROOM[0] / (outline.length / MM + beyond);
     let view = View { origin: Point2::new(22.0, 26.0 + wing * scale), scale };
     let mut drawing = Drawing::default();
-    finger_with_lengths(&mut drawing, geometry, view);
+    draw_finger(&mut drawing, geometry, view);
     let height = (outline.width / MM + 2.0 * wing) * scale + 50.0;
     drawing.svg([ROOM[0] + 44.0, height.ceil()], "")
 }
 
-fn finger_with_lengths(drawing: &mut Drawing, geometry: &Geometry, view: View) {
-    shape(drawing, geometry, view);
-    drawing.group("lengths", |drawing| lengths(drawing, geometry, view));
-    direction(drawing, geometry, view);
+fn draw_finger(drawing: &mut Drawing, geometry: &Geometry, view: View) {
+    draw_shape(drawing, geometry, view);
+    drawing.group("lengths", |drawing| draw_dimensions(drawing, geometry, view));
+    draw_directions(drawing, geometry, view);
 }
 
 /// Returns the length of the block beyond a finger and its width beside it, on either side, mm.
@@ -97,8 +97,8 @@ fn block(geometry: &Geometry) -> [f64; 2] {
 /// Label of the held part.
 const HELD: &str = "held by the gripper";
 
-/// Draws the profile, the part of it that the gripper holds, and the block of its holes, these hidden.
-fn shape(drawing: &mut Drawing, geometry: &Geometry, view: View) {
+/// Draws the profile, the part of it that the gripper holds, and the block with its holes as hidden edges.
+fn draw_shape(drawing: &mut Drawing, geometry: &Geometry, view: View) {
     let outline = &geometry.finger.outline;
     let rectangle = |drawing: &mut Drawing, along: [f64; 2], across: [f64; 2], radius, style| {
         let ends = [0, 1].map(|end| view.place(Point2::new(along[end], across[end]) / MM));
@@ -133,7 +133,7 @@ fn tenth(length: f64) -> String {
 }
 
 /// Draws the dimension lines of the outline.
-fn lengths(drawing: &mut Drawing, geometry: &Geometry, view: View) {
+fn draw_dimensions(drawing: &mut Drawing, geometry: &Geometry, view: View) {
     let outline = &geometry.finger.outline;
     let [beyond, wing] = block(geometry).map(|length| length * view.scale);
     let Outline { length, width, tip, solid, clamped, .. } = *outline;
@@ -157,8 +157,8 @@ fn lengths(drawing: &mut Drawing, geometry: &Geometry, view: View) {
     drawing.text(middle, &format!("R {}", tenth(outline.back_radius)), Font::new(3.2).middle());
 }
 
-/// Draws the infill directions: 0 degrees, and the design's.
-fn direction(drawing: &mut Drawing, geometry: &Geometry, view: View) {
+/// Draws the infill directions: 0 degrees, and that of the design.
+fn draw_directions(drawing: &mut Drawing, geometry: &Geometry, view: View) {
     let PrintedFinger { outline, .. } = &geometry.finger;
     let design = geometry.design.direction_deg;
     let middle = (outline.arc_end() + outline.length - outline.solid) / 2.0;
@@ -175,8 +175,8 @@ fn direction(drawing: &mut Drawing, geometry: &Geometry, view: View) {
     }
 }
 
-/// Writes a heading, and names with their values below it.
-fn column(drawing: &mut Drawing, x: f64, heading: &str, rows: &[(&str, String)]) {
+/// Writes a heading, and below it names with their values.
+fn write_column(drawing: &mut Drawing, x: f64, heading: &str, rows: &[(&str, String)]) {
     let (top, font) = (152.0, Font::new(3.4));
     drawing.text(Point2::new(x, top), heading, Font::new(4.4).bold());
     for (i, (name, value)) in rows.iter().enumerate() {
@@ -186,7 +186,7 @@ fn column(drawing: &mut Drawing, x: f64, heading: &str, rows: &[(&str, String)])
     }
 }
 
-fn finger(geometry: &Geometry) -> Vec<(&'static str, String)> {
+fn finger_rows(geometry: &Geometry) -> Vec<(&'static str, String)> {
     let PrintedFinger { material, outline, skin, ribs, .. } = &geometry.finger;
     let (design, lines) = (&geometry.design, &geometry.lines);
     let [x, y] = [ribs.origin.x, ribs.origin.y].map(mm);
@@ -212,7 +212,7 @@ fn finger(geometry: &Geometry) -> Vec<(&'static str, String)> {
     rows
 }
 
-fn print(geometry: &Geometry) -> Vec<(&'static str, String)> {
+fn print_rows(geometry: &Geometry) -> Vec<(&'static str, String)> {
     vec![
         ("lies", "flat, as drawn; layers along the depth".to_owned()),
         ("0°", "ribs straight across the finger".to_owned()),
@@ -225,19 +225,20 @@ fn print(geometry: &Geometry) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Standard deviation of the stiffness of the eleven shipped fingers from the one computed from their ribs, as a share.
+/// Standard deviation of the measured from the computed stiffness of the eleven shipped fingers, as a share.
 const SCATTER: f64 = 0.175;
 
-fn check(geometry: &Geometry, AtPad { ribs, measured }: &AtPad) -> Vec<(&'static str, String)> {
+fn check_rows(geometry: &Geometry, stiffness: &PadStiffness) -> Vec<(&'static str, String)> {
+    let PadStiffness { ribs, measured } = stiffness;
     let ribs = [ribs.pad.in_compliance(), ribs.pad_and_roof.in_assembly()];
     let [across, along] = ribs.map(|value| format!("{:.2} N/mm, from the ribs", value / N_PER_MM));
     let of = |stiffness: [f64; 2]| {
         let [mean, sd] = stiffness.map(|value| value / N_PER_MM);
-        // As many digits as pages and terminal show.
+        // As many digits as in reports and on the terminal.
         let digits = if mean >= 10.0 { 1 } else { 2 };
         format!("{mean:.digits$} ± {sd:.digits$} N/mm, measured model")
     };
-    let none = || "no measured model of it".to_owned();
+    let none = || "no measured model".to_owned();
     let [model_across, model_along] = measured.map_or([none(), none()], |found| found.map(of));
     let without = if geometry.block().is_some() { " without the block" } else { "" };
     let modulus = geometry.finger.material.modulus / 1e9;

@@ -6,7 +6,7 @@ use super::robustness::race::Race;
 use super::robustness::repeat::Repeats;
 use super::robustness::{self, Drawn, Plan};
 use super::shape_correction;
-use super::taught::{Moved, teach};
+use super::taught::{Shifted, teach};
 use super::template::{Impossible, Template};
 use super::tolerance::Search;
 use super::{Evaluation, OffsetStep};
@@ -190,7 +190,7 @@ impl Evaluator {
         let rig = self.engine.rig(task, robot, finger, step_factor)?;
         Ok(match taught {
             None | Some(0) => rig,
-            Some(shift) => Box::new(Moved { rig, shift }),
+            Some(shift) => Box::new(Shifted { rig, shift }),
         })
     }
 

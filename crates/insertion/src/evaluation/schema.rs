@@ -36,8 +36,8 @@ impl TryFrom<WindowRow> for Window {
             "inserted" => Outcome::Inserted,
             "diverged" => Outcome::Diverged,
             // Both ends of an empty window have the outcome of the nominal start.
-            "failed" => row.failure_negative.ok_or("a nominal failure without its class")?,
-            other => return Err(format!("`{other}` is not inserted, failed or diverged")),
+            "failed" => row.failure_negative.ok_or("`failed` without failure_negative")?,
+            other => return Err(format!("is `{other}`; accepted: inserted, failed, diverged")),
         };
         Ok(Window {
             nominal,
@@ -82,8 +82,9 @@ struct SuccessRow<'a> {
     success_rate: Option<f64>,
     success_low: Option<f64>,
     success_high: Option<f64>,
-    /// Upper bound of a raced rate, which has neither value nor interval, and the number of its draws.
+    /// Upper bound of the rate if the evaluation was stopped early by a race: there is no rate or interval then.
     success_at_most: Option<f64>,
+    /// Number of draws until the race stopped the evaluation.
     raced_draws: Option<u32>,
     #[serde(flatten)]
     counts: &'a SuccessRate,

@@ -1,8 +1,8 @@
 //! Taught start: the start that an operator finds by moving the robot until the plug goes in.
 //!
-//! The first start that inserts is searched outward from the task's own in strides of 0.5 mm (+0.5, -0.5,
-//! +1 and so on), then the window about it; the taught start is the middle of the window. If the
-//! middle does not insert, because the window has a gap, the first start is used.
+//! The search goes outward from the start in the task file in strides of 0.5 mm (+0.5, -0.5, +1 and so on) until a
+//! start inserts, then determines the window around it; the taught start is the middle of the window. If the middle
+//! does not insert, because the window has a gap, the first start that inserts is used.
 
 use super::tolerance::{self, OFFSET_LIMIT_STEPS, Search, offset};
 use super::{Evaluation, OffsetStep, Window};
@@ -19,10 +19,10 @@ const FARTHEST: OffsetStep = 100;
 
 /// A taught start.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Taught {
+pub struct TaughtStart {
     /// Shift of the start, in grid steps.
     pub shift: OffsetStep,
-    /// Tolerance window around it.
+    /// Tolerance window around the taught start.
     pub window: Window,
     /// Largest contact force over the inserted trials of the window search, N.
     pub peak_force_n: f64,
@@ -30,40 +30,38 @@ pub struct Taught {
 
 /// Failing start with the largest margin, if no start inserts.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Nearest {
+pub struct Miss {
     /// Shift of the start, in grid steps.
     pub shift: OffsetStep,
     /// Trial from this start.
     pub trial: Trial,
 }
 
-/// Searches the taught start. The result is invalid once `stop` is set.
+/// Searches for the taught start. The result is invalid once `stop` is set.
 ///
 /// # Errors
 /// If no start inserts.
-pub fn teach(rig: &dyn Rig, finger: &Finger, stop: &AtomicBool) -> Result<Taught, Box<Nearest>> {
+pub fn teach(rig: &dyn Rig, finger: &Finger, stop: &AtomicBool) -> Result<TaughtStart, Box<Miss>> {
     let grasp = Grasp { stop, ..Grasp::of(finger) };
     let grasped = rig.hold(grasp);
     let found = first_inserting(&*grasped)?;
-    let moved = Moved { rig, shift: found };
+    let moved = Shifted { rig, shift: found };
     let Evaluation { mut window, peak_force_n, .. } =
         tolerance::evaluate_in(&moved, grasp, Search::Strides);
-    let both = window.negative_steps + window.positive_steps;
+    let sum = window.negative_steps + window.positive_steps;
     // The division rounds towards zero.
-    let middle = both.clamp(-OFFSET_LIMIT_STEPS, OFFSET_LIMIT_STEPS) / 2;
-    let shift = found + middle;
-    if grasped.trial(offset(shift)).outcome != Outcome::Inserted {
-        return Ok(Taught { shift: found, window, peak_force_n });
-    }
+    let middle = sum.clamp(-OFFSET_LIMIT_STEPS, OFFSET_LIMIT_STEPS) / 2;
+    let inserts = grasped.trial(offset(found + middle)).outcome == Outcome::Inserted;
+    let middle = if inserts { middle } else { 0 };
     window.negative_steps -= middle;
     window.positive_steps -= middle;
-    Ok(Taught { shift, window, peak_force_n })
+    Ok(TaughtStart { shift: found + middle, window, peak_force_n })
 }
 
-/// Returns the first start that inserts, outward from the task's own.
-fn first_inserting(grasped: &dyn Grasped) -> Result<OffsetStep, Box<Nearest>> {
+/// Returns the first start that inserts, searching outward from the start in the task file.
+fn first_inserting(grasped: &dyn Grasped) -> Result<OffsetStep, Box<Miss>> {
     let outward = (1..=FARTHEST / STRIDE).flat_map(|n| [n * STRIDE, -n * STRIDE]);
-    let mut nearest = Nearest { shift: 0, trial: grasped.trial(0.0) };
+    let mut nearest = Miss { shift: 0, trial: grasped.trial(0.0) };
     if nearest.trial.outcome == Outcome::Inserted {
         return Ok(0);
     }
@@ -73,23 +71,23 @@ fn first_inserting(grasped: &dyn Grasped) -> Result<OffsetStep, Box<Nearest>> {
             return Ok(shift);
         }
         if trial.margin > nearest.trial.margin {
-            nearest = Nearest { shift, trial };
+            nearest = Miss { shift, trial };
         }
     }
     Err(Box::new(nearest))
 }
 
 /// Rig or grasped part with a shifted start.
-pub struct Moved<R> {
+pub struct Shifted<R> {
     /// Rig or grasped part.
     pub rig: R,
     /// Shift of the start, in grid steps.
     pub shift: OffsetStep,
 }
 
-impl<R: Deref<Target: Rig> + Send + Sync> Rig for Moved<R> {
+impl<R: Deref<Target: Rig> + Send + Sync> Rig for Shifted<R> {
     fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
-        Box::new(Moved { rig: self.rig.hold(grasp), shift: self.shift })
+        Box::new(Shifted { rig: self.rig.hold(grasp), shift: self.shift })
     }
 
     fn record(&self, grasp: Grasp<'_>, shift: f64) -> Option<Recording> {
@@ -97,7 +95,7 @@ impl<R: Deref<Target: Rig> + Send + Sync> Rig for Moved<R> {
     }
 }
 
-impl Grasped for Moved<Box<dyn Grasped + '_>> {
+impl Grasped for Shifted<Box<dyn Grasped + '_>> {
     fn run(&self, shift: f64, every_s: Option<f64>, rest_s: f64) -> (Trial, Vec<Sample>) {
         self.rig.run(shift + offset(self.shift), every_s, rest_s)
     }
@@ -116,17 +114,17 @@ mod tests {
         let finger = finger(3.0, 20.0);
         let fake = FakeRig::default();
         for (away, taught) in [(0, -9), (30, -39), (-50, 41)] {
-            let moved = Moved { rig: &fake as &dyn Rig, shift: away };
-            let Taught { shift: found, window: returned, .. } =
+            let moved = Shifted { rig: &fake as &dyn Rig, shift: away };
+            let TaughtStart { shift: found, window: returned, .. } =
                 teach(&moved, &finger, &NEVER).unwrap();
             assert!((found - taught).abs() <= 1, "{away}: {found}");
-            let centred = Moved { rig: &moved as &dyn Rig, shift: found };
+            let centred = Shifted { rig: &moved as &dyn Rig, shift: found };
             let window = tolerance::evaluate(&centred, &finger, Search::Walk).window;
             assert_eq!(window.range_mm(), 4.7);
             assert_eq!(returned, window);
             assert!((window.negative_steps + window.positive_steps).abs() <= 2, "{window:?}");
         }
-        let far = Moved { rig: &fake as &dyn Rig, shift: 200 };
+        let far = Shifted { rig: &fake as &dyn Rig, shift: 200 };
         let nearest = teach(&far, &finger, &NEVER).unwrap_err();
         assert!(nearest.trial.margin < 0.0 && nearest.shift.abs() <= FARTHEST, "{nearest:?}");
     }

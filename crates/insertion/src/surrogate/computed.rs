@@ -1,6 +1,6 @@
 //! Stiffness computed from the ribs: mean of the model if few fingers were measured.
 
-use super::{Estimate, Fitted, Measured};
+use super::{Estimate, Fitted, Samples};
 use crate::stiffness::{Axis, Infill};
 use finray::FingerError;
 use finray::mechanics::over_phases;
@@ -68,7 +68,7 @@ pub(super) struct Scale {
 }
 
 /// Fits ratios of measured and computed stiffness; `None` without any.
-pub(super) fn fit(axis: Axis, ratios: &Measured) -> Option<Scale> {
+pub(super) fn fit(axis: Axis, ratios: &Samples) -> Option<Scale> {
     let logs = ratios.targets().mapv(libm::log);
     let log = logs.mean()?;
     let (_, scatter) = SCATTER.into_iter().find(|(of, _)| *of == axis)?;

@@ -19,7 +19,7 @@
 //! likelihood: no random restarts, so the fit is the same on every run.
 
 use super::link::{Link, Sum};
-use super::{Estimate, Fitted, Measured, Standardizer, infills};
+use super::{Estimate, Fitted, Samples, Standardizer, infills};
 use crate::stiffness::{Axis, Infill};
 use ask_tell::process::{Process, matern52};
 use input::units::DEG;
@@ -73,7 +73,7 @@ fn inputs(infill: Infill, exponent: f64) -> [f64; 3] {
 }
 
 /// Fits stiffness about the lamina's mean; `None` if nothing can be fitted.
-pub(super) fn fit(axis: Axis, measured: &Measured) -> Option<PhysicalProcess<2>> {
+pub(super) fn fit(axis: Axis, measured: &Samples) -> Option<PhysicalProcess<2>> {
     let (sum, exponents): (_, &[f64]) = match axis {
         Axis::Assembly => (Sum::Parallel, &[1.0]),
         Axis::Compliance => (Sum::Series, &[-1.0, -1.25, -1.5, -1.75, -2.0]),
@@ -82,14 +82,14 @@ pub(super) fn fit(axis: Axis, measured: &Measured) -> Option<PhysicalProcess<2>>
 }
 
 /// Fits the ratio of measured and computed stiffness, about one number for all designs.
-pub(super) fn fit_ratio(ratios: &Measured) -> Option<PhysicalProcess<1>> {
+pub(super) fn fit_ratio(ratios: &Samples) -> Option<PhysicalProcess<1>> {
     fit_about(Link { sum: Sum::Product, scale: None }, &[1.0], ratios)
 }
 
 fn fit_about<const P: usize>(
     link: Link,
     exponents: &[f64],
-    measured: &Measured,
+    measured: &Samples,
 ) -> Option<PhysicalProcess<P>> {
     let kernels = || THETAS.into_iter().flat_map(|theta| NUGGETS.map(|nugget| (theta, nugget)));
     let settings = exponents.iter().flat_map(|&exponent| {
@@ -105,7 +105,7 @@ fn fit_about<const P: usize>(
 
 impl<const P: usize> PhysicalProcess<P> {
     /// Fits the process; `None` if the designs are too few.
-    fn new(link: Link, setting: Setting, measured: &Measured) -> Option<Self> {
+    fn new(link: Link, setting: Setting, measured: &Samples) -> Option<Self> {
         let rows: Vec<[f64; 3]> =
             infills(measured).map(|infill| inputs(infill, setting.exponent)).collect();
         let values: Vec<f64> = measured.targets().iter().map(|&k| link.forward(k)).collect();

@@ -54,13 +54,13 @@ pub struct Prediction {
 }
 
 impl Prediction {
-    /// Returns a stiffness that is known, N/m.
+    /// Creates the prediction of a stiffness that is known exactly, N/m.
     pub fn exact(compliance: f64, assembly: f64) -> Self {
         let exact = |mean| Estimate { mean, sd: 0.0 };
         Prediction { compliance: exact(compliance), assembly: exact(assembly), hull_distance: 0.0 }
     }
 
-    /// Returns mean and standard deviation across the pad and along it, N/m.
+    /// Returns mean and standard deviation of the stiffness across and along the pad, N/m.
     pub fn at_pad(&self) -> [[f64; 2]; 2] {
         [self.compliance, self.assembly].map(|Estimate { mean, sd }| [mean, sd])
     }
@@ -126,36 +126,36 @@ impl From<StiffnessRow> for Prediction {
     }
 }
 
-/// Designs (density in percent, direction in degrees) and their stiffness along one axis, N/m.
-type Measured = Dataset<f64, f64, Ix1>;
+/// Measured designs (density in percent, direction in degrees) and their stiffness along one axis, N/m.
+type Samples = Dataset<f64, f64, Ix1>;
 
-fn measured(infills: &[Infill], stiffness: &[f64]) -> Measured {
+fn samples(infills: &[Infill], stiffness: &[f64]) -> Samples {
     Dataset::new(Array2::from(infills.to_vec()), Array1::from(stiffness.to_vec()))
 }
 
-fn infills(measured: &Measured) -> impl Iterator<Item = Infill> {
+fn infills(measured: &Samples) -> impl Iterator<Item = Infill> {
     measured.records().rows().into_iter().map(|row| [row[0], row[1]])
 }
 
 /// Fitted model of the stiffness along one axis.
 trait Fitted: std::fmt::Debug + Send + Sync {
-    /// Returns mean and standard deviation for a finger yet to be printed.
+    /// Predicts the stiffness of a new finger: mean and standard deviation.
     fn predict(&self, infill: Infill) -> Estimate;
 
     /// Returns the parameters of the model as text.
     fn describe(&self) -> String;
 }
 
-/// Returns the prediction of each design by a model of the others; NaN if there is no model.
-fn left_out(
-    measured: &Measured,
-    predict: impl Fn(&Measured, Infill) -> Option<Estimate> + Sync,
+/// Predicts each design by a model of the others; NaN if there is no model.
+fn leave_one_out(
+    measured: &Samples,
+    predict: impl Fn(&Samples, Infill) -> Option<Estimate> + Sync,
 ) -> Vec<Estimate> {
     let nothing = Estimate { mean: f64::NAN, sd: f64::NAN };
     let count = measured.targets().len();
     // A single design leaves none to fit to.
     let folds = if count > 1 { measured.fold(count) } else { Vec::new() };
-    let one = |(others, one): (Measured, Measured)| predict(&others, infills(&one).next()?);
+    let one = |(others, one): (Samples, Samples)| predict(&others, infills(&one).next()?);
     // Collected by index: the thread count changes nothing.
     let mut predicted: Vec<Estimate> =
         folds.into_par_iter().map(|fold| one(fold).unwrap_or(nothing)).collect();
@@ -173,10 +173,10 @@ struct Standardizer {
 }
 
 impl Standardizer {
-    /// Computes shift and scale of values; the variance is the sum of squares divided by the count minus `lost`.
-    pub fn of(values: &[f64], lost: usize) -> Self {
+    /// Computes shift and scale of values; the variance is the sum of squares divided by the count minus `ddof`.
+    pub fn of(values: &[f64], ddof: usize) -> Self {
         let Moments { count, mean, squares } = Moments::of(values);
-        let variance = squares / (count - lost as f64);
+        let variance = squares / (count - ddof as f64);
         Standardizer { mean, sd: if variance > 0.0 { variance.sqrt() } else { 1.0 } }
     }
 

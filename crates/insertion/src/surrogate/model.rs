@@ -3,7 +3,7 @@
 use super::hull::Hull;
 use super::link::{Link, Sum};
 use super::{
-    Computed, Estimate, Fitted, Measured, Prediction, computed, gp, left_out, measured, ridge,
+    Computed, Estimate, Fitted, Prediction, Samples, computed, gp, leave_one_out, ridge, samples,
 };
 use crate::stiffness::{Axis, Infill, Measurement, SurrogateError, check_all};
 use finray::FingerError;
@@ -51,7 +51,7 @@ impl ModelKind {
 }
 
 /// Fits a model of one axis. The data of a kind with computed stiffness are ratios of measured to computed stiffness.
-fn fit_axis(axis: Axis, kind: ModelKind, measured: &Measured) -> Option<Box<dyn Fitted>> {
+fn fit_axis(axis: Axis, kind: ModelKind, measured: &Samples) -> Option<Box<dyn Fitted>> {
     fn boxed<F: Fitted + 'static>(fitted: Option<F>) -> Option<Box<dyn Fitted>> {
         fitted.map(|fitted| Box::new(fitted) as Box<dyn Fitted>)
     }
@@ -89,7 +89,7 @@ pub struct Loo {
 struct AxisData {
     axis: Axis,
     /// Stiffness, N/m, or ratios of measured to computed stiffness.
-    measured: Measured,
+    measured: Samples,
     /// Unit of each design's value, N/m: the computed stiffness for a ratio, else 1.
     units: Vec<f64>,
 }
@@ -99,13 +99,13 @@ impl AxisData {
     fn new(axis: Axis, measurements: &[Measurement], units: Vec<f64>) -> Self {
         let infills: Vec<_> = measurements.iter().map(Measurement::infill).collect();
         let values = measurements.iter().zip(&units).map(|(m, unit)| m.stiffness(axis) / unit);
-        AxisData { axis, measured: measured(&infills, &values.collect::<Vec<_>>()), units }
+        AxisData { axis, measured: samples(&infills, &values.collect::<Vec<_>>()), units }
     }
 
     /// Fits `kind` without each design in turn and predicts that design.
     fn leave_one_out(&self, kind: ModelKind) -> Loo {
         let count = self.measured.targets().len();
-        let predicted = left_out(&self.measured, |others, infill| {
+        let predicted = leave_one_out(&self.measured, |others, infill| {
             Some(fit_axis(self.axis, kind, others)?.predict(infill))
         });
         let mean = |term: &dyn Fn(f64, f64, f64) -> f64| {

@@ -7,7 +7,7 @@
 //! penalty, and along axes that are orthogonal one sweep of coordinate descent is exact.
 
 use super::link::Link;
-use super::{Estimate, Fitted, Measured, Standardizer, infills, left_out};
+use super::{Estimate, Fitted, Samples, Standardizer, infills, leave_one_out};
 use crate::stiffness::Infill;
 use linfa::prelude::{Dataset, Fit};
 use linfa_elasticnet::ElasticNet;
@@ -42,12 +42,12 @@ fn terms(infill: Infill, degree: u8) -> Vec<f64> {
 }
 
 /// Fits the polynomial with the penalty of the smallest leave-one-out error; `None` if no fit is possible.
-pub(super) fn fit(measured: &Measured, degree: u8, link: Link, penalties: &[f64]) -> Option<Ridge> {
+pub(super) fn fit(measured: &Samples, degree: u8, link: Link, penalties: &[f64]) -> Option<Ridge> {
     if let [penalty] = penalties {
         return fit_with_penalty(measured, degree, link, *penalty);
     }
     let error = |&penalty: &f64| {
-        let predicted = left_out(measured, |others, infill| {
+        let predicted = leave_one_out(measured, |others, infill| {
             Some(fit_with_penalty(others, degree, link, penalty)?.predict(infill))
         });
         let off = predicted.iter().zip(measured.targets()).map(|(e, k)| (e.mean / k - 1.0).abs());
@@ -58,7 +58,7 @@ pub(super) fn fit(measured: &Measured, degree: u8, link: Link, penalties: &[f64]
     fit_with_penalty(measured, degree, link, best?.0)
 }
 
-fn fit_with_penalty(measured: &Measured, degree: u8, link: Link, penalty: f64) -> Option<Ridge> {
+fn fit_with_penalty(measured: &Samples, degree: u8, link: Link, penalty: f64) -> Option<Ridge> {
     let rows: Vec<Vec<f64>> = infills(measured).map(|infill| terms(infill, degree)).collect();
     let (n, count) = (rows.len(), rows.first()?.len());
     let scales: Vec<Standardizer> = (0..count)
@@ -134,7 +134,7 @@ mod tests {
         let infills: Vec<Infill> = shipped.iter().map(|m| m.infill()).collect();
         let stiffness: Vec<f64> = shipped.iter().map(|m| m.compliance).collect();
         let n = stiffness.len() as f64;
-        let data = crate::surrogate::measured(&infills, &stiffness);
+        let data = crate::surrogate::samples(&infills, &stiffness);
         for penalty in PENALTIES {
             let fitted = fit_with_penalty(&data, 2, Link::IDENTITY, penalty).unwrap();
             let row = |&infill: &Infill| -> Vec<f64> {

@@ -1,4 +1,4 @@
-//! Chamfers and radii along the edges of a box: the solid they leave, and round edges for a task.
+//! Chamfers and radii along the edges of a box: the solid that remains, and the lead-in edges of a task.
 
 use super::geometry::{self, Solid};
 use super::rounded::Rounded;
@@ -27,7 +27,7 @@ pub enum Cut {
 }
 
 impl Cut {
-    /// Returns how far it reaches along either face, m.
+    /// Returns the size of the cut along either face, m.
     pub fn size(self) -> f64 {
         match self {
             Cut::Chamfer(size) | Cut::Radius(size) => size,
@@ -63,7 +63,8 @@ pub fn same(a: &Edge, b: &Edge) -> bool {
 /// All points with `normal . p <= distance`: normal and distance.
 pub(super) type HalfSpace = (Vector3<f64>, f64);
 
-fn through(point: &Vector3<f64>, normal: Vector3<f64>) -> HalfSpace {
+/// Returns the half-space behind the plane through a point with an outward normal.
+fn half_space(point: &Vector3<f64>, normal: Vector3<f64>) -> HalfSpace {
     (normal, normal.dot(point))
 }
 
@@ -78,34 +79,35 @@ impl Face {
     }
 }
 
-const ROOM: &str = "take off more than the part has; make them smaller";
-/// Problem of so thin, or so small, a part that corners of the hull would be lost.
-const THIN: &str = "need a part that is not so thin or so small; leave its edges sharp";
+/// Problem of cuts that overlap.
+const TOO_LARGE: &str = "do not fit on the part; make them smaller";
+/// Problem of a part whose hull would lose corners.
+const TOO_THIN: &str = "do not fit: the part is too thin or too small; leave its edges sharp";
 
-/// Returns the solid that the cuts leave of a box.
+/// Returns the solid that remains of a box after the cuts.
 ///
 /// # Errors
-/// The problem of the cuts.
+/// If the cuts overlap, or the box is too thin or too small.
 pub fn cut(
     min: &Vector3<f64>,
     max: &Vector3<f64>,
     edges: &[(Edge, Cut)],
 ) -> Result<Solid, &'static str> {
     if !fit(&(max - min), edges) {
-        return Err(ROOM);
+        return Err(TOO_LARGE);
     }
     if edges.iter().any(|(_, cut)| matches!(cut, Cut::Radius(_))) {
-        return Rounded::new(min, max, edges).map(Solid::Rounded).ok_or(THIN);
+        return Rounded::new(min, max, edges).map(Solid::Rounded).ok_or(TOO_THIN);
     }
-    let corners = corners(&spaces(min, max, edges, |_| 1));
+    let corners = corners(&half_spaces(min, max, edges, |_| 1));
     match geometry::hull(&corners) {
         Some((points, _)) if points.len() == corners.len() => Ok(Solid::Hull { points }),
-        _ => Err(THIN),
+        _ => Err(TOO_THIN),
     }
 }
 
 /// Returns the half-spaces of a box with cut edges; `chords` returns the number of chords of an arc.
-pub(super) fn spaces(
+pub(super) fn half_spaces(
     min: &Vector3<f64>,
     max: &Vector3<f64>,
     edges: &[(Edge, Cut)],
@@ -113,19 +115,18 @@ pub(super) fn spaces(
 ) -> Vec<HalfSpace> {
     let faces = (0..3).flat_map(|axis| [false, true].map(|high| Face { axis, high }));
     let corner = |face: Face| if face.high { max } else { min };
-    let mut spaces: Vec<_> = faces.map(|face| through(corner(face), face.outward())).collect();
+    let mut spaces: Vec<_> = faces.map(|face| half_space(corner(face), face.outward())).collect();
     for (edge, cut) in edges {
         let [first, second] = *edge;
         let mut at = *corner(first);
         at[second.axis] = corner(second)[second.axis];
-        flats(&mut spaces, [first.outward(), second.outward()], &at, *cut, chords(edge));
+        add_flats(&mut spaces, [first.outward(), second.outward()], &at, *cut, chords(edge));
     }
     spaces
 }
 
 impl Solid {
-    /// Returns a box with a chamfer along the edges of that name; `None` if it
-    /// does not fit.
+    /// Returns a box with a chamfer along the edges with a name; `None` if the chamfer does not fit.
     pub fn chamfered(min: &Vector3<f64>, max: &Vector3<f64>, at: &str, leg: f64) -> Option<Self> {
         let edges: Vec<_> = named(at)?.into_iter().map(|edge| (edge, Cut::Chamfer(leg))).collect();
         cut(min, max, &edges).ok()
@@ -147,7 +148,7 @@ fn fit(size: &Vector3<f64>, edges: &[(Edge, Cut)]) -> bool {
 
 /// Adds the planes that replace an edge, given the outward normals of its faces: one for a chamfer, one
 /// for each chord of an arc.
-fn flats(
+fn add_flats(
     spaces: &mut Vec<HalfSpace>,
     [a, b]: [Vector3<f64>; 2],
     edge: &Vector3<f64>,
@@ -155,28 +156,27 @@ fn flats(
     chords: usize,
 ) {
     match cut {
-        Cut::Chamfer(leg) => {
-            spaces.push(through(&(edge - a * leg), (a + b).normalize()));
-        }
+        Cut::Chamfer(leg) => spaces.push(half_space(&(edge - a * leg), (a + b).normalize())),
         Cut::Radius(radius) => {
             let centre = edge - (a + b) * radius;
             let step = FRAC_PI_2 / chords as f64;
             for i in 0..chords {
                 let turn = (i as f64 + 0.5) * step;
                 let normal = a * libm::cos(turn) + b * libm::sin(turn);
-                spaces.push(through(&(centre + normal * (radius * libm::cos(step / 2.0))), normal));
+                let point = centre + normal * (radius * libm::cos(step / 2.0));
+                spaces.push(half_space(&point, normal));
             }
         }
     }
 }
 
-/// Returns the points that three of the planes share and that lie in all the half-spaces.
+/// Returns the corners of the intersection of all half-spaces.
 pub(super) fn corners(spaces: &[HalfSpace]) -> Vec<Point3<f64>> {
     let mut found: Vec<Point3<f64>> = Vec::new();
     for (i, a) in spaces.iter().enumerate() {
         for (j, b) in spaces.iter().enumerate().skip(i + 1) {
             for c in &spaces[j + 1..] {
-                let Some(point) = meeting([a, b, c]) else { continue };
+                let Some(point) = intersection([a, b, c]) else { continue };
                 let inside = |(normal, distance): &HalfSpace| {
                     normal.dot(&point.coords) <= distance + SAME / 10.0
                 };
@@ -189,8 +189,8 @@ pub(super) fn corners(spaces: &[HalfSpace]) -> Vec<Point3<f64>> {
     found
 }
 
-/// Returns the point that three planes share, unless they meet in a line or nowhere.
-fn meeting(planes: [&HalfSpace; 3]) -> Option<Point3<f64>> {
+/// Returns the intersection of three planes; `None` unless it is one point.
+fn intersection(planes: [&HalfSpace; 3]) -> Option<Point3<f64>> {
     let normals = Matrix3::from_rows(&planes.map(|(normal, _)| normal.transpose()));
     if normals.determinant().abs() < 1e-6 {
         return None;
@@ -215,8 +215,8 @@ impl Task {
         let corners = self.plug.parts.iter().flat_map(|part| part.solid.corners());
         let tip = corners.map(|p| p.z).fold(f64::INFINITY, f64::min);
         for part in &mut task.plug.parts {
-            let edges = |min: &Vector3<f64>| if min.z < tip + LEAD_IN { named("-z") } else { None };
-            lead_in(part, radius, Cut::Radius, |min, _| edges(min));
+            let at_tip = |min: &Vector3<f64>| min.z < tip + LEAD_IN;
+            cut_edges(part, radius, Cut::Radius, |min, _| named("-z").filter(|_| at_tip(min)));
         }
         task.cut_opening(radius, Cut::Radius);
         task
@@ -233,7 +233,7 @@ impl Task {
     fn cut_opening(&mut self, size: f64, cut: fn(f64) -> Cut) {
         let [x, y] = self.opening;
         for part in &mut self.socket {
-            lead_in(part, size, cut, |min, max| {
+            cut_edges(part, size, cut, |min, max| {
                 let walls = [
                     (max.x - x[0], "+x+z"),
                     (min.x - x[1], "-x+z"),
@@ -249,7 +249,7 @@ impl Task {
 }
 
 /// Cuts the edges of a box that `which` returns for its smallest and largest corner.
-fn lead_in(
+fn cut_edges(
     part: &mut Part,
     size: f64,
     cut_by: fn(f64) -> Cut,
@@ -259,10 +259,9 @@ fn lead_in(
     let edges = which(min, max).unwrap_or_default();
     let size = size.min(MAX_SHARE * (max - min).min());
     let cuts: Vec<_> = edges.into_iter().map(|edge| (edge, cut_by(size))).collect();
-    if cuts.is_empty() {
-        return;
-    }
-    if let Ok(solid) = cut(min, max, &cuts) {
+    if !cuts.is_empty()
+        && let Ok(solid) = cut(min, max, &cuts)
+    {
         part.solid = solid;
     }
 }
@@ -308,8 +307,8 @@ mod tests {
     fn a_cut_may_take_a_face_away_but_not_the_other_side() {
         let Ok(Solid::Hull { points }) = left("-z+x", Cut::Chamfer(4.0 * MM)) else { panic!() };
         assert_eq!(points.len(), 8, "a wedge at the tip: {points:?}");
-        assert_eq!(left("-z+x", Cut::Chamfer(4.1 * MM)), Err(ROOM));
-        assert_eq!(left("-z", Cut::Radius(2.1 * MM)), Err(ROOM));
+        assert_eq!(left("-z+x", Cut::Chamfer(4.1 * MM)), Err(TOO_LARGE));
+        assert_eq!(left("-z", Cut::Radius(2.1 * MM)), Err(TOO_LARGE));
         assert!(left("-z", Cut::Radius(1.9 * MM)).is_ok());
     }
 
@@ -333,7 +332,7 @@ mod tests {
                     }
                     Err(why) => {
                         refused += 1;
-                        assert_eq!(why, THIN);
+                        assert_eq!(why, TOO_THIN);
                         assert!(thick / side < 0.003, "{thick} x {side} mm");
                     }
                 }

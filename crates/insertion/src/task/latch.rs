@@ -9,10 +9,10 @@ use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
 /// Characteristic radius factor of the pseudo-rigid-body model of a cantilever with an end load (Howell
-/// 2001, Compliant Mechanisms, Wiley, Sec. 5.2.1): distance of its hinge from the end, as a share of
-/// its length. Its end is 4 % stiffer than `3 E I / L^3`.
+/// 2001, Compliant Mechanisms, Wiley, Sec. 5.2.1): distance of the hinge from the end, as a share of
+/// the cantilever's length. The end of the model is 4 % stiffer than `3 E I / L^3`.
 const GAMMA: f64 = 0.85;
-/// Stiffness coefficient of the same model.
+/// Stiffness coefficient of the pseudo-rigid-body model.
 const K_THETA: f64 = 2.65;
 /// Largest component of a flexure along the axis about which it bends, as a share of its length.
 const MAX_SLANT: f64 = 0.05;
@@ -20,7 +20,7 @@ const MAX_SLANT: f64 = 0.05;
 /// Parts of a plug that rotate together about a hinge with a spring.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Latch {
-    /// Indices of its parts among those of the plug, ascending.
+    /// Indices of the latch's parts among those of the plug, ascending.
     pub parts: Vec<usize>,
     /// Point on the hinge's axis, plug frame, m.
     pub hinge: Point3<f64>,
@@ -28,7 +28,7 @@ pub struct Latch {
     pub axis: usize,
     /// Stiffness of the hinge, N m/rad.
     pub stiffness: f64,
-    /// Root and end of its flexure, plug frame, m.
+    /// Root and end of the flexure, plug frame, m.
     pub flexure: [Point3<f64>; 2],
 }
 
@@ -56,7 +56,8 @@ fn stiffness(length: f64, width: f64, thickness: f64, modulus: f64) -> f64 {
     GAMMA * K_THETA * modulus * second_moment / length
 }
 
-pub fn latch(check: Check<'_>, raw: &RawLatch, parts: &[Part]) -> Result<Latch, InputError> {
+/// Checks a latch and replaces its flexure by a hinge.
+pub fn check_latch(check: Check<'_>, raw: &RawLatch, parts: &[Part]) -> Result<Latch, InputError> {
     let mut found = Vec::new();
     for name in &raw.parts {
         let named = |part: &Part| part.name == *name;
@@ -97,8 +98,8 @@ mod tests {
     use super::*;
     use input::units::{GPA, MM};
 
-    /// A force at the end of a cantilever moves it by `F L^3 / 3 E I`; of the hinge that stands for
-    /// it by 4 % less, and turns it as much as makes up for that over a large deflection.
+    /// A force at the end of a cantilever deflects the end by `F L^3 / 3 E I`. With the hinge the deflection is 4 %
+    /// less, since the model is fitted to large deflections.
     #[test]
     fn a_latch_is_as_stiff_at_its_end_as_the_cantilever() {
         let [length, width, thickness, modulus] = [8.4 * MM, 3.2 * MM, 1.2 * MM, 2.4 * GPA];

@@ -1,7 +1,7 @@
 //! Raw contents of a task file, and their conversion to a [`Task`].
 
 use super::finger::{RawFinger, finger};
-use super::latch::{RawLatch, latch};
+use super::latch::{RawLatch, check_latch};
 use super::mating_force::{RawMatingForce, mating_force};
 use super::parts_file::PartsFile;
 use super::raw_part::{RawPart, interval, parts};
@@ -129,7 +129,7 @@ fn convert(raw: RawTask, file: &str) -> Result<Task, InputError> {
         return check.fail("parts.file", format!("{file} must lie beside the task file"));
     }
     let plug_parts = parts(check, "plug.part", raw.plug.part)?;
-    let latch = raw.plug.latch.map(|raw| latch(check, &raw, &plug_parts)).transpose()?;
+    let latch = raw.plug.latch.map(|raw| check_latch(check, &raw, &plug_parts)).transpose()?;
     interval(check, "grip.faces_y_mm", raw.grip.faces_y)?;
     if raw.grip.shoulder_z <= raw.grip.tcp_z {
         return check.fail("grip.shoulder_z_mm", "must be above grip.tcp_z_mm");

@@ -5,7 +5,7 @@
 //! Arcs that meet at a corner are mitred like intersecting cylinders; three arcs of equal radius form part
 //! of a ball.
 
-use super::edges::{Cut, Edge, Face, HalfSpace, SAME, corners, same, spaces};
+use super::edges::{Cut, Edge, Face, HalfSpace, SAME, corners, half_spaces, same};
 use super::geometry;
 use contact::scene::Shape;
 use nalgebra::{Point3, Vector3};
@@ -91,7 +91,7 @@ impl Rounded {
     fn decompose(&self) -> Option<Vec<(Shape, Vector3<f64>)>> {
         let mut found: Vec<_> =
             self.edges.iter().filter_map(|(edge, cut)| self.core(edge, *cut)).collect();
-        let flats = corners(&spaces(&Vector3::zeros(), &self.size, &self.edges, |_| 1));
+        let flats = corners(&half_spaces(&Vector3::zeros(), &self.size, &self.edges, |_| 1));
         let (points, _) = geometry::hull(&flats)?;
         if points.len() != flats.len() {
             return None;
@@ -168,7 +168,7 @@ impl Rounded {
             }
             _ => 1,
         };
-        let mut bounds = spaces(&Vector3::zeros(), &self.size, &self.edges, chords);
+        let mut bounds = half_spaces(&Vector3::zeros(), &self.size, &self.edges, chords);
         for (i, end) in faces.iter().enumerate() {
             let [one, other] = [faces[(i + 1) % 3], faces[(i + 2) % 3]];
             let width = |edge: Edge| self.cut(edge).map_or(0.0, Cut::size);

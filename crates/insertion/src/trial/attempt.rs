@@ -2,10 +2,10 @@
 
 use super::cell::{self, Hand, WorkCell};
 use super::classify::{Facts, Placement, classify};
+use super::monitor::{ContactMonitor, LeadingEdge};
 use super::motion::{Move, Tcp};
 use super::record::{Frame, Recorder, Sample, Trace};
-use super::run::Watched;
-use super::watch::{LeadingEdge, Watch};
+use super::run::RecordedRun;
 use super::{Conditions, Grasp, PhaseEnd, Poses, Trial};
 use crate::outcome::Outcome;
 use crate::robot::Mounted;
@@ -60,7 +60,7 @@ pub(super) struct Attempt<'a> {
     time: f64,
     /// Grasp point in each finger's frame right after the grasp.
     grasp: [Vector3<f64>; 2],
-    watch: Watch,
+    monitor: ContactMonitor,
     edge: LeadingEdge,
     phases: Vec<PhaseEnd>,
     pub trace: Option<Trace>,
@@ -90,7 +90,7 @@ impl<'a> Attempt<'a> {
             socket: Pose::identity(),
             time: 0.0,
             grasp: [Vector3::zeros(); 2],
-            watch: Watch::default(),
+            monitor: ContactMonitor::default(),
             edge,
             phases: Vec::new(),
             trace: None,
@@ -276,17 +276,17 @@ impl<'a> Attempt<'a> {
         let dt = self.world.step_s();
         self.time += dt;
         let contact = self.socket_force();
-        self.watch.update_force(&contact.net, dt);
+        self.monitor.update_force(&contact.net, dt);
         self.record(dt);
-        self.watch_grasp(dt)?;
+        self.check_grasp(dt)?;
         if self.stage == Stage::Search {
-            self.watch.entered = self.edge.inside(&self.pose(self.cell.plug));
+            self.monitor.entered = self.edge.inside(&self.pose(self.cell.plug));
         }
         if self.trace.is_some() {
             let sample = self.sample(&contact.net);
-            self.trace.iter_mut().for_each(|trace| trace.see(sample));
+            self.trace.iter_mut().for_each(|trace| trace.record(sample));
         }
-        if self.robot.stops(&self.watch.force) { Err(Stop::ForceLimit) } else { Ok(()) }
+        if self.robot.stops(&self.monitor.force) { Err(Stop::ForceLimit) } else { Ok(()) }
     }
 
     /// Returns the state of the trial, with the net force of the socket on the plug, world axes, N.
@@ -299,7 +299,7 @@ impl<'a> Attempt<'a> {
             tcp_mm: (flange.translation.vector / MM).into(),
             tcp_tilt_deg: flange.rotation.scaled_axis().x / DEG,
             target_mm: ((self.socket * self.target.pose()).translation.vector / MM).into(),
-            sensed_n: (self.socket.rotation * self.watch.force).into(),
+            sensed_n: (self.socket.rotation * self.monitor.force).into(),
             tip_mm: (placement.tip / MM).into(),
             tilt_deg: placement.tilt / DEG,
             force_n: (self.socket.rotation * force).into(),
@@ -325,7 +325,7 @@ impl<'a> Attempt<'a> {
     }
 
     fn record(&mut self, dt: f64) {
-        if !self.recorder.as_mut().is_some_and(|recorder| recorder.wants(dt)) {
+        if !self.recorder.as_mut().is_some_and(|recorder| recorder.is_due(dt)) {
             return;
         }
         let frame = Frame {
@@ -333,7 +333,7 @@ impl<'a> Attempt<'a> {
             stage: self.stage,
             poses: self.poses(),
             jaws: self.cell.hands.map(|hand| self.pose(hand.jaw)),
-            force: self.socket * self.watch.force,
+            force: self.socket * self.monitor.force,
             slip: if self.phases.is_empty() { 0.0 } else { self.slip() },
             contacts: self.presses(self.cell.socket).collect(),
             grips: self.cell.hands.into_iter().flat_map(|hand| self.presses(hand.finger)).collect(),
@@ -351,14 +351,14 @@ impl<'a> Attempt<'a> {
         self.world.pose(self.cell.flange).translation.vector
     }
 
-    fn watch_grasp(&mut self, dt: f64) -> Result<(), Stop> {
+    fn check_grasp(&mut self, dt: f64) -> Result<(), Stop> {
         if self.time < GRASP_S {
             return Ok(());
         }
         let pressed = |hand: Hand| self.world.contact(hand.finger, self.cell.plug).normal_sum;
-        self.watch.update_fingers(self.cell.hands.map(pressed), dt);
+        self.monitor.update_fingers(self.cell.hands.map(pressed), dt);
         let slipped = !self.phases.is_empty() && self.slip() > self.task.grip.slip_limit;
-        if self.watch.dropped() || slipped { Err(Stop::Lost) } else { Ok(()) }
+        if self.monitor.dropped() || slipped { Err(Stop::Lost) } else { Ok(()) }
     }
 
     /// Returns the pose of a body in the task frame, as if the start and not the socket were shifted and turned.
@@ -404,11 +404,11 @@ impl<'a> Attempt<'a> {
             tip_mm: (placement.tip / MM).into(),
             tilt_deg: placement.tilt / DEG,
             slip_mm: self.slip() / MM,
-            peak_force_n: self.watch.phase_peak,
+            peak_force_n: self.monitor.phase_peak,
             poses: self.poses(),
             contacts: self.presses(self.cell.socket).collect(),
         };
-        self.watch.phase_peak = 0.0;
+        self.monitor.phase_peak = 0.0;
         self.phases.push(end);
     }
 
@@ -419,14 +419,14 @@ impl<'a> Attempt<'a> {
         }
         classify(Facts {
             seated,
-            gripped: self.watch.gripped(),
+            gripped: self.monitor.gripped(),
             lost_in: (end == Err(Stop::Lost)).then_some(self.stage),
-            entered: self.watch.entered && !self.placement().astray(&self.task),
+            entered: self.monitor.entered && !self.placement().astray(&self.task),
         })
     }
 
     /// Returns the trial that ended so, its samples and its frames.
-    pub fn result(self, end: Result<(), Stop>) -> Watched {
+    pub fn result(self, end: Result<(), Stop>) -> RecordedRun {
         let placement = self.placement();
         // The part is at rest, or bottomed and stopped the robot. A part in motion may still tip.
         let held = matches!(end, Ok(()) | Err(Stop::ForceLimit));
@@ -437,7 +437,7 @@ impl<'a> Attempt<'a> {
             margin: placement.margin(&self.task, outcome),
             depth_mm: -placement.tip.z / MM,
             tilt_deg: placement.tilt / DEG,
-            peak_force_n: self.watch.peak_force,
+            peak_force_n: self.monitor.peak_force,
             slip_mm: self.slip() / MM,
             simulated_s: self.time,
             phases: self.phases,

@@ -14,11 +14,11 @@ mod conditions;
 pub mod engine;
 #[cfg(any(test, feature = "fake-engine"))]
 pub mod fake;
+mod monitor;
 mod motion;
 pub mod picture;
 pub mod record;
 pub mod run;
-mod watch;
 
 pub use attempt::commanded::{Path, Probe};
 pub use attempt::driven::{Driven, State};
@@ -133,7 +133,7 @@ pub trait Rig: Send + Sync {
         None
     }
 
-    /// Returns the trials of a grasp along a course, sampled each `every_s` seconds from its start: one for
+    /// Returns the trials of a grasp along a course, sampled every `every_s` seconds from its start: one for
     /// each path; empty if it is not simulated.
     fn follow(&self, _grasp: Grasp<'_>, _course: Course<'_>, _every_s: f64) -> Vec<Followed> {
         Vec::new()
@@ -150,7 +150,7 @@ const ZEROED_S: f64 = 0.2;
 
 /// A part held and tilted, ready for a trial at any offset.
 pub trait Grasped: Send + Sync {
-    /// Runs a trial with the start shifted by `offset` metres along y: after a rest of `rest_s` seconds, sampled each
+    /// Runs a trial with the start shifted by `offset` metres along y: after a rest of `rest_s` seconds, sampled every
     /// `every_s` seconds from there on, and a second rest.
     fn run(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> (Trial, Vec<Sample>);
 

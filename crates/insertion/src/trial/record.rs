@@ -1,5 +1,5 @@
-//! Recording of a trial: samples at regular times, and frames of bodies and forces each millisecond for
-//! replays. A recorded trial ends as an unrecorded one, bit for bit.
+//! Recording of a trial: samples at regular times, and frames of bodies and forces every millisecond for
+//! replays. Recording does not change the trial: its result is bit-identical.
 
 use super::classify::Placement;
 use super::{Poses, Trial};
@@ -14,7 +14,7 @@ use serde::Serialize;
 /// Interval of the frames, s.
 const INTERVAL: f64 = 1e-3;
 
-/// One moment of a trial; task frame.
+/// State of a trial at one time, for replays; task frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     /// Simulated time since the trial began, s.
@@ -23,9 +23,9 @@ pub struct Frame {
     pub stage: Stage,
     /// Poses of plug and fingers, m.
     pub poses: Poses,
-    /// Poses of the jaws, m: those of the fingers if nothing bent them.
+    /// Poses of the jaws, m: equal to those of the fingers without deflection.
     pub jaws: [Pose; 2],
-    /// Force of the socket on the plug, filtered as the wrist's sensor does, N.
+    /// Force of the socket on the plug, filtered like that of a wrist sensor, N.
     pub force: Vector3<f64>,
     /// Slip of the part in the grasp since the grasp, m.
     pub slip: f64,
@@ -41,7 +41,7 @@ impl Frame {
         -self.poses.plug.translation.z / MM
     }
 
-    /// Returns the pose of the latch, or that of the plug without one.
+    /// Returns the pose of the latch, or of the plug if it has no latch.
     pub fn latch(&self) -> Pose {
         self.poses.latch.unwrap_or(self.poses.plug)
     }
@@ -57,25 +57,25 @@ impl Frame {
         (bent.translation.vector / MM).into()
     }
 
-    /// Transforms the frame to another frame of reference.
-    fn seen(&mut self, from: &Pose) {
+    /// Transforms all poses, points and the force by a pose.
+    fn transform(&mut self, by: &Pose) {
         let poses = [&mut self.poses.plug].into_iter().chain(&mut self.poses.latch);
         for pose in poses.chain(&mut self.poses.fingers).chain(&mut self.jaws) {
-            *pose = from * *pose;
+            *pose = by * *pose;
         }
         for point in self.contacts.iter_mut().chain(&mut self.grips) {
-            *point = point.transformed(from);
+            *point = point.transformed(by);
         }
-        self.force = from * self.force;
+        self.force = by * self.force;
     }
 }
 
-/// A trial and its frames.
+/// Trial with its frames.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     /// Result of the trial.
     pub trial: Trial,
-    /// Moments in their order, about a millisecond apart.
+    /// Frames in order of time, about a millisecond apart.
     pub frames: Vec<Frame>,
     /// Time at which the outcome was decided, s: the start of the push if the plug missed, otherwise the end.
     pub decided_s: f64,
@@ -100,16 +100,16 @@ pub(super) struct Recorder {
 }
 
 impl Recorder {
-    /// Returns whether this step, `step_s` long, is to be recorded.
-    pub fn wants(&mut self, step_s: f64) -> bool {
+    /// Counts a step of `step_s` seconds and returns whether its end is to be recorded.
+    pub fn is_due(&mut self, step_s: f64) -> bool {
         let every = ((INTERVAL / step_s).round() as usize).max(1);
         self.steps += 1;
         self.steps.is_multiple_of(every)
     }
 
-    /// Transforms the frames so far to another frame of reference.
-    pub fn seen(&mut self, from: &Pose) {
-        self.frames.iter_mut().for_each(|frame| frame.seen(from));
+    /// Transforms the frames recorded so far by a pose.
+    pub fn transform(&mut self, by: &Pose) {
+        self.frames.iter_mut().for_each(|frame| frame.transform(by));
     }
 }
 
@@ -118,7 +118,7 @@ impl Recorder {
 pub struct Sample {
     /// Simulated time since the trial began, s.
     pub time_s: f64,
-    /// Place of the phase among [`Trial::phases`](super::Trial::phases).
+    /// Index of the phase in [`Trial::phases`](super::Trial::phases).
     pub phase: u32,
     /// Position of the TCP, mm.
     pub tcp_mm: [f64; 3],
@@ -126,7 +126,7 @@ pub struct Sample {
     pub tcp_tilt_deg: f64,
     /// Commanded position of the TCP, mm.
     pub target_mm: [f64; 3],
-    /// Force of the socket on the plug as a wrist sensor filters it, N.
+    /// Force of the socket on the plug, filtered like that of a wrist sensor, N.
     pub sensed_n: [f64; 3],
     /// Tip of the plug, mm.
     pub tip_mm: [f64; 3],
@@ -172,13 +172,13 @@ pub(super) struct Trace {
 }
 
 impl Trace {
-    /// Creates a trace with a sample each `every_s` seconds of simulated time, from the end of the first step on.
+    /// Creates a trace with a sample every `every_s` seconds of simulated time, from the end of the first step on.
     pub fn new(every_s: f64) -> Self {
         Trace { every_s: every_s.max(MIN_INTERVAL), last: None, samples: Vec::new() }
     }
 
     /// Records the state at the end of a step.
-    pub fn see(&mut self, now: Sample) {
+    pub fn record(&mut self, now: Sample) {
         let Some(last) = self.last.replace(now) else {
             self.samples.push(now);
             return;

@@ -15,7 +15,7 @@ use std::sync::{Arc, OnceLock};
 
 /// Task, robot at its start, and an engine that supports both.
 pub struct EngineRig {
-    /// Task at whose start the robot is.
+    /// Task of the trials.
     pub task: Task,
     robot: Arc<Mounted>,
     engine: Box<dyn Engine>,
@@ -24,10 +24,10 @@ pub struct EngineRig {
 /// Error of a robot or an engine that does not support a task.
 #[derive(Debug, thiserror::Error)]
 pub enum RigError {
-    /// Names of robot and task, and why the robot does not support it.
+    /// The robot does not support the task: names of robot and task, and the reason.
     #[error("the robot `{0}` on the task `{1}`: {2}")]
     Robot(String, String, String),
-    /// The engine does not support them.
+    /// The engine does not support robot and task.
     #[error(transparent)]
     Engine(#[from] Unsupported),
 }
@@ -43,7 +43,7 @@ impl EngineRig {
         Self::with(task, robot, &any, engine)
     }
 
-    /// Creates the rig for fingers like this one.
+    /// Creates the rig, and checks that the engine supports fingers of this kind.
     ///
     /// # Errors
     /// If the robot or the engine does not support the task.
@@ -67,9 +67,10 @@ impl EngineRig {
         Ok(EngineRig { task, robot: Arc::new(mounted), engine })
     }
 
-    fn prepare<'a>(&self, engine: &dyn Engine, grasp: Grasp<'a>, filmed: bool) -> Prepared<'a> {
+    /// Returns an attempt after grasp and approach.
+    fn prepare<'a>(&self, engine: &dyn Engine, grasp: Grasp<'a>, recorded: bool) -> Prepared<'a> {
         let mut attempt = self.attempt(engine, &self.task, grasp);
-        attempt.recorder = filmed.then(Recorder::default);
+        attempt.recorder = recorded.then(Recorder::default);
         let end = attempt.prepare();
         Prepared { attempt, end, descended: OnceLock::new() }
     }
@@ -83,9 +84,9 @@ impl EngineRig {
         Attempt::new(Arc::clone(&self.robot), task, cell, world, grasp)
     }
 
-    fn ready<'a>(&'a self, grasp: Grasp<'a>, filmed: bool) -> Ready<'a> {
-        let prepared = self.prepare(&*self.engine, grasp, filmed);
-        Ready { rig: self, grasp, filmed, prepared, halved: OnceLock::new() }
+    fn grasp_with_retry<'a>(&'a self, grasp: Grasp<'a>, recorded: bool) -> GraspWithRetry<'a> {
+        let prepared = self.prepare(&*self.engine, grasp, recorded);
+        GraspWithRetry { rig: self, grasp, recorded, prepared, halved: OnceLock::new() }
     }
 }
 
@@ -102,11 +103,12 @@ fn on_plate(task: &Task) -> Task {
 
 impl Rig for EngineRig {
     fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
-        Box::new(self.ready(grasp, false))
+        Box::new(self.grasp_with_retry(grasp, false))
     }
 
     fn record(&self, grasp: Grasp<'_>, offset: f64) -> Option<Recording> {
-        let (trial, _, frames) = self.ready(grasp, true).watched(offset, None, 0.0);
+        let (trial, _, frames) =
+            self.grasp_with_retry(grasp, true).run_with_retry(offset, None, 0.0);
         Some(Recording::new(trial, frames))
     }
 
@@ -119,10 +121,10 @@ impl Rig for EngineRig {
         match course {
             Course::Paths(paths) => {
                 let mut held = self.attempt(engine, &self.task, grasp);
-                let taken = held.grasp();
+                let grasped = held.grasp();
                 let each = paths.iter().map(|path| {
                     let mut attempt = held.clone();
-                    let end = taken.and_then(|()| attempt.follow(path, every_s));
+                    let end = grasped.and_then(|()| attempt.follow(path, every_s));
                     ended(attempt, end)
                 });
                 each.collect()
@@ -136,46 +138,45 @@ impl Rig for EngineRig {
     }
 
     fn driven(&self, finger: &Finger) -> Option<Driven> {
-        let ready = self.prepare(&*self.engine, Grasp::of(finger), false);
-        Some(Driven::new(ready.attempt, ready.end))
+        let prepared = self.prepare(&*self.engine, Grasp::of(finger), false);
+        Some(Driven::new(prepared.attempt, prepared.end))
     }
 }
 
-/// Attempt stopped right before the search, and the inputs to repeat it.
-struct Ready<'a> {
+/// Attempt right before the search, with the inputs to repeat it at half the step.
+struct GraspWithRetry<'a> {
     rig: &'a EngineRig,
     grasp: Grasp<'a>,
-    filmed: bool,
+    recorded: bool,
     prepared: Prepared<'a>,
-    /// Prepared at half the step, once a trial has diverged.
+    /// Attempt at half the step, once a trial has diverged.
     halved: OnceLock<Prepared<'a>>,
 }
 
-impl Grasped for Ready<'_> {
+impl Grasped for GraspWithRetry<'_> {
     fn run(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> (Trial, Vec<Sample>) {
-        let (trial, samples, _) = self.watched(offset, every_s, rest_s);
+        let (trial, samples, _) = self.run_with_retry(offset, every_s, rest_s);
         (trial, samples)
     }
 }
 
-/// A trial, samples from the search on, and frames from the grasp on; both empty unless requested.
-pub(super) type Watched = (Trial, Vec<Sample>, Vec<Frame>);
+/// Trial, samples from the search on, and frames from the grasp on; samples and frames are empty unless requested.
+pub(super) type RecordedRun = (Trial, Vec<Sample>, Vec<Frame>);
 
-impl Ready<'_> {
-    fn watched(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> Watched {
-        let first = self.prepared.watched(offset, every_s, rest_s);
+impl GraspWithRetry<'_> {
+    fn run_with_retry(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> RecordedRun {
+        let first = self.prepared.run(offset, every_s, rest_s);
         if first.0.outcome != Outcome::Diverged {
             return first;
         }
         let again =
-            || self.rig.prepare(&*self.rig.engine.with_half_step(), self.grasp, self.filmed);
-        let (trial, samples, frames) =
-            self.halved.get_or_init(again).watched(offset, every_s, rest_s);
+            || self.rig.prepare(&*self.rig.engine.with_half_step(), self.grasp, self.recorded);
+        let (trial, samples, frames) = self.halved.get_or_init(again).run(offset, every_s, rest_s);
         (Trial { retried: true, ..trial }, samples, frames)
     }
 }
 
-/// Attempt stopped right before the search; every offset starts from a copy.
+/// Attempt right before the search; every offset starts from a copy.
 struct Prepared<'a> {
     attempt: Attempt<'a>,
     end: Result<(), Stop>,
@@ -190,15 +191,15 @@ impl<'a> Prepared<'a> {
         self.descended.get_or_init(|| self.attempt.descended()).as_ref()
     }
 
-    fn watched(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> Watched {
-        let seen = every_s.is_some() || self.attempt.recorder.is_some();
+    fn run(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> RecordedRun {
+        let observed = every_s.is_some() || self.attempt.recorder.is_some();
         let mut attempt =
-            if seen { None } else { self.descended() }.unwrap_or(&self.attempt).shifted(offset);
-        // A sensor is zeroed once the robot is still.
+            if observed { None } else { self.descended() }.unwrap_or(&self.attempt).shifted(offset);
+        // The sensor is zeroed once the robot is at rest.
         let end = self.end.and_then(|()| attempt.rest(rest_s));
         attempt.trace = every_s.map(Trace::new);
         if let Some(recorder) = &mut attempt.recorder {
-            recorder.seen(&attempt.socket);
+            recorder.transform(&attempt.socket);
         }
         let end = end.and_then(|()| attempt.rest(rest_s));
         let end = end.and_then(|()| attempt.search_and_assemble());
@@ -216,7 +217,7 @@ mod tests {
     use input::shipped::ROBOTS;
     use std::sync::atomic::{AtomicBool, Ordering};
 
-    /// An engine whose contacts are not numbers until its step has been halved so often.
+    /// Engine that diverges until its step has been halved this number of times.
     #[derive(Clone, Copy)]
     struct Fragile {
         direct: Direct,
@@ -300,16 +301,12 @@ mod tests {
         for speed in [slow, "speed_mm_per_s = 2000.0"] {
             let text = usb.text.replace(slow, speed);
             let rig = rig(Task::parse(&text, usb.file).unwrap());
-            let ready = rig.prepare(&Direct::default(), Grasp::of(&finger(2.6, 45.0)), false);
-            assert!(speed != slow || ready.descended().is_some());
+            let prepared = rig.prepare(&Direct::default(), Grasp::of(&finger(2.6, 45.0)), false);
+            assert!(speed != slow || prepared.descended().is_some());
             // A trial with samples goes all the way by itself.
             for offset in [-2.5e-3, 0.0, 4e-3] {
-                let trial = ready.watched(offset, None, 0.0).0;
-                assert_eq!(
-                    trial,
-                    ready.watched(offset, Some(1e-3), 0.0).0,
-                    "{speed} at {offset} m"
-                );
+                let trial = prepared.run(offset, None, 0.0).0;
+                assert_eq!(trial, prepared.run(offset, Some(1e-3), 0.0).0, "{speed} at {offset} m");
             }
         }
     }

@@ -25,7 +25,7 @@ const MAX_COARSE: usize = 110;
 /// Grid point: steps along both axes from zero error.
 pub type Node = [i32; 2];
 
-/// Outcome of a trial, for the tracing of the region in which trials insert.
+/// Outcome of a trial, inside or outside the region to trace.
 pub trait Traceable: Copy + PartialEq + Send + Sync {
     /// Returns whether the outcome belongs to the traced region.
     fn inside(self) -> bool;
@@ -46,7 +46,7 @@ pub struct TracedMap<'a, T> {
     pub low: Node,
     /// Highest corner.
     pub high: Node,
-    /// Every grid point from `low` to `high`.
+    /// Outcome at every grid point from `low` to `high`.
     pub nodes: BTreeMap<Node, NodeOutcome<T>>,
     /// Number of trials simulated.
     pub trials: usize,
@@ -101,9 +101,7 @@ impl<T: Traceable> TracedMap<'_, T> {
             let before = (self.low, self.high);
             for axis in [0, 1] {
                 let inserts = |edge: i32| {
-                    self.nodes
-                        .iter()
-                        .any(|(node, found)| node[axis] == edge && found.outcome.inside())
+                    self.nodes.iter().any(|(at, found)| at[axis] == edge && found.outcome.inside())
                 };
                 let [below, above] = [before.0, before.1].map(|end| inserts(end[axis]));
                 let (low, high) = (self.low[axis] - coarse, self.high[axis] + coarse);
@@ -161,7 +159,7 @@ impl<T: Traceable> TracedMap<'_, T> {
         traced
     }
 
-    /// Returns the outcomes of the neighbours at distance `by` along the axes on which the point lies between two.
+    /// Returns the outcomes of the neighbours at distance `by` along the axes on which the point is a midpoint.
     /// For a face centre with equal neighbours along exactly one axis, only the outcomes along this axis.
     fn around(&self, node: Node, by: i32, between: [bool; 2], differ: fn(T, T) -> bool) -> Vec<T> {
         let pair = |axis: usize| -> Vec<T> {
@@ -199,15 +197,15 @@ impl<T: Traceable> TracedMap<'_, T> {
         }
     }
 
-    /// Returns the inferred points for which a condition on their outcome and their neighbours holds.
+    /// Returns the inferred points whose outcome and neighbours meet a condition.
     fn inferred(&self, holds: impl Fn(T, &[NodeOutcome<T>]) -> bool) -> Vec<Node> {
         let fits = |(node, found): &(&Node, &NodeOutcome<T>)| {
-            !found.simulated && holds(found.outcome, &self.beside(**node))
+            !found.simulated && holds(found.outcome, &self.neighbours(**node))
         };
         self.nodes.iter().filter(fits).map(|(node, _)| *node).collect()
     }
 
-    /// Simulates those points that have not been simulated; an evenly spaced subset if that would
+    /// Simulates the points that have not been simulated; an evenly spaced subset if that would
     /// exceed `most` trials. Returns whether all were simulated.
     fn simulate(&mut self, mut wanted: Vec<Node>, most: usize) -> bool {
         wanted.retain(|&node| !self.simulated(node));
@@ -232,12 +230,10 @@ impl<T: Traceable> TracedMap<'_, T> {
         along(1).flat_map(|other| along(0).map(move |y| [y, other])).collect()
     }
 
-    /// Returns the up to four neighbours on the grid.
-    fn beside(&self, node: Node) -> Vec<NodeOutcome<T>> {
-        let all = [(0, -1), (0, 1), (1, -1), (1, 1)];
-        all.iter()
-            .filter_map(|&(axis, by)| self.nodes.get(&moved(node, axis, by)).copied())
-            .collect()
+    /// Returns the outcomes of the up to four neighbours on the grid.
+    fn neighbours(&self, node: Node) -> Vec<NodeOutcome<T>> {
+        let beside = |(axis, by)| self.nodes.get(&moved(node, axis, by)).copied();
+        [(0, -1), (0, 1), (1, -1), (1, 1)].into_iter().filter_map(beside).collect()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::Parameter;
 
-/// Number of steps between the current value and a bound; the farthest feasible one is used.
+/// Number of steps between the current value and a bound; the farthest feasible step is used.
 const STEPS: u32 = 100;
 
 /// Lower or upper bound of a parameter.
@@ -36,7 +36,7 @@ pub fn farthest<T>(
     let (mut feasible, mut infeasible) = (0, STEPS);
     while infeasible - feasible > 1 {
         let middle = (feasible + infeasible) / 2;
-        *(if at_step(middle).is_some() { &mut feasible } else { &mut infeasible }) = middle;
+        if at_step(middle).is_some() { feasible = middle } else { infeasible = middle }
     }
     at_step(feasible)
 }

@@ -5,7 +5,7 @@ use finger_opt::failure::Failure;
 use input::shipped::PRIORS;
 use insertion::evaluation::cell::Priors;
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
-use insertion::evaluation::taught::{Moved, Taught, teach};
+use insertion::evaluation::taught::{Shifted, TaughtStart, teach};
 use insertion::evaluation::template::Template;
 use insertion::evaluation::tolerance::{self, Search};
 use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
@@ -82,7 +82,7 @@ impl<'a> HiddenCell<'a> {
 pub struct FingerWindows {
     pub finger: Measurement,
     /// Windows in MuJoCo, in our engine, and in our engine with the nominal cell, that of the files.
-    windows: [Option<Taught>; 3],
+    windows: [Option<TaughtStart>; 3],
     /// Whether the start that was taught in our engine fails in MuJoCo.
     taught_again: bool,
     elapsed_s: f64,
@@ -136,12 +136,12 @@ impl FingerWindows {
     }
 }
 
-fn starts_mm(taught: &Taught) -> [f64; 3] {
-    let Taught { shift, window, .. } = taught;
+fn starts_mm(taught: &TaughtStart) -> [f64; 3] {
+    let TaughtStart { shift, window, .. } = taught;
     [*shift, shift + window.negative_steps, shift + window.positive_steps].map(grid_mm)
 }
 
-fn cells(taught: &Taught) -> String {
+fn cells(taught: &TaughtStart) -> String {
     let [start, negative, positive] = starts_mm(taught);
     let window = &taught.window;
     let [below, above] = [window.end_negative, window.end_positive].map(|end| match end {
@@ -158,15 +158,15 @@ pub fn window(
     robot: &Robot,
     engine: EngineKind,
     near: Option<OffsetStep>,
-) -> Result<Option<Taught>, Failure> {
+) -> Result<Option<TaughtStart>, Failure> {
     let Specimen { task, finger, .. } = specimen;
     let rig = engine.rig(task, robot, finger, 1.0).map_err(Failure::input)?;
     if let Some(shift) = near {
-        let moved = Moved { rig: &*rig, shift };
+        let moved = Shifted { rig: &*rig, shift };
         let found = tolerance::evaluate(&moved, finger, Search::Strides);
         let Evaluation { window, peak_force_n, .. } = found;
         if window.nominal == Outcome::Inserted {
-            return Ok(Some(Taught { shift, window, peak_force_n }));
+            return Ok(Some(TaughtStart { shift, window, peak_force_n }));
         }
     }
     Ok(teach(&*rig, finger, &NEVER).ok())

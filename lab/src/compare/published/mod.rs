@@ -10,7 +10,7 @@ use super::failures;
 use ask_tell::statistics::{mean, spearman};
 use calibration::published::{self, Origin};
 use insertion::evaluation::Window;
-use insertion::evaluation::taught::{Moved, teach};
+use insertion::evaluation::taught::{Shifted, teach};
 use insertion::evaluation::template::Impossible;
 use insertion::evaluation::tolerance::{self, Search};
 use insertion::finger::model::FingerSource;
@@ -174,7 +174,7 @@ pub fn windows(
             StartRule::Given => None,
             StartRule::Taught => teach(&*rig, &finger, &NEVER).ok(),
         };
-        let moved = Moved { rig: &*rig, shift: taught.map_or(0, |taught| taught.shift) };
+        let moved = Shifted { rig: &*rig, shift: taught.map_or(0, |taught| taught.shift) };
         Ok((*design, tolerance::evaluate(&moved, &finger, search).window))
     };
     let table = |task: &Task| {

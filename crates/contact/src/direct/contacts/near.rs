@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Relative displacement of two bodies up to which their list is valid, m.
+/// Relative displacement of two bodies up to which their near pairs are valid, m.
 const MARGIN: f64 = 0.5e-3;
 
 /// Relative displacement up to which the close pairs of a long list are valid, m.
@@ -21,7 +21,7 @@ const CLOSE: f64 = 0.12e-3;
 /// Pair of shapes that may touch.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct NearPair {
-    /// Number, counted through all pairs of the scene.
+    /// Number of the pair, counted over all pairs of shapes of the scene.
     pub number: usize,
     /// Shapes of the first and the second body.
     pub solids: [usize; 2],
@@ -34,31 +34,32 @@ pub(super) struct NearList {
     pub bodies: [usize; 2],
     /// Pairs that may touch.
     pub near: Vec<NearPair>,
-    /// Closest of them, the only ones tested in a step if there are many.
+    /// Closest of the near pairs, the only ones tested in a step if there are many.
     pub close: Vec<NearPair>,
-    /// Shapes of these pairs.
+    /// Shapes of the near pairs, ascending.
     pub solids: Vec<usize>,
     /// All pairs that have been near, by their numbers, with their contact points.
     pub candidates: BTreeMap<usize, Candidate>,
+    /// Number of the pair of bodies in the scene.
     number: usize,
     friction: Friction,
-    /// Number of the first pair.
+    /// Number of the first pair of shapes.
     from: usize,
     first: Range<usize>,
     second: Range<usize>,
-    /// Boxes of the first body's shapes in its frame.
+    /// Bounding volume hierarchy of the first body's shapes in its frame.
     tree: Arc<Bvh>,
-    /// Farthest point of the second body's shapes from its origin, m.
+    /// Largest distance of a point of the second body's shapes from its origin, m.
     reach: f64,
-    /// Pose of the second body in the frame of the first for which the list was made.
+    /// Pose of the second body in the frame of the first for which the near pairs were determined.
     made_at: Option<Pose>,
-    /// The same for the close pairs.
+    /// Pose of the second body in the frame of the first for which the close pairs were selected.
     chosen_at: Option<Pose>,
     /// Largest gap of the close pairs, m.
     chosen_for: f64,
 }
 
-/// Returns the hierarchy of the boxes of a body's shapes in its frame.
+/// Builds the bounding volume hierarchy of a body's shapes in its frame.
 pub(super) fn tree(solids: &[Solid]) -> Bvh {
     let boxes: Vec<_> = solids.iter().map(|solid| solid.boxed).collect();
     Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
@@ -100,7 +101,7 @@ impl NearList {
         self.first.len() * self.second.len()
     }
 
-    /// Returns the largest speed of a point of the second body against the first, m/s.
+    /// Returns an upper bound of the speed of any point of the second body relative to the first, m/s.
     pub fn speed(&self, bodies: &[MovingBody]) -> f64 {
         let [first, second] = self.bodies.map(|body| &bodies[body]);
         let own = first.velocity - second.velocity;
@@ -110,7 +111,7 @@ impl NearList {
         linear + turned + angular * self.reach
     }
 
-    /// Renews the list if the bodies have moved; `relative` is the pose of the second one in the frame of the first.
+    /// Renews the near pairs if the bodies have moved; `relative` is the pose of the second in the frame of the first.
     pub fn renew(&mut self, relative: &Pose, solids: &[Solid], prediction: f64) {
         if has_stayed(self.made_at.as_ref(), relative, self.reach, MARGIN) {
             return;
@@ -143,7 +144,7 @@ impl NearList {
         }
     }
 
-    /// Selects the pairs that may touch in the next steps by the present enclosing boxes.
+    /// Selects the close pairs, which may touch in the next steps, by the current bounding boxes of the shapes.
     pub fn choose(&mut self, relative: &Pose, solids: &[Solid], prediction: f64) {
         let stayed = has_stayed(self.chosen_at.as_ref(), relative, self.reach, CLOSE);
         if stayed && prediction <= self.chosen_for {

@@ -9,7 +9,7 @@ use crate::robot::{Drive, Robot};
 use crate::space::Design;
 use crate::surrogate::Prediction;
 use crate::trial::Conditions;
-use input::numbers::{DESIGN, unknown};
+use input::numbers::{DESIGN, unknown_path};
 use input::units::{MM, N_PER_MM};
 use input::{Check, InputError};
 use parameters::numbers::{CLEARANCE, EDGE_RADIUS, FLANGE, Kind};
@@ -54,7 +54,7 @@ impl Robot {
     /// such number.
     fn numbers(&mut self, path: &Path) -> (Vec<&mut f64>, f64) {
         let unit = if path == FLANGE { N_PER_MM } else { 1.0 };
-        let numbers = match (path.as_str(), &mut self.drive) {
+        let numbers = match (&**path, &mut self.drive) {
             ("robot.stop_force_n", _) => vec![&mut self.stop_force],
             (FLANGE, Drive::Servo(servo)) => {
                 servo.stiffness.iter_mut().chain(&mut servo.rotational_stiffness).collect()
@@ -120,7 +120,7 @@ impl Evaluator {
                 if template.numbers.number(&row.path).is_none() {
                     let paths = template.numbers.keys();
                     let paths: Vec<&str> = paths.iter().map(String::as_str).collect();
-                    return Check { file }.fail(&row.name, unknown(&row.path, &paths));
+                    return Check { file }.fail(&row.name, unknown_path(&row.path, &paths));
                 }
             }
         }

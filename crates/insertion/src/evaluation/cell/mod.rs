@@ -33,7 +33,7 @@ impl Priors {
     /// Reads and checks a file; `file` is named in errors.
     ///
     /// # Errors
-    /// If the text cannot be parsed, or same as for [`Priors::checked`].
+    /// If the text cannot be parsed; see also [`Priors::checked`].
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         read::<Priors>(text, file)?.checked(file)
     }
@@ -64,7 +64,7 @@ impl Priors {
         Ok(self)
     }
 
-    /// Returns its robot, if there is one; `file` is named in errors.
+    /// Returns the robot of the cell, if the file contains one; `file` is named in errors.
     ///
     /// # Errors
     /// If the table is not a robot file.
@@ -73,7 +73,7 @@ impl Priors {
         self.robot_text().map(robot).transpose()
     }
 
-    /// Returns the text of its robot file, if there is one.
+    /// Returns the text of the cell's robot file, if the file contains one.
     pub fn robot_text(&self) -> Option<String> {
         self.robot.as_ref().map(toml::Table::to_string)
     }
@@ -92,7 +92,7 @@ impl Priors {
 
     /// Returns a sentence that names the rows that do not apply to a task; `None` if all do.
     pub fn remark(&self, task: &str) -> Option<String> {
-        let names: Vec<_> = self.not_of(task).map(|row| row.path.as_str()).collect();
+        let names: Vec<_> = self.not_of(task).map(|row| &*row.path).collect();
         let own = self.task.as_ref().filter(|_| !names.is_empty())?;
         let names = names.join(", ");
         Some(format!(

@@ -119,7 +119,7 @@ impl Attempt<'_> {
         self.rest(REST_IN_AIR)?;
         let down = Vector3::new(0.0, 0.0, -probe.speed);
         for _ in 0..self.steps(MAX_DESCENT / probe.speed) {
-            if self.watch.force.z >= probe.force {
+            if self.monitor.force.z >= probe.force {
                 break;
             }
             self.press(down)?;
@@ -128,7 +128,7 @@ impl Attempt<'_> {
         for i in 0..probe.slides {
             let along = if i.is_multiple_of(2) { probe.speed } else { -probe.speed };
             for _ in 0..slide {
-                let lower = ADMITTANCE * (self.watch.force.z - probe.force);
+                let lower = ADMITTANCE * (self.monitor.force.z - probe.force);
                 self.press(Vector3::new(0.0, along, lower))?;
             }
         }

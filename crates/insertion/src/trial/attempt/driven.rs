@@ -30,7 +30,7 @@ pub struct State {
     pub tcp_mm: [f64; 3],
     /// Rotation of the flange about x, y and z, degrees; it includes the tilt of the search.
     pub turn_deg: [f64; 3],
-    /// Net force of the socket on the plug as a wrist sensor filters it, N.
+    /// Net force of the socket on the plug filtered like that of a wrist sensor, N.
     pub force_n: [f64; 3],
     /// Tip of the plug relative to the middle of the opening, mm; not observable by a robot.
     pub tip_mm: [f64; 3],
@@ -70,19 +70,19 @@ impl Driven {
             if self.outcome().is_none() {
                 self.attempt.target = self.attempt.target.moved(velocity * dt);
                 self.end = self.attempt.step();
-                self.watch(dt);
+                self.update_stage(dt);
             }
         }
         self.state()
     }
 
     /// Detects the start of the push and the part at rest, which a strategy defines by its phases.
-    fn watch(&mut self, dt: f64) {
+    fn update_stage(&mut self, dt: f64) {
         let attempt = &mut self.attempt;
-        if attempt.watch.entered && attempt.stage == Stage::Search {
+        if attempt.monitor.entered && attempt.stage == Stage::Search {
             attempt.enter(Stage::Assembly);
         }
-        let seated = attempt.placement().seated(&attempt.task) && attempt.watch.gripped();
+        let seated = attempt.placement().seated(&attempt.task) && attempt.monitor.gripped();
         self.seated_s = if seated { self.seated_s + dt } else { 0.0 };
     }
 
@@ -107,7 +107,7 @@ impl Driven {
             time_s: attempt.time - self.ready.time,
             tcp_mm: (flange.translation.vector / MM).into(),
             turn_deg: (flange.rotation.scaled_axis() / DEG).into(),
-            force_n: attempt.watch.force.into(),
+            force_n: attempt.monitor.force.into(),
             tip_mm: (placement.tip / MM).into(),
             tilt_deg: placement.tilt / DEG,
             slip_mm: attempt.slip() / MM,

@@ -1,4 +1,4 @@
-//! Monitors of an attempt: force, grip, and whether the leading edge has found the opening.
+//! Monitors of an attempt: force, grip, and whether the leading edge is inside the opening.
 
 use super::classify::within;
 use crate::task::Task;
@@ -14,19 +14,19 @@ const LOSS_TIME: f64 = 0.02;
 /// Force below which a finger has no contact, N.
 const LOSS_FORCE: f64 = 0.01;
 
-/// Filtered force and finger contacts.
+/// Monitor of the filtered force and of the finger contacts.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Watch {
+pub(super) struct ContactMonitor {
     pub force: Vector3<f64>,
     pub peak_force: f64,
     pub phase_peak: f64,
-    /// Whether the leading edge is inside the opening; as it was when the search ended.
+    /// Whether the leading edge is inside the opening; after the search, whether it was at the end of the search.
     pub entered: bool,
     /// Time for which each finger has had no contact, s.
     loose_for: [f64; 2],
 }
 
-impl Watch {
+impl ContactMonitor {
     /// Updates the filtered force and its peaks by the net force over a step, N.
     pub fn update_force(&mut self, net: &Vector3<f64>, dt: f64) {
         self.force += (net - self.force) * (dt / FORCE_FILTER);
@@ -35,9 +35,9 @@ impl Watch {
     }
 
     /// Updates the contact of each finger by its force on the plug over a step, N.
-    pub fn update_fingers(&mut self, pressed: [f64; 2], dt: f64) {
-        for (pressed, loose_for) in pressed.into_iter().zip(&mut self.loose_for) {
-            *loose_for = if pressed < LOSS_FORCE { *loose_for + dt } else { 0.0 };
+    pub fn update_fingers(&mut self, forces: [f64; 2], dt: f64) {
+        for (force, loose_for) in forces.into_iter().zip(&mut self.loose_for) {
+            *loose_for = if force < LOSS_FORCE { *loose_for + dt } else { 0.0 };
         }
     }
 
@@ -54,16 +54,17 @@ impl Watch {
 
 /// Number of corners above which only those of their hull are checked.
 const MAX_CORNERS: usize = 500;
-/// Depth of an edge that is inside, m: more than contacts sink, less than any preload.
+/// Smallest depth of an edge that is inside, m: more than contacts penetrate, less than any preload.
 const INSIDE_DEPTH: f64 = 0.15 * MM;
-/// Overlap of an edge that leans on a wall, m: more than contacts sink, less than a clearance.
+/// Largest overlap of an edge with a wall it touches, m: more than contacts penetrate, less than a clearance.
 const WALL_OVERLAP: f64 = 0.02 * MM;
 
 /// Corners of a plug that can enter the opening first.
 #[derive(Debug, Clone)]
 pub(super) struct LeadingEdge {
-    /// Plug frame: z from the tip.
+    /// Corners in the plug frame: z from the tip.
     corners: Vec<Point3<f64>>,
+    /// Intervals of x and y in the task frame.
     opening: [[f64; 2]; 2],
 }
 
@@ -73,18 +74,17 @@ impl LeadingEdge {
         let corners = task.plug.rigid().flat_map(|part| part.solid.corners());
         let corners: Vec<_> = corners.filter(|corner| corner.z < task.success.depth).collect();
         // The corners are checked in every step.
-        let few = if corners.len() > MAX_CORNERS { hull(&corners) } else { None };
+        let reduced = if corners.len() > MAX_CORNERS { hull(&corners) } else { None };
         LeadingEdge {
-            corners: few.map_or(corners, |(corners, _)| corners),
+            corners: reduced.map_or(corners, |(corners, _)| corners),
             opening: task.opening.map(|[from, to]| [from - WALL_OVERLAP, to + WALL_OVERLAP]),
         }
     }
 
-    /// Returns whether it is inside the opening: its lowest corner is below the top, and no corner on
-    /// the side of the plug that leans down stands over the housing; `plug` is the plug's pose in the
-    /// task frame.
+    /// Returns whether the leading edge is inside the opening: its lowest corner is below the top of the socket, and
+    /// no corner on the lower side of a tilted plug is above the housing; `plug` is the plug's pose in the task frame.
     pub fn inside(&self, plug: &Pose) -> bool {
-        // Towards where the plug leans up, in its own frame.
+        // Its x and y point to the upper side of the plug.
         let up = plug.inverse_transform_vector(&Vector3::z());
         let leads = |corner: &&Point3<f64>| corner.x * up.x + corner.y * up.y <= 0.0;
         let [x, y] = self.opening;

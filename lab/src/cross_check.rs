@@ -30,9 +30,6 @@ pub struct Arguments {
     /// A few trials far from the windows' ends, and no windows of the second engine
     #[arg(long)]
     reduced: bool,
-    /// Time one trial of each task in both engines instead, one thread, medians of 5
-    #[arg(long, conflicts_with_all = ["reduced", "json"])]
-    time: bool,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -56,9 +53,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     // The softest and the stiffest.
     let mut designs = Fingers::Three.designs();
     designs.remove(1);
-    if arguments.time {
-        return print(&engines::time_text(&engines::time(&tasks, &designs), names));
-    }
     let check = engines::run(&tasks, &designs, arguments.reduced);
     match arguments.json {
         true => print_json(&engines::json(&check, names))?,

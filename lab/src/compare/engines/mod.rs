@@ -9,7 +9,7 @@ mod tests;
 
 use super::pairs::{self, WindowPair};
 use super::{Setting, Subject, TaskSettings, each, subject_json};
-use ask_tell::statistics::{mean, median, quantile, sorted};
+use ask_tell::statistics::{quantile, sorted};
 use insertion::evaluation::{OffsetStep, Window, grid_mm, tolerance};
 use insertion::outcome::Outcome;
 use insertion::stiffness::Measurement;
@@ -17,7 +17,6 @@ use insertion::trial::Trial;
 use report::text_table;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
-use std::time::Instant;
 
 /// Least share of the trials on which the engines agree.
 pub const AGREEMENT: f64 = 0.9;
@@ -188,65 +187,4 @@ pub fn json(check: &CrossCheck, names: [&str; 2]) -> Value {
         "trials": check.trials.iter().map(trial).collect::<Vec<_>>(),
         "windows": pairs::json(&check.windows, None, "engine", ["first", "second"]),
     })
-}
-
-/// Runs of each trial; their median time is reported.
-const RUNS: usize = 5;
-
-/// Times of a finger's nominal trial, from the grasp to the end, in both engines.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Timing {
-    pub subject: Subject,
-    pub outcomes: [Outcome; 2],
-    pub simulated_s: [f64; 2],
-    /// Wall time, s: median of 5.
-    pub wall_s: [f64; 2],
-}
-
-impl Timing {
-    /// Returns the wall time per simulated time of the first engine over that of the second.
-    pub fn ratio(&self) -> f64 {
-        let [first, second] = [0, 1].map(|i| self.wall_s[i] / self.simulated_s[i]);
-        first / second
-    }
-}
-
-/// Measures the times of every design on every task in the first two settings, one after the other on this thread.
-pub fn time(tasks: &[TaskSettings], designs: &[Measurement]) -> Vec<Timing> {
-    let timing = |on: &TaskSettings, design: &Measurement| {
-        let subject = Subject::new(&on.task.name, &on.task.finger, *design);
-        let mut walls = [Vec::new(), Vec::new()];
-        let mut ends = [(Outcome::Diverged, 0.0); 2];
-        for _ in 0..RUNS {
-            for (i, setting) in on.settings.iter().take(2).enumerate() {
-                let clock = Instant::now();
-                let trial = setting.rig.grasp(&subject.finger).trial(0.0);
-                walls[i].push(clock.elapsed().as_secs_f64());
-                ends[i] = (trial.outcome, trial.simulated_s);
-            }
-        }
-        Timing {
-            subject,
-            outcomes: ends.map(|end| end.0),
-            simulated_s: ends.map(|end| end.1),
-            wall_s: walls.map(|walls| median(walls).unwrap_or(f64::NAN)),
-        }
-    };
-    tasks.iter().flat_map(|task| designs.iter().map(move |design| timing(task, design))).collect()
-}
-
-pub fn time_text(rows: &[Timing], [first, second]: [&str; 2]) -> String {
-    let timings = rows.iter().map(|row| {
-        let [a, b] = [0, 1].map(|i| format!("{:.3} ({:.2})", row.wall_s[i], row.simulated_s[i]));
-        let other = if alike(row.outcomes) { "" } else { "another outcome" };
-        let (task, infill) = (row.subject.task.to_string(), row.subject.infill());
-        [task, infill, a, b, format!("{:.3}", row.ratio()), other.to_owned()]
-    });
-    let [first, second] = [first, second].map(|name| format!("{name}\nwall s (simulated)"));
-    let mean = mean(rows.iter().map(Timing::ratio)).unwrap_or(f64::NAN);
-    format!(
-        "one nominal trial from the grasp to the end, one thread, medians of {RUNS}\n\n{}\
-         mean ratio of wall to simulated time: {mean:.3}\n",
-        text_table(2, ["task", "finger", &first, &second, "ratio", ""], timings)
-    )
 }

@@ -50,15 +50,11 @@ pub struct TrialPair {
 }
 
 impl TrialPair {
+    /// Returns whether both inserted the plug, or neither.
     pub fn agrees(&self) -> bool {
-        alike(self.outcomes)
+        let [first, second] = self.outcomes.map(|outcome| outcome == Outcome::Inserted);
+        first == second
     }
-}
-
-/// Returns whether both inserted the plug, or neither.
-fn alike(outcomes: [Outcome; 2]) -> bool {
-    let [first, second] = outcomes.map(|outcome| outcome == Outcome::Inserted);
-    first == second
 }
 
 #[derive(Debug, Clone, PartialEq, Default)]

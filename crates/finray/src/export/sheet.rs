@@ -65,8 +65,8 @@ pub fn svg(geometry: &Geometry, stiffness: &PadStiffness) -> String {
     drawing.text(Point2::new(282.0, 17.0), &lengths, Font::new(3.6).end());
     draw_finger(&mut drawing, geometry, view);
     write_column(&mut drawing, 15.0, "Finger", &finger_rows(geometry));
-    write_column(&mut drawing, 95.0, "Print", &print_rows(geometry));
-    write_column(&mut drawing, 200.0, "Check the print", &check_rows(geometry, stiffness));
+    write_column(&mut drawing, 89.0, "Print", &print_rows(geometry));
+    write_column(&mut drawing, 191.0, "Check the print", &check_rows(geometry, stiffness));
     drawing.svg(PAPER, "mm")
 }
 
@@ -189,12 +189,10 @@ fn write_column(drawing: &mut Drawing, x: f64, heading: &str, rows: &[(&str, Str
 fn finger_rows(geometry: &Geometry) -> Vec<(&'static str, String)> {
     let PrintedFinger { material, outline, skin, ribs, .. } = &geometry.finger;
     let (design, lines) = (&geometry.design, &geometry.lines);
-    let [x, y] = [ribs.origin.x, ribs.origin.y].map(mm);
     let mut rows = vec![
         ("material", format!("{}, {} GPa", material.name, material.modulus / 1e9)),
         ("infill", format!("{} %, {}°", design.density_percent, design.direction_deg)),
         ("ribs", format!("{} of {}, {} apart", geometry.ribs, mm(ribs.thickness), mm(lines.pitch))),
-        ("first rib", format!("{} from ({x}, {y})", mm(lines.phase))),
         ("skin", mm(*skin)),
         ("depth", mm(outline.depth)),
         ("mount", format!("{}° to the assembly", degrees(geometry.finger.tilt))),
@@ -221,7 +219,7 @@ fn print_rows(geometry: &Geometry) -> Vec<(&'static str, String)> {
         ("STL, 3MF", "ribs are in the file: thin walls on,".to_owned()),
         ("", "solid infill, no other".to_owned()),
         ("own infill", "3MF with settings: do not turn it. Tried in".to_owned()),
-        ("", "PrusaSlicer, not in OrcaSlicer, Bambu Studio".to_owned()),
+        ("", "PrusaSlicer, not OrcaSlicer, Bambu Studio".to_owned()),
     ]
 }
 
@@ -244,8 +242,8 @@ fn check_rows(geometry: &Geometry, stiffness: &PadStiffness) -> Vec<(&'static st
     let modulus = geometry.finger.material.modulus / 1e9;
     // The expected stiffness of the print is the stiffness in the simulated trials.
     let (mean, sd, by) = match *measured {
-        Some([[mean, sd], _]) => (mean, sd, "measured model"),
-        None => (ribs[0], SCATTER * ribs[0], "from the ribs"),
+        Some([[mean, sd], _]) => (mean, sd, "± 2 sd"),
+        None => (ribs[0], SCATTER * ribs[0], "from the ribs ± 2 sd"),
     };
     let [least, most] = [-2.0, 2.0].map(|by| (mean + by * sd).max(0.0) * MM);
     vec![
@@ -257,6 +255,6 @@ fn check_rows(geometry: &Geometry, stiffness: &PadStiffness) -> Vec<(&'static st
         ("", format!("{along}, roof too")),
         ("check", "hold the base, push the pad's middle".to_owned()),
         ("", "1 mm across, free to turn: this takes".to_owned()),
-        ("", format!("{least:.2} to {most:.2} N, {by} ± 2 sd")),
+        ("", format!("{least:.2} to {most:.2} N, {by}")),
     ]
 }

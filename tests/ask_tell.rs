@@ -259,7 +259,7 @@ fn what_is_known_can_be_told_and_is_not_asked_again() {
             }
             let values = &points[0]["values"];
             let again = json!({"tell": [{"values": values, "value": 1}]});
-            talk.error(&again.to_string(), "is asked as id");
+            talk.error(&again.to_string(), "were asked as id");
             // While a batch is open, too.
             if open.is_none() {
                 let free = (1..=9).step_by(2).map(|n| json!({"x": 5.0, "n": f64::from(n)}));

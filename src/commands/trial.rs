@@ -125,7 +125,7 @@ impl command::Request for Request {
         let (trial, samples) = match (self.every_s, filmed) {
             _ if self.probe => {
                 let rig = setup.evaluator.rig(specimen, None, 1.0).map_err(Failure::input)?;
-                let probed = rig.follow(grasp, Course::Probe(Probe::USUAL), STEP_S);
+                let probed = rig.follow(grasp, Course::Probe(Probe::DEFAULT), STEP_S);
                 probed.into_iter().next().ok_or_else(undriven)?
             }
             _ if self.log.is_some() => rig.hold(grasp).logged(offset, STEP_S),

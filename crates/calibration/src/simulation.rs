@@ -49,7 +49,7 @@ impl<'a> Simulation<'a> {
     pub fn window(&self, design: &Design, shares: &[f64]) -> Result<Evaluation, Impossible> {
         let values = self.parameters.iter().zip(shares).map(|(p, &share)| (*p, p.at(share)));
         let values: Vec<_> = values.collect();
-        let (specimen, robot) = self.evaluator.under(self.template, (design, None), &values)?;
+        let (specimen, robot) = self.evaluator.apply(self.template, (design, None), &values)?;
         let inserts = |found: &Evaluation| found.window.nominal == Outcome::Inserted;
         let own = self.measure(&specimen, &robot)?;
         if inserts(&own) {

@@ -106,7 +106,7 @@ fn recorded(evaluator: &Evaluator, cell: u64) -> Vec<Recorded> {
             })
             .collect();
         let infill = Design::infill(design[0], design[1]);
-        let (specimen, robot) = evaluator.under(template, (&infill, None), &values).unwrap();
+        let (specimen, robot) = evaluator.apply(template, (&infill, None), &values).unwrap();
         let rig = evaluator.engine.rig(&specimen.task, &robot, &specimen.finger, 1.0).unwrap();
         let grasp = Grasp::of(&specimen.finger);
         let mm = |column: &str| at(row, &format!("direct_{column}_mm"));
@@ -114,7 +114,7 @@ fn recorded(evaluator: &Evaluator, cell: u64) -> Vec<Recorded> {
         for start in [None].into_iter().chain(starts.map(Some)) {
             let (ended, samples) = match start {
                 None => {
-                    let probe = rig.follow(grasp, Course::Probe(Probe::USUAL), EVERY_S).remove(0);
+                    let probe = rig.follow(grasp, Course::Probe(Probe::DEFAULT), EVERY_S).remove(0);
                     (Ended::Probe, probe.1)
                 }
                 Some(mm) => {

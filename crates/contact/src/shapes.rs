@@ -1,5 +1,5 @@
-//! Shapes and poses of parry, and so of rapier, in a unit of length of the caller's
-//! choice (`scale` of them make a metre), and triangles of shapes for pictures and exports.
+//! Conversion of shapes and poses to parry, which rapier uses, in a unit of length of the caller's choice
+//! (`scale` units make a metre), and triangles of shapes for pictures and exports.
 
 use crate::scene::{Pose, Shape};
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
@@ -8,7 +8,7 @@ use parry::shape::SharedShape;
 use parry::transformation::try_convex_hull;
 use rapier3d_f64::parry;
 
-/// Unit of length for hulls, m: in metres parry's tolerances for them are too wide.
+/// Unit of length for hulls, m: parry's tolerances for hulls are too wide in metres.
 const MM: f64 = 1e-3;
 
 /// Returns the closed surface of a convex shape in its frame (of a cylinder that of the prism inside it):
@@ -20,39 +20,35 @@ pub fn surface(shape: &Shape) -> (Vec<Point3<f64>>, Vec<[u32; 3]>) {
     (points.into_iter().map(|p| Point3::from(Vector3::from(p) * MM)).collect(), triangles)
 }
 
-/// Returns the shape of parry, and the pose of its frame in ours.
+/// Returns parry's [`SharedShape`] of a shape, and the pose of parry's frame in the frame of the shape.
 pub fn shared(shape: &Shape, scale: f64) -> (SharedShape, Pose) {
-    match shape {
-        Shape::Box { half } => {
-            let half = half * scale;
-            (SharedShape::cuboid(half.x, half.y, half.z), Pose::identity())
-        }
+    let mut turn = UnitQuaternion::identity();
+    let shape = match shape {
+        Shape::Box { half } => SharedShape::cuboid(half.x * scale, half.y * scale, half.z * scale),
         Shape::Cylinder { half_height, radius } => {
             // parry's cylinders stand along y, ours along z.
             let quarter = std::f64::consts::FRAC_PI_2;
-            let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), quarter);
-            let shape = SharedShape::cylinder(half_height * scale, radius * scale);
-            (shape, Pose::from_parts(Translation3::identity(), turn))
+            turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), quarter);
+            SharedShape::cylinder(half_height * scale, radius * scale)
         }
         Shape::Hull { points } => {
             let points: Vec<_> = points.iter().map(|p| (p.coords * scale).into()).collect();
-            // The checks of a task file reject degenerate hulls; a ball of radius 0 would be noticed.
-            let hull = SharedShape::convex_hull(&points);
-            (hull.unwrap_or_else(|| SharedShape::ball(0.0)), Pose::identity())
+            // A ball of radius 0 instead of a degenerate hull, which the checks of a task file reject.
+            SharedShape::convex_hull(&points).unwrap_or_else(|| SharedShape::ball(0.0))
         }
         Shape::RoundBox { core, radius } => {
             let (half, radius) = (core * scale, radius * scale);
-            let shape = match extended(core)[..] {
+            match extended(core)[..] {
                 [] => SharedShape::ball(radius),
                 [axis] => {
                     let end = pm::Vector::from(Vector3::ith(axis, half[axis]));
                     SharedShape::capsule(-end, end, radius)
                 }
                 _ => SharedShape::round_cuboid(half.x, half.y, half.z, radius),
-            };
-            (shape, Pose::identity())
+            }
         }
-    }
+    };
+    (shape, Pose::from_parts(Translation3::identity(), turn))
 }
 
 /// Returns the axes along which the core of a round box extends.
@@ -70,7 +66,7 @@ pub(super) fn bounds(shape: &Shape) -> (Vector3<f64>, Vector3<f64>) {
     ((low + high) / 2.0, (high - low) / 2.0)
 }
 
-/// Returns the pose of parry from one in metres.
+/// Returns parry's pose for a pose in metres.
 pub fn pose(pose: &Pose, scale: f64) -> pm::Pose {
     pm::Pose::from_parts((pose.translation.vector * scale).into(), pose.rotation.into())
 }
@@ -79,7 +75,7 @@ pub fn pose(pose: &Pose, scale: f64) -> pm::Pose {
 mod tests {
     use super::*;
 
-    /// Six times the volume is the sum of the triangles' triple products, if all look outward.
+    /// Six times the volume is the sum of the triangles' triple products, if all face outward.
     fn volume((points, triangles): &(Vec<Point3<f64>>, Vec<[u32; 3]>)) -> f64 {
         let of = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|i| points[i as usize].coords);
@@ -89,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn surfaces_are_closed_and_look_outward() {
+    fn surfaces_are_closed_and_face_outward() {
         let brick = Shape::Box { half: Vector3::new(1.0, 2.0, 3.0) * MM };
         let found = surface(&brick);
         assert_eq!((found.0.len(), found.1.len()), (8, 12));

@@ -1,7 +1,7 @@
-//! The stiffness of a printed finger from its ribs.
+//! Stiffness of a printed finger from its ribs.
 //!
-//! In its plane the profile is elastic in plane stress; across it, it is Mindlin's plate.
-//! Both use quadratic triangles on the exact profile. The base is clamped, and the
+//! The profile is in plane stress under loads in its plane, and a Mindlin plate under loads across the
+//! plane. Both models use quadratic triangles on the exact profile. The base is clamped, and the
 //! pad (or the pad and a part of the roof) moves as a rigid body.
 
 use super::FingerError;
@@ -18,10 +18,11 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-/// Side length of the triangles, m: half of it changes no entry of a stiffness matrix by
+/// Side length of the triangles, m: halving it changes no entry of a stiffness matrix by
 /// more than 2 % of the springs it couples.
 pub const SIZE: f64 = 0.4 * MM;
-/// Side length of the triangles for loads across the plane, m: the walls are deep beams then, and need fewer.
+/// Side length of the triangles for loads across the plane, m: the walls act as deep beams and need fewer
+/// triangles.
 pub const CROSS_SIZE: f64 = 1.2 * MM;
 /// Compliance stiffness of a finger for a hand-sized gripper, N/mm.
 const PLAUSIBLE: std::ops::RangeInclusive<f64> = 0.05..=100.0;
@@ -42,8 +43,8 @@ pub struct FingerStiffness {
 /// Computes the stiffness of a finger.
 ///
 /// # Errors
-/// If the profile cannot be meshed or is not connected to its base, or its stiffness is not that of a
-/// finger, for example because a length or the modulus is given in a wrong unit.
+/// If the profile cannot be meshed or is not connected to its base, or its stiffness is implausible
+/// for a finger, for example because a length or the modulus is given in a wrong unit.
 pub fn compute(geometry: &Geometry) -> Result<FingerStiffness, FingerError> {
     let [pad, pad_and_roof] = planar(geometry, SIZE)?;
     Ok(FingerStiffness { pad, pad_and_roof, cross: cross(geometry, CROSS_SIZE)? })
@@ -65,9 +66,9 @@ pub fn planar(geometry: &Geometry, size: f64) -> Result<[PlanarStiffness; 2], Fi
     let compliance = pad.in_compliance() / N_PER_MM;
     if !PLAUSIBLE.contains(&compliance) {
         let problem = format!(
-            "the units look wrong: the compliance stiffness comes out as {compliance:.3e} N/mm, a \
-             finger has 0.05 to 100; check that lengths are in mm and material.modulus_gpa in GPa \
-             (PETG has 2)"
+            "the units look wrong: the computed compliance stiffness is {compliance:.3e} N/mm; a \
+             finger has 0.05 to 100 N/mm; check that lengths are in mm and material.modulus_gpa in \
+             GPa (PETG has 2)"
         );
         return Err(FingerError::finger(&geometry.finger, problem));
     }
@@ -89,7 +90,7 @@ pub fn cross(geometry: &Geometry, size: f64) -> Result<CrossStiffness, FingerErr
 /// 8 phases, evenly spaced over one pitch.
 ///
 /// # Errors
-/// If the finger cannot be made.
+/// See [`Geometry::new`] and [`planar`].
 pub fn over_phases(
     finger: &PrintedFinger,
     density_percent: f64,
@@ -103,7 +104,7 @@ pub fn over_phases(
         let phase_mm = (share > 0.0).then_some(phase / MM);
         planar(&Geometry::new(finger, &InfillDesign { phase_mm, ..design })?, SIZE)
     };
-    // Collected by index, so that of several errors the same one is returned.
+    // Collected in the order of the phases, so that the first of several errors is returned.
     let found: Vec<_> = (0..PHASES).into_par_iter().map(|i| at(i as f64 / PHASES as f64)).collect();
     found.into_iter().collect()
 }

@@ -64,7 +64,7 @@ impl Outline {
         -self.corner().y / self.out_of_pad().y
     }
 
-    /// Returns X at which the arc of the back ends and the straight back begins, m.
+    /// Returns the X coordinate at which the arc of the back ends and the straight back begins, m.
     pub fn arc_end(&self) -> f64 {
         self.arc_centre().unwrap_or_default().x
     }
@@ -79,7 +79,7 @@ impl Outline {
 }
 
 /// Returns the outline moved inwards by `inset` and cut off at X = `end`, m, counter-clockwise from the tip.
-/// Lines and arc are moved each for itself and meet in mitred corners.
+/// Lines and arc are offset separately and meet in mitred corners.
 pub(super) fn ring(outline: &Outline, inset: f64, end: f64) -> Ring {
     let (z, y) = (outline.along_pad(), outline.out_of_pad());
     let centre = outline.arc_centre().unwrap_or_default();

@@ -12,7 +12,7 @@ use serde::Deserialize;
 pub struct PrintedFinger {
     /// Name, as used on the command line.
     pub name: String,
-    /// One line for lists.
+    /// One-line description for lists.
     pub description: String,
     /// Name of the file, for messages.
     pub file: String,
@@ -22,13 +22,13 @@ pub struct PrintedFinger {
     pub outline: Outline,
     /// Thickness of the skin all round, m.
     pub skin: f64,
-    /// Rule of the ribs.
+    /// Rule by which ribs fill the finger.
     pub ribs: Ribs,
     /// Material of the print.
     pub material: Material,
     /// Angle between the finger's axis and the assembly direction, rad.
     pub tilt: f64,
-    /// Holes for the screws that hold it.
+    /// Holes for the screws that hold the finger.
     pub holes: Option<Holes>,
     /// Width of a printed line, m.
     pub line_width: f64,
@@ -52,7 +52,7 @@ pub struct Ribs {
 /// Linearly elastic material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
-    /// Name, as `PETG`.
+    /// Name, for example `PETG`.
     pub name: String,
     /// Young's modulus, N/m2.
     pub modulus: f64,
@@ -109,7 +109,7 @@ impl PrintedFinger {
     /// depends on the design: see [`crate::geometry::Geometry::new`].
     ///
     /// # Errors
-    /// If the text is not such a file, or a value cannot be used.
+    /// If the text is not a finger file, or a value is invalid.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         PrintedFinger::read(&Document::parse(text, file)?)
     }
@@ -172,7 +172,7 @@ impl PrintedFinger {
 
 /// Largest length, mm; above it the unit is wrong.
 const LONGEST_MM: f64 = 500.0;
-/// Moduli, GPa: silicone has about 0.001, steel 210.
+/// Accepted moduli, GPa: silicone has about 0.001, steel 210.
 const MODULI_GPA: std::ops::RangeInclusive<f64> = 1e-4..=500.0;
 /// Largest angle, degrees; above it there is no notch.
 const STEEPEST_DEG: f64 = 60.0;
@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_name_file_key_and_what_would_be_right() {
+    fn errors_name_file_key_and_accepted_values() {
         for (from, to, parts) in [
             ("modulus_gpa = 2.0", "modulus_gpa = 0.0", ["material.modulus_gpa", "above 0"]),
             ("modulus_gpa = 2.0", "modulus_gpa = 2000.0", ["material.modulus_gpa", "gigapascals"]),

@@ -71,7 +71,7 @@ fn how(task: &Task, pictures: &[Picture]) -> Markup {
 
 /// Returns the instructions for the friction probe before the first insertion with a finger.
 fn probe() -> Markup {
-    let Probe { force, stroke, speed, slides } = Probe::USUAL;
+    let Probe { force, stroke, speed, slides } = Probe::DEFAULT;
     let [stroke, speed] = [stroke, speed].map(|length| length / MM);
     html! {
         h2 { "First the probe, once with each finger" }

@@ -86,7 +86,7 @@ impl LeverParameter {
                 return None;
             }
             let set = [(&self.parameter, to)];
-            let setup = evaluator.under(template, (design, *given), &set).ok()?;
+            let setup = evaluator.apply(template, (design, *given), &set).ok()?;
             evaluator.engine.rig(&setup.0.task, &setup.1, &setup.0.finger, 1.0).ok()?;
             Some((value, setup))
         };

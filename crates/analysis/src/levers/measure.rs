@@ -125,7 +125,7 @@ impl LeverAnalysis<'_> {
     }
 
     fn setup(&self, design: &Design, given: Option<Prediction>) -> Result<Setup, Impossible> {
-        self.evaluator.under(self.template, (design, given), &[])
+        self.evaluator.apply(self.template, (design, given), &[])
     }
 
     /// Returns the design with the softest and with the stiffest infill of the space.

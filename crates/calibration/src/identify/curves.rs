@@ -2,7 +2,7 @@
 
 use super::log::{Log, LogSample};
 use input::units::{DEG, MM};
-use insertion::trial::{Path, Sample, Tcp};
+use insertion::trial::{Sample, Tcp, Trajectory};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// Time between two points, s: 500 Hz.
@@ -65,13 +65,13 @@ impl Curves {
     }
 
     /// Returns the commanded path, or the measured one if that was not recorded, with the tilt of the first point.
-    pub fn path(&self) -> Option<Path> {
+    pub fn path(&self) -> Option<Trajectory> {
         let commanded = self.target.as_ref().unwrap_or(&self.tcp);
         let tilt = self.tilt.first().copied().unwrap_or(0.0);
         let place = |(i, position): (usize, &Vector3<f64>)| {
             (i as f64 * STEP_S, Tcp { position: *position, tilt })
         };
-        Path::new(commanded.iter().enumerate().map(place))
+        Trajectory::new(commanded.iter().enumerate().map(place))
     }
 
     /// Returns the curves along the axes of the tilted tool, which are those of the springs of a soft flange.
@@ -92,7 +92,7 @@ impl Curves {
         let target = self.target.as_ref()?;
         let speeds: Vec<f64> =
             target.windows(2).map(|pair| (pair[0].z - pair[1].z) / STEP_S).collect();
-        let before = self.path().map_or(0, |path| (path.push() / STEP_S) as usize);
+        let before = self.path().map_or(0, |path| (path.push_start() / STEP_S) as usize);
         let slowed = |i: &usize| speeds[*i] - speeds[*i + 1];
         let all = 0..before.min(speeds.len().saturating_sub(1));
         let most = all.max_by(|a, b| slowed(a).total_cmp(&slowed(b)))?;

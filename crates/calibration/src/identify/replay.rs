@@ -11,7 +11,7 @@ use insertion::evaluation::template::Impossible;
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::space::Design;
-use insertion::trial::{Course, Grasp, Path};
+use insertion::trial::{Course, Grasp, Trajectory};
 use nalgebra::Vector3;
 use parameters::Parameter;
 use std::ops::Range;
@@ -47,7 +47,7 @@ pub struct Logged {
     pub offset: f64,
     pub ended: Ended,
     pub curves: Curves,
-    path: Path,
+    path: Trajectory,
     /// Index of the touch, the first compared point.
     pub touch: usize,
     /// Index of the beginning of the push.
@@ -72,7 +72,7 @@ impl Logged {
             offset: run.offset,
             ended: run.ended,
             touch: (since / STEP_S) as usize,
-            push: (path.push() / STEP_S) as usize,
+            push: (path.push_start() / STEP_S) as usize,
             curves,
             path,
         })
@@ -163,12 +163,12 @@ impl Identification<'_> {
         let Identification { evaluator, template, .. } = self;
         let mut all = Vec::with_capacity(attempts.len());
         for alike in attempts.chunk_by(|a, b| a.design == b.design) {
-            let (specimen, _) = evaluator.under(template, (&alike[0].design, None), values)?;
+            let (specimen, _) = evaluator.apply(template, (&alike[0].design, None), values)?;
             let Specimen { task, finger, .. } = &specimen;
             let rig = evaluator.engine.rig(task, robot, finger, step_factor)?;
             let grasp = Grasp { stop: self.stop, ..Grasp::of(&specimen.finger) };
-            let paths: Vec<&Path> = alike.iter().map(|logged| &logged.path).collect();
-            let followed = rig.follow(grasp, Course::Paths(&paths), STEP_S);
+            let paths: Vec<&Trajectory> = alike.iter().map(|logged| &logged.path).collect();
+            let followed = rig.follow(grasp, Course::Trajectories(&paths), STEP_S);
             all.extend(followed.into_iter().map(|(trial, samples)| {
                 (Curves::of_samples(&samples, self.tool_mass), trial.outcome)
             }));

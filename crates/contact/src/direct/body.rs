@@ -70,8 +70,8 @@ impl MovingBody {
         self.refresh();
     }
 
-    /// Returns the mass matrix about the centre of mass, world axes. That of a mechanism rotates with its end;
-    /// its dependence on the configuration of the mechanism is neglected.
+    /// Returns the mass matrix about the centre of mass, world axes. The mass matrix of a mechanism rotates
+    /// with its end; its dependence on the configuration of the mechanism is neglected.
     pub fn mass(&self) -> Matrix6<f64> {
         if let Motion::Mechanism(mass) = &self.motion {
             let axes = self.pose.rotation.to_rotation_matrix().into_inner();
@@ -86,13 +86,13 @@ impl MovingBody {
     }
 
     /// Returns the momentum at the end of a step in which only gravity acts.
-    pub fn momentum(&self, gravity: &Vector3<f64>, step: f64) -> Vector6 {
-        let mut all = self.momentum;
+    pub fn momentum_after(&self, gravity: &Vector3<f64>, step: f64) -> Vector6 {
+        let mut momentum = self.momentum;
         if let Motion::Free(_) = self.motion {
-            let mut linear = all.fixed_rows_mut::<3>(0);
+            let mut linear = momentum.fixed_rows_mut::<3>(0);
             linear += gravity * (step * self.inertia.mass);
         }
-        all
+        momentum
     }
 
     /// Sets the velocity of a driven body so that it reaches its target.
@@ -129,6 +129,7 @@ impl MovingBody {
         pose.chain(self.velocity.iter()).all(|x| x.is_finite())
     }
 
+    /// Updates the centre of mass and the inertia in world axes.
     fn refresh(&mut self) {
         self.centre = self.pose * self.inertia.centre;
         let axes = self.pose.rotation.to_rotation_matrix().into_inner();

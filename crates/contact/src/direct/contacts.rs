@@ -31,10 +31,10 @@ const REUSE: f64 = 10e-6;
 /// The same for round shapes, as a share of their radius: the rotation of the normal, rad.
 const ROUND_REUSE: f64 = 2e-3;
 
-/// Number of pairs of shapes of two bodies above which only contacts whose gap may close within a step are predicted: an
-/// imported surface has hundreds of facets within the prediction distance, and all would be tested in each step.
+/// Number of pairs of shapes of two bodies above which only contacts whose gap may close within a step are predicted:
+/// an imported surface has hundreds of facets within the prediction distance, and all would be tested in each step.
 const MANY_PAIRS: usize = 2_000;
-/// Smallest prediction distance then, m.
+/// Smallest prediction distance for such a pair of bodies, m.
 const NEAR: f64 = 20e-6;
 
 /// Point of contact between two bodies.
@@ -54,7 +54,7 @@ pub(super) struct Touch {
     pub friction: Friction,
 }
 
-/// Geom with its shape of parry.
+/// Geom with its parry shape.
 #[derive(Clone)]
 struct Solid {
     body: usize,
@@ -70,8 +70,8 @@ struct Solid {
     frame: Pose,
     half: Vector3<f64>,
     /// Enclosing box in the world's axes, m.
-    boxed: Aabb,
-    /// Pose of the body for which these were computed.
+    aabb: Aabb,
+    /// Pose of the body for which the world's box, its axes and its centre were computed.
     enclosed_at: Option<Pose>,
     /// Axes and centre of the enclosing box in the world.
     axes: Matrix3<f64>,
@@ -82,11 +82,11 @@ struct Solid {
     neighbours: Arc<[Neighbour]>,
 }
 
-/// Shape of the same body, whose box is close together with those of others in memory.
+/// Neighbouring shape of the same body; the boxes of all neighbours are contiguous in memory.
 struct Neighbour {
     solid: usize,
-    /// Box about it and all that it may cover, body frame, m.
-    boxed: Aabb,
+    /// Box that encloses the shape and all points that it may cover, body frame, m.
+    aabb: Aabb,
 }
 
 /// Pair of shapes that may touch.
@@ -98,7 +98,7 @@ struct Candidate {
     computed_at: Option<Pose>,
     /// Normal, in the frame of the first shape.
     axis: Vector3<f64>,
-    /// Points on the surfaces of both, in the frame of each, m.
+    /// Points on the surfaces of both shapes, each in the frame of its shape, m.
     points: Vec<[Point3<f64>; 2]>,
 }
 
@@ -125,13 +125,13 @@ impl Detector {
         }
         for i in 0..solids.len() {
             let (own, (range, tree)) = (&solids[i], &bodies[solids[i].body]);
-            let boxed = own.boxed.loosened(2.0 * COVER);
-            let found = tree.intersect_aabb(&boxed);
+            let aabb = own.aabb.loosened(2.0 * COVER);
+            let found = tree.intersect_aabb(&aabb);
             let mut near: Vec<_> = found.map(|leaf| range.start + leaf as usize).collect();
             near.retain(|&j| j != i && !own.apart(&solids[j], COVER));
             near.sort_unstable();
             let neighbour =
-                |solid: usize| Neighbour { solid, boxed: solids[solid].boxed.loosened(4.0 * SEAM) };
+                |solid: usize| Neighbour { solid, aabb: solids[solid].aabb.loosened(4.0 * SEAM) };
             solids[i].neighbours = near.into_iter().map(neighbour).collect();
         }
         let mut from = 0;
@@ -197,7 +197,7 @@ impl Solid {
             pose: geom.pose * turn,
             frame: geom.pose * Pose::translation(centre.x, centre.y, centre.z),
             half,
-            boxed: Aabb::new_invalid(),
+            aabb: Aabb::new_invalid(),
             enclosed_at: None,
             axes: Matrix3::identity(),
             centre: Vector3::zeros(),
@@ -226,7 +226,7 @@ impl Solid {
         self.axes = frame.rotation.to_rotation_matrix().into_inner();
         self.centre = frame.translation.vector;
         let reach = self.axes.abs() * self.half;
-        self.boxed = Aabb::from_half_extents(self.centre.into(), reach.into());
+        self.aabb = Aabb::from_half_extents(self.centre.into(), reach.into());
     }
 
     /// Returns whether the enclosing boxes are farther apart than a margin, m, along a face normal of one of them.
@@ -234,20 +234,20 @@ impl Solid {
         let apart = self.centre - other.centre;
         let turn = self.axes.tr_mul(&other.axes);
         let own = self.axes.tr_mul(&apart).abs() - self.half - turn.abs() * other.half;
-        let its = other.axes.tr_mul(&apart).abs() - other.half - turn.abs().tr_mul(&self.half);
-        own.max() > margin || its.max() > margin
+        let others = other.axes.tr_mul(&apart).abs() - other.half - turn.abs().tr_mul(&self.half);
+        own.max() > margin || others.max() > margin
     }
 
     /// Returns whether the enclosing boxes in the world's axes are farther apart than a margin, m.
     fn apart(&self, other: &Solid, margin: f64) -> bool {
-        !self.boxed.loosened(margin).intersects(&other.boxed)
+        !self.aabb.loosened(margin).intersects(&other.aabb)
     }
 
     /// Returns whether a neighbour covers a place on the surface, given in parry's frame of the shape, m.
     fn covered(&self, place: &Vector3<f64>, outward: &Vector3<f64>, solids: &[Solid]) -> bool {
         let outside = self.pose * Point3::from(place + outward * COVER);
-        self.neighbours.iter().any(|&Neighbour { solid: j, boxed }| {
-            if !boxed.contains_local_point(outside.coords.into()) {
+        self.neighbours.iter().any(|&Neighbour { solid: j, aabb }| {
+            if !aabb.contains_local_point(outside.coords.into()) {
                 return false;
             }
             let inside = solids[j].frame.inverse_transform_point(&outside).coords.abs();
@@ -263,7 +263,7 @@ impl Solid {
     fn distance(&self, place: &Vector3<f64>) -> f64 {
         if let Some((core, radius)) = &self.round {
             let beside = place.abs() - Vector3::from(core.half_extents);
-            return (beside.map(|way| way.max(0.0)).norm() - radius).max(0.0);
+            return (beside.map(|distance| distance.max(0.0)).norm() - radius).max(0.0);
         }
         if !self.faces.is_empty() {
             let beyond = self.faces.iter().map(|(face, far)| face.dot(place) - far);
@@ -280,8 +280,8 @@ impl Solid {
 fn faces(shape: &SharedShape) -> Vec<(Vector3<f64>, f64)> {
     let Some(hull) = shape.as_convex_polyhedron() else { return Vec::new() };
     let farthest = |normal: &Vector3<f64>| {
-        let ways = hull.points().iter().map(|point| Vector3::from(*point).dot(normal));
-        ways.fold(f64::NEG_INFINITY, f64::max)
+        let distances = hull.points().iter().map(|point| Vector3::from(*point).dot(normal));
+        distances.fold(f64::NEG_INFINITY, f64::max)
     };
     let normals = hull.faces().iter().map(|face| Vector3::from(face.normal));
     normals.map(|normal| (normal, farthest(&normal))).collect()
@@ -291,7 +291,7 @@ fn faces(shape: &SharedShape) -> Vec<(Vector3<f64>, f64)> {
 fn has_stayed(before: Option<&Pose>, now: &Pose, reach: f64, distance: f64) -> bool {
     before.is_some_and(|before| {
         let moved = (now.translation.vector - before.translation.vector).norm();
-        // Half the angle, if it is small; of a quaternion that changed its sign about 2.
+        // Its norm is half the angle if that is small, and about 2 if the quaternion has changed its sign.
         let turned = now.rotation.coords - before.rotation.coords;
         moved + 2.0 * turned.norm() * reach < distance
     })
@@ -374,21 +374,20 @@ impl Candidate {
         self.points.clear();
         let points = &self.manifold.points;
         let place = |i: usize| Vector3::from(points[i].local_p1);
-        let middle = |i: usize| place(i) + axis * (0.5 * points[i].dist);
         let add = |i: usize| {
             let second = Vector3::from(points[i].local_p2);
             self.points.push([place(i), second].map(|place| Point3::from(place / MILLIMETRES)));
         };
         let count = points.len();
-        if count <= patches::POINTS {
+        if count <= patches::MAX_POINTS {
             return (0..count).for_each(add);
         }
-        let middle = |i| middle(i) / MILLIMETRES;
+        let middle = |i: usize| (place(i) + axis * (0.5 * points[i].dist)) / MILLIMETRES;
         let gap = |i: usize| points[i].dist / MILLIMETRES;
         patches::extremes(count, middle, gap, &axis).into_iter().for_each(add);
     }
 
-    /// Appends the points with the gaps that they have now.
+    /// Appends the points with their current gaps.
     fn report(&self, geoms: usize, first: &Pose, relative: &Pose, found: &mut Vec<Touch>) {
         let normal = first.rotation * self.axis;
         for [own, other] in &self.points {

@@ -5,8 +5,8 @@
 //! the step, `f = -k (q + h J v - target) - c J v`, adds `J^T (h c + h^2 k) J` to the system and
 //! `-h J^T k (q - target)` to its right-hand side: stable for any stiffness, and exact at rest.
 //! `k` and `c` are a number for each axis or, for coupled springs, a matrix. A locked axis is a
-//! very stiff spring (0.1 um at 100 N). A servo at its limit pushes with the limit; the step is
-//! solved again until the servos at their limits are those that were assumed.
+//! very stiff spring (0.1 um at 100 N). A servo at its limit exerts that limit; the step is solved
+//! again until the servos found at their limits are those assumed for the solution.
 
 use super::blocks::{Blocks, Vector6};
 use super::body::{Kind, MovingBody};
@@ -21,41 +21,38 @@ const LOCKED: f64 = 1e9;
 /// Stiffness of a locked rotation, N m/rad: as stiff at an arm of 30 mm.
 const LOCKED_TURN: f64 = 1e6;
 
-/// Impulse of a joint by its rate at the end of the step, `h c + h^2 k`: of each axis or of all.
+/// Matrix that maps the rates of a joint at the end of the step to its impulse, `h c + h^2 k`; diagonal unless the
+/// springs are coupled.
 #[expect(clippy::large_enum_variant, reason = "lives on the stack of one call")]
-enum Answer {
-    Each(Vector6),
-    All(Matrix6<f64>),
+enum ImplicitDamping {
+    Diagonal(Vector6),
+    Full(Matrix6<f64>),
 }
 
-impl Answer {
-    /// Returns the impulse of a rate.
-    fn to(&self, rate: &Vector6) -> Vector6 {
+impl ImplicitDamping {
+    /// Returns the impulse for the rates.
+    fn impulse(&self, rates: &Vector6) -> Vector6 {
         match self {
-            Answer::Each(stiff) => stiff.component_mul(rate),
-            Answer::All(stiff) => stiff * rate,
+            ImplicitDamping::Diagonal(diagonal) => diagonal.component_mul(rates),
+            ImplicitDamping::Full(matrix) => matrix * rates,
         }
     }
 
-    /// Returns the impulse by the velocities of which a Jacobian makes rates.
-    fn through(&self, jacobian: &Matrix6<f64>) -> Matrix6<f64> {
+    /// Returns the product with a Jacobian, which maps the velocity of a body to the impulse.
+    fn times(&self, jacobian: &Matrix6<f64>) -> Matrix6<f64> {
         match self {
-            Answer::Each(stiff) => {
-                let mut rows = *jacobian;
-                for (i, mut row) in rows.row_iter_mut().enumerate() {
-                    row *= stiff[i];
-                }
-                rows
+            ImplicitDamping::Diagonal(diagonal) => {
+                jacobian.map_with_location(|row, _, entry| entry * diagonal[row])
             }
-            Answer::All(stiff) => stiff * jacobian,
+            ImplicitDamping::Full(matrix) => matrix * jacobian,
         }
     }
 }
 
-/// Joint with its coordinates at the start of the step.
+/// Joint of springs and dampers, with its coordinates at the start of the step.
 #[derive(Debug, Clone)]
-pub(super) struct SprungJoint {
-    /// Joint of the scene, its locked axes sprung.
+pub(super) struct SpringJoint {
+    /// Joint of the scene, with very stiff springs on its locked axes.
     joint: Joint,
     /// Sign of the force of each servo at its limit, else 0.
     saturated: [f64; 6],
@@ -66,7 +63,7 @@ pub(super) struct SprungJoint {
     by_parent: Matrix6<f64>,
 }
 
-impl SprungJoint {
+impl SpringJoint {
     pub fn new(joint: &Joint) -> Self {
         let mut joint = joint.clone();
         if let Springs::Axes(axes) = &mut joint.springs {
@@ -74,7 +71,7 @@ impl SprungJoint {
                 axis.get_or_insert(Spring::new(if i < 3 { LOCKED } else { LOCKED_TURN }, 0.0));
             }
         }
-        SprungJoint {
+        SpringJoint {
             joint,
             saturated: [0.0; 6],
             position: Vector6::zeros(),
@@ -85,7 +82,7 @@ impl SprungJoint {
 
     /// Creates a joint that leaves all axes free, for a friction along z.
     pub fn free(friction: &AxialFriction) -> Self {
-        SprungJoint::new(&Joint {
+        SpringJoint::new(&Joint {
             name: String::new(),
             parent: friction.parent,
             child: friction.child,
@@ -112,7 +109,7 @@ impl SprungJoint {
         bodies[self.joint.parent.0].pose.rotation * Vector3::z() * force
     }
 
-    /// Replaces the spring of an axis of springs that are not coupled; a servo remains at its limit until the next step.
+    /// Replaces the spring of an axis unless the springs are coupled; a servo remains at its limit until the next step.
     pub fn set(&mut self, axis: usize, spring: Spring) {
         let Springs::Axes(axes) = &mut self.joint.springs else { return };
         axes[axis] = Some(spring);
@@ -131,32 +128,32 @@ impl SprungJoint {
         self.position.fixed_rows_mut::<3>(3).copy_from(&turn);
         let axes = p.rotation.inverse().to_rotation_matrix().into_inner();
         let angular = inverse_left_jacobian(&turn) * axes;
-        // Both bodies' points where the child's joint frame is now.
+        // The points of both bodies at the origin of the child's joint frame.
         let place = c.translation.vector;
         self.by_child = jacobian(&axes, &angular, &(place - child.centre.coords));
         self.by_parent = -jacobian(&axes, &angular, &(place - parent.centre.coords));
     }
 
-    /// Returns the impulse by the rates, and at no rate.
-    fn answer(&self, step: f64) -> (Answer, Vector6) {
+    /// Returns the matrix from rates to the impulse, and the impulse at zero rates.
+    fn linear_impulse(&self, step: f64) -> (ImplicitDamping, Vector6) {
         let axes = match &self.joint.springs {
             Springs::Axes(axes) => axes.iter().flatten(),
             Springs::Coupled { stiffness, damping } => {
-                let stiff = (damping + stiffness * step) * step;
-                return (Answer::All(stiff), stiffness * self.position * -step);
+                let matrix = (damping + stiffness * step) * step;
+                return (ImplicitDamping::Full(matrix), stiffness * self.position * -step);
             }
         };
-        let mut stiff = Vector6::zeros();
+        let mut diagonal = Vector6::zeros();
         let mut push = Vector6::zeros();
         for (i, spring) in axes.enumerate() {
             if self.saturated[i] == 0.0 {
-                stiff[i] = step * (spring.damping + step * spring.stiffness);
+                diagonal[i] = step * (spring.damping + step * spring.stiffness);
                 push[i] = -step * spring.stiffness * (self.position[i] - spring.target);
             } else {
                 push[i] = step * self.saturated[i] * spring.limit;
             }
         }
-        (Answer::Each(stiff), push)
+        (ImplicitDamping::Diagonal(diagonal), push)
     }
 
     /// Adds the springs to the system and its right-hand side.
@@ -167,25 +164,25 @@ impl SprungJoint {
         system: &mut Blocks,
         rhs: &mut [Vector6],
     ) {
-        let (answer, mut push) = self.answer(step);
-        // A driven end moves at a known velocity: it belongs on the right-hand side.
+        let (damping, mut push) = self.linear_impulse(step);
+        // The impulse due to the known velocity of a driven end belongs on the right-hand side.
         let [parent, child] = [self.joint.parent, self.joint.child].map(|end| &bodies[end.0]);
         for (end, jacobian) in [(parent, &self.by_parent), (child, &self.by_child)] {
             if let Kind::Driven(_) = end.kind {
-                push -= answer.to(&(jacobian * end.velocity));
+                push -= damping.impulse(&(jacobian * end.velocity));
             }
         }
         let (parent, child) = (parent.place(), child.place());
         for (place, jacobian) in [(parent, &self.by_parent), (child, &self.by_child)] {
             let Some(place) = place else { continue };
-            system.add(place, place, &jacobian.tr_mul(&answer.through(jacobian)));
+            system.add(place, place, &jacobian.tr_mul(&damping.times(jacobian)));
             rhs[place] += jacobian.tr_mul(&push);
         }
         if let (Some(p), Some(c)) = (parent, child) {
             if p > c {
-                system.add(p, c, &self.by_parent.tr_mul(&answer.through(&self.by_child)));
+                system.add(p, c, &self.by_parent.tr_mul(&damping.times(&self.by_child)));
             } else {
-                system.add(c, p, &self.by_child.tr_mul(&answer.through(&self.by_parent)));
+                system.add(c, p, &self.by_child.tr_mul(&damping.times(&self.by_parent)));
             }
         }
     }
@@ -211,15 +208,15 @@ impl SprungJoint {
             // With a margin, so that rounding errors cannot alternate between both.
             let beyond = force.abs() > limit * (1.0 + 1e-9);
             let sign = if beyond { force.signum() } else { 0.0 };
-            // A friction whose sign would change sticks first; otherwise it would never stick.
-            let turns = stiffness == 0.0 && sign == -before[i];
-            self.saturated[i] = if turns { 0.0 } else { sign };
+            // Friction that would change its sign sticks first; otherwise it would never stick.
+            let reverses = stiffness == 0.0 && sign == -before[i];
+            self.saturated[i] = if reverses { 0.0 } else { sign };
         }
         self.saturated == before
     }
 }
 
-/// Returns the rows of `axes (v + w x arm)` and of `angular w`.
+/// Returns the Jacobian of `axes (v + w x arm)` and `angular w` by the velocity `v`, `w`.
 fn jacobian(axes: &Matrix3<f64>, angular: &Matrix3<f64>, arm: &Vector3<f64>) -> Matrix6<f64> {
     let mut made = Matrix6::zeros();
     made.fixed_view_mut::<3, 3>(0, 0).copy_from(axes);

@@ -1,13 +1,13 @@
-//! Friction of a contact patch against a turn about its normal, from the points that carry it.
+//! Friction of a contact patch against rotation about its normal, from the contact points of the patch.
 //!
-//! Contact points are the corners of the patch. Friction at the corners would hold a turn with
-//! their levers, which are longer than those of the patch's inside. So friction acts beside each
-//! point, nearer to the centre of pressure, so that the mean lever is that of the evenly pressed
-//! patch; the normal force stays where it is. A slide without a turn is then still held at the
-//! centre of pressure (Mason 1986, Int. J. Robot. Res. 5:53), and a turn by `mu N` times the mean
-//! lever.
+//! The contact points are the corners of the patch. Friction at the corners would resist a rotation
+//! with their lever arms, which are longer than those inside the patch. So friction acts beside each
+//! point, nearer to the centre of pressure, so that the mean lever arm is that of the evenly pressed
+//! patch; the normal force stays at the point. Sliding without rotation is then still resisted at the
+//! centre of pressure (Mason 1986, Int. J. Robot. Res. 5:53), and rotation by `mu N` times the mean
+//! lever arm.
 //!
-//! An even pressure that has its centre beside the middle presses the part of the rectangle about
+//! An even pressure whose centre is beside the middle acts on the part of the rectangle about
 //! that centre (Meyerhof 1953, 3rd Int. Conf. Soil Mech.): half of its length is the distance from
 //! the centre of pressure to the nearer edge.
 
@@ -19,13 +19,14 @@ use nalgebra::{Point3, Vector3};
 pub(super) struct Patch {
     /// Centre of pressure in the frame of the given points, m.
     centre: Point3<f64>,
-    /// Distance from there at which the friction of a point acts, as a share of the distance of the point.
+    /// Distance from the centre of pressure at which the friction of a point acts, as a share of the point's own
+    /// distance.
     share: f64,
 }
 
 impl Patch {
-    /// Creates a patch of contact points with their loads; without any load, all points bear the same. Points and normal
-    /// are given in one frame.
+    /// Creates a patch of contact points with their loads; without any load, all points bear the same load. Points and
+    /// normal are given in one frame.
     pub fn new(points: &[(Point3<f64>, f64)], normal: &Vector3<f64>) -> Self {
         let total: f64 = points.iter().map(|(_, load)| load).sum();
         let part = |load: f64| if total > 0.0 { load / total } else { 1.0 / points.len() as f64 };
@@ -40,8 +41,9 @@ impl Patch {
         Patch { centre, share }
     }
 
-    /// Returns the vector, m, from a point to the place where its friction acts; `frame` is the pose of the patch's frame.
-    pub fn aside(&self, frame: &Pose, point: &Point3<f64>, normal: &Vector3<f64>) -> Vector3<f64> {
+    /// Returns the vector, m, from a point to the place where its friction acts; `frame` is the pose of the patch's
+    /// frame.
+    pub fn offset(&self, frame: &Pose, point: &Point3<f64>, normal: &Vector3<f64>) -> Vector3<f64> {
         let inward = (frame * self.centre - point) * (1.0 - self.share);
         inward - normal * inward.dot(normal)
     }
@@ -50,16 +52,16 @@ impl Patch {
 /// Returns the half sides of the pressed rectangle about the centre of pressure, m. The points are corners
 /// of a rectangle, so that the line from one to the nearest is an edge.
 fn pressed(points: &[(Point3<f64>, f64)], centre: &Point3<f64>, normal: &Vector3<f64>) -> [f64; 2] {
-    let ways = points[1..].iter().map(|(point, _)| point - points[0].0);
-    let nearest = ways.min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));
-    let Some(along) = nearest.and_then(|way| way.try_normalize(0.0)) else { return [0.0; 2] };
+    let offsets = points[1..].iter().map(|(point, _)| point - points[0].0);
+    let nearest = offsets.min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));
+    let Some(along) = nearest.and_then(|offset| offset.try_normalize(0.0)) else { return [0.0; 2] };
     [along, normal.cross(&along)].map(|axis| {
         let places = || points.iter().map(|(point, _)| (point - centre).dot(&axis));
         places().fold(0.0, f64::max).min(-places().fold(0.0, f64::min))
     })
 }
 
-/// Returns the mean of `sqrt(x^2 + y^2)` over a rectangle with these half sides about its middle, m.
+/// Returns the mean lever arm, `sqrt(x^2 + y^2)`, over a rectangle with these half sides about its middle, m.
 fn mean_lever(half: f64, other: f64) -> f64 {
     let (short, long) = if half < other { (half, other) } else { (other, half) };
     if short <= 0.0 {
@@ -110,8 +112,8 @@ mod tests {
             let patch = Patch::new(&points, &Vector3::z());
             assert!((patch.centre - Point3::new(x, y, 2.0)).norm() < 1e-12);
             let lever = |(point, load): &(Point3<f64>, f64)| {
-                let aside = patch.aside(&Pose::identity(), point, &Vector3::z());
-                (point + aside - patch.centre).norm() * load
+                let offset = patch.offset(&Pose::identity(), point, &Vector3::z());
+                (point + offset - patch.centre).norm() * load
             };
             let lever = points.iter().map(lever).sum::<f64>() / 12.0;
             assert!((lever - mean_lever(half, other)).abs() < 1e-12, "{loads:?}: {lever}");

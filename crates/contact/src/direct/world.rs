@@ -5,7 +5,7 @@ use super::blocks::{Blocks, Vector6};
 use super::body::{Kind, MovingBody};
 use super::cone::Cone;
 use super::contacts::{Detector, Touch};
-use super::joints::SprungJoint;
+use super::joints::SpringJoint;
 use super::patch::Patch;
 use super::solver::{Contact, Solver, lever, offset_lever, point_velocity};
 use crate::scene::{
@@ -17,14 +17,14 @@ use nalgebra::{Vector3, Vector4};
 /// Largest number of solutions of a step, to find the servos that are at their limits.
 const TRIES: usize = 5;
 
-/// Simulation of a scene; a clone continues bit for bit as the original does.
+/// State of the simulation of a scene; a clone continues bit for bit as the original does.
 #[derive(Clone)]
 pub(super) struct DirectWorld {
     pub settings: Direct,
     gravity: Vector3<f64>,
     pub bodies: Vec<MovingBody>,
     /// Joints of the scene, then that of the axial friction, if any.
-    joints: Vec<SprungJoint>,
+    joints: Vec<SpringJoint>,
     axial_friction: Option<AxialFriction>,
     /// Pairs of bodies that may touch.
     pub pairs: Vec<ContactPair>,
@@ -32,13 +32,13 @@ pub(super) struct DirectWorld {
     pub forces: Vec<ContactForce>,
     pub detector: Detector,
     system: Blocks,
-    /// Right-hand side, then solution, by place.
+    /// Right-hand side, then solution, by place in the system.
     values: Vec<Vector6>,
     /// Force at the centre of mass and moment applied to each body, N, N m.
     pushes: Vec<Vector6>,
     solver: Solver,
     pub touches: Vec<Touch>,
-    /// Number of following steps that are divided.
+    /// Number of coming steps that will be divided.
     pub divided: usize,
     contacts: Vec<Contact>,
     /// Whether contacts have patches.
@@ -56,11 +56,11 @@ impl DirectWorld {
         let ends = |joint: &Joint| Some((place(joint.parent)?, place(joint.child)?));
         let detector = Detector::new(scene, settings.prediction);
         let coupled: Vec<_> = scene.joints.iter().filter_map(ends).collect();
-        let rubbed = scene.axial_friction.as_ref().map(SprungJoint::free);
+        let friction = scene.axial_friction.as_ref().map(SpringJoint::free);
         DirectWorld {
             settings: *settings,
             gravity: scene.gravity,
-            joints: scene.joints.iter().map(SprungJoint::new).chain(rubbed).collect(),
+            joints: scene.joints.iter().map(SpringJoint::new).chain(friction).collect(),
             axial_friction: scene.axial_friction.clone(),
             pairs: scene.contacts.clone(),
             forces: vec![ContactForce::default(); scene.contacts.len()],
@@ -82,7 +82,7 @@ impl DirectWorld {
     fn set_contacts(&mut self) {
         let step = self.settings.step_s;
         self.contacts.clear();
-        // Force at the end of the step: k gap + c rate; `share` is that of the gap at its start.
+        // Force at the end of the step: k gap + c rate; `share` weights the gap at the start of the step.
         let spring = self.settings.contact_stiffness * step;
         let share = spring / (spring + self.settings.contact_damping);
         let normal = share / (spring * step);
@@ -97,10 +97,10 @@ impl DirectWorld {
             let lever = match touch.friction.torsion {
                 Torsion::Radius(radius) => arm.map(|arm| lever(&arm, &(touch.normal * radius))),
                 Torsion::Patch => {
-                    let aside = |p: &Patch| p.aside(&ends[0].pose, &touch.point, &touch.normal);
-                    let aside = self.patch(touch.geoms).map_or(Vector3::zeros(), aside);
+                    let offset = |p: &Patch| p.offset(&ends[0].pose, &touch.point, &touch.normal);
+                    let offset = self.patch(touch.geoms).map_or(Vector3::zeros(), offset);
                     let at_point = arm.map(|arm| lever(&arm, &Vector3::zeros()));
-                    at_point.map(|lever| offset_lever(&lever, &aside, &touch.normal))
+                    at_point.map(|lever| offset_lever(&lever, &offset, &touch.normal))
                 }
             };
             let mut drift = Vector4::zeros();
@@ -121,7 +121,7 @@ impl DirectWorld {
         self.patches.iter().find(|(at, _)| *at == geoms).map(|(_, patch)| patch)
     }
 
-    /// Adds the patches that are missing, as their contacts load them; before the contacts are set, evenly.
+    /// Adds the missing patches with the loads of their contacts, or with equal loads before the contacts are set.
     fn add_patches(&mut self) {
         if !self.patched {
             return;
@@ -147,7 +147,7 @@ impl DirectWorld {
         for (body, push) in self.bodies.iter().zip(&self.pushes) {
             if let Some(place) = body.place() {
                 self.system.add(place, place, &body.mass());
-                self.values[place] = body.momentum(&self.gravity, step) + push * step;
+                self.values[place] = body.momentum_after(&self.gravity, step) + push * step;
             }
         }
         for joint in &self.joints {
@@ -197,9 +197,8 @@ impl DirectWorld {
         let step = self.settings.step_s;
         for body in &mut self.bodies {
             body.steer(step);
-            if let Some(free) =
-                body.place().and_then(|place| place.checked_sub(self.system.eliminated))
-            {
+            let free = body.place().and_then(|place| place.checked_sub(self.system.eliminated));
+            if let Some(free) = free {
                 self.solver.velocities[free] = body.velocity.into();
             }
         }
@@ -216,7 +215,7 @@ impl DirectWorld {
                 }
             }
             let update =
-                |all: bool, joint: &mut SprungJoint| joint.update_limits(&self.bodies, step) && all;
+                |all: bool, joint: &mut SpringJoint| joint.update_limits(&self.bodies, step) && all;
             if self.joints.iter_mut().fold(true, update) {
                 break;
             }

@@ -17,6 +17,7 @@ const LENGTH: f64 = 1e3;
 /// Units of a moment, and of a moment of inertia, in the SI unit.
 const MOMENT: f64 = LENGTH * LENGTH;
 
+/// Simulation of a scene in rapier.
 pub(super) struct RapierWorld {
     world: rp::PhysicsWorld,
     bodies: Vec<rp::RigidBodyHandle>,
@@ -25,7 +26,7 @@ pub(super) struct RapierWorld {
     axial_friction: Option<(AxialFriction, rp::ImpulseJointHandle)>,
 }
 
-/// Coefficient of friction of each two colliders, by the numbers in their user data.
+/// Coefficient of friction of each pair of colliders, by the numbers in their user data.
 struct Frictions(BTreeMap<[usize; 2], f64>);
 
 impl rp::PhysicsHooks for Frictions {
@@ -43,9 +44,8 @@ impl RapierWorld {
         let mut world = rp::PhysicsWorld::new();
         world.gravity = (scene.gravity * LENGTH).into();
         world.integration_parameters = parameters(settings);
-        let bodies = scene.bodies.iter().zip(groups(scene));
-        let bodies: Vec<_> =
-            bodies.map(|(body, group)| insert_body(&mut world, body, group)).collect();
+        let insert = |(body, group)| insert_body(&mut world, body, group);
+        let bodies: Vec<_> = scene.bodies.iter().zip(groups(scene)).map(insert).collect();
         let mut insert = |joint: &Joint| {
             let (parent, child) = (bodies[joint.parent.0], bodies[joint.child.0]);
             world.impulse_joints.insert(parent, child, generic_joint(joint), true)
@@ -82,7 +82,7 @@ impl RapierWorld {
         let motor = &self.world.impulse_joints.get(*joint)?.data.motors[2];
         let parameters = &self.world.integration_parameters;
         let substep = parameters.dt / parameters.num_solver_iterations as f64;
-        // On the first body.
+        // The impulse of the motor acts on the first body.
         let force = -sign * motor.impulse / substep / LENGTH;
         Some(self.pose(along.parent).rotation * Vector3::z() * force)
     }
@@ -192,7 +192,7 @@ fn add_pair(
     }
 }
 
-/// Returns the settings of rapier.
+/// Returns the integration parameters of rapier for these settings.
 fn parameters(settings: &Rapier) -> rp::IntegrationParameters {
     let softness = rp::SpringCoefficients {
         natural_frequency: settings.contact_hz,
@@ -262,7 +262,7 @@ fn insert_body(
     handle
 }
 
-/// Axes of a joint in our order.
+/// Axes of a joint in the order of [`Springs::Axes`].
 const JOINT_AXES: [rp::JointAxis; 6] = [
     rp::JointAxis::LinX,
     rp::JointAxis::LinY,
@@ -272,7 +272,7 @@ const JOINT_AXES: [rp::JointAxis; 6] = [
     rp::JointAxis::AngZ,
 ];
 
-/// Returns the joint with its springs.
+/// Returns the joint of rapier, with its springs as motors.
 fn generic_joint(joint: &Joint) -> rp::GenericJoint {
     let mut made = rp::GenericJoint::new(rp::JointAxesMask::empty());
     made.set_local_frame1(shapes::pose(&joint.in_parent, LENGTH));
@@ -291,14 +291,14 @@ fn generic_joint(joint: &Joint) -> rp::GenericJoint {
     made
 }
 
-/// Gives an axis its spring.
+/// Sets the motor of an axis to a spring.
 fn set_motor(joint: &mut rp::GenericJoint, axis: rp::JointAxis, spring: &Spring) {
     let turns = matches!(axis, rp::JointAxis::AngX | rp::JointAxis::AngY | rp::JointAxis::AngZ);
-    // Units of the coordinate, and of a force or moment in those of the coordinate and mass.
-    let (way, rate) = if turns { (1.0, MOMENT) } else { (LENGTH, 1.0) };
+    // Factors from SI units: of the coordinate, and of stiffness and damping.
+    let (coordinate_scale, spring_scale) = if turns { (1.0, MOMENT) } else { (LENGTH, 1.0) };
     joint.set_motor_model(axis, rp::MotorModel::ForceBased);
-    let [stiffness, damping] = [spring.stiffness, spring.damping].map(|of| of * rate);
-    joint.set_motor(axis, spring.target * way, 0.0, stiffness, damping);
-    let limit = spring.limit * way * rate;
+    let [stiffness, damping] = [spring.stiffness, spring.damping].map(|value| value * spring_scale);
+    joint.set_motor(axis, spring.target * coordinate_scale, 0.0, stiffness, damping);
+    let limit = spring.limit * coordinate_scale * spring_scale;
     joint.set_motor_max_force(axis, if limit.is_finite() { limit } else { f64::MAX });
 }

@@ -194,7 +194,7 @@ impl Evaluator {
         })
     }
 
-    /// Measures a specimen by a plan. The result is invalid once `stop` is set.
+    /// Measures a specimen according to a plan. The result is invalid once `stop` is set.
     pub fn measure(
         &self,
         specimen: &Specimen,
@@ -206,10 +206,10 @@ impl Evaluator {
         let rig = self.rig(specimen, taught, 1.0)?;
         let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
         let draw = |cell: &Priors, values: &[f64]| -> Result<Drawn, Impossible> {
-            let (drawn, robot) = self.drawn(specimen, cell, values)?;
+            let (drawn, robot) = self.in_cell(specimen, cell, values)?;
             Ok((self.rig_of(&drawn, &robot, taught, 1.0)?, drawn.finger))
         };
-        let cells = match plan.cells() {
+        let cells = match &plan.cells {
             None => Vec::new(),
             Some((cell, all)) => {
                 all.iter().map(|values| draw(cell, values)).collect::<Result<_, _>>()?

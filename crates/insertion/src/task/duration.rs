@@ -6,7 +6,7 @@ use super::{Ending, Phase, Strategy};
 pub const LONGEST_TRIAL_S: f64 = 60.0;
 /// Shortest duration of a move, s, so that a tiny displacement does not jerk.
 pub const SHORTEST_MOVE_S: f64 = 0.02;
-/// Time after the end of its command at which a move with a tolerance counts as stuck, s.
+/// Longest wait after the end of the command of a move with a tolerance, s.
 pub const TOLERANCE_TIMEOUT_S: f64 = 1.0;
 /// Time to close the jaws and for the fingers to come to rest, s.
 pub const GRASP_S: f64 = 0.3;
@@ -14,7 +14,8 @@ pub const GRASP_S: f64 = 0.3;
 pub const CARRY_S: f64 = 0.2;
 
 impl Phase {
-    /// Returns the longest time of the phase, its move longer by `lead`, m, on a robot that settles in `settling` s.
+    /// Returns the largest duration of the phase, s, if its move is lengthened by `lead`, m, and the robot settles
+    /// within `settling` seconds.
     fn longest_s(&self, lead: f64, settling: f64) -> f64 {
         let [x, y, z] = self.displacement;
         let length = libm::hypot(libm::hypot(x, y), z) + lead;
@@ -30,21 +31,23 @@ impl Phase {
 }
 
 impl Strategy {
-    /// Returns the problem if a trial can take longer than `LONGEST_TRIAL_S` on a robot that takes
-    /// `settling` seconds to follow a command and makes a phase's move longer by its `lead`, m.
-    pub fn too_long(&self, lead: impl Fn(&Phase) -> f64, settling: f64) -> Option<String> {
+    /// Checks that no trial can take longer than `LONGEST_TRIAL_S` on a robot that follows a command within
+    /// `settling` seconds and lengthens the move of a phase by `lead`, m.
+    ///
+    /// # Errors
+    /// The largest duration of a trial and its longest phase, as a message.
+    pub fn check_time(&self, lead: impl Fn(&Phase) -> f64, settling: f64) -> Result<(), String> {
         let seconds = |phase: &Phase| phase.longest_s(lead(phase), settling);
-        let all: f64 = self.phases.iter().map(seconds).sum();
-        let all = GRASP_S + CARRY_S + settling + all;
-        // Written so that NaN is too long.
-        if all <= LONGEST_TRIAL_S {
-            return None;
+        let total = GRASP_S + CARRY_S + settling + self.phases.iter().map(seconds).sum::<f64>();
+        // NaN fails the comparison.
+        if total <= LONGEST_TRIAL_S {
+            return Ok(());
         }
         let longest = self.phases.iter().max_by(|a, b| seconds(a).total_cmp(&seconds(b)));
         let longest = longest.map_or(String::new(), |phase| {
-            format!("; of that \"{}\" takes {:.1} s", phase.name, seconds(phase))
+            format!(", of which \"{}\" takes {:.1} s", phase.name, seconds(phase))
         });
-        Some(format!("a trial takes {all:.1} s{longest}; it may take {LONGEST_TRIAL_S} s"))
+        Err(format!("a trial takes {total:.1} s{longest}; at most {LONGEST_TRIAL_S} s is accepted"))
     }
 }
 
@@ -56,7 +59,7 @@ mod tests {
     #[test]
     fn a_trial_that_takes_too_long_is_refused_with_its_longest_phase() {
         let usb = task_file("usb").text;
-        // The first line of a key with another value.
+        // Parses the task with another value in the first line of a key.
         let with = |key: &str, value: &str| {
             let line = usb.lines().find(|line| line.starts_with(key)).unwrap();
             Task::parse(&usb.replacen(line, &format!("{key} = {value}"), 1), "usb.toml")
@@ -65,7 +68,7 @@ mod tests {
             [("speed_mm_per_s", "0.001"), ("settle_s", "999.0"), ("settle_s", "59.9")]
         {
             let error = with(key, value).unwrap_err().to_string();
-            for part in ["usb.toml", "strategy.phase", "a trial takes", "it may take 60 s", "\""] {
+            for part in ["usb.toml", "strategy.phase", "a trial takes", "at most 60 s", "\""] {
                 assert!(error.contains(part), "{error}");
             }
         }

@@ -199,10 +199,8 @@ fn strategy(check: Check<'_>, raw: Strategy<RawPhase>) -> Result<Strategy, Input
         return check.fail(key, "phases with stage = \"approach\" come first");
     }
     let strategy = Strategy { tilt, start, rule, phases };
-    match strategy.too_long(|_| 0.0, 0.0) {
-        Some(problem) => check.fail(key, problem),
-        None => Ok(strategy),
-    }
+    strategy.check_time(|_| 0.0, 0.0).or_else(|problem| check.fail(key, problem))?;
+    Ok(strategy)
 }
 
 fn phase(check: Check<'_>, raw: RawPhase) -> Result<Phase, InputError> {

@@ -1,7 +1,7 @@
 //! One attempt at an insertion: phases, step by step, and their monitoring.
 
 use super::cell::{self, Hand, WorkCell};
-use super::classify::{Facts, Placement, classify};
+use super::classify::{FinalState, Placement, classify};
 use super::monitor::{ContactMonitor, LeadingEdge};
 use super::motion::{Move, Tcp};
 use super::record::{Frame, Recorder, Sample, Trace};
@@ -23,15 +23,19 @@ pub mod commanded;
 mod descent;
 pub mod driven;
 
-/// Default rest after a move, s.
+/// Shortest rest after a move, s.
 const REST: f64 = 0.03;
 /// Length of a step in the grasp and in rests, in steps of the engine.
 const COARSE: f64 = 2.0;
 
+/// Reason for the end of an attempt before its last phase is complete.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Stop {
+    /// The part left the grasp.
     Lost,
+    /// The force limit of the robot was reached.
     ForceLimit,
+    /// The simulation diverged.
     Diverged,
     /// Stopped by the study; the result is invalid.
     Interrupted,
@@ -43,7 +47,7 @@ impl From<Diverged> for Stop {
     }
 }
 
-/// State of an attempt. A clone continues with identical bits.
+/// State of an attempt; a clone continues bit for bit as the original does.
 #[derive(Clone)]
 pub(super) struct Attempt<'a> {
     robot: Arc<Mounted>,
@@ -104,30 +108,28 @@ impl<'a> Attempt<'a> {
         // The socket is shifted the other way instead of the start. The part has not
         // touched it yet, so all offsets share grasp and approach.
         let Conditions { yaw, start_across, .. } = self.conditions;
-        let socket = Pose::translation(-start_across, -offset, 0.0) * turned(yaw);
-        shifted.socket = turned(-yaw) * Pose::translation(start_across, offset, 0.0);
+        let socket = Pose::translation(-start_across, -offset, 0.0) * about_z(yaw);
+        shifted.socket = about_z(-yaw) * Pose::translation(start_across, offset, 0.0);
         shifted.world.place(shifted.cell.socket, socket);
         shifted
     }
 
-    /// Grasps the part, carries it to the start and makes the phases of the approach.
+    /// Grasps the part, carries it to the start and runs the phases of the approach.
     pub fn prepare(&mut self) -> Result<(), Stop> {
         let task = Arc::clone(&self.task);
         self.grasp()?;
         let position = Vector3::from(task.strategy.start);
         self.carry(Tcp { position, tilt: task.strategy.tilt })?;
-        for phase in task.strategy.phases.iter().filter(|phase| phase.stage == Stage::Approach) {
-            self.phase(phase)?;
-        }
-        Ok(())
+        let mut phases = task.strategy.phases.iter().filter(|phase| phase.stage == Stage::Approach);
+        phases.try_for_each(|phase| self.run_phase(phase))
     }
 
     /// Grasps the part.
     pub fn grasp(&mut self) -> Result<(), Stop> {
-        self.with_coarse_step(Self::close)?;
+        self.with_coarse_step(Self::close_jaws)?;
         self.grasp = self.grasp_points();
         if self.task.grip.hold == Hold::Always {
-            self.hold();
+            self.hold_jaws();
         }
         self.end_phase("grasp");
         self.world.place(self.cell.stand, Pose::translation(0.0, 0.0, -1.0));
@@ -136,13 +138,13 @@ impl<'a> Attempt<'a> {
 
     /// Lifts the part, tilts it and carries it to a target.
     fn carry(&mut self, to: Tcp) -> Result<(), Stop> {
-        self.make(Move::with_duration(self.target, to, CARRY_S), self.rest_time())?;
+        self.run_move(Move::with_duration(self.target, to, CARRY_S), self.rest_time())?;
         self.end_phase("carry");
         Ok(())
     }
 
     /// Closes the jaws.
-    fn close(&mut self) -> Result<(), Stop> {
+    fn close_jaws(&mut self) -> Result<(), Stop> {
         let task = Arc::clone(&self.task);
         for i in 1..=self.steps(GRASP_S) {
             let time = i as f64 * self.world.step_s();
@@ -154,21 +156,19 @@ impl<'a> Attempt<'a> {
         Ok(())
     }
 
-    /// Makes the phases of search and assembly.
+    /// Runs the phases of search and assembly.
     pub fn search_and_assemble(&mut self) -> Result<(), Stop> {
         let task = Arc::clone(&self.task);
-        for phase in task.strategy.phases.iter().filter(|p| p.stage != Stage::Approach) {
-            self.phase(phase)?;
-        }
-        Ok(())
+        let mut phases = task.strategy.phases.iter().filter(|phase| phase.stage != Stage::Approach);
+        phases.try_for_each(|phase| self.run_phase(phase))
     }
 
-    fn phase(&mut self, phase: &Phase) -> Result<(), Stop> {
-        self.enter(phase.stage);
+    fn run_phase(&mut self, phase: &Phase) -> Result<(), Stop> {
+        self.enter_stage(phase.stage);
         let begun = self.begun.take().unwrap_or(Begun { motion: self.motion(phase), steps: 0 });
         let motion = begun.motion;
         let end = match phase.ending {
-            Ending::Duration(rest) => self.make(motion, rest.max(self.rest_time())),
+            Ending::Duration(rest) => self.run_move(motion, rest.max(self.rest_time())),
             Ending::Tolerance(within) => self.reach(motion, within),
             Ending::Touch { preload, sensed } => self.touch(begun, preload, sensed, phase.speed),
         };
@@ -176,15 +176,16 @@ impl<'a> Attempt<'a> {
         end
     }
 
-    /// Begins a stage; the jaws may be held from the assembly on.
-    fn enter(&mut self, stage: Stage) {
+    /// Begins a stage; if the task requires it, the jaws are held from the assembly on.
+    fn enter_stage(&mut self, stage: Stage) {
         let assembly = stage == Stage::Assembly && self.stage != stage;
         if assembly && self.task.grip.hold == Hold::Assembly {
-            self.hold();
+            self.hold_jaws();
         }
         self.stage = stage;
     }
 
+    /// Returns the move of a phase; in the assembly it is lengthened by the lead of the robot.
     fn motion(&self, phase: &Phase) -> Move {
         let mut displacement = Vector3::from(phase.displacement);
         if phase.stage == Stage::Assembly {
@@ -195,7 +196,7 @@ impl<'a> Attempt<'a> {
     }
 
     /// Holds the jaws at their position.
-    fn hold(&mut self) {
+    fn hold_jaws(&mut self) {
         let flange = self.world.pose(self.cell.flange);
         for hand in self.cell.hands {
             let y = (flange.inverse() * self.world.pose(hand.jaw)).translation.y;
@@ -203,7 +204,8 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    fn make(&mut self, motion: Move, rest: f64) -> Result<(), Stop> {
+    /// Runs a move, then rests for a time, s.
+    fn run_move(&mut self, motion: Move, rest: f64) -> Result<(), Stop> {
         for i in 1..=self.steps(motion.duration) {
             self.target = motion.at(i as f64 * self.world.step_s());
             self.step()?;
@@ -226,9 +228,9 @@ impl<'a> Attempt<'a> {
         result
     }
 
-    /// Commands a move and waits until the TCP is within tolerance of the target.
+    /// Runs a move and waits until the TCP is within a tolerance of the target, m, at most for `TOLERANCE_TIMEOUT_S`.
     fn reach(&mut self, motion: Move, within: f64) -> Result<(), Stop> {
-        self.make(motion, 0.0)?;
+        self.run_move(motion, 0.0)?;
         for _ in 0..self.steps(TOLERANCE_TIMEOUT_S) {
             if (self.tcp() - self.target.position).amax() < within {
                 break;
@@ -238,7 +240,7 @@ impl<'a> Attempt<'a> {
         Ok(())
     }
 
-    /// Moves until the plug touches the socket, then by the preload at this speed, m/s.
+    /// Moves until the plug touches the socket, then farther by the preload, m, at this speed, m/s.
     fn touch(
         &mut self,
         Begun { motion, steps: done }: Begun,
@@ -264,7 +266,7 @@ impl<'a> Attempt<'a> {
         // From the actual TCP: otherwise the lag of a soft flange would add to the preload.
         let reached = along.dot(&(self.tcp() - start.position));
         let to = start.moved(along * (reached + preload));
-        self.make(Move::new(self.target, to, speed), self.rest_time())
+        self.run_move(Move::new(self.target, to, speed), self.rest_time())
     }
 
     fn step(&mut self) -> Result<(), Stop> {
@@ -307,8 +309,8 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// Returns the points at which a body presses the plug or its latch, task frame.
-    fn presses(&self, body: BodyId) -> impl Iterator<Item = ContactPoint> {
+    /// Returns the contact points of a body with the plug or its latch, task frame.
+    fn touches(&self, body: BodyId) -> impl Iterator<Item = ContactPoint> {
         let parts = [self.cell.plug].into_iter().chain(self.cell.latch);
         let points = parts.flat_map(move |part| self.world.contact_points(body, part));
         points.map(|point| point.transformed(&self.socket))
@@ -335,8 +337,8 @@ impl<'a> Attempt<'a> {
             jaws: self.cell.hands.map(|hand| self.pose(hand.jaw)),
             force: self.socket * self.monitor.force,
             slip: if self.phases.is_empty() { 0.0 } else { self.slip() },
-            contacts: self.presses(self.cell.socket).collect(),
-            grips: self.cell.hands.into_iter().flat_map(|hand| self.presses(hand.finger)).collect(),
+            contacts: self.touches(self.cell.socket).collect(),
+            grips: self.cell.hands.into_iter().flat_map(|hand| self.touches(hand.finger)).collect(),
         };
         if let Some(recorder) = &mut self.recorder {
             recorder.frames.push(frame);
@@ -351,6 +353,7 @@ impl<'a> Attempt<'a> {
         self.world.pose(self.cell.flange).translation.vector
     }
 
+    /// Checks that the fingers hold the part and that it has not slipped beyond the limit.
     fn check_grasp(&mut self, dt: f64) -> Result<(), Stop> {
         if self.time < GRASP_S {
             return Ok(());
@@ -381,8 +384,8 @@ impl<'a> Attempt<'a> {
         self.cell.hands.map(|hand| (self.world.pose(hand.finger).inverse() * point).coords)
     }
 
-    /// Returns the slip of the part along the pads since the grasp, m: the smaller one of both fingers, since
-    /// that of a finger without contact is meaningless.
+    /// Returns the slip of the part along the pads since the grasp, m: that at the finger with less slip, since
+    /// the slip at a finger without contact is meaningless.
     fn slip(&self) -> f64 {
         let now = self.grasp_points();
         let along = |i: usize| {
@@ -406,18 +409,18 @@ impl<'a> Attempt<'a> {
             slip_mm: self.slip() / MM,
             peak_force_n: self.monitor.phase_peak,
             poses: self.poses(),
-            contacts: self.presses(self.cell.socket).collect(),
+            contacts: self.touches(self.cell.socket).collect(),
         };
         self.monitor.phase_peak = 0.0;
         self.phases.push(end);
     }
 
-    /// Returns the outcome of an attempt that ended so, with the part seated or not.
+    /// Returns the outcome of the attempt after this end, with the part seated or not.
     fn outcome(&self, end: Result<(), Stop>, seated: bool) -> Outcome {
         if matches!(end, Err(Stop::Diverged | Stop::Interrupted)) {
             return Outcome::Diverged;
         }
-        classify(Facts {
+        classify(FinalState {
             seated,
             gripped: self.monitor.gripped(),
             lost_in: (end == Err(Stop::Lost)).then_some(self.stage),
@@ -425,10 +428,10 @@ impl<'a> Attempt<'a> {
         })
     }
 
-    /// Returns the trial that ended so, its samples and its frames.
+    /// Returns the result of the trial after this end, its samples and its frames.
     pub fn result(self, end: Result<(), Stop>) -> RecordedRun {
         let placement = self.placement();
-        // The part is at rest, or bottomed and stopped the robot. A part in motion may still tip.
+        // A part in motion may still tip: only one at rest counts, or one that bottomed and stopped the robot.
         let held = matches!(end, Ok(()) | Err(Stop::ForceLimit));
         let seated = held && self.stage == Stage::Assembly && placement.seated(&self.task);
         let outcome = self.outcome(end, seated);
@@ -448,6 +451,7 @@ impl<'a> Attempt<'a> {
     }
 }
 
-fn turned(angle: f64) -> Pose {
+/// Returns the rotation about z by an angle, rad.
+fn about_z(angle: f64) -> Pose {
     Pose::rotation(Vector3::z() * angle)
 }

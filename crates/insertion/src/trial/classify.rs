@@ -7,18 +7,19 @@
 //!    limit) before the search began: class 1; later: class 4. A seated
 //!    part without contact to one finger is class 4, too: pushed aside by more than twice
 //!    the grasp force, it is held by the other finger alone.
-//! 3. Its leading edge is not inside the opening when the search ends, or it ends beside its mated
-//!    pose: class 2, "a failed search phase in which the plug is missed" (paper, Sec. "Failure Cases").
-//! 4. Otherwise it entered and is not seated, whether fingers still touch it or not: class 3.
+//! 3. The leading edge is not inside the opening when the search ends, or the part ends beside its
+//!    mated pose: class 2, "a failed search phase in which the plug is missed" (paper, Sec. "Failure Cases").
+//! 4. Otherwise the part entered and is not seated, whether fingers still touch it or not: class 3.
 
 use crate::outcome::{FailureClass, Outcome};
 use crate::task::{Stage, Task};
 use contact::scene::Pose;
 use nalgebra::Vector3;
 
-/// Lateral distance beyond that of an inserted plug at which the plug has missed, m.
+/// Distance beyond the lateral tolerance of an inserted plug from which the plug has missed, m.
 const ASTRAY_DISTANCE: f64 = 0.5e-3;
 
+/// Position and tilt of the plug in the opening.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Placement {
     /// Tip of the plug, task frame, m.
@@ -33,6 +34,7 @@ impl Placement {
         Placement { tip: plug.translation.vector, tilt }
     }
 
+    /// Returns whether the plug is in the opening or at its mated position, deep and upright enough.
     pub fn seated(&self, task: &Task) -> bool {
         let [x, y] = task.opening;
         // A plug beside the socket can be deep without being inserted.
@@ -57,7 +59,7 @@ impl Placement {
         let margin = deep.min(upright).clamp(-1.0, 1.0);
         match outcome {
             Outcome::Inserted => margin.max(0.0),
-            // Lost before the socket: its depth is no measure of the distance from success.
+            // The plug was lost before the socket: its depth does not measure the distance from success.
             Outcome::Failed(FailureClass::ContactLossBeforeSearch) => -1.0,
             Outcome::Failed(_) => margin.min(0.0),
             Outcome::Diverged => 0.0,
@@ -69,31 +71,32 @@ pub(super) fn within(value: f64, [from, to]: [f64; 2]) -> bool {
     from <= value && value <= to
 }
 
+/// State at the end of a trial that determines its outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Facts {
+pub struct FinalState {
+    /// Whether the plug is inserted deep enough and upright, and at rest or stopped by the force limit.
     pub seated: bool,
     /// Whether both fingers are in contact over the final window.
     pub gripped: bool,
-    /// The stage in which the part left the grasp.
+    /// Stage in which the part left the grasp, if it did.
     pub lost_in: Option<Stage>,
-    /// The leading edge was inside the opening when the search ended.
+    /// Whether the leading edge was inside the opening when the search ended, and the plug is not beside its mated
+    /// pose.
     pub entered: bool,
 }
 
 /// Returns the outcome of a trial that did not diverge.
-pub fn classify(facts: Facts) -> Outcome {
-    match facts {
-        Facts { seated: true, gripped: true, .. } => Outcome::Inserted,
-        Facts { seated: true, gripped: false, .. } => {
-            Outcome::Failed(FailureClass::ContactLossInInsertion)
-        }
-        Facts { lost_in: Some(Stage::Approach), .. } => {
-            Outcome::Failed(FailureClass::ContactLossBeforeSearch)
-        }
-        Facts { lost_in: Some(_), .. } => Outcome::Failed(FailureClass::ContactLossInInsertion),
-        Facts { entered: false, .. } => Outcome::Failed(FailureClass::PlugMissed),
-        Facts { entered: true, .. } => Outcome::Failed(FailureClass::Jammed),
+pub fn classify(FinalState { seated, gripped, lost_in, entered }: FinalState) -> Outcome {
+    if seated && gripped {
+        return Outcome::Inserted;
     }
+    Outcome::Failed(match lost_in {
+        _ if seated => FailureClass::ContactLossInInsertion,
+        Some(Stage::Approach) => FailureClass::ContactLossBeforeSearch,
+        Some(_) => FailureClass::ContactLossInInsertion,
+        None if entered => FailureClass::Jammed,
+        None => FailureClass::PlugMissed,
+    })
 }
 
 #[cfg(test)]
@@ -119,27 +122,28 @@ mod tests {
             header.success.mated = Some(mated);
             assert_eq!(placement.seated(&header), seated, "{x_mm}");
             assert_eq!(placement.astray(&header), astray, "{x_mm}");
-            // By the opening of 7.55 mm all are.
+            // Within the opening of 7.55 mm all are seated.
             header.success.mated = None;
             assert!(placement.seated(&header) && !placement.astray(&header), "{x_mm}");
         }
     }
 
     #[test]
-    fn every_rule_decides_in_its_order() {
-        let facts = |seated, gripped, lost_in, entered| Facts { seated, gripped, lost_in, entered };
+    fn the_rules_apply_in_order() {
+        let state =
+            |seated, gripped, lost_in, entered| FinalState { seated, gripped, lost_in, entered };
         for (given, class) in [
-            (facts(true, false, None, true), ContactLossInInsertion),
-            (facts(false, false, Some(Stage::Approach), false), ContactLossBeforeSearch),
-            (facts(false, false, Some(Stage::Search), false), ContactLossInInsertion),
-            (facts(false, false, Some(Stage::Assembly), true), ContactLossInInsertion),
-            (facts(false, true, None, false), PlugMissed),
+            (state(true, false, None, true), ContactLossInInsertion),
+            (state(false, false, Some(Stage::Approach), false), ContactLossBeforeSearch),
+            (state(false, false, Some(Stage::Search), false), ContactLossInInsertion),
+            (state(false, false, Some(Stage::Assembly), true), ContactLossInInsertion),
+            (state(false, true, None, false), PlugMissed),
             // A jammed part is also pushed aside: its loss by the fingers is then not the cause.
-            (facts(false, false, None, true), Jammed),
+            (state(false, false, None, true), Jammed),
         ] {
             assert_eq!(classify(given), Outcome::Failed(class), "{given:?}");
         }
-        let held = facts(true, true, Some(Stage::Assembly), true);
+        let held = state(true, true, Some(Stage::Assembly), true);
         assert_eq!(classify(held), Outcome::Inserted);
     }
 }

@@ -20,7 +20,7 @@ pub mod picture;
 pub mod record;
 pub mod run;
 
-pub use attempt::commanded::{Path, Probe};
+pub use attempt::commanded::{Probe, Trajectory};
 pub use attempt::driven::{Driven, State};
 pub use conditions::Conditions;
 pub use motion::Tcp;
@@ -108,8 +108,8 @@ impl Grasp<'static> {
 /// Motion that is not the strategy of the task.
 #[derive(Debug, Clone, Copy)]
 pub enum Course<'a> {
-    /// Commanded paths, task frame, each from the same grasp.
-    Paths(&'a [&'a Path]),
+    /// Commanded trajectories, task frame, each from the same grasp.
+    Trajectories(&'a [&'a Trajectory]),
     /// A probe of the friction on a flat plate, whose top is at z = 0, in the socket's place.
     Probe(Probe),
 }
@@ -134,7 +134,7 @@ pub trait Rig: Send + Sync {
     }
 
     /// Returns the trials of a grasp along a course, sampled every `every_s` seconds from its start: one for
-    /// each path; empty if it is not simulated.
+    /// each trajectory; empty if it is not simulated.
     fn follow(&self, _grasp: Grasp<'_>, _course: Course<'_>, _every_s: f64) -> Vec<Followed> {
         Vec::new()
     }

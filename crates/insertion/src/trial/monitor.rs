@@ -54,7 +54,7 @@ impl ContactMonitor {
 
 /// Number of corners above which only those of their hull are checked.
 const MAX_CORNERS: usize = 500;
-/// Smallest depth of an edge that is inside, m: more than contacts penetrate, less than any preload.
+/// Smallest depth at which an edge counts as inside, m: more than contacts penetrate, less than any preload.
 const INSIDE_DEPTH: f64 = 0.15 * MM;
 /// Largest overlap of an edge with a wall it touches, m: more than contacts penetrate, less than a clearance.
 const WALL_OVERLAP: f64 = 0.02 * MM;
@@ -64,7 +64,7 @@ const WALL_OVERLAP: f64 = 0.02 * MM;
 pub(super) struct LeadingEdge {
     /// Corners in the plug frame: z from the tip.
     corners: Vec<Point3<f64>>,
-    /// Intervals of x and y in the task frame.
+    /// Intervals of x and y in the task frame, m, wider than the opening by `WALL_OVERLAP`.
     opening: [[f64; 2]; 2],
 }
 
@@ -73,7 +73,7 @@ impl LeadingEdge {
         // A latch yields and does not guide the plug.
         let corners = task.plug.rigid().flat_map(|part| part.solid.corners());
         let corners: Vec<_> = corners.filter(|corner| corner.z < task.success.depth).collect();
-        // The corners are checked in every step.
+        // Fewer corners: all are checked in every step.
         let reduced = if corners.len() > MAX_CORNERS { hull(&corners) } else { None };
         LeadingEdge {
             corners: reduced.map_or(corners, |(corners, _)| corners),
@@ -84,7 +84,7 @@ impl LeadingEdge {
     /// Returns whether the leading edge is inside the opening: its lowest corner is below the top of the socket, and
     /// no corner on the lower side of a tilted plug is above the housing; `plug` is the plug's pose in the task frame.
     pub fn inside(&self, plug: &Pose) -> bool {
-        // Its x and y point to the upper side of the plug.
+        // The x and y components of `up` point to the upper side of the plug.
         let up = plug.inverse_transform_vector(&Vector3::z());
         let leads = |corner: &&Point3<f64>| corner.x * up.x + corner.y * up.y <= 0.0;
         let [x, y] = self.opening;

@@ -60,9 +60,7 @@ impl EngineRig {
             Some(along) if phase.stage == Stage::Assembly => mounted.lead(&along).abs(),
             _ => 0.0,
         };
-        if let Some(problem) = task.strategy.too_long(lead, mounted.settling()) {
-            return Err(refused(problem));
-        }
+        task.strategy.check_time(lead, mounted.settling()).map_err(refused)?;
         engine.supports(&cell::build(&task, &mounted, finger).scene)?;
         Ok(EngineRig { task, robot: Arc::new(mounted), engine })
     }
@@ -119,12 +117,12 @@ impl Rig for EngineRig {
             (trial, samples)
         };
         match course {
-            Course::Paths(paths) => {
+            Course::Trajectories(trajectories) => {
                 let mut held = self.attempt(engine, &self.task, grasp);
                 let grasped = held.grasp();
-                let each = paths.iter().map(|path| {
+                let each = trajectories.iter().map(|trajectory| {
                     let mut attempt = held.clone();
-                    let end = grasped.and_then(|()| attempt.follow(path, every_s));
+                    let end = grasped.and_then(|()| attempt.follow(trajectory, every_s));
                     ended(attempt, end)
                 });
                 each.collect()
@@ -265,7 +263,7 @@ mod tests {
         let slow = ur5e.text.replace("damping_nms_per_rad = ", "damping_nms_per_rad = 1000");
         let robot = Robot::parse(&slow, ur5e.file).unwrap();
         let error = EngineRig::new(task("ket8"), &robot, Box::<Direct>::default()).err().unwrap();
-        assert!(error.to_string().contains("it may take 60 s"), "{error}");
+        assert!(error.to_string().contains("at most 60 s is accepted"), "{error}");
     }
 
     #[test]

@@ -68,7 +68,7 @@ impl<'a> HiddenCell<'a> {
     /// Returns a finger in the cell, and the cell's robot.
     pub fn setup(&self, design: &Design) -> Result<(Specimen, Robot), Failure> {
         let values: Vec<_> = self.hidden.iter().map(|(prior, value)| (prior, *value)).collect();
-        self.evaluator.under(self.template, (design, None), &values).map_err(Failure::input)
+        self.evaluator.apply(self.template, (design, None), &values).map_err(Failure::input)
     }
 
     /// Returns the hidden values in the units of the tables.
@@ -101,7 +101,7 @@ impl FingerWindows {
         let near = direct.as_ref().map_or(0, |taught| taught.shift);
         let truth = window(&specimen, &robot, engine, Some(near))?;
         let elapsed_s = clock.elapsed().as_secs_f64();
-        let nominal = cell.evaluator.under(cell.template, (&design, None), &[]);
+        let nominal = cell.evaluator.apply(cell.template, (&design, None), &[]);
         let (specimen, robot) = nominal.map_err(Failure::input)?;
         let nominal = window(&specimen, &robot, EngineKind::Direct, None)?;
         let taught_again = truth.as_ref().is_none_or(|truth| truth.shift != near);

@@ -66,7 +66,7 @@ pub fn line(
     let others: Vec<&FingerWindows> = windows.iter().filter(not_logged).collect();
     let identified = others.par_iter().map(|one| {
         let design = Design::infill(one.finger.density_percent, one.finger.direction_deg);
-        let under = cell.evaluator.under(cell.template, (&design, None), &values);
+        let under = cell.evaluator.apply(cell.template, (&design, None), &values);
         let (specimen, own) = under.map_err(Failure::input)?;
         let taught = window(&specimen, robot.as_ref().unwrap_or(&own), EngineKind::Direct, None)?;
         Ok(taught.map_or(0.0, |taught| taught.window.range_mm()))

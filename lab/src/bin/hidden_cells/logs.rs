@@ -70,7 +70,7 @@ pub fn write(
 }
 
 fn probe(rig: &dyn Rig, grasp: Grasp<'_>) -> Result<Vec<Sample>, Failure> {
-    let found = rig.follow(grasp, Course::Probe(Probe::USUAL), EVERY_S);
+    let found = rig.follow(grasp, Course::Probe(Probe::DEFAULT), EVERY_S);
     let samples = found.into_iter().next().map(|(_, samples)| samples);
     samples.ok_or_else(|| Failure::running("the engine simulates no probe"))
 }

@@ -61,7 +61,7 @@ pub(super) struct NearList {
 
 /// Builds the bounding volume hierarchy of a body's shapes in its frame.
 pub(super) fn tree(solids: &[Solid]) -> Bvh {
-    let boxes: Vec<_> = solids.iter().map(|solid| solid.boxed).collect();
+    let boxes: Vec<_> = solids.iter().map(|solid| solid.aabb).collect();
     Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
 }
 
@@ -123,8 +123,8 @@ impl NearList {
             let turn = frame.rotation.to_rotation_matrix().into_inner();
             let half = turn.abs() * solids[second].half + Vector3::repeat(prediction + MARGIN);
             let middle = frame.translation.vector;
-            let boxed = Aabb::from_half_extents(middle.into(), half.into());
-            let ends = self.tree.intersect_aabb(&boxed).map(|leaf| leaf as usize);
+            let aabb = Aabb::from_half_extents(middle.into(), half.into());
+            let ends = self.tree.intersect_aabb(&aabb).map(|leaf| leaf as usize);
             let (wide, own) = (self.second.len(), second - self.second.start);
             self.near.extend(ends.map(|leaf| NearPair {
                 number: self.from + leaf * wide + own,
@@ -156,7 +156,7 @@ impl NearList {
         let count = self.solids.last().map_or(0, |last| last + 1 - first);
         let mut dense = vec![Aabb::new_invalid(); count];
         // Copied so that they are contiguous in memory: a shape has many other fields.
-        self.solids.iter().for_each(|&i| dense[i - first] = solids[i].boxed);
+        self.solids.iter().for_each(|&i| dense[i - first] = solids[i].aabb);
         let margin = self.chosen_for + CLOSE;
         self.close.clear();
         self.close.extend(self.near.iter().filter(|pair| {

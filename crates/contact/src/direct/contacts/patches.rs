@@ -7,12 +7,12 @@ use super::Touch;
 use nalgebra::{Matrix3, Vector3};
 
 /// Largest number of points of a patch.
-pub(super) const POINTS: usize = 4;
+pub(super) const MAX_POINTS: usize = 4;
 /// Cosine of the largest angle between the normals of a patch, 2.5 degrees.
 const ALIKE: f64 = 0.999;
-/// Largest distance of a point from the plane of a patch, as a share of that along it.
+/// Largest distance of a point from the plane of a patch, as a share of its distance from the patch's first point.
 const TILT: f64 = 0.05;
-/// Largest error of a gap that is linear over the patch, m: as much as contacts sink.
+/// Largest deviation of the gap from a linear function over the patch, m: as large as the penetration of a contact.
 const FLAT: f64 = 5e-6;
 /// Gaps that differ by less are equal, m.
 const EQUAL: f64 = 2e-6;
@@ -23,7 +23,7 @@ pub(super) const NARROW: f64 = 0.1e-3;
 /// Joins the manifolds of each patch and reduces the patch to its extreme points.
 pub(super) fn join(touches: &mut Vec<Touch>) {
     let manifolds: Vec<_> = touches.chunk_by(|a, b| a.geoms == b.geoms).collect();
-    // Close together in memory: most patches differ in their normals.
+    // Contiguous in memory, since the comparison of normals decides most pairs.
     let mut normals: Vec<Vector3<f64>> =
         manifolds.iter().map(|touches| touches[0].normal).collect();
     let alike = |i: usize, j: usize| {
@@ -34,17 +34,17 @@ pub(super) fn join(touches: &mut Vec<Touch>) {
         return;
     }
     normals.clear();
-    let mut patches: Vec<Patch> = Vec::new();
+    let mut patches: Vec<PatchBuilder> = Vec::new();
     for manifold in manifolds {
         let normal = manifold[0].normal;
         let near = (0..normals.len()).filter(|&i| normals[i].dot(&normal) > ALIKE);
-        if !{ near }.any(|i| patches[i].take(manifold)) {
+        if !{ near }.any(|i| patches[i].try_add(manifold)) {
             normals.push(normal);
-            patches.push(Patch::new(manifold));
+            patches.push(PatchBuilder::new(manifold));
         }
     }
     touches.clear();
-    for Patch { touches: patch, .. } in patches {
+    for PatchBuilder { touches: patch, .. } in patches {
         let Touch { geoms, normal, .. } = patch[0];
         if patch.iter().all(|touch| touch.geoms == geoms) {
             touches.extend(patch);
@@ -62,10 +62,10 @@ fn alike(a: &Touch, b: &Touch) -> bool {
 }
 
 /// Patch under construction: its touches, sums over them, and a linear fit of their gaps.
-struct Patch {
+struct PatchBuilder {
     touches: Vec<Touch>,
     sums: Sums,
-    line: Line,
+    fit: LinearFit,
 }
 
 /// Sums over touches for a linear fit of the gap; positions are relative to the first touch.
@@ -82,13 +82,14 @@ struct Sums {
 
 /// Linear fit of the gap over the position relative to the first touch, and its largest error.
 #[derive(Clone, Copy)]
-struct Line {
-    level: f64,
+struct LinearFit {
+    intercept: f64,
     slope: Vector3<f64>,
-    off: f64,
+    error: f64,
 }
 
 impl Sums {
+    /// Returns the sums with these touches added.
     fn with(mut self, first: &Touch, touches: &[Touch]) -> Self {
         self.count += touches.len() as f64;
         for touch in touches {
@@ -102,60 +103,62 @@ impl Sums {
         self
     }
 
-    fn line(&self) -> Option<Line> {
+    /// Returns the least-squares fit.
+    fn fit(&self) -> Option<LinearFit> {
         let (place, mean) = (self.place / self.count, self.gap / self.count);
         let spread = self.squares - place * self.place.transpose();
-        // No slope across a line or off the plane.
+        // Regularized: no slope across touches on one line, or perpendicular to the plane.
         let least = Matrix3::from_diagonal_element(1e-6 * spread.trace() + NARROW * FLAT);
         let slope = (spread + least).try_inverse()? * (self.product - place * self.gap);
-        Some(Line { level: mean - slope.dot(&place), slope, off: f64::INFINITY })
+        Some(LinearFit { intercept: mean - slope.dot(&place), slope, error: f64::INFINITY })
     }
 }
 
-impl Line {
-    /// Returns its largest error for these touches.
-    fn off(&self, first: &Touch, touches: &[Touch]) -> f64 {
-        let off = |touch: &Touch| {
-            (touch.gap - self.level - self.slope.dot(&(touch.point - first.point))).abs()
+impl LinearFit {
+    /// Returns the largest error of the fit at these touches.
+    fn error_at(&self, first: &Touch, touches: &[Touch]) -> f64 {
+        let error = |touch: &Touch| {
+            (touch.gap - self.intercept - self.slope.dot(&(touch.point - first.point))).abs()
         };
-        touches.iter().map(off).fold(0.0, f64::max)
+        touches.iter().map(error).fold(0.0, f64::max)
     }
 }
 
-impl Patch {
+impl PatchBuilder {
     fn new(touches: &[Touch]) -> Self {
-        let line = Line { level: 0.0, slope: Vector3::zeros(), off: f64::INFINITY };
+        let fit = LinearFit { intercept: 0.0, slope: Vector3::zeros(), error: f64::INFINITY };
         let sums = Sums::default().with(&touches[0], touches);
-        Patch { touches: touches.to_vec(), sums, line }
+        PatchBuilder { touches: touches.to_vec(), sums, fit }
     }
 
-    /// Adds a manifold if it lies in the plane of the patch and the gap is linear over both; returns whether it was added.
-    fn take(&mut self, manifold: &[Touch]) -> bool {
+    /// Adds a manifold if it lies in the plane of the patch and the gap is linear over both; returns whether it was
+    /// added.
+    fn try_add(&mut self, manifold: &[Touch]) -> bool {
         let first = &self.touches[0];
         let coplanar = |touch: &Touch| {
-            let way = touch.point - first.point;
-            way.dot(&first.normal).abs() < FLAT + TILT * way.norm()
+            let offset = touch.point - first.point;
+            offset.dot(&first.normal).abs() < FLAT + TILT * offset.norm()
         };
         if !alike(first, &manifold[0]) || !manifold.iter().all(coplanar) {
             return false;
         }
         let sums = self.sums.with(first, manifold);
-        let Some(line) = sums.line() else { return false };
-        let new = line.off(first, manifold);
+        let Some(fit) = sums.fit() else { return false };
+        let new = fit.error_at(first, manifold);
         if new >= FLAT {
             return false;
         }
-        // A bound first: with hundreds of touches, the errors of all for each manifold take half the time of a trial.
-        let moved = (line.level - self.line.level).abs()
-            + (line.slope - self.line.slope).norm() * self.sums.reach;
-        let bound = self.line.off + moved;
-        let old = if bound < FLAT { bound } else { line.off(first, &self.touches) };
+        // A bound first: with hundreds of touches, all errors for each manifold would take half the time of a trial.
+        let moved = (fit.intercept - self.fit.intercept).abs()
+            + (fit.slope - self.fit.slope).norm() * self.sums.reach;
+        let bound = self.fit.error + moved;
+        let old = if bound < FLAT { bound } else { fit.error_at(first, &self.touches) };
         if old >= FLAT {
             return false;
         }
         self.touches.extend(manifold);
         self.sums = sums;
-        self.line = Line { off: new.max(old), ..line };
+        self.fit = LinearFit { error: new.max(old), ..fit };
         true
     }
 }

@@ -15,14 +15,14 @@ use input::{Check, InputError};
 use parameters::numbers::{CLEARANCE, EDGE_RADIUS, FLANGE, Kind};
 use parameters::{Parameter, Path, Transform};
 
-/// Applies a parameter of the finger or of the task's shapes.
+/// Applies a value of a parameter to the finger or to the shapes of the task.
 pub(in crate::evaluation) fn change(parameter: &Parameter, value: f64, specimen: &mut Specimen) {
     let Specimen { finger, task, .. } = specimen;
     match parameter.path.kind() {
         Kind::Finger => {
             if let Some((number, unit)) = finger.number(&parameter.path) {
                 let own = *number / unit;
-                // A neutral value does not change the number in any bit.
+                // A neutral value leaves the number as it is, bit for bit.
                 if parameter.transform == Transform::Value || value != parameter.neutral(own) {
                     *number = parameter.applied(own, value) * unit;
                 }
@@ -50,10 +50,9 @@ pub(in crate::evaluation) fn change(parameter: &Parameter, value: f64, specimen:
 }
 
 impl Robot {
-    /// Returns the numbers that a path sets in proportion, and the SI value of its unit; none if the robot has no
-    /// such number.
+    /// Returns the numbers of a path, which are scaled together, and the SI value of its unit; no numbers if the
+    /// robot lacks them.
     fn numbers(&mut self, path: &Path) -> (Vec<&mut f64>, f64) {
-        let unit = if path == FLANGE { N_PER_MM } else { 1.0 };
         let numbers = match (&**path, &mut self.drive) {
             ("robot.stop_force_n", _) => vec![&mut self.stop_force],
             (FLANGE, Drive::Servo(servo)) => {
@@ -64,7 +63,7 @@ impl Robot {
             ("robot.damping_ratio", Drive::Servo(servo)) => vec![&mut servo.damping_ratio],
             _ => Vec::new(),
         };
-        (numbers, unit)
+        (numbers, if path == FLANGE { N_PER_MM } else { 1.0 })
     }
 
     /// Returns the number of a path, in its unit, if the robot has it.
@@ -74,7 +73,7 @@ impl Robot {
         numbers.first().map(|number| **number / unit)
     }
 
-    /// Returns whether the robot has the number of a parameter, or the parameter is not of a robot.
+    /// Returns whether the robot has the number of a parameter; true for a parameter of task or finger.
     pub fn fits(&self, parameter: &Parameter) -> bool {
         parameter.path.kind() != Kind::Robot || self.number(&parameter.path).is_some()
     }
@@ -92,14 +91,14 @@ impl Robot {
 }
 
 impl Evaluator {
-    /// Returns the number of a key, in its unit: that of the cell, the task file or the file of computed fingers.
+    /// Returns the value of a key in the unit of the key: from the cell, else from the task file or the finger file.
     pub fn number(&self, template: &Template, key: &str) -> Option<f64> {
         let (none, rows) = (Design::default(), self.rows(Some(template)));
         let set = self.completed(Some(template), &none, &rows);
         set.get(key).or_else(|| self.in_file(Some(template), key))
     }
 
-    /// Returns whether task, finger or robot have the number of a parameter.
+    /// Returns whether task, finger or robot has the number of a parameter.
     pub fn has(&self, template: &Template, parameter: &Parameter) -> bool {
         match parameter.path.kind() {
             Kind::File => self.number(template, &parameter.path).is_some(),
@@ -107,7 +106,8 @@ impl Evaluator {
         }
     }
 
-    /// Checks that the task of a cell's rows, if the evaluator has it, has their paths; `file` is named in errors.
+    /// Checks that the task of a cell, if the evaluator has it, has the paths of the cell's rows; `file` is named in
+    /// errors.
     ///
     /// # Errors
     /// The first row with an unknown path, and the nearest known one.
@@ -130,7 +130,7 @@ impl Evaluator {
     /// Checks the values of the evaluator's cell on each task; `file` is named in errors.
     ///
     /// # Errors
-    /// The first row with an invalid value, or same as for [`Evaluator::check_paths`].
+    /// The first row with an invalid value, or the error of [`Evaluator::check_paths`].
     pub fn check_cell(&self, file: &str) -> Result<(), InputError> {
         let Some(cell) = &self.cell else { return Ok(()) };
         self.check_paths(cell, file)?;
@@ -139,8 +139,8 @@ impl Evaluator {
                 let value = self.number(template, &row.path).filter(|_| !is_shape(&row.path));
                 let Some(value) = value else { continue };
                 let design = Design::infill(0.0, 0.0).with(&row.path, value);
-                let any = Prediction::exact(1.0, 1.0);
-                if let Err(error) = template.apply(&design, &FingerSource::Paper, &any) {
+                let stiffness = Prediction::exact(1.0, 1.0);
+                if let Err(error) = template.apply(&design, &FingerSource::Paper, &stiffness) {
                     return Check { file }.fail(&row.name, error.to_string());
                 }
             }
@@ -156,7 +156,7 @@ impl Evaluator {
         })
     }
 
-    /// Returns the rows of the cell that apply to a task, by default the first, with their values.
+    /// Returns the rows of the cell that apply to a task, by default to the first task, with their nominal values.
     pub(in crate::evaluation) fn rows<'a>(
         &'a self,
         of: Option<&'a Template>,
@@ -166,7 +166,7 @@ impl Evaluator {
         cell.of(task).map(|row| (row, row.middle())).collect()
     }
 
-    /// Returns a design completed by the numbers of these rows that it does not set.
+    /// Returns a design with the values of these rows for the numbers that it does not set.
     pub(in crate::evaluation) fn completed(
         &self,
         template: Option<&Template>,
@@ -185,12 +185,12 @@ impl Evaluator {
         set
     }
 
-    /// Returns specimen and robot of a design with these values of parameters in addition to those of the cell. The
-    /// stiffness is predicted unless given.
+    /// Applies values of parameters to a design, in addition to those of the cell; returns its specimen and robot.
+    /// The stiffness is predicted unless given.
     ///
     /// # Errors
     /// If a value is invalid.
-    pub fn under(
+    pub fn apply(
         &self,
         template: &Template,
         (design, given): (&Design, Option<Prediction>),
@@ -215,16 +215,16 @@ impl Evaluator {
         Ok((specimen, robot))
     }
 
-    /// Returns the specimen and the robot of another cell with these values of its rows; rows of the own cell that
-    /// the other lacks remain.
-    pub(in crate::evaluation) fn drawn(
+    /// Returns specimen and robot with these values of another cell's rows. The rows of the evaluator's cell whose
+    /// paths the other cell lacks still apply.
+    pub(in crate::evaluation) fn in_cell(
         &self,
         specimen: &Specimen,
         cell: &Priors,
         values: &[f64],
     ) -> Result<(Specimen, Robot), Impossible> {
         let Specimen { task, design, stiffness, .. } = specimen;
-        let Some(template) = self.templates.iter().find(|of| of.task.name == task.name) else {
+        let Some(template) = self.templates.iter().find(|own| own.task.name == task.name) else {
             return Ok(DESIGN.fail(&task.name, "unknown task of this evaluator")?);
         };
         let of_task: Vec<&Parameter> = cell.of(&task.name).collect();

@@ -18,7 +18,7 @@ use ask_tell::statistics::{mean, sorted};
 use race::Race;
 use rayon::prelude::*;
 
-/// Plan of the measurements in addition to the window, with the draws that all designs of a study share.
+/// Plan of the trials in addition to the window: their settings, and the draws that all designs of a study share.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plan {
     success: Option<(Vec<Draw>, SuccessSettings)>,
@@ -26,7 +26,7 @@ pub struct Plan {
     /// Race for the success rate, if there is one.
     race: Option<Race>,
     /// Cell whose rows are drawn, with their values in each draw.
-    cells: Option<(Priors, Vec<Vec<f64>>)>,
+    pub(super) cells: Option<(Priors, Vec<Vec<f64>>)>,
 }
 
 /// Rig and nominal finger of one draw.
@@ -35,7 +35,7 @@ pub type Drawn = (Box<dyn Rig>, Finger);
 type Insertion<'a> = (&'a dyn Rig, Grasp<'a>, f64);
 
 impl Plan {
-    /// The window only.
+    /// Plan of the window alone.
     pub const WINDOW: Plan = Plan { success: None, robust: None, race: None, cells: None };
 
     /// Returns the plan for success rates, robust ranges or both; `seed` identifies the random streams.
@@ -55,19 +55,14 @@ impl Plan {
         }
     }
 
-    /// Returns the cell whose rows are drawn, and their values in each draw.
-    pub(super) fn cells(&self) -> Option<(&Priors, &[Vec<f64>])> {
-        self.cells.as_ref().map(|(cell, values)| (cell, &values[..]))
-    }
-
-    /// Returns the plan in a race.
+    /// Returns the plan with this race for the success rate.
     pub fn against(&self, race: Option<&Race>) -> Plan {
         Plan { race: race.cloned(), ..self.clone() }
     }
 }
 
-/// Measures a grasp by fingers of this predicted stiffness by a plan; draws without an entry of `cells` use
-/// `rig`.
+/// Measures a grasp according to a plan; `predicted` is the stiffness of the fingers. Draws without an entry in
+/// `cells` use `rig`.
 pub fn evaluate(
     rig: &dyn Rig,
     grasp: Grasp,
@@ -79,10 +74,8 @@ pub fn evaluate(
     let mut evaluation = tolerance::evaluate_in(rig, grasp, search);
     let drawn = |draws: &[Draw]| -> Vec<_> {
         let one = |(i, draw): (usize, &Draw)| {
-            let (rig, finger): (&dyn Rig, Finger) = match cells.get(i) {
-                Some((rig, finger)) => (&**rig, *finger),
-                None => (rig, grasp.finger),
-            };
+            let own = cells.get(i).map(|(rig, finger)| (&**rig, *finger));
+            let (rig, finger) = own.unwrap_or((rig, grasp.finger));
             (rig, draw.grasp(Grasp { finger, ..grasp }, predicted), draw.offset)
         };
         draws.iter().enumerate().map(one).collect()
@@ -104,7 +97,7 @@ fn success_rate(drawn: &[Insertion], confidence: f64, race: Option<&Race>) -> Su
     })
 }
 
-/// Measures the window of each grasp. Drawn offsets are ignored, since a window spans the offsets.
+/// Returns the ranges of the windows of all draws. Drawn offsets are ignored, since a window spans the offsets.
 fn robust_range(drawn: &[Insertion], settings: &RobustSettings) -> RobustRange {
     let window = |&(rig, grasp, _): &Insertion| {
         let found = tolerance::evaluate_in(rig, grasp, settings.search);
@@ -159,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn every_trial_ends_as_its_own_window_says() {
+    fn every_trial_ends_as_its_own_window_predicts() {
         let rig = FakeRig::default();
         let (typical, drawn) = drawn(&rig, 20.0, 300);
         let found = success_rate(&drawn, typical.success.confidence, None);
@@ -167,7 +160,7 @@ mod tests {
         for (_, grasp, offset) in &drawn {
             let (low, high) = window_mm(&grasp.finger, &grasp.conditions);
             let offset = offset / MM;
-            // A window that errors closed jams on the whole of its lower side.
+            // If the errors close the window, the plug jams on its whole lower side.
             below += u32::from(offset < low);
             above += u32::from(offset >= low && offset > high);
         }

@@ -10,12 +10,12 @@ use rand::RngExt;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Share by which both coefficients of friction vary, each by itself.
+/// Largest relative change of the two coefficients of friction, which vary independently.
 pub const FRICTION_SHARE: f64 = 0.1;
-/// Largest change of the start, m.
-pub const START: f64 = 0.02 * MM;
+/// Largest shift of the start, m.
+pub const START_SHIFT: f64 = 0.02 * MM;
 const PURPOSE: &str = "repeat";
-/// Largest distance from an end at which its band is followed, in grid steps.
+/// Largest distance from an end of a window at which its band is searched for, in grid steps.
 const REACH: OffsetStep = 20;
 /// Spacing of the offsets tried between the bands, in grid steps.
 const INSIDE_STRIDE: OffsetStep = 5;
@@ -39,7 +39,7 @@ impl<'a> Repeats<'a> {
                 ..Conditions::NOMINAL
             };
             let rig = rigs[index as usize % rigs.len()];
-            (rig.hold(Grasp { conditions, ..grasp }), around(START))
+            (rig.hold(Grasp { conditions, ..grasp }), around(START_SHIFT))
         };
         Repeats { runs: (0..count).into_par_iter().map(run).collect(), stop: grasp.stop }
     }
@@ -47,7 +47,7 @@ impl<'a> Repeats<'a> {
     /// Returns the outcome of each run with the start shifted by an additional `offset`, m.
     pub fn outcomes(&self, offset: f64) -> Vec<Outcome> {
         let trial = |(grasped, shift): &(Box<dyn Grasped + 'a>, f64)| {
-            // Even a cancelled trial copies its world first.
+            // Checked here, since even a cancelled trial copies its world first.
             match self.stop.load(Ordering::Relaxed) {
                 true => Outcome::Diverged,
                 false => grasped.trial(offset + shift).outcome,
@@ -60,22 +60,25 @@ impl<'a> Repeats<'a> {
         self.runs.len()
     }
 
+    /// Returns whether a run inserts with its start shifted by a number of grid steps.
     pub(super) fn inserts(&self, run: usize, step: OffsetStep) -> bool {
         let (grasped, shift) = &self.runs[run];
         grasped.trial(tolerance::offset(step) + shift).outcome == Outcome::Inserted
     }
 
+    /// Returns the number of runs that insert with the start shifted by a number of grid steps.
     fn inserted(&self, step: OffsetStep) -> usize {
         let outcomes = self.outcomes(tolerance::offset(step));
         outcomes.iter().filter(|&&outcome| outcome == Outcome::Inserted).count()
     }
 
-    /// Returns the band near one end in which the outcome depends on the changes; `sign` is its direction, -1 or 1.
+    /// Returns the band at one end of a window in which the outcome depends on the changes; `sign` is the direction of
+    /// the end, -1 or 1.
     fn band(&self, window: &Window, sign: OffsetStep) -> Band {
         let end = if sign < 0 { -window.negative_steps } else { window.positive_steps };
         let inserted = |step: OffsetStep| self.inserted(sign * step);
         let inward = (0..=REACH.min(end)).map(|away| end - away);
-        // Beyond a gap some may insert again.
+        // From outside, since some runs may insert again beyond a gap.
         let outward = (1..=REACH).rev().map(|away| end + away);
         let mut still = outward.skip_while(|&step| inserted(step) == 0);
         let last = still.next().unwrap_or(end);
@@ -85,13 +88,12 @@ impl<'a> Repeats<'a> {
         }
     }
 
-    /// Returns both bands of a window, and the offsets tried between them.
+    /// Returns both bands of a window, and the results of the offsets tried between them.
     pub fn bands(&self, window: &Window) -> Bands {
         let [negative, positive] = [-1, 1].map(|sign| self.band(window, sign));
-        let inside = negative.surely_inserts.zip(positive.surely_inserts);
-        let tried: Vec<OffsetStep> = inside
-            .map(|(below, above)| (-below..=above).step_by(INSIDE_STRIDE as usize).collect())
-            .unwrap_or_default();
+        let inside = negative.surely_inserts.zip(positive.surely_inserts).into_iter();
+        let tried = inside.flat_map(|(from, to)| (-from..=to).step_by(INSIDE_STRIDE as usize));
+        let tried: Vec<OffsetStep> = tried.collect();
         let uncertain = |step: &&OffsetStep| self.inserted(**step) < self.runs.len();
         Bands {
             negative,
@@ -102,7 +104,7 @@ impl<'a> Repeats<'a> {
     }
 }
 
-/// Offsets near one end whose outcome depends on small changes; grid steps outward.
+/// Band of offsets at one end of a window whose outcome depends on small changes, in grid steps outward.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
     /// The outermost offset at which all repeats insert.
@@ -112,7 +114,7 @@ pub struct Band {
 }
 
 impl Band {
-    /// Returns the width minus the 0.1 mm of the grid, mm; `None` if above 2 mm on one side.
+    /// Returns the width less one grid step of 0.1 mm, mm; `None` if the band extends beyond 2 mm on one side.
     pub fn width_mm(&self) -> Option<f64> {
         Some(grid_mm(self.surely_fails? - self.surely_inserts? - 1))
     }
@@ -125,7 +127,7 @@ pub struct Bands {
     pub negative: Band,
     /// Band at the positive end.
     pub positive: Band,
-    /// Offsets tried between the two, every 0.5 mm.
+    /// Number of offsets tried between the bands, every 0.5 mm.
     pub tried_inside: usize,
     /// Offsets among them at which not all repeats insert, mm.
     pub uncertain_inside: Vec<f64>,
@@ -140,7 +142,7 @@ mod tests {
 
     /// The lower end, -3.33 mm, moves by a tenth with friction; the upper one with the start alone.
     #[test]
-    fn the_bands_are_as_wide_as_the_closed_form_says() {
+    fn the_bands_are_as_wide_as_in_the_closed_form() {
         let rig = FakeRig::default();
         let repeats = Repeats::new([&rig, &rig], Grasp::of(&finger(3.0, 20.0)), 7, 200);
         let window = tolerance::evaluate(&rig, &finger(3.0, 20.0), Search::Walk).window;

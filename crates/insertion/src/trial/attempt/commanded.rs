@@ -1,4 +1,4 @@
-//! Trial along the commanded path of a log; and the friction probe.
+//! Trial along the commanded trajectory of a log, and the friction probe.
 
 use super::{Attempt, Stop};
 use crate::task::Stage;
@@ -7,22 +7,22 @@ use crate::trial::record::Trace;
 use input::units::MM;
 use nalgebra::Vector3;
 
-/// Commanded path of the TCP, task frame: targets at increasing times.
+/// Commanded trajectory of the TCP, task frame: targets at increasing times.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Path {
+pub struct Trajectory {
     times: Vec<f64>,
-    places: Vec<Tcp>,
+    targets: Vec<Tcp>,
 }
 
 /// Shortest continuous descent that counts as the push, m: longer than any in a search.
 const MIN_PUSH: f64 = 3.0 * MM;
 
-impl Path {
-    /// Creates a path from times, s, and targets; `None` unless there are at least two and the times increase.
-    pub fn new(moments: impl IntoIterator<Item = (f64, Tcp)>) -> Option<Self> {
-        let (times, places): (Vec<f64>, Vec<Tcp>) = moments.into_iter().unzip();
-        let rise = times.windows(2).all(|pair| pair[0] < pair[1]);
-        (times.len() > 1 && rise).then_some(Path { times, places })
+impl Trajectory {
+    /// Creates a trajectory from times, s, and targets; `None` unless there are at least two and the times increase.
+    pub fn new(points: impl IntoIterator<Item = (f64, Tcp)>) -> Option<Self> {
+        let (times, targets): (Vec<f64>, Vec<Tcp>) = points.into_iter().unzip();
+        let increase = times.windows(2).all(|pair| pair[0] < pair[1]);
+        (times.len() > 1 && increase).then_some(Trajectory { times, targets })
     }
 
     /// Returns the duration, s.
@@ -35,9 +35,9 @@ impl Path {
         let time = self.times[0] + time;
         let after = self.times.partition_point(|&t| t <= time);
         if after == 0 || after == self.times.len() {
-            return self.places[after.saturating_sub(1)];
+            return self.targets[after.saturating_sub(1)];
         }
-        let [from, to] = [&self.places[after - 1], &self.places[after]];
+        let [from, to] = [&self.targets[after - 1], &self.targets[after]];
         let share = (time - self.times[after - 1]) / (self.times[after] - self.times[after - 1]);
         Tcp {
             position: from.position + share * (to.position - from.position),
@@ -45,12 +45,13 @@ impl Path {
         }
     }
 
-    /// Returns the time from the start to the push, s: the last descent, if it is long enough; otherwise the end.
-    pub fn push(&self) -> f64 {
-        let heights: Vec<f64> = self.places.iter().map(|place| place.position.z).collect();
+    /// Returns the time at which the push begins, s from the start: that of the last descent if it is long enough,
+    /// else the end.
+    pub fn push_start(&self) -> f64 {
+        let heights: Vec<f64> = self.targets.iter().map(|target| target.position.z).collect();
         let last = heights.len() - 1;
         let rises = |i: &usize| heights[*i] <= heights[*i + 1];
-        // The command may rest at the end.
+        // The command may be at rest at the end.
         let end = (0..last).rev().find(|i| !rises(i)).map_or(0, |i| i + 1);
         let begin = (0..end).rev().find(rises).map_or(0, |i| i + 1);
         let far = heights[begin] - heights[end] > MIN_PUSH;
@@ -58,23 +59,23 @@ impl Path {
     }
 }
 
-/// Friction probe: the upright part pressed on a flat face and slid along y, forth and back.
+/// Friction probe: the upright part is pressed on a flat face and slid back and forth along y.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Probe {
-    /// Force with which it is pressed, N.
+    /// Force with which the part is pressed, N.
     pub force: f64,
     /// Length of a slide, m.
     pub stroke: f64,
     /// Speed of a slide, m/s.
     pub speed: f64,
-    /// Slides: one forth, one back, and so on.
+    /// Number of slides, in alternating directions.
     pub slides: u32,
 }
 
 impl Probe {
-    /// 8 mm forth and back, twice, at 5 mm/s and 5 N. With 10 N a key of 8 mm topples over its edge from a friction
-    /// of 0.3 on, and 5 mm end before it slides both ways.
-    pub const USUAL: Probe = Probe { force: 5.0, stroke: 8.0 * MM, speed: 5.0 * MM, slides: 4 };
+    /// Default probe: two strokes of 8 mm in each direction at 5 mm/s and 5 N. Under 10 N, a plug 8 mm wide tips over
+    /// its edge at coefficients of friction from 0.3; strokes of 5 mm are too short for it to slide in both directions.
+    pub const DEFAULT: Probe = Probe { force: 5.0, stroke: 8.0 * MM, speed: 5.0 * MM, slides: 4 };
 }
 
 /// Height above the face from which the probe descends, m.
@@ -86,31 +87,31 @@ const REST_IN_AIR: f64 = 0.2;
 /// Admittance of the command, m/s per N: a stiff robot reaches the force within 0.1 s, and the control does not
 /// oscillate.
 const ADMITTANCE: f64 = 2e-4;
-/// Speed at which it is lifted off, m/s.
+/// Speed at which the part is lifted off, m/s.
 const LIFT_SPEED: f64 = 0.02;
 
 impl Attempt<'_> {
-    /// Carries the grasped part to the start of the path and follows the path; samples begin there.
-    pub fn follow(&mut self, path: &Path, every_s: f64) -> Result<(), Stop> {
-        self.carry(path.at(0.0))?;
+    /// Carries the grasped part to the start of the trajectory, follows the trajectory and records samples of it.
+    pub fn follow(&mut self, trajectory: &Trajectory, every_s: f64) -> Result<(), Stop> {
+        self.carry(trajectory.at(0.0))?;
         self.trace = Some(Trace::new(every_s));
         self.stage = Stage::Search;
-        let push = path.push();
-        // The first sample is at the end of the first step, and has the first target of the path.
-        for i in 0..=self.steps(path.duration()) {
+        let push = trajectory.push_start();
+        // The first sample is at the end of the first step, and has the first target.
+        for i in 0..=self.steps(trajectory.duration()) {
             let time = i as f64 * self.world.step_s();
             if time > push && self.stage == Stage::Search {
                 self.end_phase("search");
-                self.enter(Stage::Assembly);
+                self.enter_stage(Stage::Assembly);
             }
-            self.target = path.at(time);
+            self.target = trajectory.at(time);
             self.step()?;
         }
         self.end_phase("push");
         Ok(())
     }
 
-    /// Probes the face that replaces the socket with the grasped part.
+    /// Slides the grasped part over the flat face that replaces the socket.
     pub fn probe(&mut self, probe: &Probe, every_s: f64) -> Result<(), Stop> {
         let z = self.task.grip.tcp_z + PROBE_HEIGHT;
         self.carry(Tcp { position: Vector3::new(0.0, -0.5 * probe.stroke, z), tilt: 0.0 })?;
@@ -122,24 +123,24 @@ impl Attempt<'_> {
             if self.monitor.force.z >= probe.force {
                 break;
             }
-            self.press(down)?;
+            self.step_at(down)?;
         }
         let slide = self.steps(probe.stroke / probe.speed);
         for i in 0..probe.slides {
             let along = if i.is_multiple_of(2) { probe.speed } else { -probe.speed };
             for _ in 0..slide {
                 let lower = ADMITTANCE * (self.monitor.force.z - probe.force);
-                self.press(Vector3::new(0.0, along, lower))?;
+                self.step_at(Vector3::new(0.0, along, lower))?;
             }
         }
         let up = self.target.moved(Vector3::new(0.0, 0.0, 2.0 * PROBE_HEIGHT));
-        self.make(Move::new(self.target, up, LIFT_SPEED), REST_IN_AIR)?;
+        self.run_move(Move::new(self.target, up, LIFT_SPEED), REST_IN_AIR)?;
         self.end_phase("probe");
         Ok(())
     }
 
     /// Moves the command at this velocity, m/s, for a step.
-    fn press(&mut self, velocity: Vector3<f64>) -> Result<(), Stop> {
+    pub(super) fn step_at(&mut self, velocity: Vector3<f64>) -> Result<(), Stop> {
         self.target = self.target.moved(velocity * self.world.step_s());
         self.step()
     }

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 /// Duration of a command, s.
 pub const CONTROL_S: f64 = 1e-3;
 
-/// Trial of a held part at the start of the search, moved by commands.
+/// Trial from the start of the search on, moved by commands of the caller.
 pub struct Driven {
     /// State right before the search; each start is a copy.
     ready: Attempt<'static>,
@@ -36,11 +36,11 @@ pub struct State {
     pub tip_mm: [f64; 3],
     /// Angle between the plug's axis and that of the opening, degrees.
     pub tilt_deg: f64,
-    /// Slip of the part in the grasp since the grasp, mm.
+    /// Slip of the part along the pads since the grasp, mm.
     pub slip_mm: f64,
     /// Distance of the tip from the depth at which it counts as inserted, mm.
     pub distance_mm: f64,
-    /// Outcome, once it has ended.
+    /// Outcome, once the trial has ended.
     pub outcome: Option<Outcome>,
 }
 
@@ -63,24 +63,23 @@ impl Driven {
         self.state()
     }
 
-    /// Commands a velocity of the TCP, m/s, for `CONTROL_S`. Nothing moves once it has ended.
+    /// Commands a velocity of the TCP, m/s, for `CONTROL_S`. Nothing moves once the trial has ended.
     pub fn step(&mut self, velocity: Vector3<f64>) -> State {
         let dt = self.attempt.world.step_s();
         for _ in 0..self.attempt.steps(CONTROL_S) {
             if self.outcome().is_none() {
-                self.attempt.target = self.attempt.target.moved(velocity * dt);
-                self.end = self.attempt.step();
+                self.end = self.attempt.step_at(velocity);
                 self.update_stage(dt);
             }
         }
         self.state()
     }
 
-    /// Detects the start of the push and the part at rest, which a strategy defines by its phases.
+    /// Detects the start of the push and the part seated at rest, which the phases of a strategy define otherwise.
     fn update_stage(&mut self, dt: f64) {
         let attempt = &mut self.attempt;
         if attempt.monitor.entered && attempt.stage == Stage::Search {
-            attempt.enter(Stage::Assembly);
+            attempt.enter_stage(Stage::Assembly);
         }
         let seated = attempt.placement().seated(&attempt.task) && attempt.monitor.gripped();
         self.seated_s = if seated { self.seated_s + dt } else { 0.0 };
@@ -101,7 +100,7 @@ impl Driven {
         let flange = attempt.world.pose(attempt.cell.flange);
         let placement = attempt.placement();
         let seat = placement.tip + Vector3::z() * attempt.task.success.depth;
-        // Depth beyond the seat does not count as distance.
+        // Additional depth does not count as distance.
         let away = Vector3::new(seat.x, seat.y, seat.z.max(0.0));
         State {
             time_s: attempt.time - self.ready.time,
@@ -129,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn a_start_repeats_bit_for_bit_and_what_is_not_moved_rests() {
+    fn a_start_repeats_bit_for_bit_and_without_a_command_the_part_rests() {
         let mut driven = driven();
         let start = driven.start(1e-3);
         let run = |driven: &mut Driven| {
@@ -144,12 +143,12 @@ mod tests {
         let rest = (0..100).map(|_| driven.step(Vector3::zeros())).last().unwrap();
         assert_eq!((rest.force_n, rest.outcome), ([0.0; 3], None));
         let moved = [0, 1, 2].map(|axis| (rest.tip_mm[axis] - start.tip_mm[axis]).abs());
-        // The flange, soft, still comes to rest.
+        // The compliant flange is still settling.
         assert!(moved.iter().all(|&mm| mm < 0.1), "{moved:?}");
     }
 
     #[test]
-    fn the_robot_does_not_see_the_shift_and_what_it_crushes_is_a_failure() {
+    fn the_robot_does_not_measure_the_shift_and_a_crushed_plug_is_a_failure() {
         let mut driven = driven();
         let [here, there] = [0.0, 2e-3].map(|offset| driven.start(offset));
         assert_eq!((here.tcp_mm, here.turn_deg), (there.tcp_mm, there.turn_deg));
@@ -160,6 +159,6 @@ mod tests {
         let end = end.unwrap();
         let failed = end.outcome.unwrap().failure();
         assert!(failed.is_some_and(|class| class >= FailureClass::PlugMissed.number()), "{end:?}");
-        assert_eq!(driven.step(down), end, "nothing moves once it has ended");
+        assert_eq!(driven.step(down), end, "nothing moves once the trial has ended");
     }
 }

@@ -30,7 +30,7 @@ pub fn pad_z(shoulder: f64) -> [f64; 2] {
     [shoulder + ROOF_GAP - Pad::PUBLISHED.height, shoulder + ROOF_GAP]
 }
 
-/// Returns the contacts of pads whose roofs rest at `shoulder`, m, with the faces at `faces_y`, m, or else the outermost.
+/// Returns the contacts of pads whose roofs rest at `shoulder`, m, with the faces at `faces_y`, m, or the outermost.
 pub fn pad_contacts(plug: &ConvexBody, shoulder: f64, faces_y: Option<[f64; 2]>) -> PadContacts {
     let pad_z = pad_z(shoulder);
     let mut pieces: Vec<Vec<Point3<f64>>> = vec![Vec::new(); plug.parts.len()];

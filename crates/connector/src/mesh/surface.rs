@@ -27,7 +27,7 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Welds triangles, given in a unit of `unit` metres, and closes small gaps; `None` if the result is not watertight,
+    /// Welds triangles given in a unit of `unit` metres and closes small gaps; `None` if the result is not watertight,
     /// has faces of inconsistent orientation or encloses no volume.
     pub fn new(triangles: &[Triangle], unit: f64) -> Option<Self> {
         let (points, mut faces) = weld(triangles, unit);

@@ -16,22 +16,22 @@ use parameters::numbers;
 use std::f64::consts::PI;
 use std::str::FromStr;
 
-/// Smallest thickness of the walls about the opening, m.
+/// Smallest thickness of the walls around the opening, m.
 const WALL: f64 = 5.0 * MM;
-/// Reach of the walls beyond the body that rests on them, m.
+/// Distance by which the walls extend beyond the body that rests on them, m.
 const BEYOND_BODY: f64 = 2.0 * MM;
-/// Air between a seated plug's tip and the floor, m.
+/// Gap between the tip of a seated plug and the floor, m.
 const BELOW_TIP: f64 = 0.5 * MM;
-/// Air between the pads and the socket when the plug is seated, m.
+/// Gap between the pads and the socket when the plug is seated, m.
 const BELOW_PADS: f64 = 1.0 * MM;
 /// Largest overlap of a key with its cylinder, m.
 const KEY_ROOT: f64 = 0.45 * MM;
-/// Area below which what a slot leaves of a wall is left out, m2.
+/// Area below which a piece of a wall that a slot cuts is dropped, m2.
 const SLIVER: f64 = 1e-10;
 /// Thickness of the floor, m.
 const FLOOR: f64 = 2.0 * MM;
-/// Share of its length to which a plug without a body is inserted.
-const SHARE: f64 = 0.6;
+/// Insertion depth of a plug without a body, as a share of its length.
+const INSERTED_SHARE: f64 = 0.6;
 /// Assumed density of a plug, kg/m3: plastic with some metal in it.
 pub const DENSITY: f64 = 1500.0;
 
@@ -50,8 +50,8 @@ impl FromStr for Size {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let right = "give WIDTHxHEIGHTxLENGTH in mm, as in 8.25x2.4x6.65";
-        let [width, height, length] = lengths(text, right)?;
+        let usage = "give WIDTHxHEIGHTxLENGTH in mm, as in 8.25x2.4x6.65";
+        let [width, height, length] = lengths(text, usage)?;
         Ok(Size { width, height, length })
     }
 }
@@ -60,7 +60,7 @@ impl Size {
     /// Parses the size of a cylinder, DIAMETERxLENGTH in mm.
     ///
     /// # Errors
-    /// If the text is something else, or a dimension beyond 0.5 to 200 mm.
+    /// If the text has another format, or a dimension is not within 0.5 .. 200 mm.
     pub fn round(text: &str) -> Result<Self, String> {
         let [width, length] = lengths(text, "give DIAMETERxLENGTH in mm, as in 8x12")?;
         Ok(Size { width, height: width, length })
@@ -70,20 +70,22 @@ impl Size {
 /// Parses the width and the height of a key, m, from WIDTHxHEIGHT in mm.
 ///
 /// # Errors
-/// As of [`Size::round`].
+/// As for [`Size::round`].
 pub fn key(text: &str) -> Result<[f64; 2], String> {
     lengths(text, "give WIDTHxHEIGHT in mm, as in 2x1")
 }
 
-/// Parses dimensions, m, that are separated by an x and in mm.
-fn lengths<const N: usize>(text: &str, right: &str) -> Result<[f64; N], String> {
-    let numbers: Result<Vec<f64>, _> =
-        text.split(['x', 'X', '×']).map(|number| number.trim().parse()).collect();
-    let Ok(numbers) = <[f64; N]>::try_from(numbers.unwrap_or_default()) else {
-        return Err(right.to_owned());
-    };
+/// Parses numbers separated by an x.
+pub(crate) fn separated_by_x<T: FromStr, const N: usize>(text: &str) -> Option<[T; N]> {
+    let numbers = text.split(['x', 'X', '×']).map(|number| number.trim().parse().ok());
+    numbers.collect::<Option<Vec<T>>>()?.try_into().ok()
+}
+
+/// Parses dimensions in mm, separated by an x, to m.
+fn lengths<const N: usize>(text: &str, usage: &str) -> Result<[f64; N], String> {
+    let numbers: [f64; N] = separated_by_x(text).ok_or(usage)?;
     match numbers.iter().find_map(|mm| numbers::problem("connector.size_mm", *mm)) {
-        Some(problem) => Err(format!("a dimension {problem} mm; {right}")),
+        Some(problem) => Err(format!("a dimension {problem} mm; {usage}")),
         None => Ok(numbers.map(|mm| mm * MM)),
     }
 }
@@ -91,15 +93,15 @@ fn lengths<const N: usize>(text: &str, right: &str) -> Result<[f64; N], String> 
 /// Dimensions of a plug and its socket.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dimensions {
-    /// Part of the plug that goes in.
+    /// Part of the plug that enters the socket.
     pub plug: Size,
-    /// Pins that it consists of.
+    /// Pins of this part, for a pin header.
     pub pins: Option<Pins>,
-    /// Whether that part is a cylinder, with width and height as its diameter.
+    /// Whether this part is a cylinder, with width and height as its diameter.
     pub round: bool,
-    /// Opening less plug, in x and in y, m.
+    /// Opening minus plug, in x and in y, m.
     pub clearance: f64,
-    /// Key of a round plug at +x: its width in y and how far it stands out, m.
+    /// Key of a round plug at +x: its width in y and its height beyond the cylinder, m.
     pub key: Option<[f64; 2]>,
     /// Chamfer at the opening of a plug that is not round, m.
     pub chamfer: Option<f64>,
@@ -113,16 +115,16 @@ pub enum DraftError {
     /// Clearance that is not less than the plug's smallest side; both in mm.
     #[error("--clearance: is {0} mm; it must be less than the smallest side of the plug, {1} mm")]
     TooLoose(f64, f64),
-    /// Pins so near to one another that nothing is left between their holes; both in mm.
+    /// Pitch that leaves no material between the holes, and the side of a hole; both in mm.
     #[error("--pitch-mm: is {0} mm; it must be more than a hole, {1:.2} mm")]
     NarrowPitch(f64, f64),
-    /// Body that does not reach over all pins: width and height of the body and of the pins, mm.
-    #[error("--body: is {0} x {1} mm; it must reach over all pins, {2:.2} x {3:.2} mm")]
+    /// Body that does not cover all pins: width and height of the body and of the pins, mm.
+    #[error("--body: is {0} x {1} mm; it must cover all pins, {2:.2} x {3:.2} mm")]
     NarrowBody(f64, f64, f64, f64),
     /// Key as wide as the plug or wider; both in mm.
     #[error("--key: is {0} mm wide; it must be narrower than the plug, {1} mm")]
     WideKey(f64, f64),
-    /// Plug or body too short for the pads: its option, its length and the least, mm.
+    /// Plug or body too short for the pads: its option, its length and the smallest accepted length, mm.
     #[error(
         "{0}: is {1} mm long; the pads are {height} mm high and must stay outside of the socket, so \
          at least {2:.1} mm are needed",
@@ -170,10 +172,10 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
     }
 }
 
-/// Creates the task of these dimensions; all else is taken from `like`.
+/// Creates a task with these dimensions; everything else is taken from `like`.
 ///
 /// # Errors
-/// If the plug is too short to be held, or no strategy can be derived.
+/// If a dimension does not fit the others or the pads, or no strategy can be derived.
 pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task, DraftError> {
     let (plug, body) = (size.plug, size.body);
     let thickness = size.pins.map_or(plug.width.min(plug.height), |pins| pins.side);
@@ -213,7 +215,7 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
             return Err(DraftError::WideKey(wide / MM, width));
         }
         let radius = plug.width / 2.0;
-        // It joins the cylinder without more overlap than parts may have.
+        // The key starts within the cylinder, and overlaps it by no more than parts may.
         let root = libm::sqrt(radius * radius - wide * wide / 4.0).max(radius - KEY_ROOT);
         let across = [-wide / 2.0, wide / 2.0];
         parts.push(block("key", [[root, radius + high], across, [0.0, plug.length]]));
@@ -224,13 +226,13 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     let held = body.unwrap_or(plug);
     task.grip.shoulder_z = top;
     task.grip.faces_y = [-held.width / 2.0, held.width / 2.0];
-    let floor = body.map_or(SHARE * plug.length, |_| plug.length + BELOW_TIP);
+    let floor = body.map_or(INSERTED_SHARE * plug.length, |_| plug.length + BELOW_TIP);
     // The pads stay outside of the socket.
     let pads = Pad::PUBLISHED.height + BELOW_PADS;
     let (option, least) = match body {
         Some(_) => ("--body", pads),
-        None if size.round => ("--round", pads / (1.0 - SHARE)),
-        None => ("--plug", pads / (1.0 - SHARE)),
+        None if size.round => ("--round", pads / (1.0 - INSERTED_SHARE)),
+        None => ("--plug", pads / (1.0 - INSERTED_SHARE)),
     };
     if held.length < least {
         return Err(DraftError::TooShort(option, held.length / MM, least / MM));
@@ -240,7 +242,7 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
         task = task.chamfered(leg);
     }
     if size.pins.is_some() {
-        // A pin of many may stand in the hole of another.
+        // A pin in the hole of its neighbour is not a success.
         let lateral = libm::hypot(size.clearance, size.clearance) / 2.0 + ASIDE;
         task.success.mated = Some(Mated { tip: [0.0, 0.0, -plug.length], lateral });
         return Ok(plan::mated(&task));
@@ -262,7 +264,7 @@ pub(crate) fn part(name: &str, solid: Solid) -> Part {
     Part { name: name.to_owned(), solid, friction: None }
 }
 
-/// Returns the opening, and a socket of a floor and walls about the opening.
+/// Returns the opening and the socket: a floor, and walls around the opening.
 fn housing(size: &Dimensions, floor: f64) -> ([[f64; 2]; 2], Vec<Part>) {
     let hole = size.round.then(|| Hole::new(size.plug.width, size.clearance));
     let mut opening = [size.plug.height, size.plug.width].map(|plug| {
@@ -299,30 +301,30 @@ fn housing(size: &Dimensions, floor: f64) -> ([[f64; 2]; 2], Vec<Part>) {
     (opening, parts)
 }
 
-/// Returns prisms about a hole with a slot from it to `reach` along x and to `half` on either side in y.
+/// Cuts a slot into the walls around a hole: from the hole to `reach` along +x, and to `half` on either side of y = 0.
 fn slotted(walls: &[Part], [reach, half]: [f64; 2]) -> Vec<Part> {
-    let pieces = |wall: &Part| -> Vec<Part> {
+    let cut = |wall: &Part| -> Vec<Part> {
         let Solid::Prism { axis, outline, span } = &wall.solid else { return vec![wall.clone()] };
         if outline.iter().all(|[x, _]| *x <= 0.0) {
             return vec![wall.clone()];
         }
-        let above = side(outline, [0.0, -1.0], -half);
-        let below = side(outline, [0.0, 1.0], -half);
-        let between = side(&side(outline, [0.0, 1.0], half), [0.0, -1.0], half);
-        let beyond = side(&between, [-1.0, 0.0], -reach);
-        let left = [above, below, beyond].into_iter().filter(|piece| area(piece) > SLIVER);
+        let above = clip(outline, [0.0, -1.0], -half);
+        let below = clip(outline, [0.0, 1.0], -half);
+        let between = clip(&clip(outline, [0.0, 1.0], half), [0.0, -1.0], half);
+        let beyond = clip(&between, [-1.0, 0.0], -reach);
+        let pieces = [above, below, beyond].into_iter().filter(|piece| area(piece) > SLIVER);
         let piece = |(number, outline): (usize, Vec<[f64; 2]>)| {
             let solid = Solid::Prism { axis: *axis, outline, span: *span };
             let name = &wall.name;
             if number == 1 { part(name, solid) } else { part(&format!("{name} {number}"), solid) }
         };
-        (1..).zip(left).map(piece).collect()
+        (1..).zip(pieces).map(piece).collect()
     };
-    walls.iter().flat_map(pieces).collect()
+    walls.iter().flat_map(cut).collect()
 }
 
-/// Returns the part of a convex outline in the half plane `normal . p <= distance` (Sutherland and Hodgman).
-fn side(outline: &[[f64; 2]], normal: [f64; 2], distance: f64) -> Vec<[f64; 2]> {
+/// Clips a convex outline to the half plane `normal . p <= distance` (Sutherland and Hodgman).
+fn clip(outline: &[[f64; 2]], normal: [f64; 2], distance: f64) -> Vec<[f64; 2]> {
     let over = |p: [f64; 2]| normal[0] * p[0] + normal[1] * p[1] - distance;
     let next = outline.iter().cycle().skip(1);
     let edges = outline.iter().zip(next).map(|(&from, &to)| (from, to));
@@ -342,30 +344,33 @@ fn area(outline: &[[f64; 2]]) -> f64 {
     twice.abs() / 2.0
 }
 
-/// Largest error of the hole's diameter, as a share of the clearance, as far as the flats allow.
-const OFF: f64 = 0.05;
-/// Fewest and most flats, multiples of four, so that one faces each of -x, +x, -y and +y.
+/// Largest error of the diameter of a hole, as a share of the clearance, unless it needs more than the most flats.
+const DIAMETER_ERROR: f64 = 0.05;
+/// Smallest and largest number of flats, multiples of four, so that one faces each of -x, +x, -y and +y.
 const FLATS: [u32; 2] = [16, 96];
 
+/// Round hole, approximated by flats.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hole {
+    /// Number of flats.
     pub flats: u32,
     /// Distance of each flat from the axis, m.
     pub flat: f64,
     /// Largest distance of the wall from the circle, m.
-    pub off: f64,
+    pub deviation: f64,
 }
 
 impl Hole {
     /// Creates the hole for a plug of a diameter with a clearance, m.
     pub fn new(diameter: f64, clearance: f64) -> Self {
         let radius = (diameter + clearance) / 2.0;
-        // With the flat at r - off and its corners at (r - off) / cos(pi / n) = r + off.
-        let off = |flats: u32| radius * libm::tan(PI / 2.0 / f64::from(flats)).powi(2);
+        // For a deviation d, the flats are at r - d and their corners at (r - d) / cos(pi / n) = r + d.
+        let deviation = |flats: u32| radius * libm::tan(PI / 2.0 / f64::from(flats)).powi(2);
         let [fewest, most] = FLATS;
-        let enough = |flats: &u32| 2.0 * off(*flats) <= OFF * clearance;
+        let enough = |flats: &u32| 2.0 * deviation(*flats) <= DIAMETER_ERROR * clearance;
         let flats = (fewest..most).step_by(4).find(enough).unwrap_or(most);
-        Hole { flats, flat: radius - off(flats), off: off(flats) }
+        let deviation = deviation(flats);
+        Hole { flats, flat: radius - deviation, deviation }
     }
 
     /// Returns prisms that fill a rectangle of half sides `outer` in x and y, m, around the hole.
@@ -390,7 +395,6 @@ impl Hole {
 mod tests {
     use super::*;
 
-    /// The ring of flats has the volume that the circle leaves, and keeps the clearance.
     #[test]
     fn a_clearance_is_less_than_the_plug_is_thick_and_sizes_are_within_bounds() {
         let plug: Size = "8x2.4x25".parse().unwrap();
@@ -444,6 +448,7 @@ mod tests {
         assert!(draft("keyed", &size([8.0 * MM, high]), None).is_err());
     }
 
+    /// The ring of flats has the volume outside of the circle, and keeps the clearance.
     #[test]
     fn a_hole_is_its_circle_within_the_error_that_it_states() {
         for (diameter_mm, clearance_mm) in [(3.0, 0.1), (8.0, 0.1), (20.0, 0.2), (100.0, 0.02)] {
@@ -451,9 +456,9 @@ mod tests {
             let hole = Hole::new(diameter, clearance);
             let radius = (diameter + clearance) / 2.0;
             let corner = hole.flat / libm::cos(PI / f64::from(hole.flats));
-            assert!((radius - hole.flat - hole.off).abs() < 1e-12);
-            assert!((corner - radius - hole.off).abs() < 1e-12);
-            assert!(hole.flats == FLATS[1] || 2.0 * hole.off <= OFF * clearance);
+            assert!((radius - hole.flat - hole.deviation).abs() < 1e-12);
+            assert!((corner - radius - hole.deviation).abs() < 1e-12);
+            assert!(hole.flats == FLATS[1] || 2.0 * hole.deviation <= DIAMETER_ERROR * clearance);
             let half = diameter;
             let walls = hole.walls([half; 2], [-5.0 * MM, 0.0]);
             let volume: f64 = walls.iter().map(|part| geometry::volume(&part.solid)).sum();

@@ -1,4 +1,4 @@
-//! Grasp of a plug between two fingertips: pressed faces, covered height, shoulder under the roofs.
+//! Contacts of two fingertips with a grasped plug: faces, covered height, shoulder under the roofs.
 
 use super::body::{ConvexBody, clipped, extent, span, width};
 use input::units::MM;
@@ -12,14 +12,14 @@ pub const SEAM: f64 = 0.05 * MM;
 /// Extent of a pad in x, m.
 pub const PAD_X: [f64; 2] = [-Pad::PUBLISHED.width / 2.0, Pad::PUBLISHED.width / 2.0];
 
-/// Grasp of a plug by pads whose roofs rest at a given height; plug frame, m.
+/// Contacts of pads with a plug, whose roofs rest at a given height; plug frame, m.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Held {
+pub struct PadContacts {
     /// Lower and upper edge of the pads.
     pub pad_z: [f64; 2],
     /// Outermost y of the plug between the pads, at -y and at +y, each with the index of its part.
     pub faces: Option<[(f64, usize); 2]>,
-    /// Height over which each pad meets its face.
+    /// Height over which each pad touches its face.
     pub cover: [f64; 2],
     /// Highest z of the plug under or within each roof; `None` if nothing is there.
     pub under_roof: [Option<f64>; 2],
@@ -30,8 +30,8 @@ pub fn pad_z(shoulder: f64) -> [f64; 2] {
     [shoulder + ROOF_GAP - Pad::PUBLISHED.height, shoulder + ROOF_GAP]
 }
 
-/// Returns the grasp by pads whose roofs rest at `shoulder`, m, at the widest faces or at those given by `faces_y`, m.
-pub fn held(plug: &ConvexBody, shoulder: f64, faces_y: Option<[f64; 2]>) -> Held {
+/// Returns the contacts of pads whose roofs rest at `shoulder`, m, with the faces at `faces_y`, m, or the outermost.
+pub fn pad_contacts(plug: &ConvexBody, shoulder: f64, faces_y: Option<[f64; 2]>) -> PadContacts {
     let pad_z = pad_z(shoulder);
     let mut pieces: Vec<Vec<Point3<f64>>> = vec![Vec::new(); plug.parts.len()];
     for (i, part) in plug.stiff() {
@@ -41,16 +41,16 @@ pub fn held(plug: &ConvexBody, shoulder: f64, faces_y: Option<[f64; 2]>) -> Held
             pieces[i] = clipped(&within, 0, PAD_X);
         }
     }
-    let faces = widest(&pieces);
+    let faces = outermost(&pieces);
     let at = faces_y.or(faces.map(|faces| faces.map(|(y, _)| y)));
     let cover = [0, 1].map(|side| at.map_or(0.0, |faces| cover(&pieces, faces[side], side)));
     let under_roof =
         [0, 1].map(|side| at.and_then(|faces| under_roof(plug, shoulder, faces[side], side)));
-    Held { pad_z, faces, cover, under_roof }
+    PadContacts { pad_z, faces, cover, under_roof }
 }
 
-/// Returns the outermost y of the pieces at -y and at +y, each with its index.
-fn widest(pieces: &[Vec<Point3<f64>>]) -> Option<[(f64, usize); 2]> {
+/// Returns the outermost y of the pieces at -y and at +y, each with the index of its piece.
+fn outermost(pieces: &[Vec<Point3<f64>>]) -> Option<[(f64, usize); 2]> {
     let reach = |sign: f64| {
         let each = pieces.iter().enumerate().filter(|(_, piece)| !piece.is_empty());
         let far = each.map(|(i, piece)| {
@@ -71,7 +71,7 @@ fn cover(pieces: &[Vec<Point3<f64>>], face: f64, side: usize) -> f64 {
     width(span(reaching.flatten())).max(0.0)
 }
 
-/// Returns the height of the highest point of the plug under or in a roof, above the middle of the pads.
+/// Returns the z of the highest point of the plug under or within a roof, m, if it is above the middle of the pads.
 fn under_roof(plug: &ConvexBody, shoulder: f64, face: f64, side: usize) -> Option<f64> {
     // Narrowed by the tolerance, so that a part beside the roof does not count.
     let column = match side {
@@ -89,18 +89,18 @@ fn under_roof(plug: &ConvexBody, shoulder: f64, face: f64, side: usize) -> Optio
 
 /// Finds the default grasp of a plug, shoulder and faces in m: the highest shoulder on which both roofs can rest, and
 /// faces that the pads touch over at least `least_cover`, m. Flat faces are preferred to round ones such as cables.
-pub fn find(plug: &ConvexBody, least_cover: f64) -> Option<(f64, [f64; 2])> {
+pub fn default_grasp(plug: &ConvexBody, least_cover: f64) -> Option<(f64, [f64; 2])> {
     let mut tops: Vec<f64> =
         plug.stiff().map(|(_, part)| extent(part.solid.corners(), 2)[1]).collect();
     tops.sort_by(|a, b| b.total_cmp(a));
     let grasp = |shoulder: f64, flat: bool| {
-        let held = held(plug, shoulder, None);
+        let contacts = pad_contacts(plug, shoulder, None);
         let rests = |top: &Option<f64>| top.is_some_and(|z| (z - shoulder).abs() < SEAM);
-        let found = held.faces?;
-        let right = held.under_roof.iter().all(rests)
-            && held.cover.iter().all(|&cover| cover >= least_cover)
-            && (!flat || found.iter().all(|&(y, part)| is_flat(&plug.parts[part], y)));
-        right.then_some((shoulder, found.map(|(y, _)| y)))
+        let faces = contacts.faces?;
+        let valid = contacts.under_roof.iter().all(rests)
+            && contacts.cover.iter().all(|&cover| cover >= least_cover)
+            && (!flat || faces.iter().all(|&(y, part)| is_flat(&plug.parts[part], y)));
+        valid.then_some((shoulder, faces.map(|(y, _)| y)))
     };
     [true, false].into_iter().find_map(|flat| tops.iter().find_map(|&top| grasp(top, flat)))
 }
@@ -122,7 +122,7 @@ mod tests {
         for file in TASKS {
             let task = Task::parse(file.text, file.file).unwrap();
             let plug = ConvexBody::plug(&task.plug);
-            let (shoulder, faces) = find(&plug, 2.0 * MM).unwrap();
+            let (shoulder, faces) = default_grasp(&plug, 2.0 * MM).unwrap();
             assert!((shoulder - task.grip.shoulder_z).abs() < 1e-9, "{}", file.name);
             for (found, stated) in faces.iter().zip(task.grip.faces_y) {
                 assert!((found - stated).abs() < 1e-9, "{}: {faces:?}", file.name);

@@ -19,13 +19,13 @@ pub fn explain(task: &Task, trial: &Trial) -> String {
             task.success.tilt / DEG
         ),
         Outcome::Diverged => {
-            "the simulation left the numbers, at half the step, too: look for parts \
-                              that lie in one another at the start, or for extreme masses"
+            "the simulation diverged, with half the time step as well: look for parts that overlap at the \
+             start, and for extreme masses"
                 .to_owned()
         }
         Outcome::Failed(FailureClass::ContactLossBeforeSearch) => format!(
-            "the fingers lost the plug before it came to the socket ({slip}): raise grip.force_n ({} N) \
-             or friction.finger_plug, and look at grip.faces_y_mm and plug.mass_g",
+            "the fingers lost the plug before it reached the socket ({slip}): raise grip.force_n ({} N) \
+             or friction.finger_plug, and check grip.faces_y_mm and plug.mass_g",
             task.grip.force
         ),
         Outcome::Failed(FailureClass::PlugMissed) => missed(task, trial),
@@ -33,8 +33,8 @@ pub fn explain(task: &Task, trial: &Trial) -> String {
         Outcome::Failed(FailureClass::ContactLossInInsertion) => {
             let phase = trial.phases.last().map_or("the search", |phase| &*phase.name);
             format!(
-                "the plug left the grasp during `{phase}` ({slip}): shorter moves or less preload_mm, \
-                 more grip.force_n, or hold it at a larger face"
+                "the plug left the grasp during `{phase}` ({slip}): try shorter moves, less preload_mm or \
+                 more grip.force_n, or grip a larger face"
             )
         }
     }
@@ -60,9 +60,9 @@ fn missed(task: &Task, trial: &Trial) -> String {
     let y = edge.y;
     if (low..=high).contains(&y) {
         return format!(
-            "the tip's lower edge was over the opening (y = {y:.1} mm at the end of `{name}`) but came \
-             only {below:.2} mm below the top: raise preload_mm of the touch, or let the moves along x \
-             reach both sides of the opening"
+            "the tip's lower edge was over the opening (y = {y:.1} mm at the end of `{name}`) but only \
+             {below:.2} mm below the top: raise preload_mm of the touch, or extend the moves along x to \
+             both sides of the opening"
         );
     }
     format!(
@@ -77,19 +77,19 @@ fn jammed(task: &Task, trial: &Trial) -> String {
     match (trial.depth_mm >= depth, trial.tilt_deg <= tilt) {
         (true, false) => format!(
             "{at}: deep enough, but more than success.tilt_deg = {tilt:.1} degrees; push further \
-             (move_mm of the last phase) or allow what the clearance allows"
+             (move_mm of the last phase) or raise success.tilt_deg to the tilt that the clearance allows"
         ),
         (true, true) => format!(
-            "{at}: deep and upright, but its tip is not in the opening: it went in beside it; look at \
+            "{at}: deep and upright, but its tip is beside the opening; check \
              socket.opening_x_mm and socket.opening_y_mm"
         ),
         (false, true) => format!(
-            "{at}: upright, but {depth:.1} mm are required; the push ends early or something stops it: \
-             look at move_mm of the last phase and at what lies in the way (--svg)"
+            "{at}: upright, but {depth:.1} mm are required; the push is too short or blocked: \
+             check move_mm of the last phase, and look for an obstacle (--svg)"
         ),
         (false, false) if trial.tilt_deg > tilt + 5.0 => format!(
-            "{at} of {depth:.1} mm: it tipped over and jammed; less overshoot in the moves along y, a \
-             smaller strategy.tilt_deg, or a softer finger may do, or more clearance"
+            "{at} of {depth:.1} mm: it tipped over and jammed; try less overshoot in the moves along y, a \
+             smaller strategy.tilt_deg, a softer finger, or more clearance"
         ),
         (false, false) => format!(
             "{at} of {depth:.1} mm: it jammed between the walls; try a smaller strategy.tilt_deg, less \

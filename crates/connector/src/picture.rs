@@ -21,10 +21,10 @@ const SEATED: Style = Style::line("#8a5a10", 1.0).dashed();
 const FINGERS: Style = Style::fill("#5b8c5a").opacity(0.5).outlined("#2d4f2c", 1.0);
 const PATH: &str = "#1c5fb0";
 const FONT: Font = Font::new(13.0);
-/// Margin about a view, as a share of its size.
+/// Margin around a view, as a share of its size.
 const MARGIN: f64 = 0.08;
-/// Socket shown beside the opening, m.
-const AROUND: f64 = 8.0 * MM;
+/// Width of the socket shown beside the opening, m.
+const SOCKET_MARGIN: f64 = 8.0 * MM;
 
 /// Views of the task: title, and the axes to the right and up.
 pub(crate) const VIEWS: [(&str, [usize; 2]); 3] = [
@@ -35,26 +35,28 @@ pub(crate) const VIEWS: [(&str, [usize; 2]); 3] = [
 
 /// Draws the task as an SVG.
 pub fn svg(task: &Task) -> String {
-    let mut drawing = Drawing::default();
-    drawing.white_background();
-    Picture::new(task).draw(&mut drawing, &task.description, 0.0);
-    drawing.svg(SIZE, "")
+    stacked(&[("", task)])
 }
 
-/// Draws the task before a change of its strategy and after it, one below the other.
-pub fn both(before: &Task, after: &Task) -> String {
+/// Draws the task before and after a change of its strategy, one below the other.
+pub fn before_and_after(before: &Task, after: &Task) -> String {
+    stacked(&[("before: ", before), ("after: ", after)])
+}
+
+/// Draws tasks one below the other, each with a prefix of its description.
+fn stacked(tasks: &[(&str, &Task)]) -> String {
     let mut drawing = Drawing::default();
     drawing.white_background();
-    for (top, when, task) in [(0.0, "before", before), (SIZE[1], "after", after)] {
-        let words = format!("{when}: {}", task.description);
-        Picture::new(task).draw(&mut drawing, &words, top);
+    for (row, (prefix, task)) in tasks.iter().enumerate() {
+        Picture::new(task).draw(&mut drawing, prefix, row as f64 * SIZE[1]);
     }
-    drawing.svg([SIZE[0], 2.0 * SIZE[1]], "")
+    drawing.svg([SIZE[0], tasks.len() as f64 * SIZE[1]], "")
 }
 
+/// Drawing of a task: its waypoints, its start, its deepest seat and the section of its tip.
 struct Picture<'a> {
     task: &'a Task,
-    way: Vec<Waypoint>,
+    waypoints: Vec<Waypoint>,
     start: Pose,
     seat: Seat,
     tip: [[f64; 2]; 2],
@@ -93,15 +95,15 @@ impl Frame {
 impl<'a> Picture<'a> {
     fn new(task: &'a Task) -> Self {
         let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
-        let way = seat::waypoints(task, &plug);
+        let waypoints = seat::waypoints(task, &plug);
         let seat = Seating::new(task, &plug, &socket).deepest();
         let tip = section(&plug, task.success.depth.min(seat.depth));
-        let start = seat::plug_pose(task, way[0].tcp);
-        Picture { task, way, start, seat, tip }
+        let start = seat::plug_pose(task, waypoints[0].tcp);
+        Picture { task, waypoints, start, seat, tip }
     }
 
-    fn draw(&self, drawing: &mut Drawing, description: &str, top: f64) {
-        let title = format!("{}: {description}", self.task.name);
+    fn draw(&self, drawing: &mut Drawing, prefix: &str, top: f64) {
+        let title = format!("{}: {prefix}{}", self.task.name, self.task.description);
         drawing.text(Point2::new(10.0, top + 20.0), &title, Font::new(16.0));
         for (column, (title, axes)) in VIEWS.into_iter().enumerate() {
             let corner = Point2::new(column as f64 * PANEL + 5.0, top + 50.0);
@@ -126,7 +128,7 @@ impl<'a> Picture<'a> {
         let plug = [self.start, self.seated()].map(|pose| corners(&self.task.plug.parts, pose));
         let [low, high] = span(plug.into_iter().flatten());
         match self.task.opening.get(axis) {
-            Some([a, b]) => [low.min(a - AROUND), high.max(b + AROUND)],
+            Some([a, b]) => [low.min(a - SOCKET_MARGIN), high.max(b + SOCKET_MARGIN)],
             None => [corners(&self.task.socket, Pose::identity())[0], high],
         }
     }
@@ -173,7 +175,7 @@ impl<'a> Picture<'a> {
     }
 
     fn path(&self, drawing: &mut Drawing, frame: &Frame) {
-        let points: Vec<_> = self.way.iter().map(|point| frame.at(&point.edge)).collect();
+        let points: Vec<_> = self.waypoints.iter().map(|point| frame.at(&point.edge)).collect();
         drawing.line(points.iter().copied(), Style::line(PATH, 1.5));
         // Waypoints that coincide in a view share a label.
         let near = |p: &Point2<f64>, q: &Point2<f64>| (p - q).norm() < 9.0;
@@ -193,15 +195,15 @@ impl<'a> Picture<'a> {
         let clearance = |axis: usize| width(task.opening[axis]) / MM - width(self.tip[axis]) / MM;
         let ([x, y], seat, success) =
             ([0, 1].map(clearance), self.seat.depth / MM, task.success.depth / MM);
-        let steps = self.way.iter().enumerate();
+        let steps = self.waypoints.iter().enumerate();
         let steps = steps.map(|(number, point)| format!("{number} {}", point.name));
         let steps = steps.collect::<Vec<_>>().join(", ");
         let lines = [
             format!(
-                "clearance (opening less plug): {x:.2} mm in x, {y:.2} mm in y; upright the plug goes \
+                "clearance (opening minus plug): {x:.2} mm in x, {y:.2} mm in y; upright the plug goes \
                  {seat:.2} mm deep (dashed), success at {success:.2} mm"
             ),
-            format!("blue, the tip's lower edge as commanded: {steps}"),
+            format!("blue: commanded path of the tip's lower edge: {steps}"),
             "orange: plug at the start; green: fingertips; grey: socket; red: opening".to_owned(),
         ];
         for (i, line) in lines.iter().enumerate() {

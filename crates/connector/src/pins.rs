@@ -1,17 +1,17 @@
-//! Pin header and its housing: square pins on a grid, and a plate with a hole for each.
+//! Pin header and its housing: square pins on a grid, and a plate with one hole per pin.
 
-use super::draft::{Size, block};
+use super::draft::{Size, block, separated_by_x};
 use input::units::MM;
 use insertion::task::Part;
 use parameters::numbers;
 
 /// Largest number of pins of a header.
-const MOST: u32 = 100;
+const MAX_PINS: u32 = 100;
 
-/// Pins of a header, m.
+/// Grid of the pins of a header; lengths in m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pins {
-    /// Number in y, between the jaws, and in x.
+    /// Number of pins in y (between the jaws) and in x.
     pub count: [u32; 2],
     /// Distance from pin to pin.
     pub pitch: f64,
@@ -25,19 +25,16 @@ impl Pins {
     /// Parses the number of pins in y and in x, NxM.
     ///
     /// # Errors
-    /// If the text is something else, a number is 0, or their product is above 100.
+    /// If the text has another format, a number is 0, or their product is above 100.
     pub fn count(text: &str) -> Result<[u32; 2], String> {
-        let right = format!("give ROWSxCOLUMNS, at most {MOST} pins, as in 2x5");
-        let numbers: Result<Vec<u32>, _> =
-            text.split(['x', 'X', '×']).map(|number| number.trim().parse()).collect();
-        let count = numbers.ok().and_then(|numbers| <[u32; 2]>::try_from(numbers).ok());
+        let usage = format!("give ROWSxCOLUMNS, at most {MAX_PINS} pins, as in 2x5");
         let usable = |&[rows, columns]: &[u32; 2]| {
-            rows > 0 && columns > 0 && rows.saturating_mul(columns) <= MOST
+            rows > 0 && columns > 0 && rows.saturating_mul(columns) <= MAX_PINS
         };
-        count.filter(usable).ok_or(right)
+        separated_by_x::<u32, 2>(text).filter(usable).ok_or(usage)
     }
 
-    /// Parses the side of a pin, its length or the pitch, mm.
+    /// Parses a dimension in mm: side or length of a pin, or the pitch.
     ///
     /// # Errors
     /// If the text is not a number from 0.1 to 50 mm.
@@ -46,40 +43,40 @@ impl Pins {
         numbers::problem("connector.pin_mm", mm).map_or(Ok(mm), |problem| Err(problem + " mm"))
     }
 
-    /// Returns the size of the block about all pins.
+    /// Returns the size of the bounding box of all pins.
     pub fn size(&self) -> Size {
         let [width, height] = self.count.map(|count| f64::from(count - 1) * self.pitch + self.side);
         Size { width, height, length: self.length }
     }
 
-    /// Returns the size of the body of the header: a pitch for each pin, and long enough for the pads.
+    /// Returns the size of the body of the header: one pitch per pin in x and y, and a length sufficient for the pads.
     pub fn body(&self) -> Size {
         let [width, height] = self.count.map(|count| f64::from(count) * self.pitch);
         Size { width, height, length: 20.0 * MM }
     }
 
     /// Returns the centres of the pins in y or in x.
-    fn middles(&self, axis: usize) -> impl Iterator<Item = f64> {
+    fn centres(&self, axis: usize) -> impl Iterator<Item = f64> {
         let (count, pitch) = (self.count[axis], self.pitch);
         (0..count).map(move |i| (f64::from(i) - f64::from(count - 1) / 2.0) * pitch)
     }
 
     /// Returns the pins from z = 0 upwards.
     pub fn parts(&self) -> Vec<Part> {
-        let about = |middle: f64| [middle - self.side / 2.0, middle + self.side / 2.0];
+        let around = |centre: f64| [centre - self.side / 2.0, centre + self.side / 2.0];
         let pin = |(i, [x, y]): (usize, [f64; 2])| {
-            block(&format!("pin {i}"), [about(x), about(y), [0.0, self.length]])
+            block(&format!("pin {i}"), [around(x), around(y), [0.0, self.length]])
         };
-        let places = self.middles(0).flat_map(|y| self.middles(1).map(move |x| [x, y]));
+        let places = self.centres(0).flat_map(|y| self.centres(1).map(move |x| [x, y]));
         (1..).zip(places).map(pin).collect()
     }
 
-    /// Returns a plate of an extent in x, y and z with a hole for each pin.
+    /// Returns the parts of a plate with these extents in x, y and z and one hole per pin.
     pub fn plate(&self, clearance: f64, [x, y]: [[f64; 2]; 2], z: [f64; 2]) -> Vec<Part> {
         let half = (self.side + clearance) / 2.0;
         let between = |axis: usize, [low, high]: [f64; 2]| -> Vec<[f64; 2]> {
-            let ends = self.middles(axis).map(|at| at - half).chain([high]);
-            let begins = [low].into_iter().chain(self.middles(axis).map(|at| at + half));
+            let ends = self.centres(axis).map(|at| at - half).chain([high]);
+            let begins = [low].into_iter().chain(self.centres(axis).map(|at| at + half));
             begins.zip(ends).map(|(begin, end)| [begin, end]).collect()
         };
         let bars = between(1, x).into_iter().map(|x| [x, y]);

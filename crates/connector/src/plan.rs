@@ -7,7 +7,7 @@
 //! is pressed, or the plug tips over: it has its own `Moves`.
 
 use super::body::{ConvexBody, extent, width};
-use super::hold::held;
+use super::hold::pad_contacts;
 use super::seat::{self, Seat, Seating, section};
 use input::shipped::TASKS;
 use input::units::{DEG, MM};
@@ -86,8 +86,8 @@ pub fn mated(task: &Task) -> Task {
 }
 
 fn planned(mut task: Task, plug: &ConvexBody, socket: &ConvexBody, seat: &Seat) -> Task {
-    let held = held(plug, task.grip.shoulder_z, Some(task.grip.faces_y));
-    let cover = held.cover[0].min(held.cover[1]);
+    let pads = pad_contacts(plug, task.grip.shoulder_z, Some(task.grip.faces_y));
+    let cover = pads.cover[0].min(pads.cover[1]);
     task.grip.tcp_z = round_mm(task.grip.shoulder_z - BELOW_SHOULDER.min(0.8 * cover));
     task.grip.slip_limit = round_mm((Pad::PUBLISHED.height / 2.0).min(0.9 * cover));
     let play = match task.success.mated {

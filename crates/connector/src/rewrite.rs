@@ -1,21 +1,21 @@
-//! A task file with another strategy: its comments kept, old values beside the new ones.
+//! Replacement of the strategy in the text of a task file: comments are kept, old values are noted beside the new ones.
 
 use super::write;
 use insertion::task::{Strategy, Task};
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TomlError, Value};
 
-/// Byte order mark, with which editors on Windows begin a file.
-const MARK: char = '\u{feff}';
+/// Mark with which editors on Windows begin a file.
+const BYTE_ORDER_MARK: char = '\u{feff}';
 
-/// Returns the text of a task file with another strategy; line ends and byte order mark stay.
+/// Returns the text of a task file with another strategy; line endings and byte order mark are kept.
 ///
 /// # Errors
 /// If the text is not TOML.
-pub fn strategy(text: &str, task: &Task, after: &Strategy) -> Result<String, TomlError> {
+pub fn with_strategy(text: &str, task: &Task, after: &Strategy) -> Result<String, TomlError> {
     let mut file: DocumentMut = text.parse()?;
     let changed = Task { strategy: after.clone(), ..task.clone() };
     let new: DocumentMut = write::strategy(&changed).parse()?;
-    // Inline tables are written out: a comment has no place in them.
+    // Inline tables are expanded, since they cannot contain comments.
     if let Ok(table) = std::mem::take(&mut file["strategy"]).into_table() {
         file["strategy"] = Item::Table(table);
     }
@@ -23,33 +23,33 @@ pub fn strategy(text: &str, task: &Task, after: &Strategy) -> Result<String, Tom
         if let Some(Ok(phases)) = old.remove("phase").map(Item::into_array_of_tables) {
             old.insert("phase", Item::ArrayOfTables(phases));
         }
-        change(old, new);
+        update(old, new);
         if let Some(Item::Value(rule)) = old.remove("start") {
             comment_above(old, "start_mm", &format!("# start was {}", bare(&rule)));
         }
         let phases = old.get_mut("phase").and_then(Item::as_array_of_tables_mut);
         if let (Some(from), Some(to)) = (phases, new["phase"].as_array_of_tables()) {
-            if alike(from, to) {
-                from.iter_mut().zip(to).for_each(|(old, new)| change(old, new));
+            if same_moves(from, to) {
+                from.iter_mut().zip(to).for_each(|(old, new)| update(old, new));
             } else {
                 replace(from, to);
             }
         }
     }
-    Ok(ended_as(text, file.to_string()))
+    Ok(with_line_endings_of(text, file.to_string()))
 }
 
-/// Returns a text with the byte order mark and the line ends of another, which TOML does not keep.
-fn ended_as(other: &str, text: String) -> String {
+/// Returns a text with the byte order mark and the line endings of another, which `toml_edit` does not keep.
+fn with_line_endings_of(other: &str, text: String) -> String {
     let [crlf, lines] = ["\r\n", "\n"].map(|end| other.matches(end).count());
     let text = text.replace("\r\n", "\n");
     let text = if 2 * crlf > lines { text.replace('\n', "\r\n") } else { text };
-    let marked = other.starts_with(MARK) && !text.starts_with(MARK);
-    if marked { format!("{MARK}{text}") } else { text }
+    let marked = other.starts_with(BYTE_ORDER_MARK) && !text.starts_with(BYTE_ORDER_MARK);
+    if marked { format!("{BYTE_ORDER_MARK}{text}") } else { text }
 }
 
-/// Returns whether two strategies consist of the same moves but for their numbers.
-fn alike(old: &ArrayOfTables, new: &ArrayOfTables) -> bool {
+/// Returns whether two strategies have the same moves apart from their numbers.
+fn same_moves(old: &ArrayOfTables, new: &ArrayOfTables) -> bool {
     let kinds = |phases: &ArrayOfTables| -> Vec<_> {
         let word = |phase: &Table, key| phase.get(key).and_then(Item::as_str).map(str::to_owned);
         phases.iter().map(|phase| ["name", "stage", "motion"].map(|key| word(phase, key))).collect()
@@ -57,8 +57,8 @@ fn alike(old: &ArrayOfTables, new: &ArrayOfTables) -> bool {
     kinds(old) == kinds(new)
 }
 
-/// Sets the numbers of a table that differ, with the old ones beside them.
-fn change(old: &mut Table, new: &Table) {
+/// Updates the values of a table that differ, and notes the old ones beside them.
+fn update(old: &mut Table, new: &Table) {
     for (key, to) in new {
         let Some(to) = to.as_value() else { continue };
         let from = old.get(key).and_then(Item::as_value).cloned();
@@ -107,19 +107,20 @@ fn comment_above(table: &mut Table, key: &str, comment: &str) {
     }
 }
 
-/// Returns whether two values are equal as a task reads them.
+/// Returns whether two values are equal for a task: numbers within the resolution of written lengths.
 fn same(a: &Value, b: &Value) -> bool {
     let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
     let list =
         |a: &Array, b: &Array| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b));
     match (number(a), number(b), a.as_array(), b.as_array()) {
-        // The resolution of written lengths, 0.1 um.
+        // 0.1 um.
         (Some(a), Some(b), ..) => (a - b).abs() < 1e-4,
         (.., Some(a), Some(b)) => list(a, b),
         _ => a.as_str().is_some() && a.as_str() == b.as_str(),
     }
 }
 
+/// Formats a value without its comment.
 fn bare(value: &Value) -> String {
     let mut bare = value.clone();
     bare.decor_mut().clear();
@@ -138,7 +139,7 @@ mod tests {
             let task = Task::parse(file.text, file.file).unwrap();
             for family in Family::all() {
                 let after = family.of(&task).unwrap();
-                let written = strategy(file.text, &task, &after).unwrap();
+                let written = with_strategy(file.text, &task, &after).unwrap();
                 let read = Task::parse(&written, "written").unwrap().strategy;
                 assert!((read.tilt - after.tilt).abs() < 1e-6);
                 for (read, after) in read.phases.iter().zip(&after.phases) {
@@ -150,14 +151,14 @@ mod tests {
                     assert!(written.contains(comment.trim()), "{}: {comment}", file.name);
                 }
             }
-            let unchanged = strategy(file.text, &task, &task.strategy).unwrap();
+            let unchanged = with_strategy(file.text, &task, &task.strategy).unwrap();
             assert_eq!(unchanged, file.text, "{}", file.name);
-            let windows = format!("{MARK}{}", file.text.replace('\n', "\r\n"));
-            assert_eq!(strategy(&windows, &task, &task.strategy).unwrap(), windows);
+            let windows = format!("{BYTE_ORDER_MARK}{}", file.text.replace('\n', "\r\n"));
+            assert_eq!(with_strategy(&windows, &task, &task.strategy).unwrap(), windows);
             let peg = Family::Peg.of(&task).unwrap();
-            let plain = strategy(file.text, &task, &peg).unwrap();
-            let written = strategy(&windows, &task, &peg).unwrap();
-            assert_eq!(written, format!("{MARK}{}", plain.replace('\n', "\r\n")));
+            let plain = with_strategy(file.text, &task, &peg).unwrap();
+            let written = with_strategy(&windows, &task, &peg).unwrap();
+            assert_eq!(written, format!("{BYTE_ORDER_MARK}{}", plain.replace('\n', "\r\n")));
             assert!(Task::parse(&written, "written").is_ok());
         }
     }
@@ -170,7 +171,7 @@ mod tests {
         let text = format!("strategy = {strategy}\n{fields}");
         let task = Task::parse(&text, "own").unwrap();
         let after = Family::Peg.of(&task).unwrap();
-        let written = super::strategy(&text, &task, &after).unwrap();
+        let written = with_strategy(&text, &task, &after).unwrap();
         let read = Task::parse(&written, "written").unwrap();
         assert!((read.strategy.tilt - after.tilt).abs() < 1e-6, "{written}");
         let off = read.strategy.phases.iter().zip(&after.phases).map(|(read, after)| {
@@ -186,7 +187,7 @@ mod tests {
         let text = text.replacen("tilt_deg = 5.0", "start = \"taught\"\ntilt_deg = 5.0 # mine", 1);
         let task = Task::parse(&text, "own").unwrap();
         let after = Family::Peg.of(&task).unwrap();
-        let written = strategy(&text, &task, &after).unwrap();
+        let written = with_strategy(&text, &task, &after).unwrap();
         let read = Task::parse(&written, "written").unwrap();
         assert_eq!(read.strategy.phases.len(), 6);
         assert_eq!(read.strategy.rule, insertion::task::StartRule::Given);

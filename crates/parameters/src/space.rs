@@ -77,6 +77,12 @@ impl Variable {
         }
     }
 
+    /// Returns the position of a value between the bounds, 0 to 1; 0.5 if the bounds are equal.
+    pub fn share(&self, value: f64) -> f64 {
+        let span = self.high - self.low;
+        if span > 0.0 { (value - self.low) / span } else { 0.5 }
+    }
+
     /// Returns the level with the nearest value.
     pub fn nearest(&self, value: f64) -> u32 {
         self.steps_to(value).round().clamp(0.0, f64::from(self.levels() - 1)) as u32
@@ -233,6 +239,12 @@ impl Space {
     /// Returns whether its designs set numbers of the task.
     pub fn changes_task(&self) -> bool {
         self.parameters.iter().any(|parameter| is_of_task(&parameter.key))
+    }
+
+    /// Returns the position of a design in the unit cube; a value that it lacks counts as the smallest.
+    pub fn shares(&self, design: &Design) -> Vec<f64> {
+        let share = |p: &Variable| p.share(design.get(&p.key).unwrap_or(p.low));
+        self.parameters.iter().map(share).collect()
     }
 
     /// Parses and checks a space; `file` is named in errors.

@@ -14,18 +14,18 @@ use std::ops::Range;
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 pub(super) type Chart<'a, 'b> =
     ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-/// Error of the drawing library, or of what computes a curve.
-pub(super) type Problem = Box<dyn std::error::Error>;
-pub(super) type Drawn = Result<(), Problem>;
+/// Error of the drawing library, or of the computation of a curve.
+pub(super) type PlotError = Box<dyn std::error::Error>;
+pub(super) type DrawResult = Result<(), PlotError>;
 
 /// Draws on a blank canvas of `size` pixels and returns the SVG.
-pub(super) fn sheet(
+pub(super) fn render(
     plot: &'static str,
     size: (u32, u32),
-    draw: impl FnOnce(&Area<'_>) -> Drawn,
+    draw: impl FnOnce(&Area<'_>) -> DrawResult,
 ) -> Result<String, ReportError> {
     let mut svg = String::new();
-    let canvas = |svg| -> Drawn {
+    let canvas = |svg| -> DrawResult {
         let area = SVGBackend::with_string(svg, size).into_drawing_area();
         area.fill(&PAPER.rgb())?;
         draw(&area)?;
@@ -44,7 +44,7 @@ pub(super) fn axes<'a, 'b>(
     title: &str,
     x: Axis<'_>,
     y: Axis<'_>,
-) -> Result<Chart<'a, 'b>, Problem> {
+) -> Result<Chart<'a, 'b>, PlotError> {
     framed(area, title, x, y, 62, true)
 }
 
@@ -56,10 +56,11 @@ pub(super) fn rows<'a, 'b>(
     x: Axis<'_>,
     count: usize,
     left: u32,
-) -> Result<Chart<'a, 'b>, Problem> {
+) -> Result<Chart<'a, 'b>, PlotError> {
     framed(area, title, x, ("", -(count.max(1) as f64)..0.0), left, false)
 }
 
+/// Draws axes with `left` pixels for the labels of y.
 fn framed<'a, 'b>(
     area: &'a Area<'b>,
     title: &str,
@@ -67,7 +68,7 @@ fn framed<'a, 'b>(
     y: Axis<'_>,
     left: u32,
     y_grid: bool,
-) -> Result<Chart<'a, 'b>, Problem> {
+) -> Result<Chart<'a, 'b>, PlotError> {
     let mut builder = ChartBuilder::on(area);
     builder.margin(10).margin_right(18).x_label_area_size(48).y_label_area_size(left);
     if !title.is_empty() {
@@ -93,7 +94,11 @@ fn framed<'a, 'b>(
     Ok(chart)
 }
 
-pub(super) fn legend<'a, 'b: 'a>(chart: &mut Chart<'a, 'b>, corner: SeriesLabelPosition) -> Drawn {
+/// Draws a legend of the labelled series in a corner.
+pub(super) fn legend<'a, 'b: 'a>(
+    chart: &mut Chart<'a, 'b>,
+    corner: SeriesLabelPosition,
+) -> DrawResult {
     let legend = chart
         .configure_series_labels()
         .position(corner)
@@ -111,11 +116,13 @@ pub(super) fn font(size: u32) -> FontDesc<'static> {
     ("sans-serif", size).into_font().transform(FontTransform::None)
 }
 
-pub(super) fn words(size: u32, colour: Colour, h: HPos, v: VPos) -> TextStyle<'static> {
+/// Returns a text style whose anchor is at `h` and `v` of the text.
+pub(super) fn text_style(size: u32, colour: Colour, h: HPos, v: VPos) -> TextStyle<'static> {
     font(size).color(&colour.rgb()).pos(Pos::new(h, v))
 }
 
-pub(super) fn around(values: impl Iterator<Item = f64>, room: f64) -> Range<f64> {
+/// Returns the range of the finite values, widened by a share `room` of it on either side.
+pub(super) fn padded_range(values: impl Iterator<Item = f64>, room: f64) -> Range<f64> {
     let [low, high] = extent(values.filter(|v| v.is_finite()));
     if low > high {
         return 0.0..1.0;

@@ -1,6 +1,6 @@
 //! Comparison of optimizers over studies of the same problem.
 
-use super::chart::{Area, Drawn, around, axes, legend, sheet};
+use super::chart::{Area, DrawResult, axes, legend, padded_range, render};
 use super::convergence::best_so_far;
 use super::elements::{document, figure, table};
 use super::marks::{line, stairs};
@@ -228,7 +228,7 @@ pub fn page(comparison: &Comparison) -> Result<String, ReportError> {
         },
     );
     let rows: Vec<_> = groups.iter().map(|group| group.row("–").to_vec()).collect();
-    let convergence = sheet("the comparison", PLOT, |area| draw(area, comparison, ""))?;
+    let convergence = render("the comparison", PLOT, |area| draw(area, comparison, ""))?;
     let caption = "Best so far: the median as a line, the quartiles as a band.";
     let body = html! {
         main {
@@ -252,14 +252,14 @@ const COLOURS: [Colour; 6] = [BLUE, ORANGE, GREEN, RED, MUTED, INK];
 /// Plots the best so far of each optimizer: the median as a line and the quartiles as a band.
 pub fn svg(comparison: &Comparison) -> Result<String, ReportError> {
     let title = format!("{}: best so far, median and quartiles over seeds", comparison.task);
-    sheet("the comparison", (880, 480), |area| draw(area, comparison, &title))
+    render("the comparison", (880, 480), |area| draw(area, comparison, &title))
 }
 
-fn draw(area: &Area<'_>, comparison: &Comparison, title: &str) -> Drawn {
+fn draw(area: &Area<'_>, comparison: &Comparison, title: &str) -> DrawResult {
     let groups = &comparison.groups;
     let longest = groups.iter().map(|g| g.best_so_far_mm.len()).max().unwrap_or(0).max(1) as f64;
     let values = groups.iter().flat_map(|g| g.best_so_far_mm.iter().flat_map(|q| q.all()));
-    let range = around(values.flatten().chain([comparison.best_known_mm]), 0.06);
+    let range = padded_range(values.flatten().chain([comparison.best_known_mm]), 0.06);
     let label = format!("{} (mm)", comparison.objective);
     let x = ("number of evaluations", 0.0..longest * 1.02 + 0.5);
     let mut chart = axes(area, title, x, (&label, range))?;

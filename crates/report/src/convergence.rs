@@ -2,7 +2,7 @@
 //! hypervolume.
 
 use super::ReportError;
-use super::chart::{Area, Drawn, around, axes, sheet, words};
+use super::chart::{Area, DrawResult, axes, padded_range, render, text_style};
 use super::elements::figure;
 use super::marks::{PointMark, Series, dashed, label, legend_above, line, points, stairs};
 use super::selection::{PLOTTED, note, selected, turning};
@@ -17,7 +17,7 @@ use study::{Recorded, StudyRecord, volume};
 /// Plots the value of each evaluation and the best so far (with several objectives the hypervolume)
 /// against the number of evaluations; `size` pixels.
 pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<String, ReportError> {
-    sheet("the convergence", size, |area| draw(area, record))
+    render("the convergence", size, |area| draw(area, record))
 }
 
 pub(super) fn section(record: &StudyRecord, size: (u32, u32)) -> Result<Markup, ReportError> {
@@ -59,7 +59,7 @@ pub(super) fn best_so_far(record: &StudyRecord) -> Vec<(f64, f64)> {
     steps
 }
 
-fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
+fn draw(area: &Area<'_>, record: &StudyRecord) -> DrawResult {
     let count = record.evaluations.len();
     let objectives = &record.config.objective;
     let best = best_so_far(record);
@@ -72,7 +72,7 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
     let confirmed: Vec<(f64, f64)> =
         record.walked.iter().filter_map(|walked| at(&walked.recorded)).collect();
     let shown = values.iter().chain(confirmed.iter().map(|(_, value)| value));
-    let mut range = around(shown.copied().chain([0.0]), 0.12);
+    let mut range = padded_range(shown.copied().chain([0.0]), 0.12);
     if values.iter().all(|&value| value >= 0.0) {
         range.start = range.start.max(-0.02 * range.end);
     }
@@ -85,7 +85,7 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
     };
     if count == 0 {
         let mut chart = axes(area, "", x, (&y_label, range))?;
-        let style = words(17, MUTED, HPos::Center, VPos::Center);
+        let style = text_style(17, MUTED, HPos::Center, VPos::Center);
         return label(&mut chart, (0.5, 0.5), (0, 0), "no evaluations yet", &style);
     }
     let shown = selected(record, &record.evaluations, PLOTTED);

@@ -1,7 +1,7 @@
 //! Pareto front of a study with several objectives.
 
 use super::ReportError;
-use super::chart::{Area, Drawn, around, axes, legend, sheet};
+use super::chart::{Area, DrawResult, axes, legend, padded_range, render};
 use super::elements::{figure, table};
 use super::marks::{PointMark, line, points};
 use super::selection::{PLOTTED, selected};
@@ -20,7 +20,7 @@ pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<Option<String>, Rep
     if !several || !any {
         return Ok(None);
     }
-    sheet("the front", size, |area| draw(area, record)).map(Some)
+    render("the front", size, |area| draw(area, record)).map(Some)
 }
 
 /// Returns the plot, hypervolume and designs; `None` for a single objective.
@@ -34,7 +34,7 @@ pub(super) fn section(answer: &Answer, size: (u32, u32)) -> Result<Option<Markup
     }))
 }
 
-fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
+fn draw(area: &Area<'_>, record: &StudyRecord) -> DrawResult {
     let [first, second, ..] = record.config.objective.measures() else { return Ok(()) };
     let point = |r: &Recorded| match r.score.as_ref().map(|score| &score.values[..]) {
         Some([x, y, ..]) => Some((*x, *y)),
@@ -43,8 +43,8 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> Drawn {
     let shown = selected(record, &record.evaluations, PLOTTED);
     let all = || shown.iter().filter_map(|&r| Some((r, point(r)?)));
     let [first, second] = [first, second].map(|measure| measure.label());
-    let x = (first.as_str(), around(all().map(|(_, p)| p.0), 0.08));
-    let y = (second.as_str(), around(all().map(|(_, p)| p.1), 0.16));
+    let x = (first.as_str(), padded_range(all().map(|(_, p)| p.0), 0.08));
+    let y = (second.as_str(), padded_range(all().map(|(_, p)| p.1), 0.16));
     let mut chart = axes(area, "", x, y)?;
     let of = |feasible| all().filter(move |(r, _)| r.feasible().is_some() == feasible);
     points(&mut chart, of(true).map(|(_, p)| p), PointMark::dot(BLUE, 3), "each evaluation")?;

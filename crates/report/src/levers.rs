@@ -1,6 +1,6 @@
 //! Levers: table and tornado diagram.
 
-use super::chart::{Area, Drawn, around, rows, sheet, words as text_style};
+use super::chart::{Area, DrawResult, padded_range, render, rows, text_style};
 use super::marks::{bar, dashed, label};
 use super::theme::{BLUE, INK, MUTED, ORANGE};
 use super::{ReportError, text_table};
@@ -83,14 +83,14 @@ const TEXT: u32 = 15;
 pub fn svg(levers: &Levers) -> Result<String, ReportError> {
     let bars = bars(levers);
     let height = HEAD_AND_FOOT + ROW * bars.len() as u32;
-    sheet("the levers", (WIDTH, height), |area| draw(area, levers, &bars))
+    render("the levers", (WIDTH, height), |area| draw(area, levers, &bars))
 }
 
-fn draw(area: &Area<'_>, levers: &Levers, bars: &[Bar<'_>]) -> Drawn {
+fn draw(area: &Area<'_>, levers: &Levers, bars: &[Bar<'_>]) -> DrawResult {
     let base = levers.base.range_mm;
     let ends = bars.iter().flat_map(|bar| [bar.ends[0].0, bar.ends[1].0]);
     // Leaves room for the labels beside the bars.
-    let range = around(ends.chain([base]), 0.22);
+    let range = padded_range(ends.chain([base]), 0.22);
     let ([left, right], title) =
         ([range.start, range.end], format!("{}: range with one number changed", levers.task));
     let now = format!("range (mm), now {base:.1}");

@@ -1,7 +1,7 @@
 //! Picture of a capture map.
 
 use super::ReportError;
-use super::chart::{Area, Drawn, axes, sheet, words};
+use super::chart::{Area, DrawResult, axes, render, text_style};
 use super::marks::{PointMark, bar, points};
 use super::theme::{
     Colour, DIVERGED, INK, INSERTED, JAMMED, LOST, LOST_EARLY, MISSED, MUTED, PAPER,
@@ -41,7 +41,7 @@ pub fn svg(map: &CaptureMap) -> Result<String, ReportError> {
     let head = head(map);
     let rows = head.iter().map(Vec::len).sum::<usize>() as u32;
     let height = ROW as u32 * rows + 10;
-    sheet("the capture map", (SIZE.0, SIZE.1 + height), |area| {
+    render("the capture map", (SIZE.0, SIZE.1 + height), |area| {
         let (top, body) = area.split_vertically(height);
         draw_head(&top, &head)?;
         draw(&body, map)
@@ -84,8 +84,8 @@ fn head(map: &CaptureMap) -> [Vec<Vec<Entry>>; 2] {
     [title, wrapped(entries.chain([("simulated".to_owned(), None)]), 20)]
 }
 
-fn draw_head(area: &Area<'_>, [title, legend]: &[Vec<Vec<Entry>>; 2]) -> Drawn {
-    let text = |size| words(size, INK, HPos::Left, VPos::Center);
+fn draw_head(area: &Area<'_>, [title, legend]: &[Vec<Vec<Entry>>; 2]) -> DrawResult {
+    let text = |size| text_style(size, INK, HPos::Left, VPos::Center);
     let mut middles = (0..).map(|row| ROW * row + 18);
     for (parts, y) in title.iter().zip(&mut middles) {
         let line = parts.iter().map(|(text, ..)| &**text).collect::<Vec<_>>().join(" ");
@@ -104,7 +104,7 @@ fn draw_head(area: &Area<'_>, [title, legend]: &[Vec<Vec<Entry>>; 2]) -> Drawn {
     Ok(())
 }
 
-fn draw(area: &Area<'_>, map: &CaptureMap) -> Drawn {
+fn draw(area: &Area<'_>, map: &CaptureMap) -> DrawResult {
     let half = |axis: &MapAxis| axis.step / 2.0;
     let range = |axis: &MapAxis| axis.low - half(axis)..axis.high + half(axis);
     let name = |axis: &MapAxis| format!("error of the start: {} ({})", axis.name, axis.unit);

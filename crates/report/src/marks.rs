@@ -1,6 +1,6 @@
 //! Elements drawn in plots: marked points, lines, stairs.
 
-use super::chart::{Area, Chart, Drawn, Problem, words};
+use super::chart::{Area, Chart, DrawResult, PlotError, text_style};
 use super::theme::{Colour, INK, MUTED};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -53,11 +53,11 @@ pub(super) fn legend_above<'b>(
     area: &Area<'b>,
     series: &[Series<'_>],
     (style, line): (ShapeStyle, &str),
-) -> Result<Area<'b>, Problem> {
+) -> Result<Area<'b>, PlotError> {
     let [height, mark, letter] = LEGEND;
     let names = series.iter().map(|(_, mark, name)| (Some(mark), *name)).chain([(None, line)]);
     let (right, [mut x, mut y]) = (area.dim_in_pixel().0 as i32 - MARGIN, [MARGIN, height]);
-    let text = words(15, INK, HPos::Left, VPos::Center);
+    let text = text_style(15, INK, HPos::Left, VPos::Center);
     for (of, name) in names {
         let width = mark + letter * name.len() as i32;
         if x > MARGIN && x + width > right {
@@ -80,7 +80,7 @@ pub(super) fn points<'a, 'b: 'a>(
     points: impl IntoIterator<Item = (f64, f64)>,
     mark: PointMark,
     label: &str,
-) -> Drawn {
+) -> DrawResult {
     let mut elements = points.into_iter().map(|at| mark.at(at)).peekable();
     if elements.peek().is_none() {
         return Ok(());
@@ -98,7 +98,7 @@ pub(super) fn line(
     points: Vec<(f64, f64)>,
     style: ShapeStyle,
     label: impl Into<String>,
-) -> Drawn {
+) -> DrawResult {
     if points.is_empty() {
         return Ok(());
     }
@@ -110,7 +110,7 @@ pub(super) fn line(
 }
 
 /// Draws a dashed line between two points.
-pub(super) fn dashed(chart: &mut Chart<'_, '_>, ends: [(f64, f64); 2]) -> Drawn {
+pub(super) fn dashed(chart: &mut Chart<'_, '_>, ends: [(f64, f64); 2]) -> DrawResult {
     chart.draw_series(DashedLineSeries::new(ends, 5, 4, MUTED.rgb().stroke_width(1)))?;
     Ok(())
 }
@@ -121,7 +121,7 @@ pub(super) fn bar(
     x: [f64; 2],
     y: [f64; 2],
     style: impl Into<ShapeStyle>,
-) -> Drawn {
+) -> DrawResult {
     chart.draw_series([Rectangle::new([(x[0], y[0]), (x[1], y[1])], style)])?;
     Ok(())
 }
@@ -133,7 +133,7 @@ pub(super) fn label(
     by: (i32, i32),
     words: &str,
     style: &TextStyle<'static>,
-) -> Drawn {
+) -> DrawResult {
     chart.draw_series([EmptyElement::at(at) + Text::new(words.to_owned(), by, style)])?;
     Ok(())
 }

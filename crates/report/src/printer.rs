@@ -8,15 +8,15 @@ use study::StudyRecord;
 
 /// Surface of the recommended finger, in the folder of its study.
 pub const SURFACE: &str = "finger.stl";
-/// Surface with its unit of length.
+/// Surface in a format that contains its unit of length.
 pub const THREE_MF: &str = "finger.3mf";
 /// Outline and solid base with settings of PrusaSlicer.
 pub const PROJECT: &str = "finger-prusaslicer.3mf";
 /// Outline and solid base with settings of OrcaSlicer and Bambu Studio.
 pub const ORCA_PROJECT: &str = "finger-orcaslicer.3mf";
-/// Sheet for printing it and checking the print.
+/// Sheet with instructions for printing the finger and checking the print.
 pub const SHEET: &str = "finger-sheet.html";
-/// The files and their labels.
+/// Files with their labels.
 pub const FILES: [(&str, &str); 5] = [
     (PROJECT, "3MF Prusa"),
     (ORCA_PROJECT, "3MF Orca/Bambu"),

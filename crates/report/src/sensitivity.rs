@@ -1,6 +1,6 @@
 //! Sensitivity of a measure to its inputs: table, JSON and chart.
 
-use super::chart::{Area, Drawn, rows, sheet, words};
+use super::chart::{Area, DrawResult, render, rows, text_style};
 use super::marks::{bar, label, line};
 use super::theme::{BLUE, INK};
 use super::{ReportError, text_table};
@@ -106,10 +106,10 @@ const LEFT: u32 = 300;
 /// Draws a bar with its interval for each input, largest first.
 pub fn svg(found: &SensitivityResult) -> Result<String, ReportError> {
     let height = HEAD_AND_FOOT + ROW * found.factors.len() as u32;
-    sheet("the sensitivity", (WIDTH, height), |area| draw(area, found))
+    render("the sensitivity", (WIDTH, height), |area| draw(area, found))
 }
 
-fn draw(area: &Area<'_>, found: &SensitivityResult) -> Drawn {
+fn draw(area: &Area<'_>, found: &SensitivityResult) -> DrawResult {
     let factors = &found.factors;
     let largest = factors.iter().map(|of| of.total_high.max(of.total)).fold(1e-9, f64::max);
     let title = format!("{} of {}: shares of the variance", found.objective, found.task);
@@ -127,9 +127,9 @@ fn draw(area: &Area<'_>, found: &SensitivityResult) -> Drawn {
         line(&mut chart, vec![low, high], INK.rgb().stroke_width(2), "")?;
         let name = short(&factor.name);
         let name = format!("{name} ({} to {})", thousandths(factor.low), thousandths(factor.high));
-        let style = words(13, INK, HPos::Right, VPos::Center);
+        let style = text_style(13, INK, HPos::Right, VPos::Center);
         label(&mut chart, (0.0, y), (-8, 0), &name, &style)?;
-        let style = words(14, INK, HPos::Left, VPos::Center);
+        let style = text_style(14, INK, HPos::Left, VPos::Center);
         label(&mut chart, high, (8, 0), &format!("{:.2}", factor.total), &style)?;
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! Fit of the stiffness model as table, JSON and plot.
 
-use super::chart::{Area, Drawn, Problem, around, axes, legend, sheet, words};
+use super::chart::{Area, DrawResult, PlotError, axes, legend, padded_range, render, text_style};
 use super::marks::{PointMark, dashed, line, points};
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE};
 use super::{ReportError, text_table};
@@ -86,9 +86,9 @@ pub fn json(model: &Model) -> Value {
 /// Draws four panels: both axes of stiffness against direction and against density, curves with a band of
 /// one standard deviation, and the measured designs.
 pub fn svg(model: &Model) -> Result<String, ReportError> {
-    sheet("the stiffness model", (1160, 880), |area| {
+    render("the stiffness model", (1160, 880), |area| {
         let (head, body) = area.split_vertically(58);
-        let style = |size, colour| words(size, colour, HPos::Left, VPos::Top);
+        let style = |size, colour| text_style(size, colour, HPos::Left, VPos::Top);
         let title = "Stiffness of one finger: model and measurements";
         head.draw_text(title, &style(20, INK), (20, 8))?;
         let note = "band: ± 1 standard deviation of a new finger    filled: measured at the \
@@ -118,7 +118,7 @@ const SAMPLES: u32 = 80;
 const SERIES: [Colour; 3] = [BLUE, ORANGE, GREEN];
 
 /// Draws the panel of one axis of stiffness.
-fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> Drawn {
+fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> DrawResult {
     // Converts (density, direction) to (value along x, value of the curve), or back.
     let swapped = |(density, direction): (f64, f64)| match by_direction {
         true => (direction, density),
@@ -128,14 +128,14 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> Drawn
     let predict = |x: f64, curve: f64| {
         let (density, direction) = swapped((x, curve));
         let Estimate { mean, sd } = model.predict(density, direction)?.axis(axis);
-        Ok::<_, Problem>((x, Estimate { mean: mean / N_PER_MM, sd: sd / N_PER_MM }))
+        Ok::<_, PlotError>((x, Estimate { mean: mean / N_PER_MM, sd: sd / N_PER_MM }))
     };
     let name = |curve: f64| match by_direction {
         true => format!("density {curve} %"),
         false => format!("direction {curve}°"),
     };
     let measured = &model.measurements;
-    let limits = around(measured.iter().map(|m| of(m).0), 0.0);
+    let limits = padded_range(measured.iter().map(|m| of(m).0), 0.0);
     let span = limits.end - limits.start;
     let x = (limits.start - 0.15 * span).max(0.0)..limits.end + 0.2 * span;
     let curves = levels(measured.iter().map(|m| of(m).1));
@@ -150,10 +150,10 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> Drawn
     };
     let band = |&curve: &f64| places.iter().map(|&x| predict(x, curve)).collect();
     let bands: Vec<Vec<(f64, Estimate)>> =
-        curves.iter().map(band).collect::<Result<_, Problem>>()?;
+        curves.iter().map(band).collect::<Result<_, PlotError>>()?;
     let tops = bands.iter().flatten().map(|(_, e)| e.mean + e.sd);
     let readings = measured.iter().map(|m| m.stiffness(axis) / N_PER_MM);
-    let mut y = around(tops.chain(readings).chain([0.0]), 0.05);
+    let mut y = padded_range(tops.chain(readings).chain([0.0]), 0.05);
     y.start = 0.0;
     let top = y.end;
     let label = format!("stiffness in {} (N/mm)", axis.label());

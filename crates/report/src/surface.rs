@@ -8,13 +8,13 @@ use insertion::space::Variable;
 use serde_json::{Value, json};
 use study::StudyRecord;
 
-/// Largest number of evaluations of the model, taken evenly from more.
-const MOST: usize = 300;
+/// Largest number of evaluations to which the model is fitted; of more evaluations, it uses every nth.
+const MAX_EVALUATIONS: usize = 300;
 /// Smallest standard deviation of a value, in its unit: rounding to 0.1.
 const NOISE: f64 = 0.03;
 /// Largest number of cells along an axis of the surface.
 const CELLS: u32 = 41;
-/// Number of steps along an axis for its influence.
+/// Number of steps along an axis over which its influence is determined.
 const LEVELS: u32 = 20;
 
 /// Gaussian process of a study, fitted once per page.
@@ -25,18 +25,18 @@ pub(super) struct Model {
 }
 
 impl Model {
-    /// Returns the model; `None` with too few evaluations or equal values.
+    /// Fits the model; `None` for too few evaluations or equal values.
     pub(super) fn of(record: &StudyRecord) -> Option<Self> {
         let parameters = &record.config.space.parameters;
         let known: Vec<(Vec<f64>, f64)> = record
             .current()
             .iter()
             .filter_map(|recorded| {
-                let x = parameters.iter().map(|p| Some(unit(p, recorded.design.get(&p.key)?)));
+                let x = parameters.iter().map(|p| Some(p.share(recorded.design.get(&p.key)?)));
                 Some((x.collect::<Option<Vec<f64>>>()?, recorded.known_value()?))
             })
             .collect();
-        let every = known.len().div_ceil(MOST).max(1);
+        let every = known.len().div_ceil(MAX_EVALUATIONS).max(1);
         let (x, y): (Vec<Vec<f64>>, Vec<f64>) = known.into_iter().step_by(every).unzip();
         let moments = Moments::of(&y);
         let (mean, sd) = (moments.mean, moments.deviation());
@@ -56,24 +56,18 @@ impl Model {
     }
 }
 
-fn unit(parameter: &Variable, value: f64) -> f64 {
-    let span = parameter.high - parameter.low;
-    if span > 0.0 { (value - parameter.low) / span } else { 0.5 }
-}
-
-/// Returns mean and standard deviation of the model, row by row, over the two most influential parameters (by
-/// index), the others as recommended; `None` for a single parameter.
+/// Returns mean and standard deviation of the model, row by row, over the two most influential parameters; the others
+/// have their recommended values. `None` for a single parameter.
 pub(super) fn of(record: &StudyRecord, model: &Model) -> Option<Value> {
     let parameters = &record.config.space.parameters;
     if parameters.len() < 2 {
         return None;
     }
     let best = record.recommended()?;
-    let base: Vec<f64> =
-        parameters.iter().map(|p| unit(p, best.design.get(&p.key).unwrap_or(p.low))).collect();
+    let base = record.config.space.shares(&best.design);
     let mut axes: Vec<usize> = (0..parameters.len()).collect();
     axes.sort_by(|&a, &b| {
-        reach(model, &base, b).total_cmp(&reach(model, &base, a)).then(a.cmp(&b))
+        influence(model, &base, b).total_cmp(&influence(model, &base, a)).then(a.cmp(&b))
     });
     axes.truncate(2);
     axes.sort_unstable();
@@ -86,7 +80,7 @@ pub(super) fn of(record: &StudyRecord, model: &Model) -> Option<Value> {
     let (xs, ys) = (levels(p), levels(q));
     let at = |(y, x): (&f64, &f64)| {
         let mut point = base.clone();
-        (point[axes[0]], point[axes[1]]) = (unit(p, *x), unit(q, *y));
+        (point[axes[0]], point[axes[1]]) = (p.share(*x), q.share(*y));
         let (mean, sd) = model.at(&point);
         (rounded(mean, 4), rounded(sd, 4))
     };
@@ -95,8 +89,8 @@ pub(super) fn of(record: &StudyRecord, model: &Model) -> Option<Value> {
     Some(json!({"axes": axes, "x": xs, "y": ys, "mean": mean, "sd": sd}))
 }
 
-/// Returns the spread of the model's mean along an axis through a point.
-fn reach(model: &Model, base: &[f64], axis: usize) -> f64 {
+/// Returns the difference between the largest and the smallest mean of the model along an axis through a point.
+fn influence(model: &Model, base: &[f64], axis: usize) -> f64 {
     let along = (0..=LEVELS).map(|level| {
         let mut point = base.to_vec();
         point[axis] = f64::from(level) / f64::from(LEVELS);

@@ -26,7 +26,7 @@ colours! {
     ORANGE = "orange", (178, 78, 12), "#f0a060";
     GREEN = "green", (38, 132, 82), "#62c894";
     RED = "red", (190, 50, 44), "#f2837b";
-    // Outcomes for all readers: the lightness L* of the failures is at least 25 below that of insertion, and with
+    // Outcomes, distinguishable for all readers: the lightness L* of the failures is at least 25 below that of insertion, and with
     // deuteranopia (Machado et al. 2009) any two differ by a CIEDE2000 distance of at least 15.
     INSERTED = "inserted", (206, 239, 210), "#CEEFD2";
     LOST_EARLY = "lost-early", (59, 41, 102), "#4B357F";
@@ -37,24 +37,24 @@ colours! {
 }
 
 impl Colour {
-    /// Returns the colour of plots in files.
+    /// Returns the colour for plots in files.
     pub fn rgb(self) -> RGBColor {
         RGBColor(self.light.0, self.light.1, self.light.2)
     }
 
-    /// Returns it as `#RRGGBB`, as the drawing library writes it.
+    /// Returns the colour for plots in files as `#RRGGBB`, the format of the drawing library.
     pub fn hex(self) -> String {
         format!("#{:02X}{:02X}{:02X}", self.light.0, self.light.1, self.light.2)
     }
 }
 
-/// Returns the variables, light or dark, as the body of a CSS rule.
+/// Returns the colours of light or dark pages as CSS variables, the body of a rule.
 pub(super) fn variables(dark: bool) -> String {
     let value = |c: &Colour| if dark { c.dark.to_owned() } else { c.hex() };
     ALL.iter().map(|c| format!("--{}:{};", c.name, value(c))).collect()
 }
 
-/// Converts a drawn SVG for the page: with variables as colours, and without a size.
+/// Converts an SVG for the page: replaces colours by CSS variables and removes the size.
 pub(super) fn inline(svg: &str) -> String {
     let variable = |svg: String, colour: &Colour| {
         svg.replace(&colour.hex(), &format!("var(--{})", colour.name))

@@ -172,7 +172,7 @@ fn drafted(
         head.push(format!(
             "The hole has {} flats, which keep its diameter within {:.4} mm.",
             hole.flats,
-            2.0 * hole.off / MM
+            2.0 * hole.deviation / MM
         ));
     }
     if example {

@@ -201,7 +201,7 @@ impl Request {
         target: Option<&Path>,
     ) -> Result<(), Failure> {
         if let Some(svg) = &self.svg {
-            write_file(svg, &picture::both(&file.task, &after.task))?;
+            write_file(svg, &picture::before_and_after(&file.task, &after.task))?;
         }
         if let (Some(target), false) = (target, self.dry_run) {
             // In the same folder the file refers to its parts file; elsewhere it contains the parts.
@@ -236,7 +236,7 @@ impl Request {
 fn rewritten(file: &TaskFile, tuned: &Tuned) -> Result<TaskFile, Failure> {
     let TaskFile { source, task } = file;
     let strategy = &tuned.best().tried.strategy;
-    let text = rewrite::strategy(&source.text, task, strategy).map_err(Failure::input)?;
+    let text = rewrite::with_strategy(&source.text, task, strategy).map_err(Failure::input)?;
     TaskFile::parse(Source { file: source.file.clone(), text })
 }
 

@@ -2,7 +2,7 @@
 
 use input::units::{DEG, MM};
 use input::{Fault, Place};
-use insertion::outcome::FailureClass;
+use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::Design;
 use insertion::trial::{Sample, Tcp};
 use nalgebra::Vector3;
@@ -55,6 +55,17 @@ pub enum Ended {
     Failed(FailureClass),
     /// The log is of a probe: slow motions on a flat face of the socket.
     Probe,
+}
+
+impl Ended {
+    /// Returns the outcome on the robot; `None` for a probe.
+    pub fn outcome(self) -> Option<Outcome> {
+        match self {
+            Ended::Inserted => Some(Outcome::Inserted),
+            Ended::Failed(class) => Some(Outcome::Failed(class)),
+            Ended::Probe => None,
+        }
+    }
 }
 
 /// Log with its row of the table of runs.

@@ -1,6 +1,5 @@
 //! Misfit of the simulated curves, per phase of an attempt, and validation by a held-out attempt.
 
-use super::log::Ended;
 use super::question::{Compared, Identified};
 use super::replay::Phase;
 use ask_tell::statistics::mean;
@@ -56,10 +55,7 @@ impl Validation {
         Some(Validation {
             log: held_out.logged.file.clone(),
             offset_mm: held_out.logged.offset / MM,
-            outcome: match held_out.logged.ended {
-                Ended::Failed(class) => Outcome::Failed(class).word(),
-                Ended::Inserted | Ended::Probe => Outcome::Inserted.word(),
-            },
+            outcome: held_out.logged.ended.outcome().unwrap_or(Outcome::Inserted).word(),
             outcome_predicted: held_out.after.1.word(),
             misfit: after(std::slice::from_ref(held_out)),
             misfit_fitted: after(&found.compared),

@@ -1,7 +1,7 @@
 //! Checks of the grasp: pads, roofs, and the faces between the pads.
 
 use super::{Case, Problem, interval, mm};
-use crate::hold::{Held, SEAM, find, held};
+use crate::hold::{PadContacts, SEAM, default_grasp, pad_contacts};
 use input::units::MM;
 
 /// Smallest height over which a pad must touch its face, m.
@@ -10,10 +10,10 @@ const LEAST_COVER: f64 = 1.0 * MM;
 /// Checks the grasp: pads, roofs and TCP.
 pub(super) fn problems(case: &Case) -> Vec<Problem> {
     let grip = &case.task.grip;
-    let held = held(&case.plug, grip.shoulder_z, Some(grip.faces_y));
-    let mut found: Vec<_> = faces(case, &held).or_else(|| cover(case, &held)).into_iter().collect();
-    found.extend(roof(case, &held));
-    let [low, high] = held.pad_z;
+    let pads = pad_contacts(&case.plug, grip.shoulder_z, Some(grip.faces_y));
+    let mut found: Vec<_> = faces(case, &pads).or_else(|| cover(case, &pads)).into_iter().collect();
+    found.extend(roof(case, &pads));
+    let [low, high] = pads.pad_z;
     if !(low..=high).contains(&grip.tcp_z) {
         let [tcp, low, high] = [grip.tcp_z, low, high].map(mm);
         found.push(Problem::new(
@@ -35,10 +35,10 @@ pub(super) fn problems(case: &Case) -> Vec<Problem> {
 }
 
 /// Checks that the stated faces are those of the plug between the pads.
-fn faces(case: &Case, held: &Held) -> Option<Problem> {
+fn faces(case: &Case, pads: &PadContacts) -> Option<Problem> {
     let stated = case.task.grip.faces_y;
-    let [low, high] = held.pad_z.map(mm);
-    let Some(real) = held.faces else {
+    let [low, high] = pads.pad_z.map(mm);
+    let Some(real) = pads.faces else {
         return Some(Problem::new(
             "grip.shoulder_z_mm",
             format!("between the pads, at heights of {low} to {high} mm, there is no plug"),
@@ -70,10 +70,10 @@ fn faces(case: &Case, held: &Held) -> Option<Problem> {
 }
 
 /// Checks that the pads cover enough of the plug, also at the slip limit.
-fn cover(case: &Case, held: &Held) -> Option<Problem> {
+fn cover(case: &Case, pads: &PadContacts) -> Option<Problem> {
     let grip = &case.task.grip;
-    let cover = held.cover[0].min(held.cover[1]);
-    let [low, high] = held.pad_z.map(mm);
+    let cover = pads.cover[0].min(pads.cover[1]);
+    let [low, high] = pads.pad_z.map(mm);
     let (limit, met) = (mm(grip.slip_limit), mm(cover));
     if cover < LEAST_COVER {
         return Some(Problem::new(
@@ -92,10 +92,10 @@ fn cover(case: &Case, held: &Held) -> Option<Problem> {
 }
 
 /// Checks that the roofs rest on the plug, so that they can push it in.
-fn roof(case: &Case, held: &Held) -> Option<Problem> {
+fn roof(case: &Case, pads: &PadContacts) -> Option<Problem> {
     let shoulder = case.task.grip.shoulder_z;
     let wrong = |top: &Option<f64>| top.is_none_or(|z| (z - shoulder).abs() > SEAM);
-    let top = held.under_roof.iter().find(|top| wrong(top))?;
+    let top = pads.under_roof.iter().find(|top| wrong(top))?;
     let at = mm(shoulder);
     let rest = format!("the roofs should rest at {at} mm, but");
     let problem = match top.map(|z| (z > shoulder, mm(z))) {
@@ -112,7 +112,7 @@ fn roof(case: &Case, held: &Held) -> Option<Problem> {
 
 /// Returns a grasp that would hold the plug, as advice.
 fn remedy(case: &Case) -> String {
-    match find(&case.plug, LEAST_COVER) {
+    match default_grasp(&case.plug, LEAST_COVER) {
         Some((shoulder, faces)) => {
             let ([shoulder, tcp], faces) =
                 ([shoulder, shoulder - 3.0 * MM].map(mm), interval(faces));

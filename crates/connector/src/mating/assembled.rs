@@ -7,8 +7,8 @@ use super::{MAX_PLAYS, Mate, MatingError, precise};
 use crate::mesh::Triangle;
 
 /// Finds the direction in which the plug of an assembly can be withdrawn; both parts in the frame of the assembly, m.
-/// Among several directions it selects the one with the largest facing area less interference, and among equal ones
-/// that in which the plug protrudes further.
+/// Of several directions, it is the one with the largest engagement (facing area minus penalty for overlap); if two are
+/// equal, the one in which the plug protrudes further.
 ///
 /// # Errors
 /// If a part is empty, or the plug is blocked or loose in every direction.
@@ -21,15 +21,15 @@ pub fn assembled(plug: &[Triangle], socket: &[Triangle]) -> Result<Mate, MatingE
     let parts = Parts { plug: Part { own, triangles: turned(plug, &own) }, socket };
     let scene = Scene::new(&parts, EFFORTS[0]);
     let poses = (0..rotations_to_z().len()).map(|out| {
-        // The plug is rotated like the socket, whose directions are every fourth rotation.
+        // The plug is rotated like the socket: every fourth rotation of a plug is a direction of a socket.
         let pose = Pose { out, turn: 4 * out, ..Pose::default() };
         settled_areas(&scene, pose, MAX_PLAYS[0])
     });
-    let value = |(pose, out): &(Pose, f64)| pose.value() * (1.0 + ASIDE * out.signum());
+    let value = |(pose, out): &(Pose, f64)| pose.value() * (1.0 + PROTRUSION_BONUS * out.signum());
     let best = poses.max_by(|a, b| value(a).total_cmp(&value(b)));
     let (pose, _) = best.filter(|(pose, _)| pose.value() > 0.0).ok_or(MatingError::Blocked)?;
     Ok(precise::mate(&parts, &scene, &pose, MAX_PLAYS[0]))
 }
 
-/// Preference for the direction in which the plug protrudes, as a share of the engagement.
-const ASIDE: f64 = 0.01;
+/// Increase of the engagement in the direction in which the plug protrudes, as a share.
+const PROTRUSION_BONUS: f64 = 0.01;

@@ -1,22 +1,24 @@
-//! Convex solids of points: boxes, prisms, hulls.
+//! Convex solids from points: boxes, prisms, hulls.
 
 use crate::body::extent;
 use input::units::MM;
-use insertion::task::{Solid, geometry};
+use insertion::task::Solid;
+use insertion::task::geometry::{hull, other_axes};
 use nalgebra::{Point3, Vector3};
 
 /// Largest difference between coordinates that count as equal, m.
 const NEAR: f64 = 1e-3 * MM;
 
-/// Returns the hull of points as a box, a prism or a hull; `None` without volume.
+/// Returns the convex hull of points as a box or a prism if it is one, else as a hull; `None` if it has no volume.
 pub fn solid_of(points: &[Point3<f64>]) -> Option<Solid> {
-    let (corners, _) = geometry::hull(points)?;
+    let (corners, _) = hull(points)?;
     let prism = [2, 0, 1].into_iter().find_map(|axis| Some((axis, prism_along(&corners, axis)?)));
     let Some((axis, (outline, span))) = prism else { return Some(Solid::Hull { points: corners }) };
     let [min, max] = [0, 1].map(|end| Vector3::from_fn(|axis, _| extent(&corners, axis)[end]));
+    let (a, b) = other_axes(axis);
     let on_corner = |p: &[f64; 2]| {
         let at_end = |v: f64, i: usize| (v - min[i]).abs() < NEAR || (v - max[i]).abs() < NEAR;
-        p.iter().zip(OTHERS[axis]).all(|(&v, i)| at_end(v, i))
+        at_end(p[0], a) && at_end(p[1], b)
     };
     Some(match outline.len() == 4 && outline.iter().all(on_corner) {
         true => Solid::Box { min, max },
@@ -24,13 +26,10 @@ pub fn solid_of(points: &[Point3<f64>]) -> Option<Solid> {
     })
 }
 
-/// The other two axes, for each axis.
-const OTHERS: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
-
-/// Returns outline and span along an axis if the hull of the corners is a prism along it.
+/// Returns the outline and the span of a prism along an axis; `None` if the hull of the corners is not such a prism.
 fn prism_along(corners: &[Point3<f64>], axis: usize) -> Option<(Vec<[f64; 2]>, [f64; 2])> {
     let ends = extent(corners, axis);
-    let [a, b] = OTHERS[axis];
+    let (a, b) = other_axes(axis);
     let at = |end: f64| -> Vec<[f64; 2]> {
         let near = corners.iter().filter(|p| (p[axis] - end).abs() < NEAR);
         near.map(|p| [p[a], p[b]]).collect()
@@ -45,7 +44,7 @@ fn prism_along(corners: &[Point3<f64>], axis: usize) -> Option<(Vec<[f64; 2]>, [
     equal.then(|| (outline(first), ends))
 }
 
-/// Returns the corners of a convex outline counter-clockwise, without those on a line between their neighbours.
+/// Returns the corners of a convex outline counter-clockwise, without collinear ones.
 fn outline(mut corners: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let count = corners.len() as f64;
     let middle = [0, 1].map(|i| corners.iter().map(|p| p[i]).sum::<f64>() / count);

@@ -1,4 +1,4 @@
-//! A closed surface of triangles that look outward.
+//! Closed triangle meshes with outward normals.
 
 use super::mend;
 use super::read::Triangle;
@@ -7,12 +7,12 @@ use insertion::task::geometry::surface_moments;
 use nalgebra::Point3;
 use std::collections::BTreeMap;
 
-/// Grid on which corners lie, m: that of lengths in task files. Mesh files have 32-bit numbers.
+/// Spacing of the grid to which corners are rounded, m, as for lengths in task files: mesh files have 32-bit numbers.
 pub const GRID: f64 = 1e-4 * MM;
 /// Smallest and largest size of a connector, m.
 pub const SIZES: [f64; 2] = [3.0 * MM, 300.0 * MM];
 
-/// Smallest volume of a body, m3: the sign of a smaller one is a rounding error.
+/// Smallest volume of a body, m3: the sign of a smaller volume may be due to rounding.
 const LEAST_VOLUME: f64 = 1.0 * MM * MM * MM;
 
 /// Closed triangle mesh, m.
@@ -27,8 +27,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Returns the surface of triangles given in a unit of `unit` metres, small gaps closed; `None` if it is not
-    /// watertight, differs in orientation or encloses nothing.
+    /// Welds triangles given in a unit of `unit` metres and closes small gaps; `None` if the result is not watertight,
+    /// has faces of inconsistent orientation or encloses no volume.
     pub fn new(triangles: &[Triangle], unit: f64) -> Option<Self> {
         let (points, mut faces) = weld(triangles, unit);
         if mend::mend(&points, &mut faces) {
@@ -56,16 +56,17 @@ impl Surface {
     }
 }
 
-/// Returns a length on the grid.
+/// Rounds a length to the grid.
 pub fn snap(value: f64) -> f64 {
     (value / GRID).round() * GRID
 }
 
-/// Welds the corners of triangles given in a unit of `unit` metres, and drops faces without area or with a back.
+/// Welds the corners of triangles given in a unit of `unit` metres; drops faces that become lines, and pairs of
+/// coincident faces of opposite orientation.
 pub fn weld(triangles: &[Triangle], unit: f64) -> (Vec<Point3<f64>>, Vec<[usize; 3]>) {
     let mut places: BTreeMap<[i64; 3], usize> = BTreeMap::new();
     let mut points = Vec::new();
-    let mut index = |p: &Point3<f64>| {
+    let mut index = |p: Point3<f64>| {
         let p = p * unit;
         let key: [i64; 3] = std::array::from_fn(|axis| (p[axis] / GRID).round() as i64);
         *places.entry(key).or_insert_with(|| {
@@ -73,27 +74,22 @@ pub fn weld(triangles: &[Triangle], unit: f64) -> (Vec<Point3<f64>>, Vec<[usize;
             points.len() - 1
         })
     };
-    let mut faces = Vec::with_capacity(triangles.len());
-    for triangle in triangles {
-        let face = [index(&triangle[0]), index(&triangle[1]), index(&triangle[2])];
-        // A face that has become a line on the grid encloses nothing, and its neighbours still meet.
-        if face[0] != face[1] && face[1] != face[2] && face[2] != face[0] {
-            faces.push(face);
-        }
-    }
+    let faces = triangles.iter().map(|triangle| triangle.map(&mut index));
+    // A face that has become a line on the grid encloses nothing, and its neighbours still meet.
+    let faces = faces.filter(|[a, b, c]| a != b && b != c && c != a).collect();
     (points, without_films(faces))
 }
 
 /// Removes pairs of coincident faces of opposite orientation, which enclose nothing.
 fn without_films(faces: Vec<[usize; 3]>) -> Vec<[usize; 3]> {
-    // The same face begins with the same corner.
-    let turned = |face: [usize; 3]| {
+    // Rotates the corners so that the smallest index is first.
+    let smallest_first = |face: [usize; 3]| {
         let first = (0..3).min_by_key(|&i| face[i]).unwrap_or(0);
         [face[first], face[(first + 1) % 3], face[(first + 2) % 3]]
     };
     let mut seen: BTreeMap<[usize; 3], i32> = BTreeMap::new();
     for face in &faces {
-        let [a, b, c] = turned(*face);
+        let [a, b, c] = smallest_first(*face);
         *seen.entry([a, b.min(c), b.max(c)]).or_default() += if b < c { 1 } else { -1 };
     }
     let kept = seen.into_iter().filter(|(_, count)| *count != 0);

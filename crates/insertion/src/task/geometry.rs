@@ -160,7 +160,7 @@ pub(super) fn centred(points: &[Point3<f64>]) -> (Shape, Vector3<f64>) {
 }
 
 /// Returns the two axes that are not `axis`, in the order x, y, z.
-pub(crate) fn other_axes(axis: usize) -> (usize, usize) {
+pub fn other_axes(axis: usize) -> (usize, usize) {
     match axis {
         0 => (1, 2),
         1 => (0, 2),

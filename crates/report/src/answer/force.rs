@@ -1,11 +1,11 @@
-//! Contact force of a finger against what its connector and the robot withstand.
+//! Contact force of a finger compared with the limits of its connector and of the robot.
 
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
 use serde::Serialize;
 use study::StudyRecord;
 
-/// Contact force that a connector or the robot does not withstand, or only just.
+/// Contact force above the limit of a connector, or above the acceptable share of the stop force of the robot.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ExcessForce {
     /// Task on which it occurs.
@@ -21,11 +21,11 @@ pub struct ExcessForce {
 }
 
 impl ExcessForce {
-    /// Returns the first task whose contact force exceeds what is acceptable; `None` if there is none.
+    /// Returns the excess on the first task whose contact force is not acceptable; `None` if there is none.
     pub fn of(record: &StudyRecord, tasks: &[&Evaluation]) -> Option<Self> {
         let limits = &record.limits;
-        let exceeds = |(place, (task, found)): (usize, (&str, &&Evaluation))| {
-            let peak_force_n = Measure::PeakForce.value(found)?;
+        let exceeds = |(place, (task, evaluation)): (usize, (&str, &&Evaluation))| {
+            let peak_force_n = Measure::PeakForce.value(evaluation)?;
             if peak_force_n <= limits.acceptable(place) {
                 return None;
             }
@@ -39,11 +39,11 @@ impl ExcessForce {
         record.config.tasks().zip(tasks).enumerate().find_map(exceeds)
     }
 
-    /// Returns `149 N on ket8: the robot servo stops at 150 N`.
+    /// Returns the force and the limit in words: `up to 149 N on ket8: the robot ur5e stops at 150 N`.
     pub fn words(&self) -> String {
         let ExcessForce { task, peak_force_n, limit_n, of_connector, robot } = self;
         let limit = match of_connector {
-            true => format!("its connector takes {limit_n:.0} N (limits.force_n)"),
+            true => format!("its connector withstands {limit_n:.0} N (limits.force_n)"),
             false => format!("the robot {robot} stops at {limit_n:.0} N"),
         };
         format!("up to {peak_force_n:.0} N on {task}: {limit}")

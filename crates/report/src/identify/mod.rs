@@ -20,8 +20,8 @@ use serde_json::{Map, Value, json};
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Returns the result as JSON.
-pub fn json(done: &IdentificationResult) -> Value {
-    let found = &done.found;
+pub fn json(result: &IdentificationResult) -> Value {
+    let found = &result.found;
     let axis = |(name, flange): (&str, &Option<Flange>)| {
         let flange = flange.as_ref()?;
         let numbers = json!({
@@ -52,8 +52,8 @@ pub fn json(done: &IdentificationResult) -> Value {
         })
     };
     json!({
-        "task": done.task,
-        "remarks": done.remarks,
+        "task": result.task,
+        "remarks": result.remarks,
         "robot": robot,
         "preload_mm": found.preload.map(|preload| preload.mean / MM),
         "preload_sd_mm": found.preload.map(|preload| preload.sd / MM),
@@ -86,13 +86,13 @@ fn identified(Unknown { prior, posterior, remaining_sd, from, advice }: &Unknown
 }
 
 /// Returns the result as text for a terminal.
-pub fn text(done: &IdentificationResult) -> String {
-    let found = &done.found;
+pub fn text(result: &IdentificationResult) -> String {
+    let found = &result.found;
     let mut text = String::new();
-    for remark in &done.remarks {
+    for remark in &result.remarks {
         text += &format!("{}{remark}\n", if remark.serious { "warning: " } else { "note: " });
     }
-    text += &format!("task          {}\n", done.task);
+    text += &format!("task          {}\n", result.task);
     for (axis, flange) in AXES.into_iter().zip(&found.flange) {
         let words = match flange {
             Some(Flange { stiffness: Estimate { mean, sd }, .. }) => {

@@ -1,8 +1,8 @@
-//! `identify.html`: the identified cell and the curves that it was identified from.
+//! `identify.html`: the identified cell and the curves from which it was identified.
 
 use super::{AXES, origin, short, unmodelled, validated};
 use crate::answer::words::{design, number, outcome, stiffness};
-use crate::chart::{Area, Drawn, around, axes, sheet, words};
+use crate::chart::{Area, DrawResult, axes, padded_range, render, text_style};
 use crate::elements::{definitions, document, stacked, table};
 use crate::marks::{dashed, label, line};
 use crate::page::PLOT;
@@ -10,7 +10,6 @@ use crate::theme::{BLUE, INK, MUTED, ORANGE, inline};
 use calibration::identify::check::Remark;
 use calibration::identify::curves::{Curves, STEP_S};
 use calibration::identify::formulas::{Flange, Friction};
-use calibration::identify::log::Ended;
 use calibration::identify::misfit::{Misfit, Validation, misfits};
 use calibration::identify::question::{Compared, IdentificationResult, Identified};
 use calibration::identify::unknown::{Unknown, ValueOrigin};
@@ -24,19 +23,19 @@ use plotters::style::text_anchor::{HPos, VPos};
 /// Largest number of points of a curve, and of points before the first contact (0.1 s).
 const POINTS: usize = 400;
 const AIR: usize = 50;
-/// Smallest ratio of the misfit after to the misfit before that the page comments on.
+/// Smallest ratio of the misfit after to the misfit before identification on which the page comments.
 const WORSE: f64 = 1.1;
 
 /// Returns the page: numbers of the cell, robot and probes, and every attempt, measured and simulated.
-pub fn html(done: &IdentificationResult) -> String {
-    let IdentificationResult { task, runs, remarks, found, .. } = done;
+pub fn html(result: &IdentificationResult) -> String {
+    let IdentificationResult { task, runs, remarks, found, .. } = result;
     let (serious, notes): (Vec<_>, Vec<_>) = remarks.iter().partition(|remark| remark.serious);
     let (of_all, of_logs): (Vec<&Remark>, Vec<&Remark>) =
         notes.into_iter().partition(|note| note.file == *runs);
     let rows: Vec<_> = found.unknowns.iter().map(unknown).collect();
     let body = html! {
         main {
-            h1 { (headline(done)) }
+            h1 { (headline(result)) }
             p.lead { (evidence(found)) }
             @for note in of_all { p { b { "All logs: " } (note.text) "." } }
             (definitions(&summary(found)))
@@ -47,10 +46,10 @@ pub fn html(done: &IdentificationResult) -> String {
             }
             section {
                 h2 { "Numbers of the cell" }
-                (stacked(&["number", "before", "identified", "deviation left", "from"], &rows))
+                (stacked(&["number", "before", "identified", "remaining deviation", "from"], &rows))
                 p.muted {
-                    "× is a factor on the number in the file. Deviation left: share of the prior's standard deviation; "
-                    "the dashed mark is the share that was expected of these logs."
+                    "× is a factor on the number in the file. Remaining deviation: share of the prior's standard deviation; "
+                    "the dashed mark is the share that was expected from these logs."
                 }
             }
             section { h2 { "Robot and probes" } (robot(found)) }
@@ -66,7 +65,7 @@ pub fn html(done: &IdentificationResult) -> String {
                 p.muted {
                     "Force on the tool in the task's frame, from 0.1 s before the first contact, which begins the search. "
                     "Misfit: root mean square of measured minus simulated force, in standard deviations, with the files' numbers → "
-                    "with the identified ones, until the contacts of the two differ."
+                    "with the identified ones, until a contact is made or lost in only one of the two."
                 }
                 @if let Some(one) = Validation::of(found) {
                     p.warn[one.is_doubtful()] { (validated(&one)) }
@@ -91,10 +90,10 @@ fn headline(IdentificationResult { task, found, .. }: &IdentificationResult) -> 
     format!("{task}: {identified} of {all} numbers of the cell identified")
 }
 
-/// Returns a sentence on the logs behind the numbers.
+/// Returns a sentence on the number of logs and of numbers that were not fitted.
 fn evidence(found: &Identified) -> String {
     let several =
-        |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+        |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
     let attempts = several(found.compared.len(), "attempt");
     let probes = several(found.probes.len(), "probe");
     let fixed = match counted(found, &[ValueOrigin::Files]) {
@@ -104,7 +103,7 @@ fn evidence(found: &Identified) -> String {
     format!("From {attempts} and {probes}{fixed}.")
 }
 
-/// Returns the numbers by the origin of their values, and what they explain.
+/// Returns the identified numbers by the origin of their values, the agreement of the outcomes, and the misfit.
 fn summary(found: &Identified) -> Vec<(String, String)> {
     let named = |from: ValueOrigin| {
         let of = found.unknowns.iter().filter(|one| one.from == from);
@@ -119,8 +118,9 @@ fn summary(found: &Identified) -> Vec<(String, String)> {
     let all =
         [ValueOrigin::Formula, ValueOrigin::Fit, ValueOrigin::Prior, ValueOrigin::Files].map(named);
     let compared = &found.compared;
-    let [before, after] = [|one: &Compared| one.before.1, |one: &Compared| one.after.1]
-        .map(|of| compared.iter().filter(|one| measured(one) == Some(of(one))).count());
+    let [before, after] = [|one: &Compared| one.before.1, |one: &Compared| one.after.1].map(|of| {
+        compared.iter().filter(|one| one.logged.ended.outcome() == Some(of(one))).count()
+    });
     let outcomes = format!(
         "{after} of {} attempts are simulated to end as measured; {before} with the files' numbers",
         compared.len()
@@ -154,7 +154,7 @@ fn unknown(one: &Unknown) -> Vec<Markup> {
         html! { (amount(prior)) },
         html! { @if identified { (amount(posterior)) } @else { "as before" } },
         html! {
-            // The data may even widen it.
+            // The fit may also widen the prior.
             @if share < 1.0 { (format!("{:.0} %", 100.0 * share)) } @else { "all of it" }
             div.track {
                 i.firm style={ "left:0;width:" (percent(share)) } {}
@@ -232,15 +232,6 @@ fn probe((file, friction): &(String, Friction)) -> Vec<String> {
     vec![file.clone(), coefficient, slides(true), slides(false)]
 }
 
-/// Returns the outcome on the robot; `None` of a probe.
-fn measured(one: &Compared) -> Option<Outcome> {
-    match one.logged.ended {
-        Ended::Inserted => Some(Outcome::Inserted),
-        Ended::Failed(class) => Some(Outcome::Failed(class)),
-        Ended::Probe => None,
-    }
-}
-
 /// Returns the reason why a simulated curve is shorter than the measured one, if it is.
 fn shorter(one: &Compared, simulated: &(Curves, Outcome), name: &str) -> Option<String> {
     let [all, end] = [&one.logged.curves, &simulated.0].map(|curves| curves.force.len());
@@ -252,7 +243,7 @@ fn shorter(one: &Compared, simulated: &(Curves, Outcome), name: &str) -> Option<
 }
 
 fn attempt(one: &Compared) -> Markup {
-    let (logged, measured) = (&one.logged, measured(one));
+    let (logged, measured) = (&one.logged, one.logged.ended.outcome());
     let ended = measured.map_or("probe".to_owned(), outcome);
     let off = measured.is_some_and(|measured| measured != one.after.1);
     html! {
@@ -269,7 +260,7 @@ fn attempt(one: &Compared) -> Markup {
             }
             div.curves {
                 @for (axis, name) in AXES.into_iter().enumerate() {
-                    @match sheet("the curves", PLOT, |area| draw(area, one, axis)) {
+                    @match render("the curves", PLOT, |area| draw(area, one, axis)) {
                         Ok(svg) => {
                             div role="img" aria-label={ "force along " (name) " over time" } { (PreEscaped(inline(&svg))) }
                         }
@@ -317,7 +308,7 @@ fn worse(compared: &[Compared]) -> Option<String> {
 }
 
 /// Draws one component of the force over time.
-fn draw(area: &Area<'_>, one: &Compared, axis: usize) -> Drawn {
+fn draw(area: &Area<'_>, one: &Compared, axis: usize) -> DrawResult {
     let Compared { logged, before, after } = one;
     let from = logged.touch.saturating_sub(AIR);
     let points = |curves: &Curves| -> Vec<(f64, f64)> {
@@ -328,17 +319,17 @@ fn draw(area: &Area<'_>, one: &Compared, axis: usize) -> Drawn {
     };
     let [measured, before, after] = [&logged.curves, &before.0, &after.0].map(points);
     let all = || measured.iter().chain(&before).chain(&after);
-    let force = around(all().map(|point| point.1), 0.16);
+    let force = padded_range(all().map(|point| point.1), 0.16);
     let (bottom, top) = (force.start, force.end);
     let y_label = format!("force along {} (N)", AXES[axis]);
-    let time = around(all().map(|point| point.0), 0.0);
+    let time = padded_range(all().map(|point| point.0), 0.0);
     let aside = 0.012 * (time.end - time.start);
     let mut chart = axes(area, "", ("time (s)", time), (&y_label, force))?;
     let phases = [(logged.touch, "search"), (logged.push, "push")];
     for (at, phase) in phases.into_iter().filter(|(at, _)| at + 1 < logged.curves.force.len()) {
         let time = at as f64 * STEP_S;
         dashed(&mut chart, [(time, bottom), (time, top)])?;
-        let style = words(15, INK, HPos::Left, VPos::Top);
+        let style = text_style(15, INK, HPos::Left, VPos::Top);
         label(&mut chart, (time + aside, top), (0, 0), phase, &style)?;
     }
     line(&mut chart, measured, MUTED.rgb().stroke_width(1), "")?;

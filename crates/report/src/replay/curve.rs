@@ -2,7 +2,7 @@
 
 use super::Film;
 use crate::ReportError;
-use crate::chart::{Area, Drawn, around, axes, legend, sheet};
+use crate::chart::{Area, DrawResult, axes, legend, padded_range, render};
 use crate::marks::{PointMark, line, points};
 use crate::theme::{BLUE, MUTED, RED};
 use insertion::outcome::Outcome;
@@ -10,10 +10,10 @@ use plotters::prelude::{Color, SeriesLabelPosition};
 
 /// Plots the contact force on the plug against the depth of its tip, from the search on, as an SVG.
 pub fn svg(film: &Film) -> Result<String, ReportError> {
-    sheet("force against depth", (760, 480), |area| draw(area, film))
+    render("force against depth", (760, 480), |area| draw(area, film))
 }
 
-fn draw(area: &Area<'_>, film: &Film) -> Drawn {
+fn draw(area: &Area<'_>, film: &Film) -> DrawResult {
     let recording = film.recording;
     let touched = recording.frames.iter().find(|frame| frame.force.norm() > 0.01);
     let from = touched.map_or(0.0, |frame| frame.time_s - 0.02);
@@ -26,9 +26,9 @@ fn draw(area: &Area<'_>, film: &Film) -> Drawn {
     let needed = film.task.success.depth / input::units::MM;
     let x = (
         "depth of the plug's tip below the socket's top (mm)",
-        around(path.iter().map(|p| p.0).chain([needed]), 0.06),
+        padded_range(path.iter().map(|p| p.0).chain([needed]), 0.06),
     );
-    let mut force = around(path.iter().map(|p| p.1).chain([0.0]), 0.1);
+    let mut force = padded_range(path.iter().map(|p| p.1).chain([0.0]), 0.1);
     force.start = 0.0;
     let top = force.end;
     let y = ("force plug to socket (N)", force);

@@ -1,4 +1,4 @@
-//! Data of a film for the page.
+//! Data of a film for its page.
 
 use super::Film;
 use crate::answer::words::{self, rounded};
@@ -79,7 +79,7 @@ pub(super) fn data(film: &Film) -> Value {
     })
 }
 
-/// Returns the section of the finger that is drawn between the roof of its tip and its jaw, about its frame.
+/// Returns the box that is drawn as the finger between the roof of its tip and its jaw, in the frame of the finger.
 fn beam(film: &Film) -> Value {
     let geoms = film.pad.geoms(film.task.grip.shoulder(), 1.0);
     let corners = geoms
@@ -90,12 +90,12 @@ fn beam(film: &Film) -> Value {
     json!({"half_mm": high.x, "thick_mm": high.y, "low_mm": high.z, "high_mm": high_mm})
 }
 
-/// Returns frames at least `every` seconds apart, and the last.
-pub(super) fn thinned(frames: &[Frame], every: f64) -> Vec<&Frame> {
+/// Returns frames at least `interval` seconds apart, and the last frame.
+pub(super) fn thinned(frames: &[Frame], interval: f64) -> Vec<&Frame> {
     let mut kept: Vec<&Frame> = Vec::new();
     for (i, frame) in frames.iter().enumerate() {
         // Tolerance for the rounding of summed steps.
-        let due = kept.last().is_none_or(|last| frame.time_s - last.time_s > every - 5e-7);
+        let due = kept.last().is_none_or(|last| frame.time_s - last.time_s > interval - 5e-7);
         if due || i + 1 == frames.len() {
             kept.push(frame);
         }

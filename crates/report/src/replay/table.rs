@@ -26,7 +26,7 @@ pub fn csv(recording: &Recording) -> String {
     out
 }
 
-/// Returns the phase at a time; after the end the last one.
+/// Returns the name of the phase at a time; after the end, that of the last phase.
 fn phase(recording: &Recording, time_s: f64) -> &str {
     let phases = &recording.trial.phases;
     let now = phases.iter().find(|phase| time_s <= phase.time_s + 1e-9).or(phases.last());

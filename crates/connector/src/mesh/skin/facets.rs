@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 /// Largest distance of the corners of a face from its plane, m.
 const FLAT: f64 = 4e-3 * MM;
 /// Smallest cosine between the normals of the triangles of a face.
-const ALIKE: f64 = 0.97;
-/// Height below which a triangle has no area, m.
+const MIN_COSINE: f64 = 0.97;
+/// Height below which a triangle counts as degenerate, m.
 pub const NARROW: f64 = 5e-4 * MM;
 
 /// Welded triangles, counter-clockwise from outside.
@@ -19,29 +19,29 @@ pub struct Facets {
     pub points: Vec<Point3<f64>>,
     /// Corner indices of the triangles.
     pub faces: Vec<[usize; 3]>,
-    /// Unit normals; zero for a triangle without area.
+    /// Unit normals; zero for a degenerate triangle.
     pub normals: Vec<Vector3<f64>>,
     /// Triangle across each edge (from corner i to i + 1), if there is exactly one.
     pub across: Vec<[Option<usize>; 3]>,
 }
 
 impl Facets {
-    /// Welds triangles, m.
+    /// Welds triangles, m, and finds the neighbours of each.
     pub fn new(triangles: &[Triangle]) -> Self {
         let (points, faces) = weld(triangles, 1.0);
         let normal = |face: &[usize; 3]| {
             let [a, b, c] = face.map(|corner| points[corner]);
-            let area = (b - a).cross(&(c - a));
+            let normal = (b - a).cross(&(c - a));
             let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
-            let flat = area.norm() < NARROW * longest;
-            if flat { Vector3::zeros() } else { area.normalize() }
+            let degenerate = normal.norm() < NARROW * longest;
+            if degenerate { Vector3::zeros() } else { normal.normalize() }
         };
         let normals = faces.iter().map(normal).collect();
         let mut sides: BTreeMap<[usize; 2], Option<usize>> = BTreeMap::new();
         for (number, face) in faces.iter().enumerate() {
             for i in 0..3 {
                 let side = [face[i], face[(i + 1) % 3]];
-                sides.entry(side).and_modify(|one| *one = None).or_insert(Some(number));
+                sides.entry(side).and_modify(|face| *face = None).or_insert(Some(number));
             }
         }
         let other = |face: &[usize; 3], i: usize| {
@@ -56,35 +56,35 @@ impl Facets {
         self.faces[face].map(|corner| self.points[corner])
     }
 
-    fn area(&self, face: usize) -> f64 {
+    fn double_area(&self, face: usize) -> f64 {
         let [a, b, c] = self.corners(face);
         (b - a).cross(&(c - a)).norm()
     }
 
-    /// Returns the flat faces, each as its triangles with the one first whose plane is that of the face, and the
-    /// number of its face for each triangle.
+    /// Returns the triangles of each flat face, the first of which defines its plane, and the index of the flat face of
+    /// each triangle.
     pub fn flats(&self) -> (Vec<Vec<usize>>, Vec<usize>) {
         let mut order: Vec<usize> = (0..self.faces.len()).collect();
-        order.sort_by(|a, b| self.area(*b).total_cmp(&self.area(*a)));
-        let mut of = vec![usize::MAX; self.faces.len()];
+        order.sort_by(|a, b| self.double_area(*b).total_cmp(&self.double_area(*a)));
+        let mut flat_of = vec![usize::MAX; self.faces.len()];
         let mut flats: Vec<Vec<usize>> = Vec::new();
         for first in order {
-            if of[first] != usize::MAX {
+            if flat_of[first] != usize::MAX {
                 continue;
             }
             let (normal, origin) = (self.normals[first], self.corners(first)[0]);
             let belongs = |face: usize| {
                 let near = |p: Point3<f64>| (p - origin).dot(&normal).abs() < FLAT;
                 let own = self.normals[face];
-                (own == Vector3::zeros() || own.dot(&normal) > ALIKE)
+                (own == Vector3::zeros() || own.dot(&normal) > MIN_COSINE)
                     && self.corners(face).into_iter().all(near)
             };
-            of[first] = flats.len();
+            flat_of[first] = flats.len();
             let (mut flat, mut done) = (vec![first], 0);
             while done < flat.len() {
                 for next in self.across[flat[done]].into_iter().flatten() {
-                    if of[next] == usize::MAX && belongs(next) {
-                        of[next] = flats.len();
+                    if flat_of[next] == usize::MAX && belongs(next) {
+                        flat_of[next] = flats.len();
                         flat.push(next);
                     }
                 }
@@ -92,7 +92,7 @@ impl Facets {
             }
             flats.push(flat);
         }
-        (flats, of)
+        (flats, flat_of)
     }
 
     /// Returns the sets of triangles that are connected by edges.

@@ -64,8 +64,8 @@ impl Curves {
         }
     }
 
-    /// Returns the commanded path, or the measured one if that was not recorded, with the tilt of the first point.
-    pub fn path(&self) -> Option<Trajectory> {
+    /// Returns the commanded trajectory, or the measured one if none was recorded, with the tilt of the first point.
+    pub fn trajectory(&self) -> Option<Trajectory> {
         let commanded = self.target.as_ref().unwrap_or(&self.tcp);
         let tilt = self.tilt.first().copied().unwrap_or(0.0);
         let place = |(i, position): (usize, &Vector3<f64>)| {
@@ -92,7 +92,7 @@ impl Curves {
         let target = self.target.as_ref()?;
         let speeds: Vec<f64> =
             target.windows(2).map(|pair| (pair[0].z - pair[1].z) / STEP_S).collect();
-        let before = self.path().map_or(0, |path| (path.push_start() / STEP_S) as usize);
+        let before = self.trajectory().map_or(0, |path| (path.push_start() / STEP_S) as usize);
         let slowed = |i: &usize| speeds[*i] - speeds[*i + 1];
         let all = 0..before.min(speeds.len().saturating_sub(1));
         let most = all.max_by(|a, b| slowed(a).total_cmp(&slowed(b)))?;

@@ -1,4 +1,4 @@
-//! Simulation of logged attempts along their commanded paths, and the data that are compared.
+//! Simulation of logged attempts along their commanded trajectories, and the data that are compared.
 
 use super::curves::{Curves, STEP_S};
 use super::log::{Ended, Log, LogSample, Run};
@@ -47,7 +47,7 @@ pub struct Logged {
     pub offset: f64,
     pub ended: Ended,
     pub curves: Curves,
-    path: Trajectory,
+    trajectory: Trajectory,
     /// Index of the touch, the first compared point.
     pub touch: usize,
     /// Index of the beginning of the push.
@@ -65,23 +65,23 @@ impl Logged {
         let log = Log::new(&run.log.file, run.log.samples[from..].to_vec()).ok()?;
         let curves = Curves::of_log(&log, bias(&run.log));
         let since = touched_s - log.samples[0].time_s;
-        let path = curves.path()?;
+        let trajectory = curves.trajectory()?;
         Some(Logged {
             file: run.log.file.clone(),
             design: run.design.clone(),
             offset: run.offset,
             ended: run.ended,
             touch: (since / STEP_S) as usize,
-            push: (path.push_start() / STEP_S) as usize,
+            push: (trajectory.push_start() / STEP_S) as usize,
             curves,
-            path,
+            trajectory,
         })
     }
 
-    /// Returns the attempt with the measured path of the TCP as the commanded one.
+    /// Returns the attempt with the measured trajectory of the TCP as the commanded one.
     pub fn along_measured(&self) -> Option<Self> {
         let curves = Curves { target: None, ..self.curves.clone() };
-        Some(Logged { path: curves.path()?, curves, ..self.clone() })
+        Some(Logged { trajectory: curves.trajectory()?, curves, ..self.clone() })
     }
 
     /// Returns the points of each datum.
@@ -167,8 +167,8 @@ impl Identification<'_> {
             let Specimen { task, finger, .. } = &specimen;
             let rig = evaluator.engine.rig(task, robot, finger, step_factor)?;
             let grasp = Grasp { stop: self.stop, ..Grasp::of(&specimen.finger) };
-            let paths: Vec<&Trajectory> = alike.iter().map(|logged| &logged.path).collect();
-            let followed = rig.follow(grasp, Course::Trajectories(&paths), STEP_S);
+            let trajectories: Vec<_> = alike.iter().map(|logged| &logged.trajectory).collect();
+            let followed = rig.follow(grasp, Course::Trajectories(&trajectories), STEP_S);
             all.extend(followed.into_iter().map(|(trial, samples)| {
                 (Curves::of_samples(&samples, self.tool_mass), trial.outcome)
             }));

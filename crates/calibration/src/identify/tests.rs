@@ -249,10 +249,11 @@ fn an_attempt_along_its_own_path_is_the_same_attempt() {
     for offset in [0.0, 8.0 * MM] {
         let (trial, samples) = rig.hold(Grasp::of(&finger)).sampled(offset, Some(STEP_S));
         let measured = Curves::of_samples(&samples, 0.0);
-        let path = measured.path().unwrap();
-        let push = path.push_start();
-        assert!(push > 0.1 && push < path.duration(), "{push}");
-        let mut followed = rig.follow(Grasp::of(&finger), Course::Trajectories(&[&path]), STEP_S);
+        let trajectory = measured.trajectory().unwrap();
+        let push = trajectory.push_start();
+        assert!(push > 0.1 && push < trajectory.duration(), "{push}");
+        let all = [&trajectory];
+        let mut followed = rig.follow(Grasp::of(&finger), Course::Trajectories(&all), STEP_S);
         let (again, samples) = followed.remove(0);
         assert_eq!(again.outcome, trial.outcome);
         let replayed = Curves::of_samples(&samples, 0.0);

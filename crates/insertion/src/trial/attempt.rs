@@ -163,6 +163,7 @@ impl<'a> Attempt<'a> {
         phases.try_for_each(|phase| self.run_phase(phase))
     }
 
+    /// Runs a phase to its end and records its end state.
     fn run_phase(&mut self, phase: &Phase) -> Result<(), Stop> {
         self.enter_stage(phase.stage);
         let begun = self.begun.take().unwrap_or(Begun { motion: self.motion(phase), steps: 0 });
@@ -269,6 +270,7 @@ impl<'a> Attempt<'a> {
         self.run_move(Move::new(self.target, to, speed), self.rest_time())
     }
 
+    /// Simulates a step towards the target and updates the monitors.
     fn step(&mut self) -> Result<(), Stop> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(Stop::Interrupted);
@@ -316,6 +318,7 @@ impl<'a> Attempt<'a> {
         points.map(|point| point.transformed(&self.socket))
     }
 
+    /// Returns the contact force of the socket on the plug and its latch.
     fn socket_force(&self) -> ContactForce {
         let mut sum = self.world.contact(self.cell.socket, self.cell.plug);
         if let Some(latch) = self.cell.latch {
@@ -326,6 +329,7 @@ impl<'a> Attempt<'a> {
         sum
     }
 
+    /// Records a frame if the recorder is due for one.
     fn record(&mut self, dt: f64) {
         if !self.recorder.as_mut().is_some_and(|recorder| recorder.is_due(dt)) {
             return;

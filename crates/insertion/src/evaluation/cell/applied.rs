@@ -159,10 +159,10 @@ impl Evaluator {
     /// Returns the rows of the cell that apply to a task, by default to the first task, with their nominal values.
     pub(in crate::evaluation) fn rows<'a>(
         &'a self,
-        of: Option<&'a Template>,
+        template: Option<&'a Template>,
     ) -> Vec<(&'a Parameter, f64)> {
         let Some(cell) = &self.cell else { return Vec::new() };
-        let task = of.or(self.templates.first()).map_or("", |template| &template.task.name);
+        let task = template.or(self.templates.first()).map_or("", |template| &template.task.name);
         cell.of(task).map(|row| (row, row.middle())).collect()
     }
 

@@ -99,30 +99,27 @@ fn success_rate(drawn: &[Insertion], confidence: f64, race: Option<&Race>) -> Su
 
 /// Returns the ranges of the windows of all draws. Drawn offsets are ignored, since a window spans the offsets.
 fn robust_range(drawn: &[Insertion], settings: &RobustSettings) -> RobustRange {
-    let window = |&(rig, grasp, _): &Insertion| {
-        let found = tolerance::evaluate_in(rig, grasp, settings.search);
-        let diverged = found.window.nominal == Outcome::Diverged;
-        ((!diverged).then(|| found.window.range_mm()), found.trials)
-    };
-    let found: Vec<(Option<f64>, u32)> = drawn.par_iter().map(window).collect();
-    let ranges_mm: Vec<f64> = found.iter().filter_map(|(range, _)| *range).collect();
+    let window = |&(rig, grasp, _): &Insertion| tolerance::evaluate_in(rig, grasp, settings.search);
+    let found: Vec<Evaluation> = drawn.par_iter().map(window).collect();
+    let valid = found.iter().filter(|draw| draw.window.nominal != Outcome::Diverged);
+    let ranges_mm: Vec<f64> = valid.map(|draw| draw.window.range_mm()).collect();
     let mut robust = RobustRange {
         diverged: (found.len() - ranges_mm.len()) as u32,
         ranges_mm,
         value_mm: None,
-        trials: found.iter().map(|(_, trials)| trials).sum(),
+        trials: found.iter().map(|draw| draw.trials).sum(),
     };
     robust.value_mm = statistic(&robust, settings.statistic);
     robust
 }
 
 /// Returns the statistic, mm; `None` with fewer than two ranges.
-fn statistic(robust: &RobustRange, of: Statistic) -> Option<f64> {
+fn statistic(robust: &RobustRange, statistic: Statistic) -> Option<f64> {
     let count = robust.ranges_mm.len();
     if count < 2 {
         return None;
     }
-    Some(match of {
+    Some(match statistic {
         Statistic::MeanMinusSd(factor) => robust.mean_mm() - factor * robust.sd_mm(),
         Statistic::LowerTail(share) => {
             let tail = ((share * count as f64).round() as usize).max(1);

@@ -14,6 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub const FRICTION_SHARE: f64 = 0.1;
 /// Largest shift of the start, m.
 pub const START_SHIFT: f64 = 0.02 * MM;
+/// Name of the stream of random numbers.
 const PURPOSE: &str = "repeat";
 /// Largest distance from an end of a window at which its band is searched for, in grid steps.
 const REACH: OffsetStep = 20;

@@ -101,8 +101,8 @@ pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
     }
     if subject.emulator.error_mm > 0.2 * scale {
         lines.push(format!(
-            "the emulator deviates from held-out simulations by {:.1} mm, more than a fifth of their \
-             mean: the predictions rest on the measurements; more --simulations may help",
+            "the emulator misses fresh simulations by {:.1} mm, more than a fifth of their mean: the \
+             predictions rest on the measurements; more --simulations may help",
             subject.emulator.error_mm
         ));
     }

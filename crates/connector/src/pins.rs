@@ -81,7 +81,7 @@ impl Pins {
         };
         let bars = between(1, x).into_iter().map(|x| [x, y]);
         let webs = self
-            .middles(1)
+            .centres(1)
             .flat_map(|at| between(0, y).into_iter().map(move |y| [[at - half, at + half], y]));
         let part = |(i, [x, y]): (usize, [[f64; 2]; 2])| block(&format!("plate {i}"), [x, y, z]);
         (1..).zip(bars.chain(webs)).map(part).collect()

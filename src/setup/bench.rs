@@ -162,7 +162,7 @@ impl<'a> CalibrationContext<'a> {
         let subjects = subjects.map_err(|error| match error {
             CalibrationError::NoFit(..) => Failure::running(error.to_string()),
             CalibrationError::Impossible(_) => Failure::input(error),
-            CalibrationError::Measured(..) => Failure::usage(format!("{measurements}: {error}")),
+            CalibrationError::Outside(..) => Failure::usage(format!("{measurements}: {error}")),
         })?;
         let layout = Layout::new(&subjects);
         Ok((subjects, layout))

@@ -6,7 +6,7 @@ use super::request::TaskSource;
 use super::task::read_task;
 use crate::failure::Failure;
 use calibration::experiments::{self, Experiment};
-use calibration::subject::whole;
+use calibration::subject::completed;
 use input::files::{LARGEST_INPUT, read_text};
 use input::shipped::{COMMERCIAL, MEASUREMENTS, Source, TASKS};
 use insertion::evaluation::cell::Priors;
@@ -137,7 +137,7 @@ pub fn check(
         return Err(Failure::in_file(file, problem));
     }
     for line in own() {
-        whole(space, template, line).map_err(|error| Failure::in_file(file, error))?;
+        completed(space, template, line).map_err(|error| Failure::in_file(file, error))?;
     }
     Ok(())
 }

@@ -19,6 +19,7 @@ use study::LeaveOneOut;
 /// Joint draws per sample of the posterior.
 const DRAWS: usize = 3;
 
+/// Coordinate of a sample: a parameter of the simulation.
 #[derive(Debug, Clone)]
 pub struct Coordinate {
     pub parameter: Parameter,
@@ -30,7 +31,7 @@ pub struct Coordinate {
 #[derive(Debug, Clone)]
 pub struct Layout {
     pub coordinates: Vec<Coordinate>,
-    /// The coordinates of each task's parameters, in its simulation's order.
+    /// Coordinates of the parameters of each task, in the order of its simulation.
     of_task: Vec<Vec<usize>>,
 }
 
@@ -65,9 +66,10 @@ impl Layout {
     }
 }
 
+/// Result of a calibration for one task.
 #[derive(Debug, Clone)]
 pub struct TaskResult {
-    /// Each finger of the space, in the subject's order.
+    /// Prediction of each finger of the space, in the order of the subject.
     pub predictions: Vec<Prediction>,
     pub left_out: Vec<LeftOut>,
 }
@@ -80,7 +82,7 @@ pub struct Prediction {
     pub range_mm: f64,
     pub low_mm: f64,
     pub high_mm: f64,
-    /// Probability of its being the best of the space, 0 to 1.
+    /// Probability that it is the best finger of the space, 0 to 1.
     pub probability_best: f64,
     /// Range by simulation alone, averaged over the posterior.
     pub simulated_mm: f64,
@@ -88,6 +90,7 @@ pub struct Prediction {
     pub failure_positive: Option<FailureClass>,
 }
 
+/// Result of a calibration.
 pub struct Calibration {
     pub layout: Layout,
     pub posterior: Vec<Vec<f64>>,
@@ -105,10 +108,10 @@ impl Calibration {
             let fingers: Vec<usize> = (0..subject.of_space).collect();
             let ranges = predict(&benches[i], &posterior, &fingers, IntervalKind::Truth);
             // After cancellation the result is not used.
-            let goes_on = |_: &&Vec<f64>| !settings.stop.load(Ordering::SeqCst);
-            let of =
+            let running = |_: &&Vec<f64>| !settings.stop.load(Ordering::SeqCst);
+            let draw =
                 |state| draws(&benches[i], slice::from_ref(state), &fingers, DRAWS, &mut random);
-            let drawn: Vec<Vec<f64>> = posterior.iter().take_while(goes_on).flat_map(of).collect();
+            let drawn: Vec<_> = posterior.iter().take_while(running).flat_map(draw).collect();
             let prediction = |(finger, (range, probability_best)): (usize, (Predicted, f64))| {
                 let [failure_negative, failure_positive] = subject.failures(finger);
                 Prediction {
@@ -151,12 +154,12 @@ fn shares_best(drawn: &[Vec<f64>], fingers: usize) -> Vec<f64> {
     counts.iter().map(|&count| f64::from(count) / drawn.len().max(1) as f64).collect()
 }
 
-/// Measured finger and the range of one more measurement as predicted without it, by the keys of `--json`.
+/// Leave-one-out prediction of the range of another measurement of a finger, by the keys of `--json`.
 #[derive(Debug, Clone, Serialize)]
 pub struct LeftOut {
     #[serde(flatten)]
     pub design: Design,
-    /// Its measured range, mm: the mean, if it was measured several times.
+    /// Measured range of the finger, mm: the mean, if it was measured several times.
     pub measured_mm: f64,
     pub range_mm: f64,
     pub low_mm: f64,
@@ -164,15 +167,16 @@ pub struct LeftOut {
 }
 
 impl LeftOut {
+    /// Returns whether the predicted interval contains the measured range.
     pub fn inside(&self) -> bool {
         (self.low_mm..=self.high_mm).contains(&self.measured_mm)
     }
 }
 
 impl TaskResult {
-    /// Returns the accuracy of the leave-one-out predictions, with the error of the emulator. A finger with a
-    /// measured range of 0 has no deviation in percent.
-    pub fn trust(&self, emulator_error_mm: f64) -> LeaveOneOut {
+    /// Returns the accuracy of the leave-one-out predictions, with the error of the emulator. Fingers with a measured
+    /// range of 0 are left out of the mean deviation in percent.
+    pub fn accuracy(&self, emulator_error_mm: f64) -> LeaveOneOut {
         let left_out = &self.left_out;
         let wide = left_out.iter().filter(|one| one.measured_mm > 0.0);
         let percent =
@@ -190,9 +194,9 @@ impl TaskResult {
 }
 
 /// Largest number of leave-one-out calibrations.
-const MOST_FOLDS: usize = 20;
+const MAX_FOLDS: usize = 20;
 
-/// Predicts the measured fingers of one bench without them, at most `MOST_FOLDS` times.
+/// Predicts each measured finger of a bench from the measurements of the others, in at most `MAX_FOLDS` calibrations.
 fn leave_one_out(
     (benches, task): (&[Bench<'_>], usize),
     designs: &[Design],
@@ -202,7 +206,7 @@ fn leave_one_out(
     let known = || benches[task].observations.iter().filter(|one| !one.at_least);
     let fingers: BTreeSet<usize> = known().map(|one| one.finger).collect();
     let fingers: Vec<usize> = fingers.into_iter().collect();
-    let size = fingers.len().div_ceil(MOST_FOLDS).max(1);
+    let size = fingers.len().div_ceil(MAX_FOLDS).max(1);
     let (count, folds) = (AtomicUsize::new(0), fingers.len().div_ceil(size));
     let fold = |fold: &[usize]| -> Vec<LeftOut> {
         let mut benches = benches.to_vec();

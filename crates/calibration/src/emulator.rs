@@ -13,30 +13,34 @@ use insertion::space::{Design, Space, Variable};
 use rayon::prelude::*;
 use std::sync::atomic::Ordering;
 
-/// One simulation in this many is held out to measure the error.
-const FRESH: usize = 8;
-/// A window's ends stand on a grid of 0.1 mm: the standard deviation of its width's rounding.
+/// One of this many simulations is held out to measure the error.
+const HELD_OUT: usize = 8;
+/// Standard deviation of the rounding of a range, mm: the ends of a window are on a grid of 0.1 mm.
 const ROUNDING_MM: f64 = 0.04;
 /// Evaluations of the likelihood per start of the fit.
 const EVALUATIONS: usize = 30;
 
+/// Result of a simulation.
 #[derive(Debug, Clone)]
-struct Run {
-    /// Shares of the space, then of the parameters' priors.
+struct Point {
+    /// Position of the design in the unit cube of the space, then quantile levels of the priors of the parameters.
     at: Vec<f64>,
     range_mm: f64,
     failures: [Option<FailureClass>; 2],
 }
 
+/// Emulator of the range on one task.
 pub struct Emulator {
     process: Gp,
     /// Mean range over the simulations, mm.
     pub mean_mm: f64,
     sd_mm: f64,
-    runs: Vec<Run>,
+    points: Vec<Point>,
+    /// Number of simulations to which it was fitted.
     pub simulations: usize,
-    /// Simulations its error was measured on.
-    pub fresh: usize,
+    /// Number of held-out simulations.
+    pub held_out: usize,
+    /// Root mean square error on the held-out simulations, mm.
     pub error_mm: f64,
 }
 
@@ -44,11 +48,11 @@ pub struct Emulator {
 pub enum CalibrationError {
     #[error(transparent)]
     Impossible(#[from] Impossible),
-    #[error("{0}: no process goes through the {1} simulations; ask for more")]
+    #[error("{0}: no Gaussian process fits the {1} simulations; increase --simulations")]
     NoFit(String, usize),
-    /// The measured finger of a line does not lie in the space.
+    /// Measured finger outside of the space: its line and the reason.
     #[error("line {0}: {1}")]
-    Measured(u64, String),
+    Outside(u64, String),
 }
 
 impl Emulator {
@@ -64,7 +68,7 @@ impl Emulator {
         let dimension = space.parameters.len() + simulation.parameters.len();
         let points: Vec<Vec<f64>> =
             SobolSequence::new(dimension, seed, 0, "emulator").take(count).collect();
-        let simulations = count - count / FRESH;
+        let simulations = count - count / HELD_OUT;
         let task = &simulation.template.task.name;
         let no_fit = || CalibrationError::NoFit(task.clone(), simulations);
         let run = |at: Vec<f64>| {
@@ -74,34 +78,32 @@ impl Emulator {
             }
             let (of_space, shares) = at.split_at(space.parameters.len());
             let value = |(parameter, share): (&Variable, &f64)| {
-                (
-                    parameter.key.to_string(),
-                    parameter.low + share * (parameter.high - parameter.low),
-                )
+                let Variable { key, low, high, .. } = parameter;
+                (key.to_string(), low + share * (high - low))
             };
             let design = Design(space.parameters.iter().zip(of_space).map(value).collect());
             let evaluation = simulation.window(&design, shares)?;
             done();
             let window = &evaluation.window;
             let class = |end: Option<Outcome>| FailureClass::try_from(end?.failure()?).ok();
-            Ok(Run {
+            Ok(Point {
                 range_mm: window.range_mm(),
                 failures: [class(window.end_negative), class(window.end_positive)],
                 at,
             })
         };
-        let runs =
-            points.into_par_iter().map(run).collect::<Result<Vec<Run>, CalibrationError>>()?;
+        let points =
+            points.into_par_iter().map(run).collect::<Result<Vec<Point>, CalibrationError>>()?;
         let stopped = || simulation.stop.load(Ordering::SeqCst);
-        Emulator::fitted(runs, simulations, &stopped).ok_or_else(no_fit)
+        Emulator::fitted(points, simulations, &stopped).ok_or_else(no_fit)
     }
 
-    fn fitted(runs: Vec<Run>, simulations: usize, stopped: &dyn Fn() -> bool) -> Option<Self> {
-        let (known, fresh) = runs.split_at(simulations.min(runs.len()));
-        let moments = Moments::of(known.iter().map(|run| run.range_mm));
+    fn fitted(points: Vec<Point>, simulations: usize, stopped: &dyn Fn() -> bool) -> Option<Self> {
+        let (fitted, held_out) = points.split_at(simulations.min(points.len()));
+        let moments = Moments::of(fitted.iter().map(|point| point.range_mm));
         let (mean_mm, sd_mm) = (moments.mean, moments.deviation().max(ROUNDING_MM));
-        let x: Vec<Vec<f64>> = known.iter().map(|run| run.at.clone()).collect();
-        let y: Vec<f64> = known.iter().map(|run| (run.range_mm - mean_mm) / sd_mm).collect();
+        let x: Vec<Vec<f64>> = fitted.iter().map(|point| point.at.clone()).collect();
+        let y: Vec<f64> = fitted.iter().map(|point| (point.range_mm - mean_mm) / sd_mm).collect();
         let floor = (ROUNDING_MM / sd_mm).powi(2);
         let effort = FitEffort { evaluations: EVALUATIONS, restarts: true };
         let process = Gp::new(&x, &y, floor, &fit_until(&x, &y, floor, None, (effort, stopped)))?;
@@ -110,14 +112,14 @@ impl Emulator {
             mean_mm,
             sd_mm,
             simulations,
-            fresh: fresh.len(),
+            held_out: held_out.len(),
             error_mm: 0.0,
-            runs: Vec::new(),
+            points: Vec::new(),
         };
-        let square = |run: &Run| (emulator.range_mm(&run.at) - run.range_mm).powi(2);
-        let squares: f64 = fresh.iter().map(square).sum();
-        emulator.error_mm = (squares / (fresh.len().max(1)) as f64).sqrt().max(ROUNDING_MM);
-        emulator.runs = runs;
+        let square = |point: &Point| (emulator.range_mm(&point.at) - point.range_mm).powi(2);
+        let squares: f64 = held_out.iter().map(square).sum();
+        emulator.error_mm = (squares / held_out.len().max(1) as f64).sqrt().max(ROUNDING_MM);
+        emulator.points = points;
         Some(emulator)
     }
 
@@ -128,19 +130,20 @@ impl Emulator {
 
     /// Returns the most frequent failure class at each end among the `count` simulations nearest to a design.
     pub fn failures(&self, design: &[f64], count: usize) -> [Option<FailureClass>; 2] {
-        let distance = |run: &Run| distance2(&run.at, design);
-        let mut nearest: Vec<&Run> = self.runs.iter().collect();
+        let distance = |point: &Point| distance2(&point.at, design);
+        let mut nearest: Vec<_> = self.points.iter().collect();
         nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        [0, 1].map(|end| most(nearest.iter().take(count).filter_map(|run| run.failures[end])))
+        nearest.truncate(count);
+        [0, 1].map(|end| most_frequent(nearest.iter().filter_map(|point| point.failures[end])))
     }
 }
 
-/// Returns the most frequent class, of equally frequent ones the lowest.
-pub(super) fn most(classes: impl Iterator<Item = FailureClass>) -> Option<FailureClass> {
+/// Returns the most frequent class; among equally frequent classes, the lowest.
+pub(super) fn most_frequent(classes: impl Iterator<Item = FailureClass>) -> Option<FailureClass> {
     let mut counts = [0_usize; 4];
     classes.for_each(|class| counts[usize::from(class.number()) - 1] += 1);
-    let met = FailureClass::ALL.into_iter().zip(counts).filter(|(_, count)| *count > 0);
-    met.rev().max_by_key(|(_, count)| *count).map(|(class, _)| class)
+    let occurring = FailureClass::ALL.into_iter().zip(counts).filter(|(_, count)| *count > 0);
+    occurring.rev().max_by_key(|(_, count)| *count).map(|(class, _)| class)
 }
 
 #[cfg(test)]
@@ -148,17 +151,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_error_on_fresh_simulations_is_what_the_process_leaves() {
+    fn the_error_is_measured_on_held_out_simulations() {
         let range = |at: &[f64]| 5.0 + 2.0 * at[0] - 3.0 * at[1] * at[2];
-        let runs: Vec<Run> = SobolSequence::new(3, 0, 0, "test")
+        let points: Vec<Point> = SobolSequence::new(3, 0, 0, "test")
             .take(60)
-            .map(|at| Run {
+            .map(|at| Point {
                 range_mm: range(&at),
                 failures: [Some(FailureClass::Jammed), None],
                 at,
             })
             .collect();
-        let emulator = Emulator::fitted(runs, 52, &|| false).unwrap();
+        let emulator = Emulator::fitted(points, 52, &|| false).unwrap();
         assert!(emulator.error_mm < 0.15, "{}", emulator.error_mm);
         let at = [0.3, 0.6, 0.2];
         assert!((emulator.range_mm(&at) - range(&at)).abs() < 0.3);

@@ -1,7 +1,7 @@
-//! One task: its fingers, their simulated ranges and their measurements.
+//! Subject of a calibration: a task with its fingers, their simulated ranges and their measurements.
 
 use super::bench::{Bench, Observation, Simulator};
-use super::emulator::{CalibrationError, Emulator, most};
+use super::emulator::{CalibrationError, Emulator, most_frequent};
 use super::process::StiffnessPoint;
 use super::simulation::Simulation;
 use crate::experiments::Experiment;
@@ -14,30 +14,32 @@ use insertion::space::{Design, Space, Variable, is_of_task};
 use parameters::Parameter;
 use std::collections::BTreeSet;
 
-/// Largest space of which all fingers are predicted; of a larger one a designed set is.
-const MOST_FINGERS: u64 = 4000;
+/// Largest number of fingers of a space that are all predicted; of a larger space, a designed set is predicted.
+const MAX_FINGERS: u64 = 4000;
 /// Number of predicted strategies, over all printed fingers.
 const STRATEGIES: usize = 500;
 /// Number of nearest measured fingers from which the failure of a finger is predicted.
-const NEAR: usize = 3;
+const NEAREST: usize = 3;
 
+/// Task with its fingers and measurements.
 pub struct Subject {
     pub task: String,
-    /// The fingers: first those of the space, then other measured or published ones.
+    /// Fingers: first those of the space, then other measured or published ones.
     pub designs: Vec<Design>,
+    /// Number of fingers of the space.
     pub of_space: usize,
     pub emulator: Emulator,
-    /// Measurements on this task, each with the number of its finger.
+    /// Measurements on this task, each with the index of its finger.
     pub experiments: Vec<(usize, Experiment)>,
     places: Vec<StiffnessPoint>,
-    /// Shares of the space, as the emulator takes them.
+    /// Position of each finger in the unit cube of the space, for the emulator.
     shares: Vec<Vec<f64>>,
     /// Parameters of its simulation, in order.
     pub parameters: Vec<Parameter>,
 }
 
 impl Subject {
-    /// Returns the fingers of a space, those measured and those of `more` on a task.
+    /// Collects the fingers of a space, the measured fingers and those of `more`.
     pub fn new(
         simulation: &Simulation<'_>,
         space: &Space,
@@ -48,7 +50,7 @@ impl Subject {
         let Simulation { evaluator, template, .. } = simulation;
         let task = template.task.name.clone();
         let lines = experiments.iter().filter(|line| line.task == task);
-        let lines = lines.map(|line| Ok((whole(space, template, line)?, line)));
+        let lines = lines.map(|line| Ok((completed(space, template, line)?, line)));
         let lines = lines.collect::<Result<Vec<_>, CalibrationError>>()?;
         let mut designs = fingers(space);
         designs.extend(strategies(space, lines.iter().map(|(design, _)| design)));
@@ -70,7 +72,7 @@ impl Subject {
         };
         let stiffness =
             designs.iter().map(stiffness).collect::<Result<Vec<_>, CalibrationError>>()?;
-        let shares = designs.iter().map(|design| shares(space, design)).collect();
+        let shares = designs.iter().map(|design| space.shares(design)).collect();
         let places = standardised(&stiffness, of_space);
         let parameters = simulation.parameters.iter().copied().cloned().collect();
         Ok(Subject { task, designs, of_space, emulator, experiments, places, shares, parameters })
@@ -84,7 +86,7 @@ impl Subject {
         self.experiments.iter().map(|(number, _)| *number).collect()
     }
 
-    /// Returns the designs whose finger was printed: they differ from a measured one by numbers of the task alone.
+    /// Returns the designs whose finger was printed, which differ from a measured one only in numbers of the task.
     pub fn printed(&self) -> BTreeSet<usize> {
         let shape = |number: usize| shape(&self.designs[number]);
         let known: Vec<Design> = self.measured().into_iter().map(shape).collect();
@@ -93,13 +95,13 @@ impl Subject {
 
     /// Returns the measured fingers without a range: they insert from no start.
     pub fn not_measurable(&self) -> BTreeSet<usize> {
-        let told = |number: &usize| {
+        let has_range = |number: &usize| {
             self.experiments.iter().any(|(of, line)| of == number && line.extent().is_some())
         };
-        self.measured().into_iter().filter(|number| !told(number)).collect()
+        self.measured().into_iter().filter(|number| !has_range(number)).collect()
     }
 
-    /// Returns its bench; `parameters` are the coordinates of its parameters, `first` is the first one of its
+    /// Returns the bench of the task, with the coordinates of its parameters and the first coordinate of its
     /// hyperparameters.
     pub fn bench(&self, parameters: Vec<usize>, first: usize) -> Bench<'_> {
         let observation = |&(finger, ref line): &(usize, Experiment)| {
@@ -125,11 +127,11 @@ impl Subject {
         };
         let mut nearest: Vec<_> = self.experiments.iter().collect();
         nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let simulated = self.emulator.failures(&self.shares[finger], 4 * NEAR);
+        let simulated = self.emulator.failures(&self.shares[finger], 4 * NEAREST);
         [0, 1].map(|end| {
             let class = |line: &Experiment| [line.failure_negative, line.failure_positive][end];
             let known = nearest.iter().filter_map(|(_, line)| class(line));
-            most(known.take(NEAR)).or(simulated[end])
+            most_frequent(known.take(NEAREST)).or(simulated[end])
         })
     }
 }
@@ -142,12 +144,12 @@ impl Simulator for Subject {
     }
 }
 
-/// Returns the designs of a space, or of a large one a designed set.
+/// Returns all designs of a space, or a designed set of a large space.
 fn fingers(space: &Space) -> Vec<Design> {
     // Reversed, so that the first parameter changes first.
     let grid = Grid::new(space.levels().into_iter().rev().collect());
-    if grid.size() > MOST_FINGERS {
-        return designed(space, MOST_FINGERS as usize / 2, "fingers");
+    if grid.size() > MAX_FINGERS {
+        return designed(space, MAX_FINGERS as usize / 2, "fingers");
     }
     let design = |point: GridPoint| space.design(&GridPoint(point.0.into_iter().rev().collect()));
     grid.points().map(design).collect()
@@ -172,7 +174,7 @@ fn strategies<'a>(space: &Space, printed: impl Iterator<Item = &'a Design>) -> V
     fingers.iter().flat_map(|shape| set.iter().cloned().map(move |one| with(shape, one))).collect()
 }
 
-/// Returns a design without its numbers of the task.
+/// Returns a design without numbers of the task.
 fn shape(design: &Design) -> Design {
     let of_finger = design.0.iter().filter(|(key, _)| !is_of_task(key));
     Design(of_finger.map(|(key, value)| (key.clone(), *value)).collect())
@@ -185,18 +187,18 @@ fn designed(space: &Space, count: usize, purpose: &str) -> Vec<Design> {
     set.map(|shares| space.design(&grid.cell(&shares))).collect()
 }
 
-/// Returns a measured design with all parameters of the space; missing ones are as in the task file.
-pub fn whole(
+/// Returns a measured design with all parameters of the space; missing values are those of the task file.
+pub fn completed(
     space: &Space,
     template: &Template,
     line: &Experiment,
 ) -> Result<Design, CalibrationError> {
     let name = &space.name;
-    let fault = |words: String| Err(CalibrationError::Measured(line.line, words));
+    let fault = |words: String| Err(CalibrationError::Outside(line.line, words));
     let known = |key: &String| space.parameters.iter().any(|parameter| parameter.key == *key);
     if let Some(key) = line.design.0.keys().find(|key| !known(key)) {
         return fault(format!(
-            "{key}: the space `{name}` has no such parameter; give --space FILE with it"
+            "{key}: not a parameter of the space `{name}`; give a space that has it with --space FILE"
         ));
     }
     let mut design = Design::default();
@@ -205,8 +207,8 @@ pub fn whole(
         let value = value.unwrap_or((low + high) / 2.0);
         if !(*low..=*high).contains(&value) {
             return fault(format!(
-                "{key}: {value} lies outside {low} .. {high} of the space `{name}`; give a wider \
-                 --space FILE"
+                "{key}: {value} is not within {low} .. {high}, the bounds of the space `{name}`; give a \
+                 wider space with --space FILE"
             ));
         }
         design.0.insert(key.to_string(), value);
@@ -214,16 +216,7 @@ pub fn whole(
     Ok(design)
 }
 
-fn shares(space: &Space, design: &Design) -> Vec<f64> {
-    let share = |parameter: &Variable| {
-        let value = design.get(&parameter.key).unwrap_or(parameter.low);
-        let width = parameter.high - parameter.low;
-        if width > 0.0 { (value - parameter.low) / width } else { 0.5 }
-    };
-    space.parameters.iter().map(share).collect()
-}
-
-/// Standardises rows by mean and standard deviation of the first `reference` ones.
+/// Standardises rows by mean and standard deviation of the first `reference` rows.
 fn standardised(rows: &[[f64; 2]], reference: usize) -> Vec<StiffnessPoint> {
     let scale = [0, 1].map(|axis| {
         let moments = Moments::of(rows.iter().take(reference).map(|row| row[axis]));

@@ -79,7 +79,7 @@ pub fn confounded(calibration: &Calibration) -> Vec<Confounded> {
 
 /// Returns caveats on a task's predictions, a line each.
 pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
-    let accuracy = result.trust(subject.emulator.error_mm);
+    let accuracy = result.accuracy(subject.emulator.error_mm);
     let mut lines = Vec::new();
     let scale = subject.emulator.mean_mm.max(1.0);
     if accuracy.fingers < 3 {
@@ -128,7 +128,7 @@ struct CalibratedTask<'a> {
 impl<'a> CalibratedTask<'a> {
     fn new(subject: &'a Subject, result: &'a TaskResult) -> Self {
         let emulator = &subject.emulator;
-        let accuracy = result.trust(emulator.error_mm);
+        let accuracy = result.accuracy(emulator.error_mm);
         let inside = || 100.0 * accuracy.inside as f64 / accuracy.fingers as f64;
         CalibratedTask {
             task: &subject.task,
@@ -137,7 +137,7 @@ impl<'a> CalibratedTask<'a> {
             loo_spearman: accuracy.spearman,
             loo_coverage_80_percent: (accuracy.fingers > 0).then(inside),
             simulations: emulator.simulations,
-            fresh_simulations: emulator.fresh,
+            fresh_simulations: emulator.held_out,
             emulator_error_mm: emulator.error_mm,
             warnings: warnings(subject, result),
             leave_one_out: &result.left_out,
@@ -282,7 +282,7 @@ pub fn on_bench(
         ranges: lines.filter_map(known).collect(),
         bounds: others.map(bound).collect(),
         fingers: result.predictions.len(),
-        trust: result.trust(subject.emulator.error_mm),
+        trust: result.accuracy(subject.emulator.error_mm),
         warnings: warnings(subject, result),
         best: by_range(result).iter().take(KEPT).map(finger).collect(),
         simulated,

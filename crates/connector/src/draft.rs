@@ -195,21 +195,19 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     }
     let mut task = blank(name, like);
     let [width, height, clearance] = [plug.width, plug.height, size.clearance].map(|v| v / MM);
-    let shape = match (size.pins, size.round) {
-        (Some(Pins { count: [rows, columns], .. }), _) => format!("{rows} x {columns} pins"),
-        (None, true) => format!("round plug of {width} mm"),
-        (None, false) => format!("plug {width} x {height} mm"),
-    };
-    task.description = format!("{shape}, {clearance} mm clearance");
-    let top = plug.length + body.map_or(0.0, |body| body.length);
-    let mut parts = match (size.pins, size.round) {
-        (Some(pins), _) => pins.parts(),
+    let (shape, mut parts) = match (size.pins, size.round) {
+        (Some(pins), _) => {
+            let [rows, columns] = pins.count;
+            (format!("{rows} x {columns} pins"), pins.parts())
+        }
         (None, true) => {
             let (radius, z) = (plug.width / 2.0, [0.0, plug.length]);
-            vec![part("plug", Solid::Cylinder { centre: [0.0; 2], radius, z })]
+            let cylinder = Solid::Cylinder { centre: [0.0; 2], radius, z };
+            (format!("round plug of {width} mm"), vec![part("plug", cylinder)])
         }
-        (None, false) => vec![upright("plug", plug, 0.0)],
+        (None, false) => (format!("plug {width} x {height} mm"), vec![upright("plug", plug, 0.0)]),
     };
+    task.description = format!("{shape}, {clearance} mm clearance");
     if let Some([wide, high]) = size.key {
         if wide + size.clearance >= plug.width {
             return Err(DraftError::WideKey(wide / MM, width));
@@ -224,7 +222,7 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     task.plug.mass = DENSITY * parts.iter().map(|part| geometry::volume(&part.solid)).sum::<f64>();
     task.plug.parts = parts;
     let held = body.unwrap_or(plug);
-    task.grip.shoulder_z = top;
+    task.grip.shoulder_z = plug.length + body.map_or(0.0, |body| body.length);
     task.grip.faces_y = [-held.width / 2.0, held.width / 2.0];
     let floor = body.map_or(INSERTED_SHARE * plug.length, |_| plug.length + BELOW_TIP);
     // The pads stay outside of the socket.

@@ -40,6 +40,7 @@ pub fn explain(task: &Task, trial: &Trial) -> String {
     }
 }
 
+/// Explains why the plug missed the opening.
 fn missed(task: &Task, trial: &Trial) -> String {
     let plug = ConvexBody::plug(&task.plug);
     let commanded = seat::waypoints(task, &plug);
@@ -71,6 +72,7 @@ fn missed(task: &Task, trial: &Trial) -> String {
     )
 }
 
+/// Explains why the plug jammed.
 fn jammed(task: &Task, trial: &Trial) -> String {
     let (depth, tilt) = (task.success.depth / MM, task.success.tilt / DEG);
     let at = format!("it stops {:.1} mm deep, {:.1} degrees off", trial.depth_mm, trial.tilt_deg);

@@ -12,7 +12,7 @@ const LISTED: usize = 5;
 
 /// Returns the result for a task, within 80 columns.
 pub fn text(subject: &Subject, result: &TaskResult) -> String {
-    let accuracy = result.trust(subject.emulator.error_mm);
+    let accuracy = result.accuracy(subject.emulator.error_mm);
     let emulator = &subject.emulator;
     let mut text = format!(
         "{}: {} measured fingers; {} simulations, emulated within {:.2} mm ({} held out)\n",
@@ -20,7 +20,7 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
         subject.measured().len(),
         emulator.simulations,
         emulator.error_mm,
-        emulator.fresh
+        emulator.held_out
     );
     if let Some(deviation) = accuracy.mean_deviation_percent {
         let rank = accuracy.spearman.map_or("-".to_owned(), |rank| format!("{rank:+.2}"));

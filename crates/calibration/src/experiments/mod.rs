@@ -1,7 +1,7 @@
 //! Parsing and checks of bench measurements: `measurements.csv` (`docs/guide/measuring.md`).
 //!
-//! Only the task, the design and something that was measured are needed; columns may be left
-//! out, and further design parameters are further columns, named as in a space file.
+//! A line needs the task, the design and at least one measurement; other columns may be left out. Further design
+//! parameters are further columns, named as in a space file.
 
 pub mod line;
 #[cfg(test)]
@@ -97,7 +97,7 @@ pub(crate) fn problem(line: u64, column: &str, words: &str) -> Fault {
     Place::default().line(line as usize).key(column).fault(words)
 }
 
-/// One line of a measurement file: one finger on one task, by the keys of `--json`.
+/// Line of a measurement file: a finger on a task; its fields have the keys of `--json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Experiment {
     pub line: u64,
@@ -106,7 +106,7 @@ pub struct Experiment {
     pub negative_mm: Option<f64>,
     /// Most positive start that inserted, mm.
     pub positive_mm: Option<f64>,
-    /// Tolerable range, if it was measured whole, mm.
+    /// Tolerable range, if it was measured as a whole, mm.
     pub range_mm: Option<f64>,
     /// Failure below the window.
     pub failure_negative: Option<FailureClass>,
@@ -118,7 +118,7 @@ pub struct Experiment {
     /// Day of the measurement, `YYYY-MM-DD`.
     pub date: Option<String>,
     pub note: String,
-    /// The finger's infill, and what else its columns set.
+    /// Infill of the finger, and the other parameters that have a column.
     #[serde(flatten)]
     pub design: Design,
 }
@@ -136,7 +136,7 @@ impl Experiment {
         }
     }
 
-    /// Compares lines by task, finger and date: they are used in this order, whatever that in the file.
+    /// Compares lines by task, finger and date, the order in which they are used whatever their order in the file.
     pub fn order(&self, other: &Self) -> Ordering {
         // No two lines of a file agree in all of these; the numbers of a design are finite.
         let own = (&self.task, &self.design.0, &self.date);
@@ -146,12 +146,12 @@ impl Experiment {
 }
 
 /// Columns of a measurement file.
-const COLUMNS_OF_LINES: Columns<'_> =
+const MEASUREMENT_COLUMNS: Columns<'_> =
     Columns { all: &COLUMNS, required: 3, why: "a line needs the finger and the task" };
 
 /// Reads and checks a measurement file; `file` is named in errors. An empty file has no lines.
 pub fn parse(text: &str, file: &str) -> Result<Vec<Experiment>, Problems> {
-    rows(text, file, &COLUMNS_OF_LINES, line::experiment)
+    rows(text, file, &MEASUREMENT_COLUMNS, line::experiment)
 }
 
 /// Reads and checks a measurement file as [`parse`] does, and checks that each task is one of `known`.
@@ -159,7 +159,7 @@ pub fn parse(text: &str, file: &str) -> Result<Vec<Experiment>, Problems> {
 /// # Errors
 /// With all problems of all lines.
 pub fn parse_known(text: &str, file: &str, known: &[&str]) -> Result<Vec<Experiment>, Problems> {
-    let one = |cells: &mut Cells<'_>, before: &[Experiment]| {
+    let parse_line = |cells: &mut Cells<'_>, before: &[Experiment]| {
         let found = line::experiment(cells, before);
         if !found.task.is_empty() && !known.contains(&&*found.task) {
             let text = format!(
@@ -172,7 +172,7 @@ pub fn parse_known(text: &str, file: &str, known: &[&str]) -> Result<Vec<Experim
         }
         found
     };
-    rows(text, file, &COLUMNS_OF_LINES, one)
+    rows(text, file, &MEASUREMENT_COLUMNS, parse_line)
 }
 
 /// Columns of a table with one finger per line.
@@ -185,7 +185,7 @@ pub(crate) struct Columns<'a> {
     pub why: &'a str,
 }
 
-/// Reads and checks a table. `parse_line` is given the lines before as well; it records problems in the cells.
+/// Reads and checks a table. `parse_line` also receives the preceding lines; it records problems in the cells.
 pub(crate) fn rows<T>(
     text: &str,
     file: &str,
@@ -219,7 +219,7 @@ pub(crate) fn rows<T>(
     if problems.is_empty() { Ok(found) } else { Err(Problems::of(file, problems)) }
 }
 
-/// Returns the line of a record; the CSV reader gives that of the comments before it.
+/// Returns the line of a record, for which the CSV reader gives the first line of the comments before it.
 fn line_at(text: &str, position: Option<&csv::Position>) -> u64 {
     let Some(position) = position else { return 1 };
     let rest = text.get(position.byte() as usize..).unwrap_or("");
@@ -263,8 +263,8 @@ fn hint(name: &str, known: &[&str]) -> String {
     nearest(name, known).map_or(String::new(), |near| format!(" (did you mean `{near}`?)"))
 }
 
-/// Returns the text of a file with another line, after a comment line unless that is empty. `cells` are the columns
-/// with a value; those that the file does not have are added at its end. A new file has all of [`COLUMNS`].
+/// Appends a line to the text of a file, after a comment line unless `comment` is empty. `cells` are columns with their
+/// values; columns that the file lacks are added at the end of each line. A new file has all of [`COLUMNS`].
 pub fn appended(text: &str, comment: &str, cells: &[(&str, String)]) -> Result<String, csv::Error> {
     let mut reader = reader().from_reader(text.as_bytes());
     let mut header: Vec<String> = match is_empty(text) {
@@ -281,14 +281,14 @@ pub fn appended(text: &str, comment: &str, cells: &[(&str, String)]) -> Result<S
         let cell = cells.iter().find(|(column, _)| column == name);
         cell.map_or("", |(_, text)| text.as_str())
     });
-    // What is there stays as it was written, unless a column is new.
+    // Existing lines are kept verbatim unless a column is added.
     let stays = had == header.len() && !is_empty(text);
     let start = match stays {
         true if text.ends_with('\n') => format!("{text}{comment}"),
         true => format!("{text}\n{comment}"),
         false => comments(text).flat_map(|line| [line, "\n"]).chain([comment]).collect(),
     };
-    // What begins with the mark of a comment is quoted.
+    // A cell that begins with `#` is quoted.
     let mut writer = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(start.into_bytes());
     if !stays {
         writer.write_record(&header)?;

@@ -4,7 +4,7 @@ use super::axes::{cause, motion};
 use super::formulas::runs_of;
 use super::log::{Ended, Log, LogSample, Run};
 use super::read::median_gap;
-use super::touch::{Air, after, air, any_touch, mean, touch};
+use super::touch::{AirForce, after, air, any_touch, mean, touch};
 use ask_tell::statistics::Moments;
 use input::units::{DEG, MM};
 use insertion::outcome::FailureClass;
@@ -201,7 +201,7 @@ fn touch_force(log: &Log) -> Option<([usize; 2], Vector3<f64>)> {
     let from = any_touch(log)?;
     let to = after(log, from, TOUCH_S[1]);
     let contact = &log.samples[after(log, from, TOUCH_S[0]).min(to - 1)..to];
-    let force = mean(contact) - Air::of(air(log, Some(from))).bias;
+    let force = mean(contact) - AirForce::of(air(log, Some(from))).bias;
     (force.norm() > LEAST_N).then_some(([from, to], force))
 }
 
@@ -246,7 +246,7 @@ fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
 fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
     let log = remarks.log;
     let quiet = air(log, touched);
-    let Air { bias, noise } = Air::of(quiet);
+    let AirForce { bias, noise } = AirForce::of(quiet);
     let span = touched.map(|_| [0, quiet.len() - 1]);
     if touched.is_some() && bias.norm() > DRIFT.0 {
         let text = format!(

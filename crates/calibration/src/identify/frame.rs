@@ -28,7 +28,7 @@ struct Raw {
     gravity_compensated: Option<bool>,
 }
 
-/// The task's frame in the robot's base, and the tool on the sensor.
+/// Frame of the task in the base of the robot, and the tool below the force sensor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     /// Pose of the task's frame in the base, m.
@@ -39,9 +39,7 @@ pub struct Frame {
     sign: f64,
     /// Mass below the force sensor, kg.
     pub tool_mass: f64,
-    /// Its centre of mass relative to the TCP, m.
-    pub tool_centre: Vector3<f64>,
-    /// Whether the recorded force is without the tool's weight.
+    /// Whether the weight of the tool is already subtracted from the recorded force.
     compensated: bool,
 }
 
@@ -54,7 +52,7 @@ impl Frame {
         let (raw, check): (Raw, _) = (read(text, file)?, Check { file });
         let turn = |key: &str, turn: [f64; 3]| {
             let turn = Vector3::from(check.each(key, turn, Check::finite)?);
-            let must = "be a turn of at most 6.2832 (rad); degrees must be multiplied by 0.017453";
+            let must = "be at most 6.2832 (rad); degrees must be multiplied by 0.017453";
             check.require(key, turn.norm(), turn.norm() <= TAU + 1e-3, must)?;
             Ok(UnitQuaternion::from_scaled_axis(turn))
         };
@@ -75,17 +73,17 @@ impl Frame {
         check.require("tool_mass_kg", mass, (0.0..=50.0).contains(&mass), must)?;
         let compensated = raw.gravity_compensated.unwrap_or(true);
         if mass == 0.0 && !compensated {
-            let problem = "is needed where `gravity_compensated` is false; give the mass of all \
-                           that hangs on the sensor";
+            let problem = "is required if `gravity_compensated` is false; give the mass of \
+                           everything below the sensor";
             return check.fail("tool_mass_kg", problem);
         }
-        let centre = check.each("tool_centre_mm", raw.tool_centre_mm, Check::distance)?;
+        // Accepted, since robots state it beside the mass; the conversion does not depend on it.
+        check.each("tool_centre_mm", raw.tool_centre_mm, Check::distance)?;
         Ok(Frame {
             base: Isometry3::from_parts(Translation3::from(origin * MM), rotation),
             upright,
             sign,
             tool_mass: mass,
-            tool_centre: Vector3::from(centre) * MM,
             compensated,
         })
     }
@@ -93,7 +91,7 @@ impl Frame {
     /// Converts a pose in the base (m; axis-angle, rad) to the task's frame.
     ///
     /// # Errors
-    /// The accepted rotation, if the TCP is turned from upright by more than a tilt about x.
+    /// If the TCP is rotated from upright by more than a tilt about x.
     pub(super) fn pose(&self, place: Vector3<f64>, turn: Vector3<f64>) -> Result<Tcp, String> {
         let position = self.base.inverse_transform_point(&place.into()).coords;
         let rotation = UnitQuaternion::from_scaled_axis(turn);
@@ -103,8 +101,8 @@ impl Frame {
         if askew > ASKEW || turned.x.abs() > PI / 2.0 {
             let [x, y, z]: [f64; 3] = turned.map(f64::to_degrees).into();
             return Err(format!(
-                "the tool is turned by ({x:.0}, {y:.0}, {z:.0}) degrees about the task's axes from \
-                 where it is upright; give `upright_axis_angle_rad` in the frame file, or correct it"
+                "the tool is rotated by ({x:.0}, {y:.0}, {z:.0}) degrees about the task's axes from \
+                 its upright orientation; give `upright_axis_angle_rad` in the frame file, or correct it"
             ));
         }
         Ok(Tcp { position, tilt: turned.x })

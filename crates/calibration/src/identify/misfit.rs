@@ -83,7 +83,7 @@ pub fn misfits(compared: &[Compared]) -> Vec<Misfit> {
                 let all = data.iter().zip(predicted).zip(one.logged.phases()).enumerate();
                 for (i, ((datum, predicted), of)) in all {
                     if of == phase
-                        && i % one.logged.each() == axis
+                        && i % one.logged.data_per_bin() == axis
                         && let Some(predicted) = predicted
                     {
                         sum.0 += ((datum.value - predicted) / datum.sd).powi(2);

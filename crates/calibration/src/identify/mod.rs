@@ -1,10 +1,10 @@
-//! From the logs of attempts to the cell in which they were made. Reads files, writes none.
+//! Identification of a cell from the logs of attempts in it. Reads files and writes none.
 //!
-//! 1. `log`: one attempt, sample by sample; `read`: from the formats in which it is recorded.
-//! 2. `frame`: the task's frame in the robot's base, and what its force means.
-//! 3. `runs`: which finger, offset and outcome belong to which log.
-//! 4. `touch`: where the tool touches, and the force before.
-//! 5. `check`: what is wrong with a log, before anything is fitted to it; `axes`: whether its columns agree.
+//! 1. `log`: samples of one attempt; `read`: formats of log files.
+//! 2. `frame`: frame of the task in the base of the robot, and convention of the recorded force.
+//! 3. `runs`: table of the logs, with finger, offset and outcome of each.
+//! 4. `touch`: first touch of the tool, and the force in the air before it.
+//! 5. `check`: faults of logs, checked before the fit; `axes`: agreement of the columns of a log.
 
 mod axes;
 pub mod check;

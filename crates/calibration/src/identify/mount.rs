@@ -16,7 +16,7 @@ const LEAST_COMPLIANCE: f64 = 8e-6;
 /// Smallest number of attempts for a remark.
 const LEAST_ATTEMPTS: usize = 3;
 
-/// Returns a remark if socket or grip are compliant, by the median over the attempts; `file` has the runs.
+/// Returns a remark if socket or grip are compliant, by the median over the attempts; `file` is the table of the runs.
 pub fn remark(file: &str, compared: &[Compared]) -> Option<Remark> {
     let more = |one: &Compared| {
         let [measured, simulated] =
@@ -30,14 +30,14 @@ fn compliant(file: &str, compliances: &[f64]) -> Option<Remark> {
     let more = median(compliances.iter().copied())?;
     let text = format!(
         "under the push the tool sinks as if socket or grip stood on a spring of {:.0} N/mm, which the model does \
-         not have: plugs that only the push straightens jam sooner than predicted; clamp the socket",
+         not have: plugs that are straightened only by the push jam sooner than predicted; clamp the socket",
         1.0 / more / N_PER_MM
     );
     let remark = Remark { file: file.to_owned(), lines: None, text, serious: false };
     (compliances.len() >= LEAST_ATTEMPTS && more > LEAST_COMPLIANCE).then_some(remark)
 }
 
-/// Returns how far the TCP sinks per newton as the force of the push rises, m/N.
+/// Returns the compliance under the push, the distance by which the TCP sinks per newton as the force rises, m/N.
 fn compliance(curves: &Curves, push: usize) -> Option<f64> {
     let pushed = curves.force.get(push..)?;
     let most = (0..pushed.len()).max_by(|&a, &b| pushed[a].z.total_cmp(&pushed[b].z))?;

@@ -25,7 +25,7 @@ use parameters::{Parameter, Scale, Transform};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Settings of the ensemble smoother: ten members per unknown, four iterations; errors are correlated over 0.1 s.
-pub const SETTINGS: Settings = Settings { members: 10, rounds: 4, alike: 10.0, seed: 0 };
+pub const SETTINGS: Settings = Settings { members: 10, rounds: 4, correlated: 10.0, seed: 0 };
 /// Largest number of replayed attempts of a finger; more add little information.
 const MAX_ATTEMPTS: usize = 5;
 /// Factor on the time step in the fit: it changes identified values by less than half their standard deviation.

@@ -18,19 +18,19 @@ use std::ops::Range;
 
 /// Replayed time before the touch, s.
 const AIR_S: f64 = 0.5;
-/// Points per datum: 10 ms.
-const POINTS: usize = 5;
+/// Points of the curves per bin: 10 ms.
+const BIN: usize = 5;
 /// Model error of a force: drift of the sensor, N, and share of the force.
 const FORCE_N: f64 = 0.5;
 const FORCE_SHARE: f64 = 0.1;
 /// Model error of a pose: repeatability of a small arm, m, and share of the distance from its target.
 const POSE: f64 = 0.03 * MM;
 const POSE_SHARE: f64 = 0.1;
-/// Forces below which there is no contact and above which there is, N, and the number of data for which they
-/// differ in an event: 30 ms.
-const LOST_N: f64 = 1.5;
-const HAD_N: f64 = 4.0;
-const EVENT: usize = 3;
+/// Force below which there is no contact, force above which there is contact, N, and number of successive bins in which
+/// only one of measurement and simulation has contact before the comparison ends: 30 ms.
+const NO_CONTACT_N: f64 = 1.5;
+const CONTACT_N: f64 = 4.0;
+const APART_BINS: usize = 3;
 
 /// Part of an attempt, for reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,7 +55,7 @@ pub struct Logged {
 }
 
 impl Logged {
-    /// Returns the attempt of a run; `None` for one that touches nothing, or for a probe.
+    /// Prepares the attempt of a run; `None` if nothing is touched, or for a probe.
     pub fn new(run: &Run) -> Option<Self> {
         let touched = touch(&run.log).filter(|_| run.ended != Ended::Probe)?;
         let touched_s = run.log.samples[touched].time_s;
@@ -84,65 +84,66 @@ impl Logged {
         Some(Logged { trajectory: curves.trajectory()?, curves, ..self.clone() })
     }
 
-    /// Returns the points of each datum.
+    /// Returns the bins, as ranges of points from the touch on.
     fn bins(&self) -> impl Iterator<Item = Range<usize>> + '_ {
-        let bins = (self.curves.tcp.len() - self.touch.min(self.curves.tcp.len())) / POINTS;
-        (0..bins).map(|i| self.touch + i * POINTS..self.touch + (i + 1) * POINTS)
+        let bins = self.curves.tcp.len().saturating_sub(self.touch) / BIN;
+        (0..bins).map(|i| self.touch + i * BIN..self.touch + (i + 1) * BIN)
     }
 
     /// Returns the phase of each datum.
     pub fn phases(&self) -> impl Iterator<Item = Phase> + '_ {
         let phase =
             |bin: Range<usize>| if bin.start < self.push { Phase::Search } else { Phase::Push };
-        self.bins().flat_map(move |bin| std::iter::repeat_n(phase(bin), self.each()))
+        self.bins().flat_map(move |bin| std::iter::repeat_n(phase(bin), self.data_per_bin()))
     }
 
-    /// Returns the numbers per datum: three of the force, and three of the distance from the target.
-    pub fn each(&self) -> usize {
+    /// Returns the number of data per bin: three of the force, and three of the offset from a recorded target.
+    pub fn data_per_bin(&self) -> usize {
         if self.curves.target.is_some() { 6 } else { 3 }
     }
 
     /// Returns the measured data.
     pub fn data(&self) -> Vec<Datum> {
-        let off = off(&self.curves);
+        let offsets = offsets(&self.curves);
         let datum = |bin: Range<usize>| {
             let force = mean(&self.curves.force, &bin);
             let sd = libm::hypot(FORCE_N, FORCE_SHARE * force.norm());
             let forces = force.iter().map(|&value| Datum { value, sd }).collect::<Vec<_>>();
-            let poses = off.iter().map(|off| mean(off, &bin)).flat_map(|off| {
-                let sd = libm::hypot(POSE, POSE_SHARE * off.norm());
-                [0, 1, 2].map(|i| Datum { value: off[i], sd })
+            let poses = offsets.iter().map(|offsets| mean(offsets, &bin)).flat_map(|offset| {
+                let sd = libm::hypot(POSE, POSE_SHARE * offset.norm());
+                [0, 1, 2].map(|i| Datum { value: offset[i], sd })
             });
             forces.into_iter().chain(poses).collect::<Vec<_>>()
         };
         self.bins().flat_map(datum).collect()
     }
 
-    /// Returns the simulated data, up to the first contact that is made or lost in only one of the two.
+    /// Returns the simulated data, up to the first contact that only one of measurement and simulation makes or loses.
     pub fn predicted(&self, replayed: &Curves) -> Predicted {
-        let off = off(replayed);
+        let offsets = offsets(replayed);
         let (mut apart, mut over) = (0, false);
         let datum = |bin: Range<usize>| {
             over = over || bin.end > replayed.force.len();
             if over {
-                return vec![None; self.each()];
+                return vec![None; self.data_per_bin()];
             }
-            let [mine, other] =
+            let [measured, simulated] =
                 [&self.curves.force, &replayed.force].map(|force| mean(force, &bin));
-            let differ =
-                mine.norm().min(other.norm()) < LOST_N && mine.norm().max(other.norm()) > HAD_N;
+            let (a, b) = (measured.norm(), simulated.norm());
+            let differ = a.min(b) < NO_CONTACT_N && a.max(b) > CONTACT_N;
             apart = if differ { apart + 1 } else { 0 };
-            over = apart >= EVENT;
-            let poses = off.iter().take(self.each() / 6).map(|off| mean(off, &bin));
-            let all = [other].into_iter().chain(poses);
+            over = apart >= APART_BINS;
+            let poses =
+                offsets.iter().take(self.data_per_bin() / 6).map(|offsets| mean(offsets, &bin));
+            let all = [simulated].into_iter().chain(poses);
             all.flat_map(|vector| [0, 1, 2].map(|i| Some(vector[i]))).collect()
         };
         self.bins().flat_map(datum).collect()
     }
 }
 
-/// Returns the distance of the TCP from its target, if that is known.
-fn off(curves: &Curves) -> Option<Vec<Vector3<f64>>> {
+/// Returns the offsets of the TCP from its target, if the target is recorded.
+fn offsets(curves: &Curves) -> Option<Vec<Vector3<f64>>> {
     let target = curves.target.as_ref()?;
     Some(curves.tcp.iter().zip(target).map(|(tcp, target)| tcp - target).collect())
 }

@@ -1,4 +1,4 @@
-//! An ensemble smoother with multiple data assimilation: ES-MDA (Emerick and Reynolds 2013,
+//! Ensemble smoother with multiple data assimilation, ES-MDA (Emerick and Reynolds 2013,
 //! doi:10.1016/j.cageo.2012.03.011), for few unknowns and many, partly missing, data.
 //!
 //! With ten members per unknown, the covariance of unknowns and data is that of a linear regression of the data on
@@ -12,10 +12,10 @@ use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 use rayon::prelude::*;
 
-/// Coordinates of the unknowns, standard normal before any data.
+/// Coordinates of the unknowns, in which the prior is standard normal.
 pub type Coordinates = Vec<f64>;
 
-/// Predictions of the data by a member, in their order; `None` where they cannot be compared.
+/// Predictions of the data by a member, in the order of the data; `None` for data that cannot be compared.
 pub type Predicted = Vec<Option<f64>>;
 
 /// Measured number with the standard deviation of its error, including that of the model.
@@ -25,14 +25,15 @@ pub struct Datum {
     pub sd: f64,
 }
 
+/// Settings of the smoother.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Members per unknown.
     pub members: usize,
     /// Number of assimilations; the variances of the data are multiplied by it.
     pub rounds: usize,
-    /// Number of neighbouring data with a common error.
-    pub alike: f64,
+    /// Number of successive data that share an error.
+    pub correlated: f64,
     pub seed: u64,
 }
 
@@ -49,13 +50,13 @@ pub struct Smoothed {
     pub compared: f64,
 }
 
-/// Largest residual, in combined standard deviations of the datum and of the members, so that an event at another
-/// time does not dominate.
-const CLIPPED: f64 = 3.0;
+/// Largest residual, in combined standard deviations of the datum and of the members; larger ones are clipped, so that
+/// an event that a member predicts at another time does not dominate.
+const MAX_RESIDUAL: f64 = 3.0;
 /// Largest coordinate, in standard deviations of the prior.
-const FARTHEST: f64 = 3.0;
-/// Smallest share of the members that predict a datum that counts.
-const ENOUGH: f64 = 0.25;
+const MAX_COORDINATE: f64 = 3.0;
+/// Smallest share of the members that must predict a datum for it to be used.
+const MIN_SHARE: f64 = 0.25;
 
 /// Draws members and assimilates the data; `predict` is called in parallel.
 pub fn smooth<E: Send>(
@@ -64,55 +65,55 @@ pub fn smooth<E: Send>(
     settings: Settings,
     predict: impl Fn(&[f64]) -> Result<Predicted, E> + Sync,
 ) -> Result<Smoothed, E> {
-    // A single member for the misfit, if there is nothing to fit.
+    // Without unknowns, a single member, for the misfit.
     let count = (settings.members * unknowns).max(1);
     let mut random = stream(settings.seed, 0, "members");
     let mut members: Vec<Coordinates> = (0..count)
         .map(|_| (0..unknowns).map(|_| random.sample(StandardNormal)).collect())
         .collect();
     let rounds = if unknowns == 0 { 0 } else { settings.rounds };
-    let ask = |members: &[Coordinates]| -> Result<Known, E> {
+    let simulate = |members: &[Coordinates]| -> Result<Ensemble, E> {
         let predicted = members.par_iter().map(|member| predict(member));
-        Ok(Known::of(data, &predicted.collect::<Result<Vec<Predicted>, E>>()?))
+        Ok(Ensemble::of(data, &predicted.collect::<Result<Vec<Predicted>, E>>()?))
     };
-    let mut known = ask(&members)?;
-    let (mut misfit, mut expected_sd) = (vec![known.misfit()], Vec::new());
+    let mut ensemble = simulate(&members)?;
+    let (mut misfit, mut expected_sd) = (vec![ensemble.misfit()], Vec::new());
     for round in 0..rounds {
-        let linear = Linear::of(&members, &known);
+        let regression = Regression::of(&members, &ensemble);
         if round == 0 {
-            expected_sd = linear.expected_sd(settings.alike);
+            expected_sd = regression.expected_sd(settings.correlated);
         }
         let mut random = stream(settings.seed, round as u64 + 1, "perturbed data");
-        let factor = settings.rounds as f64 * settings.alike;
-        members = linear.updated(&members, &known, factor, &mut random);
-        known = ask(&members)?;
-        misfit.push(known.misfit());
+        let factor = settings.rounds as f64 * settings.correlated;
+        members = regression.updated(&members, &ensemble, factor, &mut random);
+        ensemble = simulate(&members)?;
+        misfit.push(ensemble.misfit());
     }
-    let compared = known.data.len() as f64 / data.len().max(1) as f64;
+    let compared = ensemble.data.len() as f64 / data.len().max(1) as f64;
     Ok(Smoothed { members, expected_sd, misfit, compared })
 }
 
-/// Data that count, and the prediction of each member; missing ones are the mean of the others.
-struct Known {
+/// Data that enough members predict, and their predictions; a missing prediction is the mean of the others.
+struct Ensemble {
     data: Vec<Datum>,
     /// One row per datum, one column per member.
     predicted: DMatrix<f64>,
 }
 
-impl Known {
+impl Ensemble {
     fn of(data: &[Datum], predicted: &[Predicted]) -> Self {
         let members = predicted.len();
         let (mut kept, mut rows) = (Vec::new(), Vec::new());
         for (i, datum) in data.iter().enumerate() {
-            let said: Vec<Option<f64>> = predicted.iter().map(|member| member[i]).collect();
-            let Moments { count, mean, .. } = Moments::of(said.iter().flatten());
-            if count < ENOUGH * members as f64 || count == 0.0 {
+            let values: Vec<Option<f64>> = predicted.iter().map(|member| member[i]).collect();
+            let Moments { count, mean, .. } = Moments::of(values.iter().flatten());
+            if count < MIN_SHARE * members as f64 || count == 0.0 {
                 continue;
             }
             kept.push(*datum);
-            rows.extend(said.into_iter().map(|value| value.unwrap_or(mean)));
+            rows.extend(values.into_iter().map(|value| value.unwrap_or(mean)));
         }
-        Known { predicted: DMatrix::from_row_slice(kept.len(), members, &rows), data: kept }
+        Ensemble { predicted: DMatrix::from_row_slice(kept.len(), members, &rows), data: kept }
     }
 
     fn misfit(&self) -> f64 {
@@ -123,84 +124,87 @@ impl Known {
 }
 
 /// Linear regression of the data on the unknowns over the members.
-struct Linear {
+struct Regression {
     /// One row per datum, one column per unknown.
     slopes: DMatrix<f64>,
-    /// Variance of each datum with that of the residuals.
+    /// Sum of the variances of the error and of the residuals of each datum.
     variances: DVector<f64>,
-    /// Inverse of the members' covariance.
+    /// Inverse of the covariance of the members.
     precision: DMatrix<f64>,
 }
 
-impl Linear {
-    fn of(members: &[Coordinates], known: &Known) -> Self {
+impl Regression {
+    fn of(members: &[Coordinates], ensemble: &Ensemble) -> Self {
         let (count, unknowns) = (members.len(), members[0].len());
         let z = centred(DMatrix::from_fn(unknowns, count, |i, j| members[j][i]));
-        let d = centred(known.predicted.clone());
+        let d = centred(ensemble.predicted.clone());
         // A small ridge, in case all members are equal.
         let gram =
             &z * z.transpose() + DMatrix::identity(unknowns, unknowns) * (1e-9 * count as f64);
-        let inverse =
-            gram.clone().try_inverse().unwrap_or_else(|| DMatrix::zeros(unknowns, unknowns));
+        let inverse = gram.try_inverse().unwrap_or_else(|| DMatrix::zeros(unknowns, unknowns));
         let slopes = &d * z.transpose() * &inverse;
-        let left = &d - &slopes * &z;
-        let freedom = (count.saturating_sub(unknowns + 1)).max(1) as f64;
-        let own = known.data.iter().map(|datum| datum.sd * datum.sd);
-        let over = left.row_iter().map(|row| row.norm_squared() / freedom);
-        let variances = DVector::from_iterator(known.data.len(), own.zip(over).map(|(a, b)| a + b));
-        Linear { slopes, variances, precision: inverse * count as f64 }
+        let residuals = &d - &slopes * &z;
+        let degrees = count.saturating_sub(unknowns + 1).max(1) as f64;
+        let own = ensemble.data.iter().map(|datum| datum.sd * datum.sd);
+        let unexplained = residuals.row_iter().map(|row| row.norm_squared() / degrees);
+        let sums = own.zip(unexplained).map(|(a, b)| a + b);
+        let variances = DVector::from_iterator(ensemble.data.len(), sums);
+        Regression { slopes, variances, precision: inverse * count as f64 }
     }
 
-    /// Returns the slopes divided by the variances.
-    fn weighed(&self, factor: f64) -> DMatrix<f64> {
-        let mut weighed = self.slopes.transpose();
-        for (mut column, variance) in weighed.column_iter_mut().zip(self.variances.iter()) {
+    /// Returns the transposed slopes, divided by `factor` times the variances.
+    fn weighted(&self, factor: f64) -> DMatrix<f64> {
+        let mut weighted = self.slopes.transpose();
+        for (mut column, variance) in weighted.column_iter_mut().zip(self.variances.iter()) {
             column /= variance * factor;
         }
-        weighed
+        weighted
     }
 
-    fn expected_sd(&self, alike: f64) -> Vec<f64> {
-        let posterior = (&self.precision + self.weighed(alike) * &self.slopes).try_inverse();
+    /// Returns the standard deviations of the posterior of a linear model with this regression.
+    fn expected_sd(&self, correlated: f64) -> Vec<f64> {
+        let posterior = (&self.precision + self.weighted(correlated) * &self.slopes).try_inverse();
         let size = self.precision.nrows();
         let posterior = posterior.unwrap_or_else(|| DMatrix::identity(size, size));
         posterior.diagonal().iter().map(|variance| variance.max(0.0).sqrt().min(1.0)).collect()
     }
 
+    /// Returns the members after assimilation of the perturbed data.
     fn updated(
         &self,
         members: &[Coordinates],
-        known: &Known,
+        ensemble: &Ensemble,
         factor: f64,
         random: &mut impl rand::Rng,
     ) -> Vec<Coordinates> {
-        let weighed = self.weighed(factor);
-        let Some(covariance) = (&self.precision + &weighed * &self.slopes).try_inverse() else {
+        let weighted = self.weighted(factor);
+        let Some(covariance) = (&self.precision + &weighted * &self.slopes).try_inverse() else {
             return members.to_vec();
         };
-        let gain = covariance * weighed;
-        let farthest: Vec<f64> = known
+        let gain = covariance * weighted;
+        let limits: Vec<f64> = ensemble
             .predicted
             .row_iter()
             .zip(self.variances.iter())
-            .map(|(row, variance)| CLIPPED * (row.variance() + variance).sqrt())
+            .map(|(row, variance)| MAX_RESIDUAL * (row.variance() + variance).sqrt())
             .collect();
-        let each = members.iter().zip(known.predicted.column_iter());
+        let each = members.iter().zip(ensemble.predicted.column_iter());
         let update = |(member, predicted): (&Coordinates, nalgebra::DVectorView<'_, f64>)| {
-            let innovation = DVector::from_fn(known.data.len(), |i, _| {
+            let innovation = DVector::from_fn(ensemble.data.len(), |i, _| {
                 let sd = self.variances[i].sqrt();
                 let noise: f64 = random.sample(StandardNormal);
-                let clipped = (known.data[i].value - predicted[i]).clamp(-farthest[i], farthest[i]);
-                clipped + factor.sqrt() * sd * noise
+                let residual = ensemble.data[i].value - predicted[i];
+                residual.clamp(-limits[i], limits[i]) + factor.sqrt() * sd * noise
             });
             let step = &gain * innovation;
             let moved = member.iter().zip(step.iter()).map(|(z, by)| z + by);
-            moved.map(|z| z.clamp(-FARTHEST, FARTHEST)).collect()
+            moved.map(|z| z.clamp(-MAX_COORDINATE, MAX_COORDINATE)).collect()
         };
         each.map(update).collect()
     }
 }
 
+/// Subtracts the mean of each row.
 fn centred(mut rows: DMatrix<f64>) -> DMatrix<f64> {
     for mut row in rows.row_iter_mut() {
         let mean = row.mean();
@@ -214,7 +218,7 @@ mod tests {
     use super::*;
     use std::convert::Infallible;
 
-    const SETTINGS: Settings = Settings { members: 20, rounds: 4, alike: 1.0, seed: 0 };
+    const SETTINGS: Settings = Settings { members: 20, rounds: 4, correlated: 1.0, seed: 0 };
 
     /// A line through noise: its posterior is known in closed form.
     #[test]

@@ -146,7 +146,7 @@ fn what_cannot_be_read_is_told_with_its_line() {
             "origin_mm = [400, 0, 0]\naxis_angle_rad = [180, 0, 0]",
             "axis_angle_rad: is 180; it must",
         ),
-        (&format!("{FRAME}gravity_compensated = false"), "tool_mass_kg: is needed"),
+        (&format!("{FRAME}gravity_compensated = false"), "tool_mass_kg: is required"),
         (&format!("{FRAME}force_sign = 2"), "force_sign: is 2; it must be 1"),
     ] {
         let error = Frame::parse(text, "frame.toml").unwrap_err().to_string();

@@ -3,13 +3,13 @@
 use super::log::{Log, LogSample};
 use nalgebra::Vector3;
 
-/// Shortest time in the air at the beginning of a log, s; a touch before is not detected.
+/// Shortest time in the air at the beginning of a log, s; an earlier touch is not detected.
 const FIRST_AIR_S: f64 = 0.05;
 /// Time over which forces are averaged against noise, s; at least three samples.
 const MEAN_S: f64 = 0.01;
 /// Shortest touch, s: longer than the starts and stops of a quick move.
 const LASTS_S: f64 = 0.06;
-/// Beginning and end of the interval before the touch that gives noise and bias, s before it.
+/// Beginning and end of the interval from which noise and bias are estimated, s before the touch.
 const NEAR_AIR_S: [f64; 2] = [0.3, 0.02];
 /// Smallest force of a touch, N, and its smallest multiple of the noise of a mean.
 const LEAST: [f64; 2] = [1.5, 5.0];
@@ -18,7 +18,7 @@ const LEFT_N: f64 = 0.05;
 
 /// Returns the mean force in the air before the touch, N; that of the whole log if nothing is touched.
 pub fn bias(log: &Log) -> Vector3<f64> {
-    Air::of(air(log, touch(log))).bias
+    AirForce::of(air(log, touch(log))).bias
 }
 
 /// Returns the samples in the air, without those next to the touch; never empty.
@@ -27,8 +27,8 @@ pub(super) fn air(log: &Log, touch: Option<usize>) -> &[LogSample] {
     &log.samples[..end]
 }
 
-/// Returns the index of the touch: from there the force along z without bias rises to 1.5 N and 5 times its noise,
-/// and stays there. `None` if there is none.
+/// Returns the index of the first touch, from which the force along z, less its bias, stays above 1.5 N and 5 times its
+/// noise; `None` if nothing is touched.
 pub fn touch(log: &Log) -> Option<usize> {
     onset(log, |force| force.z)
 }
@@ -38,19 +38,19 @@ pub(super) fn any_touch(log: &Log) -> Option<usize> {
     onset(log, |force| force.norm())
 }
 
-/// Mean force and noise of a sample's force in the air, N.
-pub(super) struct Air {
+/// Mean of the force in the air and noise of a sample, N.
+pub(super) struct AirForce {
     pub bias: Vector3<f64>,
     pub noise: Vector3<f64>,
 }
 
-impl Air {
-    /// Estimates both; the noise is that of differences between successive samples, which drift does not affect.
+impl AirForce {
+    /// Estimates mean and noise; the noise from differences between successive samples, which drift does not affect.
     pub fn of(samples: &[LogSample]) -> Self {
         let square = |w: &[LogSample]| (w[1].force - w[0].force).map(|step| step * step);
         let squares: Vector3<f64> = samples.windows(2).map(square).sum();
         let pairs = samples.len().saturating_sub(1).max(1) as f64;
-        Air { bias: mean(samples), noise: (squares / (2.0 * pairs)).map(f64::sqrt) }
+        AirForce { bias: mean(samples), noise: (squares / (2.0 * pairs)).map(f64::sqrt) }
     }
 }
 
@@ -65,18 +65,19 @@ fn before(log: &Log, at: usize, seconds: f64) -> usize {
     log.samples[..at].partition_point(|sample| sample.time_s < since)
 }
 
-/// Returns the index of the sample `seconds` after another; that of the end if there is none.
+/// Returns the index of the sample `seconds` after another; the number of samples if the log ends before.
 pub(super) fn after(log: &Log, at: usize, seconds: f64) -> usize {
     let until = log.samples[at].time_s + seconds;
     at + log.samples[at..].partition_point(|sample| sample.time_s < until)
 }
 
+/// Returns the index from which the size of the force, less its bias, stays above its noise.
 fn onset(log: &Log, size: fn(Vector3<f64>) -> f64) -> Option<usize> {
     let samples = &log.samples;
     let first = after(log, 0, FIRST_AIR_S).max(5);
-    let over = |air: &Air, from: usize, to: usize| size(mean(&samples[from..to]) - air.bias);
-    let start = Air::of(&samples[..first]);
-    let noise = |air: &Air, count: usize| size(air.noise) / (count as f64).sqrt();
+    let over = |air: &AirForce, from: usize, to: usize| size(mean(&samples[from..to]) - air.bias);
+    let start = AirForce::of(&samples[..first]);
+    let noise = |air: &AirForce, count: usize| size(air.noise) / (count as f64).sqrt();
     let touches = |&at: &usize| {
         let short = after(log, at, MEAN_S).max(at + 3);
         let long = after(log, at, LASTS_S).max(short);
@@ -92,7 +93,7 @@ fn onset(log: &Log, size: fn(Vector3<f64>) -> f64) -> Option<usize> {
     for _ in 0..3 {
         let near = before(log, touch, NEAR_AIR_S[1]);
         let air = match before(log, touch, NEAR_AIR_S[0]) {
-            from if near >= from + 5 => Air::of(&samples[from..near]),
+            from if near >= from + 5 => AirForce::of(&samples[from..near]),
             _ => return Some(touch),
         };
         touch = found;

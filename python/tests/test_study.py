@@ -250,7 +250,7 @@ def test_damaged_results_are_refused_and_change_nothing(create, kind):
     assert resealed(good, lambda fields: fields) == good
     with pytest.raises(_native.Refused, match=word):
         open_study.take(proposal, resealed(good, change))
-    with pytest.raises(_native.Refused, match="do not fit its `check`"):
+    with pytest.raises(_native.Refused, match="do not match the checksum `check`"):
         open_study.take(proposal, good.replace(b'"trials":', b'"trials":1'))
     with pytest.raises(_native.Refused):
         open_study.take(proposal, fo.perform(work[1][1]))

@@ -47,10 +47,8 @@ impl command::Request for Request {
     type Response = FittedModel;
 
     fn run(&self, _context: &Context<'_>) -> Result<FittedModel, Failure> {
-        let infill = match self.infill {
-            InfillRequest { density: None, direction: None } => None,
-            infill => Some(infill.required()?),
-        };
+        let given = self.infill != InfillRequest::default();
+        let infill = given.then(|| self.infill.required()).transpose()?;
         if let Some([density, direction]) = infill {
             Design::checked_infill(density, direction, "stiffness").map_err(Failure::input)?;
         }

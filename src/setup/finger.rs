@@ -113,19 +113,18 @@ impl FingerRequest {
         evaluator: &Evaluator,
     ) -> Result<ChosenFinger, Failure> {
         let template = setup.only_task()?;
-        let mut infill = Design::default();
+        let mut design = Design::default();
         for (flag, key, value) in [
             ("--density", DENSITY_KEY, self.infill.density),
             ("--direction", DIRECTION_KEY, self.infill.direction),
         ] {
             if let Some(value) = value {
                 check(setup, flag, key, value)?;
-                infill.0.insert(key.to_owned(), value);
+                design.0.insert(key.to_owned(), value);
             }
         }
         let set = self.settings(setup)?;
-        let mut design = set.clone();
-        design.0.extend(infill.0);
+        design.0.extend(set.0.clone());
         let stiffness = self.given_stiffness();
         let given = stiffness.is_some();
         let stiffness = match stiffness {

@@ -77,8 +77,7 @@ impl Placed for StudyError {
 impl StudyError {
     /// Returns whether the input is wrong (exit code 2) rather than the run (exit code 1).
     pub fn is_bad_input(&self) -> bool {
-        use StudyError::{Io, JournalChanged, Locked};
-        !matches!(self, Io { .. } | Locked { .. } | JournalChanged { .. })
+        matches!(self, StudyError::File { .. } | StudyError::Impossible { .. })
     }
 
     /// Returns the error for a design that cannot be simulated.

@@ -107,7 +107,8 @@ impl Work {
         encoded(&done, Some(&result.timing))
     }
 
-    /// Parses bytes and checks that they are the result of this work; `stiffness` is the prediction of the study's own model.
+    /// Parses bytes and checks that they are the result of this work; `stiffness` is the prediction of the
+    /// study's own model.
     ///
     /// # Errors
     /// If the bytes are damaged or are the result of other work.

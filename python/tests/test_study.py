@@ -235,7 +235,7 @@ def changed(**new):
 
 
 POISON = {
-    "another work": (changed(work_sha256="0" * 64), "of another work"),
+    "another work": (changed(work_sha256="0" * 64), "belongs to other work"),
     "a field more": (changed(home="/home/me"), "unknown field"),
 }
 

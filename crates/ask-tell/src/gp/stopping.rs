@@ -26,6 +26,7 @@ const DROP_LENGTH: f64 = 0.15;
 const MAX_FITTED: usize = 200;
 /// Grids up to this size are searched exhaustively, larger ones at a sample of candidates.
 const EXHAUSTIVE: u64 = 20_000;
+/// Size of that sample.
 const CANDIDATES: usize = 6000;
 /// Number of best points around which candidates are drawn.
 const INCUMBENTS: usize = 4;

@@ -45,8 +45,8 @@ impl FilmRequest {
         let film = film(&label, specimen, &recording);
         let page = || replay::page(&format!("{}, {label}", specimen.task.name), &[film]);
         if let Some(file) = &self.record {
-            let content = match extension(file).as_deref() {
-                Some("csv") => replay::csv(&recording),
+            let content = match &*extension(file) {
+                "csv" => replay::csv(&recording),
                 _ => page(),
             };
             write_file(file, &content)?;
@@ -67,15 +67,15 @@ impl FilmRequest {
 /// Parses the name of a file into which a trial can be recorded.
 fn recordable(text: &str) -> Result<PathBuf, String> {
     let file = PathBuf::from(text);
-    match extension(&file).as_deref() {
-        Some("html" | "csv") => Ok(file),
+    match &*extension(&file) {
+        "html" | "csv" => Ok(file),
         _ => Err("the name must end with .html or .csv".into()),
     }
 }
 
 /// Returns the extension of a file, in lower case.
-fn extension(file: &Path) -> Option<String> {
-    Some(file.extension()?.to_str()?.to_lowercase())
+pub(crate) fn extension(file: &Path) -> String {
+    file.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
 /// Returns the film of a recorded trial.

@@ -3,6 +3,7 @@
 use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
+use crate::setup::film::extension;
 use crate::setup::printed::PrintRequest;
 use clap::ValueEnum;
 use finray::export::prism::{Prism, PrismError};
@@ -161,11 +162,6 @@ impl Format {
             Format::Prusaslicer => &["ini"],
         }
     }
-}
-
-/// Returns the extension of a file, in lower case.
-fn extension(file: &Path) -> String {
-    file.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
 /// Adds the finger file to the error of a surface that cannot be closed.

@@ -81,7 +81,7 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 /// Result of tuning a task.
-pub struct Done {
+pub struct TunedTask {
     /// Task file, as given on the command line.
     file: String,
     /// The task before tuning.
@@ -99,10 +99,10 @@ pub struct Done {
 }
 
 impl command::Request for Request {
-    type Response = Done;
+    type Response = TunedTask;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Done, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<TunedTask, Failure> {
         let stop = context.stop;
         context.cancel_on_interrupt()?;
         context.begin(MOST_WINDOWS as f64);
@@ -126,7 +126,7 @@ impl command::Request for Request {
             return Err(self.interrupted(&file, &tuned, target)?);
         }
         let Bench { fingers, limits, .. } = bench;
-        let mut done = Done {
+        let mut done = TunedTask {
             file: self.file.clone(),
             task: file.task.clone(),
             tuned,
@@ -179,7 +179,7 @@ impl Request {
     fn write(
         &self,
         file: &TaskFile,
-        done: &Done,
+        done: &TunedTask,
         robot: &Robot,
         (target, stop): (Option<&Path>, &AtomicBool),
     ) -> Result<TunedWindows, Failure> {
@@ -284,7 +284,7 @@ fn push_speed_mm_per_s(strategy: &Strategy) -> f64 {
     strategy.phases.last().map_or(0.0, |push| (push.speed / MM * 10.0).round() / 10.0)
 }
 
-impl Serialize for Done {
+impl Serialize for TunedTask {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
         struct By<'a> {
@@ -311,7 +311,7 @@ impl Serialize for Done {
             nearest: Option<Stopped>,
             out: Option<String>,
         }
-        let Done { task, tuned, fingers, limits, after, written, .. } = self;
+        let TunedTask { task, tuned, fingers, limits, after, written, .. } = self;
         let speed_mm_per_s = limits.speed.map(|speed| speed / MM);
         let limits = LimitsOutput { force_n: limits.force, speed_mm_per_s };
         let best = tuned.best();
@@ -337,7 +337,7 @@ impl Serialize for Done {
     }
 }
 
-impl command::Response for Done {
+impl command::Response for TunedTask {
     fn verdict(self) -> Result<(), Failure> {
         if self.after.is_some() {
             return Ok(());
@@ -351,14 +351,14 @@ impl command::Response for Done {
     }
 }
 
-impl fmt::Display for Done {
+impl fmt::Display for TunedTask {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&wrapped(&text(self)))
     }
 }
 
-fn text(done: &Done) -> String {
-    let Done { task, tuned, fingers, after, written, .. } = done;
+fn text(done: &TunedTask) -> String {
+    let TunedTask { task, tuned, fingers, after, written, .. } = done;
     let line = |name: &str, text: String| (name.to_owned(), text);
     let mut all = vec![
         line("task", task.name.clone()),
@@ -392,7 +392,7 @@ fn text(done: &Done) -> String {
 }
 
 /// Returns speed and largest force of the push, before and after tuning, as text.
-fn push_text(Done { task, tuned, limits, .. }: &Done, after_n: f64) -> String {
+fn push_text(TunedTask { task, tuned, limits, .. }: &TunedTask, after_n: f64) -> String {
     let [old, new] = [&task.strategy, &tuned.best().tried.strategy].map(push_speed_mm_per_s);
     let before = match tuned.steps[0].tried.force_n {
         0.0 => "none".to_owned(),

@@ -29,7 +29,7 @@ pub struct Format {
     pub name: &'static str,
     /// Extra of the package.
     pub extra: &'static str,
-    /// Code that prints the contents of the file `sys.argv[1]`, or exits with an error of one line.
+    /// Body of a `try` statement, indented by four spaces, that prints the contents of the file `sys.argv[1]`.
     pub reader: &'static str,
     /// Alternative without the package, as the last clause of the error.
     pub otherwise: &'static str,
@@ -57,7 +57,9 @@ impl Format {
             };
             Place::file(file).fault(problem)
         };
-        let (output, messages) = output(command(reader).arg(path)).map_err(|error| fail(&error))?;
+        let exit = "except Exception as error:\n    sys.exit(' '.join(str(error).split()))";
+        let code = format!("\ntry:\n    {reader}\n{exit}\n");
+        let (output, messages) = output(command(&code).arg(path)).map_err(|error| fail(&error))?;
         let warnings = messages.lines().filter(|line| line.starts_with("warning: "));
         Ok((output, warnings.map(renamed).collect()))
     }

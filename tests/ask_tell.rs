@@ -163,10 +163,10 @@ fn bad_lines_are_answered_and_change_nothing() {
     talk.error(r#"{"tell":[{"id":0,"value":1}]}"#, "id 0 was not asked");
     assert_eq!(talk.ask(4), quiet.ask(4));
     for (line, part) in [
-        ("", "not a line of JSON"),
-        ("{\"ask\":1", "not a line of JSON"),
-        ("[1]", "not a known line"),
-        ("{\"aks\":1}", "not a known line"),
+        ("", "not valid JSON"),
+        ("{\"ask\":1", "not valid JSON"),
+        ("[1]", "unknown message"),
+        ("{\"aks\":1}", "unknown message"),
         (r#"{"ask":-1}"#, "`ask`"),
         (r#"{"ask":1.5}"#, "`ask`"),
         (r#"{"ask":1,"more":2}"#, "unknown field `more`"),
@@ -175,8 +175,8 @@ fn bad_lines_are_answered_and_change_nothing() {
         (r#"{"tell":[{"id":0,"value":1},{"id":9,"value":1}]}"#, "id 9 was not asked"),
         (r#"{"tell":[{"id":0,"value":1},{"id":0,"value":1}]}"#, "id 0 is told twice"),
         (r#"{"tell":[{"id":0}]}"#, "missing field `value`"),
-        (r#"{"tell":[{"id":0,"value":NaN}]}"#, "not a line of JSON"),
-        (r#"{"tell":[{"id":0,"value":1e999}]}"#, "not a line of JSON"),
+        (r#"{"tell":[{"id":0,"value":NaN}]}"#, "not valid JSON"),
+        (r#"{"tell":[{"id":0,"value":1e999}]}"#, "not valid JSON"),
         (r#"{"tell":[{"id":0,"value":"1"}]}"#, "`tell`"),
         (&header("gp", "minimize", None).to_string(), "already defined"),
     ] {

@@ -116,7 +116,7 @@ proptest! {
         prop_assert_eq!(best(&raced), best(&counted));
         let equals = |record: &StudyRecord| -> Vec<u64> {
             let index = record.recommended().map_or(0, |best| best.index);
-            record.as_good(index).iter().map(|(recorded, _)| recorded.index).collect()
+            record.equivalent_designs(index).iter().map(|(recorded, _)| recorded.index).collect()
         };
         prop_assert_eq!(equals(&raced), equals(&counted));
         let best = counted.best().and_then(|best| best.value());

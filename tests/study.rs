@@ -128,7 +128,7 @@ fn damage_in_the_middle_names_the_file_and_the_line() {
     with(&|lines| lines[6] = other.clone())
         .fails(2, &["journal.jsonl: line 7", "damaged", "delete line 7"]);
     with(&|lines| lines[5].clear()).fails(2, &["journal.jsonl: line 6"]);
-    with(&|lines| drop(lines.remove(8))).fails(2, &["line 9", "evaluation 7 is in the place of"]);
+    with(&|lines| drop(lines.remove(8))).fails(2, &["line 9", "evaluation 7 is found where"]);
     with(&|lines| lines.swap(3, 4)).fails(2, &["line 4"]);
     with(&|lines| lines[0] = "{}".to_owned()).fails(2, &["journal.jsonl", "line 1"]);
     fs::write(&path, "the list of my bees").unwrap();

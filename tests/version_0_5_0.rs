@@ -83,7 +83,7 @@ fn resuming_asks_about_the_provenance_and_uses_no_cache_of_another_simulation() 
         let quick = ["--no-confirm", "--no-levers", "--no-map", "--quiet", "--json"];
         optimize(&[&["resume", &dir, "--cache", &cache], &quick[..], more].concat())
     };
-    let parts = ["measured with other settings", "source_sha256", "--accept-changed"];
+    let parts = ["measured with different settings", "source_sha256", "--accept-changed"];
     resume(&[]).fails(2, &parts);
     resume(&["--accept-changed"]).fails(2, &["all its 12 evaluations are done", "raise --budget"]);
     assert_eq!(copy.journal("study"), study::strip_times(&read_fixture("study/journal.jsonl")));

@@ -102,7 +102,8 @@ def evaluate(
     7.2
 
     Args:
-        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
+        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, separated by
+            commas.
         density: Infill density, percent.
         direction: Infill direction, degrees.
         space: Search space: infill, codesign, finger, or the path of a space file.
@@ -176,7 +177,8 @@ def trial(
     ('inserted', 3)
 
     Args:
-        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
+        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, separated by
+            commas.
         density: Infill density, percent.
         direction: Infill direction, degrees.
         offset_mm: Shift of the start along y, mm.
@@ -248,7 +250,8 @@ def capture_map(
     points between two equal outcomes are filled in.
 
     Args:
-        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
+        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, separated by
+            commas.
         density: Infill density, percent.
         direction: Infill direction, degrees.
         space: Search space: infill, codesign, finger, or the path of a space file.
@@ -363,7 +366,8 @@ def sensitivity(
     """Rank the inputs by their share of the variance: design, task, cell, as ``optimize sensitivity`` does.
 
     Args:
-        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
+        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, separated by
+            commas.
         space: Search space: infill, codesign, finger, or the path of a space file.
         robot: see `optimize robots`, or the path of a robot file [default: servo].
         cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
@@ -413,7 +417,8 @@ def levers(
     """Compare the infill with other ways to widen the window: tilt, strokes, grip, friction, robot, as ``optimize levers`` does.
 
     Args:
-        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
+        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, separated by
+            commas.
         density: Infill density, percent.
         direction: Infill direction, degrees.
         space: Search space: infill, codesign, finger, or the path of a space file.
@@ -472,8 +477,8 @@ def calibrate(
 
     Args:
         measurements: Bench measurements: published, or the path of a file.
-        task: ket8, ket12, rj45, usb, or the path of a task file; several by commas [default: that of the
-            measurements, if they are of one].
+        task: ket8, ket12, rj45, usb, or the path of a task file; several separated by commas [default: that
+            of the measurements, if they are of one].
         space: Search space: infill, codesign, finger, or the path of a space file.
         robot: see `optimize robots`, or the path of a robot file [default: servo].
         cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
@@ -531,7 +536,8 @@ def identify(
     unchanged.
 
     Args:
-        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
+        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, separated by
+            commas.
         runs: Table of the logs: log, infill_density_percent, infill_direction_deg, offset_mm, outcome.
         out: Write the cell, for cell, priors and uncertainty.
         space: Search space: infill, codesign, finger, or the path of a space file.
@@ -594,8 +600,8 @@ def next_print(
 
     Args:
         measurements: Bench measurements: published, or the path of a file.
-        task: ket8, ket12, rj45, usb, or the path of a task file; several by commas [default: that of the
-            measurements, if they are of one].
+        task: ket8, ket12, rj45, usb, or the path of a task file; several separated by commas [default: that
+            of the measurements, if they are of one].
         space: Search space: infill, codesign, finger, or the path of a space file.
         robot: see `optimize robots`, or the path of a robot file [default: servo].
         cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
@@ -675,7 +681,8 @@ def export_mjcf(
     command and close the jaws. MuJoCo is not needed for the export.
 
     Args:
-        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas.
+        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, separated by
+            commas.
         density: Infill density, percent.
         direction: Infill direction, degrees.
         out: File to write.
@@ -717,8 +724,8 @@ def export_finger(
 ) -> tuple[Path, ...]:
     """Export a finger for the printer: the best of a study, or one with a given infill, as ``optimize export finger`` does.
 
-    Both fingers of a gripper are this part. STL, 3MF, DXF and SVG contain every rib; the settings for
-    slicers are for its outline, which is written beside them and which the slicer fills with its own ribs.
+    The two fingers of a gripper are identical. STL, 3MF, DXF and SVG contain every rib. The settings for
+    slicers are for the outline, which is written beside them; the slicer fills it with its own ribs.
 
     Args:
         study: Folder of a study: its best design.
@@ -727,7 +734,7 @@ def export_finger(
         direction: Infill direction, degrees.
         finger: finray9, or the path of a finger file [default: the study's, or finray9].
         phase_mm: Position of the first rib, mm [default: as in the finger file].
-        format: File format [default: that of the ending of FILE; of .svg the profile].
+        format: File format [default: by the extension of FILE; the profile for .svg].
 
     Raises:
         InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
@@ -806,9 +813,9 @@ def new_task(
 ) -> NewTask:
     """Create a commented task file from a few dimensions, or from another task, as ``optimize task new`` does.
 
-    With plug, round or pins, start, tilt, strokes and success depth are derived from the geometry. With
-    like alone the file is a copy of that task; with both, friction and grasp force are taken from it. With
-    neither the task is a USB-C plug.
+    With plug, round or pins, start, tilt, strokes and success depth are derived from the geometry; with
+    like as well, friction and grasp force are those of that task. With like alone the file is a copy of
+    that task. Without any of these the task is a USB-C plug.
 
     Args:
         name: Name of the task: letters, digits, - and _.
@@ -823,7 +830,7 @@ def new_task(
             cylinder, mm.
         chamfer_mm: Chamfer of 45 degrees at the opening of a plug with flat sides, mm.
         body: Body that the fingers hold, above the plug: width x height x length, mm [default: the plug
-            itself; of pins their block, 20 mm long].
+            itself; for pins their block, 20 mm long].
         like: Task to start from: ket8, ket12, rj45, usb, or the path of a task file.
         out: File to write [default: NAME.toml].
         engine: Contact engine for the nominal start.

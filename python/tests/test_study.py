@@ -235,7 +235,7 @@ def changed(**new):
 
 
 POISON = {
-    "another work": (changed(work_sha256="0" * 64), "of another work"),
+    "another work": (changed(work_sha256="0" * 64), "belongs to other work"),
     "a field more": (changed(home="/home/me"), "unknown field"),
 }
 
@@ -250,7 +250,7 @@ def test_damaged_results_are_refused_and_change_nothing(create, kind):
     assert resealed(good, lambda fields: fields) == good
     with pytest.raises(_native.Refused, match=word):
         open_study.take(proposal, resealed(good, change))
-    with pytest.raises(_native.Refused, match="do not fit its `check`"):
+    with pytest.raises(_native.Refused, match="do not match the checksum `check`"):
         open_study.take(proposal, good.replace(b'"trials":', b'"trials":1'))
     with pytest.raises(_native.Refused):
         open_study.take(proposal, fo.perform(work[1][1]))

@@ -5,7 +5,7 @@ use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout;
 use crate::setup::Setup;
-use crate::setup::finger::{Chosen, FingerRequest};
+use crate::setup::finger::{ChosenFinger, FingerRequest};
 use crate::setup::repeat::{RepeatRequest, bands_text, serialize_bands};
 use crate::setup::request::SetupRequest;
 use insertion::evaluation::Evaluation;
@@ -58,7 +58,7 @@ pub struct Request {
 pub struct Evaluated {
     /// The finger on its task.
     #[serde(flatten)]
-    pub chosen: Chosen,
+    pub chosen: ChosenFinger,
     /// Its window.
     #[serde(flatten)]
     pub evaluation: Evaluation,
@@ -120,14 +120,15 @@ impl Request {
     fn by_ribs(
         &self,
         setup: &Setup,
-        chosen: &Chosen,
+        chosen: &ChosenFinger,
         stop: &AtomicBool,
     ) -> Result<Option<ByRibs>, Failure> {
         if self.no_ribs || self.setup.finger_model.kind.is_some() || chosen.given {
             return Ok(None);
         }
         let Some(evaluator) = setup.by_ribs() else { return Ok(None) };
-        let measured = self.finger.by(setup, &evaluator).and_then(|Chosen { specimen, .. }| {
+        let chosen = self.finger.choose_with(setup, &evaluator);
+        let measured = chosen.and_then(|ChosenFinger { specimen, .. }| {
             let found = evaluator.measure_or_teach(&specimen, self.search(), &Plan::WINDOW, stop);
             found.map_err(Failure::input)
         });

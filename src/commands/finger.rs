@@ -104,7 +104,7 @@ impl command::Request for Request {
         let set = Design(self.set.iter().cloned().collect());
         let file = finger_file(&self.finger)?;
         let finger = file.with(&set).map_err(Failure::input)?;
-        let [density, direction] = self.infill.both()?;
+        let [density, direction] = self.infill.required()?;
         let infill = infill(&Design::infill(density, direction), self.phase_mm);
         let geometry = Geometry::new(&finger, &infill).map_err(Failure::input)?;
         let computed = mechanics::compute(&geometry).map_err(Failure::input)?;

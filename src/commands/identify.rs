@@ -25,8 +25,8 @@ use std::fmt;
 use std::path::PathBuf;
 use study::write_file;
 
-/// Most remarks in the text of an error.
-const SHOWN: usize = 5;
+/// Largest number of remarks in the text of an error.
+const MAX_REMARKS: usize = 5;
 
 /// Identify the parameters of a cell from the robot's logs: friction, stiffness, preload, pads, edges
 ///
@@ -38,7 +38,7 @@ const SHOWN: usize = 5;
     after_help = "Example: optimize identify --task usb --runs runs.csv --out cell.toml --report identify.html"
 )]
 pub struct Request {
-    /// Task, finger model and initial robot; one task.
+    /// One task, the finger model and the initial robot.
     #[command(flatten)]
     pub setup: SetupRequest,
     /// Table of the logs: log, infill_density_percent, infill_direction_deg, offset_mm, outcome
@@ -62,18 +62,18 @@ pub struct Request {
     pub seed: u64,
 }
 
-/// Identified cell.
-pub struct Done {
+/// Identified cell, with the files that were written.
+pub struct CellOutput {
     /// Identified parameters of the cell.
-    pub done: IdentificationResult,
+    pub result: IdentificationResult,
     written: Vec<PathBuf>,
 }
 
 impl command::Request for Request {
-    type Response = Done;
+    type Response = CellOutput;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Done, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<CellOutput, Failure> {
         let stop = context.stop;
         let _busy = context.busy("fitting the cell to the logs");
         let setup = self.setup.setup()?;
@@ -102,47 +102,47 @@ impl command::Request for Request {
         let mut remarks = identification.remarks(&file).map_err(Failure::input)?;
         let found = identification.identify().map_err(Failure::input)?;
         not_stopped(stop)?;
-        // Compared curves are still shown, but give no cell.
+        // The compared curves are shown even if no parameter is identified, but no cell is written.
         if !found.is_informative() && (self.out.is_some() || found.compared.is_empty()) {
             return Err(undetermined(&remarks));
         }
         remarks.extend(mount::remark(&file, &found.compared));
         let cell = cell(&setup, &found, runs.len()).checked("the cell").map_err(Failure::input)?;
         let (task, runs) = (template.task.name.clone(), file.into_owned());
-        let done = IdentificationResult { task, runs, remarks, found, cell };
+        let result = IdentificationResult { task, runs, remarks, found, cell };
         if let Some(path) = &self.out {
-            let text = toml::to_string(&done.cell).map_err(|error| Failure::Run(error.into()))?;
+            let text = toml::to_string(&result.cell).map_err(|error| Failure::Run(error.into()))?;
             write_file(path, &text)?;
         }
         if let Some(path) = &self.report {
-            write_file(path, &html(&done))?;
+            write_file(path, &html(&result))?;
         }
-        Ok(Done { done, written: self.out.iter().chain(&self.report).cloned().collect() })
+        Ok(CellOutput { result, written: self.out.iter().chain(&self.report).cloned().collect() })
     }
 }
 
-impl Serialize for Done {
+impl Serialize for CellOutput {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        shown::json(&self.done).serialize(serializer)
+        shown::json(&self.result).serialize(serializer)
     }
 }
 
-impl command::Response for Done {
+impl command::Response for CellOutput {
     fn picture(&self) -> Result<Option<String>, Failure> {
-        Ok(Some(html(&self.done)))
+        Ok(Some(html(&self.result)))
     }
 }
 
-impl fmt::Display for Done {
+impl fmt::Display for CellOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let text = layout::wrapped(&shown::text(&self.done));
+        let text = layout::wrapped(&shown::text(&self.result));
         write!(f, "{text}{}", layout::wrote(&self.written))
     }
 }
 
 /// Returns the error for logs that determine no parameter of their cell, with their serious remarks.
 fn undetermined(remarks: &[Remark]) -> Failure {
-    let serious = remarks.iter().filter(|remark| remark.serious).take(SHOWN);
+    let serious = remarks.iter().filter(|remark| remark.serious).take(MAX_REMARKS);
     let lines: String = serious.map(|remark| format!("\n{remark}")).collect();
     Failure::running(format!(
         "these logs determine no parameter of the cell; no cell is written{lines}"
@@ -156,18 +156,18 @@ fn cell(setup: &Setup, found: &Identified, logs: usize) -> Priors {
         name: "cell".to_owned(),
         description: format!("identified from {logs} logs on {task}"),
         task: Some(task),
-        robot: robot_table(setup, &found.robot),
+        robot: robot_file(setup, &found.robot),
         parameters: found.unknowns.iter().map(|one| one.posterior.clone()).collect(),
     }
 }
 
-/// Returns the robot file of a robot: a compliant flange, or the file that it was read from.
-fn robot_table(setup: &Setup, robot: &Robot) -> Option<toml::Table> {
+/// Returns the identified robot as a robot file: a compliant flange, or the input file if it is unchanged.
+fn robot_file(setup: &Setup, robot: &Robot) -> Option<toml::Table> {
     let (Drive::Servo(servo), true) = (&robot.drive, *robot != setup.evaluator.robot) else {
         return setup.inputs.get("robot")?.parse().ok();
     };
     let list = |values: [f64; 3]| toml::Value::from(values.to_vec());
-    let rows: [(&str, toml::Value); 9] = [
+    let fields: [(&str, toml::Value); 9] = [
         ("name", robot.name.clone().into()),
         ("description", "a spring and a damper per axis, from the logs".into()),
         ("kind", "servo".into()),
@@ -178,5 +178,5 @@ fn robot_table(setup: &Setup, robot: &Robot) -> Option<toml::Table> {
         ("inertia_kg_m2", servo.inertia.into()),
         ("damping_ratio", servo.damping_ratio.into()),
     ];
-    Some(rows.into_iter().map(|(key, value)| (key.to_owned(), value)).collect())
+    Some(fields.into_iter().map(|(key, value)| (key.to_owned(), value)).collect())
 }

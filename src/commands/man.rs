@@ -32,19 +32,20 @@ impl command::Request for Request {
 
     fn run(&self, context: &Context<'_>) -> Result<Text, Failure> {
         let program = context.program()?;
-        match self.format {
-            Format::Man => {}
-            Format::Markdown => return Ok(manual::reference(program).into()),
+        let text = match self.format {
+            Format::Man => {
+                let mut page = Vec::new();
+                clap_mangen::Man::new(program).render(&mut page).map_err(|error| {
+                    Failure::running(format!("cannot write the manual page: {error}"))
+                })?;
+                String::from_utf8_lossy(&page).into_owned()
+            }
+            Format::Markdown => manual::reference(program),
             Format::Json => {
                 let commands = serde_json::to_string(&manual::commands(program));
-                let commands = commands.map_err(|error| Failure::Run(error.into()))?;
-                return Ok((commands + "\n").into());
+                commands.map_err(|error| Failure::Run(error.into()))? + "\n"
             }
-        }
-        let mut page = Vec::new();
-        clap_mangen::Man::new(program)
-            .render(&mut page)
-            .map_err(|error| Failure::running(format!("cannot write the manual page: {error}")))?;
-        Ok(String::from_utf8_lossy(&page).into_owned().into())
+        };
+        Ok(text.into())
     }
 }

@@ -5,7 +5,7 @@ use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout;
 use crate::setup::Setup;
-use crate::setup::finger::{Chosen, FingerRequest};
+use crate::setup::finger::{ChosenFinger, FingerRequest};
 use crate::setup::request::SetupRequest;
 use analysis::map::{Axes, CaptureMap, Plane};
 use insertion::evaluation::OffsetStep;
@@ -45,7 +45,7 @@ pub struct Request {
 pub struct Mapped {
     /// The finger on its task.
     #[serde(flatten)]
-    pub chosen: Chosen,
+    pub chosen: ChosenFinger,
     /// Its map.
     #[serde(flatten)]
     pub map: CaptureMap,

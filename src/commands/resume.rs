@@ -45,7 +45,7 @@ impl Request {
             measured.file = file;
         }
         setup.task_files.clone_from(&study.config.conclusion.task_files);
-        study.measure_with(&setup.provenance(), &inputs, self.run.accept_changed)?;
+        study.set_provenance(&setup.provenance(), &inputs, self.run.accept_changed)?;
         OpenStudy::new(study, setup, RunRequest { no_confirm, ..self.run.clone() })
     }
 }

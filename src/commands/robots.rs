@@ -14,13 +14,13 @@ pub struct Request {}
 
 /// Shipped robots, and an example of a robot file.
 #[derive(Serialize)]
-pub struct Listed {
+pub struct ShippedRobots {
     robots: Vec<CellRobot>,
     own_file: &'static str,
 }
 
 impl command::Request for Request {
-    type Response = Output<Listed>;
+    type Response = Output<ShippedRobots>;
 
     fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
         let (robots, own_file) = (robots()?, include_str!("robot.toml"));
@@ -32,7 +32,7 @@ impl command::Request for Request {
              damping_nms_per_rad / stiffness_nm_per_rad, see robots/ur5e_position.toml.\n",
             wrapped(&list),
         );
-        Ok(Output { value: Listed { robots, own_file }, text, picture: None })
+        Ok(Output { value: ShippedRobots { robots, own_file }, text, picture: None })
     }
 }
 

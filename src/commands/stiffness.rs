@@ -3,8 +3,7 @@
 use crate::command;
 use crate::context::Context;
 use crate::failure::Failure;
-use crate::setup::files::DEFAULT_FINGER;
-use crate::setup::files::{printed_finger, stiffness_data, surrogate};
+use crate::setup::files::{DEFAULT_FINGER, printed_finger, stiffness_data, surrogate};
 use crate::setup::finger::InfillRequest;
 use insertion::space::Design;
 use insertion::surrogate::{Model, Prediction};
@@ -33,25 +32,23 @@ pub struct Request {
     /// Also write a plot of the data, the model and its uncertainty
     #[arg(long, value_name = "FILE.svg")]
     pub svg: Option<PathBuf>,
-    /// Infill to predict.
+    /// Infill whose stiffness is predicted.
     #[command(flatten)]
     pub infill: InfillRequest,
 }
 
-/// Model of the stiffness, and its prediction for an infill, if one is given.
-pub struct Fitted {
+/// Fitted model of the stiffness, with its prediction if an infill is given.
+pub struct FittedModel {
     model: Arc<Model>,
     predicted: Option<Prediction>,
 }
 
 impl command::Request for Request {
-    type Response = Fitted;
+    type Response = FittedModel;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Fitted, Failure> {
-        let infill = match self.infill {
-            InfillRequest { density: None, direction: None } => None,
-            infill => Some(infill.both()?),
-        };
+    fn run(&self, _context: &Context<'_>) -> Result<FittedModel, Failure> {
+        let given = self.infill != InfillRequest::default();
+        let infill = given.then(|| self.infill.required()).transpose()?;
         if let Some([density, direction]) = infill {
             Design::checked_infill(density, direction, "stiffness").map_err(Failure::input)?;
         }
@@ -62,11 +59,11 @@ impl command::Request for Request {
         if let Some(path) = &self.svg {
             write_file(path, &shown::svg(&model)?)?;
         }
-        Ok(Fitted { model, predicted })
+        Ok(FittedModel { model, predicted })
     }
 }
 
-impl Serialize for Fitted {
+impl Serialize for FittedModel {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match &self.predicted {
             Some(predicted) => predicted.serialize(serializer),
@@ -75,13 +72,13 @@ impl Serialize for Fitted {
     }
 }
 
-impl command::Response for Fitted {
+impl command::Response for FittedModel {
     fn picture(&self) -> Result<Option<String>, Failure> {
         Ok(Some(shown::svg(&self.model)?))
     }
 }
 
-impl fmt::Display for Fitted {
+impl fmt::Display for FittedModel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&shown::table(&self.model))
     }

@@ -17,70 +17,69 @@ pub struct Request {}
 
 /// Shipped files by kind.
 #[derive(Serialize)]
-pub struct Listed {
-    tasks: Vec<TaskListed>,
-    spaces: Vec<File>,
-    uncertainties: Vec<File>,
+pub struct ShippedFiles {
+    tasks: Vec<TaskEntry>,
+    spaces: Vec<FileEntry>,
+    uncertainties: Vec<FileEntry>,
 }
 
 #[derive(Serialize)]
-struct File {
+struct FileEntry {
     name: &'static str,
     description: String,
 }
 
 /// Task with its clearance where the plug seats.
 #[derive(Serialize)]
-struct TaskListed {
+struct TaskEntry {
     #[serde(flatten)]
-    file: File,
+    file: FileEntry,
     clearance_x_mm: f64,
     clearance_y_mm: f64,
 }
 
 impl command::Request for Request {
-    type Response = Output<Listed>;
+    type Response = Output<ShippedFiles>;
 
     fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
-        let tasks = TASKS.iter().chain(COMMERCIAL).map(listed).collect::<Result<Vec<_>, _>>()?;
-        let [spaces, uncertainties] = [SPACES, UNCERTAINTIES].map(described);
-        let value = Listed { tasks, spaces: spaces?, uncertainties: uncertainties? };
+        let tasks = TASKS.iter().chain(COMMERCIAL).map(entry).collect::<Result<Vec<_>, _>>()?;
+        let [spaces, uncertainties] = [SPACES, UNCERTAINTIES].map(file_entries);
+        let value = ShippedFiles { tasks, spaces: spaces?, uncertainties: uncertainties? };
         let text = value.to_string();
         Ok(Output { value, text, picture: None })
     }
 }
 
-fn described(files: &[Shipped]) -> Result<Vec<File>, Failure> {
-    let described = |file: &Shipped| {
+/// Reads the descriptions of files.
+fn file_entries(files: &[Shipped]) -> Result<Vec<FileEntry>, Failure> {
+    let read = |file: &Shipped| {
         let fields: toml::Table = input::read(file.text, file.file).map_err(Failure::input)?;
         let description = fields.get("description").and_then(toml::Value::as_str);
-        Ok(File { name: file.name, description: description.unwrap_or_default().to_owned() })
+        Ok(FileEntry { name: file.name, description: description.unwrap_or_default().to_owned() })
     };
-    files.iter().map(described).collect()
+    files.iter().map(read).collect()
 }
 
-fn listed(file: &Shipped) -> Result<TaskListed, Failure> {
+/// Reads the description of a task and computes its clearance.
+fn entry(file: &Shipped) -> Result<TaskEntry, Failure> {
     let source = Source { file: file.file.to_owned(), text: file.text.to_owned() };
     let task = TaskFile::parse(source)?.task;
-    let [clearance_x_mm, clearance_y_mm] = clearance(&task).map(|play| round(play / MM));
-    let file = File { name: file.name, description: task.description };
-    Ok(TaskListed { file, clearance_x_mm, clearance_y_mm })
+    // Two decimals, the accuracy of the seat.
+    let rounded_mm = |length: f64| (length / MM * 100.0).round() / 100.0;
+    let [clearance_x_mm, clearance_y_mm] = clearance(&task).map(rounded_mm);
+    let file = FileEntry { name: file.name, description: task.description };
+    Ok(TaskEntry { file, clearance_x_mm, clearance_y_mm })
 }
 
-/// Rounds a length to two digits, the accuracy of the seat.
-fn round(length_mm: f64) -> f64 {
-    (length_mm * 100.0).round() / 100.0
-}
-
-impl fmt::Display for Listed {
+impl fmt::Display for ShippedFiles {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let line = |of: &File| format!("  {:<10} {}\n", of.name, of.description);
+        let line = |of: &FileEntry| format!("  {:<10} {}\n", of.name, of.description);
         writeln!(f, "tasks, with their clearance in x and y")?;
-        for TaskListed { file, clearance_x_mm, clearance_y_mm } in &self.tasks {
-            let File { name, description } = file;
+        for TaskEntry { file, clearance_x_mm, clearance_y_mm } in &self.tasks {
+            let FileEntry { name, description } = file;
             writeln!(f, "  {name:<10} {clearance_x_mm:.2}, {clearance_y_mm:.2} mm  {description}")?;
         }
-        let lines = |files: &[File]| files.iter().map(line).collect::<String>();
+        let lines = |files: &[FileEntry]| files.iter().map(line).collect::<String>();
         write!(f, "spaces\n{}uncertainties\n{}", lines(&self.spaces), lines(&self.uncertainties))
     }
 }

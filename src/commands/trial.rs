@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::layout;
 use crate::setup::driven::undriven;
 use crate::setup::film::FilmRequest;
-use crate::setup::finger::{Chosen, FingerRequest};
+use crate::setup::finger::{ChosenFinger, FingerRequest};
 use crate::setup::repeat::RepeatRequest;
 use crate::setup::request::SetupRequest;
 use calibration::identify::curves::STEP_S;
@@ -84,7 +84,7 @@ pub struct Request {
 pub struct Done {
     /// The finger on its task.
     #[serde(flatten)]
-    pub chosen: Chosen,
+    pub chosen: ChosenFinger,
     /// Shift of the start along y, mm.
     pub offset_mm: f64,
     /// Its outcome.

@@ -1,33 +1,28 @@
-//! Logs of attempts: text, or recordings of ROS, which the Python package reads by rosbags.
+//! Logs of attempts: text, or recordings of ROS, which the Python package reads with rosbags.
 
 use crate::python::Format;
 use calibration::identify::read;
 use input::{Fault, Place};
 use std::path::Path;
 
-/// Read as the table of an RTDE recorder.
+/// ROS recording, converted to the table of an RTDE recorder.
 const BAG: Format = Format {
     name: "a ROS recording",
     extra: "ros",
-    reader: "
-try:
-    from finger_opt import _bag
-    sys.stdout.write(_bag.text(sys.argv[1]))
-except Exception as error:
-    sys.exit(' '.join(str(error).split()))
-",
+    reader: "from finger_opt import _bag
+    sys.stdout.write(_bag.text(sys.argv[1]))",
     otherwise: "or convert it to CSV",
 };
-/// Endings of single files; a folder is the recording of ROS 2.
-const ENDINGS: [&str; 3] = ["mcap", "db3", "bag"];
+/// Extensions of recordings in a single file; a folder is a recording of ROS 2.
+const EXTENSIONS: [&str; 3] = ["mcap", "db3", "bag"];
 
-/// Returns the text of a log.
+/// Reads the text of a log.
 ///
 /// # Errors
-/// If it cannot be read, or is a recording and the package or its extra `ros` is not installed.
+/// If the log cannot be read, or if it is a recording and the package or its extra `ros` is not installed.
 pub fn log_text(path: &Path) -> Result<String, Fault> {
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    if !path.is_dir() && !ending.is_some_and(|ending| ENDINGS.contains(&ending)) {
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    if !path.is_dir() && !extension.is_some_and(|name| EXTENSIONS.contains(&name)) {
         return read::text(path);
     }
     let file = path.display().to_string();

@@ -26,8 +26,8 @@ pub const DEFAULT_PRIORS: &str = "bench";
 /// Tasks and measurements of a bench; without tasks, the task of the measurements.
 #[derive(Debug, Clone, clap::Args)]
 #[command(mut_arg("tasks", |task| task.required(false).default_value("").hide_default_value(true).help(
-    "Task: ket8, ket12, rj45, usb, or the path of a task file; several by commas [default: that of \
-     the measurements, if they are of one]"
+    "Task: ket8, ket12, rj45, usb, or the path of a task file; several separated by commas \
+     [default: that of the measurements, if they are of one]"
 )))]
 pub struct BenchRequest {
     /// Tasks, robot, space, finger model.

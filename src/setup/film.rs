@@ -18,14 +18,14 @@ pub struct FilmRequest {
     /// Draw force against depth
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
-    /// Include the page that plays it in the result
+    /// Include the page that plays the trial in the result
     #[arg(long = "film", hide = true)]
     pub page: bool,
 }
 
 impl FilmRequest {
-    /// Records the trial at this offset and writes the requested outputs; `None` if there are none. The page is
-    /// returned if it was requested.
+    /// Records the trial at this offset and writes the requested outputs; returns the recording, and the page if it
+    /// was requested. `None` if no output was requested.
     pub(crate) fn record(
         &self,
         rig: &dyn Rig,
@@ -41,12 +41,12 @@ impl FilmRequest {
             Failure::usage("--record and --plot need an engine that simulates: --engine direct")
         })?;
         not_stopped(stop)?;
-        let label = shifted(offset_mm);
+        let label = start_label(offset_mm);
         let film = film(&label, specimen, &recording);
         let page = || replay::page(&format!("{}, {label}", specimen.task.name), &[film]);
         if let Some(file) = &self.record {
-            let content = match extension(file).as_deref() {
-                Some("csv") => replay::csv(&recording),
+            let content = match &*extension(file) {
+                "csv" => replay::csv(&recording),
                 _ => page(),
             };
             write_file(file, &content)?;
@@ -58,6 +58,7 @@ impl FilmRequest {
         Ok(Some((recording, page)))
     }
 
+    /// Returns the files of the requested outputs.
     pub(crate) fn files(&self) -> impl Iterator<Item = &PathBuf> {
         self.record.iter().chain(&self.plot)
     }
@@ -66,14 +67,15 @@ impl FilmRequest {
 /// Parses the name of a file into which a trial can be recorded.
 fn recordable(text: &str) -> Result<PathBuf, String> {
     let file = PathBuf::from(text);
-    match extension(&file).as_deref() {
-        Some("html" | "csv") => Ok(file),
+    match &*extension(&file) {
+        "html" | "csv" => Ok(file),
         _ => Err("the name must end with .html or .csv".into()),
     }
 }
 
-fn extension(file: &Path) -> Option<String> {
-    Some(file.extension()?.to_str()?.to_lowercase())
+/// Returns the extension of a file, in lower case.
+pub(crate) fn extension(file: &Path) -> String {
+    file.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
 /// Returns the film of a recorded trial.
@@ -85,8 +87,8 @@ pub(crate) fn film<'a>(
     Film { label, task: &specimen.task, pad: &specimen.finger.pad, recording }
 }
 
-/// Returns a shifted start as text.
-pub(crate) fn shifted(offset_mm: f64) -> String {
+/// Returns the label of a start.
+pub(crate) fn start_label(offset_mm: f64) -> String {
     match offset_mm == 0.0 {
         true => "nominal start".to_owned(),
         false => format!("start shifted by {offset_mm:+.1} mm"),

@@ -15,6 +15,7 @@ use report::answer::lines;
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
+/// Parses a stiffness, N/mm.
 fn stiffness(text: &str) -> Result<f64, String> {
     let n_per_mm = text.parse().unwrap_or(f64::NAN);
     let problem = numbers::problem("stiffness_compliance_n_per_mm", n_per_mm);
@@ -47,11 +48,11 @@ impl InfillRequest {
         InfillRequest { density: Some(density), direction: Some(direction) }
     }
 
-    /// Returns density, percent, and direction, degrees.
+    /// Returns the density, percent, and the direction, degrees, which must both be given.
     ///
     /// # Errors
-    /// If one of them is not given, or the density is out of bounds.
-    pub fn both(self) -> Result<[f64; 2], Failure> {
+    /// If one of them is missing, or the density is out of bounds.
+    pub fn required(self) -> Result<[f64; 2], Failure> {
         let (Some(density), Some(direction)) = (self.density, self.direction) else {
             return Err(Failure::usage("give --density and --direction"));
         };
@@ -65,7 +66,7 @@ impl InfillRequest {
 /// Finger, by its infill or by its stiffness.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct FingerRequest {
-    /// Its infill.
+    /// Infill of the finger.
     #[command(flatten)]
     pub infill: InfillRequest,
     /// Stiffness in the compliance direction, N/mm: bypasses the surrogate
@@ -82,47 +83,51 @@ pub struct FingerRequest {
 }
 
 /// Finger on a task, with the source of its stiffness.
-pub struct Chosen {
+pub struct ChosenFinger {
     /// Task and finger.
     pub specimen: Specimen,
     /// Name of the robot.
     pub robot: String,
     /// Cell, if one is given.
     pub cell: Option<Priors>,
-    /// Source of its stiffnesses that were not measured.
+    /// Source of the unmeasured stiffnesses.
     pub finger_model: FingerModelKind,
     /// Infill and settings; empty if only a stiffness is given.
     pub design: Design,
-    /// Settings beside the infill.
+    /// Settings other than the infill.
     pub set: Design,
     /// Whether the stiffness was given, not predicted.
     pub given: bool,
 }
 
 impl FingerRequest {
-    pub(crate) fn choose(&self, setup: &Setup) -> Result<Chosen, Failure> {
-        self.by(setup, &setup.evaluator)
+    /// Returns the finger on the task of a setup.
+    pub(crate) fn choose(&self, setup: &Setup) -> Result<ChosenFinger, Failure> {
+        self.choose_with(setup, &setup.evaluator)
     }
 
-    /// Returns the finger by the models of another evaluator of the setup.
-    pub(crate) fn by(&self, setup: &Setup, evaluator: &Evaluator) -> Result<Chosen, Failure> {
+    /// Returns the finger on the task of a setup, with the models of an evaluator.
+    pub(crate) fn choose_with(
+        &self,
+        setup: &Setup,
+        evaluator: &Evaluator,
+    ) -> Result<ChosenFinger, Failure> {
         let template = setup.only_task()?;
-        let mut infill = Design::default();
+        let mut design = Design::default();
         for (flag, key, value) in [
             ("--density", DENSITY_KEY, self.infill.density),
             ("--direction", DIRECTION_KEY, self.infill.direction),
         ] {
             if let Some(value) = value {
                 check(setup, flag, key, value)?;
-                infill.0.insert(key.to_owned(), value);
+                design.0.insert(key.to_owned(), value);
             }
         }
         let set = self.settings(setup)?;
-        let mut design = set.clone();
-        design.0.extend(infill.0);
-        let springs = self.springs();
-        let given = springs.is_some();
-        let stiffness = match springs {
+        design.0.extend(set.0.clone());
+        let stiffness = self.given_stiffness();
+        let given = stiffness.is_some();
+        let stiffness = match stiffness {
             Some(_) if evaluator.fingers.kind() == FingerModelKind::Computed => {
                 return Err(Failure::usage(
                     "--stiffness-compliance and --stiffness-assembly need the finger model `paper`; \
@@ -131,12 +136,12 @@ impl FingerRequest {
             }
             Some(given) => given,
             None => {
-                self.infill.both()?;
+                self.infill.required()?;
                 evaluator.predict(&design).map_err(Failure::input)?
             }
         };
         let specimen = evaluator.specimen(template, &design, stiffness).map_err(Failure::input)?;
-        Ok(Chosen {
+        Ok(ChosenFinger {
             specimen,
             robot: evaluator.robot.name.clone(),
             cell: evaluator.cell.clone(),
@@ -148,7 +153,7 @@ impl FingerRequest {
     }
 
     /// Returns the given stiffness.
-    fn springs(&self) -> Option<Prediction> {
+    fn given_stiffness(&self) -> Option<Prediction> {
         let (compliance, assembly) = self.stiffness_compliance.zip(self.stiffness_assembly)?;
         Some(Prediction::exact(compliance * N_PER_MM, assembly * N_PER_MM))
     }
@@ -159,7 +164,7 @@ impl FingerRequest {
         for (key, value) in &self.set {
             if [DENSITY_KEY, DIRECTION_KEY].contains(&key.as_str()) {
                 return Err(Failure::usage(format!(
-                    "--set {key}: give the infill by --density and --direction"
+                    "--set {key}: give the infill with --density and --direction"
                 )));
             }
             if setup.space.parameters.iter().any(|parameter| parameter.key == *key) {
@@ -192,7 +197,7 @@ fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure
     }
 }
 
-impl Serialize for Chosen {
+impl Serialize for ChosenFinger {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Specimen { task, finger, stiffness, .. } = &self.specimen;
         let mut subject = json!({
@@ -220,7 +225,7 @@ impl Serialize for Chosen {
     }
 }
 
-impl Chosen {
+impl ChosenFinger {
     /// Returns design, stiffness and finger model as lines.
     pub fn text(&self) -> String {
         let stiffness = &self.specimen.stiffness;

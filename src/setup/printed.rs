@@ -62,7 +62,7 @@ impl PrintRequest {
                 return Err(Failure::usage(problem));
             }
             None => {
-                let [density, direction] = self.infill.both()?;
+                let [density, direction] = self.infill.required()?;
                 (Design::infill(density, direction), None, None)
             }
         };

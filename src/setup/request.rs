@@ -41,20 +41,20 @@ impl TaskSource {
             return given;
         }
         if names.is_empty() || Path::new(names).is_file() {
-            let one = (!names.is_empty()).then(|| TaskSource::Named(names.to_owned()));
-            return one.into_iter().collect();
+            let task = (!names.is_empty()).then(|| TaskSource::Named(names.to_owned()));
+            return task.into_iter().collect();
         }
         names.split(',').map(|name| TaskSource::Named(name.trim().to_owned())).collect()
     }
 
-    /// Returns the task of a name, or the one passed by another program.
-    pub fn one(name: &str) -> Self {
+    /// Returns the task of a name, or the task passed by another program.
+    pub fn single(name: &str) -> Self {
         let given = name.starts_with('\0').then(|| TaskSource::list(name));
         let given = given.and_then(|given| <[TaskSource; 1]>::try_from(given).ok());
-        given.map_or_else(|| TaskSource::Named(name.to_owned()), |[one]| one)
+        given.map_or_else(|| TaskSource::Named(name.to_owned()), |[task]| task)
     }
 
-    /// Reads its file without checking it.
+    /// Reads the task file without checking it.
     ///
     /// # Errors
     /// If there is no such task or file.
@@ -72,7 +72,7 @@ impl TaskSource {
 /// Options of a trial, an evaluation, a calibration and a study.
 #[derive(Debug, Clone, clap::Args)]
 pub struct SetupRequest {
-    /// Task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, by commas
+    /// Task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, separated by commas
     // With the full path of `Vec` the whole list is a single value of the option.
     #[arg(long = "task", value_name = "NAME", value_parser = |names: &str| Ok::<_, Infallible>(TaskSource::list(names)))]
     pub tasks: std::vec::Vec<TaskSource>,
@@ -99,7 +99,7 @@ pub struct SetupRequest {
     pub start: Option<StartRule>,
 }
 
-/// Source of the stiffnesses of a finger that were not measured.
+/// Source of the unmeasured stiffnesses of a finger.
 #[derive(Debug, Clone, clap::Args)]
 pub struct FingerModelRequest {
     /// Source of a finger's remote centre and unmeasured stiffnesses [default: paper; computed for a
@@ -143,7 +143,7 @@ impl SetupRequest {
         let task = |task: &TaskSource| {
             let source = task.read()?;
             Ok(match self.start {
-                Some(rule) => started(source, rule),
+                Some(rule) => with_start_rule(source, rule),
                 None => source,
             })
         };
@@ -168,7 +168,7 @@ impl SetupRequest {
         of_priors: Option<String>,
         cell: Option<&(Source, Priors)>,
     ) -> Result<Source, Failure> {
-        let held = |flag: &str, text| match &self.robot {
+        let contained = |flag: &str, text| match &self.robot {
             Some(_) => {
                 Err(Failure::usage(format!("{flag} contains a robot: leave out --robot or {flag}")))
             }
@@ -178,8 +178,8 @@ impl SetupRequest {
             (Some(_), Some(_)) => Err(Failure::usage(
                 "--priors and --cell both contain a robot: leave out one of them",
             )),
-            (Some(text), None) => held("--priors", text),
-            (None, Some(text)) => held("--cell", text),
+            (Some(text), None) => contained("--priors", text),
+            (None, Some(text)) => contained("--cell", text),
             (None, None) => find("robot", ROBOTS, self.robot.as_deref().unwrap_or(DEFAULT_ROBOT)),
         }
     }
@@ -199,22 +199,17 @@ impl FingerModelRequest {
     fn file(&self, space: Option<&Space>) -> Result<Option<Source>, Failure> {
         let shape = |p: &&Variable| is_shape(&p.key);
         let shaped = space.and_then(|space| space.parameters.iter().find(shape));
-        let kind = match (self.kind, shaped) {
-            (Some(FingerModelKind::Paper), Some(Variable { key, .. })) => {
-                return Err(Failure::usage(format!(
-                    "the space sets {key}, which needs --finger-model computed"
-                )));
+        match (self.kind, shaped) {
+            (Some(FingerModelKind::Paper), Some(Variable { key, .. })) => Err(Failure::usage(
+                format!("the space sets {key}, which needs --finger-model computed"),
+            )),
+            (Some(FingerModelKind::Computed), _) | (None, Some(_)) => {
+                find("finger", FINGERS, &self.finger).map(Some)
             }
-            (Some(kind), _) => kind,
-            (None, Some(_)) => FingerModelKind::Computed,
-            (None, None) => FingerModelKind::Paper,
-        };
-        match kind {
-            FingerModelKind::Paper if self.finger != DEFAULT_FINGER => {
+            (_, None) if self.finger != DEFAULT_FINGER => {
                 Err(Failure::usage("--finger needs --finger-model computed"))
             }
-            FingerModelKind::Paper => Ok(None),
-            FingerModelKind::Computed => find("finger", FINGERS, &self.finger).map(Some),
+            (_, None) => Ok(None),
         }
     }
 }
@@ -228,8 +223,8 @@ fn cell(path: &str) -> Result<(Source, Priors), Failure> {
     Ok((source, cell))
 }
 
-/// Sets the rule of the start in a task file. Passes invalid input through; the parser reports it.
-fn started(task: Source, rule: StartRule) -> Source {
+/// Sets the rule for the nominal start in a task file. Passes invalid input through; the parser reports it.
+fn with_start_rule(task: Source, rule: StartRule) -> Source {
     let Ok(mut table) = task.text.parse::<toml::Table>() else { return task };
     let Some(toml::Value::Table(strategy)) = table.get_mut("strategy") else { return task };
     let word = match rule {

@@ -205,7 +205,7 @@ pub fn perform(bytes: &[u8], worker: &str, stop: &AtomicBool) -> Result<Vec<u8>,
     alone.install(|| {
         let work = Work::decode(bytes).map_err(Failure::input)?;
         let setup = set_up(&work)?;
-        work.admit(&setup.provenance(), worker).map_err(Failure::input)?;
+        work.check_worker(&setup.provenance(), worker).map_err(Failure::input)?;
         let plan = setup.plan(work.seed, |measure| match measure {
             Measure::SuccessRate => work.success_rate,
             Measure::RobustRange => work.robust_range,
@@ -213,6 +213,6 @@ pub fn perform(bytes: &[u8], worker: &str, stop: &AtomicBool) -> Result<Vec<u8>,
         })?;
         let result = work.proposal.measure(&cached_evaluator(&setup, None, &plan, stop))?;
         not_stopped(stop)?;
-        work.result(result).map_err(|error| Failure::running(error.to_string()))
+        work.encode_result(result).map_err(|error| Failure::running(error.to_string()))
     })
 }

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::setup::Setup;
-use crate::setup::film::{film, shifted};
+use crate::setup::film::{film, start_label};
 use insertion::evaluation::template::Template;
 use insertion::evaluation::tolerance::offset;
 use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
@@ -84,7 +84,7 @@ fn pair(
     let (inside, outside) =
         pool.install(|| rayon::join(|| record(last), || record(last + outward)));
     let Some((inside, outside)) = inside.zip(outside) else { return Ok(None) };
-    let labels = [last, last + outward].map(|step| shifted(grid_mm(step)));
+    let labels = [last, last + outward].map(|step| start_label(grid_mm(step)));
     let films = [film(&labels[0], specimen, &inside), film(&labels[1], specimen, &outside)];
     let title = format!("{}: the {end} end of the window", specimen.task.name);
     let poster = picture::ended(&specimen.task, &specimen.finger.pad, &outside.trial);

@@ -227,7 +227,7 @@ fn check(config: &StudyConfig, setup: &Setup) -> Result<(), Failure> {
 
 /// Adds the command that resumes the study to an error, unless the journal was changed.
 pub(super) fn hint(error: StudyError, study: &Study) -> Failure {
-    let changed = matches!(error, StudyError::Interfered { .. });
+    let changed = matches!(error, StudyError::JournalChanged { .. });
     match Failure::from(error) {
         Failure::Run(error) if !changed => {
             Failure::running(format!("{error}\n{}", resume_hint(study)))

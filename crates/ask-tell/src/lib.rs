@@ -130,7 +130,7 @@ impl Grid {
     }
 }
 
-/// Result of one point.
+/// Result of the evaluation of a point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observation {
     /// The point.
@@ -155,7 +155,7 @@ impl Observation {
         self.values.first().copied()
     }
 
-    /// Returns whether it has a value and satisfies all constraints.
+    /// Returns whether the observation has a value and satisfies all constraints.
     pub fn feasible(&self) -> bool {
         !self.values.is_empty() && self.violations.iter().all(|&violation| violation <= 0.0)
     }

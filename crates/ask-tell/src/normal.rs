@@ -1,24 +1,24 @@
 //! Normal and chi-squared random numbers with the same bits on every system.
 //!
 //! `rand_distr` takes logarithm and exponential from the system, whose last bits differ. Rounding to a
-//! grid much coarser than those bits hides them but for a probability that follows here.
+//! grid much coarser than those bits removes the differences, except with the probability derived here.
 //!
 //! - 98.8 % of normal numbers are products of a table and random bits: no function is involved.
-//! - In the wedges of the ziggurat the exponential decides between acceptance and rejection. One bit of it
-//!   decides otherwise with a probability of at most 2^-53 over the height of a layer, below 1e-13.
-//! - A number beyond 3.654 is 3.654 plus a logarithm, and one bit of it moves the sum by at most one
-//!   place: 2^-51 up to 4 and 2^-50 beyond. The rounded number changes if a boundary of the grid, which
-//!   are 2^-32 apart, lies between the two: with a probability of 2^-19 and 2^-18. The tails have 2.58e-4 of
-//!   all numbers up to 4 and beyond, 6.3e-5 beyond 4. Together: 1.95e-4 * 2^-19 + 6.3e-5 * 2^-18 = 6.1e-10.
+//! - In the wedges of the ziggurat the exponential decides between acceptance and rejection. An error in its
+//!   last bit changes the decision with a probability of at most 2^-53 over the height of a layer, below 1e-13.
+//! - A number beyond 3.654 is 3.654 plus a logarithm, whose last bit moves the sum by at most one unit in
+//!   the last place: 2^-51 up to 4 and 2^-50 beyond. The rounded number changes if one of the rounding
+//!   boundaries, which are 2^-32 apart, lies between the two sums: with a probability of 2^-19 and 2^-18. Of
+//!   all numbers, 2.58e-4 lie beyond 3.654, and 6.3e-5 beyond 4. Together: 1.95e-4 * 2^-19 + 6.3e-5 * 2^-18 = 6.1e-10.
 //!
 //! So systems whose functions always differ in the last bit would differ in one of 1.6e9 normal numbers.
 
 use rand::Rng;
 use rand::distr::Distribution;
 
-/// Numbers on the grid of normal numbers between 0 and 1.
+/// Grid steps per unit for normal numbers.
 const NORMAL_GRID: f64 = (1u64 << 32) as f64;
-/// The same for chi-squared numbers, which multiply the error of the normal number they are made of.
+/// Grid steps per unit for chi-squared numbers, which multiply the error of the underlying normal number.
 const CHI_SQUARED_GRID: f64 = (1u32 << 24) as f64;
 
 /// Standard normal distribution, rounded to multiples of 2^-32.
@@ -32,7 +32,7 @@ impl Distribution<f64> for StandardNormal {
     }
 }
 
-/// Returns a number of the chi-squared distribution, rounded to a multiple of 2^-24; NaN unless `freedom`
+/// Draws a number from the chi-squared distribution, rounded to a multiple of 2^-24; NaN unless `freedom`
 /// is above 0.
 pub fn chi_squared<R: Rng + ?Sized>(freedom: f64, random: &mut R) -> f64 {
     let draw = |distribution: rand_distr::ChiSquared<f64>| distribution.sample(random);
@@ -64,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_numbers_are_those_of_every_system() {
+    fn the_first_numbers_are_the_same_on_every_system() {
         let mut random = stream(0, 0, "normal");
         let first: [f64; 3] = std::array::from_fn(|_| random.sample(StandardNormal));
         assert_eq!(

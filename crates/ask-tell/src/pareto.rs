@@ -97,7 +97,7 @@ fn cuts(points: &[&[f64]], axis: usize, floor: f64) -> Vec<f64> {
     cuts
 }
 
-/// Returns the points of at least this value along an axis.
+/// Returns the points whose coordinate along an axis is at least `high`.
 fn reaching<'a>(points: &[&'a [f64]], axis: usize, high: f64) -> Vec<&'a [f64]> {
     points.iter().filter(|point| point[axis] >= high).copied().collect()
 }
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn the_front_is_what_nothing_dominates() {
+    fn the_front_contains_the_non_dominated_points() {
         let given = [[1.0, 3.0], [2.0, 2.0], [1.0, 2.0], [2.0, 2.0], [3.0, 0.0]].map(Vec::from);
         assert_eq!(front(&given), [0, 1, 4]);
         assert_eq!(front(&[]), [0; 0]);
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn points_one_after_the_other_leave_the_same_front() {
+    fn points_added_one_by_one_give_the_same_front() {
         for seed in 0..20 {
             let all = points(seed, 40, 2 + seed as usize % 2);
             let mut archive = Archive::default();
@@ -151,8 +151,8 @@ mod tests {
     }
 
     #[test]
-    fn a_volume_worked_by_hand() {
-        // 3 x 1 and 1 x 3 above (0, 0), less the common unit square.
+    fn the_hypervolume_matches_a_manual_calculation() {
+        // 3 x 1 and 1 x 3 above (0, 0), minus the common unit square.
         let two = [[3.0, 1.0], [1.0, 3.0]].map(Vec::from);
         assert_eq!(hypervolume(&two, &[0.0, 0.0]), 5.0);
         // Below the reference in one component: nothing.
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn the_cells_say_what_a_point_adds_to_the_volume() {
+    fn the_cells_give_the_hypervolume_improvement_of_a_point() {
         for dimension in 1..=4 {
             let reference = vec![0.15; dimension];
             for seed in 0..20 {

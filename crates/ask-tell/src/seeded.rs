@@ -10,32 +10,32 @@ use std::collections::{BTreeSet, VecDeque};
 /// propose them again.
 pub struct SeededOptimizer {
     inner: Box<dyn Optimizer + Send>,
-    /// Number of points that `inner` proposes before the chosen ones.
-    before: usize,
+    /// Points of the initial design that `inner` has not proposed yet; the chosen points follow it.
+    initial: usize,
     chosen: VecDeque<GridPoint>,
     /// Points proposed so far; `inner` may have proposed a chosen one.
     proposed: Vec<GridPoint>,
 }
 
 impl SeededOptimizer {
-    /// Creates the optimizer from a new `inner` one, which proposes the first `before` points; the chosen
-    /// points must lie on its grid.
+    /// Creates the optimizer from a new `inner` optimizer, which proposes an `initial` number of points; the
+    /// chosen points must lie on its grid.
     pub fn new(
         inner: Box<dyn Optimizer + Send>,
-        before: usize,
+        initial: usize,
         chosen: impl IntoIterator<Item = GridPoint>,
     ) -> Self {
         let mut seen = BTreeSet::new();
         let chosen = chosen.into_iter().filter(|point| seen.insert(point.clone())).collect();
-        SeededOptimizer { inner, before, chosen, proposed: Vec::new() }
+        SeededOptimizer { inner, initial, chosen, proposed: Vec::new() }
     }
 }
 
 impl Optimizer for SeededOptimizer {
     fn ask(&mut self, n: usize) -> Vec<GridPoint> {
-        let own = if self.chosen.is_empty() { n } else { n.min(self.before) };
+        let own = if self.chosen.is_empty() { n } else { n.min(self.initial) };
         let mut points = if own > 0 { self.inner.ask(own) } else { Vec::new() };
-        self.before = self.before.saturating_sub(points.len());
+        self.initial = self.initial.saturating_sub(points.len());
         if !self.chosen.is_empty() {
             self.proposed.extend(points.iter().cloned());
             self.chosen.retain(|point| !self.proposed.contains(point));
@@ -60,7 +60,7 @@ mod tests {
     use crate::{Grid, OptimizerKind, build};
 
     #[test]
-    fn chosen_points_come_once_after_the_first_ones_and_are_told() {
+    fn chosen_points_are_proposed_once_after_the_initial_design() {
         let grid = Grid::new(vec![5, 5]);
         let chosen = [[0, 0], [4, 4], [0, 0], [2, 3]].map(|levels| GridPoint(levels.to_vec()));
         let inner = build(OptimizerKind::Gp, grid, 1);

@@ -24,8 +24,8 @@ pub struct CachedEvaluator<'a> {
     pub stop: &'a AtomicBool,
 }
 
-// The key of a cache entry includes the plan with its race. A raced evaluation is therefore found only by the
-// same race, and the cache changes no journal.
+// The key of a cache entry includes the plan with its race. The cache therefore returns a raced evaluation only
+// in the same race, and does not change the journal.
 impl Evaluate for CachedEvaluator<'_> {
     fn evaluate(&self, design: &Design, race: Option<&Race>) -> Result<Measured, Impossible> {
         let (plan, mut cached) = (self.plan.against(race), Vec::new());
@@ -63,6 +63,7 @@ impl CachedEvaluator<'_> {
         }
     }
 
+    /// Returns the key of a specimen in the cache.
     fn key(&self, cache: &Cache, specimen: &Specimen, plan: &Plan) -> String {
         cache.key(&(specimen, self.search, plan))
     }
@@ -81,7 +82,7 @@ impl CachedEvaluator<'_> {
             return Ok((found, true));
         }
         let evaluation = self.evaluator.measure(specimen, self.search, plan, self.stop)?;
-        // After cancellation trials may have been skipped.
+        // The cancelled evaluation may lack trials.
         if let Some((cache, key)) = entry.filter(|_| !self.stop.load(Ordering::SeqCst)) {
             cache.put(&key, &evaluation);
         }

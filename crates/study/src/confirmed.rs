@@ -74,7 +74,7 @@ impl ConfirmationFile {
 impl Rule<'_> {
     /// Returns the design that the rule ranks first among those with a positive value.
     pub fn first<'a>(&self, current: &'a [Recorded]) -> Option<&'a Recorded> {
-        let ranked = current.iter().map(|recorded| (recorded, self.as_recorded(recorded)));
+        let ranked = current.iter().map(|recorded| (recorded, self.recorded_rank(recorded)));
         let inserting = ranked.filter(|(_, rank)| rank.value().is_some_and(|value| value > 0.0));
         inserting.min_by(|(_, a), (_, b)| self.order(a, b)).map(|(recorded, _)| recorded)
     }

@@ -101,7 +101,7 @@ impl Confirmer<'_> {
         let rule = Rule::of(config);
         let first = first_current(&study.segments) as usize;
         let current = study.evaluations.get(first..told).unwrap_or_default();
-        let ranks: Vec<Rank> = current.iter().map(|found| rule.as_recorded(found)).collect();
+        let ranks: Vec<Rank> = current.iter().map(|found| rule.recorded_rank(found)).collect();
         let grid = Grid::new(config.space.levels());
         let observed = rule.observed(current);
         let mut order: Vec<usize> = (0..current.len()).collect();

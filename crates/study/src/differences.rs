@@ -1,4 +1,4 @@
-//! Differences of two values, field by field.
+//! Differences between two values, field by field.
 
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};

@@ -27,7 +27,7 @@ pub enum StudyError {
     Locked {
         /// The study's folder.
         dir: PathBuf,
-        /// Process number, as far as it is known.
+        /// Process ID, if it is known.
         owner: String,
     },
     /// The folder or one of its files is invalid.
@@ -44,10 +44,10 @@ pub enum StudyError {
          in the cache are not simulated again",
         path.display()
     )]
-    Interfered {
+    JournalChanged {
         /// The journal.
         path: PathBuf,
-        /// The change that was found in it.
+        /// The change.
         problem: String,
     },
     /// A design of the space cannot be simulated.
@@ -68,7 +68,7 @@ impl Placed for StudyError {
             StudyError::Io { path, .. }
             | StudyError::Locked { dir: path, .. }
             | StudyError::File { path, .. }
-            | StudyError::Interfered { path, .. } => Place::file(path.display().to_string()),
+            | StudyError::JournalChanged { path, .. } => Place::file(path.display().to_string()),
             StudyError::Impossible { source, .. } => source.place(),
         }
     }
@@ -77,8 +77,7 @@ impl Placed for StudyError {
 impl StudyError {
     /// Returns whether the input is wrong (exit code 2) rather than the run (exit code 1).
     pub fn is_bad_input(&self) -> bool {
-        use StudyError::{Interfered, Io, Locked};
-        !matches!(self, Io { .. } | Locked { .. } | Interfered { .. })
+        matches!(self, StudyError::File { .. } | StudyError::Impossible { .. })
     }
 
     /// Returns the error for a design that cannot be simulated.
@@ -102,12 +101,12 @@ impl StudyError {
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum LineError {
     /// The checksum is missing or wrong.
-    #[error("damaged: its contents do not fit its `check`")]
+    #[error("damaged: the contents do not match the checksum `check`")]
     Check,
     /// The checksum is right, the contents are not valid.
     #[error("not a line of this program's journals: {0}")]
     Format(String),
     /// Lines are missing, repeated or in the wrong order.
-    #[error("evaluation {0} is in the place of evaluation {1}")]
+    #[error("evaluation {0} is found where evaluation {1} is expected")]
     Order(u64, u64),
 }

@@ -55,7 +55,7 @@ pub fn sha256(inputs: &Inputs) -> BTreeMap<String, String> {
 
 /// Study that is open for writing; no other process can open it.
 pub struct Study {
-    /// Configuration, as asked for.
+    /// Requested configuration.
     pub config: StudyConfig,
     /// Evaluations so far, by index.
     pub evaluations: Vec<Recorded>,
@@ -91,7 +91,7 @@ impl Study {
             study.config.budget = config.budget.max(least);
             study.config.settles = config.settles;
             let raised = before != (study.config.budget, study.config.settles);
-            study.measure_with(&config.provenance, inputs, accept_changed)?;
+            study.set_provenance(&config.provenance, inputs, accept_changed)?;
             if raised {
                 write_config(dir, &study.config)?;
             }
@@ -130,7 +130,7 @@ impl Study {
         Study::open_locked(dir, lock, journal_file(dir)?)
     }
 
-    /// Opens the study in `dir` with its journal in another store than its file.
+    /// Opens the study in `dir` with its journal in `store` in place of the file.
     ///
     /// # Errors
     /// See [`resume`](Self::resume).
@@ -153,11 +153,11 @@ impl Study {
         Ok(Study { config, evaluations, segments, foreign, journal, dir, _lock: lock })
     }
 
-    /// Begins a new segment in the journal if the provenance of further evaluations differs.
+    /// Sets the provenance of further evaluations; begins a new segment in the journal if it differs.
     ///
     /// # Errors
     /// If it differs without `accept_changed`, or no evaluation is left for a new segment.
-    pub fn measure_with(
+    pub fn set_provenance(
         &mut self,
         now: &Provenance,
         inputs: &Inputs,
@@ -168,9 +168,9 @@ impl Study {
             return Err(StudyError::file(
                 &self.dir,
                 format!(
-                    "was measured with other settings than now:\n{differences}\ngive another --out, \
-                     or --accept-changed to go on in a new segment (the best design is then taken \
-                     from that)"
+                    "was measured with different settings:\n{differences}\ngive another --out, \
+                     or --accept-changed to continue in a new segment (the best design is then taken \
+                     from it)"
                 ),
             ));
         }
@@ -180,7 +180,8 @@ impl Study {
                 &self.dir,
                 format!(
                     "would now be simulated differently, and all its {evaluations} evaluations are \
-                     done:\n{differences}\nraise --budget to measure with that, or give another --out"
+                     done:\n{differences}\nraise --budget to measure with the new settings, or \
+                     give another --out"
                 ),
             ));
         }
@@ -293,15 +294,16 @@ impl StudyRecord {
     }
 }
 
+/// Opens the journal of the study in `dir`.
 fn journal_file(dir: &Path) -> Result<Box<dyn Store>, StudyError> {
     let path = dir.join(JOURNAL_FILE);
-    match FileStore::open(&path) {
-        Ok(store) => Ok(Box::new(store)),
-        Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
-            Err(StudyError::Locked { dir: dir.to_owned(), owner: UNKNOWN_OWNER.to_owned() })
+    let store = FileStore::open(&path).map_err(|error| match error.kind() {
+        io::ErrorKind::WouldBlock => {
+            StudyError::Locked { dir: dir.to_owned(), owner: UNKNOWN_OWNER.to_owned() }
         }
-        Err(error) => Err(StudyError::io("open", &path)(error)),
-    }
+        _ => StudyError::io("open", &path)(error),
+    })?;
+    Ok(Box::new(store))
 }
 
 /// Writes the inputs and the configuration of a study to `dir`.
@@ -317,21 +319,21 @@ fn begin(dir: &Path, config: &StudyConfig, inputs: &Inputs) -> Result<(), StudyE
     write_config(dir, config)
 }
 
-/// Reports whether a folder holds the journal of a study.
+/// Returns whether a folder holds the journal of a study.
 pub fn has_begun(dir: &Path) -> bool {
     dir.join(JOURNAL_FILE).exists()
 }
 
-/// Reports whether a folder holds the configuration of a study.
+/// Returns whether a folder holds the configuration of a study.
 fn has_config(dir: &Path) -> Result<bool, StudyError> {
     let file = dir.join(CONFIG_FILE);
     file.try_exists().map_err(StudyError::io("look for", &file))
 }
 
-/// Checks that a study in a folder, if there is one, can be continued with a configuration.
+/// Checks that the study in a folder can be continued with a configuration.
 ///
 /// # Errors
-/// If it has another one, which are compared, or cannot be read.
+/// If the configuration of the study differs, with the differences, or cannot be read.
 fn check_continues(dir: &Path, config: &StudyConfig) -> Result<(), StudyError> {
     let Some(differences) = read_config(dir)?.differences(config) else { return Ok(()) };
     Err(StudyError::file(
@@ -349,13 +351,10 @@ fn check_continues(dir: &Path, config: &StudyConfig) -> Result<(), StudyError> {
 /// If there is none or it is invalid.
 pub fn read_config(dir: &Path) -> Result<StudyConfig, StudyError> {
     let path = dir.join(CONFIG_FILE);
-    let text = match files::read_text(&path, LARGEST_OWN) {
-        Ok(text) => text,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            return Err(StudyError::file(dir, "not a study: it has no study.toml"));
-        }
-        Err(error) => return Err(StudyError::io("read", &path)(error)),
-    };
+    let text = files::read_text(&path, LARGEST_OWN).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => StudyError::file(dir, "not a study: it has no study.toml"),
+        _ => StudyError::io("read", &path)(error),
+    })?;
     let wrong = |problem: String| {
         StudyError::file(&path, format!("{}; restore the file from a copy", problem.trim_end()))
     };
@@ -367,10 +366,9 @@ pub fn read_config(dir: &Path) -> Result<StudyConfig, StudyError> {
 /// Reads the copies of the input files of the last segment and checks them against its provenance.
 fn read_inputs(dir: &Path, segments: &[Segment]) -> Result<Inputs, StudyError> {
     let Some(segment) = segments.last() else { return Ok(Inputs::new()) };
-    let (number, expected) = (segments.len(), &segment.provenance.input_sha256);
     let mut inputs = Inputs::new();
-    for (role, hash) in expected {
-        let path = input_path(dir, number, role);
+    for (role, hash) in &segment.provenance.input_sha256 {
+        let path = input_path(dir, segments.len(), role);
         let text = files::read_text(&path, LARGEST_INPUT).map_err(StudyError::io("read", &path))?;
         if sha256_hex(text.as_bytes()) != *hash {
             let problem = format!("was changed: its SHA-256 is not the {hash} of the study");
@@ -387,7 +385,7 @@ fn write_inputs(dir: &Path, segment: usize, inputs: &Inputs) -> Result<(), Study
         let path = input_path(dir, segment, role);
         let folder = path.parent().unwrap_or(dir);
         fs::create_dir_all(folder).map_err(StudyError::io("create the folder", folder))?;
-        // Unchanged: its hash is recorded.
+        // Not through `plain`: the hash of the exact text is recorded.
         files::write_atomic(&path, text.as_bytes()).map_err(StudyError::io("write", &path))?;
     }
     Ok(())

@@ -75,7 +75,7 @@ impl Journal {
     pub fn check(&mut self) -> Result<(), StudyError> {
         self.store
             .check(self.len)
-            .map_err(|problem| StudyError::Interfered { path: self.path.clone(), problem })
+            .map_err(|problem| StudyError::JournalChanged { path: self.path.clone(), problem })
     }
 
     fn write(&mut self, lines: serde_json::Result<String>) -> Result<(), StudyError> {

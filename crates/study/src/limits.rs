@@ -4,7 +4,7 @@ use super::folder::Inputs;
 use insertion::robot::Robot;
 use insertion::task::Task;
 
-/// Share of a robot's stop force from which on a force counts as too near to it. An assumption: the scatter of
+/// Largest acceptable force as a share of a robot's stop force. An assumption: the scatter of
 /// peak forces on a robot is not measured.
 const STOP_SHARE: f64 = 0.9;
 
@@ -20,7 +20,7 @@ pub struct ForceLimits {
 }
 
 impl ForceLimits {
-    /// Reads the limits from the input files of a study; none from a file that cannot be read.
+    /// Reads the limits from the input files of a study; a file that cannot be read gives none.
     pub(super) fn of(inputs: &Inputs, tasks: usize) -> Self {
         let task = |number: usize| {
             let text = inputs.get(&format!("task_{number}"))?;

@@ -1,4 +1,4 @@
-//! Recommended design of a study, equivalent designs, and the influence of the finger.
+//! Recommended design of a study, equivalent designs, and aggregated measures.
 
 use super::record::{Recorded, StudyRecord};
 use super::rule::Rule;
@@ -7,8 +7,9 @@ use ask_tell::gp::{Confirmed, StoppingCriterion};
 use insertion::evaluation::objective::Measure;
 
 impl StudyRecord {
-    /// Returns the recommended design of a study with one objective: the first by the rule (`rule.rs`) of the
-    /// walked designs, else of all. If windows do not determine the objective, the [`best`](Self::best).
+    /// Returns the recommended design of a study with one objective: the first by the rule (`rule.rs`) among
+    /// the walked designs, else among all. If the objective does not depend on windows, it is the
+    /// [`best`](Self::best).
     pub fn recommendation(&self) -> Option<&Recorded> {
         self.config.objective.single()?;
         let rule = Rule::of(&self.config);
@@ -18,32 +19,29 @@ impl StudyRecord {
         walked.or_else(searched).or_else(|| self.best())
     }
 
-    /// Returns the recommended design, or the first of a front.
+    /// Returns the recommended design, or the first design of the Pareto front.
     pub fn recommended(&self) -> Option<&Recorded> {
         self.recommendation().or_else(|| self.best())
     }
 
     /// Returns the designs equivalent to the evaluation `index`, itself included, each with its loss in the
     /// first objective: at most the indifference for objectives in mm, zero for others.
-    pub fn as_good(&self, index: u64) -> Vec<(&Recorded, f64)> {
-        let (current, worth) = (self.current(), self.worth());
+    pub fn equivalent_designs(&self, index: u64) -> Vec<(&Recorded, f64)> {
+        let (current, gains) = (self.current(), self.first_gains());
         let own = current.iter().position(|recorded| recorded.index == index);
-        let Some(own) = own.and_then(|at| worth[at]) else { return Vec::new() };
-        let tolerance = if self.config.objective.first().unit() == "mm" {
-            self.config.indifference_mm
-        } else {
-            0.0
-        };
-        let loss = |(recorded, worth): (_, Option<f64>)| Some((recorded, own - worth?));
-        // Tenths of a millimetre are not exact.
-        let as_good = |(_, loss): &(&Recorded, f64)| *loss <= tolerance + 1e-9;
-        current.iter().zip(worth).filter_map(loss).filter(as_good).collect()
+        let Some(own) = own.and_then(|at| gains[at]) else { return Vec::new() };
+        let in_mm = self.config.objective.first().unit() == "mm";
+        let tolerance = if in_mm { self.config.indifference_mm } else { 0.0 };
+        let loss = |(recorded, gain): (_, Option<f64>)| Some((recorded, own - gain?));
+        // Multiples of 0.1 mm are rounded in binary.
+        let equivalent = |(_, loss): &(&Recorded, f64)| *loss <= tolerance + 1e-9;
+        current.iter().zip(gains).filter_map(loss).filter(equivalent).collect()
     }
 
     /// Returns the gain in the first objective of each of the [`current`](Self::current) designs: its firm
-    /// value or the median of the predicted one, rounded to the grid of ranges; the searched value if no
-    /// design was repeated. `None` for designs that cannot be recommended.
-    fn worth(&self) -> Vec<Option<f64>> {
+    /// value or the median of the predicted firm value, rounded to the grid of ranges; if no design has a firm
+    /// value, that of the search. `None` for designs that cannot be recommended.
+    fn first_gains(&self) -> Vec<Option<f64>> {
         let (current, rule) = (self.current(), Rule::of(&self.config));
         let searched = |found: &Recorded| {
             let values = found.feasible().filter(|_| !found.raced())?;
@@ -66,14 +64,11 @@ impl StudyRecord {
     }
 
     /// Returns the smallest and the largest range of the evaluations, mm, aggregated over the tasks; `None` if
-    /// none has a range.
+    /// no evaluation has a range.
     pub fn spread_mm(&self) -> Option<[f64; 2]> {
-        let ranges =
-            self.current().iter().filter_map(|recorded| self.measure(recorded, Measure::Range));
-        ranges.fold(None, |span, range| {
-            let [low, high] = span.unwrap_or([range; 2]);
-            Some([range.min(low), range.max(high)])
-        })
+        let range = |recorded: &Recorded| self.measure(recorded, Measure::Range);
+        let ranges = || self.current().iter().filter_map(range);
+        Some([ranges().reduce(f64::min)?, ranges().reduce(f64::max)?])
     }
 
     /// Returns a measure of a design, aggregated over the tasks.
@@ -87,7 +82,7 @@ impl StudyRecord {
     }
 
     /// Returns the index of the first task on which no design inserts at the nominal start, and the design
-    /// that is nearest to it.
+    /// that is nearest to an insertion.
     pub fn unusable(&self) -> Option<(usize, &Recorded)> {
         let mut tasks = 0..self.config.tasks.len();
         let task = tasks.find(|&task| !self.current().iter().any(|r| r.inserts_on(task)))?;

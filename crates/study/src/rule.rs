@@ -2,7 +2,7 @@
 //!
 //! 1. the larger value of the objective: of the firm window if it was measured, else of the window found by
 //!    the search;
-//! 2. the better centred window: the one with the larger smaller side;
+//! 2. the better centred window: the one whose smaller side is larger;
 //! 3. the smaller contact force, rounded to a newton;
 //! 4. the smaller distance from the hull of the measured designs;
 //! 5. the larger distance from the edge of the space: the smallest over all parameters, as a share of the
@@ -17,7 +17,7 @@ use insertion::evaluation::{Evaluation, Window};
 use insertion::space::{Design, Space, Variable};
 use std::cmp::Ordering;
 
-/// Rule of recommendation for a study.
+/// Recommendation rule of a study.
 pub(super) struct Rule<'a> {
     pub goals: Goals,
     pub space: &'a Space,
@@ -43,7 +43,7 @@ impl<'a> Rule<'a> {
         Rule { goals: config.goals(), space: &config.space }
     }
 
-    /// Returns the rank of a design with these windows, one for each task, in place of its own.
+    /// Returns the rank of a design with other windows than the recorded ones, one for each task.
     pub fn rank(&self, recorded: &Recorded, windows: &[Window]) -> Rank {
         let in_window = |(task, window): (&Evaluation, &Window)| Evaluation {
             window: window.clone(),
@@ -64,15 +64,15 @@ impl<'a> Rule<'a> {
     }
 
     /// Returns the rank of a design with its recorded windows.
-    pub fn as_recorded(&self, recorded: &Recorded) -> Rank {
+    pub fn recorded_rank(&self, recorded: &Recorded) -> Rank {
         let windows: Vec<Window> = recorded.tasks.iter().map(|task| task.window.clone()).collect();
         self.rank(recorded, &windows)
     }
 
-    /// Returns the observations of the first objective; designs that cannot be recommended have no value.
+    /// Returns an observation of the first objective for each design; designs that cannot be recommended have no value.
     pub fn observed(&self, found: &[Recorded]) -> Vec<Observation> {
         let of = |recorded: &Recorded| {
-            let value = self.as_recorded(recorded).value();
+            let value = self.recorded_rank(recorded).value();
             Observation::new(self.space.point(&recorded.design), value)
         };
         found.iter().map(of).collect()
@@ -92,7 +92,7 @@ impl<'a> Rule<'a> {
             .then(a.index.cmp(&b.index))
     }
 
-    /// Returns the distance from the nearest bound of a parameter, as a share of its span, 0 to 0.5.
+    /// Returns the distance from the nearest bound of any parameter, as a share of its span, 0 to 0.5.
     /// Parameters with one value are ignored.
     fn edge_distance(&self, design: &Design) -> f64 {
         let of = |parameter: &Variable| {
@@ -143,7 +143,7 @@ mod tests {
     fn ranked(designs: &[Recorded]) -> Vec<u64> {
         let space = Space::parse(SPACES[0].text, SPACES[0].file).unwrap();
         let rule = Rule { goals: goals(), space: &space };
-        let mut ranks: Vec<Rank> = designs.iter().map(|design| rule.as_recorded(design)).collect();
+        let mut ranks: Vec<Rank> = designs.iter().map(|found| rule.recorded_rank(found)).collect();
         ranks.sort_by(|a, b| rule.order(a, b));
         ranks.iter().map(|rank| rank.index).collect()
     }
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn a_constraint_is_asked_of_the_window_found_not_of_its_firm_part() {
+    fn constraints_apply_to_the_searched_window_not_to_its_firm_part() {
         let space = Space::parse(SPACES[0].text, SPACES[0].file).unwrap();
         let goals =
             Goals { constraints: vec!["range>=3".parse().unwrap()], ..Goals::of(Measure::Range) };

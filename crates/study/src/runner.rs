@@ -15,7 +15,8 @@ use std::sync::mpsc;
 pub struct Runner<'a> {
     /// Evaluator of designs; returns early once `stop` is set.
     pub evaluator: &'a dyn Evaluate,
-    /// Threads that evaluate; the calling thread, outside of the pool, runs optimizer and journal.
+    /// Threads that evaluate designs. The calling thread is not one of them; it runs the optimizer and writes
+    /// the journal.
     pub pool: &'a ThreadPool,
     /// Cancels the run once it is set; also set by the runner after an error.
     pub stop: &'a AtomicBool,
@@ -40,18 +41,17 @@ impl Runner<'_> {
         self.pool.in_place_scope(|scope| {
             let mut run = || -> Result<Ending, StudyError> {
                 loop {
-                    match if self.stopped() {
-                        Next::Wait
-                    } else {
-                        scheduler.next(study, optimizer)?
-                    } {
+                    let stopped = self.stopped();
+                    let next =
+                        if stopped { Next::Wait } else { scheduler.next(study, optimizer)? };
+                    match next {
                         Next::Ended(ending) => return Ok(ending),
                         Next::Measure(proposals) => {
                             running += proposals.len();
                             for proposal in proposals {
                                 let sender = sender.clone();
                                 scope.spawn(move |_| {
-                                    // The receiving thread has to learn of a panic.
+                                    // A panic is sent to the receiving thread, which resumes it.
                                     let measure = AssertUnwindSafe(|| self.measure(proposal));
                                     drop(sender.send(catch_unwind(measure)));
                                 });
@@ -93,7 +93,7 @@ impl Runner<'_> {
             return Ok(None);
         }
         let measured = proposal.measure(self.evaluator);
-        // After cancellation trials may have been skipped.
+        // The cancelled measurement may lack trials.
         if self.stopped() {
             return Ok(None);
         }
@@ -107,10 +107,9 @@ impl Proposal {
     /// # Errors
     /// If the design cannot be simulated.
     pub fn measure(&self, evaluator: &dyn Evaluate) -> Result<ProposalResult, StudyError> {
-        let number = self.number;
-        let (measured, timing) =
-            Timing::of(|| evaluator.evaluate(&self.design, self.race.as_ref()));
-        let error = |source| StudyError::impossible(number, &self.design, source);
-        measured.map(|measured| ProposalResult { number, measured, timing }).map_err(error)
+        let Proposal { number, design, race } = self;
+        let (measured, timing) = Timing::of(|| evaluator.evaluate(design, race.as_ref()));
+        let error = |source| StudyError::impossible(*number, design, source);
+        Ok(ProposalResult { number: *number, measured: measured.map_err(error)?, timing })
     }
 }

@@ -1,4 +1,4 @@
-//! Storage of a journal: a file, or a replacement for tests that fails.
+//! Storage of a journal: a file, or a failing substitute in tests.
 
 use input::files::{self, LARGEST_JOURNAL};
 use std::fs::{self, File};
@@ -15,11 +15,11 @@ pub trait Store: Send {
     /// Checks that the storage is unchanged and `len` bytes long.
     ///
     /// # Errors
-    /// The change that was found.
+    /// If it is not, with the change.
     fn check(&mut self, _len: u64) -> Result<(), String> {
         Ok(())
     }
-    /// Appends `bytes` in one write; they then survive a power failure.
+    /// Appends `bytes` in one write and syncs them to the disk.
     ///
     /// # Errors
     /// If they cannot be written.
@@ -55,7 +55,7 @@ impl FileStore {
 
 impl Drop for FileStore {
     fn drop(&mut self) {
-        // As for the folder's lock.
+        // A child process that is just starting has the file open, too, as in `lock.rs`.
         let _ = self.file.unlock();
     }
 }
@@ -67,7 +67,7 @@ impl Store for FileStore {
     }
 
     fn check(&mut self, len: u64) -> Result<(), String> {
-        let inaccessible = |error: io::Error| format!("is not accessible any more: {error}");
+        let inaccessible = |error: io::Error| format!("is no longer accessible: {error}");
         let found = match fs::symlink_metadata(&self.path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 return Err("was removed or renamed".to_owned());
@@ -87,7 +87,6 @@ impl Store for FileStore {
 
     fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.file.write_all(bytes)?;
-        self.file.flush()?;
         self.file.sync_data()
     }
 

@@ -1,9 +1,10 @@
-//! Unit of work of a study that is measured elsewhere: a pure function from bytes to bytes that may be
-//! repeated.
+//! Unit of work of a study whose designs are measured by workers, for example on other computers. The
+//! measurement is deterministic and may be repeated.
 //!
 //! A [`Work`] holds everything that determines a measurement: design, texts of the input files, seed,
-//! engine with its settings, and the SHA-256 of the program's sources; a worker of other sources refuses
-//! it. The result names the work by its SHA-256. Both are a line of JSON with a checksum, as in journals.
+//! engine with its settings, and the SHA-256 of the program's sources; a worker built from other sources
+//! rejects it. The result contains the SHA-256 of its work. Both are a line of JSON with a checksum, as in
+//! journals.
 
 use super::folder::Inputs;
 use super::provenance::Provenance;
@@ -15,7 +16,6 @@ use insertion::evaluation::evaluator::Measured;
 use insertion::surrogate::Prediction;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use std::fmt::Display;
 
 /// Proposal with everything that determines its measurement.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -37,44 +37,36 @@ pub struct Work {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Done {
+struct WorkResult {
     work_sha256: String,
     tasks: Vec<Evaluation>,
 }
 
-/// Reason for which work or its result is rejected.
+/// Reason why work or its result is rejected.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct WorkError(String);
 
-impl WorkError {
-    fn bytes(kind: &str, problem: impl Display) -> Self {
-        WorkError(format!("not a {kind} of this program: {problem}"))
-    }
-}
-
-/// Returns content and times of a line with a checksum.
+/// Parses contents and times of a line with a checksum; `kind` names the line in errors.
 fn read<T: DeserializeOwned, U: DeserializeOwned>(
     bytes: &[u8],
     kind: &str,
 ) -> Result<(T, U), WorkError> {
-    let json = |error: serde_json::Error| WorkError::bytes(kind, error);
-    let text = std::str::from_utf8(bytes).map_err(|error| WorkError::bytes(kind, error))?;
-    let (contents, times) =
-        unseal(text.trim_end()).map_err(|error| WorkError::bytes(kind, error))?;
-    Ok((
-        serde_json::from_str(&contents).map_err(json)?,
-        serde_json::from_str(&times).map_err(json)?,
-    ))
+    let parse = || -> Result<(T, U), Box<dyn std::error::Error>> {
+        let (contents, times) = unseal(std::str::from_utf8(bytes)?.trim_end())?;
+        Ok((serde_json::from_str(&contents)?, serde_json::from_str(&times)?))
+    };
+    parse().map_err(|problem| WorkError(format!("not a {kind} of this program: {problem}")))
 }
 
+/// Serializes contents and times as a line with a checksum.
 fn encoded(contents: &impl Serialize, timing: Option<&Timing>) -> Result<Vec<u8>, WorkError> {
     let line = seal(contents, timing);
     Ok(line.map_err(|error| WorkError(error.to_string()))?.into_bytes())
 }
 
 impl Work {
-    /// Returns the work as bytes.
+    /// Serializes the work.
     ///
     /// # Errors
     /// If it cannot be serialized.
@@ -82,47 +74,48 @@ impl Work {
         encoded(self, None)
     }
 
-    /// Returns the work of these bytes.
+    /// Parses work from bytes.
     ///
     /// # Errors
-    /// If they are damaged or of another program.
+    /// If the bytes are damaged or come from another program.
     pub fn decode(bytes: &[u8]) -> Result<Work, WorkError> {
         Ok(read::<_, serde::de::IgnoredAny>(bytes, "work")?.0)
     }
 
-    /// Checks that a worker of this provenance simulates as the study does; `worker` is its host and
+    /// Checks that a worker with the provenance `own` simulates like the study; `worker` is its host and
     /// process.
     ///
     /// # Errors
-    /// If it does not, with the differences.
-    pub fn admit(&self, own: &Provenance, worker: &str) -> Result<(), WorkError> {
+    /// If the worker simulates differently, with the differences.
+    pub fn check_worker(&self, own: &Provenance, worker: &str) -> Result<(), WorkError> {
         match self.provenance.differences(own) {
             Some(differences) if !self.provenance.simulates_like(own) => Err(WorkError(format!(
-                "the worker {worker} would measure with something else than the study:\n\
+                "the worker {worker} would simulate differently from the study:\n\
                      {differences}\ninstall the same version of finger-opt there"
             ))),
             _ => Ok(()),
         }
     }
 
-    /// Returns the result as bytes.
+    /// Serializes the result of this work.
     ///
     /// # Errors
     /// If it cannot be serialized.
-    pub fn result(&self, result: ProposalResult) -> Result<Vec<u8>, WorkError> {
+    pub fn encode_result(&self, result: ProposalResult) -> Result<Vec<u8>, WorkError> {
         let tasks = result.measured.tasks;
-        let done = Done { work_sha256: sha256_hex(&self.encode()?), tasks };
+        let done = WorkResult { work_sha256: sha256_hex(&self.encode()?), tasks };
         encoded(&done, Some(&result.timing))
     }
 
-    /// Returns the result of this work; `stiffness` is the prediction of the study's own model.
+    /// Parses bytes and checks that they are the result of this work; `stiffness` is the prediction of the
+    /// study's own model.
     ///
     /// # Errors
-    /// If the bytes are damaged or the result of other work.
+    /// If the bytes are damaged or are the result of other work.
     pub fn check(&self, bytes: &[u8], stiffness: Prediction) -> Result<ProposalResult, WorkError> {
-        let (Done { work_sha256, tasks }, timing) = read(bytes, "result")?;
+        let (WorkResult { work_sha256, tasks }, timing) = read(bytes, "result")?;
         if work_sha256 != sha256_hex(&self.encode()?) {
-            return Err(WorkError("the result is of another work".to_owned()));
+            return Err(WorkError("the result belongs to other work".to_owned()));
         }
         let measured = Measured { stiffness, tasks, cached: Vec::new() };
         Ok(ProposalResult { number: self.proposal.number, measured, timing })

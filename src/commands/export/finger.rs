@@ -3,9 +3,10 @@
 use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
+use crate::setup::film::extension;
 use crate::setup::printed::PrintRequest;
 use clap::ValueEnum;
-use finray::export::prism::Prism;
+use finray::export::prism::{Prism, PrismError};
 use finray::export::sheet::PadStiffness;
 use finray::export::{self, profile, sheet, slicer};
 use finray::geometry::Geometry;
@@ -16,9 +17,9 @@ use study::write_file;
 
 /// Export a finger for the printer: the best of a study, or one with a given infill
 ///
-/// Both fingers of a gripper are this part. STL, 3MF, DXF and SVG contain every rib; the
-/// settings for slicers are for its outline, which is written beside them and which the slicer
-/// fills with its own ribs.
+/// The two fingers of a gripper are identical. STL, 3MF, DXF and SVG contain every rib. The
+/// settings for slicers are for the outline, which is written beside them; the slicer fills it
+/// with its own ribs.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 2,
@@ -28,7 +29,7 @@ pub struct Request {
     /// The finger.
     #[command(flatten)]
     pub finger: PrintRequest,
-    /// File format [default: that of the ending of FILE; of .svg the profile]
+    /// File format [default: by the extension of FILE; the profile for .svg]
     #[arg(long, value_enum)]
     pub format: Option<Format>,
     /// File to write
@@ -54,7 +55,7 @@ pub enum Format {
     Cura,
     /// Configuration of PrusaSlicer (.ini), with the outline beside it
     Prusaslicer,
-    /// Outline and solid base with the settings of PrusaSlicer, in one 3MF; do not turn it on the bed
+    /// Outline and solid base with the settings of PrusaSlicer, in one 3MF; do not rotate it on the bed
     #[value(name = "prusaslicer-3mf")]
     PrusaslicerProject,
     /// The same for OrcaSlicer and Bambu Studio: open as a project
@@ -101,7 +102,7 @@ impl command::Request for Request {
             }
             Format::Svg => write_file(out, &profile::svg(&geometry, &title))?,
             Format::Dxf => write_file(out, &profile::dxf(&geometry, &title))?,
-            Format::Sheet => write_file(out, &page(&self.finger, &geometry, out)?)?,
+            Format::Sheet => write_file(out, &draw_sheet(&self.finger, &geometry, out)?)?,
             Format::Cura | Format::Prusaslicer => {
                 let cura = format == Format::Cura;
                 let text = if cura { slicer::cura } else { slicer::prusaslicer };
@@ -123,14 +124,14 @@ impl command::Request for Request {
 }
 
 impl Request {
-    /// Returns the format, from the ending of the file unless it is given.
+    /// Returns the given format, or else that of the file's extension.
     fn format(&self) -> Result<Format, Failure> {
-        let ending = ending(&self.out);
-        let written = |format: &&Format| format.endings().contains(&&*ending);
-        let of_ending = Format::value_variants().iter().find(written);
-        match (self.format, of_ending) {
-            (Some(format), Some(_)) if !written(&&format) => {
-                let accepted = format.endings().iter().map(|ending| format!(".{ending}"));
+        let extension = extension(&self.out);
+        let fits = |format: &&Format| format.extensions().contains(&&*extension);
+        let of_extension = Format::value_variants().iter().find(fits);
+        match (self.format, of_extension) {
+            (Some(format), Some(_)) if !fits(&&format) => {
+                let accepted = format.extensions().iter().map(|name| format!(".{name}"));
                 let accepted = accepted.collect::<Vec<_>>().join(" or ");
                 let name = format.to_possible_value();
                 let name = name.as_ref().map_or("", |value| value.get_name());
@@ -141,7 +142,7 @@ impl Request {
             }
             (Some(format), _) | (None, Some(&format)) => Ok(format),
             (None, None) => Err(Failure::usage(format!(
-                "--out {}: the ending names no format; give --format",
+                "--out {}: the extension is not that of a format; give --format",
                 self.out.display()
             ))),
         }
@@ -149,8 +150,8 @@ impl Request {
 }
 
 impl Format {
-    /// Returns the endings of its files, in lower case.
-    fn endings(self) -> &'static [&'static str] {
+    /// Returns the accepted extensions, in lower case.
+    fn extensions(self) -> &'static [&'static str] {
         match self {
             Format::Stl => &["stl"],
             Format::ThreeMf | Format::PrusaslicerProject | Format::OrcaslicerProject => &["3mf"],
@@ -163,20 +164,14 @@ impl Format {
     }
 }
 
-/// Returns the ending of a file's name, in lower case.
-fn ending(file: &Path) -> String {
-    file.extension().unwrap_or_default().to_string_lossy().to_lowercase()
-}
-
-fn closed(
-    prism: Result<Prism, export::prism::PrismError>,
-    geometry: &Geometry,
-) -> Result<Prism, Failure> {
+/// Adds the finger file to the error of a surface that cannot be closed.
+fn closed(prism: Result<Prism, PrismError>, geometry: &Geometry) -> Result<Prism, Failure> {
     prism.map_err(|error| Failure::usage(format!("{}: {error}", geometry.finger.file)))
 }
 
-fn page(request: &PrintRequest, geometry: &Geometry, out: &Path) -> Result<String, Failure> {
-    let write = match &*ending(out) {
+/// Draws the sheet of a finger in the format of the file.
+fn draw_sheet(request: &PrintRequest, geometry: &Geometry, out: &Path) -> Result<String, Failure> {
+    let write = match &*extension(out) {
         "svg" => sheet::svg,
         "html" | "htm" => sheet::html,
         _ => {
@@ -189,7 +184,7 @@ fn page(request: &PrintRequest, geometry: &Geometry, out: &Path) -> Result<Strin
     Ok(write(geometry, &PadStiffness { ribs: &ribs, measured }))
 }
 
-/// Writes settings for a slicer, and next to them outline and base.
+/// Writes settings for a slicer with the surfaces of outline and base beside them; returns the files of these.
 fn settings(out: &Path, geometry: &Geometry, text: &str) -> Result<Vec<PathBuf>, Failure> {
     let title = export::title(geometry);
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
@@ -199,7 +194,7 @@ fn settings(out: &Path, geometry: &Geometry, text: &str) -> Result<Vec<PathBuf>,
         (&outline, closed(Prism::outline(geometry), geometry)?.stl(&format!("{title}, outline"))),
         (&base, closed(Prism::base(geometry), geometry)?.stl(&format!("{title}, solid base"))),
     ];
-    // These names were not given by the user.
+    // The user did not name these files, so others of that name are not overwritten.
     for (file, content) in &parts {
         if std::fs::read(file).is_ok_and(|found| found != *content) {
             let problem = "exists with other contents; remove it, or give another --out";

@@ -26,7 +26,7 @@ use study::write_file;
 )]
 pub struct Request {
     /// Task file, or the name of a shipped task
-    #[arg(value_name = "FILE", value_parser = |name: &str| Ok::<_, Infallible>(TaskSource::one(name)))]
+    #[arg(value_name = "FILE", value_parser = |name: &str| Ok::<_, Infallible>(TaskSource::single(name)))]
     pub file: TaskSource,
     /// Draw plug, socket, clearances, fingertips and search path
     #[arg(long, value_name = "FILE.svg")]

@@ -26,9 +26,9 @@ const EXAMPLE: [&str; 3] = ["8.25x2.4x6.65", "0.1", "12x6.5x20"];
 
 /// Create a commented task file from a few dimensions, or from another task
 ///
-/// With --plug, --round or --pins, start, tilt, strokes and success depth are derived from the geometry. With --like
-/// alone the file is a copy of that task; with both, friction and grasp force are taken from it.
-/// With neither the task is a USB-C plug.
+/// With --plug, --round or --pins, start, tilt, strokes and success depth are derived from the geometry; with --like
+/// as well, friction and grasp force are those of that task. With --like alone the file is a copy of that task.
+/// Without any of these the task is a USB-C plug.
 #[derive(Debug, clap::Args)]
 #[command(
     display_order = 1,
@@ -65,8 +65,8 @@ pub struct Request {
     /// Chamfer of 45 degrees at the opening of a plug with flat sides, mm
     #[arg(long, value_name = "MM", requires = "plug", conflicts_with = "round", value_parser = chamfer)]
     pub chamfer_mm: Option<f64>,
-    /// Body that the fingers hold, above the plug: width x height x length, mm [default: the plug itself; of pins
-    /// their block, 20 mm long]
+    /// Body that the fingers hold, above the plug: width x height x length, mm [default: the plug itself; for
+    /// pins their block, 20 mm long]
     #[arg(long, value_name = "WxHxL", requires = "tip")]
     pub body: Option<Size>,
     /// Task to start from: ket8, ket12, rj45, usb, or the path of a task file
@@ -142,6 +142,7 @@ impl fmt::Display for Written {
     }
 }
 
+/// Returns the text of a new task file, with the tuning of its strategy.
 fn drafted(
     request: &Request,
     like: Option<&TaskFile>,
@@ -183,6 +184,7 @@ fn drafted(
     Ok((write::task(&task, &Notes { head, mass, ..Notes::default() }), tuned))
 }
 
+/// Returns the pins of the plug.
 fn pins(request: &Request) -> Option<Pins> {
     let [pitch, side, length] =
         [(request.pitch_mm, 2.54), (request.pin_mm, 0.64), (request.pin_length_mm, 6.0)]
@@ -195,6 +197,7 @@ fn tip(request: &Request) -> Option<Size> {
     request.plug.or(request.round).or(pins(request).map(|pins| pins.size()))
 }
 
+/// Returns the dimensions, and whether they are those of the example.
 fn dimensions(request: &Request) -> Result<(Dimensions, bool), Failure> {
     if let (Some(plug), Some(clearance)) = (tip(request), request.clearance) {
         let (clearance, pins) = (clearance * MM, pins(request));
@@ -221,7 +224,7 @@ fn mm(lengths: &[f64]) -> String {
     lengths.iter().map(mm).collect::<Vec<_>>().join("x")
 }
 
-/// Returns the other task's file with this name.
+/// Returns a copy of a task's file under another name.
 fn copy(name: &str, TaskFile { source, task }: &TaskFile) -> String {
     let line =
         |key: &str, value: &str| format!("{key} = {}", toml::Value::String(value.to_owned()));

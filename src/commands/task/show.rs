@@ -13,8 +13,8 @@ use study::write_file;
 
 /// Print a task file, or show its parts in three dimensions
 ///
-/// With --html a page shows plug, socket and fingertips, to be turned: the grip, the path of the search from the
-/// nominal start, and the pose at its end.
+/// With --html a page shows plug, socket and fingertips in a view that can be rotated: the grip, the path of the
+/// search from the nominal start, and the pose at its end.
 #[derive(Debug, clap::Args)]
 #[command(display_order = 2, after_help = "Example: optimize task show usb > mine.toml")]
 pub struct Request {

@@ -10,7 +10,7 @@ use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
 use crate::setup::task::TaskFile;
 use crate::setup::tune::{Tried, bench, outcome, ranges, tried};
 use connector::check::problems;
-use connector::tune::{Bench, Effort, MOST_WINDOWS, Robustness, Stage, Stopped, Tuned, tune};
+use connector::tune::{Bench, Effort, MOST_WINDOWS, Robustness, Stage, Step, Stopped, Tuned, tune};
 use connector::{picture, rewrite};
 use input::Place;
 use input::shipped::Source;
@@ -66,13 +66,14 @@ pub struct Request {
 }
 
 /// Windows of the fingers on the tuned task.
-pub struct After {
+pub struct TunedWindows {
     /// The windows.
     pub windows: Vec<Window>,
-    /// Largest force of their insertions, N.
+    /// Largest force of the insertions, N.
     pub force_n: f64,
 }
 
+/// Parses a finite number above 0.
 fn positive(text: &str) -> Result<f64, String> {
     let value = text.parse().unwrap_or(f64::NAN);
     let accepted = value > 0.0 && f64::is_finite(value);
@@ -80,7 +81,7 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 /// Result of tuning a task.
-pub struct Done {
+pub struct TunedTask {
     /// Task file, as given on the command line.
     file: String,
     /// The task before tuning.
@@ -91,17 +92,17 @@ pub struct Done {
     pub fingers: [Finger; 3],
     /// Limits of force and speed.
     pub limits: Limits,
-    /// Their windows on the tuned task; `None` if no strategy inserts.
-    pub after: Option<After>,
+    /// Windows of the fingers on the tuned task; `None` if no strategy inserts.
+    pub after: Option<TunedWindows>,
     /// The file that was written, if one was.
     pub written: Option<PathBuf>,
 }
 
 impl command::Request for Request {
-    type Response = Done;
+    type Response = TunedTask;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Done, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<TunedTask, Failure> {
         let stop = context.stop;
         context.cancel_on_interrupt()?;
         context.begin(MOST_WINDOWS as f64);
@@ -125,7 +126,7 @@ impl command::Request for Request {
             return Err(self.interrupted(&file, &tuned, target)?);
         }
         let Bench { fingers, limits, .. } = bench;
-        let mut done = Done {
+        let mut done = TunedTask {
             file: self.file.clone(),
             task: file.task.clone(),
             tuned,
@@ -178,10 +179,10 @@ impl Request {
     fn write(
         &self,
         file: &TaskFile,
-        done: &Done,
+        done: &TunedTask,
         robot: &Robot,
         (target, stop): (Option<&Path>, &AtomicBool),
-    ) -> Result<After, Failure> {
+    ) -> Result<TunedWindows, Failure> {
         let after = rewritten(file, &done.tuned)?;
         let bench = self.bench(&after.task, robot, stop)?;
         let found = bench.windows(&after.task.strategy, &bench.fingers, Conditions::NOMINAL);
@@ -190,7 +191,7 @@ impl Request {
         let force_n = found.iter().map(|found| found.force_n).fold(0.0, f64::max);
         let windows = found.into_iter().map(|found| found.window).collect();
         self.save(file, &after, target)?;
-        Ok(After { windows, force_n })
+        Ok(TunedWindows { windows, force_n })
     }
 
     /// Writes the drawing and, unless it is a dry run, the task.
@@ -212,7 +213,7 @@ impl Request {
         Ok(())
     }
 
-    /// Writes the best strategy so far, if it is another one; returns the error of the interruption.
+    /// Writes the best strategy so far, if it differs from the initial one; returns the error of the interruption.
     fn interrupted(
         &self,
         file: &TaskFile,
@@ -226,7 +227,7 @@ impl Request {
         self.save(file, &rewritten(file, tuned)?, Some(target))?;
         let (best, target) = (outcome(tuned.best()), target.display());
         let hint = format!(
-            "{target} has the best strategy so far ({best}); go on with: optimize task tune {target}"
+            "{target} has the best strategy so far ({best}); continue with: optimize task tune {target}"
         );
         Ok(Failure::Interrupted(Some(hint)))
     }
@@ -242,16 +243,16 @@ fn rewritten(file: &TaskFile, tuned: &Tuned) -> Result<TaskFile, Failure> {
 
 /// Strategy with the windows of the fingers, as in the output of `--json`.
 #[derive(Serialize)]
-struct State<'a> {
+struct StrategyWindows<'a> {
     start_mm: [f64; 3],
     tilt_deg: f64,
     push_speed_mm_per_s: f64,
     largest_force_n: f64,
-    fingers: Vec<OfFinger<'a>>,
+    fingers: Vec<FingerWindow<'a>>,
 }
 
 #[derive(Serialize)]
-struct OfFinger<'a> {
+struct FingerWindow<'a> {
     compliance_n_per_mm: f64,
     assembly_n_per_mm: f64,
     nominal: &'a str,
@@ -259,21 +260,21 @@ struct OfFinger<'a> {
     range_mm: f64,
 }
 
-impl<'a> State<'a> {
+impl<'a> StrategyWindows<'a> {
     fn new(strategy: &Strategy, windows: &[Window], force_n: f64, fingers: &[Finger]) -> Self {
-        let of = |(finger, window): (&Finger, &Window)| OfFinger {
+        let result = |(finger, window): (&Finger, &Window)| FingerWindow {
             compliance_n_per_mm: finger.compliance / N_PER_MM,
             assembly_n_per_mm: finger.assembly / N_PER_MM,
             nominal: window.nominal.word(),
             window_mm: [window.negative_mm(), window.positive_mm()],
             range_mm: window.range_mm(),
         };
-        State {
+        StrategyWindows {
             start_mm: strategy.start.map(|at| (at / MM * 1e4).round() / 1e4),
             tilt_deg: (strategy.tilt / DEG * 100.0).round() / 100.0,
             push_speed_mm_per_s: push_speed_mm_per_s(strategy),
             largest_force_n: force_n,
-            fingers: fingers.iter().zip(windows).map(of).collect(),
+            fingers: fingers.iter().zip(windows).map(result).collect(),
         }
     }
 }
@@ -283,7 +284,7 @@ fn push_speed_mm_per_s(strategy: &Strategy) -> f64 {
     strategy.phases.last().map_or(0.0, |push| (push.speed / MM * 10.0).round() / 10.0)
 }
 
-impl Serialize for Done {
+impl Serialize for TunedTask {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
         struct By<'a> {
@@ -291,7 +292,7 @@ impl Serialize for Done {
             what: &'a str,
         }
         #[derive(Serialize)]
-        struct LimitsInForce {
+        struct LimitsOutput {
             force_n: Option<f64>,
             speed_mm_per_s: Option<f64>,
         }
@@ -300,22 +301,22 @@ impl Serialize for Done {
             schema_version: u32,
             task: &'a str,
             inserts: bool,
-            limits: LimitsInForce,
+            limits: LimitsOutput,
             windows: usize,
-            before: State<'a>,
-            after: Option<State<'a>>,
+            before: StrategyWindows<'a>,
+            after: Option<StrategyWindows<'a>>,
             by: By<'a>,
             steps: Vec<Tried<'a>>,
             kept: &'a [Robustness],
             nearest: Option<Stopped>,
             out: Option<String>,
         }
-        let Done { task, tuned, fingers, limits, after, written, .. } = self;
+        let TunedTask { task, tuned, fingers, limits, after, written, .. } = self;
         let speed_mm_per_s = limits.speed.map(|speed| speed / MM);
-        let limits = LimitsInForce { force_n: limits.force, speed_mm_per_s };
+        let limits = LimitsOutput { force_n: limits.force, speed_mm_per_s };
         let best = tuned.best();
-        let state = |after: &After| {
-            State::new(&best.tried.strategy, &after.windows, after.force_n, fingers)
+        let state = |after: &TunedWindows| {
+            StrategyWindows::new(&best.tried.strategy, &after.windows, after.force_n, fingers)
         };
         let first = &tuned.steps[0].tried;
         let fields = Fields {
@@ -324,7 +325,7 @@ impl Serialize for Done {
             inserts: after.is_some(),
             limits,
             windows: tuned.windows,
-            before: State::new(&task.strategy, &first.windows, first.force_n, fingers),
+            before: StrategyWindows::new(&task.strategy, &first.windows, first.force_n, fingers),
             after: after.as_ref().map(state),
             by: By { stage: best.stage, what: &best.change },
             steps: tuned.steps.iter().map(Tried::from).collect(),
@@ -336,32 +337,28 @@ impl Serialize for Done {
     }
 }
 
-impl command::Response for Done {
+impl command::Response for TunedTask {
     fn verdict(self) -> Result<(), Failure> {
-        match self.after {
-            Some(_) => Ok(()),
-            None => {
-                let within = self.tuned.least_force_n().zip(self.limits.force);
-                let within = within.map_or(String::new(), |(least, limit)| {
-                    format!(" with at most {limit:.0} N (at least {least:.0} N; see --max-force-n)")
-                });
-                let (file, tried) = (&self.file, tried(&self.tuned));
-                Err(Failure::running(format!(
-                    "{file}: no strategy inserts{within}; tried: {tried}"
-                )))
-            }
+        if self.after.is_some() {
+            return Ok(());
         }
+        let within = self.tuned.least_force_n().zip(self.limits.force);
+        let within = within.map_or(String::new(), |(least, limit)| {
+            format!(" with at most {limit:.0} N (at least {least:.0} N; see --max-force-n)")
+        });
+        let (file, tried) = (&self.file, tried(&self.tuned));
+        Err(Failure::running(format!("{file}: no strategy inserts{within}; tried: {tried}")))
     }
 }
 
-impl fmt::Display for Done {
+impl fmt::Display for TunedTask {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&wrapped(&text(self)))
     }
 }
 
-fn text(done: &Done) -> String {
-    let Done { task, tuned, fingers, after, written, .. } = done;
+fn text(done: &TunedTask) -> String {
+    let TunedTask { task, tuned, fingers, after, written, .. } = done;
     let line = |name: &str, text: String| (name.to_owned(), text);
     let mut all = vec![
         line("task", task.name.clone()),
@@ -380,7 +377,7 @@ fn text(done: &Done) -> String {
         Some(after) => {
             let best = tuned.best();
             all.push(line("chosen", format!("{}: {}", best.change, ranges(&after.windows))));
-            all.push(line("push", change(done, after.force_n)));
+            all.push(line("push", push_text(done, after.force_n)));
             all.extend(tuned.robustness.iter().enumerate().map(|(i, kept)| {
                 let name = if i == 0 { "other fingers" } else { "" };
                 let change = if i == 0 { String::new() } else { format!(", {}", kept.change) };
@@ -394,8 +391,8 @@ fn text(done: &Done) -> String {
     lines(all)
 }
 
-/// Returns speed and largest force of the push before and after.
-fn change(Done { task, tuned, limits, .. }: &Done, after_n: f64) -> String {
+/// Returns speed and largest force of the push, before and after tuning, as text.
+fn push_text(TunedTask { task, tuned, limits, .. }: &TunedTask, after_n: f64) -> String {
     let [old, new] = [&task.strategy, &tuned.best().tried.strategy].map(push_speed_mm_per_s);
     let before = match tuned.steps[0].tried.force_n {
         0.0 => "none".to_owned(),
@@ -408,23 +405,16 @@ fn change(Done { task, tuned, limits, .. }: &Done, after_n: f64) -> String {
 
 /// Returns a line for each stage with its best strategy; for the families stage one per family.
 fn steps(tuned: &Tuned) -> Vec<(String, String)> {
-    let mut found = Vec::new();
-    for (i, step) in tuned.steps.iter().enumerate() {
-        if step.stage != Stage::Search {
-            let name = if step.stage == Stage::Families && tuned.steps[i - 1].stage == step.stage {
-                ""
-            } else {
-                NAMES[step.stage as usize]
-            };
-            found.push((name.to_owned(), format!("{}: {}", step.change, outcome(step))));
-        }
-    }
-    let searched = tuned.steps.iter().filter(|step| step.stage == Stage::Search);
-    let best = searched.max_by(|a, b| a.tried.score.total_cmp(&b.tried.score));
-    found.extend(best.map(|step| {
-        (NAMES[Stage::Search as usize].to_owned(), format!("{}: {}", step.change, outcome(step)))
-    }));
-    found
+    let (searched, others): (Vec<&Step>, Vec<&Step>) =
+        tuned.steps.iter().partition(|step| step.stage == Stage::Search);
+    let best = searched.into_iter().max_by(|a, b| a.tried.score.total_cmp(&b.tried.score));
+    let mut seen = None;
+    let line = |step: &Step| {
+        let repeated = step.stage == Stage::Families && seen.replace(step.stage).is_some();
+        let name = if repeated { "" } else { NAMES[step.stage as usize] };
+        (name.to_owned(), format!("{}: {}", step.change, outcome(step)))
+    };
+    others.into_iter().chain(best).map(line).collect()
 }
 
 /// Names of the stages.

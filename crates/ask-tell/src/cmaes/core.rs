@@ -9,11 +9,11 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use rand::RngExt;
 
 /// Largest condition number of C; above it a run ends.
-const CONDITION: f64 = 1e14;
+const MAX_CONDITION: f64 = 1e14;
 /// Largest number of iterations of an eigendecomposition (which usually takes a few per axis).
 const EIGEN_ITERATIONS: usize = 1000;
 
-/// Start of every run: a uniformly drawn point in a box, and a step size.
+/// Box from which the start of every run is drawn uniformly, with the settings common to all runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StartBox {
     /// Lower corner.
@@ -30,9 +30,9 @@ pub struct StartBox {
     pub tolerances: Tolerances,
 }
 
-/// Settings of an individual run.
+/// Settings of a single run.
 #[derive(Debug, Clone)]
-pub(super) struct Plan {
+pub(super) struct RunSettings {
     pub lambda: usize,
     /// Factor on the initial step size.
     pub sigma_factor: f64,
@@ -43,13 +43,13 @@ pub(super) struct Plan {
 /// A candidate and its value, smaller is better; NaN counts as positive infinity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
-    /// The candidate as asked.
+    /// The candidate, as returned by `ask`.
     pub x: Vec<f64>,
     /// Its value.
     pub value: f64,
 }
 
-/// CMA-ES: **minimises**. State in the tutorial's symbols.
+/// CMA-ES, which **minimises**, with its state in the symbols of the tutorial.
 #[derive(Debug, Clone)]
 pub(super) struct CmaEs {
     n: usize,
@@ -69,30 +69,32 @@ pub(super) struct CmaEs {
     d: DVector<f64>,
     p_sigma: DVector<f64>,
     p_c: DVector<f64>,
-    /// Number of generations told.
+    /// Number of generations so far.
     pub generation: u64,
     history: History,
     seed: u64,
     purpose: String,
+    /// Number of candidates drawn.
     samples: u64,
 }
 
 impl CmaEs {
     /// Creates run number `run`, which draws from its own random streams of `seed`.
-    pub fn new(start: &StartBox, seed: u64, run: u64, plan: Plan) -> Self {
+    pub fn new(start: &StartBox, seed: u64, run: u64, settings: RunSettings) -> Self {
+        let RunSettings { lambda, sigma_factor, limit } = settings;
         let mut random = stream(seed, run, "cma-es start");
         let uniform = |(l, h): (&f64, &f64)| l + (h - l) * random.random::<f64>();
         let mean: Vec<f64> = start.low.iter().zip(&start.high).map(uniform).collect();
         let (n, dim) = (mean.len(), mean.len() as f64);
         // pycma's limit: far more than a run needs while it makes progress.
-        let general = (100.0 + 150.0 * (dim + 3.0) * (dim + 3.0) / sqrt(plan.lambda as f64)) as u64;
-        let sigma = start.sigma * plan.sigma_factor;
+        let general = (100.0 + 150.0 * (dim + 3.0) * (dim + 3.0) / sqrt(lambda as f64)) as u64;
+        let sigma = start.sigma * sigma_factor;
         let mut run = CmaEs {
             n,
             start: start.clone(),
             first_sigma: sigma,
-            max_generations: general.min(plan.limit),
-            lambda: plan.lambda,
+            max_generations: general.min(limit),
+            lambda,
             mean: DVector::from_vec(mean),
             sigma,
             c: DMatrix::identity(n, n),
@@ -124,9 +126,9 @@ impl CmaEs {
         (&self.mean + self.sigma * (&self.b * scaled)).as_slice().to_vec()
     }
 
-    /// Updates the distribution with a generation, whose size may differ from lambda, with the strategy
-    /// parameters for its actual size. Fewer than two solutions, or a solution of the
-    /// wrong dimension, are ignored.
+    /// Updates the distribution from the solutions of a generation. Their number may differ from lambda; the
+    /// strategy parameters are those for the actual number. Fewer than two solutions, or any solution of the
+    /// wrong dimension, have no effect.
     pub fn tell(&mut self, solutions: &[Solution]) {
         if solutions.len() < 2 || solutions.iter().any(|s| s.x.len() != self.n) {
             return;
@@ -246,7 +248,7 @@ impl CmaEs {
         let along = |i: usize| 0.1 * self.sigma * self.d[axis] * self.b[(i, axis)];
         axes.clone().all(small)
             || axes.clone().any(|i| self.std(i) > tol.x_up * self.first_sigma)
-            || longest > sqrt(CONDITION) * shortest
+            || longest > sqrt(MAX_CONDITION) * shortest
             || axes.clone().all(|i| self.mean[i] == self.mean[i] + along(i))
             || axes.any(|i| self.mean[i] == self.mean[i] + 0.2 * self.std(i))
     }

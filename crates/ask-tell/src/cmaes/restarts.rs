@@ -1,6 +1,6 @@
 //! Restarts with growing populations: BIPOP (Hansen 2009).
 
-use super::core::{CmaEs, Plan, Solution, StartBox};
+use super::core::{CmaEs, RunSettings, Solution, StartBox};
 use super::parameters::default_lambda;
 use crate::stream::stream;
 use libm::pow;
@@ -31,7 +31,7 @@ impl Restarts {
                 &start,
                 seed,
                 0,
-                Plan { lambda, sigma_factor: 1.0, limit: u64::MAX },
+                RunSettings { lambda, sigma_factor: 1.0, limit: u64::MAX },
             ),
             start,
             seed,
@@ -64,18 +64,19 @@ impl Restarts {
         let budget = if self.small { &mut self.small_budget } else { &mut self.large_budget };
         *budget += std::mem::take(&mut self.evaluations);
         self.runs += 1;
-        let plan = self.plan();
-        self.current = CmaEs::new(&self.start, self.seed, self.runs, plan);
+        let settings = self.next_settings();
+        self.current = CmaEs::new(&self.start, self.seed, self.runs, settings);
     }
 
-    fn plan(&mut self) -> Plan {
+    /// Returns the settings of the next run.
+    fn next_settings(&mut self) -> RunSettings {
         let default = default_lambda(self.start.low.len()) as f64;
         let most = (self.start.max_lambda as f64).max(default);
         self.small = self.small_budget < self.large_budget.max(1);
         if !self.small {
             self.large_runs += 1;
             let lambda = (default * pow(2.0, f64::from(self.large_runs))).min(most) as usize;
-            return Plan { lambda, sigma_factor: 1.0, limit: u64::MAX };
+            return RunSettings { lambda, sigma_factor: 1.0, limit: u64::MAX };
         }
         let mut random = stream(self.seed, self.runs, "cma-es small run");
         let (u, v) = (random.random::<f64>(), random.random::<f64>());
@@ -83,7 +84,7 @@ impl Restarts {
         let half = pow(2.0, f64::from(self.large_runs) - 1.0);
         let lambda = (default * pow(half, u * u)).clamp(2.0, most) as usize;
         let limit = (self.large_budget / 2 / lambda as u64).max(1);
-        Plan { lambda, sigma_factor: pow(0.01, v), limit }
+        RunSettings { lambda, sigma_factor: pow(0.01, v), limit }
     }
 }
 

@@ -4,11 +4,11 @@ use crate::pareto::Cell;
 use crate::statistics::{normal_cdf, normal_log_cdf, normal_log_pdf};
 use libm::{exp, expm1, log};
 
-/// Below this the direct formula would lose digits.
-const DIRECT: f64 = -1.5;
+/// Smallest argument of the direct formula, which loses digits below it.
+const MIN_DIRECT: f64 = -1.5;
 
 /// Returns `log E max(f - best, 0)` for `f` normal with that mean and standard deviation:
-/// `log_h((mean - best) / std) + log(std)`. Minus infinity where it has no value.
+/// `log_h((mean - best) / std) + log(std)`. Minus infinity in place of NaN.
 pub(super) fn log_expected_improvement(mean: f64, std: f64, best: f64) -> f64 {
     let value =
         if std > 0.0 { log_h((mean - best) / std) + log(std) } else { log((mean - best).max(0.0)) };
@@ -17,13 +17,13 @@ pub(super) fn log_expected_improvement(mean: f64, std: f64, best: f64) -> f64 {
 
 /// Returns `log(phi(z) + z Phi(z))`, with phi and Phi the standard normal density and distribution.
 ///
-/// For `z > -1.5` as it stands. Below, with Mills' ratio `R(x) = Phi(-x) / phi(x)` at `x = -z`,
+/// For `z > -1.5` it is evaluated directly. Below, with Mills' ratio `R(x) = Phi(-x) / phi(x)` at `x = -z`,
 /// it is `log phi(x) + log(1 - x R(x))`. Laplace's continued fraction
 /// `R(x) = 1 / (x + K)`, `K = 1 / (x + 2 / (x + 3 / (x + ...)))`, turns the difference
 /// into `K / (x + K)`: nothing cancels, down to `z = -1e150`.
 fn log_h(z: f64) -> f64 {
     let log_density = normal_log_pdf(z);
-    if z > DIRECT {
+    if z > MIN_DIRECT {
         return log(exp(log_density) + z * normal_cdf(z));
     }
     let x = -z;
@@ -39,8 +39,8 @@ fn log_h(z: f64) -> f64 {
     log_density + log(k / (x + k))
 }
 
-/// Returns the log of the probability that a normal number with that mean and standard deviation is at
-/// least `threshold`.
+/// Returns the log of the probability that a normal random variable with that mean and standard deviation
+/// is at least `threshold`.
 pub(super) fn log_probability_above(mean: f64, std: f64, threshold: f64) -> f64 {
     if std > 0.0 {
         return normal_log_cdf((mean - threshold) / std);
@@ -48,12 +48,12 @@ pub(super) fn log_probability_above(mean: f64, std: f64, threshold: f64) -> f64 
     if mean >= threshold { 0.0 } else { f64::NEG_INFINITY }
 }
 
-/// Returns the log of the volume that a normal vector with independent components is expected to add
-/// within `cells`, disjoint boxes of the region that is not dominated yet (expected hypervolume
-/// improvement; Emmerich et al. 2011, CEC, doi 10.1109/CEC.2011.5949880).
+/// Returns the log of the expected hypervolume improvement (Emmerich et al. 2011, CEC, doi
+/// 10.1109/CEC.2011.5949880) of a normal vector with independent components; `cells` are disjoint boxes that
+/// cover the non-dominated region.
 ///
 /// Within one cell the components are independent, and the length of `[low, min(f, high)]` is
-/// the improvement over `low` less that over `high`: so the expectation is a sum over the cells
+/// the improvement over `low` minus that over `high`: so the expectation is a sum over the cells
 /// of products of differences of expected improvements, all taken in logarithms.
 pub(super) fn log_expected_volume(moments: &[(f64, f64)], cells: &[Cell]) -> f64 {
     let side = |(&(mean, std), (&low, &high)): (&(f64, f64), (&f64, &f64))| {
@@ -102,7 +102,7 @@ mod tests {
     ];
 
     #[test]
-    fn high_precision_values_are_met() {
+    fn log_h_matches_high_precision_values() {
         for (z, expected) in LOG_H_REFERENCE {
             let error = (log_h(z) - expected).abs() / expected.abs().max(1e-3);
             assert!(error < 2e-13, "log_h({z}) = {}, not {expected}", log_h(z));
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn it_rises_everywhere() {
+    fn log_h_increases_strictly() {
         let mut last = f64::NEG_INFINITY;
         for k in -40_000..4_000 {
             let value = log_h(f64::from(k) * 0.01);
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn no_deviation_is_the_plain_improvement() {
+    fn without_deviation_the_improvement_is_certain() {
         assert!((log_expected_improvement(3.0, 0.0, 1.0) - libm::log(2.0)).abs() < 1e-15);
         assert_eq!(log_expected_improvement(0.0, 0.0, 1.0), f64::NEG_INFINITY);
         assert_eq!(log_expected_improvement(f64::NAN, 1.0, 1.0), f64::NEG_INFINITY);
@@ -128,13 +128,13 @@ mod tests {
     }
 
     #[test]
-    fn no_deviation_is_certain() {
+    fn without_deviation_the_probability_is_zero_or_one() {
         assert_eq!(log_probability_above(1.0, 0.0, 1.0), 0.0);
         assert_eq!(log_probability_above(0.9, 0.0, 1.0), f64::NEG_INFINITY);
     }
 
     #[test]
-    fn the_expected_volume_is_the_mean_of_what_drawn_vectors_add() {
+    fn the_expected_volume_matches_a_monte_carlo_mean() {
         for (front, moments) in [
             (vec![vec![1.0, 3.0], vec![2.0, 2.0]], vec![(1.8, 0.7), (2.4, 0.5)]),
             (vec![], vec![(0.5, 1.0), (0.3, 0.2)]),

@@ -3,8 +3,8 @@
 use super::warp::{Warp, warp};
 use crate::statistics::Moments;
 
-/// Largest number of values by which the exponent of the power transformation is chosen.
-const WARPED_BY: usize = 250;
+/// Largest number of values from which the exponent of the power transformation is estimated.
+const MAX_WARP_SAMPLE: usize = 250;
 
 /// Values in the model's units: mean 0, variance 1.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,9 +15,9 @@ pub(super) struct Standardised {
     pub noise_floor: f64,
     /// The value 0 in the units of the model.
     pub zero: f64,
-    /// Mean of the values given.
+    /// Mean of the given values.
     pub mean: f64,
-    /// Standard deviation of the values given; 0 of values that do not differ.
+    /// Standard deviation of the given values; 0 if all are equal.
     pub deviation: f64,
     /// Power transformation, if there is one.
     pub warp: Option<Warp>,
@@ -59,26 +59,26 @@ pub(super) fn standardise(values: &[Option<f64>], noise_floor: f64) -> Option<St
 }
 
 impl Standardised {
-    /// Returns the values under the power transformation that makes them most nearly normal, with
-    /// the noise floor at the scale's average slope; unchanged if there is none. The zero has
-    /// no meaning then.
+    /// Returns the values under the power transformation that makes their distribution closest to normal,
+    /// with the noise floor multiplied by its average slope and NaN as `zero`; returns them unchanged if no
+    /// transformation is found.
     pub fn warped(self) -> Self {
         let sample: Vec<f64> =
-            spread(self.values.len(), WARPED_BY).map(|i| self.values[i]).collect();
+            spread(self.values.len(), MAX_WARP_SAMPLE).map(|i| self.values[i]).collect();
         let Some((values, warp)) = warp(&self.values, &sample) else { return self };
         let noise_floor = (self.noise_floor * warp.slope * warp.slope).clamp(1e-8, 1.0);
         Standardised { values, noise_floor, zero: f64::NAN, warp: Some(warp), ..self }
     }
 
-    /// Converts a value to the units of the model; plus or minus infinity if all values given are equal to
-    /// each other, but not to it.
-    pub fn of(&self, value: f64) -> f64 {
+    /// Converts a value to the units of the model; infinite if all given values are equal and `value` differs
+    /// from them.
+    pub fn convert(&self, value: f64) -> f64 {
         let standard = (value - self.mean) / self.deviation;
         self.warp.map_or(standard, |warp| warp.apply(standard))
     }
 }
 
-/// Returns `count` evenly spaced indices below `n`; all if there are no more.
+/// Returns `count` evenly spaced indices below `n`, or all if `count` is larger.
 pub(super) fn spread(n: usize, count: usize) -> impl Iterator<Item = usize> {
     let count = count.min(n);
     (0..count).map(move |k| k * n / count)
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_counts_as_the_worst() {
+    fn missing_and_infinite_values_count_as_the_worst() {
         let s =
             standardise(&[None, Some(2.0), Some(f64::NAN), Some(6.0), Some(f64::INFINITY)], 0.0);
         let s = s.unwrap().values;
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn places_are_spread_evenly_and_come_once() {
+    fn indices_are_evenly_spaced_and_distinct() {
         assert_eq!(spread(10, 3).collect::<Vec<_>>(), [0, 3, 6]);
         assert_eq!(spread(3, 10).collect::<Vec<_>>(), [0, 1, 2]);
     }

@@ -7,19 +7,19 @@ use nalgebra::{DMatrix, DVector};
 
 /// Points divided by the length scales.
 #[derive(Debug, Clone)]
-pub(super) struct Scaled {
+pub(super) struct ScaledPoints {
     /// Reciprocal of each length scale.
     pub inverse_length: Vec<f64>,
     /// By axis: `columns[a][i]` is coordinate `a` of point `i`.
     columns: Vec<Vec<f64>>,
 }
 
-impl Scaled {
+impl ScaledPoints {
     pub fn new(x: &[Vec<f64>], theta: &Hyperparameters) -> Self {
         let inverse_length: Vec<f64> = theta.log_length.iter().map(|l| libm::exp(-l)).collect();
         let column = |(a, i): (usize, &f64)| x.iter().map(|p| p[a] * i).collect();
         let columns = inverse_length.iter().enumerate().map(column).collect();
-        Scaled { inverse_length, columns }
+        ScaledPoints { inverse_length, columns }
     }
 
     fn scale(&self, x: &[f64]) -> Vec<f64> {
@@ -47,7 +47,7 @@ impl Scaled {
 pub struct Gp {
     signal: f64,
     noise: f64,
-    points: Scaled,
+    points: ScaledPoints,
     /// Process with a constant mean.
     process: Process<1>,
 }
@@ -57,7 +57,7 @@ const ONE: [f64; 1] = [1.0];
 
 /// Posterior of the function (without noise) at a point, and its gradient. The variance includes
 /// that of the constant mean (ordinary kriging).
-pub(super) struct Sloped {
+pub(super) struct PosteriorGradient {
     pub mean: f64,
     pub variance: f64,
     pub mean_slope: Vec<f64>,
@@ -74,7 +74,7 @@ impl Gp {
         theta: &Hyperparameters,
     ) -> Option<Self> {
         let signal = libm::exp(theta.log_signal);
-        let points = Scaled::new(x, theta);
+        let points = ScaledPoints::new(x, theta);
         let covariance = lower_covariance(&points.columns, signal, y.len());
         let mut noise = noise_floor + libm::exp(theta.log_noise);
         for _ in 0..8 {
@@ -115,7 +115,7 @@ impl Gp {
     }
 
     /// Returns the posterior at a point with its gradient.
-    pub(super) fn sloped(&self, x: &[f64]) -> Sloped {
+    pub(super) fn posterior_gradient(&self, x: &[f64]) -> PosteriorGradient {
         let points = &self.points;
         let r2 = points.distances2(x);
         let k = covariances(&r2, self.signal);
@@ -127,17 +127,17 @@ impl Gp {
         // The variance is signal - k' K^-1 k + residual^2 precision.
         let ([residual], [to_mean]) = (constant.solved_residual(&k, &ONE), &constant.weights);
         let by_k = -2.0 * (solved + residual * to_mean);
-        let mut slopes = (Vec::new(), Vec::new());
+        let (mut mean_slope, mut variance_slope) = (Vec::new(), Vec::new());
         for ((column, x), inverse_length) in
             points.columns.iter().zip(points.scale(x)).zip(&points.inverse_length)
         {
             let slope = |(c, r2): (&f64, &f64)| -2.0 * (x - c) * matern52_slope(*r2);
             let slope = DVector::from_iterator(self.len(), column.iter().zip(&r2).map(slope));
-            slopes.0.push(self.signal * inverse_length * slope.dot(self.process.weights()));
-            slopes.1.push(self.signal * inverse_length * slope.dot(&by_k));
+            mean_slope.push(self.signal * inverse_length * slope.dot(self.process.weights()));
+            variance_slope.push(self.signal * inverse_length * slope.dot(&by_k));
         }
         let mean = self.process.mean(&k, &ONE);
-        Sloped { mean, variance, mean_slope: slopes.0, variance_slope: slopes.1 }
+        PosteriorGradient { mean, variance, mean_slope, variance_slope }
     }
 
     /// Returns the posterior mean and an upper bound on the variance that needs no triangular
@@ -189,11 +189,11 @@ mod tests {
     }
 
     #[test]
-    fn one_observation_is_worked_by_hand() {
+    fn one_observation_matches_a_manual_calculation() {
         let theta = Hyperparameters { log_length: vec![0.0], ..theta() };
         let gp = Gp::new(&[vec![0.0]], &[2.0], 0.5, &theta).unwrap();
-        // The constant mean takes the value, with a variance of 1.5; that of the rest is
-        // 1 - k^2 / 1.5, and k / 1.5 of the mean is known from the value itself.
+        // The estimated mean is the value, with a variance of 1.5, and enters with the factor 1 - k / 1.5; the
+        // variance of the rest is 1 - k^2 / 1.5.
         let (mean, variance) = gp.predict(&[1.0]);
         let k = matern52(1.0);
         let expected = 1.0 - k * k / 1.5 + 1.5 * (1.0 - k / 1.5).powi(2);
@@ -236,7 +236,7 @@ mod tests {
             let (mean, variance) = at(x);
             let bound = gp.bound(&[x]);
             assert!((bound.0 - mean).abs() < 1e-12 && bound.1 >= variance);
-            let sloped = gp.sloped(&[x]);
+            let sloped = gp.posterior_gradient(&[x]);
             assert!(
                 (sloped.mean - mean).abs() < 1e-12 && (sloped.variance - variance).abs() < 1e-12
             );
@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn duplicates_are_survived_and_nan_is_refused() {
+    fn duplicate_points_are_accepted_and_nan_is_rejected() {
         let x = vec![vec![0.5]; 6];
         assert!(Gp::new(&x, &[1.0, 2.0, 1.0, 2.0, 0.0, 1.0], 0.0, &theta()).is_some());
         assert!(Gp::new(&x, &[f64::NAN; 6], 1e-8, &theta()).is_none());

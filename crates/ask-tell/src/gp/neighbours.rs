@@ -3,7 +3,7 @@
 
 use super::data::{Standardised, spread};
 use super::hyperparameters::Hyperparameters;
-use super::model::{Gp, Scaled};
+use super::model::{Gp, ScaledPoints};
 use super::trained::{Goal, Trained};
 
 /// Number of neighbours for approximate predictions.
@@ -16,7 +16,7 @@ pub(super) struct Neighbours {
     /// Coordinates of the points on the free axes.
     pub x: Vec<Vec<f64>>,
     /// The points in units of the length scales of the first objective.
-    scaled: Scaled,
+    scaled: ScaledPoints,
     /// Values of the objectives, then margins of the constraints, including those of believed points.
     pub data: Vec<Standardised>,
     thetas: Vec<Hyperparameters>,
@@ -33,7 +33,7 @@ impl Neighbours {
         thetas: Vec<Hyperparameters>,
         zeros: Vec<f64>,
     ) -> Self {
-        let scaled = Scaled::new(&x, &thetas[0]);
+        let scaled = ScaledPoints::new(&x, &thetas[0]);
         Neighbours { x, scaled, data, thetas, zeros, goal: Goal::Feasible }
     }
 

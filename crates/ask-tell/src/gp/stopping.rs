@@ -23,11 +23,12 @@ use nalgebra::{DMatrix, DVector};
 /// large drop was extrapolated to the whole space (`docs/notes/optimizers.md`).
 const DROP_LENGTH: f64 = 0.15;
 /// Largest number of points to which hyperparameters are fitted.
-const FITTED: usize = 200;
+const MAX_FITTED: usize = 200;
 /// Grids up to this size are searched exhaustively, larger ones at a sample of candidates.
 const EXHAUSTIVE: u64 = 20_000;
+/// Size of that sample.
 const CANDIDATES: usize = 6000;
-/// Measured points around which candidates are drawn.
+/// Number of best points around which candidates are drawn.
 const INCUMBENTS: usize = 4;
 /// Probability below which a gain is disregarded.
 const MIN_PROBABILITY: f64 = 0.02;
@@ -72,8 +73,8 @@ pub struct StoppingCriterion<'a> {
     drop: Option<Drops>,
 }
 
-/// Model of the search.
-struct Model {
+/// Model of the values of the search.
+struct SearchModel {
     gp: Gp,
     data: Standardised,
 }
@@ -92,8 +93,8 @@ fn kernel(a: &[f64], b: &[f64], length: f64) -> f64 {
 }
 
 impl<'a> StoppingCriterion<'a> {
-    /// Creates the criterion with its models from the observations of a single-objective search and its confirmations;
-    /// `least_gain` is the least difference that matters, in the objective's unit.
+    /// Creates the criterion with its models from the observations of a single-objective search and its
+    /// confirmations; `least_gain` is the least difference that matters, in the objective's unit.
     pub fn new(
         grid: &'a Grid,
         observations: &'a [Observation],
@@ -102,26 +103,26 @@ impl<'a> StoppingCriterion<'a> {
     ) -> Self {
         let mut criterion =
             StoppingCriterion { grid, observations, confirmed, least_gain, drop: None };
-        criterion.drop = criterion.drops();
+        criterion.drop = criterion.drop_model();
         criterion
     }
 
     /// Fits the model of the search; `None` if no observation has a value.
-    fn searched(&self) -> Option<Model> {
+    fn search_model(&self) -> Option<SearchModel> {
         let values: Vec<Option<f64>> = self.observations.iter().map(Observation::value).collect();
         let data = standardise(&values, DEFAULT_NOISE_FLOOR)?.warped();
         let x: Vec<Vec<f64>> =
             self.observations.iter().map(|o| self.grid.free_unit(&o.point)).collect();
-        let fitted = spread(x.len(), FITTED).map(|i| (x[i].clone(), data.values[i]));
+        let fitted = spread(x.len(), MAX_FITTED).map(|i| (x[i].clone(), data.values[i]));
         let (points, values): (Vec<Vec<f64>>, Vec<f64>) = fitted.unzip();
         let effort = FitEffort::for_observations(values.len());
         let theta = fit(&points, &values, data.noise_floor, None, effort);
-        Some(Model { gp: Gp::new(&x, &data.values, data.noise_floor, &theta)?, data })
+        Some(SearchModel { gp: Gp::new(&x, &data.values, data.noise_floor, &theta)?, data })
     }
 
     /// Fits the model of the drops. Its prior standard deviation is their root mean square, but at
     /// least the difference that matters: a few small drops do not imply that all are small.
-    fn drops(&self) -> Option<Drops> {
+    fn drop_model(&self) -> Option<Drops> {
         let drop = |c: &Confirmed| {
             Some((c.index, (self.observations.get(c.index)?.value()? - c.value).max(0.0)))
         };
@@ -162,26 +163,28 @@ impl<'a> StoppingCriterion<'a> {
     /// lower `rank`; at most `at_once` points are returned.
     pub fn advise(&self, rank: &[usize], at_once: usize) -> Advice {
         let Some(best) = self.best() else {
-            // Not before the search itself has settled: early leaders are soon overtaken.
+            // Nothing is confirmed before the search itself has settled, since early leaders are soon overtaken.
             let leader = self.observations.iter().filter_map(Observation::value).reduce(f64::max);
             return match leader {
-                Some(leader) if !self.search_gains(leader) => {
+                Some(leader) if !self.search_may_improve(leader) => {
                     self.confirm(f64::NEG_INFINITY, rank, 1)
                 }
                 _ => Advice::Search,
             };
         };
         match self.confirm(best, rank, at_once) {
-            Advice::Settled if self.search_gains(best) => Advice::Search,
+            Advice::Settled if self.search_may_improve(best) => Advice::Search,
             advice => advice,
         }
     }
 
-    /// Returns the points to confirm next, only among those already evaluated.
+    /// Returns the points to confirm next without continuing the search.
     pub fn confirm_only(&self, rank: &[usize], at_once: usize) -> Advice {
         self.confirm(self.best().unwrap_or(f64::NEG_INFINITY), rank, at_once)
     }
 
+    /// Returns the evaluated points that are likely to beat `best`, or else the best confirmed one if it is not
+    /// final.
     fn confirm(&self, best: f64, rank: &[usize], at_once: usize) -> Advice {
         let known = |at: usize| self.confirmed.iter().any(|confirmed| confirmed.index == at);
         let contender = |at: usize| {
@@ -204,7 +207,7 @@ impl<'a> StoppingCriterion<'a> {
         }
     }
 
-    /// Returns the median of the confirmed value of an evaluated point; `None` without a value.
+    /// Returns the median of the confirmed value of an evaluated point; `None` if it has no value.
     pub fn median(&self, at: usize) -> Option<f64> {
         let observation = self.observations.get(at)?;
         let (drop, _) = self.drop_at(&self.grid.free_unit(&observation.point));
@@ -212,7 +215,8 @@ impl<'a> StoppingCriterion<'a> {
     }
 
     /// Returns the expected confirmed value of an evaluated point and the probability that it
-    /// exceeds `threshold`; `None` without a positive value, which is not worth confirming.
+    /// exceeds `threshold`; `None` if the value is missing or not positive, which is not worth
+    /// confirming.
     fn confirmed_value(&self, at: usize, threshold: f64) -> Option<(f64, f64)> {
         let value = self.observations.get(at)?.value().filter(|value| *value > 0.0)?;
         let (mean, deviation) = self.drop_at(&self.grid.free_unit(&self.observations[at].point));
@@ -227,8 +231,8 @@ impl<'a> StoppingCriterion<'a> {
     }
 
     /// Returns whether a point not yet evaluated may beat `best`.
-    fn search_gains(&self, best: f64) -> bool {
-        let Some(searched) = self.searched() else { return true };
+    fn search_may_improve(&self, best: f64) -> bool {
+        let Some(model) = self.search_model() else { return true };
         let threshold = best + self.least_gain;
         let mut proposed = Proposed::new(self.grid.clone(), 0);
         for observation in self.observations {
@@ -236,7 +240,7 @@ impl<'a> StoppingCriterion<'a> {
         }
         let likely = |point: &GridPoint| {
             !proposed.contains(point)
-                && self.may_exceed(&searched, &self.grid.free_unit(point), threshold)
+                && self.may_exceed(&model, &self.grid.free_unit(point), threshold)
         };
         match self.grid.size() <= EXHAUSTIVE {
             true => self.grid.points().any(|point| likely(&point)),
@@ -246,13 +250,13 @@ impl<'a> StoppingCriterion<'a> {
 
     /// Returns whether the confirmed value at an unevaluated point exceeds `threshold` with at least
     /// [`MIN_PROBABILITY`].
-    fn may_exceed(&self, searched: &Model, x: &[f64], threshold: f64) -> bool {
-        let Model { gp, data } = searched;
+    fn may_exceed(&self, model: &SearchModel, x: &[f64], threshold: f64) -> bool {
+        let SearchModel { gp, data } = model;
         let above = |(mean, variance): (f64, f64), threshold: f64| {
-            exp(normal_log_cdf((mean - data.of(threshold)) / sqrt(variance)))
+            exp(normal_log_cdf((mean - data.convert(threshold)) / sqrt(variance)))
         };
         let rough = gp.bound(x);
-        if rough.0 < data.of(threshold) && above(rough, threshold) < MIN_PROBABILITY {
+        if rough.0 < data.convert(threshold) && above(rough, threshold) < MIN_PROBABILITY {
             return false;
         }
         let (own, (mean, deviation)) = (gp.predict(x), self.drop_at(x));

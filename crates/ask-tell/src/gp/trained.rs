@@ -1,7 +1,7 @@
 //! Models of all objectives and constraints, and the acquisition function.
 
 use super::acquisition::{log_expected_improvement, log_expected_volume, log_probability_above};
-use super::model::{Gp, Sloped};
+use super::model::Gp;
 use crate::pareto::{Archive, Cell, undominated};
 
 /// Step of the central differences with respect to the moments, in standard deviations.
@@ -95,7 +95,7 @@ impl Trained {
     /// posterior moments are exact; those with respect to the moments, which are cheap, are central
     /// differences.
     pub fn sloped_acquisition(&self, x: &[f64]) -> Option<(f64, Vec<f64>)> {
-        let sloped: Vec<Sloped> = self.models.iter().map(|gp| gp.sloped(x)).collect();
+        let sloped: Vec<_> = self.models.iter().map(|gp| gp.posterior_gradient(x)).collect();
         let mut moments: Vec<(f64, f64)> =
             sloped.iter().map(|s| (s.mean, s.variance.sqrt())).collect();
         let value = self.acquisition_of(&moments);

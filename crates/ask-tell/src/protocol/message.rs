@@ -22,11 +22,11 @@ pub(super) struct Problem {
     optimizer: String,
     pub seed: u64,
     pub direction: Direction,
-    /// Points proposed at a time; without it every ask is a batch.
+    /// Number of points per batch; if omitted, every `ask` is a batch.
     pub batch: Option<usize>,
 }
 
-/// Which values are better.
+/// Direction of optimization.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Direction {
@@ -35,7 +35,7 @@ pub(super) enum Direction {
 }
 
 impl Direction {
-    /// Returns a value for which larger is better.
+    /// Converts an objective value to a merit (larger is better).
     pub fn merit(self, value: f64) -> f64 {
         match self {
             Direction::Minimize => -value,
@@ -49,7 +49,7 @@ impl Problem {
     pub fn check(&self) -> Result<OptimizerKind, String> {
         let count = self.parameters.len();
         if count == 0 {
-            return Err("parameters: is empty; there must be at least one".to_owned());
+            return Err("parameters: the list is empty; at least one is required".to_owned());
         }
         for (i, parameter) in self.parameters.iter().enumerate() {
             let name = &parameter.name;
@@ -62,7 +62,7 @@ impl Problem {
             self.optimizer.parse().map_err(|error| format!("optimizer: {error}"))?;
         let most = kind.max_parameters();
         if count > most {
-            return Err(format!("parameters: there are {count}; {kind} takes {most} at most"));
+            return Err(format!("parameters: {count} are given; {kind} takes {most} at most"));
         }
         if self.batch == Some(0) {
             return Err(format!("batch: is 0; accepted: 1 to {MAX_POINTS}"));
@@ -83,7 +83,7 @@ pub(super) fn check_count(key: &str, points: usize, parameters: usize) -> Result
     ))
 }
 
-/// Result of a point that was asked (`id`) or evaluated elsewhere (`values`).
+/// Result of a proposed point (`id`) or of a point evaluated elsewhere (`values`).
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PointResult {
@@ -94,9 +94,9 @@ pub(super) struct PointResult {
     pub value: Option<f64>,
 }
 
-/// Point of an answer to `ask`.
+/// Point proposed in the answer to `ask`.
 #[derive(Serialize)]
-pub(super) struct Asked {
+pub(super) struct NewPoint {
     pub id: usize,
     pub values: Map<String, Value>,
 }
@@ -113,7 +113,7 @@ pub(super) struct Best {
 /// Answer to `tell`.
 #[derive(Serialize)]
 pub(super) struct Summary {
-    /// Number of results of the line.
+    /// Number of results in the message.
     pub told: usize,
     pub best: Option<Best>,
     pub stop: Option<StopReason>,
@@ -131,7 +131,7 @@ struct TellLine {
     tell: Vec<PointResult>,
 }
 
-/// Parsed line.
+/// Parsed message.
 pub(super) enum Line {
     Problem(Problem),
     Ask(usize),
@@ -139,15 +139,16 @@ pub(super) enum Line {
 }
 
 impl Line {
+    /// Parses a line of JSON.
     pub fn parse(text: &str) -> Result<Line, String> {
         let value: Value =
-            serde_json::from_str(text).map_err(|error| format!("not a line of JSON: {error}"))?;
+            serde_json::from_str(text).map_err(|error| format!("not valid JSON: {error}"))?;
         let key = ["parameters", "ask", "tell"].into_iter().find(|key| value.get(key).is_some());
         match key {
             Some("parameters") => read(value, "parameters").map(Line::Problem),
             Some("ask") => read(value, "ask").map(|line: AskLine| Line::Ask(line.ask)),
             Some(_) => read(value, "tell").map(|line: TellLine| Line::Tell(line.tell)),
-            None => Err("not a known line; accepted: {\"parameters\":[..],..}, {\"ask\":n} and \
+            None => Err("unknown message; accepted: {\"parameters\":[..],..}, {\"ask\":n} and \
                          {\"tell\":[..]}"
                 .to_owned()),
         }

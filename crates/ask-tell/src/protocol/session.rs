@@ -1,7 +1,7 @@
 //! Ask-and-tell session with one optimizer.
 
 use super::message::{
-    Asked, Best, Direction, Line, MAX_LINE_BYTES, PointResult, Problem, Summary, check_count,
+    Best, Direction, Line, MAX_LINE_BYTES, NewPoint, PointResult, Problem, Summary, check_count,
 };
 use super::parameter::Parameter;
 use crate::{Grid, GridPoint, Observation, Optimizer, build};
@@ -99,7 +99,7 @@ impl Search {
         }
         let end = self.proposals.len().min(self.asked + n);
         let ids = std::mem::replace(&mut self.asked, end)..end;
-        let asked = |id: usize| Asked { id, values: self.values(&self.proposals[id].point) };
+        let asked = |id: usize| NewPoint { id, values: self.values(&self.proposals[id].point) };
         Ok(ids.map(asked).collect::<Vec<_>>())
     }
 

@@ -64,7 +64,7 @@ impl Spread<'_> {
 
 impl<'a> Ties<'a> {
     pub(super) fn of(record: &'a StudyRecord, index: u64, measured: &[MeasuredFinger]) -> Self {
-        let designs = record.as_good(index);
+        let designs = record.equivalent_designs(index);
         let force = |r: &Recorded| record.measure(r, Measure::PeakForce);
         let stiffness = |r: &Recorded| r.stiffness.compliance.mean / N_PER_MM;
         let among = if designs.len() < 2 { &[] } else { &designs[..] };

@@ -38,7 +38,7 @@ pub fn line(
         priors: "bench".to_owned(),
         ..identify::Request::default()
     };
-    let found = request.run(&Context::silent(&NEVER))?.done.cell;
+    let found = request.run(&Context::silent(&NEVER))?.result.cell;
     let robot = found.robot("cell").map_err(Failure::input)?;
     let values: Vec<_> = found.of(task).map(|parameter| (parameter, parameter.middle())).collect();
 

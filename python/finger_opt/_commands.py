@@ -204,7 +204,7 @@ def trial(
             `identify`.
         svg: Draw plug, fingertips and socket at the end of each phase.
         every_s: Simulated time between two samples of the time series in the JSON, s.
-        film: Include the page that plays it in the result.
+        film: Include the page that plays the trial in the result.
 
     Raises:
         InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.

@@ -11,8 +11,8 @@ var play = (() => {
     // It shows the first end alone.
     const poster = document.querySelector(".stage img");
     if (poster && k > 0) poster.remove();
+    if (!poster || k > 0) at("caption").textContent = buttons[k].dataset.caption;
     frame.srcdoc = viewer.replace("<body>", '<body class="compact">').replace('id="films">', () => `id="films">${at(`film${k}`).textContent}`);
-    at("caption").textContent = buttons[k].dataset.caption;
   };
   const play = (k) => {
     if (k !== shown) { wanted = true; show(k); return; }
@@ -21,6 +21,8 @@ var play = (() => {
   window.addEventListener("message", ({ source, data }) => {
     if (source !== frame.contentWindow) return;
     frame.dataset.state = String(data);
+    // Without WebGL the picture of the failed trial stays.
+    if (data !== "picture") at("caption").textContent = buttons[shown].dataset.caption;
     buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(k === shown && data === "playing")));
     if (data !== "playing" && data !== "paused" && wanted) { wanted = false; frame.contentWindow.postMessage("play", "*"); }
   });

@@ -134,7 +134,7 @@ fn films(answer: &Answer, tasks: &[&Evaluation], files: &PageFiles) -> Markup {
                         }
                         iframe #film title="two trials: the last that inserts, the first that fails" sandbox="allow-scripts" {}
                     }
-                    p #caption.muted { (caption(film, tasks, false)) }
+                    p #caption.muted { (caption(film, tasks, film.poster.is_some())) }
                 } @else if let Some((film, poster)) = linked.first().and_then(|film| Some((film, film.poster.as_ref()?))) {
                     div.stage {
                         a href=(pair_file(film.task, film.end)) {

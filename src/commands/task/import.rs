@@ -330,6 +330,7 @@ impl fmt::Display for ImportedTask {
             }
         }
         text.extend(tuned.iter().map(|tuned| brief("strategy", tuned)));
-        f.write_str(&wrapped(&(text + &checked.text())))
+        text += &format!("{}next          optimize task tune {out}\n", checked.text());
+        f.write_str(&wrapped(&text))
     }
 }

@@ -135,7 +135,7 @@ impl fmt::Display for Written {
         let file = &checked.source.file;
         let strategy = tuned.iter().map(|tuned| brief("strategy", tuned)).collect::<String>();
         let text = format!(
-            "written       {file}\n{strategy}{}next          optimize task check {file} --svg {name}.svg\n",
+            "written       {file}\n{strategy}{}next          optimize task tune {file} --svg {name}.svg\n",
             checked.text()
         );
         f.write_str(&wrapped(&text))

@@ -222,12 +222,13 @@ impl Request {
     ) -> Result<Failure, Failure> {
         let Some(target) = target.filter(|_| tuned.best > 0 && tuned.inserts() && !self.dry_run)
         else {
-            return Ok(Failure::Interrupted(None));
+            let hint = format!("no better strategy was found yet; {} is unchanged", self.file);
+            return Ok(Failure::Interrupted(Some(hint)));
         };
         self.save(file, &rewritten(file, tuned)?, Some(target))?;
         let (best, target) = (outcome(tuned.best()), target.display());
         let hint = format!(
-            "{target} has the best strategy so far ({best}); continue with: optimize task tune {target}"
+            "{target} has the best strategy so far ({best}); search on from it with: optimize task tune {target}"
         );
         Ok(Failure::Interrupted(Some(hint)))
     }
@@ -388,6 +389,8 @@ fn text(done: &TunedTask) -> String {
         }
     }
     all.push(line("windows", format!("{} measured", tuned.windows)));
+    let next = written.as_ref();
+    all.extend(next.map(|path| line("next", format!("optimize --task {}", path.display()))));
     lines(all)
 }
 

@@ -133,7 +133,7 @@ fn each_fault_is_caught_with_its_key_and_what_would_be_right() {
         (touch, "[0.0, 0.0, 3.0]", "\"touch\" move_mm", "goes up", "negative"),
         (start, "[0.0, -0.0012, 0.051]", "strategy.start_mm", "less than", "metres"),
         (grip, "1.6\nshoulder_z_mm = 1.7", "grip.tcp_z_mm", "less than", "inches"),
-        (faces, "[-6.6, 6.6]", "grip.faces_y_mm", "off the plug", "[-6.2, 6.2]"),
+        (faces, "[-6.6, 6.6]", "grip.faces_y_mm", "outside `grip block`", "[-6.2, 6.2]"),
         (faces, "[-5.0, 5.0]", "grip.faces_y_mm", "inside `grip block`", "[-6.2, 6.2]"),
         (neck, "[37.2, 39.96]", "\"neck\" z_mm", "gap of 1 mm to `taper`", "36.2"),
         (y, "[-9.0, 7.51]", "socket.opening_y_mm", "`wall at -y` begins", "-7.49"),

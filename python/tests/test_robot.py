@@ -153,7 +153,7 @@ def test_what_could_not_be_written_is_refused_before_the_robot_moves(out, tmp_pa
     robot = Steps()
     for wrong, said in [
         ({"density": 0.2}, "looks like a share"),
-        ({"direction": 95}, "from 0 to 90"),
+        ({"direction": 95}, "0 .. 90"),
         ({"step_mm": float("nan")}, "lengths in mm"),
         ({"resolution_mm": 0.6}, "each at most the next"),
         ({"attempts_max": 0}, "1 to 10000"),

@@ -136,7 +136,12 @@ impl command::Request for Request {
             written: None,
         };
         if done.tuned.inserts() {
-            done.after = Some(self.write(&file, &done, &robot, (target, stop))?);
+            done.after = match self.write(&file, &done, &robot, (target, stop)) {
+                Err(Failure::Interrupted(_)) => {
+                    return Err(self.interrupted(&file, &done.tuned, target)?);
+                }
+                found => Some(found?),
+            };
             done.written = target.filter(|_| !self.dry_run).map(Path::to_path_buf);
         }
         Ok(done)

@@ -214,6 +214,16 @@ fn described(
              {x:.1} x {y:.1} x {z:.1} mm is added on top of it; --body sets its size"
         );
         findings.push(("handle", why));
+    } else {
+        let apart = width(made.task.grip.faces_y) / MM;
+        let grip = made.task.plug.parts.iter().rfind(|part| part.name == "grip");
+        let [low, high] =
+            grip.map_or([0.0; 2], |part| extent(part.solid.corners(), 2)).map(|z| z / MM);
+        let why = format!(
+            "pads on two faces {apart:.1} mm apart, {low:.1} to {high:.1} mm above the tip, \
+             roofs on top; --body adds a handle"
+        );
+        findings.push(("grip", why));
     }
     let mut left_out: Vec<LeftOut> = made.interference.iter().map(LeftOut::from).collect();
     left_out.sort_by(|a, b| b.depth_mm.total_cmp(&a.depth_mm));

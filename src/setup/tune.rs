@@ -113,13 +113,17 @@ pub fn tried(tuned: &Tuned) -> String {
 
 /// Returns the result of a strategy as text.
 pub fn outcome(step: &Step) -> String {
-    let turned = step.turned_mm.map_or(String::new(), |least_mm| {
-        format!(", with the socket turned by {YAW_DEG}° at least {least_mm:.1} mm")
-    });
     match step.tried.windows.is_empty() {
         true => "inserts from no start".to_owned(),
-        false => ranges(&step.tried.windows) + &turned,
+        false => ranges(&step.tried.windows) + &turned_text(step),
     }
+}
+
+/// Returns the range with a turned socket as text; empty if it was not measured.
+pub fn turned_text(step: &Step) -> String {
+    step.turned_mm.map_or(String::new(), |least_mm| {
+        format!(", with the socket turned by {YAW_DEG}° at least {least_mm:.1} mm")
+    })
 }
 
 /// Returns the ranges, `3.1, 3.3, 2.9 mm`; for a nominal start that fails, its outcome.

@@ -113,7 +113,7 @@ pub static NUMBERS: &[NumberSpec] = &[
     distance("task.socket.opening_x_mm|opening_y_mm.*"),
     length("task.grip.tcp_z_mm|shoulder_z_mm|slip_limit_mm"),
     distance("task.grip.faces_y_mm.*"),
-    file("task.grip.force_n", SMALLEST, 1e6),
+    file("task.grip.force_n", SMALLEST, 1e3),
     file("task.friction.plug_socket|finger_plug", 0.0, 5.0),
     file("task.friction.finger_plug_torsion_mm", 0.0, 500.0),
     length("task.finger.rcc_mm"),

@@ -8,9 +8,11 @@ use crate::progress::Part;
 use crate::setup::files::robot;
 use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
 use crate::setup::task::TaskFile;
-use crate::setup::tune::{Tried, bench, outcome, ranges, tried};
+use crate::setup::tune::{Tried, bench, outcome, ranges, tried, turned_text};
 use connector::check::problems;
-use connector::tune::{Bench, Effort, MOST_WINDOWS, Robustness, Stage, Step, Stopped, Tuned, tune};
+use connector::tune::{
+    Bench, Effort, MOST_WINDOWS, Robustness, Stage, Step, Stopped, Tuned, YAW_DEG, tune,
+};
 use connector::{picture, rewrite};
 use input::Place;
 use input::shipped::Source;
@@ -90,6 +92,8 @@ pub struct TunedTask {
     pub tuned: Tuned,
     /// The soft, the medium and the stiff finger.
     pub fingers: [Finger; 3],
+    /// Three others, between them, with which the chosen strategy is checked.
+    pub others: [Finger; 3],
     /// Limits of force and speed.
     pub limits: Limits,
     /// Windows of the fingers on the tuned task; `None` if no strategy inserts.
@@ -125,12 +129,13 @@ impl command::Request for Request {
         if context.check().is_err() {
             return Err(self.interrupted(&file, &tuned, target)?);
         }
-        let Bench { fingers, limits, .. } = bench;
+        let Bench { fingers, others, limits, .. } = bench;
         let mut done = TunedTask {
             file: self.file.clone(),
             task: file.task.clone(),
             tuned,
             fingers,
+            others,
             limits,
             after: None,
             written: None,
@@ -364,7 +369,7 @@ impl fmt::Display for TunedTask {
 }
 
 fn text(done: &TunedTask) -> String {
-    let TunedTask { task, tuned, fingers, after, written, .. } = done;
+    let TunedTask { task, tuned, fingers, others, after, written, .. } = done;
     let line = |name: &str, text: String| (name.to_owned(), text);
     let mut all = vec![
         line("task", task.name.clone()),
@@ -382,15 +387,25 @@ fn text(done: &TunedTask) -> String {
         })),
         Some(after) => {
             let best = tuned.best();
-            all.push(line("chosen", format!("{}: {}", best.change, ranges(&after.windows))));
+            let turned = turned_text(best);
+            let text = format!("{}: {}{turned}", best.change, ranges(&after.windows));
+            all.push(line("chosen", text));
+            let wider = |step: &Step| step.tried.score > best.tried.score;
+            if tuned.steps.iter().any(wider) {
+                let why = format!("wider windows shrink more with the socket turned by {YAW_DEG}°");
+                all.push(line("", why));
+            }
             all.push(line("push", push_text(done, after.force_n)));
             all.extend(tuned.robustness.iter().enumerate().map(|(i, kept)| {
-                let name = if i == 0 { "other fingers" } else { "" };
-                let change = if i == 0 { String::new() } else { format!(", {}", kept.change) };
-                line(name, format!("at least {:.1} mm{change}", kept.least_range_mm))
+                let least = format!("at least {:.1} mm", kept.least_range_mm);
+                match i {
+                    0 => line("other fingers", format!("{}: {least}", compliances(others))),
+                    _ => line("", format!("{least}, {}", kept.change)),
+                }
             }));
+            let name = if tuned.best == 0 { "unchanged" } else { "written" };
             let wrote = written.as_ref();
-            all.extend(wrote.map(|path| line("written", path.display().to_string())));
+            all.extend(wrote.map(|path| line(name, path.display().to_string())));
         }
     }
     all.push(line("windows", format!("{} measured", tuned.windows)));

@@ -73,10 +73,11 @@ fn around(title: &str, data: &str) -> String {
             div #phases {}
             div #curves {}
             p.note {
-                "Drag turns, the wheel or two fingers zoom, shift and drag moves up and down; a \
-                click on a curve goes to that time. Red arrows: the socket presses the plug; blue: \
-                the fingers do. The tips of the fingers are where they are; what lies between tip \
-                and jaw is drawn for the eye, its bend as many times as large as the slider says."
+                "Drag to rotate, scroll or pinch to zoom, hold Shift and drag to move up and down; \
+                click a curve to go to that time. Red arrows: force of the socket on the plug; blue: \
+                forces of the fingers on it. Drawn are the simulated parts: the faces that plug and \
+                socket can touch, and the gripped part. Between fingertip and jaw the finger is \
+                schematic; the slider exaggerates its deflection."
             }
             (PreEscaped(DATA)) (PreEscaped(data)) (PreEscaped("</script>"))
             script { (PreEscaped(include_str!("viewer.js"))) }
@@ -101,10 +102,10 @@ fn controls() -> maud::Markup {
             }
         }
         div.controls {
-            label { "bend drawn" input #bend type="range" min="1" max="10" step="1" value="1"; output #times { "1 times" } }
+            label { "deflection drawn" input #bend type="range" min="1" max="10" step="1" value="1"; output #times { "1 times" } }
             label { input #contact type="checkbox" checked; "contact forces" }
             label { input #grip type="checkbox"; "grip forces" }
-            label { input #glass type="checkbox" checked; "socket of glass" }
+            label { input #glass type="checkbox" checked; "transparent socket" }
         }
     }
 }

@@ -62,8 +62,8 @@
   };
   const shown = (film) => (state.time + 1e-9 >= film.decided_s ? film.outcome : "not decided yet");
 
-  // The camera sees the socket and the plug at its start.
-  const heights = films.flatMap((film) => film.bodies.flatMap(({ of, points }) => points.filter((_, i) => i % 3 === 2).map((z) => z + (of === "socket" ? 0 : film.pose.plug[2] / 2))));
+  // The camera sees the socket and the fingertips at the start; in a report, which shows the end, half as high.
+  const heights = films.flatMap((film) => film.bodies.flatMap(({ of, points }) => points.filter((_, i) => i % 3 === 2).map((z) => z + (of === "socket" ? 0 : film.pose.plug[2] / (compact ? 2 : 1)))));
   const [lowest, highest] = [Math.min(...heights), Math.max(...heights)];
   state.target[2] = (lowest + highest) / 2;
   state.distance = 1.9 * (highest - lowest);

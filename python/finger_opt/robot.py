@@ -23,7 +23,7 @@ from ._call import checked, number, shown, wrong
 from ._ends import INTERVAL, Gap, Search, Side, Window
 from ._measurement import Measurement
 from ._native import InputError, StudyError
-from ._run import named
+from ._run import named, say
 from ._runs import Runs
 from ._simulated import SimulatedRobot
 from ._task import Given
@@ -78,6 +78,7 @@ def measure_window(
     direction: float,
     attempts_max: int = 60,
     probe: bool = False,
+    progress: bool = True,
 ) -> Measurement:
     """Measures the tolerance window of a finger with a robot, and adds it to the measurement file ``out``.
 
@@ -96,6 +97,8 @@ def measure_window(
     attempts, as far as the robot records and it is known how they ended, are lines of ``runs.csv`` beside
     ``out``, which all fingers measured into that folder share: what ``optimize identify`` reads.
 
+    With ``progress``, each attempt is a line on standard error.
+
     Raises :class:`InputError`, before the robot moves, for wrong arguments and while another process measures the
     same finger into the same folder; and :class:`StudyError` if the robot raises, takes longer than its
     ``timeout_s``, reports what cannot be (three times in a row; once it is marked and tried again), if a file
@@ -112,7 +115,7 @@ def measure_window(
             date = attempts.settings["date"]
             ended = bench.written(date)
             runs = Runs(bench.out.parent, bench.task.name, bench.finger, attempts)
-            course = _Course(robot, search, attempts, runs, bench.task.success.depth_mm, timeout_s)
+            course = _Course(robot, search, attempts, runs, bench.task.success.depth_mm, timeout_s, progress)
             if prober is not None and attempts.probed is None:
                 course.probe(prober)
             measured = course.run(0 if ended else attempts_max)
@@ -170,10 +173,11 @@ class _Course:
     """The attempts of one measurement, one after the other."""
 
     def __init__(
-        self, robot: Robot, search: Search, attempts: Attempts, runs: Runs, depth_mm: float, timeout_s: float
+        self, robot: Robot, search: Search, attempts: Attempts, runs: Runs, depth_mm: float, timeout_s: float,
+        progress: bool,
     ) -> None:
         self.robot, self.search, self.attempts, self.runs = robot, search, attempts, runs
-        self.depth_mm, self.timeout_s = depth_mm, timeout_s
+        self.depth_mm, self.timeout_s, self.progress = depth_mm, timeout_s, progress
 
     def run(self, attempts_max: int) -> Measurement:
         in_doubt = 0
@@ -186,6 +190,7 @@ class _Course:
             done = self.attempt(offset)
             self.attempts.add(done)
             self.runs.add(done)
+            self.show(done)
             in_doubt = in_doubt + 1 if done.doubt else 0
             if in_doubt == DOUBTFUL:
                 raise self.stopped(offset, f"{DOUBTFUL} attempts in a row cannot be: {done.doubt}")
@@ -193,6 +198,15 @@ class _Course:
             why = "the taught start does not insert: teach another; if none inserts, note it by "
             raise self.stopped(0.0, why + "`optimize measure add --not-measurable`")
         return self.measurement(window, settled=offset is None)
+
+    def show(self, done: Tried) -> None:
+        """Writes the outcome of an attempt to standard error."""
+        if not self.progress:
+            return
+        attempt = done.attempt
+        failed = "failed" if attempt.failure is None else f"failed, class {attempt.failure}"
+        outcome = done.doubt or ("inserted" if attempt.inserted else failed)
+        say(f"attempt {len(self.attempts.tried)}: start {done.offset_mm:+g} mm, {outcome}\n")
 
     def probe(self, robot: Probing) -> None:
         """The probe, by the robot, which is one that can."""

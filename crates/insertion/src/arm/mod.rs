@@ -111,11 +111,10 @@ struct RawJoint {
 impl RawArm {
     /// Returns the arm after checking that it has six joints.
     pub fn arm(self, check: Check<'_>) -> Result<Arm, InputError> {
-        let count = self.joint.len();
         let joints: Vec<Joint> = self.joint.into_iter().map(Joint::from).collect();
-        let Ok(joints) = <[Joint; JOINTS]>::try_from(joints) else {
-            return check.fail("joint", format!("there are {count} [[joint]]; an arm has six"));
-        };
+        let joints = <[Joint; JOINTS]>::try_from(joints).or_else(|joints| {
+            check.fail("joint", format!("there are {} [[joint]]; an arm has six", joints.len()))
+        })?;
         Ok(Arm {
             joints,
             tool: frame(self.tool, self.tool_turn),

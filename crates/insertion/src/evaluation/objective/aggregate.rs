@@ -36,11 +36,9 @@ impl Aggregate {
     /// # Errors
     /// If the numbers of weights and tasks differ, or a weight is out of range.
     pub fn weighted(weights: Vec<f64>, tasks: usize) -> Result<Self, String> {
-        if weights.len() != tasks {
-            return Err(format!(
-                "there are {} weights for {tasks} tasks; give one for each",
-                weights.len()
-            ));
+        let count = weights.len();
+        if count != tasks {
+            return Err(format!("there are {count} weights for {tasks} tasks; give one for each"));
         }
         match weights.iter().find(|weight| !(1e-6..=1e6).contains(*weight)) {
             Some(bad) => {

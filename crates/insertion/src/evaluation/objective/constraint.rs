@@ -84,9 +84,9 @@ impl FromStr for Constraint {
                 "`{text}` is not MEASURE<=NUMBER or MEASURE>=NUMBER; example: 'peak-force<=30'"
             ));
         };
-        let measure: Measure = name.trim().parse()?;
-        match limit.trim().parse() {
-            // Violations are shares of the limit.
+        let (measure, limit) = (name.trim().parse::<Measure>()?, limit.trim());
+        match limit.parse() {
+            // Violations are divided by the limit, which therefore must not be tiny.
             Ok(limit) if limit == 0.0 || (1e-9..=1e9).contains(&f64::abs(limit)) => {
                 Ok(Constraint { measure, bound, limit })
             }
@@ -94,8 +94,7 @@ impl FromStr for Constraint {
                 "limit {limit:?} is out of range; give 0 or a size between 1e-9 and 1e9"
             )),
             _ => Err(format!(
-                "`{}` is not a number; give the limit of {} without its unit",
-                limit.trim(),
+                "`{limit}` is not a number; give the limit of {} without its unit",
                 measure.label()
             )),
         }

@@ -40,7 +40,7 @@ fn task(name: &str) -> Task {
 fn rig(task: &Task, engine: EngineKind) -> (Box<dyn Rig>, Finger) {
     let robot = shipped(ROBOTS, "servo");
     let robot = Robot::parse(robot.text, robot.file).expect("a robot");
-    let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM).shaped(&task.finger, 0.0);
+    let finger = Finger::new(2.6 * N_PER_MM, 45.0 * N_PER_MM).with_model(&task.finger, 0.0);
     (engine.rig(task, &robot, &finger, 1.0).expect("the engine has it all"), finger)
 }
 

@@ -6,7 +6,7 @@ use connector::draft::DraftError;
 use finray::FingerError;
 use input::shipped::ShippedError;
 use input::{Fault, InputError, Place, Placed};
-use insertion::evaluation::template::Impossible;
+use insertion::evaluation::template::DesignError;
 use insertion::stiffness::SurrogateError;
 use report::ReportError;
 use std::error::Error;
@@ -51,7 +51,7 @@ const PLACED: [fn(&(dyn Error + 'static)) -> Option<Place>; 10] = [
     place::<Problems>,
     place::<SurrogateError>,
     place::<FingerError>,
-    place::<Impossible>,
+    place::<DesignError>,
     place::<DraftError>,
     place::<StudyError>,
 ];

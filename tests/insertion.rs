@@ -317,7 +317,7 @@ fn mounted(scene: &mut Scene, finger: &Finger, side: f64, inward: f64, geoms: Ve
         child: body,
         in_parent: centre,
         in_child: centre,
-        springs: finger.mounted(side),
+        springs: finger.jaw_springs(side),
     });
     body
 }
@@ -384,7 +384,7 @@ fn pushed_up_a_part_is_gripped_harder_by_coupled_fingers() {
         }
         fingers.map(|body| world.contact(body, part).net.y.abs())
     };
-    let Springs::Coupled { stiffness: k, .. } = finger.mounted(-1.0) else { panic!("coupled") };
+    let Springs::Coupled { stiffness: k, .. } = finger.jaw_springs(-1.0) else { panic!("coupled") };
     let expected = -k[(1, 2)] / k[(2, 2)] * up / 2.0;
     assert!(expected > 0.05);
     for (pressed, still) in grip(up).into_iter().zip(grip(0.0)) {

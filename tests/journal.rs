@@ -6,10 +6,10 @@ use ask_tell::GridPoint;
 use ask_tell::{Grid, Observation, Optimizer, StopReason};
 use common::memory::{self, Memory};
 use common::{Studies, read, sealed};
-use insertion::evaluation::evaluator::{Evaluate, Measured};
+use insertion::evaluation::evaluator::{Evaluate, Evaluations};
 use insertion::evaluation::objective::Score;
 use insertion::evaluation::robustness::race::Race;
-use insertion::evaluation::template::{Impossible, Template};
+use insertion::evaluation::template::{DesignError, Template};
 use insertion::evaluation::tolerance::{Search, evaluate};
 use insertion::evaluation::{Evaluation, RobustRange, SuccessRate, Window};
 use insertion::finger::Finger;
@@ -46,8 +46,8 @@ fn success() -> impl Strategy<Value = SuccessRate> {
     let counts = (0..1000u32, [0..1000u32, 0..1000, 0..1000, 0..1000], any::<u32>(), any::<u32>());
     let draws = prop::collection::vec(any::<u32>(), 0..20);
     (counts, 0.01..0.99f64, draws).prop_map(|(counts, confidence, failed_draws)| {
-        let (inserted, failure_counts, diverged, spared) = counts;
-        SuccessRate { inserted, failure_counts, diverged, confidence, failed_draws, spared }
+        let (inserted, failure_counts, diverged, skipped) = counts;
+        SuccessRate { inserted, failure_counts, diverged, confidence, failed_draws, skipped }
     })
 }
 
@@ -196,11 +196,11 @@ impl Optimizer for Walk {
 struct ClosedForm;
 
 impl Evaluate for ClosedForm {
-    fn evaluate(&self, design: &Design, _: Option<&Race>) -> Result<Measured, Impossible> {
+    fn evaluate(&self, design: &Design, _: Option<&Race>) -> Result<Evaluations, DesignError> {
         let of = |key| Estimate { mean: 1e3 * design.get(key).unwrap_or(0.0) + 1e3, sd: 1.0 };
         let [compliance, assembly] = ["infill_direction_deg", "infill_density_percent"].map(of);
         let finger = Finger::new(compliance.mean, assembly.mean);
-        Ok(Measured {
+        Ok(Evaluations {
             stiffness: Prediction { compliance, assembly, hull_distance: 0.0 },
             tasks: vec![evaluate(&FakeRig::default(), &finger, Search::Strides)],
             cached: Vec::new(),
@@ -251,7 +251,7 @@ fn whichever_write_fails_the_journal_stays_whole_and_the_study_goes_on() {
 struct NotAll;
 
 impl Evaluate for NotAll {
-    fn evaluate(&self, design: &Design, _: Option<&Race>) -> Result<Measured, Impossible> {
+    fn evaluate(&self, design: &Design, _: Option<&Race>) -> Result<Evaluations, DesignError> {
         let usb = include_str!("../tasks/usb.toml");
         let template = Template::parse(usb, "usb.toml").unwrap();
         let tilt = (design.get("infill_density_percent") == Some(13.0)).then_some(90.0);
@@ -260,7 +260,7 @@ impl Evaluate for NotAll {
         let design = Design(set.into_iter().collect());
         let (_, finger) = template.apply(&design, &FingerSource::Paper, &at_pad)?;
         let one = Estimate { mean: 1e3, sd: 1.0 };
-        Ok(Measured {
+        Ok(Evaluations {
             stiffness: Prediction { compliance: one, assembly: one, hull_distance: 0.0 },
             tasks: vec![evaluate(&FakeRig::default(), &finger, Search::Walk)],
             cached: Vec::new(),
@@ -287,7 +287,7 @@ fn a_design_that_cannot_be_stops_the_study_and_is_named() {
 struct Panics;
 
 impl Evaluate for Panics {
-    fn evaluate(&self, _: &Design, _: Option<&Race>) -> Result<Measured, Impossible> {
+    fn evaluate(&self, _: &Design, _: Option<&Race>) -> Result<Evaluations, DesignError> {
         panic!("a defect")
     }
 }

@@ -125,7 +125,7 @@ fn only_a_design_that_keeps_the_constraints_is_recommended() {
     assert!(number(&result["best"]["peak_force_n"]) <= 8.6);
     assert_eq!(result["feasible"], kept.len());
     let text = studies.study("s", 24, &constraint);
-    let shown = format!("keeps peak-force<={}", 8.6);
+    let shown = format!("satisfies peak-force<={}", 8.6);
     assert!(text.succeeds().contains(&shown), "{}", text.stdout);
     let page = report(&studies, "s");
     assert!(page.contains("peak-force&lt;=8.6") && page.contains("violates a constraint"));

@@ -10,9 +10,9 @@ use finger_opt::command::parse;
 use finger_opt::commands::study;
 use finger_opt::studies::ask_tell::{AskTellStudy, NextStep, perform};
 use insertion::evaluation::Evaluation;
-use insertion::evaluation::evaluator::{Evaluate, Measured};
+use insertion::evaluation::evaluator::{Evaluate, Evaluations};
 use insertion::evaluation::robustness::race::{self, Race};
-use insertion::evaluation::template::Impossible;
+use insertion::evaluation::template::DesignError;
 use insertion::evaluation::tolerance::{Search, evaluate};
 use insertion::finger::Finger;
 use insertion::outcome::{FailureClass, Outcome};
@@ -40,18 +40,18 @@ impl Table {
         &self.outcomes[at % self.outcomes.len()]
     }
 
-    fn measured(&self, design: &Design, race: Option<&Race>) -> Measured {
+    fn measured(&self, design: &Design, race: Option<&Race>) -> Evaluations {
         let outcomes = self.of(design);
         let drawn = |draw: u32| outcomes[draw as usize];
         let success = Some(race::run(outcomes.len() as u32, 0.95, race, drawn));
         let window = evaluate(&FakeRig::default(), &Finger::new(3e3, 2e4), Search::Strides);
         let stiffness = Prediction::exact(3e3, 2e4);
-        Measured { stiffness, tasks: vec![Evaluation { success, ..window }], cached: Vec::new() }
+        Evaluations { stiffness, tasks: vec![Evaluation { success, ..window }], cached: Vec::new() }
     }
 }
 
 impl Evaluate for Table {
-    fn evaluate(&self, design: &Design, race: Option<&Race>) -> Result<Measured, Impossible> {
+    fn evaluate(&self, design: &Design, race: Option<&Race>) -> Result<Evaluations, DesignError> {
         Ok(self.measured(design, race))
     }
 }

@@ -41,7 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let robot = files::robot(DEFAULT_ROBOT)?;
     let settings = |task: Task| {
         let setting = |engine: EngineKind| {
-            let rig = engine.rig(&task, &robot, &FingerSource::Paper.any(&task), 1.0);
+            let rig = engine.rig(&task, &robot, &FingerSource::Paper.example(&task), 1.0);
             let rig = rig.map_err(Failure::input)?.into();
             Ok(Setting { name: engine.name().to_owned(), rig, search: Search::Strides })
         };

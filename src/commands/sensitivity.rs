@@ -7,7 +7,7 @@ use crate::setup::request::SetupRequest;
 use crate::setup::words::WordParser;
 use analysis::sensitivity::{evaluate, inputs};
 use insertion::evaluation::objective::Measure;
-use insertion::evaluation::template::Impossible;
+use insertion::evaluation::template::DesignError;
 use parameters::plan::saltelli::Sample;
 use rayon::prelude::*;
 use report::sensitivity::{self as shown, Factor, SensitivityResult};
@@ -86,7 +86,7 @@ impl Request {
             let evaluation = evaluate(&factors, (&setup.evaluator, template), unit, stop)?;
             Ok(self.objective.value(&evaluation))
         };
-        let values: Result<Vec<Option<f64>>, Impossible> =
+        let values: Result<Vec<Option<f64>>, DesignError> =
             sample.points().par_iter().map(value).collect();
         let values = values.map_err(Failure::input)?;
         not_stopped(stop)?;

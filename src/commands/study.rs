@@ -157,7 +157,7 @@ impl Request {
         let mut setup = self.setup.setup_with(Some(&of_robot))?;
         let constrained = self.constraints.iter().map(|constraint| constraint.measure);
         let mut measures = self.objective.measures().iter().copied().chain(constrained);
-        match (measures.any(Measure::is_drawn), &self.uncertainty) {
+        match (measures.any(Measure::needs_draws), &self.uncertainty) {
             (false, None) => {}
             (false, Some(_)) => {
                 return Err(Failure::usage(

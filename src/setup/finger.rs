@@ -7,7 +7,7 @@ use input::shown;
 use input::units::{MM, N_PER_MM};
 use insertion::evaluation::cell::Priors;
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
-use insertion::finger::model::{CentreFrom, FingerModelKind, RCC_KEY};
+use insertion::finger::model::{CentreSource, FingerModelKind, RCC_KEY};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::Prediction;
 use parameters::numbers;
@@ -209,10 +209,10 @@ impl Serialize for ChosenFinger {
             "set": self.set,
             "finger_model": self.finger_model.name(),
             "rcc_mm": finger.rcc / MM,
-            "rcc_from": match self.specimen.centre_from() {
-                CentreFrom::Model => "finger-model",
-                CentreFrom::TaskFile => "task",
-                CentreFrom::Design => "design",
+            "rcc_from": match self.specimen.centre_source() {
+                CentreSource::Model => "finger-model",
+                CentreSource::TaskFile => "task",
+                CentreSource::Design => "design",
             },
             "tilting_nm_per_rad": finger.rotation[0],
             "stiffness": stiffness,
@@ -254,10 +254,10 @@ impl ChosenFinger {
             return String::new();
         }
         let (below, ahead) = (finger.rcc / MM, finger.ahead / MM);
-        let given = match self.specimen.centre_from() {
-            CentreFrom::Model => String::new(),
-            CentreFrom::TaskFile => ", given by the task file, not computed".to_owned(),
-            CentreFrom::Design => format!(", given by {RCC_KEY}, not computed"),
+        let given = match self.specimen.centre_source() {
+            CentreSource::Model => String::new(),
+            CentreSource::TaskFile => ", given by the task file, not computed".to_owned(),
+            CentreSource::Design => format!(", given by {RCC_KEY}, not computed"),
         };
         format!(
             "finger        computed: tilting {:.2} N m/rad, remote centre {ahead:.1} mm in front of \

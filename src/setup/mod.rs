@@ -241,7 +241,7 @@ fn check_compatible(evaluator: &Evaluator, space: &Space, file: &str) -> Result<
     if let FingerSource::Computed(fingers) = fingers {
         printable::check(space, file, &fingers.file).map_err(Failure::input)?;
     }
-    let fits = |task: &Task| engine.rig(task, robot, &fingers.any(task), 1.0).map(|_| ());
+    let fits = |task: &Task| engine.rig(task, robot, &fingers.example(task), 1.0).map(|_| ());
     for template in templates {
         fits(&template.task).map_err(Failure::input)?;
         template.check(space, file, &fits).map_err(Failure::input)?;

@@ -163,7 +163,7 @@ fn medium(task: &Task) -> Result<(Finger, Finger), Failure> {
     let middle = three.get(1).or(three.first());
     let middle = middle.ok_or_else(|| Failure::running("no measured fingers are shipped"))?;
     let finger = Finger::new(middle.compliance, middle.assembly);
-    Ok((finger, finger.shaped(&task.finger, 0.0)))
+    Ok((finger, finger.with_model(&task.finger, 0.0)))
 }
 
 impl Serialize for TaskCheck {

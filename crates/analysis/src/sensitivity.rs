@@ -3,7 +3,7 @@
 
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::Evaluator;
-use insertion::evaluation::template::{Impossible, Template};
+use insertion::evaluation::template::{DesignError, Template};
 use insertion::evaluation::tolerance::{self, Search};
 use insertion::evaluation::uncertainty::{Draw, Errors};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space, Variable};
@@ -38,7 +38,7 @@ pub fn evaluate(
     (evaluator, template): (&Evaluator, &Template),
     unit: &[f64],
     stop: &AtomicBool,
-) -> Result<Evaluation, Impossible> {
+) -> Result<Evaluation, DesignError> {
     let at = |(input, unit): (&'_ Parameter, &f64)| input.at(unit.clamp(0.0, 1.0));
     let values = inputs.iter().zip(unit).map(|both| (both.0, at(both)));
     let (errors, numbers): (Vec<_>, Vec<_>) =
@@ -48,8 +48,8 @@ pub fn evaluate(
     let predicted = evaluator.predict(&design)?;
     let specimen = evaluator.specimen(template, &design, predicted)?;
     let rig = evaluator.rig(&specimen, evaluator.taught(&specimen, stop)?, 1.0)?;
-    let draw = Draw::under(errors.iter().map(|(one, value)| (&*one.path, *value)));
+    let draw = Draw::with(errors.iter().map(|(one, value)| (&*one.path, *value)));
     let finger = draw.finger(&specimen.finger, &predicted);
     let grasp = Grasp { finger, conditions: draw.conditions, stop };
-    Ok(tolerance::evaluate_in(&*rig, grasp, Search::Strides))
+    Ok(tolerance::evaluate_grasp(&*rig, grasp, Search::Strides))
 }

@@ -7,7 +7,7 @@ use ask_tell::SobolSequence;
 use ask_tell::gp::{FitEffort, Gp, fit_until};
 use ask_tell::process::distance2;
 use ask_tell::statistics::Moments;
-use insertion::evaluation::template::Impossible;
+use insertion::evaluation::template::DesignError;
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::{Design, Space, Variable};
 use rayon::prelude::*;
@@ -47,7 +47,7 @@ pub struct Emulator {
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrationError {
     #[error(transparent)]
-    Impossible(#[from] Impossible),
+    Impossible(#[from] DesignError),
     #[error("{0}: no Gaussian process fits the {1} simulations; increase --simulations")]
     NoFit(String, usize),
     /// Measured finger outside of the space: its line and the reason.

@@ -4,7 +4,7 @@ use input::units::MM;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::robustness::Plan;
-use insertion::evaluation::template::{Impossible, Template};
+use insertion::evaluation::template::{DesignError, Template};
 use insertion::evaluation::tolerance::{self, Search};
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
@@ -46,7 +46,7 @@ impl<'a> Simulation<'a> {
 
     /// Simulates the window of a design. `shares` are the levels of the quantiles of the parameters' priors; if it is
     /// empty, the values of the files are used.
-    pub fn window(&self, design: &Design, shares: &[f64]) -> Result<Evaluation, Impossible> {
+    pub fn window(&self, design: &Design, shares: &[f64]) -> Result<Evaluation, DesignError> {
         let values = self.parameters.iter().zip(shares).map(|(p, &share)| (*p, p.at(share)));
         let values: Vec<_> = values.collect();
         let (specimen, robot) = self.evaluator.apply(self.template, (design, None), &values)?;
@@ -67,7 +67,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// Simulates the window of a specimen, or returns the cached one.
-    fn measure(&self, specimen: &Specimen, robot: &Robot) -> Result<Evaluation, Impossible> {
+    fn measure(&self, specimen: &Specimen, robot: &Robot) -> Result<Evaluation, DesignError> {
         let engine = self.evaluator.engine;
         let cache = self.cache.as_ref().map(|dir| Cache::new(dir, robot, &engine.record()));
         let search = Search::default();
@@ -78,7 +78,7 @@ impl<'a> Simulation<'a> {
         }
         let rig = engine.rig(&specimen.task, robot, &specimen.finger, 1.0)?;
         let grasp = Grasp { stop: self.stop, ..Grasp::of(&specimen.finger) };
-        let evaluation = tolerance::evaluate_in(&*rig, grasp, search);
+        let evaluation = tolerance::evaluate_grasp(&*rig, grasp, search);
         if let Some((cache, key)) = keep
             && !self.stop.load(Ordering::SeqCst)
         {

@@ -1,6 +1,6 @@
 //! Robot as seen at its flange: ideal, elastic with servos, or an arm.
 
-use crate::arm::{Arm, ArmError, RawArm, Reduced};
+use crate::arm::{Arm, ArmError, RawArm, ReducedArm};
 use input::units::read::n_per_mm;
 use input::{Check, Document, InputError};
 use nalgebra::Vector3;
@@ -35,7 +35,7 @@ pub enum Suspension<A> {
 pub type Drive = Suspension<Arm>;
 
 /// Suspension in place: of an arm its coupled spring, damper and mass at the TCP.
-pub type Flange = Suspension<Reduced>;
+pub type Flange = Suspension<ReducedArm>;
 
 /// A servo-compliant flange, SI units, axes of the task frame.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
@@ -88,7 +88,7 @@ impl Mounted {
     /// Returns the extra length of an assembly move along a unit vector, m: the deflection of the arm
     /// under its assembly force, without which a soft arm would hardly push the part.
     pub fn lead(&self, along: &Vector3<f64>) -> f64 {
-        let lead = |arm: &Reduced| arm.assembly_force * along.dot(&(arm.compliance * along));
+        let lead = |arm: &ReducedArm| arm.assembly_force * along.dot(&(arm.compliance * along));
         self.arm().map_or(0.0, lead)
     }
 
@@ -102,7 +102,7 @@ impl Mounted {
         self.arm().is_some_and(|arm| arm.overloaded(force)) || force.norm() > self.stop_force
     }
 
-    fn arm(&self) -> Option<&Reduced> {
+    fn arm(&self) -> Option<&ReducedArm> {
         match &self.flange {
             Flange::Arm(arm) => Some(arm),
             Flange::Ideal | Flange::Servo(_) => None,

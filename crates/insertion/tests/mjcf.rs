@@ -19,7 +19,7 @@ fn of(task: &Shipped, robot: &str) -> Scene {
     let task = Task::parse(task.text, task.file).unwrap();
     let file = ROBOTS.iter().find(|file| file.name == robot).unwrap();
     let robot = Robot::parse(file.text, file.file).unwrap();
-    let finger = Finger::new(2.0 * N_PER_MM, 45.0 * N_PER_MM).shaped(&task.finger, 0.0);
+    let finger = Finger::new(2.0 * N_PER_MM, 45.0 * N_PER_MM).with_model(&task.finger, 0.0);
     let mounted = robot.mount(task.turn, task.strategy.tilt).unwrap();
     cell::build(&task, &mounted, &finger).scene
 }

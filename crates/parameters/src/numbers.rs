@@ -24,9 +24,9 @@ pub const CHAMFER: &str = "task.opening_chamfer_mm";
 /// Common factor on the stiffness of a finger in compliance and in assembly direction.
 pub const STIFFNESS: &str = "finger.stiffness";
 /// Distance of a finger's remote centre of compliance below the TCP.
-pub const CENTRE: &str = "finger.rcc_mm";
+pub const RCC_KEY: &str = "finger.rcc_mm";
 /// Rotational spring of a finger about x.
-pub const TILTING: &str = "finger.rotation_x_nm_per_rad";
+pub const TILTING_KEY: &str = "finger.rotation_x_nm_per_rad";
 /// Stiffness along x of a compliant flange; its other stiffnesses scale in proportion.
 pub const FLANGE: &str = "robot.stiffness_n_per_mm";
 /// Shift of the start along x.
@@ -159,7 +159,7 @@ pub static NUMBERS: &[NumberSpec] = &[
     fixed("stiffness_assembly_n_per_mm|stiffness_compliance_n_per_mm", 1e-6, 1e6),
     number(Kind::Springs, STIFFNESS, SMALLEST, 1e6),
     // The remote centre may lie on either side of the TCP.
-    number(Kind::Finger, CENTRE, -1e6, 1e6),
+    number(Kind::Finger, RCC_KEY, -1e6, 1e6),
     number(
         Kind::Finger,
         "finger.rotation_x_nm_per_rad|rotation_y_nm_per_rad|rotation_z_nm_per_rad",

@@ -8,7 +8,7 @@ use insertion::outcome::{FailureClass, Outcome};
 use insertion::stiffness::Axis;
 use insertion::surrogate::Model;
 use maud::{Markup, html};
-use parameters::numbers::CENTRE;
+use parameters::numbers::RCC_KEY;
 use study::{Provenance, Recorded, StudyRecord};
 
 /// Lines of the recommended finger that other sections have.
@@ -66,7 +66,7 @@ fn reading(answer: &Answer, model: &Model) -> Vec<String> {
                  designs are evaluated with the same draws.";
     texts.extend(goals.needs_draws().then(|| draws.to_owned()));
     let parameters = &answer.record.config.space.parameters;
-    texts.push(match parameters.iter().any(|parameter| parameter.key == CENTRE) {
+    texts.push(match parameters.iter().any(|parameter| parameter.key == RCC_KEY) {
         true => "The finger's remote centre is a parameter of the design here; whether a finger with this \
                  infill and this centre can be made was not checked."
             .to_owned(),

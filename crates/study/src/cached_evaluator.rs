@@ -2,10 +2,10 @@
 
 use super::cache::Cache;
 use insertion::evaluation::Evaluation;
-use insertion::evaluation::evaluator::{Evaluate, Evaluator, Measured, Specimen};
+use insertion::evaluation::evaluator::{Evaluate, Evaluations, Evaluator, Specimen};
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::robustness::race::Race;
-use insertion::evaluation::template::Impossible;
+use insertion::evaluation::template::DesignError;
 use insertion::evaluation::tolerance::Search;
 use insertion::space::Design;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -27,20 +27,20 @@ pub struct CachedEvaluator<'a> {
 // The key of a cache entry includes the plan with its race. The cache therefore returns a raced evaluation only
 // in the same race, and does not change the journal.
 impl Evaluate for CachedEvaluator<'_> {
-    fn evaluate(&self, design: &Design, race: Option<&Race>) -> Result<Measured, Impossible> {
+    fn evaluate(&self, design: &Design, race: Option<&Race>) -> Result<Evaluations, DesignError> {
         let (plan, mut cached) = (self.plan.against(race), Vec::new());
         let measured = self.evaluator.evaluate_by(design, |specimen| {
             let (evaluation, was_cached) = self.measure(specimen, &plan)?;
             cached.push(was_cached);
             Ok(evaluation)
         })?;
-        Ok(Measured { cached, ..measured })
+        Ok(Evaluations { cached, ..measured })
     }
 }
 
 impl CachedEvaluator<'_> {
     /// Returns the measurements of a design if those of all tasks are in the cache.
-    pub fn cached(&self, design: &Design, race: Option<&Race>) -> Option<Measured> {
+    pub fn cached(&self, design: &Design, race: Option<&Race>) -> Option<Evaluations> {
         let (cache, plan) = (self.cache?, self.plan.against(race));
         let stiffness = self.evaluator.predict(design).ok()?;
         let on = |template| {
@@ -49,11 +49,11 @@ impl CachedEvaluator<'_> {
         };
         let tasks: Vec<_> = self.evaluator.templates.iter().map(on).collect::<Option<_>>()?;
         let cached = vec![true; tasks.len()];
-        Some(Measured { stiffness, tasks, cached })
+        Some(Evaluations { stiffness, tasks, cached })
     }
 
     /// Stores measurements of a worker in the cache.
-    pub fn store(&self, design: &Design, race: Option<&Race>, measured: &Measured) {
+    pub fn store(&self, design: &Design, race: Option<&Race>, measured: &Evaluations) {
         let Some(cache) = self.cache else { return };
         let plan = self.plan.against(race);
         for (template, evaluation) in self.evaluator.templates.iter().zip(&measured.tasks) {
@@ -76,7 +76,7 @@ impl CachedEvaluator<'_> {
         &self,
         specimen: &Specimen,
         plan: &Plan,
-    ) -> Result<(Evaluation, bool), Impossible> {
+    ) -> Result<(Evaluation, bool), DesignError> {
         let entry = self.cache.map(|cache| (cache, self.key(cache, specimen, plan)));
         if let Some(found) = entry.as_ref().and_then(|(cache, key)| cache.get(key)) {
             return Ok((found, true));

@@ -13,7 +13,7 @@ use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluate, Evaluator};
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::robustness::firm::FirmResult;
-use insertion::evaluation::template::{Impossible, Template};
+use insertion::evaluation::template::{DesignError, Template};
 use insertion::evaluation::tolerance::Search;
 use insertion::space::Design;
 use rayon::ThreadPool;
@@ -239,7 +239,7 @@ impl Confirmer<'_> {
             Ok(evaluator.firm(&specimen, task, seed, stop)?)
         };
         let tasks = evaluator.templates.iter().zip(&recorded.tasks).enumerate();
-        let firm: Result<Vec<FirmResult>, Impossible> = tasks.map(measure).collect();
+        let firm: Result<Vec<FirmResult>, DesignError> = tasks.map(measure).collect();
         firm.map_err(|source| StudyError::impossible(recorded.index, &recorded.design, source))
     }
 }

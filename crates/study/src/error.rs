@@ -1,7 +1,7 @@
 //! Errors of a study.
 
 use input::{Place, Placed};
-use insertion::evaluation::template::Impossible;
+use insertion::evaluation::template::DesignError;
 use insertion::space::Design;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -58,7 +58,7 @@ pub enum StudyError {
         /// The design.
         design: String,
         /// Setting that cannot be simulated.
-        source: Box<Impossible>,
+        source: Box<DesignError>,
     },
 }
 
@@ -81,7 +81,7 @@ impl StudyError {
     }
 
     /// Returns the error for a design that cannot be simulated.
-    pub fn impossible(index: u64, design: &Design, source: Impossible) -> StudyError {
+    pub fn impossible(index: u64, design: &Design, source: DesignError) -> StudyError {
         StudyError::Impossible { index, design: design.to_string(), source: Box::new(source) }
     }
 

@@ -27,7 +27,7 @@ use super::folder::Study;
 use super::record::{Recorded, Timing, first_current};
 use ask_tell::GridPoint;
 use ask_tell::{Observation, Optimizer, StopReason};
-use insertion::evaluation::evaluator::Measured;
+use insertion::evaluation::evaluator::Evaluations;
 use insertion::evaluation::objective::Score;
 use insertion::evaluation::robustness::race::Race;
 use insertion::space::Design;
@@ -93,7 +93,7 @@ pub struct ProposalResult {
     /// Number of the proposal.
     pub number: u64,
     /// Measurements of the design.
-    pub measured: Measured,
+    pub measured: Evaluations,
     /// Start, end and duration of the measurement.
     pub timing: Timing,
 }
@@ -215,7 +215,7 @@ impl Scheduler {
         result: ProposalResult,
         progress: &mut dyn FnMut(&Recorded),
     ) -> Result<bool, StudyError> {
-        let ProposalResult { number, measured: Measured { stiffness, tasks, cached }, timing } =
+        let ProposalResult { number, measured: Evaluations { stiffness, tasks, cached }, timing } =
             result;
         let Some(design) = self.measuring.remove(&number) else { return Ok(false) };
         let (index, proposal) = match study.config.asynchronous {

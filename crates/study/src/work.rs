@@ -12,7 +12,7 @@ use super::record::Timing;
 use super::scheduler::{Proposal, ProposalResult};
 use super::seal::{seal, sha256_hex, unseal};
 use insertion::evaluation::Evaluation;
-use insertion::evaluation::evaluator::Measured;
+use insertion::evaluation::evaluator::Evaluations;
 use insertion::surrogate::Prediction;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -117,7 +117,7 @@ impl Work {
         if work_sha256 != sha256_hex(&self.encode()?) {
             return Err(WorkError("the result belongs to other work".to_owned()));
         }
-        let measured = Measured { stiffness, tasks, cached: Vec::new() };
+        let measured = Evaluations { stiffness, tasks, cached: Vec::new() };
         Ok(ProposalResult { number: self.proposal.number, measured, timing })
     }
 }

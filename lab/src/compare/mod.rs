@@ -52,7 +52,7 @@ pub struct Subject {
 impl Subject {
     pub fn new(task: &str, model: &FingerModel, design: Measurement) -> Self {
         let finger = Finger::new(design.compliance, design.assembly);
-        let finger = finger.shaped(model, design.direction_deg);
+        let finger = finger.with_model(model, design.direction_deg);
         Subject { task: task.to_owned(), design, finger }
     }
 

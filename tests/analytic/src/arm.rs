@@ -75,7 +75,7 @@ fn shipped(name: &str) -> Option<(Arm, Mounted)> {
 
 /// Returns the compliance `J K^-1 J^T` at home: m/N, rad/N, rad/(N m), base axes.
 fn compliance(arm: &Arm) -> Matrix6<f64> {
-    let jacobian = arm.at(&arm.home).tcp_jacobian();
+    let jacobian = arm.posture(&arm.home).tcp_jacobian();
     let soft = nalgebra::SVector::from_fn(|i, _| 1.0 / arm.joints[i].stiffness);
     jacobian * Matrix6::from_diagonal(&soft) * jacobian.transpose()
 }
@@ -128,7 +128,7 @@ pub fn flange(robot: &Mounted) -> Loaded {
 /// Returns the scene of a chain of six links, each on a sprung hinge.
 pub fn chain(arm: &Arm) -> Loaded {
     let mut scene = Scene::default();
-    let posture = arm.at(&arm.home);
+    let posture = arm.posture(&arm.home);
     let mut end = scene.body(build::fixed("base", Pose::identity(), Vec::new()));
     for (i, joint) in arm.joints.iter().enumerate() {
         let link = scene.body(Body {

@@ -25,7 +25,7 @@ fn bent() -> Angles {
 
 #[test]
 fn at_home_the_upper_arm_stands_the_forearm_lies_and_the_tool_points_down() {
-    let tcp = arm().at(&arm().home).tcp;
+    let tcp = arm().posture(&arm().home).tcp;
     let sides = 0.138 - 0.131 + 0.127;
     let expected = Vector3::new(sides, 0.392 + 0.100, 0.163 + 0.425 - 0.100 - 0.198);
     assert!((tcp.translation.vector - expected).norm() < 1e-12, "{tcp}");
@@ -35,9 +35,9 @@ fn at_home_the_upper_arm_stands_the_forearm_lies_and_the_tool_points_down() {
 #[test]
 fn the_jacobian_is_the_derivative_of_the_pose() {
     let (arm, angles, h) = (arm(), bent(), 1e-6);
-    let jacobian = arm.at(&angles).tcp_jacobian();
+    let jacobian = arm.posture(&angles).tcp_jacobian();
     for i in 0..6 {
-        let moved = |by: f64| arm.at(&(angles + Angles::ith(i, by))).tcp;
+        let moved = |by: f64| arm.posture(&(angles + Angles::ith(i, by))).tcp;
         let rate = displacement(&moved(-h), &moved(h)) / (2.0 * h);
         assert!((rate - jacobian.column(i)).norm() < 1e-8, "joint {i}");
     }
@@ -47,17 +47,17 @@ fn the_jacobian_is_the_derivative_of_the_pose() {
 fn the_mass_matrix_gives_the_links_kinetic_energy() {
     let (arm, angles, h) = (arm(), bent(), 1e-6);
     let rates = Angles::new(0.5, -0.4, 0.9, 1.1, -0.7, 0.8);
-    let (before, after) = (arm.at(&(angles - rates * h)), arm.at(&(angles + rates * h)));
+    let (before, after) = (arm.posture(&(angles - rates * h)), arm.posture(&(angles + rates * h)));
     let of_link = |i: usize| {
         let link = &arm.joints[i].link;
         let centre = |pose: Pose| pose * Pose::from(Translation3::from(link.centre.coords));
         let moved = displacement(&centre(before.links[i]), &centre(after.links[i])) / (2.0 * h);
-        let turned = arm.at(&angles).links[i].rotation.inverse() * moved.fixed_rows::<3>(3);
+        let turned = arm.posture(&angles).links[i].rotation.inverse() * moved.fixed_rows::<3>(3);
         let spin = turned.component_mul(&turned).dot(&link.moments);
         0.5 * (link.mass * moved.fixed_rows::<3>(0).norm_squared() + spin)
     };
     let energy: f64 = (0..6).map(of_link).sum();
-    let mass = arm.mass(&arm.at(&angles));
+    let mass = arm.mass_matrix(&arm.posture(&angles));
     assert!((0.5 * rates.dot(&(mass * rates)) / energy - 1.0).abs() < 1e-8, "{energy} J");
 }
 
@@ -69,11 +69,11 @@ fn the_inverse_kinematics_reaches_every_start_and_says_when_it_cannot() {
             assert!(arm.at_start(turn * DEG, tilt * DEG).is_ok(), "turn {turn}, tilt {tilt}");
         }
     }
-    let target = arm.at(&bent()).tcp;
-    let found = arm.at(&arm.reach(&target).unwrap()).tcp;
+    let target = arm.posture(&bent()).tcp;
+    let found = arm.posture(&arm.inverse_kinematics(&target).unwrap()).tcp;
     assert!(displacement(&found, &target).norm() < 1e-9);
     let far = Pose::translation(2.0, 0.0, 0.5);
-    let error = arm.reach(&far).unwrap_err().to_string();
+    let error = arm.inverse_kinematics(&far).unwrap_err().to_string();
     assert!(error.contains("does not reach") && error.contains("home_deg"), "{error}");
 }
 
@@ -126,9 +126,9 @@ fn an_arm_without_feed_forward_trails_its_command() {
 #[test]
 fn ten_millimetres_change_the_compliance_by_less_than_two_percent() {
     let arm = arm();
-    let home = arm.at(&arm.home).tcp;
+    let home = arm.posture(&arm.home).tcp;
     let soft = |pose: &Pose| {
-        let angles = arm.reach(pose).unwrap();
+        let angles = arm.inverse_kinematics(pose).unwrap();
         let reduced = arm.reduced(&angles, &UnitQuaternion::identity()).unwrap();
         let compliance = reduced.stiffness.try_inverse().unwrap();
         compliance.fixed_view::<3, 3>(0, 0).into_owned()
@@ -159,5 +159,5 @@ fn an_arm_file_is_checked() {
     }
     let five = text.rsplit_once("[[joint]]").unwrap().0;
     let error = Robot::parse(five, "a.toml").unwrap_err().to_string();
-    assert!(error.contains("there are 5; an arm has six [[joint]]"), "{error}");
+    assert!(error.contains("there are 5 [[joint]]; an arm has six"), "{error}");
 }

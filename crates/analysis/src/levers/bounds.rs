@@ -7,7 +7,7 @@ use input::shipped::{LEVERS, PRIORS};
 use input::units::MM;
 use insertion::evaluation::cell::Priors;
 use insertion::evaluation::evaluator::Specimen;
-use insertion::evaluation::template::Impossible;
+use insertion::evaluation::template::DesignError;
 use insertion::task::Task;
 use parameters::numbers::{CLEARANCE, Kind};
 use parameters::plan::one_at_a_time::{End, farthest};
@@ -35,7 +35,7 @@ pub struct LeverParameter {
 pub fn lever_parameters(
     analysis: &LeverAnalysis<'_>,
     specimen: &Specimen,
-) -> Result<Vec<LeverParameter>, Impossible> {
+) -> Result<Vec<LeverParameter>, DesignError> {
     let own = Priors::parse(LEVERS[0].text, LEVERS[0].file)?.parameters;
     let bench = Priors::parse(PRIORS[0].text, PRIORS[0].file)?.parameters;
     let bench = bench.into_iter().filter(|row| OF_BENCH.contains(&&*row.name));
@@ -103,7 +103,7 @@ mod tests {
     use insertion::finger::model::FingerSource;
     use insertion::space::{Design, Space};
     use insertion::{robot::Robot, stiffness, surrogate, trial::engine::EngineKind};
-    use parameters::numbers::{CENTRE, TILTING};
+    use parameters::numbers::{RCC_KEY, TILTING_KEY};
 
     #[test]
     fn a_spring_of_the_finger_has_a_current_value() {
@@ -129,8 +129,8 @@ mod tests {
             given: None,
         };
         let value = |path| current_value(&analysis, &specimen, &Path::new(path).unwrap());
-        assert_eq!(value(TILTING), Some(specimen.finger.rotation[0]));
-        assert_eq!(value(CENTRE), Some(specimen.finger.rcc / MM));
+        assert_eq!(value(TILTING_KEY), Some(specimen.finger.rotation[0]));
+        assert_eq!(value(RCC_KEY), Some(specimen.finger.rcc / MM));
         assert_eq!(value("finger.stiffness"), None);
     }
 }

@@ -4,7 +4,7 @@ use super::bounds::{LeverParameter, lever_parameters};
 use super::lever::{Base, Lever, Levers};
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::robustness::Plan;
-use insertion::evaluation::template::{Impossible, Template};
+use insertion::evaluation::template::{DesignError, Template};
 use insertion::evaluation::tolerance::Search;
 use insertion::evaluation::{Evaluation, grid_mm};
 use insertion::finger::model::FingerSource;
@@ -57,7 +57,7 @@ impl LeverAnalysis<'_> {
         &self,
         infill: Option<[f64; 2]>,
         stop: &AtomicBool,
-    ) -> Result<Levers, Impossible> {
+    ) -> Result<Levers, DesignError> {
         let mut setups = vec![self.setup(self.design, self.given)?];
         if infill.is_none() {
             for design in self.extremes()? {
@@ -97,7 +97,7 @@ impl LeverAnalysis<'_> {
     fn candidates(
         &self,
         setups: &mut Vec<Setup>,
-    ) -> Result<(Vec<Candidate>, Vec<String>), Impossible> {
+    ) -> Result<(Vec<Candidate>, Vec<String>), DesignError> {
         let base = setups[0].clone();
         let (mut candidates, mut left_out) = (Vec::new(), Vec::new());
         for lever in lever_parameters(self, &base.0)? {
@@ -124,12 +124,12 @@ impl LeverAnalysis<'_> {
         Ok((candidates, left_out))
     }
 
-    fn setup(&self, design: &Design, given: Option<Prediction>) -> Result<Setup, Impossible> {
+    fn setup(&self, design: &Design, given: Option<Prediction>) -> Result<Setup, DesignError> {
         self.evaluator.apply(self.template, (design, given), &[])
     }
 
     /// Returns the design with the softest and with the stiffest infill of the space.
-    fn extremes(&self) -> Result<[Design; 2], Impossible> {
+    fn extremes(&self) -> Result<[Design; 2], DesignError> {
         let LeverAnalysis { evaluator, space, design, .. } = self;
         let values = |key: &'static str| {
             let of = space.parameters.iter().filter(move |parameter| parameter.key == key);
@@ -155,7 +155,7 @@ impl LeverAnalysis<'_> {
         specimen: &Specimen,
         robot: &Robot,
         stop: &AtomicBool,
-    ) -> Result<Evaluation, Impossible> {
+    ) -> Result<Evaluation, DesignError> {
         let mut specimen = specimen.clone();
         specimen.task.strategy.rule = StartRule::Taught;
         // The specimen already has its finger and its task.

@@ -16,7 +16,7 @@ use ask_tell::statistics::{Moments, mean, median};
 use input::units::MM;
 use insertion::evaluation::cell::Priors;
 use insertion::evaluation::evaluator::Evaluator;
-use insertion::evaluation::template::{Impossible, Template};
+use insertion::evaluation::template::{DesignError, Template};
 use insertion::outcome::Outcome;
 use insertion::robot::{Drive, Robot};
 use insertion::surrogate::Estimate;
@@ -100,7 +100,7 @@ impl Identification<'_> {
     ///
     /// # Errors
     /// If a log's finger cannot be simulated.
-    pub fn remarks(&self, file: &str) -> Result<Vec<Remark>, Impossible> {
+    pub fn remarks(&self, file: &str) -> Result<Vec<Remark>, DesignError> {
         let mut found = check::remarks(file, self.runs, &self.template.task);
         found.extend(self.probes().iter().filter_map(slides));
         let attempts = self.attempts();
@@ -137,7 +137,7 @@ impl Identification<'_> {
     /// Returns the median over the attempts of the ratio of the measured forces to the simulated forces of the fingers
     /// along the measured path. It does not depend on the stiffness of the robot, which could compensate for a wrong
     /// unit.
-    fn force_scale(&self, attempts: &[Logged]) -> Result<Option<f64>, Impossible> {
+    fn force_scale(&self, attempts: &[Logged]) -> Result<Option<f64>, DesignError> {
         let own = &self.evaluator.robot;
         let rigid = Robot { drive: Drive::Ideal, stop_force: f64::MAX, ..own.clone() };
         let along: Vec<Logged> = attempts.iter().filter_map(Logged::along_measured).collect();
@@ -157,7 +157,7 @@ impl Identification<'_> {
     ///
     /// # Errors
     /// If a value of a prior is invalid.
-    pub fn identify(&self) -> Result<Identified, Impossible> {
+    pub fn identify(&self) -> Result<Identified, DesignError> {
         let attempts = self.attempts();
         let curves: Vec<Curves> = attempts.iter().map(|one| one.curves.clone()).collect();
         let flange = [0, 1, 2].map(|axis| formulas::flange(&curves, axis));
@@ -298,9 +298,9 @@ impl Identification<'_> {
         robot: &Robot,
         attempts: &[Logged],
         rows: &[&Parameter],
-    ) -> Result<Smoothed, Impossible> {
+    ) -> Result<Smoothed, DesignError> {
         let data: Vec<Datum> = attempts.iter().flat_map(Logged::data).collect();
-        let predict = |z: &[f64]| -> Result<Predicted, Impossible> {
+        let predict = |z: &[f64]| -> Result<Predicted, DesignError> {
             if self.stop.load(Ordering::SeqCst) {
                 // The result is not used after cancellation.
                 return Ok(vec![None; data.len()]);
@@ -318,7 +318,7 @@ impl Identification<'_> {
         robot: &Robot,
         attempts: Vec<Logged>,
         unknowns: &[Unknown],
-    ) -> Result<Vec<Compared>, Impossible> {
+    ) -> Result<Vec<Compared>, DesignError> {
         let now: Vec<(&Parameter, f64)> =
             unknowns.iter().map(|one| (&one.posterior, one.posterior.middle())).collect();
         let now: Vec<_> = now.into_iter().filter(|(row, _)| row.path != FLANGE).collect();

@@ -7,7 +7,7 @@ use super::smoother::{Datum, Predicted};
 use super::touch::{bias, touch};
 use input::units::MM;
 use insertion::evaluation::evaluator::Specimen;
-use insertion::evaluation::template::Impossible;
+use insertion::evaluation::template::DesignError;
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::space::Design;
@@ -160,7 +160,7 @@ impl Identification<'_> {
         (robot, step_factor): (&Robot, f64),
         attempts: &[Logged],
         values: &[(&Parameter, f64)],
-    ) -> Result<Vec<(Curves, Outcome)>, Impossible> {
+    ) -> Result<Vec<(Curves, Outcome)>, DesignError> {
         let Identification { evaluator, template, .. } = self;
         let mut all = Vec::with_capacity(attempts.len());
         for alike in attempts.chunk_by(|a, b| a.design == b.design) {

@@ -244,7 +244,7 @@ fn a_table_of_runs_names_logs_beside_it() {
 fn an_attempt_along_its_own_path_is_the_same_attempt() {
     let file = ROBOTS.iter().find(|robot| robot.name == "servo").unwrap();
     let (task, robot) = (usb(), Robot::parse(file.text, file.file).unwrap());
-    let finger = Finger::new(2.0 * N_PER_MM, 10.0 * N_PER_MM).shaped(&task.finger, 0.0);
+    let finger = Finger::new(2.0 * N_PER_MM, 10.0 * N_PER_MM).with_model(&task.finger, 0.0);
     let rig = EngineKind::Direct.rig(&task, &robot, &finger, 1.0).unwrap();
     for offset in [0.0, 8.0 * MM] {
         let (trial, samples) = rig.hold(Grasp::of(&finger)).sampled(offset, Some(STEP_S));

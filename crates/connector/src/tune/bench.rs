@@ -88,7 +88,7 @@ impl<'a> Bench<'a> {
         stop: &'a AtomicBool,
     ) -> Option<Self> {
         let [soft, medium, stiff, others @ ..] =
-            fingers()?.map(|finger| finger.shaped(&task.finger, 0.0));
+            fingers()?.map(|finger| finger.with_model(&task.finger, 0.0));
         let fingers = [soft, medium, stiff];
         let force = task.limits.force.or(Some(robot.stop_force));
         let limits = Limits { force, ..task.limits };
@@ -110,7 +110,7 @@ impl<'a> Bench<'a> {
         let task = Task { strategy: strategy.clone(), ..self.task.clone() };
         let rig = self.engine.rig(&task, self.robot, finger, 1.0)?;
         let grasp = Grasp { finger: *finger, conditions, stop: self.stop };
-        let found = tolerance::evaluate_in(&*rig, grasp, Search::Strides);
+        let found = tolerance::evaluate_grasp(&*rig, grasp, Search::Strides);
         let inserts = found.window.nominal == Outcome::Inserted;
         let margin = if inserts { 0.0 } else { found.end_shares[0].min(0.0) };
         Ok(Measured { window: found.window, margin, force_n: found.peak_force_n })

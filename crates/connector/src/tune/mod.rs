@@ -11,7 +11,7 @@ use ask_tell::{Grid, Observation, OptimizerKind};
 use input::InputError;
 use input::units::{DEG, MM};
 use insertion::evaluation::INDIFFERENCE_MM;
-use insertion::evaluation::template::Impossible;
+use insertion::evaluation::template::DesignError;
 use insertion::finger::Finger;
 use insertion::outcome::Outcome;
 use insertion::task::{Strategy, Task};
@@ -104,7 +104,7 @@ pub struct Effort<'a> {
 ///
 /// # Errors
 /// If the task cannot be simulated as it is.
-pub fn tune(bench: &Bench, effort: &Effort) -> Result<Tuned, Impossible> {
+pub fn tune(bench: &Bench, effort: &Effort) -> Result<Tuned, DesignError> {
     let mut tuned = Tuned { steps: Vec::new(), best: 0, robustness: Vec::new(), windows: 0 };
     let given = bench.given(&bench.task.strategy)?;
     tuned.add(Stage::AsItIs, [("as it is".to_owned(), given)], effort);
@@ -175,7 +175,7 @@ impl Tuned {
 
     /// Tries a taught start and, if the sweep is upright, also a tilted tip, which finds a single opening from farther
     /// away.
-    fn start(&mut self, bench: &Bench, effort: &Effort) -> Result<(), Impossible> {
+    fn start(&mut self, bench: &Bench, effort: &Effort) -> Result<(), DesignError> {
         let own = &bench.task.strategy;
         let tried = bench.taught(own)?;
         let change =
@@ -249,7 +249,7 @@ impl Tuned {
     const CHECKS: usize = CHANGES * EACH + (TURNED.end - TURNED.start) * FINALISTS;
 
     /// Recommends the strategy with the widest range under a turned socket, and measures it under all changes.
-    fn check(&mut self, bench: &Bench) -> Result<(), Impossible> {
+    fn check(&mut self, bench: &Bench) -> Result<(), DesignError> {
         let inserts = |place: &usize| self.steps[*place].tried.inserts();
         let mut order: Vec<_> = (0..self.steps.len()).filter(inserts).collect();
         let score: Vec<_> = self.steps.iter().map(|step| step.tried.score).collect();
@@ -327,7 +327,7 @@ fn robustness(
     strategy: &Strategy,
     fingers: &[Finger],
     which: Range<usize>,
-) -> Result<Vec<Robustness>, Impossible> {
+) -> Result<Vec<Robustness>, DesignError> {
     let nominal = Conditions::NOMINAL;
     let yaw = |degrees: f64| Conditions { yaw: degrees * DEG, ..nominal };
     let friction = |factor| Conditions { friction_socket: factor, ..nominal };

@@ -8,35 +8,35 @@ use nalgebra::{
     Isometry3, Matrix3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3, Vector6,
 };
 
-/// Damping `l` far from the target, m: steps near a singular pose stay bounded.
+/// Damping `l` far from the target, m; it bounds the steps near singular poses.
 const DAMPING: f64 = 0.02;
 /// Largest number of steps; a start near home takes fewer than twenty.
 const MAX_STEPS: usize = 200;
 /// Largest error of a solution, m and rad.
 const TOLERANCE: f64 = 1e-10;
 
-/// Posture of an arm at some joint angles, base frame.
+/// Result of the forward kinematics: frames of an arm at given joint angles, base frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Posture {
-    /// Frames of the links, turned with their joints.
+    /// Frames of the links after the rotation of their joints.
     pub links: [Pose; JOINTS],
     /// Unit vectors along the joints.
     pub axes: [Vector3<f64>; JOINTS],
-    /// The tool centre point.
+    /// Pose of the tool centre point.
     pub tcp: Pose,
 }
 
 impl Arm {
-    /// Returns link frames, joint axes and TCP at these angles.
-    pub fn at(&self, angles: &Angles) -> Posture {
+    /// Returns link frames, joint axes and TCP at the given joint angles (forward kinematics).
+    pub fn posture(&self, angles: &Angles) -> Posture {
         let mut links = [Pose::identity(); JOINTS];
         let mut axes = [Vector3::zeros(); JOINTS];
         let mut frame = Pose::identity();
         for (i, joint) in self.joints.iter().enumerate() {
             frame *= joint.frame;
             axes[i] = frame.rotation * joint.axis.into_inner();
-            let turn = UnitQuaternion::from_axis_angle(&joint.axis, angles[i]);
-            frame *= Isometry3::from_parts(Translation3::identity(), turn);
+            let rotation = UnitQuaternion::from_axis_angle(&joint.axis, angles[i]);
+            frame *= Isometry3::from_parts(Translation3::identity(), rotation);
             links[i] = frame;
         }
         Posture { links, axes, tcp: frame * self.tool }
@@ -44,7 +44,7 @@ impl Arm {
 
     /// Returns the mass matrix `M(q)` of the kinetic energy `q' M q' / 2`, kg m2: the sum of
     /// `m Jv^T Jv + Jw^T I Jw` over the links.
-    pub fn mass(&self, posture: &Posture) -> Matrix6<f64> {
+    pub fn mass_matrix(&self, posture: &Posture) -> Matrix6<f64> {
         (0..JOINTS)
             .map(|i| {
                 let (link, frame) = (&self.joints[i].link, posture.links[i]);
@@ -57,15 +57,15 @@ impl Arm {
             .sum()
     }
 
-    /// Returns the angles near home that bring the TCP to a pose in the base frame.
+    /// Returns the joint angles near home that bring the TCP to a pose in the base frame.
     ///
     /// # Errors
     /// If the pose is out of reach or singular.
-    pub fn reach(&self, target: &Pose) -> Result<Angles, ArmError> {
+    pub fn inverse_kinematics(&self, target: &Pose) -> Result<Angles, ArmError> {
         let mut angles = self.home;
         let mut error = Vector6::zeros();
         for _ in 0..MAX_STEPS {
-            let posture = self.at(&angles);
+            let posture = self.posture(&angles);
             error = displacement(&posture.tcp, target);
             if error.amax() < TOLERANCE {
                 return Ok(angles);
@@ -77,19 +77,19 @@ impl Arm {
             let step = square.cholesky().ok_or(ArmError::Singular)?.solve(&error);
             angles += jacobian.tr_mul(&step);
         }
-        let [moved, turned] = [0, 3].map(|row| error.fixed_rows::<3>(row).norm());
-        Err(ArmError::Unreachable(moved / MM, turned / DEG))
+        let [distance, angle] = [0, 3].map(|row| error.fixed_rows::<3>(row).norm());
+        Err(ArmError::Unreachable(distance / MM, angle / DEG))
     }
 }
 
 impl Posture {
-    /// Returns the Jacobian of a point that is fixed to a link: velocity (rows 0..3, m) and angular velocity (rows
-    /// 3..6) in base axes by the joint rates.
+    /// Returns the Jacobian of a point fixed to a link, from joint rates to linear velocity (rows 0..3, m) and
+    /// angular velocity (rows 3..6) in base axes.
     pub fn jacobian(&self, point: &Point3<f64>, link: usize) -> Matrix6<f64> {
         let mut jacobian = Matrix6::zeros();
         for i in 0..=link {
-            let arm = point.coords - self.links[i].translation.vector;
-            jacobian.fixed_view_mut::<3, 1>(0, i).copy_from(&self.axes[i].cross(&arm));
+            let lever = point.coords - self.links[i].translation.vector;
+            jacobian.fixed_view_mut::<3, 1>(0, i).copy_from(&self.axes[i].cross(&lever));
             jacobian.fixed_view_mut::<3, 1>(3, i).copy_from(&self.axes[i]);
         }
         jacobian
@@ -101,9 +101,9 @@ impl Posture {
     }
 }
 
-/// Returns translation and rotation vector from one pose to another, base axes.
+/// Returns the translation and the rotation vector from one pose to another, base axes.
 pub fn displacement(from: &Pose, to: &Pose) -> Vector6<f64> {
-    let moved = to.translation.vector - from.translation.vector;
-    let turned = (to.rotation * from.rotation.inverse()).scaled_axis();
-    Vector6::new(moved.x, moved.y, moved.z, turned.x, turned.y, turned.z)
+    let translation = to.translation.vector - from.translation.vector;
+    let rotation = (to.rotation * from.rotation.inverse()).scaled_axis();
+    Vector6::new(translation.x, translation.y, translation.z, rotation.x, rotation.y, rotation.z)
 }

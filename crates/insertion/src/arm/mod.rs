@@ -4,15 +4,15 @@
 //! blocked arm pushes with its springs alone. With velocity feed-forward the damper acts on the rate of
 //! the error, `c d/dt (q_command - q)`. Gravity on the links is compensated.
 //!
-//! With six joints and six directions at the TCP, displacements `x = J q` are another set of
-//! coordinates: near a pose the arm is equivalent to one body at the TCP with the coupled 6x6 spring,
-//! damper and mass of [`Reduced`]. Changes of `J` with the pose are neglected.
+//! Six joints move the TCP in six directions, so near a pose the displacements `x = J q` of the TCP can replace the
+//! joint angles as coordinates: the arm is equivalent to one body at the TCP with the coupled 6x6 spring, damper and
+//! mass of [`ReducedArm`]. Changes of `J` with the pose are neglected.
 
 mod kinematics;
 mod reduced;
 
 pub use kinematics::{Posture, displacement};
-pub use reduced::Reduced;
+pub use reduced::ReducedArm;
 
 use crate::task::geometry::Axis;
 use contact::scene::{Inertia, Pose};
@@ -24,21 +24,21 @@ use serde::Deserialize;
 /// Number of joints of an arm.
 pub const JOINTS: usize = 6;
 
-/// Angles of the joints from base to tool, rad.
+/// Joint angles from base to tool, rad.
 pub type Angles = nalgebra::SVector<f64, JOINTS>;
 
-/// Six-axis arm model of a robot file, SI units.
+/// Model of a six-joint arm, SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arm {
     /// Joints from the base to the tool.
     pub joints: [Joint; JOINTS],
-    /// The TCP in the last link's frame.
+    /// Pose of the TCP in the frame of the last link.
     pub tool: Pose,
-    /// Angles with the TCP at the nominal start of a task.
+    /// Joint angles at which the TCP is at the nominal start of a task.
     pub home: Angles,
-    /// Whether the servos' dampers act on the error's rate, not on the joint's speed.
+    /// Whether the servos damp the rate of the position error instead of the joint speed.
     pub feed_forward: bool,
-    /// Force with which the assembly move ends on a part that does not give way, N.
+    /// Force at the end of the assembly move on an immovable part, N.
     pub assembly_force: f64,
 }
 
@@ -47,35 +47,35 @@ pub struct Arm {
 pub struct Joint {
     /// Name for messages.
     pub name: String,
-    /// Joint frame in the frame of the link before.
+    /// Joint frame in the frame of the previous link.
     pub frame: Pose,
-    /// Axis of rotation in that frame.
+    /// Axis of rotation in the joint frame.
     pub axis: Unit<Vector3<f64>>,
-    /// Gain of its servo, N m/rad.
+    /// Position gain of its servo, N m/rad.
     pub stiffness: f64,
     /// Damping of its servo, N m s/rad.
     pub damping: f64,
     /// Largest torque, N m.
     pub limit: f64,
-    /// Mass properties of its link, in the frame that turns with it.
+    /// Mass properties of its link, in the frame of the link.
     pub link: Inertia,
 }
 
-/// Error of an arm that cannot work at a pose.
+/// Error of an arm at the start of a task.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ArmError {
-    /// The start is out of reach; remaining error of the inverse kinematics, mm and degrees.
+    /// The start is out of reach. Residual of the inverse kinematics, mm and degrees.
     #[error(
         "the arm does not reach the start from its home_deg: it misses by {0:.1} mm and {1:.1} \
          degrees; give home_deg near the start, with the tool pointing down"
     )]
     Unreachable(f64, f64),
-    /// There is a direction in which no joint moves the TCP.
+    /// The Jacobian is singular at the start: no joint moves the TCP in some direction.
     #[error("the arm is in a singular pose at the start: choose another home_deg")]
     Singular,
 }
 
-/// Arm in a robot file; SI units.
+/// Keys of a robot file of an arm, converted to SI units.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RawArm {
@@ -109,12 +109,12 @@ struct RawJoint {
 }
 
 impl RawArm {
+    /// Returns the arm after checking that it has six joints.
     pub fn arm(self, check: Check<'_>) -> Result<Arm, InputError> {
-        let count = self.joint.len();
         let joints: Vec<Joint> = self.joint.into_iter().map(Joint::from).collect();
-        let Ok(joints) = <[Joint; JOINTS]>::try_from(joints) else {
-            return check.fail("joint", format!("there are {count}; an arm has six [[joint]]"));
-        };
+        let joints = <[Joint; JOINTS]>::try_from(joints).or_else(|joints| {
+            check.fail("joint", format!("there are {} [[joint]]; an arm has six", joints.len()))
+        })?;
         Ok(Arm {
             joints,
             tool: frame(self.tool, self.tool_turn),
@@ -143,8 +143,8 @@ impl From<RawJoint> for Joint {
     }
 }
 
-/// Returns the frame with this origin, m, turned about x, then y, then z, rad.
+/// Returns the frame with the given origin, m, rotated about x, then y, then z, rad.
 fn frame([x, y, z]: [f64; 3], [roll, pitch, yaw]: [f64; 3]) -> Pose {
-    let turn = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
-    Pose::from_parts(Translation3::new(x, y, z), turn)
+    let rotation = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
+    Pose::from_parts(Translation3::new(x, y, z), rotation)
 }

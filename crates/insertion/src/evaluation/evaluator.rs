@@ -1,4 +1,4 @@
-//! Evaluator: from a design to its evaluation.
+//! Evaluation of designs: their specimens, rigs and measurements.
 
 use super::cell::{Priors, change};
 use super::robustness::firm::{self, FirmResult};
@@ -7,11 +7,11 @@ use super::robustness::repeat::Repeats;
 use super::robustness::{self, Drawn, Plan};
 use super::shape_correction;
 use super::taught::{Shifted, teach};
-use super::template::{Impossible, Template};
+use super::template::{DesignError, Template};
 use super::tolerance::Search;
 use super::{Evaluation, OffsetStep};
 use crate::finger::Finger;
-use crate::finger::model::{CentreFrom, FingerSource, RCC_KEY};
+use crate::finger::model::{CentreSource, FingerSource, RCC_KEY};
 use crate::outcome::Outcome;
 use crate::robot::Robot;
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
@@ -53,15 +53,15 @@ use std::sync::atomic::AtomicBool;
 pub struct Evaluator {
     /// Stiffness model of the infill.
     pub surrogate: Arc<Model>,
-    /// Source of the fingers.
+    /// Finger model of all designs.
     pub fingers: FingerSource,
-    /// Tasks with the numbers that a design may set; at least one.
+    /// Task files whose numbers a design may set; at least one.
     pub templates: Vec<Template>,
     /// Robot that carries the fingers.
     pub robot: Robot,
     /// Contact engine.
     pub engine: EngineKind,
-    /// Cell, if it is known, for the numbers that a design does not set; `robot` is its robot.
+    /// Cell whose values replace the numbers that a design does not set; `robot` is the robot of the cell.
     pub cell: Option<Priors>,
 }
 
@@ -74,71 +74,71 @@ pub struct Specimen {
     pub design: Design,
     /// Finger of the design.
     pub finger: Finger,
-    /// Stiffness of the finger, with its error.
+    /// Predicted stiffness of the finger, with its standard deviation.
     pub stiffness: Prediction,
 }
 
 impl Specimen {
     /// Returns the source of the finger's remote centre.
-    pub fn centre_from(&self) -> CentreFrom {
+    pub fn centre_source(&self) -> CentreSource {
         match (self.design.get(RCC_KEY), self.task.finger.rcc) {
-            (Some(_), _) => CentreFrom::Design,
-            (None, Some(_)) => CentreFrom::TaskFile,
-            (None, None) => CentreFrom::Model,
+            (Some(_), _) => CentreSource::Design,
+            (None, Some(_)) => CentreSource::TaskFile,
+            (None, None) => CentreSource::Model,
         }
     }
 }
 
-/// Evaluation of one design on all tasks.
+/// Evaluations of one design on all tasks.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
+pub struct Evaluations {
     /// Predicted stiffness.
     pub stiffness: Prediction,
-    /// Evaluation on each task, in their order.
+    /// Evaluation on each task, in the order of the tasks.
     pub tasks: Vec<Evaluation>,
-    /// For each task whether it was in the cache; empty without a cache.
+    /// Whether each evaluation came from the cache; empty without a cache.
     pub cached: Vec<bool>,
 }
 
-/// Evaluator of designs on several threads.
+/// Evaluator of designs that several threads share.
 pub trait Evaluate: Sync {
-    /// Evaluates a design, in full without a race; equal designs and races give equal results.
-    fn evaluate(&self, design: &Design, race: Option<&Race>) -> Result<Measured, Impossible>;
+    /// Evaluates a design, with all draws unless a race is lost. Equal designs and races give equal results.
+    fn evaluate(&self, design: &Design, race: Option<&Race>) -> Result<Evaluations, DesignError>;
 }
 
 impl Evaluator {
     /// Returns the predicted stiffness of a design with an infill.
-    pub fn predict(&self, design: &Design) -> Result<Prediction, Impossible> {
+    pub fn predict(&self, design: &Design) -> Result<Prediction, DesignError> {
         let value = |key| design.get(key).unwrap_or(f64::NAN);
-        let plain = self.surrogate.predict(value(DENSITY_KEY), value(DIRECTION_KEY))?;
+        let infill = self.surrogate.predict(value(DENSITY_KEY), value(DIRECTION_KEY))?;
         match &self.fingers {
-            FingerSource::Paper => Ok(plain),
+            FingerSource::Paper => Ok(infill),
             FingerSource::Computed(fingers) => {
                 let measured = &self.surrogate.measurements;
                 let design = &self.completed(None, design, &self.rows(None));
-                Ok(shape_correction::predict(fingers, measured, design, plain)?)
+                Ok(shape_correction::predict(fingers, measured, design, infill)?)
             }
         }
     }
 
-    /// Returns the specimen of a design with this stiffness on one of the tasks.
+    /// Returns the specimen of a design with the given stiffness on one of the tasks.
     pub fn specimen(
         &self,
         template: &Template,
         design: &Design,
         stiffness: Prediction,
-    ) -> Result<Specimen, Impossible> {
+    ) -> Result<Specimen, DesignError> {
         self.specimen_under(template, design, stiffness, &self.rows(Some(template)))
     }
 
-    /// Returns the specimen with these values of rows of a cell, unless the design sets the number.
+    /// Returns the specimen with values of rows of a cell for the numbers that the design does not set.
     pub(super) fn specimen_under(
         &self,
         template: &Template,
         design: &Design,
         stiffness: Prediction,
         rows: &[(&Parameter, f64)],
-    ) -> Result<Specimen, Impossible> {
+    ) -> Result<Specimen, DesignError> {
         for (key, axis) in [
             ("stiffness_compliance_n_per_mm", stiffness.compliance),
             ("stiffness_assembly_n_per_mm", stiffness.assembly),
@@ -180,6 +180,7 @@ impl Evaluator {
         self.rig_of(specimen, &self.robot, taught, step_factor)
     }
 
+    /// Returns the rig of a specimen on the given robot.
     fn rig_of(
         &self,
         Specimen { task, finger, .. }: &Specimen,
@@ -201,20 +202,16 @@ impl Evaluator {
         search: Search,
         plan: &Plan,
         stop: &AtomicBool,
-    ) -> Result<Evaluation, Impossible> {
+    ) -> Result<Evaluation, DesignError> {
         let taught = self.taught(specimen, stop)?;
         let rig = self.rig(specimen, taught, 1.0)?;
         let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
-        let draw = |cell: &Priors, values: &[f64]| -> Result<Drawn, Impossible> {
+        let draw = |(cell, values): (&Priors, &Vec<f64>)| -> Result<Drawn, DesignError> {
             let (drawn, robot) = self.in_cell(specimen, cell, values)?;
             Ok((self.rig_of(&drawn, &robot, taught, 1.0)?, drawn.finger))
         };
-        let cells = match &plan.cells {
-            None => Vec::new(),
-            Some((cell, all)) => {
-                all.iter().map(|values| draw(cell, values)).collect::<Result<_, _>>()?
-            }
-        };
+        let draws = plan.cells.iter().flat_map(|(cell, all)| all.iter().map(move |v| (cell, v)));
+        let cells: Vec<Drawn> = draws.map(draw).collect::<Result<_, _>>()?;
         let predicted = &specimen.stiffness;
         let evaluation = robustness::evaluate(&*rig, grasp, predicted, search, plan, &cells);
         Ok(Evaluation { taught, ..evaluation })
@@ -227,10 +224,10 @@ impl Evaluator {
         search: Search,
         plan: &Plan,
         stop: &AtomicBool,
-    ) -> Result<Evaluation, Impossible> {
-        let found = self.measure(specimen, search, plan, stop)?;
-        if found.window.nominal == Outcome::Inserted {
-            return Ok(found);
+    ) -> Result<Evaluation, DesignError> {
+        let evaluation = self.measure(specimen, search, plan, stop)?;
+        if evaluation.window.nominal == Outcome::Inserted {
+            return Ok(evaluation);
         }
         let mut taught = specimen.clone();
         taught.task.strategy.rule = StartRule::Taught;
@@ -256,15 +253,15 @@ impl Evaluator {
         Ok(firm::measure(&repeats, &measured.window))
     }
 
-    /// Measures a design on every task by `measure`.
+    /// Evaluates a design on every task with `measure`.
     pub fn evaluate_by(
         &self,
         design: &Design,
-        mut measure: impl FnMut(&Specimen) -> Result<Evaluation, Impossible>,
-    ) -> Result<Measured, Impossible> {
+        mut measure: impl FnMut(&Specimen) -> Result<Evaluation, DesignError>,
+    ) -> Result<Evaluations, DesignError> {
         let stiffness = self.predict(design)?;
         let on = |template| measure(&self.specimen(template, design, stiffness)?);
-        let tasks = self.templates.iter().map(on).collect::<Result<_, Impossible>>()?;
-        Ok(Measured { stiffness, tasks, cached: Vec::new() })
+        let tasks = self.templates.iter().map(on).collect::<Result<_, DesignError>>()?;
+        Ok(Evaluations { stiffness, tasks, cached: Vec::new() })
     }
 }

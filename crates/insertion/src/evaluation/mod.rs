@@ -16,21 +16,21 @@ use crate::surrogate::null_is_nan;
 use ask_tell::statistics::{Moments, normal_quantile};
 use serde::{Deserialize, Serialize};
 
-/// Difference of two ranges below the resolution of a bench, mm: measured windows of the publication differ by 0.1
-/// to 0.5 mm.
+/// Indifference zone of ranges, mm: a bench does not resolve smaller differences. Measured windows of the publication
+/// differ by 0.1 to 0.5 mm.
 pub const INDIFFERENCE_MM: f64 = 0.3;
 
-/// A shift of the start position along y, as a number of 0.1 mm grid steps.
+/// Shift of the start along y, in grid steps of 0.1 mm.
 pub type OffsetStep = i32;
 
-/// Width of the offset grid: the paper shifts the start by 0.1 mm.
+/// Spacing of the offset grid, mm, as in the paper.
 pub const OFFSET_STEP_MM: f64 = 0.1;
 
 /// Tolerance window: offsets about the nominal start that insert, and the outcome beyond each end.
 ///
-/// Invariant of a window with `nominal == Inserted`: `negative_steps <= 0 <=
-/// positive_steps`, and both were found to insert. By the step-by-step walk every grid
-/// offset between them was; by strides a gap between the offsets tried stays unseen.
+/// Invariant of a window with `nominal == Inserted`: `negative_steps <= 0 <= positive_steps`, and the trials at both
+/// inserted. [`Search::Walk`](tolerance::Search::Walk) tries every grid offset between them;
+/// [`Search::Strides`](tolerance::Search::Strides) misses gaps between the offsets that it tries.
 ///
 /// ```
 /// use insertion::{evaluation::Window, outcome::Outcome};
@@ -42,7 +42,7 @@ pub const OFFSET_STEP_MM: f64 = 0.1;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(into = "schema::WindowRow", try_from = "schema::WindowRow")]
 pub struct Window {
-    /// Outcome at the nominal start; anything but inserted makes the range 0.
+    /// Outcome at the nominal start; unless it is inserted, the range is 0.
     pub nominal: Outcome,
     /// Most negative inserting offset, in grid steps.
     pub negative_steps: OffsetStep,
@@ -80,7 +80,7 @@ pub fn grid_mm(steps: OffsetStep) -> f64 {
     f64::from(steps) / 10.0
 }
 
-/// Evaluation of one design on one task; counts and times are the window search's.
+/// Evaluation of one design on one task; counts and times are those of the window search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
     /// Tolerance window around the nominal start.
@@ -102,12 +102,12 @@ pub struct Evaluation {
     /// Simulated time over all trials, s.
     #[serde(deserialize_with = "null_is_nan")]
     pub simulated_s: f64,
-    /// Where the outcome turns within the grid step beyond each end (negative, positive), as
-    /// a share of it, 0 to 1: interpolated over [`Trial::margin`](crate::trial::Trial::margin).
-    /// If the nominal start fails, its margin, -1 to 0.
+    /// Position of the outcome change in the grid step beyond each end (negative, positive), as a share of the step,
+    /// 0 to 1, interpolated over [`Trial::margin`](crate::trial::Trial::margin). If the nominal start fails, both are
+    /// its margin, -1 to 0.
     #[serde(serialize_with = "schema::finite")]
     pub end_shares: [f64; 2],
-    /// Shift of a taught start from that of the task file, in grid steps.
+    /// Shift of the taught start from the start in the task file, in grid steps; `None` without a taught start.
     #[serde(rename = "taught_start_mm", default, skip_serializing_if = "Option::is_none")]
     #[serde(serialize_with = "schema::taught_mm", deserialize_with = "schema::taught_steps")]
     pub taught: Option<OffsetStep>,
@@ -122,7 +122,7 @@ pub struct Evaluation {
 /// Outcomes of trials under sampled errors.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SuccessRate {
-    /// Probability with which [`interval`](Self::interval) holds the true rate, 0 to 1.
+    /// Confidence level of [`interval`](Self::interval), 0 to 1.
     #[serde(rename = "success_confidence")]
     pub confidence: f64,
     /// Trials that ended inserted.
@@ -131,15 +131,15 @@ pub struct SuccessRate {
     /// Trials that failed with class 1 to 4.
     #[serde(rename = "success_failure_counts")]
     pub failure_counts: [u32; 4],
-    /// Trials that diverged; they do not count.
+    /// Trials that diverged; the rate excludes them.
     #[serde(rename = "success_diverged")]
     pub diverged: u32,
     /// Indices of the draws that failed, ascending; empty if not recorded.
     #[serde(rename = "success_failed_draws", default, skip_serializing_if = "Vec::is_empty")]
     pub failed_draws: Vec<u32>,
-    /// Draws left out because the [`Race`](robustness::race::Race) was lost without them.
+    /// Draws skipped because the [`Race`](robustness::race::Race) was lost before them.
     #[serde(rename = "success_spared_draws", default, skip_serializing_if = "is_zero")]
-    pub spared: u32,
+    pub skipped: u32,
 }
 
 fn is_zero(count: &u32) -> bool {
@@ -155,7 +155,7 @@ impl SuccessRate {
 
     /// Counts the outcome of one of the remaining draws.
     fn count(&mut self, draw: u32, outcome: Outcome) {
-        self.spared = self.spared.saturating_sub(1);
+        self.skipped = self.skipped.saturating_sub(1);
         match outcome {
             Outcome::Inserted => self.inserted += 1,
             Outcome::Diverged => self.diverged += 1,
@@ -171,25 +171,25 @@ impl SuccessRate {
         self.counted().saturating_add(self.diverged)
     }
 
-    /// Returns the draws that were tried, if not all were.
+    /// Returns the number of draws that were tried; `None` if no draw was skipped.
     pub fn raced(&self) -> Option<u32> {
-        (self.spared > 0).then(|| self.tried())
+        (self.skipped > 0).then(|| self.tried())
     }
 
-    /// Returns the share of the counted trials that inserted, 0 to 1; `None` if none counts or some were left out.
+    /// Returns the share of the counted trials that inserted, 0 to 1; `None` if there are none or draws were skipped.
     pub fn rate(&self) -> Option<f64> {
-        self.at_most().filter(|_| self.spared == 0)
+        self.max_rate().filter(|_| self.skipped == 0)
     }
 
-    /// Returns the rate if all that was left out inserted; `None` if nothing counts.
-    pub fn at_most(&self) -> Option<f64> {
+    /// Returns the rate if all skipped draws inserted, an upper bound; `None` without counted or skipped draws.
+    pub fn max_rate(&self) -> Option<f64> {
         let [inserted, counted] =
-            [self.inserted, self.counted()].map(|n| f64::from(n) + f64::from(self.spared));
+            [self.inserted, self.counted()].map(|n| f64::from(n) + f64::from(self.skipped));
         (counted > 0.0).then(|| inserted / counted)
     }
 
-    /// Returns Wilson's score interval of the true rate (1927, J. Am. Stat. Assoc. 22:209). It is 0 to 1
-    /// without a rate, as for a raced design, whose draws are not random.
+    /// Returns Wilson's score interval of the true rate (1927, J. Am. Stat. Assoc. 22:209). It is 0 to 1 if there is
+    /// no rate, as after a lost race, whose draws are not a random sample.
     pub fn interval(&self) -> [f64; 2] {
         let Some(rate) = self.rate() else { return [0.0, 1.0] };
         let n = f64::from(self.counted());
@@ -203,13 +203,13 @@ impl SuccessRate {
 /// Ranges of one design under sampled errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RobustRange {
-    /// Range under each sample, mm; without the samples whose nominal start diverged.
+    /// Range of each sample, mm, without the samples whose nominal start diverged.
     #[serde(rename = "robust_ranges_mm")]
     pub ranges_mm: Vec<f64>,
     /// Samples whose nominal start diverged.
     #[serde(rename = "robust_diverged")]
     pub diverged: u32,
-    /// Trials of all windows.
+    /// Number of trials of all windows.
     #[serde(rename = "robust_trials")]
     pub trials: u32,
     /// Statistic selected in the settings, mm; `None` with fewer than two ranges.
@@ -262,8 +262,8 @@ pub(crate) mod tests {
         assert_eq!(success(0, 0).interval(), [0.0, 1.0]);
         assert_eq!(success(0, 0).rate(), None);
         assert_eq!(success(3, 1).rate(), Some(0.75));
-        let raced = SuccessRate { spared: 4, ..success(3, 1) };
-        assert_eq!((raced.rate(), raced.at_most(), raced.raced()), (None, Some(0.875), Some(7)));
+        let raced = SuccessRate { skipped: 4, ..success(3, 1) };
+        assert_eq!((raced.rate(), raced.max_rate(), raced.raced()), (None, Some(0.875), Some(7)));
         assert_eq!(raced.interval(), [0.0, 1.0]);
     }
 

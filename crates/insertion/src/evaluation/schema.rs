@@ -99,7 +99,7 @@ pub(super) fn with_rate<S: Serializer>(
         let raced_draws = counts.raced();
         let [success_low, success_high] =
             counts.interval().map(|end| Some(end).filter(|_| raced_draws.is_none()));
-        let success_at_most = counts.at_most().filter(|_| raced_draws.is_some());
+        let success_at_most = counts.max_rate().filter(|_| raced_draws.is_some());
         let success_rate = counts.rate();
         SuccessRow { success_rate, success_low, success_high, success_at_most, raced_draws, counts }
     });
@@ -177,7 +177,7 @@ mod tests {
         assert_eq!(round_trip(&full), full);
         full.taught = Some(-13);
         assert_eq!(round_trip(&full), full);
-        let raced = SuccessRate { spared: 95, failed_draws: vec![2, 7], ..success(3, 2) };
+        let raced = SuccessRate { skipped: 95, failed_draws: vec![2, 7], ..success(3, 2) };
         full.success = Some(raced);
         assert_eq!(round_trip(&full), full);
         let value = serde_json::to_value(&full).unwrap();

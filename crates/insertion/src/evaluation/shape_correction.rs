@@ -1,9 +1,9 @@
-//! Stiffness of fingers whose shape or material differs from that of the measured ones.
+//! Stiffness of fingers whose shape or material differs from the finger file.
 //!
-//! The prediction for the infill is multiplied by the ratio of the computed stiffnesses of this finger
-//! and of the finger file's, with the same infill. Measured fingers keep their predictions. The error
-//! of the computed stiffness varies between fingers: the standard deviation of ln(measured / computed)
-//! over the measured fingers is added to that of the prediction.
+//! The prediction for the infill is multiplied by the ratio of two computed stiffnesses: that of this finger and that
+//! of the finger in the file with the same infill. Designs that keep the numbers of the file keep their predictions.
+//! The error of the computed stiffness varies between fingers: the standard deviation of ln(measured / computed) over
+//! the measured fingers is added in quadrature to that of the prediction.
 
 use crate::finger::file::is_shape;
 use crate::finger::model::ComputedFingers;
@@ -14,9 +14,8 @@ use ask_tell::statistics::Moments;
 use finray::FingerError;
 use finray::mechanics::FingerStiffness;
 
-/// Returns the prediction for a design whose infill has the prediction `plain`.
-///
-/// The squared logarithms of the changes add to the distance from the measured designs, squared.
+/// Returns the prediction for a design from `infill`, the prediction for its infill. The logarithms of the changes of
+/// shape are added in quadrature to the distance from the measured designs.
 ///
 /// # Errors
 /// If a finger cannot be computed.
@@ -24,45 +23,45 @@ pub fn predict(
     fingers: &ComputedFingers,
     measured: &[Measurement],
     design: &Design,
-    plain: Prediction,
+    infill: Prediction,
 ) -> Result<Prediction, FingerError> {
     let change = |(key, value): (&String, &f64)| {
         fingers.file.numbers.number(key).map_or(0.0, |from| libm::log(value / from))
     };
     let shape = design.0.iter().filter(|(key, _)| is_shape(key));
-    let far: f64 = shape.map(change).map(|change| change * change).sum();
-    if far == 0.0 {
-        return Ok(plain);
+    let squared_change: f64 = shape.map(change).map(|change| change * change).sum();
+    if squared_change == 0.0 {
+        return Ok(infill);
     }
-    let infill = design.0.iter().filter(|(key, _)| !is_shape(key));
-    let infill = Design(infill.map(|(key, value)| (key.clone(), *value)).collect());
-    let now = springs(&fingers.stiffness(design)?);
-    let before = springs(&fingers.stiffness(&infill)?);
+    let mut original = design.clone();
+    original.0.retain(|key, _| !is_shape(key));
+    let changed = by_direction(&fingers.stiffness(design)?);
+    let original = by_direction(&fingers.stiffness(&original)?);
     let scatter = scatter(fingers, measured)?;
     let scaled = |axis: usize, Estimate { mean, sd }: Estimate| {
-        let factor = now[axis] / before[axis];
+        let factor = changed[axis] / original[axis];
         let mean = mean * factor;
         Estimate { mean, sd: libm::hypot(sd * factor, mean * scatter[axis]) }
     };
     Ok(Prediction {
-        compliance: scaled(0, plain.compliance),
-        assembly: scaled(1, plain.assembly),
-        hull_distance: (plain.hull_distance.powi(2) + far).sqrt(),
+        compliance: scaled(0, infill.compliance),
+        assembly: scaled(1, infill.assembly),
+        hull_distance: (infill.hull_distance.powi(2) + squared_change).sqrt(),
     })
 }
 
 /// Returns the computed stiffness in the compliance and in the assembly direction, N/m.
-fn springs(computed: &FingerStiffness) -> [f64; 2] {
+fn by_direction(computed: &FingerStiffness) -> [f64; 2] {
     [computed.pad_and_roof.in_compliance(), computed.pad_and_roof.in_assembly()]
 }
 
-/// Returns the standard deviation of ln(measured / computed) over the measured fingers, by axis; 1 for
-/// fewer than two fingers.
+/// Returns the standard deviation of ln(measured / computed) over the measured fingers in both directions; 1 for fewer
+/// than two fingers.
 fn scatter(fingers: &ComputedFingers, measured: &[Measurement]) -> Result<[f64; 2], FingerError> {
     let ratios = measured.iter().map(|m| {
         let [density, direction] = m.infill();
         let computed = fingers.stiffness(&Design::infill(density, direction))?;
-        let [compliance, assembly] = springs(&computed);
+        let [compliance, assembly] = by_direction(&computed);
         Ok([libm::log(m.compliance / compliance), libm::log(m.assembly / assembly)])
     });
     let ratios: Vec<[f64; 2]> = ratios.collect::<Result<_, FingerError>>()?;
@@ -99,7 +98,7 @@ mod tests {
         [(10.0, 2.0), (30.0, 0.5)]
             .map(|(density, factor)| {
                 let computed = fingers.stiffness(&Design::infill(density, 0.0)).unwrap();
-                let [compliance, assembly] = springs(&computed);
+                let [compliance, assembly] = by_direction(&computed);
                 Measurement {
                     design: 1,
                     density_percent: density,

@@ -47,7 +47,7 @@ pub fn teach(rig: &dyn Rig, finger: &Finger, stop: &AtomicBool) -> Result<Taught
     let found = first_inserting(&*grasped)?;
     let moved = Shifted { rig, shift: found };
     let Evaluation { mut window, peak_force_n, .. } =
-        tolerance::evaluate_in(&moved, grasp, Search::Strides);
+        tolerance::evaluate_grasp(&moved, grasp, Search::Strides);
     let sum = window.negative_steps + window.positive_steps;
     // The division rounds towards zero.
     let middle = sum.clamp(-OFFSET_LIMIT_STEPS, OFFSET_LIMIT_STEPS) / 2;

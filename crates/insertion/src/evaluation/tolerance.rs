@@ -1,4 +1,4 @@
-//! Tolerance window of a finger: the shifted starts that insert.
+//! Search for the tolerance window of a finger: the range of shifted starts that insert.
 
 use crate::evaluation::{Evaluation, OFFSET_STEP_MM, OffsetStep, Window};
 use crate::finger::Finger;
@@ -6,7 +6,7 @@ use crate::outcome::Outcome;
 use crate::trial::{Grasp, Grasped, Rig, Trial};
 use input::units::MM;
 
-/// Farthest offset tried, in grid steps: well beyond any published window (9 mm).
+/// Largest offset tried, in grid steps: well beyond the widest published window (9 mm).
 pub const OFFSET_LIMIT_STEPS: OffsetStep = 150;
 
 /// Search for the ends of a window.
@@ -16,13 +16,14 @@ pub enum Search {
     /// Step by step outward to the first failure, as in the paper.
     Walk,
     /// In strides of 0.5 mm outward to the first failure, then by bisection: a third of the trials.
-    /// The result is the end of the walk unless a gap in the window is narrower than a stride: on 43 of the
-    /// 44 pairs of task and measured finger (`docs/notes/performance.md`).
+    /// The result equals that of the walk if no gap in the window is narrower than a stride, as on all 44 pairs of
+    /// task and measured finger (`docs/notes/performance.md`).
     #[default]
     Strides,
 }
 
 impl Search {
+    /// Returns the distance between the first offsets tried, in grid steps.
     fn stride(self) -> OffsetStep {
         match self {
             Search::Strides => 5,
@@ -31,25 +32,25 @@ impl Search {
     }
 }
 
-/// Measures the window of one finger, with the results of all trials that this takes.
+/// Measures the window of one finger and counts the results of all trials of the search.
 ///
 /// The start is shifted outward on the 0.1 mm grid in both directions until
 /// the first trial that does not insert (the paper, Sec. "Robot Movement").
 pub fn evaluate(rig: &dyn Rig, finger: &Finger, search: Search) -> Evaluation {
-    evaluate_in(rig, Grasp::of(finger), search)
+    evaluate_grasp(rig, Grasp::of(finger), search)
 }
 
-/// Measures a grasp as [`evaluate`] does. The result is invalid once the stop flag of the grasp is set.
-pub fn evaluate_in(rig: &dyn Rig, grasp: Grasp, search: Search) -> Evaluation {
+/// Measures the window of one grasp as [`evaluate`] does. The result is invalid once the stop flag of the grasp is set.
+pub fn evaluate_grasp(rig: &dyn Rig, grasp: Grasp, search: Search) -> Evaluation {
     let grasped = rig.hold(grasp);
     let nominal = [grasped.trial(0.0)];
     let Trial { outcome, margin, .. } = nominal[0];
-    let ([negative, positive], sides) = if outcome == Outcome::Inserted {
+    let ((negative, below), (positive, above)) = if outcome == Outcome::Inserted {
         let end = |sign| find_end(&*grasped, margin, sign, search.stride());
-        let (negative, positive) = rayon::join(|| end(-1), || end(1));
-        ([negative.0, positive.0], [negative.1, positive.1])
+        rayon::join(|| end(-1), || end(1))
     } else {
-        ([End { step: 0, failure: Some(outcome), share: margin }; 2], [vec![], vec![]])
+        let end = End { step: 0, failure: Some(outcome), share: margin };
+        ((end, vec![]), (end, vec![]))
     };
     let window = Window {
         nominal: outcome,
@@ -59,23 +60,24 @@ pub fn evaluate_in(rig: &dyn Rig, grasp: Grasp, search: Search) -> Evaluation {
         end_positive: positive.failure,
     };
     let mut evaluation = Evaluation::of(window, [negative.share, positive.share]);
-    for trials in [&nominal[..], &sides[0], &sides[1]] {
+    for trials in [&nominal[..], &below, &above] {
         evaluation.count(trials);
     }
     evaluation
 }
 
+/// End of a window.
 #[derive(Clone, Copy)]
 struct End {
-    /// The last inserting step, outward from the nominal start.
+    /// Last inserting step, outward from the nominal start.
     step: OffsetStep,
-    /// Outcome of the next one; `None` beyond [`OFFSET_LIMIT_STEPS`].
+    /// Outcome of the next step; `None` at [`OFFSET_LIMIT_STEPS`].
     failure: Option<Outcome>,
-    /// Where between the two the outcome turns, 0 to 1; without a window the nominal margin.
+    /// Position of the outcome change between the two steps, 0 to 1; the nominal margin if there is no window.
     share: f64,
 }
 
-/// Searches one end outward from the nominal start; returns it with the trials.
+/// Searches outward from the nominal start for one end of the window; returns the end and the trials.
 fn find_end(
     grasped: &dyn Grasped,
     nominal_margin: f64,
@@ -104,7 +106,7 @@ fn find_end(
     (End { step, failure: outside.map(|(_, failure, _)| failure), share }, trials)
 }
 
-/// Returns where a line from a margin of 0 or above to one of 0 or below crosses 0, from 0 to 1.
+/// Returns the position, 0 to 1, of the zero of a linear margin from `inside`, 0 or above, to `outside`, 0 or below.
 fn share(inside: f64, outside: f64) -> f64 {
     let drop = inside - outside;
     if drop > 0.0 { inside / drop } else { 0.0 }
@@ -134,6 +136,7 @@ impl Evaluation {
         }
     }
 
+    /// Adds the results of trials.
     fn count(&mut self, trials: &[Trial]) {
         self.trials += trials.len() as u32;
         self.simulated_s += trials.iter().map(|trial| trial.simulated_s).sum::<f64>();

@@ -1,26 +1,25 @@
 //! Computed finger: springs about its remote centre that reproduce the measured stiffness at the pad.
 //!
-//! A force at the pad's middle deflects a spring at a centre `s` below and `c` in front of it, and
-//! also the tilting spring `k_t`. The two are in series, so
+//! A force at the middle of the pad deflects both the spring at a centre `s` below and `c` in front of the pad and the
+//! tilting spring `k_t`. The two springs are in series, so
 //!
 //! ```text
 //! 1/k_y,centre = 1/k_y - s^2/k_t,   1/k_z,centre = 1/k_z - c^2/k_t
 //! ```
 //!
-//! Across the plane (x, ry, rz) the full 3 x 3 stiffness of the plate at the pad, with its coupling of
-//! x to ry and rz, is transformed to the same centre.
+//! Out of the plane (x, ry, rz), the full 3 x 3 stiffness of the plate at the pad, with its coupling of x to ry and rz,
+//! is transformed to the same centre.
 
 use super::{Finger, Pad};
 use crate::surrogate::Prediction;
 use crate::task::finger::Coupling;
 use finray::FingerError;
-use finray::outline::Outline;
 use finray::printed::PrintedFinger;
 use finray::stiffness::PlanarStiffness;
 use input::units::{MM, N_PER_MM};
 use nalgebra::{Matrix3, Matrix6};
 
-/// Values from a task file or a design that replace computed ones.
+/// Values from a task file or a design that replace computed values.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Overrides {
     /// Distance of the remote centre below the TCP, m.
@@ -29,20 +28,13 @@ pub(super) struct Overrides {
     pub tilting: Option<f64>,
 }
 
-impl Pad {
-    /// Returns pad and roof of a printed finger.
-    pub fn of(outline: &Outline) -> Self {
-        Pad { width: outline.depth, height: outline.pad, roof: outline.roof }
-    }
-}
-
-/// Returns the finger with a given stiffness at the pad in y and z.
+/// Returns the finger with the stiffness `at_pad` in y and z at the pad.
 ///
-/// `plane` is the stiffness computed in the plane of the finger, `across` that of x, ry and rz at the
-/// pad's middle. The part's `shoulder` is this height above the TCP, m.
+/// `plane` is the stiffness computed in the plane of the finger, `across` the stiffness in x, ry and rz, both at the
+/// middle of the pad. `shoulder` is the height of the part's shoulder above the TCP, m.
 ///
 /// # Errors
-/// If the rotation about the centre alone is softer than the stiffness at the pad.
+/// If tilting about the centre alone is softer than the stiffness at the pad.
 pub(super) fn finger(
     printed: &PrintedFinger,
     plane: PlanarStiffness,
@@ -52,7 +44,8 @@ pub(super) fn finger(
     overrides: Overrides,
 ) -> Result<Finger, FingerError> {
     let [compliance, assembly] = [at_pad.compliance.mean, at_pad.assembly.mean];
-    let pad = Pad::of(&printed.outline);
+    let outline = &printed.outline;
+    let pad = Pad { width: outline.depth, height: outline.pad, roof: outline.roof };
     let middle = pad.middle(shoulder);
     let rcc = overrides.rcc.unwrap_or(plane.centre_below_pad() - middle);
     let (below, ahead) = (rcc + middle, plane.centre_in_front());
@@ -63,21 +56,22 @@ pub(super) fn finger(
         if centre > 0.0 {
             return Ok(centre);
         }
-        let (at_pad, turning) = (stiffness / N_PER_MM, tilting / (lever * lever) / N_PER_MM);
+        let (at_pad, by_tilting) = (stiffness / N_PER_MM, tilting / (lever * lever) / N_PER_MM);
         let problem = format!(
-            "a finger of {at_pad:.2} N/mm in {name} at its pad cannot turn about a centre {:.1} mm \
-             beside it at {tilting:.2} N m/rad: that alone gives way at {turning:.2} N/mm; bring \
-             finger.rcc_mm nearer to the pad, or use --finger-model paper",
+            "{name} stiffness {at_pad:.2} N/mm at the pad is impossible with a remote centre \
+             {:.1} mm away and tilting stiffness {tilting:.2} N m/rad: tilting alone limits it to \
+             {by_tilting:.2} N/mm; move finger.rcc_mm nearer to the pad, or use --finger-model \
+             paper",
             lever / MM
         );
         Err(FingerError::finger(printed, problem))
     };
     let in_y = at_centre("compliance", compliance, below)?;
     let in_z = at_centre("assembly", assembly, ahead)?;
-    // x at the pad = x at the centre + ry below + rz ahead.
+    // x at the pad = x at the centre + ry * below + rz * ahead.
     let to_pad = Matrix3::new(1.0, below, ahead, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
     let across = to_pad.transpose() * across * to_pad;
-    // The stiffness on all six axes at the centre.
+    // Stiffness on all six axes at the centre.
     let mut matrix = Matrix6::zeros();
     (matrix[(1, 1)], matrix[(2, 2)], matrix[(3, 3)]) = (1.0 / in_y, 1.0 / in_z, tilting);
     for (i, row) in ACROSS.into_iter().enumerate() {

@@ -1,7 +1,7 @@
-//! Finger file whose numbers (shape and material) a design may set.
+//! Finger files whose numbers (shape and material) a design may set.
 //!
 //! A key is `finger.`, then the path in the finger file (`finger.skin.thickness_mm`); values are
-//! in the unit that the key carries. They are put into the file as read, before its checks.
+//! in the unit of the key. They are inserted into the file before its checks.
 
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use finray::infill;
@@ -18,13 +18,14 @@ pub struct FingerFile {
     pub finger: PrintedFinger,
 }
 
-/// Returns whether a key sets a number of a finger file: one in a table, unlike the numbers of the springs.
+/// Returns whether a key sets a number of a finger file (`finger.skin.thickness_mm`). The keys of springs
+/// (`finger.rcc_mm`) contain no table.
 pub fn is_shape(key: &str) -> bool {
     key.strip_prefix("finger.").is_some_and(|path| path.contains('.'))
 }
 
-/// Returns the infill of a design, with the first rib at `phase_mm`, by default as in the finger file. Numbers
-/// that the design does not set are NaN, which is invalid in a finger.
+/// Returns the infill of a design; `phase_mm` is the position of the first rib, by default that of the finger file.
+/// Numbers that the design does not set are NaN, which is invalid in a finger.
 pub fn infill(design: &Design, phase_mm: Option<f64>) -> infill::InfillDesign {
     let value = |key| design.get(key).unwrap_or(f64::NAN);
     infill::InfillDesign {
@@ -45,7 +46,7 @@ impl FingerFile {
         Ok(FingerFile { numbers: NumberFile::read("finger", &document)?, finger })
     }
 
-    /// Returns the finger with the numbers that a design sets; other keys are ignored.
+    /// Returns the finger with the numbers of the file that a design sets; other keys are ignored.
     ///
     /// # Errors
     /// If a key does not exist, or a value is invalid.

@@ -1,5 +1,5 @@
-//! One printed finger: six springs about a remote centre of compliance (RCC), a pad and a roof; as
-//! in the paper (Sec. "Stiffness model", Table "Simulation Inputs"), or computed from its ribs.
+//! Model of a printed finger: six springs about a remote centre of compliance (RCC), a pad and a roof; as in the paper
+//! (Sec. "Stiffness model", Table "Simulation Inputs"), or computed from the ribs of the finger.
 
 pub mod computed;
 pub mod file;
@@ -9,7 +9,7 @@ use crate::task::finger::{Coupling, FingerModel, Rcc};
 use contact::scene::{Geom, Inertia, Pose, Shape, Spring, Springs};
 use input::units::{GRAM, MM, N_PER_MM};
 use nalgebra::{Matrix6, Point3, Vector3};
-use parameters::numbers::{self, CENTRE};
+use parameters::numbers::{RCC_KEY, TILTING_KEY};
 
 /// One finger, in SI units; both fingers of a gripper are equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,18 +39,18 @@ pub struct Finger {
 }
 
 /// Rotational spring about x, N m/rad: the upper end of the range in the paper's Table "Simulation
-/// Inputs" (0.5 .. 2), of which the paper itself used 1; see `docs/notes/calibration.md`.
+/// Inputs" (0.5 .. 2); the paper used 1. See `docs/notes/calibration.md`.
 const TILTING: f64 = 2.0;
 
 impl Finger {
-    /// Returns the number of a path (`finger.rcc_mm`) and the SI value of its unit. Compliance and
-    /// assembly stiffness are not among them: the infill determines them.
+    /// Returns the number with a path (`finger.rcc_mm`) and the SI value of its unit. Compliance and assembly stiffness
+    /// have no paths, since the infill determines them.
     pub fn number(&mut self, path: &str) -> Option<(&mut f64, f64)> {
         let [x, y, z] = &mut self.rotation;
         Some(match path {
-            CENTRE => (&mut self.rcc, MM),
+            RCC_KEY => (&mut self.rcc, MM),
             "finger.depth_n_per_mm" => (&mut self.depth, N_PER_MM),
-            numbers::TILTING => (x, 1.0),
+            TILTING_KEY => (x, 1.0),
             "finger.rotation_y_nm_per_rad" => (y, 1.0),
             "finger.rotation_z_nm_per_rad" => (z, 1.0),
             "finger.mass_g" => (&mut self.mass, GRAM),
@@ -60,7 +60,7 @@ impl Finger {
         })
     }
 
-    /// Returns a finger of this compliance and assembly stiffness, N/m; everything else as in the paper.
+    /// Returns the finger of the paper with the given stiffness in the compliance and assembly directions, N/m.
     pub fn new(compliance: f64, assembly: f64) -> Self {
         Finger {
             compliance,
@@ -77,15 +77,15 @@ impl Finger {
         }
     }
 
-    /// Returns the finger with the properties that a task file sets, for an infill in this direction, degrees.
-    pub fn shaped(self, model: &FingerModel, direction_deg: f64) -> Self {
+    /// Returns the finger with the finger model of a task file, for an infill in the given direction, degrees.
+    pub fn with_model(self, model: &FingerModel, direction_deg: f64) -> Self {
         let rcc = model.rcc.map_or(Rcc::PUBLISHED_DISTANCE, |rcc| rcc.at(direction_deg));
         Finger { rcc, coupling: model.coupling, ..self }
     }
 }
 
-/// The notch: a vertical pad that presses the part, and a roof above it that
-/// rests on the part's shoulder and carries the assembly force. Dimensions in m.
+/// Notch of a finger: a vertical pad that presses the part, and a roof above the pad that rests on the part's shoulder
+/// and carries the assembly force. Dimensions in m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pad {
     /// Width of pad and roof in x.
@@ -97,10 +97,10 @@ pub struct Pad {
 }
 
 impl Pad {
-    /// Dimensions of the published simulation.
+    /// Pad of the published simulation.
     pub const PUBLISHED: Pad = Pad { width: 12.0 * MM, height: 8.4 * MM, roof: 2.5 * MM };
 
-    /// Returns the height of its middle above the TCP, m; `shoulder` as in [`Pad::geoms`].
+    /// Returns the height of the middle of the pad above the TCP, m; `shoulder` as in [`Pad::geoms`].
     pub fn middle(&self, shoulder: f64) -> f64 {
         shoulder + ROOF_GAP - self.height / 2.0
     }
@@ -123,11 +123,11 @@ impl Pad {
     }
 }
 
-/// Thickness of the pad behind its face (not decisive), m.
+/// Thickness of the pad behind its face, m; the results hardly depend on it.
 const PAD_THICKNESS: f64 = 4.0 * MM;
-/// Thickness of the roof (not decisive), m.
+/// Thickness of the roof, m; the results hardly depend on it.
 const ROOF_THICKNESS: f64 = 3.0 * MM;
-/// Gap between roof and shoulder at the grasp, m: closed by the first push on the part.
+/// Gap between roof and shoulder at the grasp, m; the first push on the part closes it.
 pub const ROOF_GAP: f64 = 0.05 * MM;
 
 impl Finger {
@@ -146,7 +146,7 @@ impl Finger {
     }
 
     /// Returns the springs between finger and jaw at the RCC; `side` as in [`Pad::geoms`].
-    pub fn mounted(&self, side: f64) -> Springs {
+    pub fn jaw_springs(&self, side: f64) -> Springs {
         let springs = self.springs();
         match &self.coupling {
             None => Springs::Axes(springs.map(Some)),
@@ -161,9 +161,9 @@ impl Finger {
 /// Radius of gyration of a finger about its centre of mass, m: that of a rod of 70 mm.
 const GYRATION: f64 = 20.0 * MM;
 
-/// Returns the mass properties of a finger, in its frame. The centre of mass is placed on its axis at the RCC: 2 g
-/// do not matter, but a centre far from the joint would couple the springs in the engine and slow
-/// its convergence. `side` as in [`Pad::geoms`].
+/// Returns the mass properties of a finger, in its frame. The centre of mass is placed at the RCC: a finger of 2 g has
+/// negligible inertia, but a centre of mass far from the joint would couple the springs in the engine and slow its
+/// convergence. `side` as in [`Pad::geoms`].
 pub fn inertia(finger: &Finger, side: f64) -> Inertia {
     Inertia {
         mass: finger.mass,
@@ -179,16 +179,16 @@ mod tests {
 
     #[test]
     fn the_default_is_the_papers_finger() {
-        let finger = Finger::new(2e3, 4e4).shaped(&FingerModel::default(), f64::NAN);
+        let finger = Finger::new(2e3, 4e4).with_model(&FingerModel::default(), f64::NAN);
         assert_eq!(finger, Finger::new(2e3, 4e4));
-        assert!(matches!(finger.mounted(1.0), Springs::Axes(_)));
+        assert!(matches!(finger.jaw_springs(1.0), Springs::Axes(_)));
     }
 
     #[test]
     fn the_remote_centre_moves_with_the_infill_direction() {
         let rcc = Rcc::ByDirection { at_0_deg: 21.0 * MM, per_deg: -0.1 * MM };
         let model = FingerModel { rcc: Some(rcc), ..FingerModel::default() };
-        assert!((Finger::new(2e3, 4e4).shaped(&model, 30.0).rcc - 18.0 * MM).abs() < 1e-15);
+        assert!((Finger::new(2e3, 4e4).with_model(&model, 30.0).rcc - 18.0 * MM).abs() < 1e-15);
     }
 
     /// Turned by 180 degrees about z, a push in y that turned about z turns the other way.
@@ -214,7 +214,7 @@ mod tests {
     fn a_coupled_finger_keeps_the_damping_of_its_springs() {
         let coupling = Coupling::new([(1, 3, 0.5)]);
         let finger = Finger { coupling, ..Finger::new(2e3, 4e4) };
-        let Springs::Coupled { stiffness, damping: found } = finger.mounted(-1.0) else {
+        let Springs::Coupled { stiffness, damping: found } = finger.jaw_springs(-1.0) else {
             panic!("coupled")
         };
         let damping = finger.springs().map(|Spring { damping, .. }| damping);

@@ -1,4 +1,4 @@
-//! Models of the springs of a finger that were not measured: of the paper, or computed from the ribs.
+//! Models of the unmeasured springs of a finger: as in the paper, or computed from the ribs.
 
 use super::Finger;
 use super::computed::{self, Overrides};
@@ -10,17 +10,17 @@ use crate::task::finger::Coupling;
 use finray::FingerError;
 use finray::mechanics::{FingerStiffness, StiffnessCache};
 use input::units::MM;
-pub use parameters::numbers::{CENTRE as RCC_KEY, TILTING as TILTING_KEY};
+pub use parameters::numbers::{RCC_KEY, TILTING_KEY};
 use serde::{Deserialize, Serialize};
 
-/// A finger model by its name.
+/// Name of a finger model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FingerModelKind {
-    /// One remote centre (21 mm) and tilting stiffness (2 N m/rad) for all, springs at the centre
+    /// Remote centre at 21 mm, tilting stiffness 2 N m/rad; the measured stiffness acts at the centre
     #[default]
     Paper,
-    /// Both from the ribs of each design, its measured stiffness at the pad
+    /// Remote centre and tilting stiffness from the ribs; the measured stiffness acts at the pad
     Computed,
 }
 
@@ -34,16 +34,16 @@ impl FingerModelKind {
     }
 }
 
-/// Source of the fingers of designs.
+/// Finger model, which builds the fingers of designs.
 #[derive(Debug)]
 pub enum FingerSource {
-    /// As the paper models them: the measured springs sit at one remote centre.
+    /// Model of the paper: the measured springs act at one remote centre.
     Paper,
-    /// Computed from their ribs.
+    /// Computed from the ribs.
     Computed(Box<ComputedFingers>),
 }
 
-/// Fingers computed from a finger file.
+/// Model that computes fingers from a finger file.
 #[derive(Debug)]
 pub struct ComputedFingers {
     /// File of shape and material.
@@ -53,8 +53,8 @@ pub struct ComputedFingers {
 
 /// Source of a finger's remote centre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum CentreFrom {
-    /// The finger source itself.
+pub enum CentreSource {
+    /// Finger model.
     Model,
     /// `rcc_mm` of the task file.
     TaskFile,
@@ -63,7 +63,7 @@ pub enum CentreFrom {
 }
 
 impl FingerSource {
-    /// Returns the name of the source.
+    /// Returns the name of the model.
     pub fn kind(&self) -> FingerModelKind {
         match self {
             FingerSource::Paper => FingerModelKind::Paper,
@@ -71,9 +71,8 @@ impl FingerSource {
         }
     }
 
-    /// Returns the finger of a design on a task with the predicted stiffness at its pad (of the paper's model, at
-    /// its centre).
-    /// The caller sets its other numbers, except remote centre and tilting stiffness.
+    /// Returns the finger of a design on a task with the predicted stiffness, at the pad or, in the paper's model, at
+    /// the remote centre. The caller sets the other numbers of the design, except remote centre and tilting stiffness.
     ///
     /// # Errors
     /// If the finger cannot be printed, or cannot have this stiffness.
@@ -88,7 +87,7 @@ impl FingerSource {
         match self {
             FingerSource::Paper => {
                 let finger = Finger::new(at_pad.compliance.mean, at_pad.assembly.mean);
-                let finger = finger.shaped(&task.finger, direction);
+                let finger = finger.with_model(&task.finger, direction);
                 Ok(Finger { rcc: rcc.unwrap_or(finger.rcc), ..finger })
             }
             FingerSource::Computed(fingers) => {
@@ -99,9 +98,9 @@ impl FingerSource {
         }
     }
 
-    /// Returns an example of such a finger, to check whether an engine supports it.
-    pub fn any(&self, task: &Task) -> Finger {
-        let finger = Finger::new(1.0, 1.0).shaped(&task.finger, 0.0);
+    /// Returns an example finger of the model, to check whether an engine supports it.
+    pub fn example(&self, task: &Task) -> Finger {
+        let finger = Finger::new(1.0, 1.0).with_model(&task.finger, 0.0);
         match self {
             FingerSource::Paper => finger,
             FingerSource::Computed(_) => Finger { coupling: Coupling::new([]), ..finger },
@@ -110,12 +109,12 @@ impl FingerSource {
 }
 
 impl ComputedFingers {
-    /// Creates the fingers of a file, with its rib phase.
+    /// Creates the model of a finger file, with an empty cache.
     pub fn new(file: FingerFile) -> Self {
         ComputedFingers { file, cache: StiffnessCache::default() }
     }
 
-    /// Returns the stiffness of a design computed from its ribs, each once. An infill of NaN is an error.
+    /// Returns the stiffness of a design, computed from its ribs and cached. An infill of NaN is an error.
     ///
     /// # Errors
     /// If the finger cannot be printed.
@@ -137,7 +136,7 @@ impl ComputedFingers {
         // Pad and roof are glued to the part: `docs/notes/finger.md`.
         let mut plane = computed.pad_and_roof;
         if design.0.keys().any(|key| is_shape(key)) {
-            // It was not measured: the correction by measured fingers must not make its centre impossible.
+            // No such finger was measured: the measured stiffness of another shape must not make its centre impossible.
             plane = plane.corrected(at_pad.compliance.mean, at_pad.assembly.mean).unwrap_or(plane);
         }
         let (printed, across) = (&self.file.with(design)?, computed.cross.matrix);

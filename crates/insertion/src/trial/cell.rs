@@ -3,7 +3,7 @@
 //! Frames: the world is the task frame. The flange frame is the TCP. The plug
 //! stands upright at its pick-up place, straight above the start of the search.
 
-use crate::arm::Reduced;
+use crate::arm::ReducedArm;
 use crate::finger::{self, Finger};
 use crate::robot::{Flange, Mounted, Servo};
 use crate::task::{Latch, PadTorsion, Part, Task, geometry};
@@ -129,7 +129,7 @@ pub fn add_flange(scene: &mut Scene, model: &Flange, tcp: Pose) -> (BodyId, Body
 }
 
 /// Adds the damper between flange and world of an arm without velocity feed-forward; axes of the tilted TCP.
-fn add_brake(scene: &mut Scene, arm: &Reduced, flange: BodyId, tcp: Pose) {
+fn add_brake(scene: &mut Scene, arm: &ReducedArm, flange: BodyId, tcp: Pose) {
     let Some(damper) = arm.brake() else { return };
     let base = scene.body(body("base", Motion::Fixed, tcp, Vec::new()));
     let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), arm.tilt);
@@ -236,7 +236,7 @@ fn add_hand(
     let geoms = finger.pad.geoms(task.grip.shoulder(), side);
     let body = scene.body(body(format!("finger {label}"), motion, pose, geoms));
     let rcc = Pose::from_parts(Translation3::from(finger.centre(side).coords), nalgebra::one());
-    let springs = finger.mounted(side);
+    let springs = finger.jaw_springs(side);
     scene.joint(joint(format!("springs {label}"), [jaw, body], [rcc; 2], springs));
     Hand { jaw, finger: body, slide, zero_y }
 }

@@ -39,7 +39,7 @@ impl EngineRig {
     /// If the robot or the engine does not support the task.
     pub fn new(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<Self, RigError> {
         // Whether a scene is supported does not depend on the stiffness of the fingers.
-        let any = Finger::new(N_PER_MM, N_PER_MM).shaped(&task.finger, 0.0);
+        let any = Finger::new(N_PER_MM, N_PER_MM).with_model(&task.finger, 0.0);
         Self::with(task, robot, &any, engine)
     }
 

@@ -108,7 +108,7 @@ pub fn end(end: Option<Outcome>) -> String {
 
 /// Returns the success rate of a design under drawn errors, and its failures.
 pub fn success(success: &SuccessRate) -> [String; 2] {
-    let rate = success.at_most().map_or("none".to_owned(), |rate| format!("{rate:.3}"));
+    let rate = success.max_rate().map_or("none".to_owned(), |rate| format!("{rate:.3}"));
     let [low, high] = success.interval();
     let [c1, c2, c3, c4] = success.failure_counts;
     let measured = match success.raced() {

@@ -11,7 +11,7 @@ use ask_tell::statistics::{mean, spearman};
 use calibration::published::{self, Origin};
 use insertion::evaluation::Window;
 use insertion::evaluation::taught::{Shifted, teach};
-use insertion::evaluation::template::Impossible;
+use insertion::evaluation::template::DesignError;
 use insertion::evaluation::tolerance::{self, Search};
 use insertion::finger::model::FingerSource;
 use insertion::outcome::{FailureClass, Outcome};
@@ -164,7 +164,7 @@ pub fn windows(
     search: Search,
     tasks: &[Task],
     designs: &[Measurement],
-) -> Result<Vec<TaskTable>, Impossible> {
+) -> Result<Vec<TaskTable>, DesignError> {
     let window = |task: &Task, design: &Measurement| {
         let Measurement { compliance, assembly, density_percent, direction_deg, .. } = *design;
         let infill = Design::infill(density_percent, direction_deg);
@@ -179,7 +179,7 @@ pub fn windows(
     };
     let table = |task: &Task| {
         let windows = designs.par_iter().map(|design| window(task, design));
-        Ok(TaskTable::new(&task.name, windows.collect::<Result<Vec<_>, Impossible>>()?))
+        Ok(TaskTable::new(&task.name, windows.collect::<Result<Vec<_>, DesignError>>()?))
     };
     tasks.par_iter().map(table).collect()
 }

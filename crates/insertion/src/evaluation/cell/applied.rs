@@ -2,7 +2,7 @@
 
 use super::Priors;
 use crate::evaluation::evaluator::{Evaluator, Specimen};
-use crate::evaluation::template::{Impossible, Template};
+use crate::evaluation::template::{DesignError, Template};
 use crate::finger::file::is_shape;
 use crate::finger::model::FingerSource;
 use crate::robot::{Drive, Robot};
@@ -195,7 +195,7 @@ impl Evaluator {
         template: &Template,
         (design, given): (&Design, Option<Prediction>),
         values: &[(&Parameter, f64)],
-    ) -> Result<(Specimen, Robot), Impossible> {
+    ) -> Result<(Specimen, Robot), DesignError> {
         let mut set = design.clone();
         for (parameter, value) in values {
             let path = &parameter.path;
@@ -222,7 +222,7 @@ impl Evaluator {
         specimen: &Specimen,
         cell: &Priors,
         values: &[f64],
-    ) -> Result<(Specimen, Robot), Impossible> {
+    ) -> Result<(Specimen, Robot), DesignError> {
         let Specimen { task, design, stiffness, .. } = specimen;
         let Some(template) = self.templates.iter().find(|own| own.task.name == task.name) else {
             return Ok(DESIGN.fail(&task.name, "unknown task of this evaluator")?);

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// Aggregation of the values of several tasks. They are not scaled first: in a mean, tasks with wide
-/// windows have more influence than tasks with narrow ones.
+/// Aggregation of the values of several tasks. The values are not scaled: in a mean, tasks with wide windows have more
+/// influence than tasks with narrow ones.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub enum Aggregate {
@@ -19,7 +19,7 @@ pub enum Aggregate {
     Weighted(Vec<f64>),
 }
 
-/// An [`Aggregate`] by its name, without weights.
+/// Name of an [`Aggregate`], without its weights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum AggregateKind {
     /// The worst value
@@ -34,13 +34,11 @@ impl Aggregate {
     /// Returns the weighted mean over a number of tasks.
     ///
     /// # Errors
-    /// If there is not one weight per task, or one is out of range.
+    /// If the numbers of weights and tasks differ, or a weight is out of range.
     pub fn weighted(weights: Vec<f64>, tasks: usize) -> Result<Self, String> {
-        if weights.len() != tasks {
-            return Err(format!(
-                "there are {} weights for {tasks} tasks; give one for each",
-                weights.len()
-            ));
+        let count = weights.len();
+        if count != tasks {
+            return Err(format!("there are {count} weights for {tasks} tasks; give one for each"));
         }
         match weights.iter().find(|weight| !(1e-6..=1e6).contains(*weight)) {
             Some(bad) => {
@@ -52,20 +50,20 @@ impl Aggregate {
 
     /// Returns the aggregate of the values of at least one task; `sense` is 1 to maximize, -1 to minimize.
     pub fn of(&self, sense: f64, values: &[f64]) -> f64 {
-        let mean = |weights: &mut dyn Iterator<Item = f64>| {
+        let mean = |weights: &[f64]| {
             let terms = values.iter().zip(weights);
-            let (sum, whole) =
-                terms.fold((0.0, 0.0), |(sum, whole), (v, w)| (sum + v * w, whole + w));
-            sum / whole
+            let (sum, total) =
+                terms.fold((0.0, 0.0), |(sum, total), (v, w)| (sum + v * w, total + w));
+            sum / total
         };
         match self {
-            // A mean of one would differ from it in the last digit.
+            // A weighted mean of a single value could differ from it in the last digit.
             _ if values.len() == 1 => values[0],
             Aggregate::Min => {
                 sense * values.iter().map(|value| sense * value).fold(f64::INFINITY, f64::min)
             }
-            Aggregate::Mean => mean(&mut std::iter::repeat(1.0)),
-            Aggregate::Weighted(weights) => mean(&mut weights.iter().copied()),
+            Aggregate::Mean => mean(&vec![1.0; values.len()]),
+            Aggregate::Weighted(weights) => mean(weights),
         }
     }
 }
@@ -95,7 +93,7 @@ impl FromStr for Aggregate {
                 let tasks = weights.len();
                 Aggregate::weighted(weights, tasks)
             }
-            _ => Err(format!("`{text}` is not min, mean or weighted W,W..")),
+            _ => Err(format!("unknown aggregate `{text}`; available: min, mean, weighted W,W..")),
         }
     }
 }

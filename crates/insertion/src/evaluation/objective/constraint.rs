@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// Side of the limit that is feasible.
+/// Type of the limit of a constraint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Bound {
-    /// `<=`, an upper limit.
+    /// Upper limit, `<=`.
     AtMost,
-    /// `>=`, a lower limit.
+    /// Lower limit, `>=`.
     AtLeast,
 }
 
@@ -21,14 +21,14 @@ pub enum Bound {
 pub struct Constraint {
     /// Constrained measure.
     pub measure: Measure,
-    /// Feasible side of the limit.
+    /// Type of the limit.
     pub bound: Bound,
-    /// The limit, in the measure's unit.
+    /// Limit, in the unit of the measure.
     pub limit: f64,
 }
 
 impl Constraint {
-    /// Returns the measure on the task where it is worst; `None` if it has no value on one of them.
+    /// Returns the worst value of the measure over the tasks; `None` if it has no value on a task.
     pub fn worst(&self, tasks: &[&Evaluation]) -> Option<f64> {
         let worse: fn(f64, f64) -> f64 = match self.bound {
             Bound::AtMost => f64::max,
@@ -39,25 +39,25 @@ impl Constraint {
         values?.into_iter().reduce(worse)
     }
 
-    /// Returns the worst value in words: `31.2 N, violates peak-force<=30`.
+    /// Describes the worst value: `31.2 N, violates peak-force<=30`.
     pub fn words(&self, tasks: &[&Evaluation]) -> String {
         match self.worst(tasks) {
             None => format!("no value for {self}"),
             Some(value) => {
-                let verb = if self.violation(value) <= 0.0 { "keeps" } else { "violates" };
+                let verb = if self.violation(value) <= 0.0 { "satisfies" } else { "violates" };
                 format!("{}, {verb} {self}", self.measure.show(value))
             }
         }
     }
 
-    /// Returns the violation by a value as a share of the limit (of 1 if that is 0), so that constraints in
-    /// different units can be added; 0 or below if feasible.
+    /// Returns the excess of a value over the limit as a share of the limit (of 1 if the limit is 0), so that
+    /// constraints in different units can be added; 0 or below if feasible.
     pub fn violation(&self, value: f64) -> f64 {
-        let beyond = match self.bound {
+        let excess = match self.bound {
             Bound::AtMost => value - self.limit,
             Bound::AtLeast => self.limit - value,
         };
-        let share = if self.limit == 0.0 { beyond } else { beyond / self.limit.abs() };
+        let share = if self.limit == 0.0 { excess } else { excess / self.limit.abs() };
         // The share could overflow with a limit near 0.
         share.clamp(f64::MIN, f64::MAX)
     }
@@ -80,22 +80,21 @@ impl FromStr for Constraint {
             .into_iter()
             .find_map(|(sign, bound)| Some((text.split_once(sign)?, bound)));
         let Some(((name, limit), bound)) = parts else {
-            return Err("a constraint is MEASURE<=NUMBER or MEASURE>=NUMBER, as in \
-                        'peak-force<=30'"
-                .to_owned());
+            return Err(format!(
+                "`{text}` is not MEASURE<=NUMBER or MEASURE>=NUMBER; example: 'peak-force<=30'"
+            ));
         };
-        let measure: Measure = name.trim().parse()?;
-        match limit.trim().parse() {
-            // Violations are shares of the limit.
+        let (measure, limit) = (name.trim().parse::<Measure>()?, limit.trim());
+        match limit.parse() {
+            // Violations are divided by the limit, which therefore must not be tiny.
             Ok(limit) if limit == 0.0 || (1e-9..=1e9).contains(&f64::abs(limit)) => {
                 Ok(Constraint { measure, bound, limit })
             }
-            Ok(limit) if f64::is_finite(limit) => {
-                Err("a limit is 0 or of a size between 1e-9 and 1e9".to_owned())
-            }
+            Ok(limit) if f64::is_finite(limit) => Err(format!(
+                "limit {limit:?} is out of range; give 0 or a size between 1e-9 and 1e9"
+            )),
             _ => Err(format!(
-                "`{}` is not a number; give the limit of {} without its unit",
-                limit.trim(),
+                "`{limit}` is not a number; give the limit of {} without its unit",
                 measure.label()
             )),
         }

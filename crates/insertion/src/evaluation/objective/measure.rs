@@ -1,4 +1,4 @@
-//! Measures: the numbers of an evaluation, and their units.
+//! Measures: quantities of an evaluation that can be optimized or constrained, and their units.
 
 use crate::evaluation::Evaluation;
 use crate::outcome::Outcome;
@@ -6,16 +6,16 @@ use ask_tell::gp::DEFAULT_NOISE_FLOOR;
 use std::fmt;
 use std::str::FromStr;
 
-/// Number of an evaluation.
+/// Quantity of an evaluation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measure {
     /// Width of the tolerance window, mm.
     Range,
-    /// Twice the smaller side of the window, mm: for errors of the robot in both directions.
+    /// Twice the smaller side of the window, mm: for robot errors in both directions.
     CentredRange,
     /// Share of the trials under sampled errors that insert, 0 to 1.
     SuccessRate,
-    /// Statistic of the range under sampled errors, mm.
+    /// Statistic of the ranges under sampled errors, mm.
     RobustRange,
     /// Largest contact force between plug and socket over the inserted trials, N.
     PeakForce,
@@ -24,7 +24,7 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// All measures in the order of their names in messages.
+    /// All measures, in the order of messages.
     pub const ALL: [Measure; 6] = [
         Measure::Range,
         Measure::CentredRange,
@@ -34,14 +34,14 @@ impl Measure {
         Measure::Slip,
     ];
 
-    /// Returns its name on the command line and in study files.
+    /// Returns the name on the command line and in study files.
     pub fn name(self) -> &'static str {
         let names =
             ["range", "centred-range", "success-rate", "robust-range", "peak-force", "slip"];
         names[self as usize]
     }
 
-    /// Returns its unit for text and axes; empty for a share.
+    /// Returns the unit for text and axes; empty for a share.
     pub fn unit(self) -> &'static str {
         match self {
             Measure::SuccessRate => "",
@@ -50,7 +50,7 @@ impl Measure {
         }
     }
 
-    /// Returns its unit as the suffix of a key: `mm`, `n` or `share`.
+    /// Returns the unit as the suffix of a key: `mm`, `n` or `share`.
     pub fn key(self) -> &'static str {
         match self {
             Measure::SuccessRate => "share",
@@ -64,13 +64,13 @@ impl Measure {
         if matches!(self, Measure::PeakForce | Measure::Slip) { -1.0 } else { 1.0 }
     }
 
-    /// Returns whether it is measured under sampled errors.
-    pub fn is_drawn(self) -> bool {
+    /// Returns whether the measure is taken under sampled errors.
+    pub fn needs_draws(self) -> bool {
         matches!(self, Measure::SuccessRate | Measure::RobustRange)
     }
 
-    /// Returns the standard deviation of its rounding, in its unit: ranges have steps of 0.1 mm, success rates of
-    /// one trial, forces and slips none.
+    /// Returns the standard deviation of the rounding error, in the unit of the measure: ranges have steps of 0.1 mm,
+    /// success rates steps of one trial; forces and slips are not rounded.
     pub fn rounding(self, trials: u32) -> f64 {
         match self {
             Measure::PeakForce | Measure::Slip => 0.0,
@@ -79,18 +79,19 @@ impl Measure {
         }
     }
 
-    /// Returns its value in its unit; `None` if it was not measured or the nominal start diverges. If the nominal
-    /// start fails, the range is 0 and there is neither force nor slip. A window that ends by divergence counts up
-    /// to there. A raced success rate is its upper bound.
+    /// Returns the value in the unit of the measure; `None` if it was not measured or the nominal start diverges. If
+    /// the nominal start fails, the range is 0 and there is neither force nor slip. A diverged trial ends a window like
+    /// a failed one. The success rate of a lost race is its upper bound.
     pub fn value(self, evaluation: &Evaluation) -> Option<f64> {
         let value = match self {
-            Measure::SuccessRate => evaluation.success.as_ref()?.at_most(),
+            Measure::SuccessRate => evaluation.success.as_ref()?.max_rate(),
             Measure::RobustRange => evaluation.robust.as_ref()?.value_mm,
             _ => self.of_window(evaluation),
         };
         value.filter(|value| value.is_finite())
     }
 
+    /// Returns the value of a measure of the window search.
     fn of_window(self, evaluation: &Evaluation) -> Option<f64> {
         let window = &evaluation.window;
         match (window.nominal, self) {

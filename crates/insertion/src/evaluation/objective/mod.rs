@@ -143,7 +143,7 @@ impl Goals {
 
     /// Returns whether trials or windows under sampled errors are needed.
     pub fn needs_draws(&self) -> bool {
-        self.measures().any(Measure::is_drawn)
+        self.measures().any(Measure::needs_draws)
     }
 
     fn measures(&self) -> impl Iterator<Item = Measure> {

@@ -71,7 +71,7 @@ pub fn evaluate(
     plan: &Plan,
     cells: &[Drawn],
 ) -> Evaluation {
-    let mut evaluation = tolerance::evaluate_in(rig, grasp, search);
+    let mut evaluation = tolerance::evaluate_grasp(rig, grasp, search);
     let drawn = |draws: &[Draw]| -> Vec<_> {
         let one = |(i, draw): (usize, &Draw)| {
             let own = cells.get(i).map(|(rig, finger)| (&**rig, *finger));
@@ -99,7 +99,8 @@ fn success_rate(drawn: &[Insertion], confidence: f64, race: Option<&Race>) -> Su
 
 /// Returns the ranges of the windows of all draws. Drawn offsets are ignored, since a window spans the offsets.
 fn robust_range(drawn: &[Insertion], settings: &RobustSettings) -> RobustRange {
-    let window = |&(rig, grasp, _): &Insertion| tolerance::evaluate_in(rig, grasp, settings.search);
+    let window =
+        |&(rig, grasp, _): &Insertion| tolerance::evaluate_grasp(rig, grasp, settings.search);
     let found: Vec<Evaluation> = drawn.par_iter().map(window).collect();
     let valid = found.iter().filter(|draw| draw.window.nominal != Outcome::Diverged);
     let ranges_mm: Vec<f64> = valid.map(|draw| draw.window.range_mm()).collect();
@@ -164,7 +165,7 @@ mod tests {
         assert!(below > 5 && above > 20, "{below} and {above}");
         assert_eq!(found.failure_counts, [0, above, below, 0]);
         assert_eq!((found.inserted, found.counted()), (300 - below - above, 300));
-        assert_eq!((found.failed_draws.len() as u32, found.spared), (below + above, 0));
+        assert_eq!((found.failed_draws.len() as u32, found.skipped), (below + above, 0));
     }
 
     #[test]

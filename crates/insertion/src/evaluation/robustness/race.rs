@@ -33,7 +33,7 @@ impl Race {
 
     /// Returns whether the bar is out of reach even if all remaining draws insert.
     pub fn is_out_of_reach(&self, success: &SuccessRate) -> bool {
-        success.at_most().is_some_and(|rate| rate < self.bar_share)
+        success.max_rate().is_some_and(|rate| rate < self.bar_share)
     }
 }
 
@@ -45,7 +45,7 @@ pub fn run(
     race: Option<&Race>,
     outcome: impl Fn(u32) -> Outcome + Sync,
 ) -> SuccessRate {
-    let mut success = SuccessRate { confidence, spared: draws, ..SuccessRate::default() };
+    let mut success = SuccessRate { confidence, skipped: draws, ..SuccessRate::default() };
     let order = race.map_or((0..draws).collect(), |race| race.order(draws));
     let at_a_time = race.map_or(order.len(), |_| rayon::current_num_threads());
     'race: for draws in order.chunks(at_a_time.max(1)) {

@@ -1,10 +1,11 @@
-//! Co-design: parameters of a design beside the infill.
+//! Templates of tasks, for designs that set other parameters besides the infill (co-design).
 //!
 //! A key of a space is `infill_density_percent`, `infill_direction_deg`, or a path to one number:
 //!
 //! - `task.`, then the path in the task file as described at [`NumberFile`]
 //!   (`task.strategy.phase.side.speed_mm_per_s`, `task.strategy.phase.side.move_mm.y`);
-//! - `finger.`, then a number of the finger that the files make (`finger.rcc_mm`).
+//! - `finger.`, then a number of the finger model (`finger.rcc_mm`) or of the finger file
+//!   (`finger.skin.thickness_mm`).
 //!
 //! Values are in the unit of the key and are subject to the checks of the task.
 
@@ -26,7 +27,7 @@ use input::{Document, InputError, Place, Placed};
 use parameters::Path;
 use parameters::numbers::{self, Kind, paths};
 
-/// Task file with the numbers that a design may set.
+/// Task file whose numbers a design may set.
 #[derive(Debug, Clone)]
 pub struct Template {
     /// Numbers of the file, by their keys.
@@ -37,11 +38,11 @@ pub struct Template {
 
 /// Error of a design that cannot be simulated.
 #[derive(Debug, thiserror::Error)]
-pub enum Impossible {
+pub enum DesignError {
     /// An unknown path or a value out of range.
     #[error(transparent)]
     Value(#[from] InputError),
-    /// A finger that cannot be printed, or not with this stiffness.
+    /// A finger that cannot be printed or modelled.
     #[error(transparent)]
     Finger(#[from] FingerError),
     /// A task that the robot or the engine does not support.
@@ -49,16 +50,17 @@ pub enum Impossible {
     Rig(#[from] RigError),
 }
 
-impl Placed for Impossible {
+impl Placed for DesignError {
     fn place(&self) -> Place {
         match self {
-            Impossible::Value(error) => error.place(),
-            Impossible::Finger(error) => error.place(),
-            Impossible::Rig(_) => Place::default(),
+            DesignError::Value(error) => error.place(),
+            DesignError::Finger(error) => error.place(),
+            DesignError::Rig(_) => Place::default(),
         }
     }
 }
 
+/// Returns whether a key sets the infill.
 pub(super) fn is_infill(key: &str) -> bool {
     [DENSITY_KEY, DIRECTION_KEY].contains(&key)
 }
@@ -74,7 +76,7 @@ impl Template {
         Ok(Template { numbers: NumberFile::read("task", &document)?, task })
     }
 
-    /// Returns the task with the values of a design, and its finger with this stiffness at the pad.
+    /// Returns the task with the values of a design, and its finger with the given stiffness at the pad.
     ///
     /// # Errors
     /// If a key does not exist, a value is invalid, or the finger cannot be built.
@@ -83,19 +85,19 @@ impl Template {
         design: &Design,
         fingers: &FingerSource,
         at_pad: &Prediction,
-    ) -> Result<(Task, Finger), Impossible> {
+    ) -> Result<(Task, Finger), DesignError> {
         let (of_finger, of_task): (Vec<_>, Vec<_>) = design
             .0
             .iter()
             .map(|(key, &value)| (key.as_str(), value))
             .filter(|(key, _)| !is_infill(key) && !is_shape(key))
             .partition(|(key, _)| Path::new(*key).is_ok_and(|path| path.kind() == Kind::Finger));
-        let shaped = design.0.keys().find(|key| is_shape(key));
-        if let (FingerSource::Paper, Some(key)) = (fingers, shaped) {
+        let shape = design.0.keys().find(|key| is_shape(key));
+        if let (FingerSource::Paper, Some(key)) = (fingers, shape) {
             let problem = "is a number of a printed finger; it requires --finger-model computed";
             return Ok(DESIGN.fail(key, problem)?);
         }
-        let task = self.changed(&of_task)?;
+        let task = self.task_with(&of_task)?;
         let direction = design.get(DIRECTION_KEY);
         if task.finger.rcc.is_some_and(|rcc| rcc.varies()) && direction.is_none() {
             let problem = "is missing: the task's finger.rcc_mm depends on it";
@@ -113,7 +115,8 @@ impl Template {
         Ok((task, finger))
     }
 
-    fn changed(&self, of_task: &[(&str, f64)]) -> Result<Task, InputError> {
+    /// Returns the task with the given values.
+    fn task_with(&self, of_task: &[(&str, f64)]) -> Result<Task, InputError> {
         if of_task.is_empty() {
             return Ok(self.task.clone());
         }
@@ -123,9 +126,9 @@ impl Template {
         let table = self.numbers.with(of_task.iter().copied(), &elsewhere)?;
         let changed = Task::from_table(table, &self.numbers.file);
         changed.or_else(|error| {
-            // The file itself is valid.
-            let of_error = |path: &&str| path.strip_prefix("task.") == error.key.as_deref();
-            match of_task.iter().map(|(path, _)| *path).find(of_error) {
+            // The file itself is valid, so a value of the design causes the error.
+            let is_cause = |path: &&str| path.strip_prefix("task.") == error.key.as_deref();
+            match of_task.iter().map(|(path, _)| *path).find(is_cause) {
                 Some(path) => DESIGN.fail(path, error.problem),
                 None => Err(error),
             }
@@ -163,7 +166,7 @@ mod tests {
         Finger::new(2e3, 4e4)
     }
 
-    fn apply(values: &[(&str, f64)]) -> Result<(Task, Finger), Impossible> {
+    fn apply(values: &[(&str, f64)]) -> Result<(Task, Finger), DesignError> {
         let values = values.iter().map(|&(key, value)| (key.to_owned(), value));
         let design = Design(BTreeMap::from_iter(values));
         usb().apply(&design, &FingerSource::Paper, &at_pad())

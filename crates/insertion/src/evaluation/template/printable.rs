@@ -1,7 +1,7 @@
 //! Checks that every finger of a space can be printed and has springs, before the first one is simulated.
 
 use super::space::{each_corner, each_extreme};
-use super::{Impossible, is_infill};
+use super::{DesignError, is_infill};
 use crate::evaluation::evaluator::Evaluator;
 use crate::finger::file::{FingerFile, infill, is_shape};
 use crate::finger::model::{FingerSource, RCC_KEY, TILTING_KEY};
@@ -46,7 +46,7 @@ pub fn check_springs(evaluator: &Evaluator, space: &Space, file: &str) -> Result
     each_corner(Check { file }, &first.key, all, "has no springs", possible)
 }
 
-fn springs(evaluator: &Evaluator, design: &Design) -> Result<(), Impossible> {
+fn springs(evaluator: &Evaluator, design: &Design) -> Result<(), DesignError> {
     let stiffness = evaluator.predict(design)?;
     for template in &evaluator.templates {
         evaluator.fingers.make(&stiffness, design, &template.task)?;

@@ -1,6 +1,6 @@
-//! Checks that every design of a space can be simulated, before the first one is.
+//! Checks, before a study starts, that every design of a space can be simulated.
 
-use super::{Impossible, Template, is_infill};
+use super::{DesignError, Template, is_infill};
 use crate::finger::file::is_shape;
 use crate::finger::model::FingerSource;
 use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space, Variable, corners, is_of_task};
@@ -10,37 +10,37 @@ use crate::trial::run::RigError;
 use input::units::MM;
 use input::{Check, InputError};
 
-/// Returns a space without the speeds that the connectors do not allow (`limits.speed_mm_per_s`).
+/// Returns a space whose speeds do not exceed the limits of the connectors (`limits.speed_mm_per_s`).
 pub fn within_limits(mut space: Space, templates: &[Template]) -> Space {
     let limits = templates.iter().filter_map(|template| template.task.limits.speed);
-    let most = limits.fold(f64::INFINITY, f64::min) / MM;
+    let limit = limits.fold(f64::INFINITY, f64::min) / MM;
     let speeds = |variable: &&mut Variable| {
         is_of_task(&variable.key) && variable.key.ends_with(".speed_mm_per_s")
     };
     for variable in space.parameters.iter_mut().filter(speeds) {
-        if variable.low <= most && most < variable.high {
+        if variable.low <= limit && limit < variable.high {
             let levels = (0..variable.levels()).map(|level| variable.value(level));
             variable.high =
-                levels.take_while(|&speed| speed <= most).last().unwrap_or(variable.low);
+                levels.take_while(|&speed| speed <= limit).last().unwrap_or(variable.low);
         }
     }
     space
 }
 
-/// Checks the extreme values of variables, each alone.
+/// Checks the extreme values of variables one at a time with `check_design`.
 ///
 /// # Errors
-/// The first value that is impossible.
+/// The first value that fails.
 pub(super) fn each_extreme<'a>(
     check: Check<'_>,
     variables: impl Iterator<Item = &'a Variable>,
-    possible: impl Fn(&Design) -> Result<(), Impossible>,
+    check_design: impl Fn(&Design) -> Result<(), DesignError>,
 ) -> Result<(), InputError> {
     for variable in variables {
         for value in variable.extremes() {
-            match possible(&Design::default().with(&variable.key, value)) {
+            match check_design(&Design::default().with(&variable.key, value)) {
                 Ok(()) => (),
-                Err(Impossible::Value(InputError { key: Some(key), problem, .. }))
+                Err(DesignError::Value(InputError { key: Some(key), problem, .. }))
                     if variable.key == key =>
                 {
                     return check.fail(&key, problem);
@@ -54,56 +54,58 @@ pub(super) fn each_extreme<'a>(
     Ok(())
 }
 
-/// Checks the combinations of extreme values ([`corners`]); an error is about `key` and contains `words`.
+/// Checks the combinations of extreme values ([`corners`]) with `check_design`.
 ///
 /// # Errors
-/// If a combination is impossible; the error is about the first one.
+/// The first combination that fails, as an error of `key`; `words` state the failure.
 pub(super) fn each_corner<'a>(
     check: Check<'_>,
     key: &str,
     (variables, most): (impl Iterator<Item = &'a Variable>, usize),
     words: &str,
-    possible: impl Fn(&Design) -> Result<(), Impossible>,
+    check_design: impl Fn(&Design) -> Result<(), DesignError>,
 ) -> Result<(), InputError> {
     for design in corners(variables, most) {
-        if let Err(error) = possible(&design) {
+        if let Err(error) = check_design(&design) {
             return check.fail(key, format!("{design} {words}: {error}"));
         }
     }
     Ok(())
 }
 
-/// Check that robot and engine support a task.
-pub type Fits<'a> = dyn Fn(&Task) -> Result<(), RigError> + 'a;
+/// Check whether robot and engine support a task.
+pub type TaskCheck<'a> = dyn Fn(&Task) -> Result<(), RigError> + 'a;
 
-const COMBINATIONS: usize = 4096;
+/// Largest number of combinations of extreme values to check.
+const MAX_CORNERS: usize = 4096;
 
 impl Template {
-    /// Checks a space read from `file`: it must have the infill, every other key must exist, and no combination
-    /// of extremes may be impossible; `fits` checks robot and engine.
+    /// Checks a space read from `file`: it must contain the infill, all other keys must exist, and all combinations of
+    /// extreme values must be valid; `fits` checks robot and engine.
     ///
-    /// The checks of a task bound single numbers and differences of two, so a space whose
-    /// corners pass has no impossible design; moves may not be zero, so the level nearest to
-    /// zero counts as extreme. With more than 4096 combinations only one value at a time is tried.
+    /// The checks of a task bound single numbers and differences of two numbers, so if the corners of a space are
+    /// valid, all its designs are. Since moves must not be zero, the level nearest to zero counts as extreme. With more
+    /// than 4096 combinations, values are only checked one at a time.
     ///
     /// # Errors
-    /// The first key or combination that is impossible.
-    pub fn check(&self, space: &Space, file: &str, fits: &Fits<'_>) -> Result<(), InputError> {
+    /// The first invalid key or combination.
+    pub fn check(&self, space: &Space, file: &str, fits: &TaskCheck<'_>) -> Result<(), InputError> {
         let check = Check { file };
         let has = |key: &&str| space.parameters.iter().any(|parameter| parameter.key == *key);
         if let Some(missing) = [DENSITY_KEY, DIRECTION_KEY].into_iter().find(|key| !has(key)) {
-            let problem = "is missing: a space must have it; to hold it fixed let low equal high";
+            let problem = "is missing: a space must contain it; to fix it, set low equal to high";
             return check.fail(missing, problem);
         }
         let other = |p: &&Variable| !is_infill(&p.key) && !is_shape(&p.key);
         let parameters = || space.parameters.iter().filter(other);
-        let possible = |design: &Design| self.possible(design, fits);
-        each_extreme(check, parameters(), possible)?;
-        each_corner(check, "parameter", (parameters(), COMBINATIONS), "is impossible", possible)
+        let check_design = |design: &Design| self.check_design(design, fits);
+        each_extreme(check, parameters(), check_design)?;
+        each_corner(check, "parameter", (parameters(), MAX_CORNERS), "is impossible", check_design)
     }
 
-    fn possible(&self, design: &Design, fits: &Fits<'_>) -> Result<(), Impossible> {
-        // The checks do not depend on the stiffness.
+    /// Checks that a design can be simulated.
+    fn check_design(&self, design: &Design, fits: &TaskCheck<'_>) -> Result<(), DesignError> {
+        // The stiffness is arbitrary: the checks do not depend on it.
         let mut design = design.clone();
         design.0.entry(DIRECTION_KEY.to_owned()).or_insert(0.0);
         let (task, _) = self.apply(&design, &FingerSource::Paper, &Prediction::exact(1.0, 1.0))?;

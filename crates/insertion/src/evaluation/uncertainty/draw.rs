@@ -1,4 +1,4 @@
-//! Draws from the distribution.
+//! Random draws of the errors of an insertion.
 
 use super::Errors;
 use crate::finger::Finger;
@@ -11,11 +11,12 @@ use parameters::numbers::{SOCKET_YAW, START_ACROSS, START_TILT};
 use parameters::{Parameter, Path};
 use rand::RngExt;
 
+/// Random stream of all errors except the shift of the start along x.
 const PURPOSE: &str = "errors";
-/// Downward shift of the part in the gripper; never upward.
-const GRASP_LOW: &str = "cell.grasp_low_mm";
-/// A separate stream, so that the other errors keep their values.
+/// Random stream of the shift of the start along x, separate so that the other errors keep their values.
 const PURPOSE_ACROSS: &str = "error of the start along x";
+/// Path of the downward shift of the part in the gripper, 0 or above.
+const GRASP_LOW: &str = "cell.grasp_low_mm";
 
 /// Random errors of one insertion. They do not depend on the design, so that designs are compared under
 /// the same errors (common random numbers).
@@ -23,20 +24,20 @@ const PURPOSE_ACROSS: &str = "error of the start along x";
 pub struct Draw {
     /// Shift of the start along y, m.
     pub offset: f64,
-    /// Deviations of the world from the task file.
+    /// Deviations of the cell from the task file.
     pub conditions: Conditions,
     /// Standard normal deviates of the compliance and the assembly stiffness.
     stiffness: [f64; 2],
-    /// Standard deviations of the stiffness model to one of the draw.
+    /// Spread of the stiffness, in standard deviations of the stiffness model.
     stiffness_sd_factor: f64,
 }
 
-/// Returns `count` draws of a study; draw `i` depends only on the seed and `i`.
+/// Returns `count` draws; draw `i` depends only on the errors, the seed and `i`.
 pub fn draws(errors: &Errors, seed: u64, count: u32) -> Vec<Draw> {
     (0..count).map(|i| draw(errors, seed, u64::from(i))).collect()
 }
 
-/// Returns one draw. All numbers are always drawn: without one error the others keep their values.
+/// Returns one draw. All random numbers are always drawn, so that omitting an error does not change the others.
 fn draw(errors: &Errors, seed: u64, index: u64) -> Draw {
     let mut random = stream(seed, index, PURPOSE);
     let [offset, yaw, compliance, assembly, across]: [f64; 5] =
@@ -63,14 +64,15 @@ fn draw(errors: &Errors, seed: u64, index: u64) -> Draw {
 }
 
 impl Draw {
-    /// Returns the insertion under these errors of the cell, each in the unit of its path, and no others.
-    pub fn under<'a>(errors: impl IntoIterator<Item = (&'a str, f64)>) -> Self {
+    /// Returns the draw with the given errors of the cell, each in the unit of its path; all other errors are 0.
+    pub fn with<'a>(errors: impl IntoIterator<Item = (&'a str, f64)>) -> Self {
         let (conditions, stiffness) = (Conditions::NOMINAL, [0.0; 2]);
         let mut draw = Draw { offset: 0.0, conditions, stiffness, stiffness_sd_factor: 1.0 };
         errors.into_iter().for_each(|(path, value)| draw.set(path, value));
         draw
     }
 
+    /// Sets the error with a path, in the unit of the path.
     fn set(&mut self, path: &str, value: f64) {
         let conditions = &mut self.conditions;
         match path {
@@ -85,18 +87,18 @@ impl Draw {
             GRASP_LOW => conditions.grasp_low = value * MM,
             "cell.compliance_error_sd" => self.stiffness[0] = value,
             "cell.assembly_error_sd" => self.stiffness[1] = value,
-            // A test holds this to the table of numbers.
+            // A test checks that the paths above are those of the table of numbers.
             _ => (),
         }
     }
 
-    /// Returns a grasp by fingers of the predicted stiffness with the errors of this draw.
+    /// Returns the nominal grasp with the errors of this draw; `predicted` is the stiffness of its fingers.
     pub fn grasp<'a>(&self, nominal: Grasp<'a>, predicted: &Prediction) -> Grasp<'a> {
         let finger = self.finger(&nominal.finger, predicted);
         Grasp { finger, conditions: self.conditions, ..nominal }
     }
 
-    /// Returns a finger of the predicted stiffness with the errors of this draw.
+    /// Returns the nominal finger with the errors of this draw; `predicted` is its stiffness.
     pub fn finger(&self, nominal: &Finger, predicted: &Prediction) -> Finger {
         let [compliance, assembly] = self.stiffness;
         let spread = |estimate: Estimate| self.stiffness_sd_factor * estimate.sd / estimate.mean;
@@ -108,20 +110,20 @@ impl Draw {
     }
 }
 
-/// Half width over which a normal error is varied, in standard deviations: 95 % of it.
+/// Half width of the interval of a normal error, in standard deviations; it covers 95 %.
 const NORMAL_WIDTH_SD: f64 = 2.0;
 
 impl Errors {
-    /// Returns the errors that are not 0 as numbers that vary evenly: normal ones over two standard
-    /// deviations to either side. The shift along y is not varied: a window spans it.
+    /// Returns the errors other than 0 as uniform parameters, normal errors over two standard deviations to either
+    /// side. The shift along y is excluded because a window spans it.
     pub fn parameters(&self) -> Vec<Parameter> {
         let normal = |sd: f64, unit: f64| NORMAL_WIDTH_SD * sd / unit;
         let friction = 100.0 * self.friction.half_width;
         let stiffness = NORMAL_WIDTH_SD * self.stiffness.sd_factor;
-        let varied = |(path, half_width): (&str, f64)| {
+        let uniform = |(path, half_width): (&str, f64)| {
             let low = if path == GRASP_LOW { 0.0 } else { -half_width };
-            let varied = Parameter::uniform(Path::new(path).ok()?, [low, half_width]);
-            Some(varied).filter(|one| one.low < one.high)
+            let parameter = Parameter::uniform(Path::new(path).ok()?, [low, half_width]);
+            Some(parameter).filter(|parameter| parameter.low < parameter.high)
         };
         let half_widths = [
             (SOCKET_YAW, normal(self.yaw.sd, DEG)),
@@ -134,12 +136,12 @@ impl Errors {
             ("cell.compliance_error_sd", stiffness),
             ("cell.assembly_error_sd", stiffness),
         ];
-        half_widths.into_iter().filter_map(varied).collect()
+        half_widths.into_iter().filter_map(uniform).collect()
     }
 }
 
-/// Returns a factor of mean 1 and standard deviation `relative` whose logarithm is normal: `exp(s z -
-/// s^2 / 2)`, `s^2 = ln(1 + relative^2)`. Never negative, unlike a normal one.
+/// Returns the lognormal factor with mean 1 and standard deviation `relative` at the standard normal deviate `z`:
+/// `exp(s z - s^2 / 2)`, `s^2 = ln(1 + relative^2)`. Unlike a normal factor, it is never negative.
 fn lognormal(relative: f64, z: f64) -> f64 {
     let variance = libm::log1p(relative * relative);
     libm::exp(variance.sqrt() * z - variance / 2.0)
@@ -219,10 +221,10 @@ mod tests {
     fn every_error_of_the_table_of_numbers_is_set_by_its_path_alone() {
         let paths = paths(Kind::Error);
         assert_eq!(paths.len(), 11);
-        assert_eq!(Draw::under(paths.iter().map(|path| (&**path, 0.0))), Draw::under([]));
-        let set: Vec<Draw> = paths.iter().map(|path| Draw::under([(&**path, 1.0)])).collect();
+        assert_eq!(Draw::with(paths.iter().map(|path| (&**path, 0.0))), Draw::with([]));
+        let set: Vec<Draw> = paths.iter().map(|path| Draw::with([(&**path, 1.0)])).collect();
         for (i, draw) in set.iter().enumerate() {
-            assert_ne!(*draw, Draw::under([]), "{}", paths[i]);
+            assert_ne!(*draw, Draw::with([]), "{}", paths[i]);
             assert!(!set[..i].contains(draw), "{}", paths[i]);
         }
     }

@@ -1,4 +1,4 @@
-//! Random errors of one insertion, over which success rate and robust range are measured.
+//! Distribution of the random errors of an insertion, for success rate and robust range.
 
 mod draw;
 
@@ -14,7 +14,7 @@ use parameters::numbers;
 use serde::Deserialize;
 use toml::Table;
 
-/// Distribution of errors, and the settings of the measures under them; SI units.
+/// Distribution of errors, and settings of the measures under sampled errors; SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Uncertainty {
     /// Name on the command line.
@@ -27,7 +27,7 @@ pub struct Uncertainty {
     pub success: SuccessSettings,
     /// Settings of robust-range measurements.
     pub robust: RobustSettings,
-    /// Cell whose rows are drawn in place of errors.
+    /// Cell whose parameters are drawn instead of errors.
     pub cell: Option<Priors>,
 }
 
@@ -52,7 +52,7 @@ pub struct Errors {
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SuccessSettings {
-    /// Trials of each design.
+    /// Number of trials per design.
     pub trials: u32,
     /// Confidence level of the interval, 0 to 1.
     #[serde(rename = "confidence_percent", deserialize_with = "percent")]
@@ -62,7 +62,7 @@ pub struct SuccessSettings {
 /// Settings of a robust-range measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RobustSettings {
-    /// Windows of each design.
+    /// Number of windows per design.
     pub samples: u32,
     /// Statistic of their ranges.
     pub statistic: Statistic,
@@ -75,11 +75,11 @@ pub struct RobustSettings {
 pub enum Statistic {
     /// Mean minus this number of standard deviations.
     MeanMinusSd(f64),
-    /// Mean of this lowest share (0 to 1) of the samples, at least of one.
+    /// Mean of the lowest samples (conditional value at risk): this share, 0 to 1, of all samples, at least one.
     LowerTail(f64),
 }
 
-/// Uncertainty file; SI units.
+/// Keys of an uncertainty file, converted to SI units.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawUncertainty {
@@ -95,7 +95,7 @@ struct RawUncertainty {
     robust_range: RawRobust,
 }
 
-/// Spread of the start.
+/// Spread of the start of the insertion.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OffsetSpread {
@@ -122,7 +122,7 @@ pub struct YawSpread {
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionSpread {
-    /// Half the width, as a share.
+    /// Half the width, as a share of the nominal value.
     #[serde(rename = "half_width_percent", deserialize_with = "percent")]
     pub half_width: f64,
     source: String,
@@ -132,7 +132,7 @@ pub struct FrictionSpread {
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StiffnessSpread {
-    /// Standard deviations of the stiffness model.
+    /// Spread, in standard deviations of the stiffness model.
     pub sd_factor: f64,
     source: String,
 }
@@ -179,8 +179,8 @@ enum RawStatistic {
 }
 
 impl Uncertainty {
-    /// Reads and checks a distribution; `file` is named in errors. A cell file gives the distribution of
-    /// its rows, with the settings of the shipped file and no other errors.
+    /// Reads and checks a distribution; `file` is named in errors. A cell file is the distribution of its parameters,
+    /// with the settings of the shipped file and no other errors.
     ///
     /// # Errors
     /// If the text is not an uncertainty or cell file, or a value is out of range.
@@ -188,21 +188,15 @@ impl Uncertainty {
         let document = Document::parse(text, file)?;
         let table: Table = document.read()?;
         if table.contains_key("parameter") {
-            return Self::of(Priors::parse(text, file)?, file);
+            return Self::of_cell(Priors::parse(text, file)?, file);
         }
         let raw: RawUncertainty = document.read()?;
         numbers::check_file("uncertainty", &table, file)?;
         let RawUncertainty { offset, yaw, friction, stiffness, clearance, grasp, .. } = raw;
-        for (key, source) in [
-            ("offset.source", &offset.source),
-            ("yaw.source", &yaw.source),
-            ("friction.source", &friction.source),
-            ("stiffness.source", &stiffness.source),
-            ("clearance.source", &clearance.source),
-            ("grasp.source", &grasp.source),
-        ] {
-            if source.trim().is_empty() {
-                return Check { file }.fail(key, "is empty; name the source of the value");
+        for key in ["offset", "yaw", "friction", "stiffness", "clearance", "grasp"] {
+            if table[key]["source"].as_str().is_some_and(|source| source.trim().is_empty()) {
+                let problem = "is empty; name the source of the value";
+                return Check { file }.fail(&format!("{key}.source"), problem);
             }
         }
         Ok(Uncertainty {
@@ -215,17 +209,17 @@ impl Uncertainty {
         })
     }
 
-    fn of(cell: Priors, file: &str) -> Result<Self, InputError> {
+    /// Returns the distribution of the parameters of a cell.
+    fn of_cell(cell: Priors, file: &str) -> Result<Self, InputError> {
         if let Some(row) = cell.parameters.iter().find(|row| is_shape(&row.path)) {
             let problem =
-                "cannot be drawn: it makes another finger, which a space can; leave it out";
+                "cannot be drawn: it changes the printed finger; delete it, or vary it in a space";
             return Check { file }.fail(&row.name, problem);
         }
         let typical = Self::parse(UNCERTAINTIES[0].text, UNCERTAINTIES[0].file)?;
-        let (name, description) = (cell.name.clone(), cell.description.clone());
         Ok(Uncertainty {
-            name,
-            description,
+            name: cell.name.clone(),
+            description: cell.description.clone(),
             errors: Errors::default(),
             cell: Some(cell),
             ..typical

@@ -541,7 +541,7 @@ fn a_finger_is_computed_from_its_ribs() {
 fn a_stiffness_file_in_another_unit_is_asked_about() {
     let folder = Studies::new();
     let text = include_str!("../data/measured_stiffness.csv");
-    for (factor, question) in [(1000.0, "divide them by 1000"), (0.001, "multiply them by 1000")] {
+    for (factor, question) in [(1000.0, "divide by 1000"), (0.001, "multiply by 1000")] {
         let scaled = |line: &str| match line.rsplit_once(',') {
             Some((before, value)) => match value.parse::<f64>() {
                 Ok(value) => format!("{before},{}\n", value * factor),

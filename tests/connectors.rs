@@ -410,7 +410,7 @@ fn a_depth_that_no_connector_has_is_refused() {
     for depth in ["-1", "0", "1e12", "nan", "inf"] {
         let words = ["task", "import", "--plug", "p.stl", "--socket", "s.stl"];
         let ran = optimize(&[&words[..], &[&format!("--depth-mm={depth}")]].concat());
-        ran.fails(2, &["--depth-mm", "0.4 .. 300"]);
+        ran.fails(2, &["--depth-mm", "between 0.4 and 300"]);
     }
 }
 

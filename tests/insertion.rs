@@ -462,8 +462,8 @@ fn a_touch_felt_at_a_force_and_late_presses_harder() {
     let at = ["", "touch_force_n = 5.0", "touch_force_n = 5.0\nlatency_s = 0.01"].map(peak);
     assert!(at[0] + 2.0 < at[1] && at[1] + 2.0 < at[2], "{at:?} N");
     for (keys, motion, problem) in [
-        ("touch_force_n = 5.0", "duration", "goes only with motion = \"touch\""),
-        ("latency_s = 0.1", "tolerance", "goes only with motion = \"touch\""),
+        ("touch_force_n = 5.0", "duration", "is valid only with motion = \"touch\""),
+        ("latency_s = 0.1", "tolerance", "is valid only with motion = \"touch\""),
         ("latency_s = -0.1", "touch", "latency_s"),
         ("latency_s = 60.0", "touch", "at most 60 s is accepted"),
     ] {

@@ -29,7 +29,7 @@ impl Fingers {
     pub fn designs(self) -> Vec<Measurement> {
         match self {
             Fingers::All => insertion::stiffness::designs(),
-            Fingers::Three => insertion::stiffness::three(insertion::stiffness::designs()),
+            Fingers::Three => insertion::stiffness::representative_designs(),
         }
     }
 }

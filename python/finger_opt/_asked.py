@@ -94,8 +94,8 @@ class Asked:
             aggregate: Aggregation over several tasks [default: min].
             weights: Weights of the tasks, separated by commas, for aggregate weighted.
             seed: Seed; the same seed gives the same study.
-            batch: Number of designs per batch; part of the study, unlike threads [default: that of the study if
-                it continues, else 4, with executor the number of its workers].
+            batch: Number of designs per batch; part of the study, unlike threads [default: unchanged if the
+                study continues; otherwise 4, or with executor the number of its workers].
             async_: Propose a new design after each result, so that no worker waits for the slowest of a batch;
                 the journal then depends on the order of the results.
             out: Folder of the study [default: results/<task>-<optimizer>-seed<seed>, extended by further

@@ -108,7 +108,7 @@ def import_parts(
         leave_out: Bodies of a STEP file to leave out: pins, a thread.
         like: Task whose grip force, friction, fingers, limits and strategy are taken.
         resolution: Without effect: parts are exact within 0.02 mm.
-        body: Handle on a plug that has no place to hold, width between the jaws x height x length, mm.
+        body: Handle on a plug that has no faces to grip, width between the jaws x height x length, mm.
         depth_mm: Depth to be reached in a through hole.
         tolerance_mm: How far facets may be off the surface of a STEP file, mm.
         engine: Contact engine that tries the nominal start.

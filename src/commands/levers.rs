@@ -11,7 +11,7 @@ use analysis::levers::{LeverAnalysis, Levers};
 use insertion::evaluation::template::Template;
 use insertion::space::Design;
 use insertion::surrogate::Prediction;
-use report::levers as shown;
+use report::levers as output;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
@@ -34,9 +34,9 @@ pub struct Request {
     pub svg: Option<PathBuf>,
 }
 
-/// Levers of a finger, with a summary sentence.
+/// Sensitivities of the window of a finger, with a summary sentence.
 #[derive(Serialize)]
-pub struct Found {
+pub struct LeverReport {
     sentence: String,
     /// The levers.
     #[serde(flatten)]
@@ -44,10 +44,10 @@ pub struct Found {
 }
 
 impl command::Request for Request {
-    type Response = Output<Found>;
+    type Response = Output<LeverReport>;
     const PROGRESS: bool = true;
 
-    /// Measures the levers, and the softest and the stiffest infill of the space for comparison.
+    /// Measures the levers, and for comparison the softest and the stiffest infill of the space.
     fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
         let _busy = context.busy("measuring the levers");
         let setup = self.setup.setup()?;
@@ -55,8 +55,8 @@ impl command::Request for Request {
         let given = chosen.given.then_some(chosen.specimen.stiffness);
         let finger = (&chosen.design, given);
         let levers = levers(&setup, setup.only_task()?, finger, None, context.stop)?;
-        let (svg, text) = (shown::svg(&levers)?, layout::wrapped(&shown::text(&levers)));
-        let value = Found { sentence: levers.sentence(), levers };
+        let (svg, text) = (output::svg(&levers)?, layout::wrapped(&output::text(&levers)));
+        let value = LeverReport { sentence: levers.sentence(), levers };
         Output::drawn((value, text), svg, self.svg.as_ref())
     }
 }
@@ -72,7 +72,7 @@ pub(crate) fn levers(
 ) -> Result<Levers, Failure> {
     let analysis =
         LeverAnalysis { evaluator: &setup.evaluator, template, space: &setup.space, design, given };
-    let found = analysis.levers(infill, stop).map_err(Failure::input)?;
+    let levers = analysis.levers(infill, stop).map_err(Failure::input)?;
     not_stopped(stop)?;
-    Ok(found)
+    Ok(levers)
 }

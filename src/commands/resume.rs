@@ -19,7 +19,7 @@ pub struct Request {
     /// Options of the run.
     #[command(flatten)]
     pub run: RunRequest,
-    /// Also print all numbers behind the answer
+    /// Also print all numbers on which the answer is based
     #[arg(long, conflicts_with = "json")]
     pub verbose: bool,
 }

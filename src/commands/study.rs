@@ -36,7 +36,7 @@ const DEFAULT_BATCH: u64 = 4;
 /// Default budget of a study that cannot stop early.
 const DEFAULT_BUDGET: u64 = 200;
 /// Default budget of a study that can stop early.
-const LIMIT: u64 = 500;
+const EARLY_STOPPING_BUDGET: u64 = 500;
 const DEFAULT_UNCERTAINTY: &str = "typical";
 
 /// Find the finger that tolerates the largest shift of the start
@@ -93,8 +93,8 @@ pub struct Request {
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0,
           value_parser = clap::value_parser!(u64).range(SEEDS))]
     pub seed: u64,
-    /// Number of designs per batch; part of the study, unlike --threads [default: that of the study if it
-    /// continues, else 4, with --executor the number of its workers]
+    /// Number of designs per batch; part of the study, unlike --threads [default: unchanged if the study
+    /// continues; otherwise 4, or with --executor the number of its workers]
     #[arg(long, value_name = "N", allow_negative_numbers = true,
           value_parser = clap::value_parser!(u64).range(BATCHES))]
     pub batch: Option<u64>,
@@ -112,7 +112,7 @@ pub struct Request {
     /// Options of the run.
     #[command(flatten)]
     pub run: RunRequest,
-    /// Also print all numbers behind the answer
+    /// Also print all numbers on which the answer is based
     #[arg(long, conflicts_with = "json")]
     pub verbose: bool,
 }
@@ -127,14 +127,14 @@ impl command::Request for Request {
 }
 
 impl Request {
-    /// Starts or continues the study; without a batch that of a new study is `workers`.
+    /// Starts or continues the study; `workers` is the default batch of a new study.
     pub fn open(&self, workers: Option<u64>) -> Result<OpenStudy, Failure> {
         let (setup, config, dir) = self.planned(workers)?;
-        let more = measured::new_measurements(&dir, &setup);
-        let accept_changed = self.run.accept_changed || more.is_some();
+        let added = measured::new_measurements(&dir, &setup);
+        let accept_changed = self.run.accept_changed || added.is_some();
         let study = Study::create_or_continue(&dir, &config, &setup.inputs, accept_changed)?;
         let open = OpenStudy::new(study, setup, self.run.clone())?;
-        Ok(OpenStudy { new_measurements: more.unwrap_or(0), ..open })
+        Ok(OpenStudy { new_measurements: added.unwrap_or(0), ..open })
     }
 
     /// Writes the study without measuring and returns its folder; an existing study is not changed.
@@ -144,38 +144,34 @@ impl Request {
         Ok(dir)
     }
 
-    /// Returns setup, configuration and folder of the study, checked, without writing anything; without a batch
-    /// that of a new study is `workers`.
+    /// Returns the checked setup, configuration and folder of the study without writing anything; `workers` is the
+    /// default batch of a new study.
     fn planned(&self, workers: Option<u64>) -> Result<(Setup, StudyConfig, PathBuf), Failure> {
         within("--indifference-mm", self.indifference_mm, &INDIFFERENCES_MM)?;
         if self.priors.is_some() && self.measurements.is_none() {
             return Err(Failure::usage("--priors needs --measurements"));
         }
         let priors = self.priors.as_deref().unwrap_or(DEFAULT_PRIORS);
-        let priors = find("file of priors", PRIORS, priors)?;
-        let of_robot = Priors::parse(&priors.text, &priors.file).map_err(Failure::input)?;
-        let mut setup = self.setup.setup_with(Some(&of_robot))?;
+        let source = find("file of priors", PRIORS, priors)?;
+        let priors = Priors::parse(&source.text, &source.file).map_err(Failure::input)?;
+        let mut setup = self.setup.setup_with(Some(&priors))?;
         let constrained = self.constraints.iter().map(|constraint| constraint.measure);
         let mut measures = self.objective.measures().iter().copied().chain(constrained);
-        match (measures.any(Measure::needs_draws), &self.uncertainty) {
-            (false, None) => {}
-            (false, Some(_)) => {
-                return Err(Failure::usage(
-                    "--uncertainty needs success-rate or robust-range as an --objective or in a \
-                     --constraint",
-                ));
-            }
-            (true, name) => {
-                setup =
-                    setup.with_named_uncertainty(name.as_deref().unwrap_or(DEFAULT_UNCERTAINTY))?;
-            }
+        if measures.any(Measure::needs_draws) {
+            let name = self.uncertainty.as_deref().unwrap_or(DEFAULT_UNCERTAINTY);
+            setup = setup.with_named_uncertainty(name)?;
+        } else if self.uncertainty.is_some() {
+            return Err(Failure::usage(
+                "--uncertainty needs success-rate or robust-range as an --objective or in a \
+                 --constraint",
+            ));
         }
         if let Some(name) = &self.measurements {
-            setup = setup.with_measurements(measured::file(name)?, priors)?;
+            setup = setup.with_measurements(measured::file(name)?, source)?;
         }
         let mut config = self.config(&setup)?;
         if self.budget.is_none() && config.can_settle() {
-            (config.settles, config.budget) = (true, LIMIT);
+            (config.settles, config.budget) = (true, EARLY_STOPPING_BUDGET);
         }
         check(self.optimizer, &config)?;
         if setup.measured.is_some() {
@@ -184,15 +180,15 @@ impl Request {
         let dir = self.out.clone().unwrap_or_else(|| self.default_folder(&config));
         if self.batch.is_none() {
             // A resumed study keeps its batch.
-            let keeps = workers.is_none() || has_begun(&dir);
-            let kept = read_config(&dir).ok().filter(|_| keeps).map(|found| found.batch);
-            config.batch = kept.or(workers).unwrap_or(DEFAULT_BATCH).clamp(1, LARGEST_BATCH);
+            let resumed = workers.is_none() || has_begun(&dir);
+            let old = read_config(&dir).ok().filter(|_| resumed).map(|config| config.batch);
+            config.batch = old.or(workers).unwrap_or(DEFAULT_BATCH).clamp(1, LARGEST_BATCH);
         }
         Ok((setup, config, dir))
     }
 
-    /// Returns `results/<task>-<optimizer>-seed<seed>`, with all other options that define the study after the task, so
-    /// that another study has a folder of its own.
+    /// Returns `results/<task>-<optimizer>-seed<seed>`; the other options that define the study follow the task, so
+    /// that different studies have different folders.
     fn default_folder(&self, config: &StudyConfig) -> PathBuf {
         let setup = &self.setup;
         let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
@@ -202,19 +198,19 @@ impl Request {
         };
         // The plus sign separates tasks.
         let tasks = config.tasks().map(|name| name.chars().map(safe).collect::<String>());
-        let unlike = |name: &str, default: &str| (name != default).then(|| word(name));
+        let custom = |name: &str, default: &str| (name != default).then(|| word(name));
         let given = |name: &Option<String>| name.as_deref().map(word);
         let other =
-            |name: &Option<String>, default| name.as_deref().and_then(|name| unlike(name, default));
+            |name: &Option<String>, default| name.as_deref().and_then(|name| custom(name, default));
         let words = [
             Some(tasks.collect::<Vec<_>>().join("+")),
-            unlike(&setup.space, DEFAULT_SPACE),
-            unlike(&self.objective.to_string(), "range"),
+            custom(&setup.space, DEFAULT_SPACE),
+            custom(&self.objective.to_string(), "range"),
             other(&setup.robot, DEFAULT_ROBOT),
             given(&setup.cell),
             given(&setup.stiffness_data),
-            setup.finger_model.kind.and_then(|kind| unlike(kind.name(), "paper")),
-            unlike(&setup.finger_model.finger, DEFAULT_FINGER),
+            setup.finger_model.kind.and_then(|kind| custom(kind.name(), "paper")),
+            custom(&setup.finger_model.finger, DEFAULT_FINGER),
             other(&self.uncertainty, DEFAULT_UNCERTAINTY),
             given(&self.measurements),
         ];
@@ -244,7 +240,7 @@ impl Request {
         Ok((tasks > 1).then_some(aggregate))
     }
 
-    /// Returns the constraints: where the space changes the task, also the largest force that the connectors take.
+    /// Returns the constraints; if the space changes the task, also the force limit of the connectors.
     fn constraints(&self, setup: &Setup) -> Vec<Constraint> {
         let mut constraints = self.constraints.clone();
         let bounded = constraints.iter().any(|constraint| constraint.measure == Measure::PeakForce);

@@ -16,7 +16,7 @@ use insertion::finger::Finger;
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::space::Space;
-use insertion::stiffness::{designs, three};
+use insertion::stiffness::representative_designs;
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
 use insertion::trial::{Grasp, Recording, Trial};
@@ -159,8 +159,7 @@ pub(crate) fn nominal_recording(
 
 /// Returns the shipped measured finger of medium compliance stiffness, and the same finger shaped for a task.
 fn medium(task: &Task) -> Result<(Finger, Finger), Failure> {
-    let three = three(designs());
-    let middle = three.get(1).or(three.first());
+    let middle = representative_designs().get(1).copied();
     let middle = middle.ok_or_else(|| Failure::running("no measured fingers are shipped"))?;
     let finger = Finger::new(middle.compliance, middle.assembly);
     Ok((finger, finger.with_model(&task.finger, 0.0)))

@@ -87,6 +87,6 @@ fn pair(
     let labels = [last, last + outward].map(|step| start_label(grid_mm(step)));
     let films = [film(&labels[0], specimen, &inside), film(&labels[1], specimen, &outside)];
     let title = format!("{}: the {end} end of the window", specimen.task.name);
-    let poster = picture::ended(&specimen.task, &specimen.finger.pad, &outside.trial);
+    let poster = picture::final_state(&specimen.task, &specimen.finger.pad, &outside.trial);
     Ok(Some([replay::page(&title, &films), poster]))
 }

@@ -134,7 +134,7 @@ impl OpenStudy {
         context: &Context<'_>,
     ) -> Result<Ended, Failure> {
         let stop = context.stop;
-        let cached = self.cache.as_ref().map_or(0, Cache::found);
+        let cached = self.cache.as_ref().map_or(0, Cache::hits);
         let OpenStudy { study, setup, run, cache, .. } = self;
         let interrupted = || ending == Ending::Interrupted || stop.load(Ordering::SeqCst);
         let settled = ending == Ending::Settled;

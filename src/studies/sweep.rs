@@ -37,7 +37,7 @@ impl Sweep {
 
     /// Returns the number of windows that were in the cache.
     pub fn known(&self) -> u64 {
-        self.cache.as_ref().map_or(0, Cache::found)
+        self.cache.as_ref().map_or(0, Cache::hits)
     }
 
     /// Measures fingers.

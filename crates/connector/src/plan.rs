@@ -13,7 +13,7 @@ use input::shipped::TASKS;
 use input::units::{DEG, MM};
 use insertion::finger::Pad;
 use insertion::task::{
-    Ending, Mated, Part, Phase, Sensed, Solid, Stage, StartRule, Strategy, Success, Task,
+    Ending, Mated, Part, Phase, Solid, Stage, StartRule, Strategy, Success, Task, TouchDetection,
 };
 
 /// Distance of the TCP below the shoulder, m, as in the shipped tasks.
@@ -116,7 +116,7 @@ fn straight(task: &Task, mated: &Mated) -> Strategy {
     let start = [x, y, task.grip.tcp_z + AIR[0]].map(round_mm);
     let push = start[2] - AIR[0] - SWEPT_PRELOAD - (task.grip.tcp_z + z - PUSH[0]);
     use {Ending::*, Stage::*};
-    let touch = Touch { preload: SWEPT_PRELOAD, sensed: Sensed::FIRST };
+    let touch = Touch { preload: SWEPT_PRELOAD, detection: TouchDetection::FIRST };
     let phases = vec![
         phase("approach", Approach, [0.0, 0.0, AIR[1] - AIR[0]], 150.0, Tolerance(0.1 * MM)),
         phase("touch", Search, [0.0, 0.0, -TOUCH], 20.0, touch),
@@ -329,7 +329,7 @@ fn phases(task: &Task, search: &Moves, seat: f64) -> Vec<Phase> {
     let searched = task.strategy.start[2] - AIR[0] - preload - down;
     let push = searched - (task.grip.tcp_z - seat - press);
     use {Ending::*, Stage::*};
-    let touch = Touch { preload, sensed: Sensed::FIRST };
+    let touch = Touch { preload, detection: TouchDetection::FIRST };
     vec![
         phase("approach", Approach, [0.0, 0.0, AIR[1] - AIR[0]], 150.0, Tolerance(0.1 * MM)),
         phase("touch", Search, [0.0, 0.0, -TOUCH], 20.0, touch),

@@ -4,7 +4,8 @@ use super::hold;
 use input::units::{DEG, GRAM, MM};
 use insertion::task::parts_file::PartsFile;
 use insertion::task::{
-    Ending, Hold, Limits, Mated, PadTorsion, Part, Phase, Sensed, Solid, Stage, StartRule, Task,
+    Ending, Hold, Limits, Mated, PadTorsion, Part, Phase, Solid, Stage, StartRule, Task,
+    TouchDetection,
 };
 use nalgebra::{Point3, Vector3};
 
@@ -185,15 +186,15 @@ fn phase(phase: &Phase) -> String {
         Ending::Duration(rest) => ("duration", "settle_s", round(rest, 1e4)),
         Ending::Touch { preload, .. } => ("touch", "preload_mm", mm(preload)),
     };
-    let sensed = match phase.ending {
-        Ending::Touch { sensed, .. } if sensed != Sensed::FIRST => {
-            format!("touch_force_n = {:?}\nlatency_s = {:?}\n", sensed.force, sensed.latency)
+    let detection = match phase.ending {
+        Ending::Touch { detection, .. } if detection != TouchDetection::FIRST => {
+            format!("touch_force_n = {:?}\nlatency_s = {:?}\n", detection.force, detection.latency)
         }
         _ => String::new(),
     };
     format!(
         "[[strategy.phase]]\nname = {}\nstage = \"{stage}\"\nmove_mm = {}\nspeed_mm_per_s = {}\n\
-         motion = \"{motion}\"\n{key} = {value}\n{sensed}\n",
+         motion = \"{motion}\"\n{key} = {value}\n{detection}\n",
         text(&phase.name),
         list(phase.displacement.iter().map(|&v| mm(v))),
         mm(phase.speed),

@@ -1,4 +1,4 @@
-//! A simulated insertion: a design in, an evaluation out.
+//! Simulation of insertions: evaluates the finger of a design on a task.
 //!
 //! ```text
 //! task, robot, finger, stiffness -> surrogate -> trial -> evaluation
@@ -6,7 +6,7 @@
 //!
 //! A [`task`] is a plug, a socket and a strategy; a [`robot`] carries two fingers; the [`surrogate`]
 //! predicts the stiffness of the finger of a design; a [`trial`] is one attempt from one start; an
-//! [`evaluation`] is all that is measured of a design.
+//! [`evaluation`] is the tolerance window of a design, with the largest force and slip of its trials.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]

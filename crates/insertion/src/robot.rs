@@ -1,4 +1,4 @@
-//! Robot as seen at its flange: ideal, elastic with servos, or an arm.
+//! Robot, modelled at its flange: rigid, on servo springs, or an arm with joint servos.
 
 use crate::arm::{Arm, ArmError, RawArm, ReducedArm};
 use input::units::read::n_per_mm;
@@ -14,15 +14,15 @@ pub struct Robot {
     pub name: String,
     /// One-line description for lists.
     pub description: String,
-    /// Suspension of the flange.
+    /// Model of the flange, independent of the pose.
     pub drive: Drive,
     /// Plug-socket contact force at which the robot stops moving, N.
     pub stop_force: f64,
 }
 
-/// Suspension of a robot's flange.
+/// Dynamic model of a robot's flange.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Suspension<A> {
+pub enum FlangeModel<A> {
     /// Rigid: the flange follows its command exactly.
     Ideal,
     /// A spring and damper per Cartesian axis at the TCP.
@@ -31,11 +31,11 @@ pub enum Suspension<A> {
     Arm(Box<A>),
 }
 
-/// Suspension of a flange, independent of where the robot stands.
-pub type Drive = Suspension<Arm>;
+/// Flange model of a robot file, independent of the pose.
+pub type Drive = FlangeModel<Arm>;
 
-/// Suspension in place: of an arm its coupled spring, damper and mass at the TCP.
-pub type Flange = Suspension<ReducedArm>;
+/// Flange model at the start of a task; an arm is reduced to coupled springs, dampers and mass at the TCP.
+pub type Flange = FlangeModel<ReducedArm>;
 
 /// A servo-compliant flange, SI units, axes of the task frame.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
@@ -59,7 +59,7 @@ pub struct Servo {
 
 /// A robot at the start of a task.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Mounted {
+pub struct MountedRobot {
     /// Response of the flange to its command.
     pub flange: Flange,
     stop_force: f64,
@@ -71,29 +71,29 @@ impl Robot {
     ///
     /// # Errors
     /// If an arm does not reach the start, or is singular there.
-    pub fn mount(&self, turn: f64, tilt: f64) -> Result<Mounted, ArmError> {
+    pub fn mount(&self, turn: f64, tilt: f64) -> Result<MountedRobot, ArmError> {
         let flange = match &self.drive {
             Drive::Ideal => Flange::Ideal,
             Drive::Servo(servo) => Flange::Servo(*servo),
             Drive::Arm(arm) => Flange::Arm(Box::new(arm.at_start(turn, tilt)?)),
         };
-        Ok(Mounted { flange, stop_force: self.stop_force })
+        Ok(MountedRobot { flange, stop_force: self.stop_force })
     }
 }
 
-/// Time constants after which a servo has all but reached its command.
+/// Settling time of a servo, in time constants.
 const SETTLING_TIME_CONSTANTS: f64 = 5.0;
 
-impl Mounted {
-    /// Returns the extra length of an assembly move along a unit vector, m: the deflection of the arm
-    /// under its assembly force, without which a soft arm would hardly push the part.
-    pub fn lead(&self, along: &Vector3<f64>) -> f64 {
-        let lead = |arm: &ReducedArm| arm.assembly_force * along.dot(&(arm.compliance * along));
-        self.arm().map_or(0.0, lead)
+impl MountedRobot {
+    /// Returns the overtravel of an assembly move along a unit vector, m: the deflection of the arm under its
+    /// assembly force. Without overtravel, a soft arm would hardly push the part.
+    pub fn overtravel(&self, along: &Vector3<f64>) -> f64 {
+        let deflection = |arm: &Reduced| arm.assembly_force * along.dot(&(arm.compliance * along));
+        self.arm().map_or(0.0, deflection)
     }
 
     /// Returns the settling time of the robot after a command, s.
-    pub fn settling(&self) -> f64 {
+    pub fn settling_time(&self) -> f64 {
         self.arm().map_or(0.0, |arm| SETTLING_TIME_CONSTANTS * arm.time_constant)
     }
 
@@ -119,8 +119,8 @@ enum Kind {
     Arm,
 }
 
-/// Keys of every robot file. The kind decides which others there are; errors of a tagged enum would have
-/// no line.
+/// Keys common to all robot files; the kind determines the others. Not a tagged enum, whose errors have no line
+/// number.
 #[derive(Deserialize)]
 struct Header {
     kind: Kind,
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_of_a_wrong_type_is_told_with_its_line() {
+    fn a_value_of_a_wrong_type_is_reported_with_its_line() {
         for robot in ROBOTS {
             Robot::parse(robot.text, robot.file).unwrap();
             for (at, line) in robot.text.lines().enumerate() {

@@ -32,7 +32,7 @@ impl Axis {
 /// Infill of a finger: density in percent, direction in degrees.
 pub type Infill = [f64; 2];
 
-/// The header a measurement file must have, exactly.
+/// Required header of a measurement file.
 pub const HEADER: [&str; 5] = [
     "design",
     "infill_density_percent",
@@ -41,10 +41,10 @@ pub const HEADER: [&str; 5] = [
     "stiffness_compliance_n_per_mm",
 ];
 
-/// Largest number of designs of a table: the time to leave each out in turn grows with its fourth power.
+/// Largest number of measured designs: the time of the leave-one-out errors grows with its fourth power.
 pub const MAX_DESIGNS: usize = 100;
 
-/// Stiffness of one printed finger, as measured.
+/// Measured stiffness of one printed finger.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measurement {
     /// Number of the design.
@@ -84,20 +84,19 @@ impl Measurement {
 /// Error of measured stiffnesses.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SurrogateError {
-    /// Not a CSV table with the columns of [`HEADER`], or a value or a column in another unit that
-    /// cannot be used.
+    /// Invalid CSV, a header other than [`HEADER`], an invalid value, or a column in another unit.
     #[error(transparent)]
     Fault(#[from] Fault),
-    /// No design at all.
+    /// No measured design.
     #[error("no measured design; give at least one")]
-    None,
-    /// So many designs that leaving each out in turn would take minutes.
+    Empty,
+    /// More designs than [`MAX_DESIGNS`].
     #[error(
         "{0} measured designs are too many: {MAX_DESIGNS} at most; give the average of fingers that are \
          nearly alike"
     )]
     TooMany(usize),
-    /// A measured finger that cannot be computed.
+    /// A measured finger whose stiffness cannot be computed.
     #[error(transparent)]
     Finger(#[from] FingerError),
     /// No model could be fitted along the axis of this [`Axis::label`].
@@ -121,7 +120,7 @@ impl Placed for SurrogateError {
 /// Reads and checks a measurement file; `file` is named in errors.
 ///
 /// # Errors
-/// If it is not such a table, a value is invalid, or a column seems to be in another unit.
+/// If it is not CSV with the columns of [`HEADER`], a value is invalid, or a column seems to be in another unit.
 pub fn parse(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
     check_units(rows(text, file)?, file)
 }
@@ -131,13 +130,12 @@ pub fn designs() -> Vec<Measurement> {
     parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap_or_default()
 }
 
-/// Returns the measured designs of lowest, middle and highest compliance stiffness.
-pub fn three(mut designs: Vec<Measurement>) -> Vec<Measurement> {
+/// Returns the designs of the publication with the lowest, the median and the highest compliance stiffness.
+pub fn representative_designs() -> Vec<Measurement> {
+    let mut designs = designs();
     designs.sort_by(|a, b| a.compliance.total_cmp(&b.compliance));
     let Some(last) = designs.len().checked_sub(1) else { return designs };
-    let mut places = vec![0, last / 2, last];
-    places.dedup();
-    places.into_iter().map(|place| designs[place]).collect()
+    [0, last / 2, last].map(|i| designs[i]).to_vec()
 }
 
 /// Reads a measurement file and checks each value by itself.
@@ -157,67 +155,66 @@ fn rows(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
         let header = HEADER.join(",");
         return Err(at(1).fault(format!("the header must be exactly `{header}`")).into());
     }
-    let mut found: Vec<Measurement> = Vec::new();
+    let mut measurements: Vec<Measurement> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(syntax)?;
         let line = record.position().map_or(0, csv::Position::line);
-        let refused = refused(at(line));
-        let measurement = row(&record).map_err(&refused)?;
-        check(&measurement, &found).map_err(&refused)?;
-        found.push(measurement);
+        let error = column_error(at(line));
+        let measurement = measurement(&record).map_err(&error)?;
+        check(&measurement, &measurements).map_err(&error)?;
+        measurements.push(measurement);
     }
-    enough(&found)?;
-    Ok(found)
+    check_count(&measurements)?;
+    Ok(measurements)
 }
 
-/// Ratio to the stiffness of the shipped fingers from which another unit is assumed.
-const OTHER_UNIT: f64 = 100.0;
+/// Ratio of the medians of a file and of the shipped fingers above which another unit is assumed.
+const UNIT_RATIO: f64 = 100.0;
 
-/// Checks that the median of no column is more than 100 times, or less than 1/100 of, the shipped one.
-fn check_units(found: Vec<Measurement>, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
+/// Checks that the median of each stiffness column is between 1/100 and 100 times that of the shipped fingers.
+fn check_units(own: Vec<Measurement>, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
     let shipped = rows(STIFFNESS[0].text, STIFFNESS[0].file)?;
     for (axis, column) in [(Axis::Assembly, HEADER[3]), (Axis::Compliance, HEADER[4])] {
-        let middle = |all: &[Measurement]| {
-            median(all.iter().map(|one| one.stiffness(axis))).unwrap_or(f64::NAN) / N_PER_MM
+        let median = |all: &[Measurement]| {
+            median(all.iter().map(|each| each.stiffness(axis))).unwrap_or(f64::NAN) / N_PER_MM
         };
-        let (own, usual) = (middle(&found), middle(&shipped));
-        let question = match own / usual {
-            ratio if ratio > OTHER_UNIT => "are these N/m? divide them by 1000",
-            ratio if ratio < 1.0 / OTHER_UNIT => "are these N/um or kN/mm? multiply them by 1000",
+        let (given, usual) = (median(&own), median(&shipped));
+        let question = match given / usual {
+            ratio if ratio > UNIT_RATIO => "is the unit N/m? divide by 1000",
+            ratio if ratio < 1.0 / UNIT_RATIO => "is the unit N/um or kN/mm? multiply by 1000",
             _ => continue,
         };
         let problem = format!(
-            "the middle value is {own} N/mm, that of the measured printed fingers is {usual}; \
-             {question}"
+            "the median is {given} N/mm, that of the published fingers is {usual}; {question}"
         );
-        return Err(refused(Place::file(file))((column, problem)));
+        return Err(column_error(Place::file(file))((column, problem)));
     }
-    Ok(found)
+    Ok(own)
 }
 
 /// Checks measurements that were not read from a file.
 pub(crate) fn check_all(measurements: &[Measurement]) -> Result<(), SurrogateError> {
     for (i, measurement) in measurements.iter().enumerate() {
-        let refused = refused(Place::file(format!("design {}", measurement.design)));
-        check(measurement, &measurements[..i]).map_err(refused)?;
+        let error = column_error(Place::file(format!("design {}", measurement.design)));
+        check(measurement, &measurements[..i]).map_err(error)?;
     }
-    enough(measurements)
+    check_count(measurements)
 }
 
-/// Returns the error of a column at a place.
-fn refused(place: Place) -> impl Fn((&'static str, String)) -> SurrogateError {
+/// Returns the function that makes an error of column and problem at a place.
+fn column_error(place: Place) -> impl Fn((&'static str, String)) -> SurrogateError {
     move |(column, problem)| place.clone().key(column).fault(problem).into()
 }
 
-fn enough(measurements: &[Measurement]) -> Result<(), SurrogateError> {
+fn check_count(measurements: &[Measurement]) -> Result<(), SurrogateError> {
     match measurements.len() {
-        0 => Err(SurrogateError::None),
-        found if found > MAX_DESIGNS => Err(SurrogateError::TooMany(found)),
+        0 => Err(SurrogateError::Empty),
+        count if count > MAX_DESIGNS => Err(SurrogateError::TooMany(count)),
         _ => Ok(()),
     }
 }
 
-fn row(record: &csv::StringRecord) -> Result<Measurement, (&'static str, String)> {
+fn measurement(record: &csv::StringRecord) -> Result<Measurement, (&'static str, String)> {
     let text = |i: usize| record.get(i).unwrap_or("").trim();
     let number = |i: usize| {
         text(i).parse::<f64>().map_err(|_| (HEADER[i], format!("`{}` is not a number", text(i))))

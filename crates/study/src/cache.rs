@@ -1,4 +1,4 @@
-//! Cache of evaluations that studies share.
+//! Cache of evaluations, shared by studies.
 //!
 //! Each file holds one evaluation. Its name is the SHA-256 of everything that determines the evaluation:
 //! task and finger with the settings of the design, robot, search, engine with its settings, and the
@@ -25,8 +25,8 @@ pub struct Cache {
     dir: PathBuf,
     /// Prefix of all keys.
     context: String,
-    found: AtomicU64,
-    /// First error of writing.
+    hits: AtomicU64,
+    /// First write error.
     problem: OnceLock<io::Error>,
 }
 
@@ -36,7 +36,7 @@ impl Cache {
         Cache {
             dir: dir.to_owned(),
             context: format!("sources {SIMULATION_SOURCES}\nengine {engine:?}\nrobot {robot:?}\n"),
-            found: AtomicU64::new(0),
+            hits: AtomicU64::new(0),
             problem: OnceLock::new(),
         }
     }
@@ -48,16 +48,16 @@ impl Cache {
         sha256_hex(text.as_bytes())
     }
 
-    /// Returns the evaluation with this key, if there is an undamaged one.
+    /// Returns the evaluation with this key, if the cache has an undamaged one.
     pub fn get(&self, key: &str) -> Option<Evaluation> {
         let text = files::read_text(&self.path(key), LARGEST_OWN).ok()?;
         let (content, _) = unseal(text.strip_suffix('\n')?).ok()?;
-        let found = serde_json::from_str(&content).ok()?;
-        self.found.fetch_add(1, Ordering::Relaxed);
-        Some(found)
+        let evaluation = serde_json::from_str(&content).ok()?;
+        self.hits.fetch_add(1, Ordering::Relaxed);
+        Some(evaluation)
     }
 
-    /// Stores an evaluation. A failure is only noted ([`problem`](Self::problem)).
+    /// Stores an evaluation. A write error does not stop the study; see [`problem`](Self::problem).
     pub fn put(&self, key: &str, evaluation: &Evaluation) {
         let write = || {
             let path = self.path(key);
@@ -69,12 +69,12 @@ impl Cache {
         }
     }
 
-    /// Returns the number of evaluations found.
-    pub fn found(&self) -> u64 {
-        self.found.load(Ordering::Relaxed)
+    /// Returns the number of evaluations read from the cache.
+    pub fn hits(&self) -> u64 {
+        self.hits.load(Ordering::Relaxed)
     }
 
-    /// Returns the first error of writing, if there is one.
+    /// Returns the first write error, if there is one.
     pub fn problem(&self) -> Option<String> {
         self.problem.get().map(|error| format!("{}: {error}", self.dir.display()))
     }
@@ -118,7 +118,7 @@ pub(super) mod tests {
         assert_eq!(cache.get(&a), None);
         cache.put(&a, &sound());
         assert_eq!(cache.get(&a), Some(sound()));
-        assert_eq!((cache.get(&b), cache.found(), cache.problem()), (None, 1, None));
+        assert_eq!((cache.get(&b), cache.hits(), cache.problem()), (None, 1, None));
         let robot = Robot::parse(ROBOTS[1].text, ROBOTS[1].file).unwrap();
         let (direct, rapier) = (EngineKind::Direct.record(), EngineKind::Rapier.record());
         let others = [

@@ -6,8 +6,8 @@
 
 use super::error::LineError;
 use super::record::Timing;
+pub use insertion::task::parts_file::sha256 as sha256_hex;
 use serde::Serialize;
-use sha2::{Digest, Sha256};
 
 const CHECK_KEY: &str = ",\"check\":\"";
 const TIME_KEY: &str = ",\"datetime_start\":";
@@ -58,9 +58,4 @@ pub fn unseal(line: &str) -> Result<(String, String), LineError> {
 
 fn checksum(content: &str) -> String {
     sha256_hex(content.as_bytes())[..16].to_owned()
-}
-
-/// Returns the SHA-256 in hexadecimal.
-pub fn sha256_hex(bytes: &[u8]) -> String {
-    format!("{:x}", Sha256::digest(bytes))
 }

@@ -4,7 +4,7 @@ use super::*;
 use crate::compare::pairs::WindowPair;
 use input::shipped::TASKS;
 use insertion::evaluation::OffsetStep;
-use insertion::stiffness::{designs, three};
+use insertion::stiffness::{designs, representative_designs};
 use insertion::trial::fake::FakeRig;
 
 pub(super) fn window(steps: [OffsetStep; 2], ends: [FailureClass; 2]) -> Window {
@@ -20,7 +20,7 @@ fn jammed(negative: OffsetStep, positive: OffsetStep) -> Window {
 
 fn pair(second: Window) -> WindowPair {
     WindowPair {
-        subject: Subject::new("usb", &FingerModel::default(), three(designs())[0]),
+        subject: Subject::new("usb", &FingerModel::default(), representative_designs()[0]),
         settings: ["production", "half the step"].map(str::to_owned),
         windows: [jammed(-33, 14), second],
         trials: [18, 19],
@@ -40,9 +40,10 @@ fn an_end_may_move_by_as_much_as_is_allowed() {
 }
 
 #[test]
-fn the_three_designs_span_the_measured_stiffness() {
+fn the_representative_designs_span_the_measured_stiffness() {
     let all: Vec<f64> = designs().iter().map(|design| design.compliance).collect();
-    let chosen: Vec<f64> = three(designs()).iter().map(|design| design.compliance).collect();
+    let chosen: Vec<f64> =
+        representative_designs().iter().map(|design| design.compliance).collect();
     assert_eq!(chosen[0], all.iter().copied().fold(f64::INFINITY, f64::min));
     assert_eq!(chosen[2], all.iter().copied().fold(0.0, f64::max));
     assert_eq!(all.iter().filter(|&&k| k < chosen[1]).count(), (all.len() - 1) / 2);
@@ -61,7 +62,7 @@ fn every_way_but_the_first_makes_a_pair_and_the_table_fits_a_terminal() {
         setting("strides", Search::Strides),
         setting("again", Search::Walk),
     ];
-    let found = pairs::measure(&[TaskSettings { task, settings }], &three(designs()));
+    let found = pairs::measure(&[TaskSettings { task, settings }], &representative_designs());
     let names: Vec<&str> = found.iter().map(|pair| pair.settings[1].as_str()).collect();
     assert_eq!(names, ["strides", "again"].repeat(3));
     assert!(found.iter().all(|pair| pair.agrees(0) && pair.trials[0] > 10));

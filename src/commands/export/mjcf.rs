@@ -34,21 +34,21 @@ pub struct Request {
     pub out: PathBuf,
 }
 
-/// Written file, and the task of its scene.
+/// Exported file, and the task of its scene.
 #[derive(Serialize)]
-pub struct Written {
+pub struct ExportedScene {
     out: PathBuf,
     task: String,
 }
 
 impl command::Request for Request {
-    type Response = Output<Written>;
+    type Response = Output<ExportedScene>;
 
     fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
         let (task, scene) = self.scene()?;
         write_file(&self.out, &scene)?;
-        let text = format!("wrote {}: the scene of {task}, for MuJoCo\n", self.out.display());
-        Ok(Output { value: Written { out: self.out.clone(), task }, text, picture: None })
+        let text = format!("wrote the scene of {task} to {} for MuJoCo\n", self.out.display());
+        Ok(Output { value: ExportedScene { out: self.out.clone(), task }, text, picture: None })
     }
 }
 
@@ -60,12 +60,12 @@ impl Request {
         let robot = &setup.evaluator.robot;
         let mounted = robot.mount(task.turn, task.strategy.tilt).map_err(Failure::input)?;
         let scene = cell::build(&task, &mounted, &finger).scene;
-        let instead = match scene.first_patch() {
+        let remedy = match scene.first_patch() {
             Some(_) => "give finger_plug_torsion_mm in mm",
-            None => "--robot servo and --robot rigid need none of it",
+            None => "choose --robot servo or --robot rigid",
         };
         let text = mjcf::write(&scene, &task.name, &MjcfSettings::default())
-            .map_err(|error| Failure::usage(format!("{error}; {instead}")))?;
+            .map_err(|error| Failure::usage(format!("{error}; {remedy}")))?;
         Ok((task.name, text))
     }
 }

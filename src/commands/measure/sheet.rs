@@ -94,6 +94,6 @@ fn draw(
     let trial = trial::Request { setup, finger, offset_mm, ..trial::Request::default() };
     let done = trial.run(context)?.value;
     let Specimen { task, finger, .. } = done.chosen.specimen;
-    let svg = picture::ended(&task, &finger.pad, &done.trial);
+    let svg = picture::final_state(&task, &finger.pad, &done.trial);
     Ok(Picture { outcome: done.trial.outcome, svg, task: task.name })
 }

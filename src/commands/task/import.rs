@@ -2,7 +2,7 @@
 
 use crate::command;
 use crate::context::{Context, not_stopped};
-use crate::failure::Failure;
+use crate::failure::{Failure, within};
 use crate::layout::wrapped;
 use crate::setup::bodies::{Parts, PartsRequest, parts};
 use crate::setup::mated::{LeftOut, MateOptions, MatedTask, mated};
@@ -25,21 +25,22 @@ use std::path::{Path, PathBuf};
 use study::write_file;
 
 const RESOLUTIONS: [u32; 2] = [8, 1000];
-/// Voxels unless said otherwise.
+/// Default of --resolution.
 const RESOLUTION: u32 = 64;
-/// Most parts that are written into the task file.
+/// Largest number of parts that are written into the task file itself.
 const MAX_INLINE: usize = 30;
 /// Depths to be reached in a through hole, mm.
 const DEPTHS_MM: RangeInclusive<f64> = 0.4..=300.0;
 
 /// Create a task from meshes of a plug and its socket (STL, OBJ or STEP)
 ///
-/// Give one file that holds both in their mated pose, or one of each with --plug and --socket, in any pose: the
-/// mated pose is found from their shapes. STEP needs the Python package with its extra `step`. The faces that the two
-/// can touch become convex parts, within 0.02 mm of the drawing; many are written to a file beside the task. Faces that overlap
-/// in the mated pose are listed: contact springs, drawn unloaded, are left out, and in a press fit one of both is cut back.
-/// Unit, direction and axis of the jaws are derived from the shapes and printed, unless they are given. Grip and
-/// strategy are derived from the shapes, too; with --like the strategy is that of another task, on these shapes.
+/// Give one file with both in their mated pose, or one file each with --plug and --socket, in any pose: the mated
+/// pose is found from their shapes. STEP needs the Python package with its extra `step`. The faces that can come into
+/// contact become convex parts, within 0.02 mm of the drawing; many parts are written to a file beside the task. Faces
+/// that overlap in the mated pose are listed: contact springs, drawn unloaded, are left out, and in a press fit one of
+/// the two faces is cut back. Unit, direction and axis of the jaws are derived from the shapes and printed, unless they
+/// are given. Grip and strategy are derived from the shapes, too; with --like the strategy is that of another task, on
+/// these shapes.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 4,
@@ -59,10 +60,10 @@ pub struct Request {
     /// a shell, from 1; may be repeated [default: all, or the rest without --socket-body]
     #[arg(long, value_name = "NAME")]
     pub plug_body: Vec<String>,
-    /// Body of its file that belongs to the socket; may be repeated
+    /// Body of the socket's file that belongs to the socket; may be repeated
     #[arg(long, value_name = "NAME")]
     pub socket_body: Vec<String>,
-    /// Unit of both files [default: the one with a plausible plug and clearance]
+    /// Unit of both files [default: the one that makes plug and clearance plausible]
     #[arg(long, value_enum)]
     pub unit: Option<Unit>,
     /// Direction of insertion in the socket's file [default: the one in which most walls of the two engage]
@@ -79,11 +80,11 @@ pub struct Request {
     #[arg(long, hide = true, value_name = "N", default_value_t = RESOLUTION,
           value_parser = clap::value_parser!(u32).range(i64::from(RESOLUTIONS[0])..=i64::from(RESOLUTIONS[1])))]
     pub resolution: u32,
-    /// Handle on a plug that has no place to hold, width between the jaws x height x length in mm
+    /// Handle on a plug that has no faces to grip, width between the jaws x height x length in mm
     /// [default: 10x12x20 where one is needed]
     #[arg(long, value_name = "WxHxL")]
     pub body: Option<Size>,
-    /// Depth to be reached in a through hole, mm [default: that over which plug and socket engage]
+    /// Depth to be reached in a through hole, mm [default: the depth over which plug and socket engage]
     #[arg(long, value_name = "MM")]
     pub depth_mm: Option<f64>,
     /// File to write [default: the plug's name with .toml]
@@ -97,10 +98,10 @@ pub struct Request {
     pub names: Vec<String>,
 }
 
-/// A task that was imported and written.
+/// Imported and written task.
 pub struct ImportedTask {
-    found: MatedTask,
-    /// The strategies that were tried; none if the file has problems.
+    mated: MatedTask,
+    /// Strategies that were tried; none if the file has problems.
     tuned: Option<Tuned>,
     /// Check of the written file, with its nominal start.
     checked: TaskCheck,
@@ -113,29 +114,24 @@ impl command::Request for Request {
     fn run(&self, context: &Context<'_>) -> Result<ImportedTask, Failure> {
         let stop = context.stop;
         let out = &self.out();
-        if let Some(depth) = self.depth_mm.filter(|depth| !DEPTHS_MM.contains(depth)) {
-            let [low, high] = [DEPTHS_MM.start(), DEPTHS_MM.end()];
-            let problem =
-                format!("--depth-mm: is {depth} mm; it must be within {low} .. {high} mm");
-            return Err(Failure::usage(problem));
-        }
+        within("--depth-mm", self.depth_mm, &DEPTHS_MM)?;
         if out.exists() {
             let file = out.display();
             return Err(Failure::usage(format!("{file} exists; name another file with --out")));
         }
-        let mut found = self.found(context)?;
+        let mut mated = self.mated_task(context)?;
         not_stopped(stop)?;
-        let (task, tuned) = tune_new(found.made.task, self.engine, stop)?;
-        found.made.task = task;
-        let written = self.write(out, &found)?;
+        let (task, tuned) = tune_new(mated.made.task, self.engine, stop)?;
+        mated.made.task = task;
+        let written = self.write(out, &mated)?;
         let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine, stop)?;
-        Ok(ImportedTask { found, tuned, checked, out: out.clone() })
+        Ok(ImportedTask { mated, tuned, checked, out: out.clone() })
     }
 }
 
 impl Request {
     /// Returns the names of plug and socket in messages.
-    fn called(&self) -> [String; 2] {
+    fn names(&self) -> [String; 2] {
         let paths = || [self.plug(), self.socket()].map(|path| path.display().to_string());
         <[String; 2]>::try_from(self.names.clone()).unwrap_or_else(|_| paths())
     }
@@ -148,9 +144,9 @@ impl Request {
         })
     }
 
-    /// Writes the task; many parts lie in a file of their own beside it.
-    fn write(&self, out: &Path, found: &MatedTask) -> Result<TaskFile, Failure> {
-        let (task, mut notes) = (&found.made.task, self.notes(found));
+    /// Writes the task; more parts than [`MAX_INLINE`] go to a separate file beside it.
+    fn write(&self, out: &Path, mated: &MatedTask) -> Result<TaskFile, Failure> {
+        let (task, mut notes) = (&mated.made.task, self.notes(mated));
         let file = out.display().to_string();
         if task.plug.parts.len() + task.socket.len() <= MAX_INLINE {
             let written = TaskFile::parse(Source { file, text: write::task(task, &notes) })?;
@@ -163,19 +159,15 @@ impl Request {
         let text = write::task(task, &notes);
         let written = TaskFile::parse(Source { file, text: joined(&text, &parts) })?;
         write_file(&beside, &parts)?;
-        let whole = write_file(out, &text);
-        if whole.is_err() {
-            // Parts without their task are of no use.
-            let _ = std::fs::remove_file(&beside);
-        }
-        whole?;
+        // Parts without their task are of no use.
+        write_file(out, &text).inspect_err(|_| drop(std::fs::remove_file(&beside)))?;
         Ok(written)
     }
 
-    /// Returns the task of the shapes in their mated pose.
-    fn found(&self, context: &Context<'_>) -> Result<MatedTask, Failure> {
+    /// Returns the task made of the shapes in their mated pose.
+    fn mated_task(&self, context: &Context<'_>) -> Result<MatedTask, Failure> {
         let like = self.like.as_deref().map(read_task).transpose()?;
-        let files = self.called();
+        let files = self.names();
         let request = PartsRequest {
             plug: self.plug(),
             socket: self.socket(),
@@ -198,10 +190,10 @@ impl Request {
             depth: self.depth_mm.map(|depth| depth * MM),
             closeup: &self.out().with_extension("place.svg"),
         };
-        let mut found = mated([&files[0], &files[1]], [&plug, &socket], &options, context)?;
-        found.made.task.description = described(&files);
-        found.findings.extend(finding);
-        Ok(found)
+        let mut task = mated([&files[0], &files[1]], [&plug, &socket], &options, context)?;
+        task.made.task.description = description(&files);
+        task.findings.extend(finding);
+        Ok(task)
     }
 
     fn name(&self) -> String {
@@ -220,7 +212,7 @@ impl Request {
     }
 
     fn notes(&self, MatedTask { made, unit, along, jaws, .. }: &MatedTask) -> Notes {
-        let [plug, socket] = self.called();
+        let [plug, socket] = self.names();
         let mass = format!("Assumed: {DENSITY} kg/m3. Weigh yours.");
         let [unit, along, jaws] = [value(*unit), value(*along), value(*jaws)];
         let head = format!(
@@ -232,7 +224,7 @@ impl Request {
 }
 
 /// Returns a one-line description of a task from these files.
-fn described(files: &[String; 2]) -> String {
+fn description(files: &[String; 2]) -> String {
     let name = |file: &String| {
         let name = Path::new(file).file_name();
         name.map_or(file.clone(), |name| name.to_string_lossy().into_owned())
@@ -266,25 +258,25 @@ struct Fields<'a> {
 
 impl ImportedTask {
     fn fields(&self) -> Fields<'_> {
-        let ImportedTask { found, tuned, checked, out } = self;
-        let task = &found.made.task;
+        let ImportedTask { mated, tuned, checked, out } = self;
+        let task = &mated.made.task;
         let [plug_parts, socket_parts] = [task.plug.parts.len(), task.socket.len()];
-        let [clearance_x_mm, clearance_y_mm] = found.play.map(|play| play / MM);
+        let [clearance_x_mm, clearance_y_mm] = mated.play.map(|play| play / MM);
         Fields {
             parts: plug_parts + socket_parts,
             plug_parts,
             socket_parts,
-            unit: value(found.unit),
-            insert_along: value(found.along),
-            jaws: value(found.jaws),
-            found: found.findings.iter().map(|(what, why)| format!("{what} {why}")).collect(),
+            unit: value(mated.unit),
+            insert_along: value(mated.along),
+            jaws: value(mated.jaws),
+            found: mated.findings.iter().map(|(what, why)| format!("{what} {why}")).collect(),
             clearance_mm: clearance_x_mm.min(clearance_y_mm),
             clearance_x_mm,
             clearance_y_mm,
             body_mm: self.body_mm(),
-            plug_was_inward: found.inward[0],
-            socket_was_inward: found.inward[1],
-            left_out: found.made.interference.iter().map(LeftOut::from).collect(),
+            plug_was_inward: mated.inward[0],
+            socket_was_inward: mated.inward[1],
+            left_out: mated.made.interference.iter().map(LeftOut::from).collect(),
             out: out.display().to_string(),
             tuned: tuned.as_ref().and_then(chosen),
             check: checked,
@@ -293,7 +285,7 @@ impl ImportedTask {
 
     /// Returns the body that the fingers hold: width between the jaws, height in x, length above the seated socket.
     fn body_mm(&self) -> [f64; 3] {
-        let made = &self.found.made;
+        let made = &self.mated.made;
         let grip = &made.task.grip;
         [width(grip.faces_y), made.held, grip.shoulder_z + made.mated_z()].map(|side| side / MM)
     }
@@ -313,7 +305,7 @@ impl command::Response for ImportedTask {
 
 impl fmt::Display for ImportedTask {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let ImportedTask { found, tuned, checked, .. } = self;
+        let ImportedTask { mated, tuned, checked, .. } = self;
         let Fields { out, plug_parts, socket_parts, clearance_x_mm, clearance_y_mm, .. } =
             self.fields();
         let [wide, high, long] = self.body_mm();
@@ -321,12 +313,12 @@ impl fmt::Display for ImportedTask {
             "written       {out}\nplug          {plug_parts} convex parts\nsocket        {socket_parts} convex parts\n\
              clearance     {clearance_y_mm:.3} mm in y, {clearance_x_mm:.3} in x; body {high:.1} x {wide:.1} x {long:.1} mm\n"
         );
-        for (what, why) in &found.findings {
+        for (what, why) in &mated.findings {
             text.push_str(&format!("{what:<14}{why}\n"));
         }
-        for (name, inward) in ["plug", "socket"].into_iter().zip(found.inward) {
+        for (name, inward) in ["plug", "socket"].into_iter().zip(mated.inward) {
             if inward {
-                text.push_str(&format!("normals       of the {name} pointed inward; turned\n"));
+                text.push_str(&format!("normals       of the {name} pointed inward; reversed\n"));
             }
         }
         text.extend(tuned.iter().map(|tuned| brief("strategy", tuned)));

@@ -18,7 +18,7 @@ use contact::scene::{Body, BodyId, Motion, Pose, Scene, Spring};
 use input::shipped::ROBOTS;
 use input::units::{MM, N_PER_MM};
 use insertion::arm::{Arm, JOINTS};
-use insertion::robot::{Drive, Flange, Mounted, Robot, Servo};
+use insertion::robot::{Drive, Flange, MountedRobot, Robot, Servo};
 use insertion::trial::cell;
 use nalgebra::{Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
 
@@ -59,11 +59,11 @@ fn of_robot(engine: &dyn Engine, words: &str, file: &str) -> Vec<CheckRow> {
 }
 
 /// Returns the shipped arm with the published servos, and its mount for an upright task that is not turned.
-pub fn ur5e() -> Option<(Arm, Mounted)> {
+pub fn ur5e() -> Option<(Arm, MountedRobot)> {
     shipped(SOFT)
 }
 
-fn shipped(name: &str) -> Option<(Arm, Mounted)> {
+fn shipped(name: &str) -> Option<(Arm, MountedRobot)> {
     let file = ROBOTS.iter().find(|file| file.name == name)?;
     let robot = Robot::parse(file.text, file.file).ok()?;
     let mounted = robot.mount(0.0, 0.0).ok()?;
@@ -119,7 +119,7 @@ impl Loaded {
 }
 
 /// Returns the scene of a flange as in a trial.
-pub fn flange(robot: &Mounted) -> Loaded {
+pub fn flange(robot: &MountedRobot) -> Loaded {
     let mut scene = Scene::default();
     let (_, end) = cell::add_flange(&mut scene, &robot.flange, Pose::identity());
     Loaded { scene, end, tool: Pose::identity(), centre: Point3::origin() }

@@ -1,4 +1,4 @@
-//! Stiffness computed from the ribs: mean of the model if few fingers were measured.
+//! Stiffness computed from the ribs: mean of the models if fewer than seven fingers were measured.
 
 use super::{Estimate, Fitted, Samples};
 use crate::stiffness::{Axis, Infill};
@@ -9,75 +9,69 @@ use finray::stiffness::PlanarStiffness;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// Computed stiffness of the fingers of one file, each computed once.
+/// Computed stiffness of the fingers of one file; each finger is computed once.
 #[derive(Debug)]
-pub struct Computed {
+pub struct ComputedStiffness {
     finger: PrintedFinger,
-    known: Mutex<BTreeMap<[u64; 2], Vec<[PlanarStiffness; 2]>>>,
+    /// Stiffness along each [`Axis`], N/m, by the bits of the infill.
+    cache: Mutex<BTreeMap<[u64; 2], [f64; 2]>>,
 }
 
-impl Computed {
-    /// Returns the fingers of this file.
+impl ComputedStiffness {
+    /// Creates an empty cache for the fingers of a file.
     pub fn new(finger: &PrintedFinger) -> Self {
-        Computed { finger: finger.clone(), known: Mutex::default() }
+        ComputedStiffness { finger: finger.clone(), cache: Mutex::default() }
     }
 
-    /// Returns a finger's stiffness at every phase of its ribs.
+    /// Returns the stiffness along an axis, N/m: geometric mean over the phases of the ribs. In the assembly direction,
+    /// pad and roof are held: the leave-one-out error is smaller than with the pad alone.
     ///
     /// # Errors
-    /// If it cannot be made.
-    pub fn phases(&self, infill: Infill) -> Result<Vec<[PlanarStiffness; 2]>, FingerError> {
+    /// If the finger cannot be printed.
+    pub fn stiffness(&self, axis: Axis, infill: Infill) -> Result<f64, FingerError> {
         let key = infill.map(f64::to_bits);
-        let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(found) = known().get(&key) {
-            return Ok(found.clone());
+        let cache = || self.cache.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(cached) = cache().get(&key) {
+            return Ok(cached[axis as usize]);
         }
         // Computed without the lock, so that other threads need not wait.
-        let found = over_phases(&self.finger, infill[0], infill[1])?;
-        known().insert(key, found.clone());
-        Ok(found)
-    }
-
-    /// Returns the stiffness along an axis, N/m: geometric mean over the phases. In the assembly direction
-    /// it is that of pad and roof, which has a smaller leave-one-out error than that of the pad alone.
-    ///
-    /// # Errors
-    /// If the finger cannot be made.
-    pub fn stiffness(&self, axis: Axis, infill: Infill) -> Result<f64, FingerError> {
-        let phases = self.phases(infill)?;
-        let logs = phases.iter().map(|[pad, pad_and_roof]| match axis {
-            Axis::Compliance => libm::log(pad.in_compliance()),
-            Axis::Assembly => libm::log(pad_and_roof.in_assembly()),
-        });
-        Ok(libm::exp(logs.sum::<f64>() / phases.len() as f64))
+        let phases = over_phases(&self.finger, infill[0], infill[1])?;
+        let mean = |of: fn(&[PlanarStiffness; 2]) -> f64| {
+            let logs = phases.iter().map(|phase| libm::log(of(phase)));
+            libm::exp(logs.sum::<f64>() / phases.len() as f64)
+        };
+        let means = [mean(|[_, both]| both.in_assembly()), mean(|[pad, _]| pad.in_compliance())];
+        cache().insert(key, means);
+        Ok(means[axis as usize])
     }
 }
 
-/// Standard deviation of ln(measured / computed) over the eleven shipped designs, assumed for another
-/// material as long as its own is not known.
+/// Standard deviation of ln(measured / computed) over the eleven shipped designs; prior for other materials.
 pub(super) const SCATTER: [(Axis, f64); 2] = [(Axis::Compliance, 0.17), (Axis::Assembly, 0.30)];
 /// Degrees of freedom of that standard deviation.
-pub(super) const FREEDOM: f64 = 10.0;
+pub(super) const DEGREES_OF_FREEDOM: f64 = 10.0;
 
-/// Lognormal ratio of measured and computed stiffness.
+/// Lognormal distribution of the ratio of measured to computed stiffness.
 #[derive(Debug)]
-pub(super) struct Scale {
+pub(super) struct LognormalRatio {
     log: f64,
     sd: f64,
     count: f64,
 }
 
-/// Fits ratios of measured and computed stiffness; `None` without any.
-pub(super) fn fit(axis: Axis, ratios: &Samples) -> Option<Scale> {
+/// Fits ratios of measured to computed stiffness; `None` if there are none.
+pub(super) fn fit(axis: Axis, ratios: &Samples) -> Option<LognormalRatio> {
     let logs = ratios.targets().mapv(libm::log);
     let log = logs.mean()?;
     let (_, scatter) = SCATTER.into_iter().find(|(of, _)| *of == axis)?;
     let count = logs.len() as f64;
-    let squares = logs.mapv(|each| (each - log).powi(2)).sum() + FREEDOM * scatter * scatter;
-    Some(Scale { log, sd: (squares / (FREEDOM + count - 1.0)).sqrt(), count })
+    let squares =
+        logs.mapv(|each| (each - log).powi(2)).sum() + DEGREES_OF_FREEDOM * scatter * scatter;
+    let sd = (squares / (DEGREES_OF_FREEDOM + count - 1.0)).sqrt();
+    Some(LognormalRatio { log, sd, count })
 }
 
-impl Fitted for Scale {
+impl Fitted for LognormalRatio {
     fn predict(&self, _: Infill) -> Estimate {
         let mean = libm::exp(self.log);
         Estimate { mean, sd: mean * self.sd * (1.0 + 1.0 / self.count).sqrt() }

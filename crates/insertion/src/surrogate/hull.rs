@@ -1,4 +1,4 @@
-//! The convex hull of the measured designs, and the distance to it.
+//! Convex hull of the measured designs, and distance to it.
 
 use crate::stiffness::Infill;
 use crate::task::geometry::{convex_outline, cross};
@@ -13,7 +13,7 @@ pub(super) struct Hull {
     corners: Vec<Point2<f64>>,
 }
 
-/// Below this (in units of the spans) a point counts as on the hull.
+/// Distance, in units of the spans, below which a point counts as on the hull.
 const TOLERANCE: f64 = 1e-9;
 
 impl Hull {
@@ -47,7 +47,7 @@ impl Hull {
     }
 }
 
-/// Returns the distance of `p` from the segment from `a` to `b`.
+/// Returns the distance of `p` from the segment between `a` and `b`.
 fn to_segment(a: Point2<f64>, b: Point2<f64>, p: Point2<f64>) -> f64 {
     let (along, from_a) = (b - a, p - a);
     let squared = along.norm_squared();

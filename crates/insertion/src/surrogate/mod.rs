@@ -29,7 +29,6 @@ use ndarray::{Array1, Array2, Ix1};
 use rayon::prelude::*;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use computed::Computed;
 pub use model::{Loo, MIN_MEASURED, Model, ModelKind, fit};
 
 /// A value with its standard deviation, both in the same unit.

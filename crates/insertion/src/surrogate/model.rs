@@ -1,10 +1,8 @@
 //! Candidate models of each axis, their leave-one-out errors, and the choice between them.
 
 use super::hull::Hull;
-use super::link::{Link, Sum};
-use super::{
-    Computed, Estimate, Fitted, Prediction, Samples, computed, gp, leave_one_out, ridge, samples,
-};
+use super::link::{Link, LinkKind};
+use super::{Estimate, Fitted, Prediction, Samples, computed, gp, leave_one_out, ridge, samples};
 use crate::stiffness::{Axis, Infill, Measurement, SurrogateError, check_all};
 use finray::FingerError;
 use finray::printed::PrintedFinger;
@@ -55,7 +53,7 @@ fn fit_axis(axis: Axis, kind: ModelKind, measured: &Samples) -> Option<Box<dyn F
     fn boxed<F: Fitted + 'static>(fitted: Option<F>) -> Option<Box<dyn Fitted>> {
         fitted.map(|fitted| Box::new(fitted) as Box<dyn Fitted>)
     }
-    let positive = Link::new(Sum::Parallel, measured.targets());
+    let positive = Link::new(LinkKind::Identity, measured.targets());
     match kind {
         ModelKind::Linear => boxed(ridge::fit(measured, 1, Link::IDENTITY, &[0.0])),
         ModelKind::RidgeLinear => boxed(ridge::fit(measured, 1, positive, &ridge::PENALTIES)),
@@ -141,7 +139,7 @@ pub struct Model {
     /// Leave-one-out errors: one row per axis and model, assembly first.
     pub loo: Vec<Loo>,
     /// Stiffness computed from the ribs, once for each finger.
-    computed: Computed,
+    computed: computed::ComputedStiffness,
     /// Whether the models predict ratios to the computed stiffness, which takes about 0.2 s per finger.
     pub ratios: bool,
 }
@@ -167,7 +165,7 @@ pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model
         MIN_FOR_PROCESS.. => (true, &[ModelKind::ComputedScale, ModelKind::ComputedProcess][..]),
         _ => (true, &[ModelKind::ComputedScale][..]),
     };
-    let computed = Computed::new(finger);
+    let computed = computed::ComputedStiffness::new(finger);
     let choose = |axis| {
         let unit = |m: &Measurement| match ratios {
             true => computed.stiffness(axis, m.infill()),
@@ -233,10 +231,7 @@ impl Model {
 
     /// Returns the number of measured designs as text.
     pub fn counted(&self) -> String {
-        match self.measurements.len() {
-            1 => "1 measured design".to_owned(),
-            count => format!("{count} measured designs"),
-        }
+        input::counted(self.measurements.len(), "measured design")
     }
 
     /// Returns the row of the model used on an axis.

@@ -1,3 +1,4 @@
+use super::computed::ComputedStiffness;
 use super::*;
 use crate::stiffness::{Measurement, SurrogateError, parse};
 use ask_tell::statistics::Moments;
@@ -12,9 +13,9 @@ fn finray9() -> PrintedFinger {
 }
 
 /// Returns the computed fingers, each computed once for all tests.
-fn computed() -> &'static Computed {
-    static COMPUTED: OnceLock<Computed> = OnceLock::new();
-    COMPUTED.get_or_init(|| Computed::new(&finray9()))
+fn computed() -> &'static ComputedStiffness {
+    static COMPUTED: OnceLock<ComputedStiffness> = OnceLock::new();
+    COMPUTED.get_or_init(|| ComputedStiffness::new(&finray9()))
 }
 
 fn shipped() -> Vec<Measurement> {
@@ -164,7 +165,7 @@ fn errors_name_the_line_and_what_is_accepted() {
         }
     }
     let empty = STIFFNESS[0].text.lines().next().unwrap();
-    assert_eq!(parse(empty, "mine.csv"), Err(SurrogateError::None));
+    assert_eq!(parse(empty, "mine.csv"), Err(SurrogateError::Empty));
 }
 
 #[test]
@@ -173,7 +174,7 @@ fn measurements_without_a_file_are_checked_too() {
     bad[2].compliance = f64::NAN;
     let error = fit(&bad, &finray9()).unwrap_err().to_string();
     assert!(error.starts_with("design 3: stiffness_compliance"), "{error}");
-    assert_eq!(fit(&[], &finray9()).unwrap_err(), SurrogateError::None);
+    assert_eq!(fit(&[], &finray9()).unwrap_err(), SurrogateError::Empty);
 }
 
 #[test]
@@ -241,7 +242,7 @@ fn the_assumed_scatter_is_that_of_the_shipped_fingers() {
             libm::log(m.stiffness(axis) / computed().stiffness(axis, m.infill()).unwrap())
         };
         let logs: Vec<f64> = shipped.iter().map(log).collect();
-        let scatter = (Moments::of(&logs).squares / super::computed::FREEDOM).sqrt();
+        let scatter = (Moments::of(&logs).squares / super::computed::DEGREES_OF_FREEDOM).sqrt();
         assert!((scatter - assumed).abs() < 0.005, "{axis:?}: {scatter}");
     }
 }

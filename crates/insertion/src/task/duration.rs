@@ -14,16 +14,16 @@ pub const GRASP_S: f64 = 0.3;
 pub const CARRY_S: f64 = 0.2;
 
 impl Phase {
-    /// Returns the largest duration of the phase, s, if its move is lengthened by `lead`, m, and the robot settles
+    /// Returns the largest duration of the phase, s, if its move is lengthened by `extra`, m, and the robot settles
     /// within `settling` seconds.
-    fn longest_s(&self, lead: f64, settling: f64) -> f64 {
+    fn longest_s(&self, extra: f64, settling: f64) -> f64 {
         let [x, y, z] = self.displacement;
-        let length = libm::hypot(libm::hypot(x, y), z) + lead;
+        let length = libm::hypot(libm::hypot(x, y), z) + extra;
         let after = match self.ending {
             Ending::Duration(rest) => rest.max(settling),
             Ending::Tolerance(_) => TOLERANCE_TIMEOUT_S,
-            Ending::Touch { preload, sensed } => {
-                (preload / self.speed).max(SHORTEST_MOVE_S) + sensed.latency + 2.0 * settling
+            Ending::Touch { preload, detection } => {
+                (preload / self.speed).max(SHORTEST_MOVE_S) + detection.latency + 2.0 * settling
             }
         };
         (length / self.speed).max(SHORTEST_MOVE_S) + after
@@ -32,12 +32,12 @@ impl Phase {
 
 impl Strategy {
     /// Checks that no trial can take longer than `LONGEST_TRIAL_S` on a robot that follows a command within
-    /// `settling` seconds and lengthens the move of a phase by `lead`, m.
+    /// `settling` seconds and lengthens the move of a phase by `extra`, m.
     ///
     /// # Errors
     /// The largest duration of a trial and its longest phase, as a message.
-    pub fn check_time(&self, lead: impl Fn(&Phase) -> f64, settling: f64) -> Result<(), String> {
-        let seconds = |phase: &Phase| phase.longest_s(lead(phase), settling);
+    pub fn check_time(&self, extra: impl Fn(&Phase) -> f64, settling: f64) -> Result<(), String> {
+        let seconds = |phase: &Phase| phase.longest_s(extra(phase), settling);
         let total = GRASP_S + CARRY_S + settling + self.phases.iter().map(seconds).sum::<f64>();
         // NaN fails the comparison.
         if total <= LONGEST_TRIAL_S {

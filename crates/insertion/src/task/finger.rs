@@ -1,16 +1,16 @@
-//! Properties of the fingers that a task file sets besides their two measured springs.
+//! Remote centre and coupled springs of the fingers, from a task file.
 
 use input::units::{MM, read::mm};
 use input::{Check, InputError};
 use nalgebra::Matrix6;
 use serde::Deserialize;
 
-/// Properties of a finger that a task file sets; by default none.
+/// Properties of the fingers that a task file may set, besides the measured stiffness.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FingerModel {
     /// Remote centre of compliance, if the file gives it.
     pub rcc: Option<Rcc>,
-    /// Coupling of its springs, if the file gives it.
+    /// Coupling of the springs, if the file gives it.
     pub coupling: Option<Coupling>,
 }
 
@@ -57,7 +57,7 @@ impl Rcc {
 }
 
 impl Coupling {
-    /// Returns the coupling with these coefficients of pairs of axes; `None` unless positive definite.
+    /// Returns the coupling with these coefficients of pairs of axes; `None` unless the matrix is positive definite.
     pub fn new(pairs: impl IntoIterator<Item = (usize, usize, f64)>) -> Option<Self> {
         let mut matrix = Matrix6::identity();
         for (i, j, coefficient) in pairs {
@@ -67,7 +67,7 @@ impl Coupling {
         matrix.cholesky().map(|_| Coupling(matrix))
     }
 
-    /// Returns the coefficients of a stiffness matrix; `None` unless it is positive definite.
+    /// Returns the coupling of a stiffness matrix; `None` unless it is positive definite.
     pub fn of(stiffness: &Matrix6<f64>) -> Option<Self> {
         stiffness.cholesky()?;
         let scale = |i: usize, j: usize| (stiffness[(i, i)] * stiffness[(j, j)]).sqrt();
@@ -130,7 +130,7 @@ fn coupling(check: Check<'_>, raw: &[RawCoupling]) -> Result<Option<Coupling>, I
     let mut pairs: Vec<(usize, usize, f64)> = Vec::new();
     for RawCoupling { axes: [first, second], coefficient } in raw {
         if first == second {
-            return check.fail(key, format!("couples {first:?} with itself; name two axes"));
+            return check.fail(key, format!("couples {first:?} with itself; the axes must differ"));
         }
         let [low, high] = [first.min(second), first.max(second)].map(|axis| *axis as usize);
         if pairs.iter().any(|&(i, j, _)| (i, j) == (low, high)) {
@@ -141,8 +141,8 @@ fn coupling(check: Check<'_>, raw: &[RawCoupling]) -> Result<Option<Coupling>, I
     if pairs.is_empty() {
         return Ok(None);
     }
-    let problem = "the stiffness matrix is not positive definite: the 6x6 matrix of coefficients with \
-                   ones on its diagonal must be (a single coefficient between -1 and 1 is)";
+    let problem = "the 6x6 matrix of the coefficients, with ones on its diagonal, is not positive definite; \
+                   give smaller coefficients";
     Coupling::new(pairs).map_or_else(|| check.fail(key, problem), |coupling| Ok(Some(coupling)))
 }
 
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn the_remote_centre_is_nothing_a_number_or_a_line() {
+    fn the_remote_centre_is_absent_constant_or_linear() {
         assert_eq!(parse(""), Ok(FingerModel::default()));
         assert_eq!(parse("[finger]\nrcc_mm = 25").unwrap().rcc.unwrap().at(40.0), 25.0 * MM);
         let line =
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_fingers_are_named() {
+    fn invalid_fingers_are_refused() {
         let pair =
             |axes: &str, c: f64| format!("[[finger.coupling]]\naxes = {axes}\ncoefficient = {c}\n");
         for (text, part) in [

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Point2, Point3, Translation3, Vector3};
 use rapier3d_f64::parry::math::Vector;
 use rapier3d_f64::parry::transformation::try_convex_hull;
 
-/// A coordinate axis, as files name it; its number is that of the coordinate.
+/// Coordinate axis in a file; the discriminant is the index of the coordinate.
 #[derive(serde::Deserialize, Clone, Copy)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Axis {
@@ -27,7 +27,7 @@ pub struct Part {
     pub friction: Option<f64>,
 }
 
-/// The solids a task file may name; all in metres.
+/// Solid of a task file, lengths in m.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Solid {
     /// A box along the axes.
@@ -68,12 +68,12 @@ pub enum Solid {
 pub type Moments = (f64, Vector3<f64>, Matrix3<f64>);
 
 impl Part {
-    /// Returns the part as a geom, of round edges a hull within 1 um, on a body whose frame is the part's frame.
+    /// Returns the part as one geom, on a body with the frame of the part; round edges become a hull within 1 um.
     pub fn geom(&self) -> Geom {
         self.placed(self.solid.shape())
     }
 
-    /// Returns the exact geoms for contacts, as [`Part::geom`].
+    /// Returns the exact geoms for contacts, in the frame of [`Part::geom`].
     pub fn geoms(&self) -> Vec<Geom> {
         match &self.solid {
             Solid::Rounded(rounded) => rounded.pieces().map(|piece| self.placed(piece)).collect(),
@@ -92,7 +92,7 @@ impl Part {
 }
 
 impl Solid {
-    /// Returns the solid as a centred shape and where its centre lies.
+    /// Returns the solid as a centred shape, and the position of its centre.
     pub fn shape(&self) -> (Shape, Vector3<f64>) {
         match self {
             Solid::Box { min, max } => (Shape::Box { half: (max - min) / 2.0 }, (max + min) / 2.0),
@@ -194,7 +194,7 @@ pub fn outline_by<P: Copy + PartialEq>(
             }
             corners.push(*p);
         }
-        // Its last point begins the other half.
+        // The last point is the first of the other half.
         corners.pop();
         corners
     };
@@ -243,7 +243,7 @@ fn prism_moments(axis: usize, outline: &[[f64; 2]], span: [f64; 2]) -> Moments {
     (volume, middle, tensor)
 }
 
-/// Corners, and triangles of them with outward normals.
+/// Corners of a surface, and its triangles as indices of corners, with outward normals.
 pub type Triangles = (Vec<Point3<f64>>, Vec<[usize; 3]>);
 
 /// Returns corners and outward triangles of the convex hull; `None` if the points lie nearly in a plane.

@@ -5,12 +5,13 @@ use input::units::read::mm;
 use input::{Check, InputError, shown};
 use serde::Deserialize;
 
-/// Force of contact springs on the plug by its depth: depths of the tip, m, ascending, and force, N.
+/// Force of the contact springs on the plug as a function of depth: pairs of depth of the tip, m, ascending, and
+/// force, N.
 ///
-/// It is measured on a connector that is mated slowly, against the depth (EIA-364-13, "Mating and unmating force
+/// The force is measured while a connector is mated slowly (EIA-364-13, "Mating and unmating force
 /// test procedure for electrical connectors"). Springs press on the plug's sides, so that most of it is friction: it
 /// opposes the axial velocity in either direction, and holds a plug at rest (Coulomb; Holm 1967, Electric
-/// Contacts). Centring by the springs, and a lower force of unmating, are not modelled.
+/// Contacts). Centring by the springs, and a lower unmating force, are not modelled.
 pub type MatingForce = Vec<[f64; 2]>;
 
 /// Table `[mating_force]` of a task file; SI units.
@@ -23,7 +24,7 @@ pub struct RawMatingForce {
     force: Vec<f64>,
 }
 
-/// Checks that there is a force for each depth, and that the depths ascend.
+/// Converts the table; checks that there is a force for each depth, and that the depths ascend.
 pub fn mating_force(check: Check<'_>, raw: RawMatingForce) -> Result<MatingForce, InputError> {
     let RawMatingForce { depth, force } = raw;
     if depth.is_empty() || depth.len() != force.len() {
@@ -39,7 +40,7 @@ pub fn mating_force(check: Check<'_>, raw: RawMatingForce) -> Result<MatingForce
         let problem = format!("{lower} follows {upper}; depths must ascend");
         return check.fail("mating_force.depth_mm", problem);
     }
-    Ok(depth.into_iter().zip(force).map(|(depth, force)| [depth, force]).collect())
+    Ok(depth.into_iter().zip(force).map(<[f64; 2]>::from).collect())
 }
 
 #[cfg(test)]

@@ -49,7 +49,7 @@ pub struct Task {
     pub grip: Grip,
     /// Coefficients of friction of the contact pairs.
     pub friction: Friction,
-    /// Properties of the fingers beside their measured stiffness.
+    /// Properties of the fingers besides the measured stiffness.
     pub finger: FingerModel,
     /// Start and moves of the search strategy.
     pub strategy: Strategy,
@@ -57,12 +57,12 @@ pub struct Task {
     pub success: Success,
     /// Loads that the connector withstands; no trial depends on them.
     pub limits: Limits,
-    /// Force of contact springs, if it is given.
+    /// Force of the contact springs, if the file gives it.
     pub mating_force: Option<MatingForce>,
 }
 
 impl Task {
-    /// Returns the largest force of contact springs, N, if it is given.
+    /// Returns the largest force of the contact springs, N, if the file gives it.
     pub fn largest_mating_force(&self) -> Option<f64> {
         let force = self.mating_force.as_ref()?;
         Some(force.iter().map(|[_, force]| *force).fold(0.0, f64::max))
@@ -83,12 +83,12 @@ pub struct Plug {
 impl Plug {
     /// Returns the parts outside the latch, which are one rigid body.
     pub fn rigid(&self) -> impl Iterator<Item = &Part> {
-        let springs = |i: &usize| self.latch.as_ref().is_some_and(|latch| latch.parts.contains(i));
-        self.parts.iter().enumerate().filter(move |(i, _)| !springs(i)).map(|(_, part)| part)
+        let in_latch = |i: &usize| self.latch.as_ref().is_some_and(|latch| latch.parts.contains(i));
+        self.parts.iter().enumerate().filter(move |(i, _)| !in_latch(i)).map(|(_, part)| part)
     }
 
     /// Returns the parts of the latch.
-    pub fn sprung(&self) -> impl Iterator<Item = &Part> {
+    pub fn latch_parts(&self) -> impl Iterator<Item = &Part> {
         let parts = self.latch.iter().flat_map(|latch| &latch.parts);
         parts.filter_map(|&i| self.parts.get(i))
     }
@@ -101,7 +101,7 @@ pub struct Grip {
     /// Height of the grasp point (TCP) on the plug's axis, m.
     #[serde(rename = "tcp_z_mm", deserialize_with = "mm")]
     pub tcp_z: f64,
-    /// Height of the shoulder that the finger's roof pushes on, m.
+    /// Height of the shoulder on which the finger's roof pushes, m.
     #[serde(rename = "shoulder_z_mm", deserialize_with = "mm")]
     pub shoulder_z: f64,
     /// Gripped faces, m: y of the face at -y and at +y.
@@ -145,7 +145,7 @@ pub struct Friction {
     /// Resistance of a pad to rotation of the plug about the pad's normal.
     #[serde(rename = "finger_plug_torsion_mm")]
     pub finger_torsion: PadTorsion,
-    /// Plug on socket, unless a socket part has its own.
+    /// Friction between plug and socket, unless a part sets its own.
     pub plug_socket: f64,
 }
 
@@ -153,13 +153,14 @@ pub struct Friction {
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(untagged, expecting = "a number of mm, or \"patch\"")]
 pub enum PadTorsion {
-    /// Moment per normal force at each contact point, m, besides that of the points' own lever arms.
+    /// Moment per unit of normal force at each contact point, m; the friction forces at the points add to it.
     Points(#[serde(deserialize_with = "mm")] f64),
     /// Friction of the contact patch only.
     #[serde(deserialize_with = "patch")]
     Patch,
 }
 
+/// Reads the word "patch".
 fn patch<'de, D: Deserializer<'de>>(from: D) -> Result<(), D::Error> {
     match &*String::deserialize(from)? {
         "patch" => Ok(()),
@@ -202,7 +203,7 @@ pub enum StartRule {
 pub enum Stage {
     /// Motion through the air without contact.
     Approach,
-    /// Down to the socket's surface, and search moves along it.
+    /// Descent to the socket's surface, and search moves along it.
     Search,
     /// The push into the socket.
     Assembly,
@@ -220,22 +221,22 @@ pub enum Ending {
         /// Distance beyond the position of the touch, m.
         preload: f64,
         /// Detection of the touch.
-        sensed: Sensed,
+        detection: TouchDetection,
     },
 }
 
 /// Detection of a touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sensed {
+pub struct TouchDetection {
     /// Threshold of the sum of the normal forces, N.
     pub force: f64,
-    /// Time for which the move continues after that, s.
+    /// Time for which the move continues after the threshold is reached, s.
     pub latency: f64,
 }
 
-impl Sensed {
+impl TouchDetection {
     /// Detection at first contact, without delay.
-    pub const FIRST: Sensed = Sensed { force: 0.05, latency: 0.0 };
+    pub const FIRST: TouchDetection = TouchDetection { force: 0.05, latency: 0.0 };
 }
 
 /// One move of the TCP.
@@ -266,7 +267,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Returns these limits, and the others where there are none.
+    /// Returns these limits, with missing ones taken from `others`.
     pub fn or(self, others: Limits) -> Limits {
         let Limits { force, speed } = others;
         Limits { force: self.force.or(force), speed: self.speed.or(speed) }
@@ -283,7 +284,7 @@ pub struct Success {
     /// Largest angle between the plug's axis and z, rad.
     #[serde(rename = "tilt_deg", deserialize_with = "deg")]
     pub tilt: f64,
-    /// Mated pose by which the plug's place is judged; without it the tip must lie in the opening.
+    /// Mated pose from which the lateral position of the plug is checked; without it, the tip must lie in the opening.
     #[serde(default)]
     pub mated: Option<Mated>,
 }
@@ -295,14 +296,14 @@ pub struct Mated {
     /// Tip of the plug in the task frame, m.
     #[serde(rename = "tip_mm", deserialize_with = "mm")]
     pub tip: [f64; 3],
-    /// Largest lateral distance of an inserted plug's tip from there, m.
+    /// Largest lateral distance of an inserted plug's tip from the mated tip, m.
     #[serde(rename = "lateral_mm", deserialize_with = "mm")]
     pub lateral: f64,
 }
 
 impl Mated {
-    /// Returns the lateral distance of a tip, task frame, from the mated one, m.
-    pub fn aside(&self, tip: &Vector3<f64>) -> f64 {
+    /// Returns the lateral distance of a tip, task frame, from the mated tip, m.
+    pub fn distance_to(&self, tip: &Vector3<f64>) -> f64 {
         (tip.xy() - Vector2::new(self.tip[0], self.tip[1])).norm()
     }
 }

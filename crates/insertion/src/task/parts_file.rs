@@ -1,4 +1,4 @@
-//! Parts of a task in a file of their own beside it: many of them would hide the rest of the task.
+//! Parts file: the parts of a task in a separate file, so that many parts do not hide the rest of the task.
 
 use input::files::{LARGEST_INPUT, read_text};
 use input::shipped::Source;
@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 use std::path::Path;
 use toml::Table;
 
-/// Line before the parts in a text that has them appended.
+/// Separator between the text of a task and its appended parts.
 const APPENDED: &str = "\n# Parts of the file named under [parts]:\n";
 
 /// File of the parts, relative to the task file, and the hash of its text.
@@ -17,17 +17,17 @@ const APPENDED: &str = "\n# Parts of the file named under [parts]:\n";
 pub struct PartsFile {
     /// Name of the file.
     pub file: String,
-    /// SHA-256 of its text, hexadecimal.
+    /// SHA-256 of the text of the file, hexadecimal.
     pub sha256: String,
 }
 
-/// Returns the SHA-256 of a text, hexadecimal.
-pub fn sha256(text: &str) -> String {
-    format!("{:x}", Sha256::digest(text))
+/// Returns the SHA-256 of a text or of bytes, hexadecimal.
+pub fn sha256(bytes: impl AsRef<[u8]>) -> String {
+    format!("{:x}", Sha256::digest(bytes))
 }
 
-/// Returns a task file with the parts of its parts file appended, if it names one: the text is then
-/// complete, and a study copies it as such.
+/// Returns a task file with the text of its parts file appended, if it names one. The combined text is complete; a
+/// study copies it.
 ///
 /// # Errors
 /// If the parts file cannot be read, or has changed.
@@ -37,19 +37,15 @@ pub fn with_parts(source: Source) -> Result<Source, InputError> {
     }
     // The parser of the task reports invalid TOML.
     let Ok(mut table) = source.text.parse::<Table>() else { return Ok(source) };
-    let named = table.remove("parts").and_then(|named| named.try_into::<PartsFile>().ok());
-    let Some(named) = named else { return Ok(source) };
+    let reference = table.remove("parts").and_then(|parts| parts.try_into::<PartsFile>().ok());
+    let Some(PartsFile { file, sha256: expected }) = reference else { return Ok(source) };
     let check = Check { file: &source.file };
-    let beside = Path::new(&source.file).parent().unwrap_or(Path::new("")).join(&named.file);
-    let parts = match read_text(&beside, LARGEST_INPUT) {
-        Ok(text) => text,
-        Err(error) => {
-            return check.fail("parts.file", format!("cannot read {}: {error}", named.file));
-        }
-    };
-    if sha256(&parts) != named.sha256 {
+    let path = Path::new(&source.file).parent().unwrap_or(Path::new("")).join(&file);
+    let parts = read_text(&path, LARGEST_INPUT)
+        .or_else(|error| check.fail("parts.file", format!("cannot read {file}: {error}")))?;
+    if sha256(&parts) != expected {
         let problem =
-            format!("{} has changed since the task was written; import it again", named.file);
+            format!("{file} has changed since the task was written; import the task again");
         return check.fail("parts.sha256", problem);
     }
     Ok(Source { text: joined(&source.text, &parts), file: source.file })
@@ -70,7 +66,7 @@ mod tests {
     use super::*;
     use input::shipped::TASKS;
 
-    /// A shipped task whose socket lies in a file beside it is the same task; one whose file changed is refused.
+    /// A shipped task whose socket is in a parts file is the same task; a changed parts file is refused.
     #[test]
     fn parts_beside_the_task_are_read_with_it() {
         let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Raw contents of a task file, and their conversion to a [`Task`].
+//! Deserialized contents of a task file, and their conversion to a [`Task`].
 
 use super::finger::{RawFinger, finger};
 use super::latch::{RawLatch, check_latch};
@@ -6,7 +6,8 @@ use super::mating_force::{RawMatingForce, mating_force};
 use super::parts_file::PartsFile;
 use super::raw_part::{RawPart, interval, parts};
 use super::{
-    Ending, Friction, Grip, Limits, PadTorsion, Phase, Plug, Sensed, Stage, Strategy, Success, Task,
+    Ending, Friction, Grip, Limits, PadTorsion, Phase, Plug, Stage, Strategy, Success, Task,
+    TouchDetection,
 };
 use input::units::MM;
 use input::units::read::{deg, gram, mm};
@@ -167,10 +168,10 @@ fn check_speed(check: Check<'_>, strategy: &Strategy, limits: Limits) -> Result<
     check.fail(&format!("strategy.phase \"{}\" speed_mm_per_s", fast.name), problem)
 }
 
-/// Checks that the torsional friction of a pad is not more than that of the largest contact patch.
+/// Checks that the torsional friction of a pad is at most that of the largest contact patch.
 fn check_torsion(check: Check<'_>, friction: &Friction) -> Result<(), InputError> {
     let PadTorsion::Points(torsion) = friction.finger_torsion else { return Ok(()) };
-    // The moment is that of the friction at the edge of the patch.
+    // The moment of friction that acts at the edge of the patch.
     let (torsion, most) = (torsion / MM, LARGEST_PATCH_MM * friction.finger_plug);
     if torsion <= most {
         return Ok(());
@@ -196,7 +197,7 @@ fn strategy(check: Check<'_>, raw: Strategy<RawPhase>) -> Result<Strategy, Input
         return check.fail(key, "the last phase must have stage = \"assembly\"");
     }
     if !phases.is_sorted_by_key(|phase| phase.stage != Stage::Approach) {
-        return check.fail(key, "phases with stage = \"approach\" come first");
+        return check.fail(key, "phases with stage = \"approach\" must come first");
     }
     let strategy = Strategy { tilt, start, rule, phases };
     strategy.check_time(|_| 0.0, 0.0).or_else(|problem| check.fail(key, problem))?;
@@ -208,6 +209,7 @@ fn phase(check: Check<'_>, raw: RawPhase) -> Result<Phase, InputError> {
     if raw.displacement == [0.0; 3] {
         return check.fail(&at("move_mm"), "is zero; a phase must move");
     }
+    // The field that each motion requires, in the order of `RawMotion`; then the optional fields.
     let fields = [
         ("tolerance_mm", raw.tolerance, 0, "tolerance"),
         ("settle_s", raw.settle_s, 1, "duration"),
@@ -215,23 +217,23 @@ fn phase(check: Check<'_>, raw: RawPhase) -> Result<Phase, InputError> {
         ("touch_force_n", raw.touch_force_n, 2, "touch"),
         ("latency_s", raw.latency_s, 2, "touch"),
     ];
-    let wanted = raw.motion as usize;
+    let own = raw.motion as usize;
     if let Some((field, .., motion)) =
-        fields.iter().find(|(_, value, of, _)| *of != wanted && value.is_some())
+        fields.iter().find(|(_, value, of, _)| *of != own && value.is_some())
     {
-        return check.fail(&at(field), format!("goes only with motion = \"{motion}\""));
+        return check.fail(&at(field), format!("is valid only with motion = \"{motion}\""));
     }
-    let (field, value, _, motion) = fields[wanted];
+    let (field, value, _, motion) = fields[own];
     let Some(value) = value else {
-        return check.fail(&at(field), format!("is missing; motion = \"{motion}\" needs it"));
+        return check.fail(&at(field), format!("is missing; motion = \"{motion}\" requires it"));
     };
     let ending = match raw.motion {
         RawMotion::Tolerance => Ending::Tolerance(value),
         RawMotion::Duration => Ending::Duration(value),
         RawMotion::Touch => {
-            let force = raw.touch_force_n.unwrap_or(Sensed::FIRST.force);
-            let latency = raw.latency_s.unwrap_or(Sensed::FIRST.latency);
-            Ending::Touch { preload: value, sensed: Sensed { force, latency } }
+            let force = raw.touch_force_n.unwrap_or(TouchDetection::FIRST.force);
+            let latency = raw.latency_s.unwrap_or(TouchDetection::FIRST.latency);
+            Ending::Touch { preload: value, detection: TouchDetection { force, latency } }
         }
     };
     let RawPhase { name, stage, displacement, speed, .. } = raw;

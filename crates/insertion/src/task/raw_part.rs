@@ -60,10 +60,10 @@ pub struct RawEdges {
     radius: Option<f64>,
 }
 
-/// Largest number of parts of a plug or a socket: a trial looks only at those that are near one another.
+/// Largest number of parts of a plug or a socket; a trial computes contacts only of parts near one another.
 pub const MAX_PARTS: usize = 3000;
 const MAX_CORNERS: usize = 256;
-/// Thinnest part and narrowest opening, m.
+/// Smallest extent of a part or an opening, m.
 pub const THINNEST: f64 = 1e-3 * MM;
 
 /// Converts and checks the parts under a key.
@@ -84,11 +84,11 @@ fn part(check: Check<'_>, key: &str, part: RawPart) -> Result<Part, InputError> 
     let at = |field: &str| format!("{key} \"{name}\" {field}");
     let (solid, friction) = match part {
         RawPart::Box { x, y, z, edges, friction, .. } => {
-            for (field, of) in [("x_mm", x), ("y_mm", y), ("z_mm", z)] {
-                interval(check, &at(field), of)?;
+            for (field, range) in [("x_mm", x), ("y_mm", y), ("z_mm", z)] {
+                interval(check, &at(field), range)?;
             }
             let corners = [0, 1].map(|end| Vector3::new(x[end], y[end], z[end]));
-            (without_edges(check, &at("edges"), corners, &edges)?, friction)
+            (with_cut_edges(check, &at("edges"), corners, &edges)?, friction)
         }
         RawPart::Cylinder { centre, diameter, z, friction, .. } => {
             let z = interval(check, &at("z_mm"), z)?;
@@ -101,7 +101,7 @@ fn part(check: Check<'_>, key: &str, part: RawPart) -> Result<Part, InputError> 
         }
         RawPart::Hull { points, friction, .. } => {
             let points: Vec<_> = points.into_iter().map(Point3::from).collect();
-            // Points inside the hull are left out.
+            // Only the corners of the hull remain.
             let Some((points, _)) = geometry::hull(&points) else {
                 let problem = "lie in a plane; a hull needs at least four points that do not";
                 return check.fail(&at("points_mm"), problem);
@@ -112,14 +112,14 @@ fn part(check: Check<'_>, key: &str, part: RawPart) -> Result<Part, InputError> 
     Ok(Part { name, solid, friction })
 }
 
-/// Checks that an interval, m, is not empty or too narrow, and returns it.
-pub fn interval(check: Check<'_>, key: &str, of: [f64; 2]) -> Result<[f64; 2], InputError> {
-    if of[1] - of[0] < THINNEST {
-        let [a, b] = of.map(units::mm);
-        let problem = format!("is [{a}, {b}]; the first must be below the second by 0.001 mm");
+/// Returns an interval, m, after checking that it is not too narrow.
+pub fn interval(check: Check<'_>, key: &str, range: [f64; 2]) -> Result<[f64; 2], InputError> {
+    if range[1] - range[0] < THINNEST {
+        let [a, b] = range.map(units::mm);
+        let problem = format!("is [{a}, {b}]; the second must exceed the first by 0.001 mm");
         return check.fail(key, problem);
     }
-    Ok(of)
+    Ok(range)
 }
 
 /// Checks that an outline is strictly convex: every turn is to the same side.
@@ -138,7 +138,8 @@ fn check_outline(check: Check<'_>, key: &str, outline: &[[f64; 2]]) -> Result<()
     check.fail(key, "is not convex; split the part into convex parts")
 }
 
-fn without_edges(
+/// Returns a box with these corners and cut edges.
+fn with_cut_edges(
     check: Check<'_>,
     key: &str,
     [min, max]: [Vector3<f64>; 2],
@@ -156,7 +157,7 @@ fn without_edges(
         let cut = match (chamfer, radius) {
             (Some(leg), None) => Cut::Chamfer(*leg),
             (None, Some(radius)) => Cut::Radius(*radius),
-            _ => return check.fail(key, "need either chamfer_mm or radius_mm"),
+            _ => return check.fail(key, "give either chamfer_mm or radius_mm"),
         };
         for edge in found {
             if cuts.iter().any(|(other, _)| edges::same(other, &edge)) {

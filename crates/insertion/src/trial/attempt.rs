@@ -8,12 +8,11 @@ use super::record::{Frame, Recorder, Sample, Trace};
 use super::run::RecordedRun;
 use super::{Conditions, Grasp, PhaseEnd, Poses, Trial};
 use crate::outcome::Outcome;
-use crate::robot::Mounted;
+use crate::robot::MountedRobot;
 use crate::task::duration::{CARRY_S, GRASP_S, TOLERANCE_TIMEOUT_S};
-use crate::task::{Ending, Hold, Phase, Sensed, Stage, Task};
+use crate::task::{Ending, Hold, Phase, Stage, Task, TouchDetection};
 use contact::scene::{BodyId, Pose};
 use contact::{ContactForce, ContactPoint, Diverged, World};
-use descent::Begun;
 use input::units::{DEG, MM};
 use nalgebra::{Point3, Vector3};
 use std::sync::Arc;
@@ -50,15 +49,15 @@ impl From<Diverged> for Stop {
 /// State of an attempt; a clone continues bit for bit as the original does.
 #[derive(Clone)]
 pub(super) struct Attempt<'a> {
-    robot: Arc<Mounted>,
+    robot: Arc<MountedRobot>,
     stop: &'a AtomicBool,
     task: Arc<Task>,
     pub cell: WorkCell,
     pub world: Box<dyn World>,
     target: Tcp,
     stage: Stage,
-    /// First phase of the search, if a part of it has been simulated.
-    begun: Option<Begun>,
+    /// First move of the search and its number of simulated steps, if a part of it has been simulated.
+    begun: Option<(Move, usize)>,
     conditions: Conditions,
     pub socket: Pose,
     time: f64,
@@ -73,7 +72,7 @@ pub(super) struct Attempt<'a> {
 
 impl<'a> Attempt<'a> {
     pub fn new(
-        robot: Arc<Mounted>,
+        robot: Arc<MountedRobot>,
         task: Arc<Task>,
         cell: WorkCell,
         world: Box<dyn World>,
@@ -166,12 +165,13 @@ impl<'a> Attempt<'a> {
     /// Runs a phase to its end and records its end state.
     fn run_phase(&mut self, phase: &Phase) -> Result<(), Stop> {
         self.enter_stage(phase.stage);
-        let begun = self.begun.take().unwrap_or(Begun { motion: self.motion(phase), steps: 0 });
-        let motion = begun.motion;
+        let (motion, steps) = self.begun.take().unwrap_or((self.motion(phase), 0));
         let end = match phase.ending {
             Ending::Duration(rest) => self.run_move(motion, rest.max(self.rest_time())),
             Ending::Tolerance(within) => self.reach(motion, within),
-            Ending::Touch { preload, sensed } => self.touch(begun, preload, sensed, phase.speed),
+            Ending::Touch { preload, detection } => {
+                self.touch((motion, steps), preload, detection, phase.speed)
+            }
         };
         self.end_phase(&phase.name);
         end
@@ -186,12 +186,12 @@ impl<'a> Attempt<'a> {
         self.stage = stage;
     }
 
-    /// Returns the move of a phase; in the assembly it is lengthened by the lead of the robot.
+    /// Returns the move of a phase; in the assembly it is lengthened by the overtravel of the robot.
     fn motion(&self, phase: &Phase) -> Move {
         let mut displacement = Vector3::from(phase.displacement);
         if phase.stage == Stage::Assembly {
             let along = displacement.try_normalize(0.0).unwrap_or_default();
-            displacement += along * self.robot.lead(&along);
+            displacement += along * self.robot.overtravel(&along);
         }
         Move::new(self.target, self.target.moved(displacement), phase.speed)
     }
@@ -241,23 +241,24 @@ impl<'a> Attempt<'a> {
         Ok(())
     }
 
-    /// Moves until the plug touches the socket, then farther by the preload, m, at this speed, m/s.
+    /// Continues a move after `done` steps until the plug touches the socket, then pushes farther by the preload, m, at
+    /// this speed, m/s.
     fn touch(
         &mut self,
-        Begun { motion, steps: done }: Begun,
+        (motion, done): (Move, usize),
         preload: f64,
-        sensed: Sensed,
+        detection: TouchDetection,
         speed: f64,
     ) -> Result<(), Stop> {
         let (start, end) = (motion.at(0.0), motion.at(f64::INFINITY));
         // A robot that lags its command may touch after the command has ended.
-        let steps = self.steps(motion.duration + self.robot.settling());
-        let mut left = self.steps(sensed.latency);
+        let steps = self.steps(motion.duration + self.robot.settling_time());
+        let mut left = self.steps(detection.latency);
         let mut felt = false;
         for i in done + 1..=steps {
             self.target = motion.at(i as f64 * self.world.step_s());
             self.step()?;
-            felt = felt || self.socket_force().normal_sum > sensed.force;
+            felt = felt || self.socket_force().normal_sum > detection.force;
             if felt && left == 0 {
                 break;
             }
@@ -350,7 +351,7 @@ impl<'a> Attempt<'a> {
     }
 
     fn rest_time(&self) -> f64 {
-        REST.max(self.robot.settling())
+        REST.max(self.robot.settling_time())
     }
 
     fn tcp(&self) -> Vector3<f64> {

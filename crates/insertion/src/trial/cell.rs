@@ -1,11 +1,11 @@
-//! The scene of a trial: robot flange, jaws, fingers, plug, socket.
+//! Scene of a trial: robot flange, jaws, fingers, plug, socket.
 //!
 //! Frames: the world is the task frame. The flange frame is the TCP. The plug
-//! stands upright at its pick-up place, straight above the start of the search.
+//! stands upright at its pick-up pose, vertically above the start of the search.
 
 use crate::arm::ReducedArm;
 use crate::finger::{self, Finger};
-use crate::robot::{Flange, Mounted, Servo};
+use crate::robot::{Flange, MountedRobot, Servo};
 use crate::task::{Latch, PadTorsion, Part, Task, geometry};
 use contact::scene::{
     AxialFriction, Body, BodyId, Friction, Geom, Inertia, Joint, JointId, Motion, Pose, Scene,
@@ -22,13 +22,13 @@ const PAD_GAP: f64 = 0.5 * MM;
 const JAW_MASS: f64 = 0.05;
 /// Gain of the jaw's position servo, N/m (paper, Table "Simulation Inputs").
 const JAW_GAIN: f64 = 1000.0;
-/// Damping of the jaw's servo, N s/m: two jaws of 50 g close without a bounce.
+/// Damping of the jaw's servo, N s/m: two jaws of 50 g close without bouncing.
 const JAW_DAMPING: f64 = 30.0;
 /// Speed at which a jaw's target closes, m/s.
 const CLOSING_SPEED: f64 = 0.1;
-/// Farthest target, m: the softest finger's deflection and the servo's own.
+/// Largest travel of a jaw's target, m: covers the deflections of the softest finger and of the servo.
 const CLOSING_STROKE: f64 = 0.02;
-/// Damping ratio of a latch: low enough to snap, and at rest before the next move.
+/// Damping ratio of a latch: low enough to snap, high enough to come to rest before the next move.
 const LATCH_DAMPING: f64 = 0.1;
 /// Stiffness of a held jaw, N/m: a non-backdrivable gear.
 const HOLD_GAIN: f64 = 1e7;
@@ -38,7 +38,7 @@ const HOLD_GAIN: f64 = 1e7;
 pub struct WorkCell {
     /// Bodies, joints and contact pairs.
     pub scene: Scene,
-    /// The body that is commanded: the flange itself, or its servo's target.
+    /// Commanded body: the flange itself, or the target of its servo.
     pub command: BodyId,
     /// Robot flange, at the TCP.
     pub flange: BodyId,
@@ -63,12 +63,12 @@ pub struct Hand {
     pub finger: BodyId,
     /// The jaw's slide; axis 1 (y) is the servo.
     pub slide: JointId,
-    /// Position of the slide's zero on the flange, m.
+    /// Position of the jaw on the flange, y, at the zero of the slide, m.
     pub zero_y: f64,
 }
 
 /// Builds the scene for one pair of fingers; the jaws are open.
-pub fn build(task: &Task, robot: &Mounted, finger: &Finger) -> WorkCell {
+pub fn build(task: &Task, robot: &MountedRobot, finger: &Finger) -> WorkCell {
     let mut scene = Scene { gravity: Vector3::new(0.0, 0.0, -9.81), ..Scene::default() };
     let [x, y, z] = task.strategy.start;
     let tcp = Pose::translation(x, y, z + PICK_UP_HEIGHT);
@@ -78,13 +78,13 @@ pub fn build(task: &Task, robot: &Mounted, finger: &Finger) -> WorkCell {
     let geoms = task.socket.iter().flat_map(Part::geoms).collect();
     let socket = scene.body(body("socket", Motion::Fixed, Pose::identity(), geoms));
     let stand = scene.body(stand_body(task, plug_pose));
-    let hands = [-1.0, 1.0].map(|side| add_hand(&mut scene, task, finger, flange, tcp, side));
+    let hands = [-1.0, 1.0].map(|side| add_hand(&mut scene, task, finger, flange, side));
     let latch = task.plug.latch.as_ref().map(|latch| add_latch(&mut scene, task, latch, plug));
-    let hard = Friction::hard(task.friction.plug_socket);
-    scene.contact(plug, socket, hard);
-    scene.contact(plug, stand, hard);
+    let socket_friction = Friction::hard(task.friction.plug_socket);
+    scene.contact(plug, socket, socket_friction);
+    scene.contact(plug, stand, socket_friction);
     if let Some(latch) = latch {
-        scene.contact(latch, socket, hard);
+        scene.contact(latch, socket, socket_friction);
     }
     scene.axial_friction = task.mating_force.as_ref().map(|force| AxialFriction {
         parent: socket,
@@ -92,9 +92,9 @@ pub fn build(task: &Task, robot: &Mounted, finger: &Finger) -> WorkCell {
         region: task.opening,
         force: force.clone(),
     });
-    let soft = pad_friction(task);
+    let pad_friction = pad_friction(task);
     for hand in &hands {
-        scene.contact(hand.finger, plug, soft);
+        scene.contact(hand.finger, plug, pad_friction);
     }
     WorkCell { command, flange, hands, plug, latch, socket, stand, scene }
 }
@@ -128,7 +128,7 @@ pub fn add_flange(scene: &mut Scene, model: &Flange, tcp: Pose) -> (BodyId, Body
     (command, flange)
 }
 
-/// Adds the damper between flange and world of an arm without velocity feed-forward; axes of the tilted TCP.
+/// Adds the damper between flange and world of an arm without velocity feed-forward, along the axes of the tilted TCP.
 fn add_brake(scene: &mut Scene, arm: &ReducedArm, flange: BodyId, tcp: Pose) {
     let Some(damper) = arm.brake() else { return };
     let base = scene.body(body("base", Motion::Fixed, tcp, Vec::new()));
@@ -160,7 +160,7 @@ fn pad_friction(task: &Task) -> Friction {
     let torsion = match task.friction.finger_torsion {
         PadTorsion::Patch => Torsion::Patch,
         PadTorsion::Points(moment) if coefficient > 0.0 => Torsion::Radius(moment / coefficient),
-        // Without friction there is no torsional friction, whatever its radius.
+        // Without friction there is no torsional friction.
         PadTorsion::Points(_) => Torsion::Radius(0.0),
     };
     Friction { coefficient, torsion }
@@ -174,15 +174,15 @@ fn plug_body(task: &Task, pose: Pose) -> Body {
 
 fn latch_mass(task: &Task) -> f64 {
     let volume = |part: &Part| geometry::volume(&part.solid);
-    let sprung: f64 = task.plug.sprung().map(volume).sum();
-    task.plug.mass * (sprung / task.plug.parts.iter().map(volume).sum::<f64>())
+    let latch: f64 = task.plug.latch_parts().map(volume).sum();
+    task.plug.mass * (latch / task.plug.parts.iter().map(volume).sum::<f64>())
 }
 
 /// Adds the latch on its hinge: a separate body, whose frame equals that of the plug while the latch is not bent.
 fn add_latch(scene: &mut Scene, task: &Task, latch: &Latch, plug: BodyId) -> BodyId {
-    let inertia = geometry::inertia(task.plug.sprung(), latch_mass(task));
+    let inertia = geometry::inertia(task.plug.latch_parts(), latch_mass(task));
     let pose = scene.bodies[plug.0].pose;
-    let geoms = task.plug.sprung().flat_map(Part::geoms).collect();
+    let geoms = task.plug.latch_parts().flat_map(Part::geoms).collect();
     let body = scene.body(body("latch", Motion::Free(inertia), pose, geoms));
     let mut arm = inertia.centre - latch.hinge;
     arm[latch.axis] = 0.0;
@@ -210,14 +210,7 @@ fn stand_body(task: &Task, plug: Pose) -> Body {
 }
 
 /// Adds a jaw on its slide and a finger on its six springs; `side` is -1 or +1.
-fn add_hand(
-    scene: &mut Scene,
-    task: &Task,
-    finger: &Finger,
-    flange: BodyId,
-    tcp: Pose,
-    side: f64,
-) -> Hand {
+fn add_hand(scene: &mut Scene, task: &Task, finger: &Finger, flange: BodyId, side: f64) -> Hand {
     let label = if side < 0.0 { "-y" } else { "+y" };
     let face = if side < 0.0 { task.grip.faces_y[0] } else { task.grip.faces_y[1] };
     // Jaw and finger frames lie on the pad's surface at the height of the TCP.
@@ -225,7 +218,7 @@ fn add_hand(
     let in_flange = Pose::translation(0.0, zero_y, 0.0);
     let inertia =
         Inertia { mass: JAW_MASS, centre: Point3::origin(), moments: Vector3::repeat(1e-4) };
-    let pose = tcp * in_flange;
+    let pose = scene.bodies[flange.0].pose * in_flange;
     let jaw = scene.body(body(format!("jaw {label}"), Motion::Carried(inertia), pose, Vec::new()));
     let mut axes = [None; 6];
     axes[1] = Some(Spring { limit: task.grip.force, ..Spring::new(JAW_GAIN, JAW_DAMPING) });

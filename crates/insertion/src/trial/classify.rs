@@ -39,7 +39,7 @@ impl Placement {
         let [x, y] = task.opening;
         // A plug beside the socket can be deep without being inserted.
         let inside = match &task.success.mated {
-            Some(mated) => mated.aside(&self.tip) <= mated.lateral,
+            Some(mated) => mated.distance_to(&self.tip) <= mated.lateral,
             None => within(self.tip.x, x) && within(self.tip.y, y),
         };
         inside && -self.tip.z >= task.success.depth && self.tilt <= task.success.tilt
@@ -48,7 +48,7 @@ impl Placement {
     /// Returns whether the plug is beside its mated position, for example by one pitch of its pins.
     pub fn astray(&self, task: &Task) -> bool {
         let mated = task.success.mated.as_ref();
-        mated.is_some_and(|mated| mated.aside(&self.tip) > mated.lateral + ASTRAY_DISTANCE)
+        mated.is_some_and(|mated| mated.distance_to(&self.tip) > mated.lateral + ASTRAY_DISTANCE)
     }
 
     /// Returns the margin of this outcome; see [`super::Trial::margin`].

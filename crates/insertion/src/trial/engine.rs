@@ -20,7 +20,7 @@ pub enum EngineKind {
     /// Implicit stepper made for sprung fingers and rigid contacts
     #[default]
     Direct,
-    /// MuJoCo 3.17.0, as a second opinion
+    /// MuJoCo 3.17.0, for comparison
     #[cfg(feature = "mujoco")]
     Mujoco,
     /// A closed formula, for tests
@@ -35,9 +35,9 @@ pub enum EngineKind {
 pub struct EngineRecord {
     /// Name on the command line.
     pub name: String,
-    /// Version of the engine, after its name.
+    /// Name and version of the engine.
     pub version: String,
-    /// All its settings, SI units.
+    /// Settings of the engine, SI units.
     pub settings: toml::Table,
 }
 
@@ -59,8 +59,8 @@ impl EngineKind {
         <EngineKind as clap::ValueEnum>::from_str(name, false).ok()
     }
 
-    /// Returns the engine with its production step times `factor`, and its settings; those of the closed formula are
-    /// not used.
+    /// Returns the engine with `factor` times its production step, and its settings. For the closed formula it is a
+    /// placeholder.
     fn configured(self, factor: f64) -> (Box<dyn Engine>, toml::Table) {
         // Settings are flat structs of numbers, which TOML can always hold.
         macro_rules! scaled {
@@ -81,13 +81,13 @@ impl EngineKind {
         }
     }
 
-    /// Returns the engine with its production step times `factor`; it must be one that
+    /// Returns the engine with `factor` times its production step; a placeholder unless it
     /// [simulates](Self::simulates).
     pub fn build(self, factor: f64) -> Box<dyn Engine> {
         self.configured(factor).0
     }
 
-    /// Returns whether it is a simulation and not the closed formula.
+    /// Returns whether the engine is a simulation and not the closed formula.
     pub fn simulates(self) -> bool {
         self.name() != "fake"
     }

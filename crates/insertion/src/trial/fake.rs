@@ -1,10 +1,10 @@
-//! A rig with a closed-form window, for tests of everything above the trial.
+//! Rig with a closed-form window, for tests of the code that runs trials.
 //!
 //! It inserts for offsets within `[-(2 + 4 / k), 1 + a / 50 + (21 - r) / 10]` mm, with `k` and `a`
 //! the compliance and assembly stiffness in N/mm and `r` the distance of the remote centre in mm;
-//! it jams below and misses above. Friction divides the lower end; yaw and an error of the tilt take
-//! 1 mm a degree off both, a shift along x itself, a part low in the gripper its own height;
-//! clearance is added.
+//! below, the plug jams, and above, it misses the opening. The lower end is divided by the friction
+//! factor. Both ends move inward by 1 mm per degree of yaw and of tilt error, by the shift along x and
+//! by the height by which the part is low in the gripper, and outward by the added clearance.
 
 use super::{Conditions, Grasp, Grasped, Rig, Sample, Trial};
 use crate::finger::Finger;
@@ -12,14 +12,14 @@ use crate::outcome::{FailureClass, Outcome};
 use input::units::{DEG, MM, N_PER_MM};
 use std::sync::atomic::Ordering;
 
-/// The rig with the closed-form window.
+/// Rig with the closed-form window.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FakeRig {
-    /// Real time each trial takes, for tests that interrupt a study.
+    /// Wall-clock time of each trial, for tests that interrupt a study.
     pub delay: std::time::Duration,
 }
 
-/// Microseconds each trial takes, for tests that interrupt a study.
+/// Environment variable of [`FakeRig::delay`], microseconds.
 const DELAY: &str = "FINGER_OPT_FAKE_DELAY_US";
 
 impl FakeRig {
@@ -36,18 +36,22 @@ impl Rig for FakeRig {
     }
 }
 
-/// Returns the window's ends in mm: `(most negative, most positive)` inserting offset.
+/// Returns the most negative and the most positive inserting offset, mm.
 pub fn window_mm(finger: &Finger, conditions: &Conditions) -> (f64, f64) {
     let compliance = finger.compliance / N_PER_MM;
     let assembly = finger.assembly / N_PER_MM;
     let rcc = finger.rcc / MM;
-    let turned = conditions.yaw.abs() + conditions.start_tilt.abs();
-    let low = conditions.start_across.abs() + conditions.grasp_low;
-    let less = turned / DEG + low / MM - conditions.clearance / MM;
-    let nanometres = |mm: f64| (mm * 1e6).round() / 1e6;
+    let angle = conditions.yaw.abs() + conditions.start_tilt.abs();
+    let distance = conditions.start_across.abs() + conditions.grasp_low;
+    let inward = angle / DEG + distance / MM - conditions.clearance / MM;
     let low = -(2.0 + 4.0 / compliance) / conditions.friction_socket;
     let high = 1.0 + assembly / 50.0 + (21.0 - rcc) / 10.0;
-    (nanometres(low + less), nanometres(high - less))
+    (whole_nanometres(low + inward), whole_nanometres(high - inward))
+}
+
+/// Rounds a length, mm: a shift of 14 steps is 1.4 mm, not 1.4000000000000001.
+fn whole_nanometres(mm: f64) -> f64 {
+    (mm * 1e6).round() / 1e6
 }
 
 struct FakeGrasp<'a> {
@@ -62,8 +66,7 @@ impl Grasped for FakeGrasp<'_> {
         if !stopped {
             std::thread::sleep(self.delay);
         }
-        // Whole nanometres: a shift of 14 steps is 1.4 mm, not 1.4000000000000001.
-        let offset_mm = (offset / MM * 1e6).round() / 1e6;
+        let offset_mm = whole_nanometres(offset / MM);
         let outcome = if stopped {
             Outcome::Diverged
         } else if offset_mm < low {
@@ -90,7 +93,7 @@ impl Grasped for FakeGrasp<'_> {
     }
 }
 
-/// The closed-form rig with every trial changed by a function of grasp, offset (m) and result.
+/// Closed-form rig whose trials are altered by a function of grasp, offset (m) and trial.
 pub struct Altered<F>(pub F);
 
 struct AlteredGrasp<'a, F> {

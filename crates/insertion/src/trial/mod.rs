@@ -44,7 +44,7 @@ pub struct PhaseEnd {
     /// Poses of the bodies, task frame, m; for pictures.
     #[serde(skip)]
     pub poses: Poses,
-    /// Points at which the socket presses the plug, task frame; for pictures.
+    /// Contact points of the socket on the plug, task frame; for pictures.
     #[serde(skip)]
     pub contacts: Vec<ContactPoint>,
 }
@@ -54,7 +54,7 @@ pub struct PhaseEnd {
 pub struct Poses {
     /// Plug without its latch.
     pub plug: Pose,
-    /// Latch of the plug, if it springs.
+    /// Latch of the plug, if it has one.
     pub latch: Option<Pose>,
     /// The finger at -y and the finger at +y.
     pub fingers: [Pose; 2],
@@ -66,7 +66,7 @@ pub struct Trial {
     /// Outcome of the trial.
     pub outcome: Outcome,
     /// Margin, -1 to 1: the smallest excess over a success criterion, as a share of that criterion;
-    /// below 0 if it failed, 0 if it diverged.
+    /// below 0 if the trial failed, 0 if it diverged.
     pub margin: f64,
     /// Depth of the plug's tip below the socket's top at the end, mm.
     pub depth_mm: f64,
@@ -80,7 +80,7 @@ pub struct Trial {
     pub phases: Vec<PhaseEnd>,
     /// Simulated time of the trial, s.
     pub simulated_s: f64,
-    /// Whether it diverged at first and was repeated at half the step.
+    /// Whether the trial diverged at first and was repeated at half the step.
     pub retried: bool,
 }
 
@@ -94,7 +94,7 @@ pub struct Grasp<'a> {
     pub finger: Finger,
     /// Deviations from the task file.
     pub conditions: Conditions,
-    /// Set to end grasp and trials at once with an invalid result.
+    /// Stop flag: if set, grasp and trials end at once with an invalid result.
     pub stop: &'a AtomicBool,
 }
 
@@ -105,12 +105,12 @@ impl Grasp<'static> {
     }
 }
 
-/// Motion that is not the strategy of the task.
+/// Prescribed motion that replaces the strategy of the task.
 #[derive(Debug, Clone, Copy)]
 pub enum Course<'a> {
-    /// Commanded trajectories, task frame, each from the same grasp.
+    /// Commanded trajectories, task frame, all from the same grasp.
     Trajectories(&'a [&'a Trajectory]),
-    /// A probe of the friction on a flat plate, whose top is at z = 0, in the socket's place.
+    /// Friction probe on a flat plate that replaces the socket, with its top at z = 0.
     Probe(Probe),
 }
 
@@ -128,30 +128,30 @@ pub trait Rig: Send + Sync {
     }
 
     /// Returns the trial of a grasp, its start shifted by `offset` metres along y, with its
-    /// frames; `None` if it is not simulated.
+    /// frames; `None` if the rig does not simulate.
     fn record(&self, _grasp: Grasp<'_>, _offset: f64) -> Option<Recording> {
         None
     }
 
     /// Returns the trials of a grasp along a course, sampled every `every_s` seconds from its start: one for
-    /// each trajectory; empty if it is not simulated.
+    /// each trajectory or probe; empty if the rig does not simulate.
     fn follow(&self, _grasp: Grasp<'_>, _course: Course<'_>, _every_s: f64) -> Vec<Followed> {
         Vec::new()
     }
 
-    /// Returns the trial of these fingers whose moves the caller commands, if it is simulated.
+    /// Returns a trial of these fingers whose moves the caller commands; `None` if the rig does not simulate.
     fn driven(&self, _finger: &Finger) -> Option<Driven> {
         None
     }
 }
 
-/// Rest before a logged trial, and once more as the first part of its log, s.
-const ZEROED_S: f64 = 0.2;
+/// Rest in which the robot zeroes its sensor, s: before a logged trial, and again at the beginning of its log.
+const ZEROING_S: f64 = 0.2;
 
 /// A part held and tilted, ready for a trial at any offset.
 pub trait Grasped: Send + Sync {
-    /// Runs a trial with the start shifted by `offset` metres along y: after a rest of `rest_s` seconds, sampled every
-    /// `every_s` seconds from there on, and a second rest.
+    /// Runs a trial with the start shifted by `offset` metres along y. It rests twice for `rest_s` seconds before the
+    /// search; samples are taken every `every_s` seconds from the second rest on.
     fn run(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> (Trial, Vec<Sample>);
 
     /// Returns the trial from the search on, with its samples.
@@ -159,9 +159,9 @@ pub trait Grasped: Send + Sync {
         self.run(offset, every_s, 0.0)
     }
 
-    /// Returns the trial with the rest in which a robot zeroes its sensor, sampled as the robot logs it.
+    /// Returns the trial with the samples that a robot logs if it zeroes its sensor before the search.
     fn logged(&self, offset: f64, every_s: f64) -> (Trial, Vec<Sample>) {
-        self.run(offset, Some(every_s), ZEROED_S)
+        self.run(offset, Some(every_s), ZEROING_S)
     }
 
     /// Returns the trial alone.

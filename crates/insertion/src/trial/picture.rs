@@ -4,8 +4,8 @@
 use super::{PhaseEnd, Trial};
 use crate::finger::Pad;
 use crate::outcome::Outcome;
-use crate::task::Task;
 use crate::task::geometry::convex_outline;
+use crate::task::{Part, Task};
 use contact::ContactPoint;
 use contact::scene::{Geom, Pose};
 use drawing::{Drawing, Font, Style, View};
@@ -14,22 +14,22 @@ use nalgebra::{Point2, Point3, Vector2};
 
 /// Pixels per millimetre.
 const SCALE: f64 = 3.2;
-/// Room around the bodies of a panel, mm.
-const ROOM: f64 = 3.0;
+/// Margin around the bodies of a panel, mm.
+const MARGIN: f64 = 3.0;
 const FONT: Font = Font::new(13.0);
-/// Room for the title above and the legend below, pixels.
+/// Height of the title and of the legend, pixels.
 const HEAD: f64 = 44.0;
 const FOOT: f64 = 34.0;
-/// Length of an arrow, mm for each newton, and the longest.
+/// Length of an arrow, mm/N, and its maximum, mm.
 const ARROW: (f64, f64) = (0.15, 18.0);
-/// Forces that are smaller are not drawn, N.
+/// Smallest force that is drawn, N.
 const MIN_FORCE: f64 = 0.1;
 const SOCKET: &str = "#b8c4d6";
 const PLUG: &str = "#e8a33d";
 const FINGER: &str = "#5b8c5a";
 const FORCE: &str = "#b42318";
 
-/// Extent of a panel, mm.
+/// Section of a view that a panel shows, mm.
 #[derive(Clone, Copy)]
 struct Extent {
     /// Horizontal coordinate: 0 is x, 1 is y.
@@ -55,7 +55,7 @@ pub fn svg(task: &Task, pad: &Pad, trial: &Trial, label: &str) -> String {
         row.across = [row.across[0] - room, row.across[1] + room];
     }
     let column = rows[0].size()[0];
-    // Wide enough for the title.
+    // The minimum is the width of the title.
     let width = (trial.phases.len().max(1) as f64 * column).max(560.0);
     let mut drawing = Drawing::default();
     drawing.white_background();
@@ -75,9 +75,9 @@ pub fn svg(task: &Task, pad: &Pad, trial: &Trial, label: &str) -> String {
     drawing.svg([width, y + FOOT], "")
 }
 
-/// Draws how a trial ended, seen along x, as a stand-alone SVG without text; empty if it did not
-/// begin.
-pub fn ended(task: &Task, pad: &Pad, trial: &Trial) -> String {
+/// Draws the final state of a trial, seen along x, as a stand-alone SVG without text; empty if it has no
+/// phases.
+pub fn final_state(task: &Task, pad: &Pad, trial: &Trial) -> String {
     let Some(phase) = trial.phases.last() else { return String::new() };
     let extent = extent(task, pad, std::slice::from_ref(phase), 1);
     let mut drawing = Drawing::default();
@@ -104,17 +104,17 @@ fn bodies(task: &Task, pad: &Pad, phase: &PhaseEnd) -> Vec<Body> {
     let shoulder = task.grip.shoulder();
     let [left, right] = phase.poses.fingers;
     let mut bodies = vec![
-        (task.socket.iter().map(|part| part.geom()).collect(), Pose::identity(), SOCKET),
-        (task.plug.rigid().map(|part| part.geom()).collect(), phase.poses.plug, PLUG),
+        (task.socket.iter().map(Part::geom).collect(), Pose::identity(), SOCKET),
+        (task.plug.rigid().map(Part::geom).collect(), phase.poses.plug, PLUG),
         (pad.geoms(shoulder, -1.0), left, FINGER),
         (pad.geoms(shoulder, 1.0), right, FINGER),
     ];
-    let latch = |pose| (task.plug.sprung().map(|part| part.geom()).collect(), pose, PLUG);
+    let latch = |pose| (task.plug.latch_parts().map(Part::geom).collect(), pose, PLUG);
     bodies.extend(phase.poses.latch.map(latch));
     bodies
 }
 
-/// Returns the extent that holds every phase, seen along x (axis 1) or y (axis 0).
+/// Returns the extent that contains the bodies at the end of every phase, seen along x (axis 1) or y (axis 0).
 fn extent(task: &Task, pad: &Pad, phases: &[PhaseEnd], axis: usize) -> Extent {
     let bodies = phases.iter().flat_map(|phase| bodies(task, pad, phase));
     let points: Vec<Point2<f64>> = bodies
@@ -122,15 +122,15 @@ fn extent(task: &Task, pad: &Pad, phases: &[PhaseEnd], axis: usize) -> Extent {
             geoms.iter().flat_map(|geom| projected(geom, &body, axis)).collect::<Vec<_>>()
         })
         .collect();
-    let reach = |of: fn(&Point2<f64>) -> f64, room: f64| match points.is_empty() {
+    let range = |of: fn(&Point2<f64>) -> f64, room: f64| match points.is_empty() {
         true => [-1.0, 1.0],
         false => [
-            points.iter().map(of).fold(f64::INFINITY, f64::min) - ROOM,
-            points.iter().map(of).fold(f64::NEG_INFINITY, f64::max) + ROOM + room,
+            points.iter().map(of).fold(f64::INFINITY, f64::min) - MARGIN,
+            points.iter().map(of).fold(f64::NEG_INFINITY, f64::max) + MARGIN + room,
         ],
     };
-    // The name of the phase stands above.
-    Extent { axis, across: reach(|p| p.x, 0.0), up: reach(|p| p.y, 6.0) }
+    // Room for the name of the phase above.
+    Extent { axis, across: range(|p| p.x, 0.0), up: range(|p| p.y, 6.0) }
 }
 
 fn panel(
@@ -155,7 +155,7 @@ fn panel(
     });
 }
 
-/// Draws an arrow that ends where the socket presses the plug.
+/// Draws the contact force on the plug as an arrow that ends at the contact point.
 fn force(drawing: &mut Drawing, contact: &ContactPoint, axis: usize, view: View) {
     let force = Vector2::new(contact.force[axis], contact.force.z);
     let size = force.norm();

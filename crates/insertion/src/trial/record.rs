@@ -29,7 +29,7 @@ pub struct Frame {
     pub force: Vector3<f64>,
     /// Slip of the part in the grasp since the grasp, m.
     pub slip: f64,
-    /// Points at which the socket presses the plug.
+    /// Contact points of the socket on the plug.
     pub contacts: Vec<ContactPoint>,
     /// Points at which the fingers press the plug.
     pub grips: Vec<ContactPoint>,

@@ -6,7 +6,7 @@ use super::record::{Frame, Recorder, Sample, Trace};
 use super::{Course, Followed, Grasp, Grasped, Recording, Rig, Trial, cell};
 use crate::finger::Finger;
 use crate::outcome::Outcome;
-use crate::robot::{Mounted, Robot};
+use crate::robot::{MountedRobot, Robot};
 use crate::task::{Part, Phase, Solid, Stage, Task};
 use contact::{Engine, Unsupported};
 use input::units::N_PER_MM;
@@ -17,7 +17,7 @@ use std::sync::{Arc, OnceLock};
 pub struct EngineRig {
     /// Task of the trials.
     pub task: Task,
-    robot: Arc<Mounted>,
+    robot: Arc<MountedRobot>,
     engine: Box<dyn Engine>,
 }
 
@@ -56,11 +56,11 @@ impl EngineRig {
         let refused = |problem| RigError::Robot(robot.name.clone(), task.name.clone(), problem);
         let mounted = robot.mount(task.turn, task.strategy.tilt);
         let mounted = mounted.map_err(|error| refused(error.to_string()))?;
-        let lead = |phase: &Phase| match Vector3::from(phase.displacement).try_normalize(0.0) {
-            Some(along) if phase.stage == Stage::Assembly => mounted.lead(&along).abs(),
+        let extra = |phase: &Phase| match Vector3::from(phase.displacement).try_normalize(0.0) {
+            Some(along) if phase.stage == Stage::Assembly => mounted.overtravel(&along).abs(),
             _ => 0.0,
         };
-        task.strategy.check_time(lead, mounted.settling()).map_err(refused)?;
+        task.strategy.check_time(extra, mounted.settling_time()).map_err(refused)?;
         engine.supports(&cell::build(&task, &mounted, finger).scene)?;
         Ok(EngineRig { task, robot: Arc::new(mounted), engine })
     }

@@ -26,9 +26,9 @@ pub(super) fn bodies(film: &Film) -> Vec<(&'static str, &'static str, Vec<Geom>)
         ("finger", "finger0", tip(-1.0)),
         ("finger", "finger1", tip(1.0)),
     ];
-    let sprung: Vec<Geom> = task.plug.sprung().map(|part| part.geom()).collect();
-    if !sprung.is_empty() {
-        bodies.push(("plug", "latch", sprung));
+    let latch: Vec<Geom> = task.plug.latch_parts().map(|part| part.geom()).collect();
+    if !latch.is_empty() {
+        bodies.push(("plug", "latch", latch));
     }
     bodies
 }

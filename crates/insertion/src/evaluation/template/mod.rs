@@ -141,7 +141,7 @@ mod tests {
     use super::*;
     use crate::finger::Finger;
     use crate::fixtures::task_file;
-    use crate::task::{Ending, Sensed};
+    use crate::task::{Ending, TouchDetection};
     use input::shipped::TASKS;
     use input::units::{DEG, MM};
     use std::collections::BTreeMap;
@@ -187,7 +187,7 @@ mod tests {
         let mut expected = usb().task.clone();
         expected.strategy.tilt = 8.0 * DEG;
         expected.strategy.phases[1].ending =
-            Ending::Touch { preload: 0.5 * MM, sensed: Sensed::FIRST };
+            Ending::Touch { preload: 0.5 * MM, detection: TouchDetection::FIRST };
         expected.strategy.phases[4].displacement[1] = -9.0 * MM;
         expected.grip.force = 7.0;
         let crate::task::Solid::Box { min, .. } = &mut expected.plug.parts[0].solid else {

@@ -1,26 +1,18 @@
-//! Approach above the socket, common to all offsets.
+//! Descent above the socket, shared by all offsets.
 
 use super::Attempt;
 use crate::task::{Ending, Stage};
-use crate::trial::motion::Move;
 use contact::scene::BodyId;
 use input::units::MM;
 
-/// Clearance above the socket down to which all offsets share the descent, m.
+/// Clearance above the socket at which the shared descent ends, m.
 const SHARED_CLEARANCE: f64 = 0.3 * MM;
 /// Clearance that must remain at the end of the shared descent, m: a fast move may overshoot.
 const MIN_CLEARANCE: f64 = 0.25 * MM;
 
-/// Search move that has been simulated up to a step.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Begun {
-    pub motion: Move,
-    pub steps: usize,
-}
-
 impl<'a> Attempt<'a> {
-    /// Returns a copy that has descended as far as nothing can touch the socket, however it is shifted or
-    /// turned about z. `None` if the search does not begin with a touch, fails in the air or descends too
+    /// Returns a copy that has descended until just before the plug could touch the socket at any offset or rotation
+    /// about z. `None` if the search does not begin with a touch, fails in the air or descends too
     /// fast.
     pub fn descended(&self) -> Option<Attempt<'a>> {
         let phase =
@@ -37,7 +29,7 @@ impl<'a> Attempt<'a> {
             copy.target = motion.at(steps as f64 * copy.world.step_s());
             copy.step().ok()?;
         }
-        copy.begun = Some(Begun { motion, steps });
+        copy.begun = Some((motion, steps));
         (copy.clearance() > MIN_CLEARANCE).then_some(copy)
     }
 

@@ -5,7 +5,7 @@ mod common;
 use common::{Studies, optimize};
 use connector::tune::{Effort, Stage, tune};
 use finger_opt::setup::files::robot;
-use finger_opt::setup::tune::bench;
+use finger_opt::setup::tune::tuner;
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
 use serde_json::Value;
@@ -78,15 +78,15 @@ fn where_nothing_inserts_it_is_said_with_what_stopped_the_plug() {
 fn an_interrupt_leaves_what_was_tried_until_then() {
     let task = Task::parse(&off(), "own.toml").unwrap();
     let (robot, stop) = (robot("servo").unwrap(), AtomicBool::new(false));
-    let bench = bench(&task, &robot, EngineKind::Direct, &stop).unwrap();
+    let tuner = tuner(&task, &robot, EngineKind::Direct, &stop).unwrap();
     let quiet = |_: &str, _, _, _| ();
     let effort = |last, progress| Effort { last, until_enough: false, seed: 0, progress };
-    let whole = tune(&bench, &effort(Stage::Families, &quiet)).unwrap();
+    let whole = tune(&tuner, &effort(Stage::Families, &quiet)).unwrap();
     // In the middle of the search, whose first candidates have been told by then.
     let stop_in_search = |_: &str, _, windows, _| {
         stop.store(windows > whole.windows, Ordering::SeqCst);
     };
-    let cut = tune(&bench, &effort(Stage::Search, &stop_in_search)).unwrap();
+    let cut = tune(&tuner, &effort(Stage::Search, &stop_in_search)).unwrap();
     assert_eq!(cut.steps[..whole.steps.len()], whole.steps);
     assert!(cut.inserts() && cut.best > 0, "{:?}", cut.best());
     assert_eq!(cut.robustness, []);

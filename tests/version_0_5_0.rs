@@ -2,7 +2,7 @@
 
 mod common;
 
-use calibration::identify::log::Ended;
+use calibration::identify::log::RunLabel;
 use calibration::identify::runs;
 use common::{Studies, lines, optimize, optimize_line, read};
 use std::collections::BTreeMap;
@@ -151,7 +151,7 @@ fn measurements_and_logs_are_read() {
     assert_eq!(of("next")["measured"], 1);
     let runs = runs::read(&copy.dir("robot/runs.csv"), None, calibration::identify::read::text)
         .expect("a table of logs");
-    assert_eq!((runs.len(), runs[0].ended, runs[0].offset), (1, Ended::Inserted, 0.0));
+    assert_eq!((runs.len(), runs[0].label, runs[0].offset), (1, RunLabel::Inserted, 0.0));
     assert_eq!(runs[0].log.samples.len(), 363);
 }
 

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use connector::body::{extent, width};
 use connector::mating::{Mate, MatingResult, assembled, mates};
 use connector::mesh::axes::{Along, Jaws, Unit, value};
-use connector::mesh::mated::{GAP, HANDLE, Interference, Made, Pair, Request, TOLERANCE, task};
+use connector::mesh::mated::{GAP, HANDLE, Interference, Pair, PairTask, Request, TOLERANCE, task};
 use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
 use input::units::MM;
 use insertion::task::Task;
@@ -42,7 +42,7 @@ pub struct MateOptions<'a> {
 /// Task of a mated pair.
 pub struct MatedTask {
     /// Task, and the parts left out of it.
-    pub made: Made,
+    pub made: PairTask,
     /// Unit of the files.
     pub unit: Unit,
     /// Direction of insertion in the file of the socket.
@@ -147,7 +147,7 @@ pub fn mated(
 ///
 /// # Errors
 /// If they do not, with a picture of the largest deviation in the file `closeup`.
-fn check_drawing(files: Files, made: &Made, closeup: &Path) -> Result<(), Failure> {
+fn check_drawing(files: Files, made: &PairTask, closeup: &Path) -> Result<(), Failure> {
     let at = |place: Point3<f64>| {
         let [x, y, z] = [place.x, place.y, place.z].map(|v| v / MM);
         format!("at [{x:.2}, {y:.2}, {z:.2}] mm of the task")
@@ -192,7 +192,7 @@ fn check_drawing(files: Files, made: &Made, closeup: &Path) -> Result<(), Failur
 fn described(
     mate: &Mate,
     long: f64,
-    made: &Made,
+    made: &PairTask,
     options: &MateOptions,
 ) -> Vec<(&'static str, String)> {
     let depth = mate.engaged_m / MM;

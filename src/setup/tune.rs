@@ -6,7 +6,7 @@ use crate::context::not_stopped;
 use crate::failure::Failure;
 use crate::layout;
 use connector::check::problems;
-use connector::tune::{Bench, Effort, Stage, Step, Tuned, YAW_DEG, tune};
+use connector::tune::{Effort, Stage, Step, Tuned, Tuner, YAW_DEG, tune};
 use insertion::evaluation::Window;
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
@@ -15,17 +15,17 @@ use insertion::trial::engine::EngineKind;
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 
-/// Returns the fingers for the trials of a task's strategies.
+/// Returns the tuner of a task.
 ///
 /// # Errors
 /// If no measured fingers are shipped.
-pub fn bench<'a>(
+pub fn tuner<'a>(
     task: &'a Task,
     robot: &'a Robot,
     engine: EngineKind,
     stop: &'a AtomicBool,
-) -> Result<Bench<'a>, Failure> {
-    Bench::new(task, robot, engine, stop)
+) -> Result<Tuner<'a>, Failure> {
+    Tuner::new(task, robot, engine, stop)
         .ok_or_else(|| Failure::running("no measured fingers are shipped"))
 }
 
@@ -60,7 +60,7 @@ pub fn tune_until_success(
 ) -> Result<Tuned, Failure> {
     let robot = robot(robot_name)?;
     let effort = Effort { last, until_enough: true, seed: 0, progress: &|_, _, _, _| () };
-    let tuned = tune(&bench(task, &robot, engine, stop)?, &effort).map_err(Failure::input)?;
+    let tuned = tune(&tuner(task, &robot, engine, stop)?, &effort).map_err(Failure::input)?;
     not_stopped(stop)?;
     Ok(tuned)
 }

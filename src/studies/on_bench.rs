@@ -8,7 +8,7 @@ use crate::setup::run::{RunRequest, settings};
 use calibration::bench::Settings;
 use calibration::calibrate::Calibration;
 use calibration::simulation::Simulation;
-use calibration::table::{self, by_range, on_bench};
+use calibration::table::{self, bench_prediction, by_range};
 use insertion::evaluation::objective::{Measure, Objectives};
 use rayon::ThreadPool;
 use study::{BENCH_FILE, Study, StudyConfig, write_analysis, write_own_file};
@@ -67,7 +67,7 @@ pub(crate) fn predict(
         let simulation = Simulation::new(&setup.evaluator, task, [].iter(), cache, context.stop);
         let simulated = simulation.window(&best.design, &[]).map_err(Failure::input)?;
         context.check()?;
-        let found = on_bench(subject, result, simulated, provenance, effort);
+        let found = bench_prediction(subject, result, simulated, provenance, effort);
         Ok::<_, Failure>((found, table::predictions_csv(subject, result)))
     })?;
     write_own_file(&study.dir().join(TABLE), &predictions)?;

@@ -14,7 +14,7 @@ pub enum Origin {
     Bench,
 }
 
-/// Returns the published results of a task; none for a task that is not among them.
+/// Returns the published results of a task; empty for an unpublished task.
 pub fn of_task(task: &str, origin: Origin) -> Vec<Experiment> {
     let text = match origin {
         Origin::Simulation => SIMULATION,

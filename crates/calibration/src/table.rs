@@ -1,4 +1,4 @@
-//! A calibration as JSON, as CSV, and as a study keeps it.
+//! Output of a calibration: JSON, CSV, and the prediction stored in a study.
 
 use super::calibrate::{Calibration, Coordinate, LeftOut, Prediction, TaskResult};
 use super::subject::Subject;
@@ -17,7 +17,7 @@ const CONFOUNDED: f64 = 0.5;
 
 /// Effect of the measurements on a parameter: the 10th, 50th and 90th percentile before and after, in its own unit.
 #[derive(Debug, Clone, Serialize)]
-pub struct Moved {
+pub struct ParameterUpdate {
     pub name: String,
     pub task: Option<String>,
     pub prior_low: f64,
@@ -31,13 +31,13 @@ pub struct Moved {
 }
 
 /// Returns the effect of the measurements on each parameter.
-pub fn moved(calibration: &Calibration) -> Vec<Moved> {
+pub fn updates(calibration: &Calibration) -> Vec<ParameterUpdate> {
     let one = |(i, Coordinate { parameter, task }): (usize, &Coordinate)| {
         let values = sorted(coordinate(calibration, i));
         let moments = Moments::of(coordinate(calibration, i));
         let before = |share: f64| parameter.at(share);
         let after = |share: f64| parameter.at(normal_cdf(quantile(&values, share).unwrap_or(0.0)));
-        Moved {
+        ParameterUpdate {
             name: parameter.name.clone(),
             task: task.clone(),
             prior_low: before(0.1),
@@ -77,14 +77,13 @@ pub fn confounded(calibration: &Calibration) -> Vec<Confounded> {
     pairs.map(of).filter(|pair| pair.correlation.abs() > CONFOUNDED).collect()
 }
 
-/// Returns caveats on a task's predictions, a line each.
+/// Returns the caveats about a task's predictions, one per line.
 pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
     let accuracy = result.accuracy(subject.emulator.error_mm);
     let mut lines = Vec::new();
     let scale = subject.emulator.mean_mm.max(1.0);
     if accuracy.fingers < 3 {
-        let words = "fewer than 3 measured fingers: the intervals rest on the priors";
-        lines.push(words.to_owned());
+        lines.push("fewer than 3 measured fingers: the intervals rest on the priors".to_owned());
     }
     // By chance fewer than half of five or more fall inside in 1 case of 20.
     if accuracy.fingers >= 5 && 2 * accuracy.inside < accuracy.fingers {
@@ -109,7 +108,7 @@ pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
     lines
 }
 
-/// Result of one task, by the keys of `--json`.
+/// Result of one task in the output of `--json`.
 #[derive(Serialize)]
 struct CalibratedTask<'a> {
     task: &'a str,
@@ -146,11 +145,11 @@ impl<'a> CalibratedTask<'a> {
     }
 }
 
-/// A calibration, as `--json` prints it.
+/// Output of `--json`.
 #[derive(Serialize)]
 pub struct CalibrationOutput<'a> {
     tasks: Vec<CalibratedTask<'a>>,
-    parameters: Vec<Moved>,
+    parameters: Vec<ParameterUpdate>,
     not_told_apart: Vec<Confounded>,
 }
 
@@ -160,7 +159,7 @@ impl<'a> CalibrationOutput<'a> {
         let tasks = subjects.iter().zip(&calibration.tasks);
         CalibrationOutput {
             tasks: tasks.map(|(subject, result)| CalibratedTask::new(subject, result)).collect(),
-            parameters: moved(calibration),
+            parameters: updates(calibration),
             not_told_apart: confounded(calibration),
         }
     }
@@ -168,12 +167,8 @@ impl<'a> CalibrationOutput<'a> {
 
 /// Returns `predictions.csv` of one task: a line per finger of the space.
 pub fn predictions_csv(subject: &Subject, result: &TaskResult) -> String {
-    let keys: Vec<&str> = subject
-        .designs
-        .iter()
-        .take(1)
-        .flat_map(|design| design.0.keys().map(String::as_str))
-        .collect();
+    let keys = subject.designs.iter().take(1).flat_map(|design| design.0.keys());
+    let keys: Vec<&str> = keys.map(String::as_str).collect();
     let mut text = format!(
         "task,{},range_mm,low_mm,high_mm,probability_best,simulated_mm,failure_negative,failure_positive\n",
         keys.join(",")
@@ -224,7 +219,7 @@ pub fn left_out_csv(calibration: &Calibration, subjects: &[Subject]) -> String {
 /// Returns `parameters.csv`: the percentiles of each parameter before and after.
 pub fn parameters_csv(calibration: &Calibration) -> String {
     let head = "parameter,task,prior_low,prior_median,prior_high,posterior_low,posterior_median,posterior_high,moved,source\n";
-    let line = |(one, coordinate): (Moved, &Coordinate)| {
+    let line = |(one, coordinate): (ParameterUpdate, &Coordinate)| {
         format!(
             "{},{},{:.3},{:.3},{:.3},{:.3},{:.3},{:.3},{},\"{}\"\n",
             one.name,
@@ -239,12 +234,12 @@ pub fn parameters_csv(calibration: &Calibration) -> String {
             coordinate.parameter.source.replace('"', "'")
         )
     };
-    let lines = moved(calibration).into_iter().zip(&calibration.layout.coordinates).map(line);
+    let lines = updates(calibration).into_iter().zip(&calibration.layout.coordinates).map(line);
     head.to_owned() + &lines.collect::<String>()
 }
 
-/// Number of best fingers that a study keeps.
-const KEPT: usize = 5;
+/// Number of best fingers that a study stores.
+const BEST_FINGERS: usize = 5;
 
 /// Returns the fingers of the space by their predicted ranges, best first.
 pub fn by_range(result: &TaskResult) -> Vec<&Prediction> {
@@ -253,8 +248,8 @@ pub fn by_range(result: &TaskResult) -> Vec<&Prediction> {
     order
 }
 
-/// Returns the prediction of a calibration for a study's one task; `simulated` is the best finger's evaluation.
-pub fn on_bench(
+/// Returns the bench prediction for a study of one task; `simulated` is the evaluation of the best finger.
+pub fn bench_prediction(
     subject: &Subject,
     result: &TaskResult,
     simulated: Evaluation,
@@ -284,7 +279,7 @@ pub fn on_bench(
         fingers: result.predictions.len(),
         trust: result.accuracy(subject.emulator.error_mm),
         warnings: warnings(subject, result),
-        best: by_range(result).iter().take(KEPT).map(finger).collect(),
+        best: by_range(result).iter().take(BEST_FINGERS).map(finger).collect(),
         simulated,
     }
 }

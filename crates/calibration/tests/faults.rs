@@ -2,7 +2,7 @@
 
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
-use calibration::identify::log::{Ended, Log, Run, of_samples};
+use calibration::identify::log::{Log, Run, RunLabel, of_samples};
 use calibration::identify::question::Identification;
 use calibration::identify::read;
 use finray::printed::PrintedFinger;
@@ -45,7 +45,7 @@ type Table = Vec<Vec<f64>>;
 struct Recorded {
     design: Design,
     offset_mm: f64,
-    ended: Ended,
+    label: RunLabel,
     text: String,
 }
 
@@ -112,24 +112,24 @@ fn recorded(evaluator: &Evaluator, cell: u64) -> Vec<Recorded> {
         let mm = |column: &str| at(row, &format!("direct_{column}_mm"));
         let starts = [mm("start"), mm("negative") + 0.2, mm("positive") + 0.2];
         for start in [None].into_iter().chain(starts.map(Some)) {
-            let (ended, samples) = match start {
+            let (label, samples) = match start {
                 None => {
                     let probe = rig.follow(grasp, Course::Probe(Probe::DEFAULT), EVERY_S).remove(0);
-                    (Ended::Probe, probe.1)
+                    (RunLabel::Probe, probe.1)
                 }
                 Some(mm) => {
                     let (trial, samples) = rig.hold(grasp).logged(mm * MM, EVERY_S);
-                    let ended = match trial.outcome {
-                        Outcome::Failed(class) => Ended::Failed(class),
-                        _ => Ended::Inserted,
+                    let label = match trial.outcome {
+                        Outcome::Failed(class) => RunLabel::Failed(class),
+                        _ => RunLabel::Inserted,
                     };
-                    (ended, samples)
+                    (label, samples)
                 }
             };
             let mut log = of_samples("a.csv", &samples).unwrap();
             sense(&mut log, cell, all.len() as u64);
             let (design, offset_mm) = (infill.clone(), start.unwrap_or(0.0));
-            all.push(Recorded { design, offset_mm, ended, text: log.csv() });
+            all.push(Recorded { design, offset_mm, label, text: log.csv() });
         }
     }
     all
@@ -249,7 +249,7 @@ fn said(
         let log =
             read::parse(&text, &format!("{i}.csv"), None).map_err(|fault| fault.to_string())?;
         let design = one.design.clone();
-        Ok(Run { log, design, offset: one.offset_mm * MM, ended: one.ended, line: 2 })
+        Ok(Run { log, design, offset: one.offset_mm * MM, label: one.label, line: 2 })
     };
     let runs = logs.iter().enumerate().map(run).collect::<Result<Vec<_>, String>>()?;
     let identification = Identification {

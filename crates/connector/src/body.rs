@@ -13,35 +13,35 @@ use parry::shape::SharedShape;
 use rapier3d_f64::parry;
 use std::borrow::Borrow;
 
-/// parry's tolerances are made for things of size 1, so it gets millimetres.
+/// Scale of lengths for parry, whose tolerances suit bodies of size 1: millimetres per metre.
 const MILLIMETRES: f64 = 1.0 / MM;
 
 /// A body of convex parts in its own frame.
 pub struct ConvexBody<'a> {
     /// Parts of the task, body frame, m.
     pub parts: &'a [Part],
-    shapes: Vec<Placed>,
-    /// Boxes about the parts, mm.
+    shapes: Vec<PlacedShape>,
+    /// Tree of the bounding boxes of the parts, mm.
     tree: Bvh,
-    /// Indices of the parts that give way to another body.
-    yielding: &'a [usize],
+    /// Indices of the parts of the latch, which another body can push aside.
+    latch: &'a [usize],
 }
 
 /// Overlap of a part of one body with a part of another.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Touching {
+pub struct Overlap {
     /// Depth, m.
     pub depth: f64,
-    /// Direction in which it is shallowest, from the first body to the second.
+    /// Direction of the shortest separation, from the first body to the second.
     pub normal: Vector3<f64>,
     /// Index of each part in its body.
     pub parts: [usize; 2],
 }
 
-struct Placed {
+struct PlacedShape {
     shape: SharedShape,
     pose: Pose,
-    /// Centre of a ball about the part, body frame, m, and its radius.
+    /// Centre of the bounding sphere, body frame, m, and its radius.
     centre: Point3<f64>,
     radius: f64,
 }
@@ -56,23 +56,23 @@ impl<'a> ConvexBody<'a> {
             let centre = Point3::from(sum / corners.len() as f64);
             let far = corners.iter().map(|p| (p - centre).norm()).fold(0.0, f64::max);
             // A cylinder bulges beyond its 16 corners by 2 %.
-            Placed { shape, pose: geom.pose * turn, centre, radius: 1.02 * far }
+            PlacedShape { shape, pose: geom.pose * turn, centre, radius: 1.02 * far }
         };
-        let shapes: Vec<Placed> = parts.iter().map(place).collect();
+        let shapes: Vec<PlacedShape> = parts.iter().map(place).collect();
         let boxes: Vec<Aabb> = shapes.iter().map(|part| part.boxed(&Pose::identity())).collect();
         let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
-        ConvexBody { parts, shapes, tree, yielding: &[] }
+        ConvexBody { parts, shapes, tree, latch: &[] }
     }
 
-    /// Creates the body of a plug, whose latch gives way.
+    /// Creates the body of a plug with its latch.
     pub fn plug(plug: &'a Plug) -> Self {
-        let yielding = plug.latch.as_ref().map_or(&[][..], |latch| &latch.parts);
-        ConvexBody { yielding, ..ConvexBody::new(&plug.parts) }
+        let latch = plug.latch.as_ref().map_or(&[][..], |latch| &latch.parts);
+        ConvexBody { latch, ..ConvexBody::new(&plug.parts) }
     }
 
-    /// Returns the deepest overlap of the parts that do not give way with another body.
-    pub fn overlap(&self, own: &Pose, other: &ConvexBody, at: &Pose) -> Option<Touching> {
-        let stiff = |touching: &Touching| !self.yielding.contains(&touching.parts[0]);
+    /// Returns the deepest overlap with another body; overlaps of the latch are ignored.
+    pub fn overlap(&self, own: &Pose, other: &ConvexBody, at: &Pose) -> Option<Overlap> {
+        let stiff = |overlap: &Overlap| !self.latch.contains(&overlap.parts[0]);
         let overlaps = self.overlaps(own, other, at).filter(stiff);
         overlaps.max_by(|a, b| a.depth.total_cmp(&b.depth))
     }
@@ -83,16 +83,16 @@ impl<'a> ConvexBody<'a> {
         own: &'b Pose,
         other: &'b ConvexBody,
         at: &'b Pose,
-    ) -> impl Iterator<Item = Touching> + 'b {
+    ) -> impl Iterator<Item = Overlap> + 'b {
         self.pairs_within(0.0, own, other, at).filter_map(|parts| {
             let [first, second] = [&self.shapes[parts[0]], &other.shapes[parts[1]]];
             let (depth, normal) = first.penetration(own, second, at)?;
-            Some(Touching { depth, normal, parts })
+            Some(Overlap { depth, normal, parts })
         })
     }
 
-    /// Returns the gap to another body in its own frame, m, if less than `wide`, 0 if they overlap, and its place; only
-    /// places that count.
+    /// Returns the smallest gap to another body, m (0 for an overlap), and its place in the frame of that body, among
+    /// the gaps below `wide`, m, at places that `counts` accepts.
     pub fn gap(
         &self,
         own: &Pose,
@@ -112,7 +112,7 @@ impl<'a> ConvexBody<'a> {
         pairs.filter_map(gap).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// Pairs of parts whose boxes are within a distance, m, of one another, in order.
+    /// Returns the pairs of parts whose boxes are within a distance, m, of one another, in order.
     fn pairs_within<'b>(
         &'b self,
         distance: f64,
@@ -130,18 +130,18 @@ impl<'a> ConvexBody<'a> {
         })
     }
 
-    /// Returns the gap between two of its parts, m; 0 if they touch.
+    /// Returns the gap between two parts of this body, m; 0 if they touch.
     pub fn own_gap(&self, i: usize, j: usize) -> f64 {
         let [a, b] = [&self.shapes[i], &self.shapes[j]];
         let [at, to] = [a, b].map(|part| shapes::pose(&part.pose, MILLIMETRES));
-        // All shapes of a task are ones that parry can measure between.
+        // parry supports all pairs of the shapes of a task.
         query::distance(&at, &*a.shape, &to, &*b.shape).map_or(0.0, |found| found.distance * MM)
     }
 
     /// Returns the index of the first part that contains a point.
     pub fn part_at(&self, point: &Point3<f64>) -> Option<usize> {
         let point = (point.coords * MILLIMETRES).into();
-        let holds = |part: &Placed| {
+        let holds = |part: &PlacedShape| {
             part.shape.contains_point(&shapes::pose(&part.pose, MILLIMETRES), point)
         };
         self.shapes.iter().position(holds)
@@ -160,12 +160,12 @@ impl<'a> ConvexBody<'a> {
         boxes.into_iter().map(|i| i as usize).filter(close)
     }
 
-    /// Parts outside the latch, which the fingers do not press, with their indices.
+    /// Returns the parts that the fingers can press, all but the latch, with their indices.
     pub fn stiff(&self) -> impl Iterator<Item = (usize, &Part)> {
-        self.parts.iter().enumerate().filter(|(i, _)| !self.yielding.contains(i))
+        self.parts.iter().enumerate().filter(|(i, _)| !self.latch.contains(i))
     }
 
-    /// Returns the lowest corner, its body at a pose; `None` without parts.
+    /// Returns the lowest corner of the body at a pose; `None` without parts.
     pub fn lowest(&self, at: &Pose) -> Option<Point3<f64>> {
         self.corners().map(|p| at * p).min_by(|a, b| a.z.total_cmp(&b.z))
     }
@@ -180,15 +180,15 @@ impl<'a> ConvexBody<'a> {
     }
 }
 
-impl Placed {
-    /// Returns the bounding box of the part, its body at a pose, mm.
+impl PlacedShape {
+    /// Returns the bounding box of the part for a pose of its body, mm.
     fn boxed(&self, at: &Pose) -> Aabb {
         let part = self.shape.compute_aabb(&shapes::pose(&self.pose, MILLIMETRES));
         part.transform_by(&shapes::pose(at, MILLIMETRES))
     }
 
-    /// Returns the penetration depth of this part, its body at `own`, in another, m, and its normal.
-    fn penetration(&self, own: &Pose, other: &Placed, at: &Pose) -> Option<(f64, Vector3<f64>)> {
+    /// Returns the penetration depth of two parts, m, and its normal, for poses of their bodies.
+    fn penetration(&self, own: &Pose, other: &Self, at: &Pose) -> Option<(f64, Vector3<f64>)> {
         let apart = (own * self.centre - at * other.centre).norm() > self.radius + other.radius;
         if apart {
             return None;
@@ -222,8 +222,8 @@ pub fn span(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
-/// Corners of a convex part clipped between two planes across an axis: those within, and the
-/// points where a line from one within to one beyond crosses a plane.
+/// Returns the corners of a convex part clipped by two planes perpendicular to an axis: the corners between the planes,
+/// and the points where a line from an inner corner to an outer one crosses a plane.
 pub fn clipped(points: &[Point3<f64>], axis: usize, [from, to]: [f64; 2]) -> Vec<Point3<f64>> {
     let side = |points: &[Point3<f64>], plane: f64, sign: f64| {
         let (beyond, mut kept): (Vec<_>, Vec<_>) =

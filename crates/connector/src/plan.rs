@@ -1,14 +1,14 @@
 //! Grip point, search moves and success of a plug and a socket whose shapes are known.
 //!
 //! The strategy is the paper's: down beside the opening with the tip's lower edge in its middle,
-//! across it until both its sides were met, along -y to the wall, and in. Derived here is the length
+//! across it until both its sides were met, along -y to the wall, and in. This module derives the length
 //! of each move. The over-strokes and the tilt were chosen by trying plugs of 3 to 35 mm:
 //! see `docs/guide/tasks.md`. A round tip comes down with a point, which must be near the wall before it
 //! is pressed, or the plug tips over: it has its own `Moves`.
 
 use super::body::{ConvexBody, extent, width};
 use super::hold::pad_contacts;
-use super::seat::{self, Seat, Seating, section};
+use super::seat::{self, Seat, SeatSearch, section};
 use input::shipped::TASKS;
 use input::units::{DEG, MM};
 use insertion::finger::Pad;
@@ -40,11 +40,11 @@ const SWEEP: f64 = 1.0 * MM;
 const SWEPT_PRELOAD: f64 = 0.15 * MM;
 /// Command of the push beyond the seat, m, and its speed, m/s.
 const PUSH: [f64; 2] = [4.0 * MM, 100.0 * MM];
-/// Tilt that counts as upright beyond what the play allows, degrees.
+/// Tilt that counts as upright in addition to that which the play allows, degrees.
 const UPRIGHT_DEG: f64 = 2.0;
 /// Smallest limit of the tilt of an upright plug, degrees.
 const LEAST_UPRIGHT_DEG: f64 = 3.0;
-/// Allowance for the success depth beside that of a tilt: m, and a share of the full depth.
+/// Allowance for the success depth in addition to that of a tilt: m, and a share of the full depth.
 const MISSING: (f64, f64) = (0.2 * MM, 0.02);
 /// Share of the full depth at which the play is measured.
 const WITHIN: f64 = 0.9;
@@ -68,7 +68,7 @@ pub enum PlanError {
 /// Returns the task with grasp point, strategy and success derived from shapes, opening, shoulder and faces.
 pub fn complete(task: &Task) -> Result<Task, PlanError> {
     let (plug, socket) = (ConvexBody::new(&task.plug.parts), ConvexBody::new(&task.socket));
-    let seat = Seating::new(task, &plug, &socket).deepest();
+    let seat = SeatSearch::new(task, &plug, &socket).deepest();
     let Some([by, on]) = seat.stopped_by else { return Err(PlanError::NoFloor) };
     if seat.depth < LEAST_DEPTH {
         let (by, on) = (plug.parts[by].name.clone(), socket.parts[on].name.clone());
@@ -81,7 +81,7 @@ pub fn complete(task: &Task) -> Result<Task, PlanError> {
 /// pose.
 pub fn mated(task: &Task) -> Task {
     let (plug, socket) = (ConvexBody::new(&task.plug.parts), ConvexBody::new(&task.socket));
-    let seat = Seating::new(task, &plug, &socket).deepest();
+    let seat = SeatSearch::new(task, &plug, &socket).deepest();
     planned(task.clone(), &plug, &socket, &seat)
 }
 
@@ -93,7 +93,7 @@ fn planned(mut task: Task, plug: &ConvexBody, socket: &ConvexBody, seat: &Seat) 
     let play = match task.success.mated {
         // The opening is the plug with its play, whatever springs were left out.
         Some(_) => width(task.opening[1]) - width(section(plug, seat.depth - BELOW_TOP)[1]),
-        None => Seating::new(&task, plug, socket).play(WITHIN * seat.depth, seat.at, 1),
+        None => SeatSearch::new(&task, plug, socket).play(WITHIN * seat.depth, seat.at, 1),
     };
     success(&mut task, plug, seat, play);
     let height = |part: &&Part| extent(part.solid.corners(), 2)[0];
@@ -163,7 +163,7 @@ impl Family {
         [Family::Key, Family::Peg].into_iter().chain(shipped.map(|task| Family::Like(task.into())))
     }
 
-    /// Returns its name: `like a key`.
+    /// Returns the name of the family: `like a key`.
     pub fn name(&self) -> String {
         match self {
             Family::Key => "like a key".to_owned(),
@@ -173,9 +173,9 @@ impl Family {
     }
 
     /// Returns the family's strategy for the shapes of a task; `None` if its plug does not go in.
-    pub fn of(&self, task: &Task) -> Option<Strategy> {
+    pub fn strategy_for(&self, task: &Task) -> Option<Strategy> {
         let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
-        let seat = Seating::new(task, &plug, &socket).deepest();
+        let seat = SeatSearch::new(task, &plug, &socket).deepest();
         (seat.depth >= LEAST_DEPTH).then(|| self.strategy(task, &plug, seat.depth))
     }
 
@@ -206,9 +206,8 @@ fn tip(plug: &ConvexBody) -> [[f64; 2]; 2] {
     section(plug, plug.extent(2)[0] + LEAST_DEPTH)
 }
 
-/// Returns a place with respect to an interval carried over to another: beyond an end as far beyond it,
-/// m, between them as a share.
-fn carried(place: f64, [low, high]: [f64; 2], to: [f64; 2]) -> f64 {
+/// Maps a coordinate from one interval to another: linearly inside, at the same distance beyond an end outside.
+fn mapped(place: f64, [low, high]: [f64; 2], to: [f64; 2]) -> f64 {
     if place <= low || high <= low {
         to[0] + (place - low)
     } else if place >= high {
@@ -218,6 +217,7 @@ fn carried(place: f64, [low, high]: [f64; 2], to: [f64; 2]) -> f64 {
     }
 }
 
+/// Moves of a search strategy, m.
 struct Moves {
     /// x of the plug's axis at the start.
     x: f64,
@@ -225,7 +225,7 @@ struct Moves {
     edge_y: f64,
     /// Touch beyond first contact.
     preload: f64,
-    /// Moves along x: back, front, and while the tip moves to the side.
+    /// Moves along x: back, to the front, and during the move to the side.
     across: [f64; 3],
     down: f64,
     side: f64,
@@ -251,8 +251,7 @@ impl Moves {
         }
     }
 
-    /// Returns the moves of another task, whose tip comes to the same places about this opening: beyond
-    /// a wall as far beyond it, between walls at the same share of the way.
+    /// Returns the moves of another task, with its places of the tip [`mapped`] from its opening to this one.
     fn like(task: &Task, tip: [[f64; 2]; 2], other: &Task) -> Self {
         let plug = ConvexBody::plug(&other.plug);
         let way = seat::waypoints(other, &plug);
@@ -261,8 +260,8 @@ impl Moves {
         };
         let (from, to) = (free(other, self::tip(&plug)), free(task, tip));
         let search = way.iter().filter(|point| point.stage == Stage::Search);
-        let mut x = search.clone().map(|point| carried(point.tcp.x, from, to));
-        let mut y = search.map(|point| carried(point.edge.y, other.opening[1], task.opening[1]));
+        let mut x = search.clone().map(|point| mapped(point.tcp.x, from, to));
+        let mut y = search.map(|point| mapped(point.edge.y, other.opening[1], task.opening[1]));
         // A small tip overlaps the rim by less.
         let quarter = width(tip[0]) / 4.0;
         let touch = x.next().unwrap_or(0.0).clamp(to[0] - quarter, to[1].max(to[0]) + quarter);
@@ -285,10 +284,10 @@ impl Moves {
         }
     }
 
-    /// Returns how far beyond its seat a task's plug is commanded, m, and how fast, m/s.
+    /// Returns the command of a task's push beyond the seat, m, and its speed, m/s.
     fn push(task: &Task, plug: &ConvexBody, last: Option<&seat::Waypoint>) -> [f64; 2] {
-        let seat = Seating::new(task, plug, &ConvexBody::new(&task.socket)).deepest().depth;
-        // Keys that need not reach their floor are pushed less far than to it.
+        let seat = SeatSearch::new(task, plug, &ConvexBody::new(&task.socket)).deepest().depth;
+        // A key that need not reach the floor may be commanded to less than its seat.
         let beyond = last.map_or(0.0, |last| task.grip.tcp_z - last.tcp.z - seat).max(PUSH[0]);
         [beyond, task.strategy.phases.last().map_or(PUSH[1], |phase| phase.speed)]
     }
@@ -313,7 +312,7 @@ impl Moves {
 fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat, play: f64) {
     let upright = libm::atan(play / seat.depth) / DEG + UPRIGHT_DEG;
     let tilt = upright.ceil().max(LEAST_UPRIGHT_DEG) * DEG;
-    // A tilted plug is stopped where the outer end of what stops it comes down first.
+    // Of a tilted plug, the outer end of the stopping part comes down first.
     let half = seat
         .stopped_by
         .map_or(0.0, |[part, _]| width(extent(plug.parts[part].solid.corners(), 1)) / 2.0);
@@ -361,14 +360,14 @@ fn round(value: f64, step: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A strategy carried over to its own task is itself, in y and across x.
+    /// A strategy mapped to its own task is unchanged, in y and across x.
     #[test]
-    fn a_strategy_carried_over_to_its_own_shapes_is_the_same() {
+    fn a_strategy_mapped_to_its_own_shapes_is_the_same() {
         for family in Family::all() {
             let Family::Like(task) = &family else { continue };
-            let carried = family.of(task).unwrap();
+            let mapped = family.strategy_for(task).unwrap();
             let plug = ConvexBody::plug(&task.plug);
-            let moved = Task { strategy: carried, ..(**task).clone() };
+            let moved = Task { strategy: mapped, ..(**task).clone() };
             let [before, after] = [&**task, &moved].map(|task| seat::waypoints(task, &plug));
             assert_eq!(before.len(), after.len(), "{}", task.name);
             // From the touch to the push: the approach differs in what it does in the air.

@@ -138,7 +138,7 @@ mod tests {
         for file in TASKS {
             let task = Task::parse(file.text, file.file).unwrap();
             for family in Family::all() {
-                let after = family.of(&task).unwrap();
+                let after = family.strategy_for(&task).unwrap();
                 let written = with_strategy(file.text, &task, &after).unwrap();
                 let read = Task::parse(&written, "written").unwrap().strategy;
                 assert!((read.tilt - after.tilt).abs() < 1e-6);
@@ -155,7 +155,7 @@ mod tests {
             assert_eq!(unchanged, file.text, "{}", file.name);
             let windows = format!("{BYTE_ORDER_MARK}{}", file.text.replace('\n', "\r\n"));
             assert_eq!(with_strategy(&windows, &task, &task.strategy).unwrap(), windows);
-            let peg = Family::Peg.of(&task).unwrap();
+            let peg = Family::Peg.strategy_for(&task).unwrap();
             let plain = with_strategy(file.text, &task, &peg).unwrap();
             let written = with_strategy(&windows, &task, &peg).unwrap();
             assert_eq!(written, format!("{BYTE_ORDER_MARK}{}", plain.replace('\n', "\r\n")));
@@ -170,7 +170,7 @@ mod tests {
         let strategy = fields.remove("strategy").unwrap();
         let text = format!("strategy = {strategy}\n{fields}");
         let task = Task::parse(&text, "own").unwrap();
-        let after = Family::Peg.of(&task).unwrap();
+        let after = Family::Peg.strategy_for(&task).unwrap();
         let written = with_strategy(&text, &task, &after).unwrap();
         let read = Task::parse(&written, "written").unwrap();
         assert!((read.strategy.tilt - after.tilt).abs() < 1e-6, "{written}");
@@ -186,7 +186,7 @@ mod tests {
         let text = file.text.replace("name = \"side\"", "name = \"along\"");
         let text = text.replacen("tilt_deg = 5.0", "start = \"taught\"\ntilt_deg = 5.0 # mine", 1);
         let task = Task::parse(&text, "own").unwrap();
-        let after = Family::Peg.of(&task).unwrap();
+        let after = Family::Peg.strategy_for(&task).unwrap();
         let written = with_strategy(&text, &task, &after).unwrap();
         let read = Task::parse(&written, "written").unwrap();
         assert_eq!(read.strategy.phases.len(), 6);

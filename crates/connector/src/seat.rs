@@ -24,32 +24,34 @@ const REFINEMENTS: i32 = 4;
 /// Returns the clearance in x and in y of the upright plug where it seats, m.
 pub fn clearance(task: &Task) -> [f64; 2] {
     let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
-    let seating = Seating::new(task, &plug, &socket);
+    let seating = SeatSearch::new(task, &plug, &socket);
     let seat = seating.deepest();
     [0, 1].map(|axis| seating.play(task.success.depth.min(seat.depth), seat.at, axis))
 }
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seat {
-    /// Depth of the tip below the socket's top, m; 0 if it does not enter.
+    /// Depth of the tip below the socket's top, m; 0 if the plug does not enter.
     pub depth: f64,
     /// x and y of the plug's axis there, m.
     pub at: [f64; 2],
-    /// Indices of the plug part and the socket part that meet; `None` if it falls through.
+    /// Indices of the plug part and the socket part that meet; `None` if the plug is mated or falls through.
     pub stopped_by: Option<[usize; 2]>,
 }
 
-pub struct Seating<'a> {
+/// Search for the seat of an upright plug.
+pub struct SeatSearch<'a> {
     task: &'a Task,
     plug: &'a ConvexBody<'a>,
     socket: &'a ConvexBody<'a>,
 }
 
-impl<'a> Seating<'a> {
+impl<'a> SeatSearch<'a> {
     pub fn new(task: &'a Task, plug: &'a ConvexBody, socket: &'a ConvexBody) -> Self {
-        Seating { task, plug, socket }
+        SeatSearch { task, plug, socket }
     }
 
+    /// Returns the deepest pose on the way down, or the mated pose.
     pub fn deepest(&self) -> Seat {
         if let Some(Mated { tip: [x, y, z], .. }) = self.task.success.mated {
             return Seat { depth: -z, at: [x, y], stopped_by: None };
@@ -59,9 +61,9 @@ impl<'a> Seating<'a> {
         let mut free = 0.0;
         let mut depth = STEP;
         while depth < top - bottom {
-            match self.place(depth, at) {
+            match self.free_place(depth, at) {
                 Ok(place) => (free, at) = (depth, place),
-                Err(_) => return self.between(free, depth, at),
+                Err(_) => return self.bisected(free, depth, at),
             }
             depth += STEP;
         }
@@ -70,17 +72,17 @@ impl<'a> Seating<'a> {
 
     /// Returns the total play of the upright plug at a depth along an axis (0 x, 1 y), m.
     pub fn play(&self, depth: f64, at: [f64; 2], axis: usize) -> f64 {
-        // A seated plug may touch walls, so first to the middle between them.
+        // A seated plug may touch walls: it is centred between them first.
         let mut middle = at;
         for axis in [0, 1, 0, 1] {
-            let [back, forth] = self.ways(depth, middle, axis);
+            let [back, forth] = self.free_distances(depth, middle, axis);
             middle[axis] += (forth - back) / 2.0;
         }
-        self.ways(depth, middle, axis).iter().sum()
+        self.free_distances(depth, middle, axis).iter().sum()
     }
 
     /// Returns the free distances in both directions along an axis, m.
-    fn ways(&self, depth: f64, at: [f64; 2], axis: usize) -> [f64; 2] {
+    fn free_distances(&self, depth: f64, at: [f64; 2], axis: usize) -> [f64; 2] {
         let least = self.overlap(depth, at).0.max(TOUCHING);
         [-1.0, 1.0].map(|sign| {
             let (mut free, mut blocked) = (0.0, MOST_PLAY);
@@ -97,11 +99,11 @@ impl<'a> Seating<'a> {
     }
 
     /// Finds the deepest free place between a free depth and a blocked one by bisection.
-    fn between(&self, mut free: f64, mut blocked: f64, mut at: [f64; 2]) -> Seat {
+    fn bisected(&self, mut free: f64, mut blocked: f64, mut at: [f64; 2]) -> Seat {
         let mut stopped_by = None;
         while blocked - free > FINE {
             let middle = (free + blocked) / 2.0;
-            match self.place(middle, at) {
+            match self.free_place(middle, at) {
                 Ok(place) => (free, at) = (middle, place),
                 Err(by) => (blocked, stopped_by) = (middle, Some(by)),
             }
@@ -110,12 +112,12 @@ impl<'a> Seating<'a> {
     }
 
     /// Finds a free place at this depth, near `at` if possible; otherwise returns the two parts that collide.
-    fn place(&self, depth: f64, mut at: [f64; 2]) -> Result<[f64; 2], [usize; 2]> {
+    fn free_place(&self, depth: f64, mut at: [f64; 2]) -> Result<[f64; 2], [usize; 2]> {
         let mut best = self.overlap(depth, at);
         if best.0 <= TOLERANCE {
             return Ok(at);
         }
-        // Range of the plug's axis with all below the top inside the opening.
+        // Range of the plug's axis in which all of the plug below the top is inside the opening.
         let section = section(self.plug, depth);
         let range = [0, 1].map(|axis| {
             let ([low, high], [from, to]) = (self.task.opening[axis], section[axis]);
@@ -156,6 +158,7 @@ pub fn section(plug: &ConvexBody, depth: f64) -> [[f64; 2]; 2] {
     [0, 1].map(|axis| extent(&below, axis))
 }
 
+/// End of a phase on the commanded path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Waypoint {
     /// Name of the phase that ends here; "start" for the first.
@@ -165,7 +168,7 @@ pub struct Waypoint {
     pub tcp: Vector3<f64>,
     /// Lowest point of the tip, task frame, m.
     pub edge: Point3<f64>,
-    /// Height above the socket's top at which a touch's stroke ends without reaching it, m.
+    /// Height above the socket's top at which the stroke of a touch ends, if it does not reach the socket, m.
     pub short_by: Option<f64>,
 }
 
@@ -175,6 +178,7 @@ pub fn plug_pose(task: &Task, tcp: Vector3<f64>) -> Pose {
     Pose::from_parts(tcp.into(), turn) * Pose::translation(0.0, 0.0, -task.grip.tcp_z)
 }
 
+/// Returns the start and the ends of the phases; a touch ends at its preload below the socket's top.
 pub fn waypoints(task: &Task, plug: &ConvexBody) -> Vec<Waypoint> {
     let start = Vector3::from(task.strategy.start);
     let lowest = plug.lowest(&plug_pose(task, start));
@@ -218,7 +222,7 @@ mod tests {
 
     fn deepest(task: &Task) -> Seat {
         let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
-        Seating::new(task, &plug, &socket).deepest()
+        SeatSearch::new(task, &plug, &socket).deepest()
     }
 
     /// usb: shoulder on the housing; ket12: floor; rj45: floor and guide blocks at one depth.

@@ -9,21 +9,23 @@ use insertion::task::{
 };
 use nalgebra::{Point3, Vector3};
 
+/// Comments and layout of a task file.
 #[derive(Debug, Clone, Default)]
 pub struct Notes {
     pub head: Vec<String>,
     pub mass: String,
-    /// File of the parts, if they lie beside the task.
+    /// Separate file of the parts, if there is one.
     pub parts: Option<PartsFile>,
-    /// Whether parts that overlap, as springs do, were left out.
+    /// Whether overlapping parts, such as contact springs, were left out.
     pub left_out: bool,
 }
 
-/// Returns the text of the parts of a task, to lie beside it.
+/// Returns the text of a separate file of the parts.
 pub fn parts_file(task: &Task) -> String {
     parts("plug", &task.plug.parts) + &parts("socket", &task.socket)
 }
 
+/// Returns the text of a task file.
 pub fn task(task: &Task, notes: &Notes) -> String {
     let head: String = notes.head.iter().map(|line| format!("# {line}\n")).collect();
     let [name, description] = [&task.name, &task.description].map(|value| text(value));
@@ -61,7 +63,7 @@ pub fn task(task: &Task, notes: &Notes) -> String {
     );
     if let Some(Mated { tip, lateral }) = &task.success.mated {
         out += &format!(
-            "\n[success.mated]\n# The plug's tip when it is mated, and how far an inserted one may be aside.\n\
+            "\n[success.mated]\n# The plug's tip when it is mated, and the lateral tolerance of an inserted one.\n\
              tip_mm = {}\nlateral_mm = {}\n",
             list(tip.iter().map(|&v| mm(v))),
             mm(*lateral)
@@ -75,11 +77,10 @@ pub fn task(task: &Task, notes: &Notes) -> String {
     }
     let Limits { force, speed } = task.limits;
     let limits = [("force_n", force.map(|n| format!("{n:?}"))), ("speed_mm_per_s", speed.map(mm))];
-    let limits =
-        limits.iter().filter_map(|(key, value)| Some(format!("{key} = {}\n", value.as_ref()?)));
-    let limits: String = limits.collect();
+    let line = |(key, value): (&str, Option<String>)| Some(format!("{key} = {}\n", value?));
+    let limits: String = limits.into_iter().filter_map(line).collect();
     if !limits.is_empty() {
-        out += &format!("\n[limits]\n# Of the data sheet.\n{limits}");
+        out += &format!("\n[limits]\n# From the data sheet.\n{limits}");
     }
     out + &format!(
         "\n# Contact springs{}: no force unless given here, by the depth of the tip, as on the data sheet.\n\
@@ -158,7 +159,7 @@ fn grip(task: &Task) -> String {
     )
 }
 
-/// Returns the part of the file that says how the task is searched.
+/// Returns the `[strategy]` section of a task file.
 pub fn strategy(task: &Task) -> String {
     let strategy = &task.strategy;
     let rule = match strategy.rule {

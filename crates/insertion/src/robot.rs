@@ -88,7 +88,8 @@ impl MountedRobot {
     /// Returns the overtravel of an assembly move along a unit vector, m: the deflection of the arm under its
     /// assembly force. Without overtravel, a soft arm would hardly push the part.
     pub fn overtravel(&self, along: &Vector3<f64>) -> f64 {
-        let deflection = |arm: &Reduced| arm.assembly_force * along.dot(&(arm.compliance * along));
+        let deflection =
+            |arm: &ReducedArm| arm.assembly_force * along.dot(&(arm.compliance * along));
         self.arm().map_or(0.0, deflection)
     }
 

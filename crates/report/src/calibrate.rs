@@ -5,7 +5,7 @@ use crate::answer::words::design;
 use calibration::calibrate::{Calibration, TaskResult};
 use calibration::predict::INTERVAL;
 use calibration::subject::Subject;
-use calibration::table::{Moved, by_range, confounded, moved, warnings};
+use calibration::table::{ParameterUpdate, by_range, confounded, updates, warnings};
 
 /// Number of fingers in the table.
 const LISTED: usize = 5;
@@ -50,7 +50,7 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
 
 /// Returns prior and posterior intervals of the parameters, within 80 columns.
 pub fn parameters_text(calibration: &Calibration) -> String {
-    let row = |one: Moved| {
+    let row = |one: ParameterUpdate| {
         let span = |low: f64, high: f64| format!("{low:.2} to {high:.2}");
         let task = one.task.map_or(String::new(), |task| format!(" ({task})"));
         let moved = if one.moved { "yes" } else { "no" }.to_owned();
@@ -62,5 +62,5 @@ pub fn parameters_text(calibration: &Calibration) -> String {
         let ([a, b], correlation) = (pair.parameters, pair.correlation);
         format!("not distinguished: {a} and {b} (correlation {correlation:+.2})\n")
     });
-    text_table(1, head, moved(calibration).into_iter().map(row)) + &alike.collect::<String>()
+    text_table(1, head, updates(calibration).into_iter().map(row)) + &alike.collect::<String>()
 }

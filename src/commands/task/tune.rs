@@ -8,10 +8,10 @@ use crate::progress::Part;
 use crate::setup::files::robot;
 use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
 use crate::setup::task::TaskFile;
-use crate::setup::tune::{Tried, bench, outcome, ranges, tried, turned_text};
+use crate::setup::tune::{Tried, outcome, ranges, tried, tuner, turned_text};
 use connector::check::problems;
 use connector::tune::{
-    Bench, Effort, MOST_WINDOWS, Robustness, Stage, Step, Stopped, Tuned, YAW_DEG, tune,
+    Effort, MOST_WINDOWS, Robustness, Stage, Step, Stopped, Tuned, Tuner, YAW_DEG, tune,
 };
 use connector::{picture, rewrite};
 use input::Place;
@@ -119,17 +119,17 @@ impl command::Request for Request {
             return Err(Failure::task(Place::file(file).key(key).fault(problem)));
         }
         let robot = robot(&self.robot)?;
-        let bench = self.bench(&file.task, &robot, stop)?;
+        let tuner = self.tuner(&file.task, &robot, stop)?;
         let report = |what: &str, cost: usize, done, of| {
             context.part(&Part { what: what.to_owned(), done, of, cost: cost as f64 });
         };
         let effort =
             Effort { last: Stage::Search, until_enough: false, seed: self.seed, progress: &report };
-        let tuned = tune(&bench, &effort).map_err(Failure::input)?;
+        let tuned = tune(&tuner, &effort).map_err(Failure::input)?;
         if context.check().is_err() {
             return Err(self.interrupted(&file, &tuned, target)?);
         }
-        let Bench { fingers, others, limits, .. } = bench;
+        let Tuner { fingers, others, limits, .. } = tuner;
         let mut done = TunedTask {
             file: self.file.clone(),
             task: file.task.clone(),
@@ -154,18 +154,18 @@ impl command::Request for Request {
 }
 
 impl Request {
-    /// Returns the bench of a task, with the limits given on the command line.
-    fn bench<'a>(
+    /// Returns the tuner of a task, with the limits given on the command line.
+    fn tuner<'a>(
         &self,
         task: &'a Task,
         robot: &'a Robot,
         stop: &'a AtomicBool,
-    ) -> Result<Bench<'a>, Failure> {
-        let mut bench = bench(task, robot, self.engine, stop)?;
+    ) -> Result<Tuner<'a>, Failure> {
+        let mut tuner = tuner(task, robot, self.engine, stop)?;
         let given =
             Limits { force: self.max_force_n, speed: self.max_speed_mm_per_s.map(|v| v * MM) };
-        bench.limits = given.or(bench.limits);
-        Ok(bench)
+        tuner.limits = given.or(tuner.limits);
+        Ok(tuner)
     }
 
     /// Returns the file to write; a shipped task cannot be overwritten.
@@ -194,8 +194,8 @@ impl Request {
         (target, stop): (Option<&Path>, &AtomicBool),
     ) -> Result<TunedWindows, Failure> {
         let after = rewritten(file, &done.tuned)?;
-        let bench = self.bench(&after.task, robot, stop)?;
-        let found = bench.windows(&after.task.strategy, &bench.fingers, Conditions::NOMINAL);
+        let tuner = self.tuner(&after.task, robot, stop)?;
+        let found = tuner.windows(&after.task.strategy, &tuner.fingers, Conditions::NOMINAL);
         not_stopped(stop)?;
         let found = found.map_err(Failure::input)?;
         let force_n = found.iter().map(|found| found.force_n).fold(0.0, f64::max);

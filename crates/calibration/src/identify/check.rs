@@ -2,7 +2,7 @@
 
 use super::axes::{cause, motion};
 use super::formulas::runs_of;
-use super::log::{Ended, Log, LogSample, Run};
+use super::log::{Log, LogSample, Run, RunLabel};
 use super::read::median_gap;
 use super::touch::{AirForce, after, air, any_touch, mean, touch};
 use ask_tell::statistics::Moments;
@@ -144,7 +144,7 @@ fn pose(remarks: &mut Remarks<'_>, run: &Run, task: &Task) {
     let (log, first) = (remarks.log, remarks.log.samples[0]);
     let start = Vector3::from(task.strategy.start) + Vector3::y() * run.offset;
     let far = (first.position - start).norm();
-    let probe = run.ended == Ended::Probe;
+    let probe = run.label == RunLabel::Probe;
     if far > ASTRAY {
         let text = format!(
             "it begins at ({}) mm, {:.0} mm from the start of the task and offset, ({}) mm: {}",
@@ -301,7 +301,7 @@ fn phases(remarks: &mut Remarks<'_>, run: &Run, task: &Task, touched: usize) {
     let depth = |sample: &LogSample| task.grip.tcp_z * libm::cos(sample.tilt) - sample.position.z;
     let deepest = log.samples.iter().map(depth).fold(f64::MIN, f64::max);
     let last = log.samples.len() - 1;
-    if run.ended == Ended::Inserted && deepest < 0.5 * task.success.depth {
+    if run.label == RunLabel::Inserted && deepest < 0.5 * task.success.depth {
         let text = format!(
             "its outcome is `inserted`, but according to the TCP the tip is never deeper than {:.1} mm; \
              {:.1} mm are required: a phase is missing, or the frame's origin or the outcome is wrong",
@@ -310,7 +310,7 @@ fn phases(remarks: &mut Remarks<'_>, run: &Run, task: &Task, touched: usize) {
         );
         remarks.add(true, Some([touched, last]), text);
     }
-    let seated = matches!(run.ended, Ended::Inserted | Ended::Failed(FailureClass::Jammed));
+    let seated = matches!(run.label, RunLabel::Inserted | RunLabel::Failed(FailureClass::Jammed));
     if seated && deepest > 0.0 && depth(&log.samples[last]) < 0.0 {
         let left = log.samples.iter().rposition(|sample| depth(sample) >= 0.0).unwrap_or(0);
         let text = "it ends in the air, above the socket: cut it where the attempt ends";

@@ -8,11 +8,11 @@ use insertion::trial::{Sample, Tcp};
 use nalgebra::Vector3;
 use std::fmt::Write as _;
 
-/// Fewest samples: 0.1 s at 500 Hz.
+/// Smallest number of samples: 0.1 s at 500 Hz.
 pub const FEWEST: usize = 50;
-/// Most samples: half an hour at 500 Hz, 0.1 GB.
+/// Largest number of samples: half an hour at 500 Hz, 0.1 GB.
 pub const MOST: usize = 1_000_000;
-/// Longest log, s: it is interpolated at regular times, however far apart its samples are.
+/// Longest duration of a log, s: logs are interpolated at regular times, however far apart their samples are.
 pub const LONGEST_S: f64 = 600.0;
 
 /// Header of [`Log::csv`] without targets: time, TCP and force on the tool, in the task's frame.
@@ -29,9 +29,9 @@ pub struct LogSample {
     pub time_s: f64,
     /// Measured TCP, m.
     pub position: Vector3<f64>,
-    /// Measured turn of the TCP about x from upright, rad.
+    /// Measured tilt of the TCP about x, rad.
     pub tilt: f64,
-    /// Commanded TCP, if the log has it.
+    /// Commanded TCP, if it was recorded.
     pub target: Option<Tcp>,
     /// Force on the tool, N.
     pub force: Vector3<f64>,
@@ -40,15 +40,15 @@ pub struct LogSample {
 /// Recorded attempt or probe: finite numbers, increasing times, a target in all samples or in none.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Log {
-    /// The file as given.
+    /// Path of the file as given.
     pub file: String,
     /// At least [`FEWEST`] and at most [`MOST`] samples.
     pub samples: Vec<LogSample>,
 }
 
-/// How an attempt ended.
+/// Label of a run in the table of runs: outcome of the attempt, or probe.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ended {
+pub enum RunLabel {
     /// The plug was inserted.
     Inserted,
     /// The attempt failed.
@@ -57,13 +57,13 @@ pub enum Ended {
     Probe,
 }
 
-impl Ended {
+impl RunLabel {
     /// Returns the outcome on the robot; `None` for a probe.
     pub fn outcome(self) -> Option<Outcome> {
         match self {
-            Ended::Inserted => Some(Outcome::Inserted),
-            Ended::Failed(class) => Some(Outcome::Failed(class)),
-            Ended::Probe => None,
+            RunLabel::Inserted => Some(Outcome::Inserted),
+            RunLabel::Failed(class) => Some(Outcome::Failed(class)),
+            RunLabel::Probe => None,
         }
     }
 }
@@ -73,12 +73,12 @@ impl Ended {
 pub struct Run {
     /// Recorded log.
     pub log: Log,
-    /// Infill of the finger, and other numbers that the columns set.
+    /// Infill of the finger, and other design variables of the table.
     pub design: Design,
     /// Shift of the start along y, m; 0 for a probe that has none.
     pub offset: f64,
-    /// How it ended.
-    pub ended: Ended,
+    /// Outcome of the attempt, or probe.
+    pub label: RunLabel,
     /// Line in the table of runs.
     pub line: usize,
 }
@@ -117,15 +117,15 @@ impl Log {
         Ok(Log { file: file.to_owned(), samples })
     }
 
-    /// Returns its text with the columns [`COLUMNS`] and, with targets, [`TARGETS`]: lengths to 1e-5 mm,
+    /// Returns the log as CSV with the columns [`COLUMNS`] and, with targets, [`TARGETS`]: lengths to 1e-5 mm,
     /// tilt to 1e-5 degrees, force to 1e-4 N, time to 1e-6 s. Sample `i` is in line `i + 2`.
-    /// A commanded tilt is not kept.
+    /// The commanded tilt is not written.
     pub fn csv(&self) -> String {
         let mut text = COLUMNS.join(",");
         if self.samples.iter().any(|sample| sample.target.is_some()) {
             text = format!("{text},{}", TARGETS.join(","));
         }
-        // Writing to a String cannot fail. What rounds to 0 has no sign.
+        // Writing to a String cannot fail. Adding zero avoids "-0.0".
         let fixed = |text: &mut String, value: f64, digits: usize| {
             let scale = 10_f64.powi(digits as i32);
             let _ = write!(text, ",{:.digits$}", (value * scale).round() / scale + 0.0);
@@ -155,7 +155,7 @@ impl LogSample {
 /// Returns the log that a robot with a perfect sensor would record of a simulated attempt.
 ///
 /// # Errors
-/// That of [`Log::new`], if the attempt was too short.
+/// If the attempt was too short; see [`Log::new`].
 pub fn of_samples(file: &str, samples: &[Sample]) -> Result<Log, Fault> {
     let start = samples.first().map_or(0.0, |sample| sample.time_s);
     let converted = |(i, sample): (usize, &Sample)| LogSample {

@@ -55,7 +55,7 @@ impl Validation {
         Some(Validation {
             log: held_out.logged.file.clone(),
             offset_mm: held_out.logged.offset / MM,
-            outcome: held_out.logged.ended.outcome().unwrap_or(Outcome::Inserted).word(),
+            outcome: held_out.logged.label.outcome().unwrap_or(Outcome::Inserted).word(),
             outcome_predicted: held_out.after.1.word(),
             misfit: after(std::slice::from_ref(held_out)),
             misfit_fitted: after(&found.compared),

@@ -5,7 +5,7 @@ use super::check::{self, Remark};
 use super::curves::Curves;
 use super::flange;
 use super::formulas::{self, Flange, Friction};
-use super::log::{Ended, Run};
+use super::log::{Run, RunLabel};
 use super::replay::Logged;
 use super::smoother::{Datum, Predicted, Settings, Smoothed, smooth};
 use super::touch::bias;
@@ -211,7 +211,7 @@ impl Identification<'_> {
 
     /// Returns the friction of each probe, by its file.
     fn probes(&self) -> Vec<(String, Friction)> {
-        let probes = self.runs.iter().filter(|run| run.ended == Ended::Probe);
+        let probes = self.runs.iter().filter(|run| run.label == RunLabel::Probe);
         let friction = |run: &Run| {
             let found = formulas::friction(&Curves::of_log(&run.log, bias(&run.log)))?;
             Some((run.log.file.clone(), found))

@@ -1,7 +1,7 @@
 //! Simulation of logged attempts along their commanded trajectories, and the data that are compared.
 
 use super::curves::{Curves, STEP_S};
-use super::log::{Ended, Log, LogSample, Run};
+use super::log::{Log, LogSample, Run, RunLabel};
 use super::question::Identification;
 use super::smoother::{Datum, Predicted};
 use super::touch::{bias, touch};
@@ -45,7 +45,7 @@ pub struct Logged {
     pub file: String,
     pub design: Design,
     pub offset: f64,
-    pub ended: Ended,
+    pub label: RunLabel,
     pub curves: Curves,
     trajectory: Trajectory,
     /// Index of the touch, the first compared point.
@@ -57,7 +57,7 @@ pub struct Logged {
 impl Logged {
     /// Prepares the attempt of a run; `None` if nothing is touched, or for a probe.
     pub fn new(run: &Run) -> Option<Self> {
-        let touched = touch(&run.log).filter(|_| run.ended != Ended::Probe)?;
+        let touched = touch(&run.log).filter(|_| run.label != RunLabel::Probe)?;
         let touched_s = run.log.samples[touched].time_s;
         let before = |sample: &LogSample| sample.time_s < touched_s - AIR_S;
         // Motion in the air gives no information.
@@ -70,7 +70,7 @@ impl Logged {
             file: run.log.file.clone(),
             design: run.design.clone(),
             offset: run.offset,
-            ended: run.ended,
+            label: run.label,
             touch: (since / STEP_S) as usize,
             push: (trajectory.push_start() / STEP_S) as usize,
             curves,

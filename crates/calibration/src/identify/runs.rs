@@ -1,7 +1,7 @@
 //! `runs.csv`: a line for each log, with the finger, the offset and the outcome.
 
 use super::frame::Frame;
-use super::log::{Ended, Log, Run};
+use super::log::{Log, Run, RunLabel};
 use super::read;
 use crate::experiments::line::{Cells, failure, length};
 use crate::experiments::{Columns, Problems, problem, rows};
@@ -22,7 +22,7 @@ struct RunLine {
     log: String,
     design: Design,
     offset_mm: f64,
-    ended: Ended,
+    label: RunLabel,
     line: u64,
 }
 
@@ -37,21 +37,21 @@ fn run_line(cells: &mut Cells<'_>, before: &[RunLine]) -> RunLine {
         }
         None => {}
     }
-    let ended = cells.read("outcome", ended).unwrap_or(Ended::Probe);
-    let offset_mm = match ended {
-        Ended::Probe => cells.optional("offset_mm", length),
+    let label = cells.read("outcome", label).unwrap_or(RunLabel::Probe);
+    let offset_mm = match label {
+        RunLabel::Probe => cells.optional("offset_mm", length),
         _ => cells.read("offset_mm", length),
     };
     let (design, line) = (cells.design(), cells.line);
-    RunLine { log, design, offset_mm: offset_mm.unwrap_or(0.0), ended, line }
+    RunLine { log, design, offset_mm: offset_mm.unwrap_or(0.0), label, line }
 }
 
-fn ended(text: &str) -> Result<Ended, String> {
+fn label(text: &str) -> Result<RunLabel, String> {
     match text {
-        "inserted" => Ok(Ended::Inserted),
-        "probe" => Ok(Ended::Probe),
+        "inserted" => Ok(RunLabel::Inserted),
+        "probe" => Ok(RunLabel::Probe),
         class => failure(class)
-            .map(Ended::Failed)
+            .map(RunLabel::Failed)
             .map_err(|words| format!("{words}, `inserted`, `probe`")),
     }
 }
@@ -71,14 +71,14 @@ pub fn read(
         .map_err(|error| Place::file(&file).fault(format!("cannot be read: {error}")))?;
     let why = "each line needs a log, the infill of its finger, its offset and its outcome";
     let table = rows(&text, &file, &Columns { all: &COLUMNS, required: 5, why }, run_line)?;
-    if table.iter().all(|row| row.ended == Ended::Probe) {
+    if table.iter().all(|row| row.label == RunLabel::Probe) {
         let words =
             "has no attempt; give at least one line with outcome `inserted` or a failure class";
         return Err(Place::file(file).fault(words).into());
     }
     let folder = path.parent().unwrap_or(Path::new(""));
     let (mut runs, mut samples) = (Vec::new(), 0);
-    for RunLine { log, design, offset_mm, ended, line } in table {
+    for RunLine { log, design, offset_mm, label, line } in table {
         let log = folder.join(log);
         let log: Log = read::parse(&text_of(&log)?, &log.display().to_string(), frame)?;
         samples += log.samples.len();
@@ -88,7 +88,7 @@ pub fn read(
             );
             return Err(Problems::of(&file, vec![problem(line, "log", &words)]));
         }
-        runs.push(Run { log, design, offset: offset_mm * MM, ended, line: line as usize });
+        runs.push(Run { log, design, offset: offset_mm * MM, label, line: line as usize });
     }
     Ok(runs)
 }

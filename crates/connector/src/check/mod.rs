@@ -8,7 +8,7 @@ mod strategy;
 pub use parts::FACES_MM;
 
 use super::body::ConvexBody;
-use super::seat::Seating;
+use super::seat::SeatSearch;
 use input::InputError;
 use input::units::MM;
 use insertion::task::{Solid, Task};
@@ -66,7 +66,7 @@ pub fn problems(task: &Task) -> Vec<Problem> {
     if task.success.mated.is_none() {
         found.extend(parts::problems(&case));
         found.extend(socket::walls(&case));
-        let seat = Seating::new(task, &case.plug, &case.socket).deepest();
+        let seat = SeatSearch::new(task, &case.plug, &case.socket).deepest();
         found.extend(socket::depth(&case, &seat));
     }
     found.extend(grasp::problems(&case));

@@ -1,7 +1,7 @@
-//! Parts of plug and socket: thickness, overlaps, gaps, latch and mass; lengths in another unit.
+//! Checks of the parts of plug and socket: thickness, overlaps, gaps, latch, mass, and units of lengths.
 
 use super::{Case, Problem, field, mm, part_key};
-use crate::body::{ConvexBody, Touching, extent, longest_side, width};
+use crate::body::{ConvexBody, Overlap, extent, longest_side, width};
 use crate::hold::SEAM;
 use crate::seat::section;
 use contact::scene::Pose;
@@ -45,37 +45,37 @@ fn overlaps(name: &str, body: &ConvexBody) -> Vec<Problem> {
     let here = Pose::identity();
     let own = body.overlaps(&here, body, &here).filter(|found| found.parts[0] < found.parts[1]);
     let deep = own.filter(|found| found.depth > OVERLAP);
-    deep.map(|Touching { depth, parts, .. }| {
+    deep.map(|Overlap { depth, parts, .. }| {
         let [i, j] = parts.map(|i| &body.parts[i]);
         let counted = if name == "plug" { ": its mass is counted twice there" } else { "" };
         Problem::new(
             part_key(name, &i.name, ""),
-            format!("lies {} mm deep in `{}`{counted}", mm(depth), j.name),
-            "let the two end where they meet; a common face is enough",
+            format!("is {} mm deep in `{}`{counted}", mm(depth), j.name),
+            "let the parts end where they meet; a common face is enough",
         )
     })
     .collect()
 }
 
-/// Checks that a flexure leads from a fixed part of the plug to a moving one.
+/// Checks that the flexure of a latch connects a fixed part of the plug to a moving one.
 fn flexure(case: &Case) -> Vec<Problem> {
     let Some(latch) = &case.task.plug.latch else { return Vec::new() };
     let [root, end] = &latch.flexure;
     let ends =
-        [(root, false, "root_mm", "stands still"), (end, true, "end_mm", "moves with the latch")];
+        [(root, false, "root_mm", "is fixed"), (end, true, "end_mm", "moves with the latch")];
     let off = ends.into_iter().filter(|(point, moves, ..)| {
         !case.plug.near(point, SEAM).any(|part| latch.parts.contains(&part) == *moves)
     });
-    off.map(|(.., key, what)| {
-        let problem = format!("lies on no part that {what}");
-        let remedy = "put it on the plug's surface, or name the right parts";
+    off.map(|(.., key, motion)| {
+        let problem = format!("is not on a part that {motion}");
+        let remedy = "put it on the plug's surface, or correct the parts of the latch";
         Problem::new(format!("plug.latch.{key}"), problem, remedy)
     })
     .collect()
 }
 
 /// Checks that a plug is one piece: every part is connected to the first.
-fn gaps(plug: &ConvexBody) -> Vec<Problem> {
+fn gaps(plug: &ConvexBody) -> Option<Problem> {
     let count = plug.parts.len();
     let mut joined = vec![0];
     loop {
@@ -89,7 +89,7 @@ fn gaps(plug: &ConvexBody) -> Vec<Problem> {
         let (gap, i) = gaps.min_by(|a, b| a.0.total_cmp(&b.0))?;
         let (part, near) = (&plug.parts[j], &plug.parts[i]);
         let range = |part: &Part, axis: usize| extent(part.solid.corners(), axis);
-        // The axis along which the two stand apart.
+        // Returns whether the parts are separated along an axis.
         let apart = |axis: &usize| {
             let ([a, b], [c, d]) = (range(part, *axis), range(near, *axis));
             (c - b).max(a - d) > SEAM / 2.0
@@ -103,7 +103,7 @@ fn gaps(plug: &ConvexBody) -> Vec<Problem> {
             format!("let the parts meet; `{near}` reaches from {low} to {high} mm in {axis_name}"),
         ))
     };
-    loose.and_then(problem).into_iter().collect()
+    loose.and_then(problem)
 }
 
 fn mass(case: &Case) -> Option<Problem> {
@@ -119,19 +119,19 @@ fn mass(case: &Case) -> Option<Problem> {
     let (grams, cm3) = (mass / GRAM, volume * 1e6);
     Some(Problem::new(
         "plug.mass_g",
-        format!("{grams} g for {cm3:.2} cm3 are {density:.2} kg/m3, {than}"),
-        format!("{plastic:.1} g if it were plastic, {steel:.1} g if it were steel"),
+        format!("{grams} g for {cm3:.2} cm3 is {density:.2} kg/m3, {than}"),
+        format!("plausible masses: {plastic:.1} g if of plastic, {steel:.1} g if of steel"),
     ))
 }
 
-/// Width between the jaws, mm: what grippers of assembly cells open to, generously.
+/// Range of widths between the jaws, mm: that of grippers in assembly cells, with a margin.
 pub const FACES_MM: [f64; 2] = [1.0, 100.0];
 
 /// Units mistaken for millimetres, in mm.
 const UNITS: [(&str, f64); 4] =
     [("metres", 1000.0), ("inches", 25.4), ("micrometres", 0.001), ("centimetres", 10.0)];
 
-/// Ratio of plug and opening beyond which one of them is in another unit.
+/// Size ratio of plug and opening beyond which one of them must be in another unit.
 const OTHER_UNIT: f64 = 8.0;
 
 pub(super) fn lengths(case: &Case) -> Vec<Problem> {
@@ -172,7 +172,7 @@ pub(super) fn lengths(case: &Case) -> Vec<Problem> {
         });
     }
     if found.is_empty() {
-        found.extend(against_opening(case));
+        found.extend(other_unit(case));
     }
     found
 }
@@ -184,7 +184,7 @@ fn problem(key: &str, length: f64, [low, high]: [f64; 2]) -> Option<Problem> {
         return None;
     }
     let (size, limit) = if value_mm < low { ("less", low) } else { ("more", high) };
-    let problem = format!("{value_mm:.4} mm are {size} than such a length can be ({limit} mm)");
+    let problem = format!("{value_mm:.4} mm is {size} than the plausible {limit} mm");
     let within = |(_, factor): &&(&str, f64)| (low..=high).contains(&(value_mm * factor));
     let remedy = match UNITS.iter().find(within) {
         Some((unit, factor)) => format!(
@@ -196,10 +196,11 @@ fn problem(key: &str, length: f64, [low, high]: [f64; 2]) -> Option<Problem> {
     Some(Problem::new(key, problem, remedy))
 }
 
-fn against_opening(case: &Case) -> Option<Problem> {
+/// Checks that plug and opening are in the same unit.
+fn other_unit(case: &Case) -> Option<Problem> {
     let section = section(&case.plug, case.task.success.depth);
     let [x, y] = [0, 1].map(|axis| width(section[axis]) / width(case.task.opening[axis]));
-    let (much, what) = match (x.min(y) > OTHER_UNIT, x.max(y) < 1.0 / OTHER_UNIT) {
+    let (ratio, size) = match (x.min(y) > OTHER_UNIT, x.max(y) < 1.0 / OTHER_UNIT) {
         (true, _) => (x.min(y), "larger"),
         (_, true) => (1.0 / x.max(y), "smaller"),
         _ => return None,
@@ -207,7 +208,7 @@ fn against_opening(case: &Case) -> Option<Problem> {
     let widths = section.map(|range| mm(width(range))).join(" x ");
     Some(Problem::new(
         "socket.opening_x_mm, socket.opening_y_mm",
-        format!("the plug, {widths} mm, is {much:.0} times {what} than the opening"),
+        format!("the plug, {widths} mm, is {ratio:.0} times {size} than the opening"),
         "one of the two is not in mm: multiply inches by 25.4, metres by 1000",
     ))
 }

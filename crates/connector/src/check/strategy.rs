@@ -1,7 +1,7 @@
-//! Commanded moves: free approach, search over the opening, deep enough push.
+//! Checks of the commanded moves: free approach, search over the opening, deep enough push.
 
 use super::{Case, Problem, interval, mm};
-use crate::body::{Touching, span};
+use crate::body::{Overlap, span};
 use crate::seat::{self, Waypoint, section};
 use contact::scene::Pose;
 use input::units::MM;
@@ -14,18 +14,18 @@ const ROUNDING: f64 = 0.01 * MM;
 const STEP: f64 = 0.5 * MM;
 /// Recommended clear height of the tip at the end of the approach, m.
 const AIR: f64 = 1.0 * MM;
-/// Recommended command of the push beyond the success depth, m.
+/// Recommended distance of the commanded end of the push beyond the success depth, m.
 const PRESS: f64 = 4.0 * MM;
 
 pub(super) fn problems(case: &Case) -> Vec<Problem> {
     let way = seat::waypoints(case.task, &case.plug);
     let mut found: Vec<Problem> = case.task.strategy.phases.iter().filter_map(upward).collect();
-    found.extend(inside(case, &way));
+    found.extend(collisions(case, &way));
     // The other checks are meaningless for moves that go up.
     if found.is_empty() {
-        found.extend(way.iter().filter_map(short));
+        found.extend(way.iter().filter_map(short_touch));
         found.extend(too_shallow(case, &way));
-        found.extend(beside(case, &way));
+        found.extend(missed_opening(case, &way));
     }
     found
 }
@@ -41,11 +41,11 @@ fn upward(phase: &Phase) -> Option<Problem> {
     if z < 0.0 || !(touch || phase.stage == Stage::Assembly) {
         return None;
     }
-    let what = if touch { "a touch" } else { "the push" };
+    let motion = if touch { "a touch" } else { "the push" };
     let direction = if z > 0.0 { "goes up" } else { "does not go down" };
     Some(Problem::new(
         key(&phase.name),
-        format!("z is {} mm: {what} {direction}", mm(z)),
+        format!("z is {} mm: {motion} {direction}", mm(z)),
         format!(
             "z points out of the socket: give a negative number, as in {}",
             mm(-z.abs().max(MM))
@@ -54,10 +54,10 @@ fn upward(phase: &Phase) -> Option<Problem> {
 }
 
 /// Checks for collisions at the start and on the approach.
-fn inside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
+fn collisions(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     let collision = |tcp: Vector3<f64>| {
         let pose = seat::plug_pose(case.task, tcp);
-        let Touching { depth, parts: [plug, socket], .. } =
+        let Overlap { depth, parts: [plug, socket], .. } =
             case.plug.overlap(&pose, &case.socket, &Pose::identity())?;
         let names = [&case.plug.parts[plug].name, &case.socket.parts[socket].name];
         (depth > ROUNDING).then_some((depth, names))
@@ -66,7 +66,7 @@ fn inside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
         let correct = way[0].tcp.z + 5.0 * MM - way[0].edge.z;
         return Some(Problem::new(
             "strategy.start_mm",
-            format!("at the start `{plug}` lies {} mm deep in `{socket}`", mm(depth)),
+            format!("at the start `{plug}` is {} mm deep in `{socket}`", mm(depth)),
             format!("z = {} mm: 5 mm of air below the tip", mm(correct)),
         ));
     }
@@ -89,12 +89,13 @@ fn inside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     None
 }
 
-fn short(point: &Waypoint) -> Option<Problem> {
+/// Checks that the stroke of a touch reaches the socket.
+fn short_touch(point: &Waypoint) -> Option<Problem> {
     let by = point.short_by?;
     Some(Problem::new(
         key(&point.name),
         format!("the stroke ends {} mm above the socket", mm(by)),
-        format!("at least {} mm longer: it ends at the first contact anyway", mm(by + AIR)),
+        format!("at least {} mm longer: the move stops at the first contact", mm(by + AIR)),
     ))
 }
 
@@ -114,7 +115,7 @@ fn too_shallow(case: &Case, way: &[Waypoint]) -> Option<Problem> {
 }
 
 /// Checks that the search passes over the opening.
-fn beside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
+fn missed_opening(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     let [bottom, _] = case.plug.extent(2);
     let tip = section(&case.plug, bottom + AIR);
     let first = way.iter().position(|point| point.stage != Stage::Approach).unwrap_or(0);
@@ -128,7 +129,7 @@ fn beside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
         return Some(Problem::new(
             "strategy.start_mm",
             format!(
-                "in x the plug is searched at {at} mm, but is over its opening at {}",
+                "in x the plug is commanded to {at} mm, but the opening is reached at {}",
                 interval(fits)
             ),
             format!("x = {} mm, or longer moves along x", mm((fits[0] + fits[1]) / 2.0)),
@@ -141,7 +142,7 @@ fn beside(case: &Case, way: &[Waypoint]) -> Option<Problem> {
         return Some(Problem::new(
             "strategy.start_mm",
             format!(
-                "in y the tip's lower edge is searched at {at} mm, but the opening is at {}",
+                "in y the tip's lower edge is commanded to {at} mm, but the opening is at {}",
                 interval(y)
             ),
             format!("y = {} mm puts it over the opening's middle", mm(correct)),

@@ -1,4 +1,4 @@
-//! Exact seat and play of a pose.
+//! Seat and play of a pose, measured on fine maps.
 
 use super::Mate;
 use super::frame::{Parts, rotations_to_z, turns};
@@ -10,47 +10,47 @@ use input::units::MM;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use std::collections::BTreeSet;
 
-/// Cell along the direction in which play is measured, m, and most cells of a map.
+/// Cell along the direction in which play is measured, m, and largest number of cells of a map.
 const CELL: f64 = 0.005 * MM;
 const MOST_CELLS: f64 = 1.5e6;
 /// Height above the seat at which play is measured, m, so that the stop does not limit it.
 const LIFT: f64 = 0.1 * MM;
-/// Margin about interfering cells that is ignored too, m.
+/// Width of the margin about interfering cells that is ignored as well, m.
 const MARGIN: f64 = 0.1 * MM;
 /// Number of times that the plug is centred in x and y.
 const ROUNDS: usize = 2;
 
-/// Parts without the cells that interfere.
-struct Bench<'a> {
+/// Measurement of play and resting height on the parts without their interfering cells.
+struct PlayMeasurement<'a> {
     socket: &'a [Triangle],
     plug: &'a [Triangle],
     window: Window,
-    /// Cells of the plug, of side `step`, that interfere, and a margin about them.
-    left_out: BTreeSet<[i32; 2]>,
+    /// Cells of the plug, of side `step`, that interfere, with a margin about them.
+    interfering: BTreeSet<[i32; 2]>,
     step: f64,
     shift: [f64; 2],
 }
 
-impl Bench<'_> {
+impl PlayMeasurement<'_> {
     fn maps(&self, step: [f64; 2]) -> [HeightMap; 2] {
         let by = Vector3::new(self.shift[0], self.shift[1], 0.0);
         let plug: Vec<Triangle> = self.plug.iter().map(|corners| corners.map(|p| p + by)).collect();
         let mut maps = [(self.socket, Envelope::Upper), (&plug, Envelope::Lower)]
             .map(|(part, envelope)| HeightMap::new(part, envelope, step, Some(self.window)));
-        maps.iter_mut().for_each(|map| self.without(map));
+        maps.iter_mut().for_each(|map| self.clear_interference(map));
         maps
     }
 
-    /// Clears the cells that interfere from a map.
-    fn without(&self, map: &mut HeightMap) {
-        if self.left_out.is_empty() {
+    /// Clears the interfering cells of a map.
+    fn clear_interference(&self, map: &mut HeightMap) {
+        if self.interfering.is_empty() {
             return;
         }
         let (nx, empty) = (map.count[0], map.envelope.empty());
         for index in 0..map.heights.len() {
             let place = [map.middle(0, index % nx), map.middle(1, index / nx)];
             let cell = [0, 1].map(|a| ((place[a] - self.shift[a]) / self.step).floor() as i32);
-            if self.left_out.contains(&cell) {
+            if self.interfering.contains(&cell) {
                 map.heights[index] = empty;
             }
         }
@@ -66,15 +66,15 @@ impl Bench<'_> {
     }
 
     /// Centres the plug along an axis and returns its play, m.
-    fn centre(&mut self, axis: usize, height: f64, most: f64) -> f64 {
+    fn centre(&mut self, axis: usize, height: f64, max_play: f64) -> f64 {
         let [upper, lower] = self.maps(self.cells(axis));
         let free = |offset: i32| {
             let mut shift = [0; 2];
             shift[axis] = offset;
             rest(&upper, &lower, shift, height as f32) < height as f32
         };
-        let most = (most / CELL) as i32;
-        // The pose on the maps may touch by a cell or two.
+        let most = (max_play / CELL) as i32;
+        // The pose is that of coarser maps and may overlap by a cell or two.
         let Some(first) = (0..=most / 8).flat_map(|k| [k, -k]).find(|k| free(*k)) else {
             return 0.0;
         };
@@ -98,20 +98,20 @@ pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
     let about = move |[x, y]: [i32; 2]| {
         (-margin..=margin).flat_map(move |dy| (-margin..=margin).map(move |dx| [x + dx, y + dy]))
     };
-    let left_out = fine.overlap(pose).into_iter().flat_map(about).collect();
+    let interfering = fine.overlap(pose).into_iter().flat_map(about).collect();
     let (socket, plug) = (&scene.sockets[pose.out], &scene.plugs[pose.turn]);
-    let mut bench =
-        Bench { socket, plug, window: fine.window, left_out, step: fine.step, shift: pose.shift };
+    let (window, step, shift) = (fine.window, fine.step, pose.shift);
+    let mut measurement = PlayMeasurement { socket, plug, window, interfering, step, shift };
     let height = pose.z + LIFT;
     let mut play_m = [0.0; 2];
     for _ in 0..ROUNDS {
-        play_m = [0, 1].map(|axis| bench.centre(axis, height, 2.0 * max_play));
+        play_m = [0, 1].map(|axis| measurement.centre(axis, height, 2.0 * max_play));
     }
-    let rest = bench.rest();
+    let rest = measurement.rest();
     let z = if pose.through || (rest - pose.z).abs() > LIFT { pose.z } else { rest };
     let back = (rotations_to_z()[pose.out] * parts.socket.own).inverse();
     let own = turns()[pose.turn] * parts.plug.own;
-    let moved = Translation3::new(bench.shift[0], bench.shift[1], z)
+    let moved = Translation3::new(measurement.shift[0], measurement.shift[1], z)
         * UnitQuaternion::from_rotation_matrix(&own);
     let turned = UnitQuaternion::from_rotation_matrix(&back);
     Mate {

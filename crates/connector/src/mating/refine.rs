@@ -2,7 +2,7 @@
 
 use super::engagement::{PlugWalls, SIDES, SocketWalls, overlap, score};
 use super::map::{Envelope, HeightMap, NOWHERE, Window, bounds, rest};
-use super::search::{FINE, Scene, Seat};
+use super::search::{CoarseSeat, FINE, Scene};
 use super::{MatingError, check_cancelled};
 use input::units::MM;
 use rayon::prelude::*;
@@ -44,7 +44,7 @@ pub struct Pose {
     pub walls: f64,
     /// Penalty for the overlapping volume, as an area, m2.
     pub penalty: f64,
-    /// Lift that frees the plug towards its lowest side, m.
+    /// Smallest lift that frees the plug towards one of the four sides, m.
     pub depth: f64,
 }
 
@@ -106,7 +106,7 @@ fn middle(shifts: &[[i32; 2]]) -> [i32; 2] {
     nearest.copied().unwrap_or_default()
 }
 
-/// Returns the lift that frees the plug towards its lowest side, m.
+/// Returns the smallest lift that frees the plug towards one of the four sides, m.
 fn lift(socket: &HeightMap, plug: &HeightMap, shift: [i32; 2], z: f64, reach: i32) -> f64 {
     let side = |[dx, dy]: [i32; 2]| {
         let path = (1..=reach)
@@ -119,7 +119,7 @@ fn lift(socket: &HeightMap, plug: &HeightMap, shift: [i32; 2], z: f64, reach: i3
 /// Refines seats into poses, the best first.
 pub fn refined(
     scene: &Scene,
-    seats: &[Seat],
+    seats: &[CoarseSeat],
     max_play: f64,
     stop: &AtomicBool,
 ) -> Result<Vec<Pose>, MatingError> {
@@ -174,7 +174,7 @@ impl<'a> Rough<'a> {
         Rough { scene, upper: eroded(&scene.upper), lower: eroded(&scene.lower), sides, faces }
     }
 
-    fn pose(&self, seat: &Seat) -> Option<Pose> {
+    fn pose(&self, seat: &CoarseSeat) -> Option<Pose> {
         let step = self.scene.step;
         let (socket, plug) = (&self.scene.sockets[seat.out], &self.scene.plugs[seat.turn]);
         let (faces, sides) = (&self.faces[seat.out], &self.sides[seat.turn]);
@@ -186,7 +186,7 @@ impl<'a> Rough<'a> {
             let (z, through) = seated(z, socket, plug);
             let [walls, penalty] = sides.areas(faces, &lower[0], cells, z as f32);
             let shift = cells.map(|cell| f64::from(cell) * step);
-            let Seat { out, turn, depth, .. } = *seat;
+            let CoarseSeat { out, turn, depth, .. } = *seat;
             Pose { out, turn, shift, z, through, walls, penalty, depth }
         });
         poses.max_by(|a, b| a.walls.total_cmp(&b.walls))

@@ -20,21 +20,21 @@ const LEAST_CELL: f64 = 0.1 * MM;
 pub const EFFORTS: [f64; 2] = [10e9, 160e9];
 /// Number of fine cells along the side of a coarse cell.
 pub const FINE: usize = 4;
-/// Number of pairs of axes between two checks of the stop flag.
+/// Number of pairs of rotations between two checks of the stop flag.
 const AT_ONCE: usize = 24;
-/// Largest number of seats per pair of axes: a header of two rows of 50 pins has 297, shifted by whole pitches.
+/// Largest number of seats per pair of rotations: a header of two rows of 50 pins has 297, shifted by whole pitches.
 const MOST_SEATS: usize = 300;
 
 /// Seat found on the coarse maps.
 #[derive(Debug, Clone, Copy)]
-pub struct Seat {
+pub struct CoarseSeat {
     /// Index of the direction out of the socket in [`rotations_to_z`].
     pub out: usize,
     /// Index of the rotation of the plug in [`turns`].
     pub turn: usize,
     /// Shift of the plug in cells of the fine maps.
     pub shift: [i32; 2],
-    /// Lift that frees the plug towards its lowest side, m.
+    /// Smallest lift that frees the plug towards one of the four sides, m.
     pub depth: f64,
 }
 
@@ -97,12 +97,12 @@ impl Coarse {
     }
 }
 
-/// Finds the seats of pairs of axes, for each of the limits of play.
+/// Finds the seats for pairs of a direction out of the socket and a rotation of the plug, at each limit of play.
 pub fn seats(
     scene: &Scene,
     pairs: &[[usize; 2]],
     stop: &AtomicBool,
-) -> Result<[Vec<Seat>; MAX_PLAYS.len()], MatingError> {
+) -> Result<[Vec<CoarseSeat>; MAX_PLAYS.len()], MatingError> {
     let mut seats = [const { Vec::new() }; MAX_PLAYS.len()];
     for interference in [0.0, INTERFERENCE] {
         let erosion = (interference / 2.0 / scene.step).round() as usize;
@@ -127,8 +127,8 @@ pub fn seats(
     Ok(seats)
 }
 
-/// Returns lower bounds of the resting height for each shift of the plug; at `passed`, m, it has gone through the
-/// socket.
+/// Returns a lower bound of the resting height for each shift of the plug, m; at the height `passed`, m, the plug has
+/// gone through the socket.
 fn rests(socket: &Coarse, plug: &Coarse, passed: f32) -> HeightMap {
     let extremes = |map: &HeightMap, take: fn(f32, f32) -> f32| {
         map.heights.iter().copied().fold(map.envelope.empty(), take)
@@ -141,16 +141,17 @@ fn rests(socket: &Coarse, plug: &Coarse, passed: f32) -> HeightMap {
     let mut map =
         HeightMap { envelope: Envelope::Upper, step: s.step, first, count, heights: Vec::new() };
     let height = |shift: [i32; 2]| {
-        let one = rest(s, &plug.inner, shift, range[1]);
-        let z = if one < range[1] { one.max(rest(&socket.inner, p, shift, range[1])) } else { one };
+        let z = rest(s, &plug.inner, shift, range[1]);
+        let z = if z < range[1] { z.max(rest(&socket.inner, p, shift, range[1])) } else { z };
         z.clamp(range[0], range[1])
     };
     map.heights = map.cells().map(height).collect();
     map
 }
 
-/// Finds the seats that the plug can leave to none of four sides without a lift, with at most `max_play` of play, m.
-fn enclosed(rests: &HeightMap, [out, turn]: [usize; 2], max_play: f64) -> Vec<Seat> {
+/// Finds the seats with at most `max_play` of play, m, in which the plug is enclosed: it can move to none of four sides
+/// without a lift.
+fn enclosed(rests: &HeightMap, [out, turn]: [usize; 2], max_play: f64) -> Vec<CoarseSeat> {
     // Bounds widen the play by up to two cells.
     let radius = (max_play / rests.step[0]).ceil() as i32 + 2;
     let lift = |[x, y]: [i32; 2]| {
@@ -175,7 +176,7 @@ fn enclosed(rests: &HeightMap, [out, turn]: [usize; 2], max_play: f64) -> Vec<Se
     }
     let seat = |(depth, place): (f32, [i32; 2])| {
         let shift = place.map(|cell| cell * FINE as i32 + FINE as i32 / 2);
-        Seat { out, turn, shift, depth: f64::from(depth) }
+        CoarseSeat { out, turn, shift, depth: f64::from(depth) }
     };
     seats.into_iter().map(seat).collect()
 }

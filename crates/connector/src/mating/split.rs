@@ -35,13 +35,14 @@ const MOST_TRIED: usize = 6;
 /// Largest number of bodies.
 pub const MOST_BODIES: usize = 100;
 
-/// Set of bodies.
+/// Indices of bodies.
 type Set = BTreeSet<usize>;
 
 /// Bodies that can be withdrawn along an axis.
-struct Leaving {
-    bodies: Set,
+struct Withdrawal {
+    set: Set,
     value: f64,
+    /// Whether these bodies are the plug; otherwise the others are.
     plug: bool,
 }
 
@@ -56,7 +57,7 @@ pub fn plugs(bodies: &[Vec<Triangle>]) -> Result<Vec<Vec<usize>>, MatingError> {
     let own = Part::new(&bodies.concat(), "assembly")?.own;
     let bodies: Vec<_> = bodies.iter().map(|body| turned(body, &own)).collect();
     let touching = contacts(&bodies);
-    let axes: Vec<Vec<Leaving>> = rotations_to_z()
+    let axes: Vec<Vec<Withdrawal>> = rotations_to_z()
         .par_iter()
         .filter(|turn| (turn.inverse() * Vector3::z()).sum() > 0.5)
         .map(|turn| {
@@ -66,24 +67,22 @@ pub fn plugs(bodies: &[Vec<Triangle>]) -> Result<Vec<Vec<usize>>, MatingError> {
                 (*pair, beside + SEATED * areas[axis])
             });
             let turned: Vec<_> = bodies.iter().map(|body| turned(body, turn)).collect();
-            Axis::new(&turned, contact.collect()).leaving()
+            AxisMaps::new(&turned, contact.collect()).withdrawals()
         })
         .collect();
-    let mut found: Vec<Leaving> = axes.into_iter().flatten().collect();
-    // Among equal ones the set with the fewest bodies, so that loose bodies stay with the socket.
+    let mut found: Vec<Withdrawal> = axes.into_iter().flatten().collect();
+    // Of equal sets, that with the fewest bodies comes first, so that loose bodies stay with the socket.
     found.sort_by(|a, b| b.value.total_cmp(&a.value));
     let Some(best) = found.first().map(|best| best.value) else { return Err(MatingError::Blocked) };
     let equal = found.partition_point(|of| of.value >= EQUAL * best);
-    found[..equal].sort_by_key(|of| of.bodies.len());
+    found[..equal].sort_by_key(|of| of.set.len());
     let mut plugs: Vec<Vec<usize>> = Vec::new();
-    let mut known: Vec<Set> = Vec::new();
-    for Leaving { bodies: set, plug, .. } in
-        found.into_iter().filter(|of| of.value >= SIMILAR * best)
-    {
+    let mut accepted: Vec<Set> = Vec::new();
+    for Withdrawal { set, plug, .. } in found.into_iter().filter(|of| of.value >= SIMILAR * best) {
         let nested = |other: &Set| set.is_subset(other) || set.is_superset(other);
-        if !known.iter().any(nested) {
+        if !accepted.iter().any(nested) {
             plugs.push((0..bodies.len()).filter(|i| set.contains(i) == plug).collect());
-            known.push(set);
+            accepted.push(set);
         }
     }
     Ok(plugs)
@@ -138,7 +137,7 @@ fn common(face: &Triangle, other: &Triangle) -> (usize, f64) {
 }
 
 /// Height maps of the bodies along an axis.
-struct Axis {
+struct AxisMaps {
     step: f64,
     upper: Vec<HeightMap>,
     lower: Vec<HeightMap>,
@@ -148,7 +147,7 @@ struct Axis {
     walls: BTreeMap<[usize; 2], WallAreas>,
 }
 
-impl Axis {
+impl AxisMaps {
     fn new(bodies: &[Vec<Triangle>], contact: BTreeMap<[usize; 2], f64>) -> Self {
         let bounds: Vec<_> = bodies.iter().map(|body| bounds(body)).collect();
         let side = |axis: usize| width(span(bounds.iter().flat_map(|of| of[axis])));
@@ -157,16 +156,16 @@ impl Axis {
             bodies.iter().map(|body| HeightMap::new(body, envelope, [step; 2], None)).collect()
         };
         let (upper, lower) = (maps(Envelope::Upper), maps(Envelope::Lower));
-        Axis { step, upper, lower, bounds, contact, walls: BTreeMap::new() }
+        AxisMaps { step, upper, lower, bounds, contact, walls: BTreeMap::new() }
     }
 
     /// Returns the sets of bodies that can be withdrawn upward, at the tightest fit and the least interference that
     /// allow any.
-    fn leaving(&mut self) -> Vec<Leaving> {
+    fn withdrawals(&mut self) -> Vec<Withdrawal> {
         for max_play in MAX_PLAYS {
-            self.face(REACH * max_play);
+            self.measure_walls(REACH * max_play);
             for interference in INTERFERENCES {
-                let found = self.leaving_through(interference);
+                let found = self.withdrawals_at(interference);
                 if !found.is_empty() {
                     return found;
                 }
@@ -176,7 +175,7 @@ impl Axis {
     }
 
     /// Measures the walls that face one another within a reach.
-    fn face(&mut self, reach: f64) {
+    fn measure_walls(&mut self, reach: f64) {
         let near = |i: usize, j: usize| {
             (0..3).all(|axis| {
                 let ([a, b], [c, d]) = (self.bounds[i][axis], self.bounds[j][axis]);
@@ -190,7 +189,8 @@ impl Axis {
         self.walls = pairs.map(|[i, j]| ([i, j], walls(maps(i), maps(j), reach))).collect();
     }
 
-    fn leaving_through(&self, interference: f64) -> Vec<Leaving> {
+    /// Returns the sets of bodies that can be withdrawn upward with an interference, m.
+    fn withdrawals_at(&self, interference: f64) -> Vec<Withdrawal> {
         let count = self.upper.len();
         let cells = (interference / self.step).ceil() as usize;
         let upper: Vec<_> = self.upper.iter().map(|map| map.eroded([cells / 2; 2])).collect();
@@ -198,7 +198,7 @@ impl Axis {
             self.lower.iter().map(|map| map.eroded([cells - cells / 2; 2])).collect();
         let meets =
             |i: usize, j: usize| f64::from(rest(&upper[i], &lower[j], [0; 2], NOWHERE)) > TOLERANCE;
-        // Bodies above each one.
+        // For each body, those that block it from above.
         let above: Vec<Set> =
             (0..count).map(|j| (0..count).filter(|&i| i != j && meets(i, j)).collect()).collect();
         let below: Vec<Set> =
@@ -212,12 +212,12 @@ impl Axis {
             let end = self.grown(start, &above);
             ends.extend(end.filter(|(_, value)| *value > LEAST * LEAST));
         }
-        let leaving =
-            |(bodies, value): (Set, f64)| Leaving { plug: self.is_inner(&bodies), bodies, value };
-        ends.into_iter().map(leaving).collect()
+        let withdrawal =
+            |(set, value): (Set, f64)| Withdrawal { plug: self.is_inner(&set), set, value };
+        ends.into_iter().map(withdrawal).collect()
     }
 
-    /// Adds bodies to a set as long as its value grows.
+    /// Adds bodies to a set as long as its value grows; returns the set and its value.
     fn grown(&self, mut set: Set, above: &[Set]) -> Option<(Set, f64)> {
         let count = self.upper.len();
         let mut value = self.value(&set)?;
@@ -246,20 +246,21 @@ impl Axis {
         }
     }
 
-    /// Returns the area of the facing walls of a set and the rest, less their contact area, m2; `None` without a rest.
+    /// Returns the area of the facing walls of a set and the other bodies minus their contact area, m2; `None` for
+    /// the set of all bodies.
     fn value(&self, set: &Set) -> Option<f64> {
-        let parted = |[i, j]: &[usize; 2]| set.contains(i) && !set.contains(j);
+        let separated = |[i, j]: &[usize; 2]| set.contains(i) && !set.contains(j);
         let mut walls = [0.0; 4];
-        for (_, areas) in self.walls.iter().filter(|(pair, _)| parted(pair)) {
+        for (_, areas) in self.walls.iter().filter(|(pair, _)| separated(pair)) {
             (0..4).for_each(|side| walls[side] += areas[side]);
         }
         let touching =
-            self.contact.iter().filter(|([i, j], _)| parted(&[*i, *j]) || parted(&[*j, *i]));
+            self.contact.iter().filter(|([i, j], _)| separated(&[*i, *j]) || separated(&[*j, *i]));
         let touching: f64 = touching.map(|(_, area)| area).sum();
         (set.len() < self.upper.len()).then(|| score(&walls) - touching)
     }
 
-    /// Returns whether a set is narrower than the rest at the heights that both have.
+    /// Returns whether a set is narrower than the other bodies at the heights that both have.
     fn is_inner(&self, set: &Set) -> bool {
         let [own, rest] = [true, false].map(|inside| -> Vec<[[f64; 2]; 3]> {
             let bodies = (0..self.bounds.len()).filter(|i| set.contains(i) == inside);
@@ -277,7 +278,7 @@ impl Axis {
     }
 }
 
-/// Adds to a set all bodies that block one of its bodies, and those that block them.
+/// Adds to a set all bodies that block one of its bodies, directly or through others.
 fn closure(mut set: Set, above: &[Set]) -> Set {
     let mut todo: Vec<usize> = set.iter().copied().collect();
     while let Some(i) = todo.pop() {

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 /// Largest difference between heights of equal parts, m.
 const SAME: f32 = 0.05e-3;
-/// Number of cells of which one may differ.
+/// One cell of so many may differ between equal parts.
 const RARE: usize = 1000;
 
 /// Returns a representative of each class of equivalent pairs of a direction out of the socket and a rotation of the
@@ -32,11 +32,11 @@ pub fn pairs(scene: &Scene) -> Vec<([usize; 2], usize)> {
         let (a, b) = (root[a], root[b]);
         root.iter_mut().filter(|r| **r == a.max(b)).for_each(|r| *r = a.min(b));
     };
-    for (a, b) in alike(&plugs) {
+    for (a, b) in equal_pairs(&plugs) {
         (0..rotations_to_z().len()).for_each(|out| join(out * count + a, out * count + b));
     }
-    for (a, b) in alike(&sockets).into_iter().filter(|(a, _)| a % 4 == 0) {
-        // The second socket turned back about the axis looks out as one of the six.
+    for (a, b) in equal_pairs(&sockets).into_iter().filter(|(a, _)| a % 4 == 0) {
+        // Turned back about z, the second socket has one of the six directions of `rotations_to_z`.
         let back = turns[b / 4 * 4] * turns[b].inverse();
         for (turn, of) in turns.iter().enumerate() {
             join(a / 4 * count + turn, b / 4 * count + number(back * of));
@@ -58,7 +58,7 @@ fn maps(parts: &[Vec<Triangle>], envelope: Envelope, step: f64) -> Vec<HeightMap
 }
 
 /// Returns the pairs of maps that are equal, in both orders.
-fn alike(maps: &[HeightMap]) -> Vec<(usize, usize)> {
+fn equal_pairs(maps: &[HeightMap]) -> Vec<(usize, usize)> {
     let ranges: Vec<[HeightMap; 2]> =
         maps.par_iter().map(|map| [map.eroded([1; 2]), map.dilated([1; 2])]).collect();
     let within = |a: &HeightMap, [inner, outer]: &[HeightMap; 2]| {

@@ -1,6 +1,5 @@
-//! Fewer faces for the same shape. An edge is collapsed onto one of its ends as long as the corner that
-//! goes stays within a tolerance of the faces that are left (half-edge collapse; Kobbelt et al. 1998, A
-//! general framework for mesh decimation).
+//! Mesh decimation: an edge is collapsed onto one of its ends as long as the removed corner stays within a tolerance of
+//! the remaining faces (half-edge collapse; Kobbelt et al. 1998, A general framework for mesh decimation).
 
 use super::surface::Surface;
 use input::units::MM;
@@ -19,7 +18,7 @@ const MOST_ABOUT: usize = 64;
 /// Smallest cosine between the normals of a face before and after a collapse.
 const LEAST_COSINE: f64 = 0.5;
 
-struct Collapsing {
+struct Decimation {
     points: Vec<Point3<f64>>,
     faces: Vec<[usize; 3]>,
     about: Vec<Vec<usize>>,
@@ -29,7 +28,7 @@ struct Collapsing {
     version: Vec<u32>,
 }
 
-/// Returns the surface with as few faces as keep to the [`TOLERANCE`]; as it is if they are not many.
+/// Returns the surface with fewer faces, within the [`TOLERANCE`]; a surface of few faces is returned unchanged.
 pub fn reduced(surface: Surface) -> Surface {
     if surface.faces.len() <= MANY_FACES {
         return surface;
@@ -41,7 +40,7 @@ pub fn reduced(surface: Surface) -> Surface {
     let count = surface.points.len();
     let Surface { points, faces, was_inward } = surface;
     let mut mesh =
-        Collapsing { points, faces, about, error: vec![0.0; count], version: vec![0; count] };
+        Decimation { points, faces, about, error: vec![0.0; count], version: vec![0; count] };
     let mut queue = BinaryHeap::new();
     (0..count).for_each(|corner| mesh.queue(corner, &mut queue));
     let mut left = mesh.faces.len();
@@ -55,21 +54,18 @@ pub fn reduced(surface: Surface) -> Surface {
         }
         mesh.collapse(from, to, cost as f64 * 1e-12);
         left -= 2;
-        for corner in mesh.neighbours(to).into_iter().chain([to]) {
-            mesh.version[corner] += 1;
-        }
-        for corner in mesh.neighbours(to).into_iter().chain([to]) {
-            mesh.queue(corner, &mut queue);
-        }
+        let changed: Vec<_> = mesh.neighbours(to).into_iter().chain([to]).collect();
+        changed.iter().for_each(|&corner| mesh.version[corner] += 1);
+        changed.iter().for_each(|&corner| mesh.queue(corner, &mut queue));
     }
-    let (points, faces) = mesh.left();
+    let (points, faces) = mesh.remaining();
     Surface { points, faces, was_inward }
 }
 
-/// A collapse: its error, pm, the corner that goes and the one it goes to, and their versions.
+/// Collapse: its error, pm, the removed corner and the one that replaces it, and their versions.
 type Queued = Reverse<(u64, [usize; 2], [u32; 2])>;
 
-impl Collapsing {
+impl Decimation {
     fn neighbours(&self, corner: usize) -> BTreeSet<usize> {
         let all = self.about[corner].iter().flat_map(|&face| self.faces[face]);
         all.filter(|&other| other != corner).collect()
@@ -78,7 +74,7 @@ impl Collapsing {
     fn queue(&self, from: usize, queue: &mut BinaryHeap<Queued>) {
         let faces = self.about[from].len();
         let near = if faces > MOST_ABOUT { BTreeSet::new() } else { self.neighbours(from) };
-        // A closed fan has as many neighbours as faces; where surfaces touch nothing is changed.
+        // Corners at which surfaces touch have fewer or more neighbours than faces; they are kept.
         if near.len() != faces {
             return;
         }
@@ -98,15 +94,15 @@ impl Collapsing {
         }
     }
 
-    fn meet(&self, a: usize, b: usize) -> bool {
+    fn share_edge(&self, a: usize, b: usize) -> bool {
         let [few, other] = if self.about[a].len() < self.about[b].len() { [a, b] } else { [b, a] };
         self.about[few].iter().any(|&face| self.faces[face].contains(&other))
     }
 
-    /// Returns the faces about a corner before and after it goes; `None` if a face would turn over or the surface would
-    /// touch itself.
+    /// Returns the faces about a corner before and after its removal; `None` if a face would turn over or the surface
+    /// would touch itself.
     fn change(&self, from: usize, to: usize, near: &BTreeSet<usize>) -> Option<Change> {
-        if near.iter().filter(|&&other| other != to && self.meet(other, to)).count() != 2 {
+        if near.iter().filter(|&&other| other != to && self.share_edge(other, to)).count() != 2 {
             return None;
         }
         let mut change = Change { old: Vec::new(), new: Vec::new() };
@@ -126,10 +122,11 @@ impl Collapsing {
         Some(change)
     }
 
-    /// Returns how far both surfaces are then apart where one lies over the other, m; `None` beyond the [`TOLERANCE`].
+    /// Returns the error of a collapse: the largest distance between the old and the new faces, m; `None` beyond the
+    /// [`TOLERANCE`].
     fn cost(&self, from: usize, to: usize, mut change: Change) -> Option<f64> {
         let within = |distance: f64| (self.error[from] + distance <= TOLERANCE).then_some(distance);
-        // A corner of an edge is near one of the faces even where another one fills a hollow.
+        // The removed corner alone is not enough: it can be near a new face where another one fills a hollow.
         let gone = within(Facet::farthest(&change.old, &change.new))?;
         let about = self.about[to].iter().map(|&face| self.faces[face]);
         let facet =
@@ -154,13 +151,11 @@ impl Collapsing {
         }
     }
 
-    fn left(&self) -> (Vec<Point3<f64>>, Vec<[usize; 3]>) {
+    /// Returns the remaining corners and faces.
+    fn remaining(&self) -> (Vec<Point3<f64>>, Vec<[usize; 3]>) {
         let mut points = Vec::new();
         let mut number = vec![usize::MAX; self.points.len()];
-        for (corner, about) in self.about.iter().enumerate() {
-            if about.is_empty() {
-                continue;
-            }
+        for corner in (0..self.points.len()).filter(|&corner| !self.about[corner].is_empty()) {
             number[corner] = points.len();
             points.push(self.points[corner]);
         }
@@ -170,13 +165,13 @@ impl Collapsing {
     }
 }
 
-/// Faces about a corner before and after it goes.
+/// Faces about a corner before and after its removal.
 struct Change {
     old: Vec<Facet>,
     new: Vec<Facet>,
 }
 
-/// Triangle with its unit normal, and samples: its middle and that of the edge which leaves a corner.
+/// Triangle with its unit normal, and samples: its centroid and the midpoint of the edge that starts at a corner.
 struct Facet {
     corners: [Point3<f64>; 3],
     normal: Vector3<f64>,
@@ -184,7 +179,7 @@ struct Facet {
 }
 
 impl Facet {
-    /// Creates the facet whose first edge begins at `at`; its normal is zero if it has no area.
+    /// Creates the facet with a sample on the edge that starts at `at`; the normal is zero if it has no area.
     fn new(corners: [Point3<f64>; 3], at: Point3<f64>) -> Self {
         let [a, b, c] = &corners;
         let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
@@ -202,11 +197,11 @@ impl Facet {
 
     /// Returns the distance of a point from the nearest of some facets, m.
     fn distance(facets: &[Facet], point: &Point3<f64>) -> f64 {
-        facets.iter().map(|facet| facet.away(point)).fold(f64::INFINITY, f64::min)
+        facets.iter().map(|facet| facet.distance_to(point)).fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns the distance of a point (Ericson 2005, Real-time collision detection, 5.1.5), m.
-    fn away(&self, point: &Point3<f64>) -> f64 {
+    /// Returns the distance to a point (Ericson 2005, Real-time collision detection, 5.1.5), m.
+    fn distance_to(&self, point: &Point3<f64>) -> f64 {
         let [a, b, c] = &self.corners;
         let beyond = |from: &Point3<f64>, to: &Point3<f64>| {
             (to - from).cross(&(point - from)).dot(&self.normal) < 0.0

@@ -1,9 +1,9 @@
 //! Search for a strategy that inserts with a soft, a medium and a stiff finger.
 
-mod bench;
+mod tuner;
 mod variables;
 
-pub use bench::{Bench, ENOUGH_MM, Measured, Tried};
+pub use tuner::{Candidate, ENOUGH_MM, MeasuredWindow, Tuner};
 
 use crate::body::ConvexBody;
 use crate::plan::{Family, has_core};
@@ -58,7 +58,7 @@ pub struct Step {
     /// Change to the strategy: `like a key`.
     pub change: String,
     /// Result.
-    pub tried: Tried,
+    pub tried: Candidate,
     /// Smallest range of another finger with the socket turned in either direction, mm, if it was checked.
     pub turned_mm: Option<f64>,
 }
@@ -98,31 +98,31 @@ pub struct Effort<'a> {
     pub progress: &'a (dyn Fn(&str, usize, usize, usize) + Sync),
 }
 
-/// Tunes the strategy of the bench's task.
+/// Tunes the strategy of the tuner's task.
 ///
-/// If `bench.stop` is set meanwhile, `steps` contains only the strategies tried before, and `robustness` is empty.
+/// If `tuner.stop` is set meanwhile, `steps` contains only the strategies tried before, and `robustness` is empty.
 ///
 /// # Errors
 /// If the task cannot be simulated as it is.
-pub fn tune(bench: &Bench, effort: &Effort) -> Result<Tuned, DesignError> {
+pub fn tune(tuner: &Tuner, effort: &Effort) -> Result<Tuned, DesignError> {
     let mut tuned = Tuned { steps: Vec::new(), best: 0, robustness: Vec::new(), windows: 0 };
-    let given = bench.given(&bench.task.strategy)?;
+    let given = tuner.given(&tuner.task.strategy)?;
     tuned.add(Stage::AsItIs, [("as it is".to_owned(), given)], effort);
     for stage in [Stage::Start, Stage::Families, Stage::Search] {
         let can_end = stage > Stage::Start && effort.until_enough;
         let enough = can_end && tuned.best().tried.is_enough();
-        if stage > effort.last || enough || bench.stopped() {
+        if stage > effort.last || enough || tuner.stopped() {
             break;
         }
         match stage {
             Stage::AsItIs => {}
-            Stage::Start => tuned.start(bench, effort)?,
-            Stage::Families => tuned.families(bench, effort),
-            Stage::Search => tuned.search(bench, effort)?,
+            Stage::Start => tuned.start(tuner, effort)?,
+            Stage::Families => tuned.families(tuner, effort),
+            Stage::Search => tuned.search(tuner, effort)?,
         }
     }
     if effort.last == Stage::Search && tuned.inserts() {
-        tuned.check(bench)?;
+        tuned.check(tuner)?;
     }
     Ok(tuned)
 }
@@ -140,7 +140,7 @@ impl Tuned {
 
     /// Returns the least force of the strategies that insert with all three fingers, N.
     pub fn least_force_n(&self) -> Option<f64> {
-        let inserts = |tried: &&Tried| tried.windows.iter().all(|w| w.nominal == Outcome::Inserted);
+        let inserts = |c: &&Candidate| c.windows.iter().all(|w| w.nominal == Outcome::Inserted);
         let tried = self.steps.iter().map(|step| &step.tried).filter(inserts);
         tried.map(|tried| tried.force_n).filter(|force| *force > 0.0).min_by(f64::total_cmp)
     }
@@ -150,7 +150,7 @@ impl Tuned {
     fn add(
         &mut self,
         stage: Stage,
-        tried: impl IntoIterator<Item = (String, Tried)>,
+        tried: impl IntoIterator<Item = (String, Candidate)>,
         effort: &Effort,
     ) {
         for (change, last) in tried {
@@ -175,41 +175,41 @@ impl Tuned {
 
     /// Tries a taught start and, if the sweep is upright, also a tilted tip, which finds a single opening from farther
     /// away.
-    fn start(&mut self, bench: &Bench, effort: &Effort) -> Result<(), DesignError> {
-        let own = &bench.task.strategy;
-        let tried = bench.taught(own)?;
+    fn start(&mut self, tuner: &Tuner, effort: &Effort) -> Result<(), DesignError> {
+        let own = &tuner.task.strategy;
+        let tried = tuner.taught(own)?;
         let change =
             format!("start taught, {:+.1} mm in y", (tried.strategy.start[1] - own.start[1]) / MM);
-        let slowed = bench.with_slower_push(change, tried);
-        if bench.stopped() {
+        let slowed = tuner.with_slower_push(change, tried);
+        if tuner.stopped() {
             return Ok(());
         }
         self.add(Stage::Start, slowed, effort);
-        let upright = own.tilt == 0.0 && effort.until_enough && !has_core(bench.task);
-        if upright && let Some(strategy) = Family::Key.of(bench.task) {
-            let slowed = bench.with_slower_push(Family::Key.name(), bench.taught(&strategy)?);
-            if !bench.stopped() {
+        let upright = own.tilt == 0.0 && effort.until_enough && !has_core(tuner.task);
+        if upright && let Some(strategy) = Family::Key.strategy_for(tuner.task) {
+            let slowed = tuner.with_slower_push(Family::Key.name(), tuner.taught(&strategy)?);
+            if !tuner.stopped() {
                 self.add(Stage::Start, slowed, effort);
             }
         }
         Ok(())
     }
 
-    fn families(&mut self, bench: &Bench, effort: &Effort) {
+    fn families(&mut self, tuner: &Tuner, effort: &Effort) {
         let tried = |family: &Family| {
-            let tried = bench.taught(&family.of(bench.task)?).ok()?;
-            Some(bench.with_slower_push(family.name(), tried))
+            let tried = tuner.taught(&family.strategy_for(tuner.task)?).ok()?;
+            Some(tuner.with_slower_push(family.name(), tried))
         };
         let families: Vec<_> = Family::all().collect();
         let tried: Vec<_> = families.par_iter().filter_map(tried).collect();
-        if !bench.stopped() {
+        if !tuner.stopped() {
             self.add(Stage::Families, tried.into_iter().flatten(), effort);
         }
     }
 
-    fn search(&mut self, bench: &Bench, effort: &Effort) -> Result<(), InputError> {
+    fn search(&mut self, tuner: &Tuner, effort: &Effort) -> Result<(), InputError> {
         let from = self.best().tried.strategy.clone();
-        let task = Task { strategy: from, limits: bench.limits, ..bench.task.clone() };
+        let task = Task { strategy: from, limits: tuner.limits, ..tuner.task.clone() };
         let free = variables::variables(&task.strategy)?;
         let grid = Grid::new(vec![variables::LEVELS; free.len()]);
         let mut optimizer = ask_tell::build(OptimizerKind::Gp, grid.clone(), effort.seed);
@@ -226,13 +226,13 @@ impl Tuned {
                 .map(|point| {
                     let (strategy, change) =
                         variables::strategy_at(&task, &free, &grid.unit(point));
-                    (change, bench.taught(&strategy).ok())
+                    (change, tuner.taught(&strategy).ok())
                 })
                 .collect();
-            if bench.stopped() {
+            if tuner.stopped() {
                 break;
             }
-            let score = |tried: &Option<Tried>| tried.as_ref().map(|tried| tried.score);
+            let score = |tried: &Option<Candidate>| tried.as_ref().map(|tried| tried.score);
             let told: Vec<_> = points
                 .into_iter()
                 .zip(&tried)
@@ -249,7 +249,7 @@ impl Tuned {
     const CHECKS: usize = CHANGES * EACH + (TURNED.end - TURNED.start) * FINALISTS;
 
     /// Recommends the strategy with the widest range under a turned socket, and measures it under all changes.
-    fn check(&mut self, bench: &Bench) -> Result<(), DesignError> {
+    fn check(&mut self, tuner: &Tuner) -> Result<(), DesignError> {
         let inserts = |place: &usize| self.steps[*place].tried.inserts();
         let mut order: Vec<_> = (0..self.steps.len()).filter(inserts).collect();
         let score: Vec<_> = self.steps.iter().map(|step| step.tried.score).collect();
@@ -270,8 +270,8 @@ impl Tuned {
                 continue;
             }
             checked += 1;
-            let turned = robustness(bench, strategy, &bench.others[1..2], TURNED)?;
-            if bench.stopped() {
+            let turned = robustness(tuner, strategy, &tuner.others[1..2], TURNED)?;
+            if tuner.stopped() {
                 return Ok(());
             }
             self.windows += turned.len();
@@ -286,9 +286,9 @@ impl Tuned {
             }
         }
         self.best = most.0;
-        let kept = robustness(bench, &self.best().tried.strategy, &bench.others, 0..CHANGES)?;
-        if !bench.stopped() {
-            self.windows += kept.len() * bench.others.len();
+        let kept = robustness(tuner, &self.best().tried.strategy, &tuner.others, 0..CHANGES)?;
+        if !tuner.stopped() {
+            self.windows += kept.len() * tuner.others.len();
             self.robustness = kept;
         }
         Ok(())
@@ -323,7 +323,7 @@ impl Tuned {
 
 /// Measures the smallest range of fingers under each of a range of changes.
 fn robustness(
-    bench: &Bench,
+    tuner: &Tuner,
     strategy: &Strategy,
     fingers: &[Finger],
     which: Range<usize>,
@@ -340,7 +340,7 @@ fn robustness(
         (format!("friction plug-socket times {more}"), friction(more)),
     ];
     let under = |(change, conditions): &(String, Conditions)| {
-        let windows = bench.windows(strategy, fingers, *conditions)?;
+        let windows = tuner.windows(strategy, fingers, *conditions)?;
         let ranges = windows.iter().map(|found| found.window.range_mm());
         let least_range_mm = ranges.fold(f64::INFINITY, f64::min);
         Ok(Robustness { change: change.clone(), least_range_mm })

@@ -21,7 +21,7 @@ pub struct SearchVariable {
     prior: Parameter,
 }
 
-/// Number of a strategy that a variable sets.
+/// Quantity of a strategy that a variable sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Target {
     Tilt,
@@ -55,7 +55,7 @@ pub fn variables(strategy: &Strategy) -> Result<Vec<SearchVariable>, InputError>
 }
 
 impl SearchVariable {
-    /// Returns the value at a share of the range, in the unit of the prior, rounded to whole steps.
+    /// Returns the value at a share of the range, in the unit of the prior, rounded to a multiple of `step`.
     fn at(&self, current: f64, share: f64, step: f64) -> f64 {
         let bound = |value: f64| self.prior.applied(current, value);
         let [low, high] = [bound(self.prior.low).min(current), bound(self.prior.high).max(current)];
@@ -67,8 +67,8 @@ impl SearchVariable {
     }
 }
 
-/// Returns the task's strategy with its variables at these shares of their ranges, rounded as in files, and a list of
-/// the changed values. The position of the tip's lower edge at the start does not change.
+/// Returns the task's strategy with its variables at these shares of their ranges, rounded as in files, and the changed
+/// values as text. The tip's lower edge keeps its position at the start.
 pub fn strategy_at(task: &Task, variables: &[SearchVariable], unit: &[f64]) -> (Strategy, String) {
     let mut strategy = task.strategy.clone();
     let mut changes = Vec::new();

@@ -119,7 +119,7 @@ fn summary(found: &Identified) -> Vec<(String, String)> {
         [ValueOrigin::Formula, ValueOrigin::Fit, ValueOrigin::Prior, ValueOrigin::Files].map(named);
     let compared = &found.compared;
     let [before, after] = [|one: &Compared| one.before.1, |one: &Compared| one.after.1].map(|of| {
-        compared.iter().filter(|one| one.logged.ended.outcome() == Some(of(one))).count()
+        compared.iter().filter(|one| one.logged.label.outcome() == Some(of(one))).count()
     });
     let outcomes = format!(
         "{after} of {} attempts are simulated to end as measured; {before} with the files' numbers",
@@ -243,7 +243,7 @@ fn shorter(one: &Compared, simulated: &(Curves, Outcome), name: &str) -> Option<
 }
 
 fn attempt(one: &Compared) -> Markup {
-    let (logged, measured) = (&one.logged, one.logged.ended.outcome());
+    let (logged, measured) = (&one.logged, one.logged.label.outcome());
     let ended = measured.map_or("probe".to_owned(), outcome);
     let off = measured.is_some_and(|measured| measured != one.after.1);
     html! {

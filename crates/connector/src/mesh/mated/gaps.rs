@@ -15,13 +15,13 @@ use parry::shape;
 use rapier3d_f64::parry;
 use rayon::prelude::*;
 
-/// Poses that are compared.
+/// Number of compared poses.
 const POSES: u32 = 1000;
-/// Gap beyond which gaps count as equal, m.
+/// Gap beyond which all gaps count as equal, m.
 const WIDE: f64 = 0.1 * MM;
 /// Deviation of poses beyond the play, m.
 const BEYOND: f64 = 0.1 * MM;
-/// Heights above the seat, m: those of every other pose, and what the rest go beyond the depth.
+/// Heights above the seat, m: the smallest, the range of every other pose, and that of the rest beyond the depth.
 const HEIGHTS: [f64; 3] = [0.03 * MM, 1.0 * MM, 0.5 * MM];
 /// Smallest lever arm of a rotation, m.
 const ARM: f64 = 2.0 * MM;
@@ -52,23 +52,23 @@ pub struct Bodies<'a> {
     pub play: [f64; 2],
 }
 
-/// Returns the pose at which the gaps differ most, if they do; what was left out does not count.
-pub fn difference(of: &Bodies, left_out: &[Interference]) -> Option<Difference> {
-    let [plug, socket] = of.drawn.map(Faces::new);
-    let parts = of.parts.map(ConvexBody::new);
+/// Returns the pose at which the gaps differ most, if any differ; places near removed interference are ignored.
+pub fn difference(bodies: &Bodies, removed: &[Interference]) -> Option<Difference> {
+    let [plug, socket] = bodies.drawn.map(Faces::new);
+    let parts = bodies.parts.map(ConvexBody::new);
     let at = |number: u32| {
-        let pose = pose(number, of);
+        let pose = pose(number, bodies);
         let beyond = |place: &Point3<f64>, distance: f64| {
-            let mated = pose.inverse_transform_point(place) - Vector3::z() * of.depth;
-            !left_out.iter().any(|of| of.is_near([&mated, place][of.body], distance))
+            let mated = pose.inverse_transform_point(place) - Vector3::z() * bodies.depth;
+            !removed.iter().any(|of| of.is_near([&mated, place][of.body], distance))
         };
         let counts = |place: &Point3<f64>| beyond(place, BEYOND);
-        let (drawn, its) =
+        let (drawn, of_parts) =
             (plug.gap(&pose, &socket, counts), parts[0].gap(&pose, &parts[1], WIDE, counts));
-        let gaps = [drawn, its].map(|found| found.map_or(WIDE, |(gap, _)| gap.min(WIDE)));
-        let [place, other] = [drawn, its].map(|found| found.map(|(_, place)| place));
+        let gaps = [drawn, of_parts].map(|found| found.map_or(WIDE, |(gap, _)| gap.min(WIDE)));
+        let [place, other] = [drawn, of_parts].map(|found| found.map(|(_, place)| place));
         let place = if gaps[0] < gaps[1] { place.or(other) } else { other.or(place) }?;
-        // About what was left out a place of the one may count where that of the other does not.
+        // Near removed interference, the place of only one of the two gaps may count.
         let differs = differ(gaps) && beyond(&place, 4.0 * BEYOND);
         // If the drawn faces touch, the place found for overlapping parts can be elsewhere along them.
         let both = || {
@@ -84,27 +84,27 @@ pub fn difference(of: &Bodies, left_out: &[Interference]) -> Option<Difference> 
     found.into_iter().max_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
-/// Returns whether gaps differ by more than two bodies can, each of which is within the tolerance, or only one is open
-/// by more than it.
+/// Returns whether gaps differ by more than the tolerances of two bodies, or one is closed and the other exceeds the
+/// tolerance.
 fn differ(gaps: [f64; 2]) -> bool {
     let [low, high] = [gaps[0].min(gaps[1]), gaps[0].max(gaps[1])];
     high - low > 2.0 * TOLERANCE || (low <= 0.0 && high > TOLERANCE)
 }
 
 /// Returns a pose near the mated one or near the path to it.
-fn pose(number: u32, of: &Bodies) -> Pose {
+fn pose(number: u32, bodies: &Bodies) -> Pose {
     let [x, y, high, about_x, about_y, about_z] =
         STEPS.map(|step| (0.5 + f64::from(number + 1) * step).fract());
-    let side = |v: f64, axis: usize| (2.0 * v - 1.0) * (of.play[axis] / 2.0 + BEYOND);
+    let side = |v: f64, axis: usize| (2.0 * v - 1.0) * (bodies.play[axis] / 2.0 + BEYOND);
     let [least, near, above] = HEIGHTS;
-    let height = least + high * if number.is_multiple_of(2) { near } else { of.depth + above };
-    let arm = of.depth.max(ARM);
+    let height = least + high * if number.is_multiple_of(2) { near } else { bodies.depth + above };
+    let arm = bodies.depth.max(ARM);
     let turn = Vector3::new(side(about_x, 1), side(about_y, 0), side(about_z, 0)) / arm;
-    let shift = Translation3::new(side(x, 0), side(y, 1), height - of.depth);
+    let shift = Translation3::new(side(x, 0), side(y, 1), height - bodies.depth);
     Pose::from_parts(shift, UnitQuaternion::from_scaled_axis(turn))
 }
 
-/// Faces in millimetres, for which parry's tolerances are made, in the order of space.
+/// Faces with the tree of their bounding boxes, mm: parry's tolerances suit bodies of size 1.
 struct Faces {
     faces: Vec<Triangle>,
     tree: Bvh,
@@ -121,7 +121,8 @@ impl Faces {
         Faces { faces, tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) }
     }
 
-    /// Returns the gap to other faces, these at a pose, m, and its place, if it is not wide; only places that count.
+    /// Returns the smallest gap to other faces with these at a pose, m, and its place, among the gaps below [`WIDE`] at
+    /// places that `counts` accepts.
     fn gap(
         &self,
         pose: &Pose,
@@ -166,7 +167,7 @@ mod tests {
     use crate::mesh::mated::{Pair, Request, task};
     use insertion::task::{Solid, geometry};
 
-    /// Faces of boxes of a least and a greatest corner, mm.
+    /// Returns the faces of boxes with these smallest and largest corners, mm.
     fn drawn(boxes: &[[[f64; 3]; 2]]) -> Vec<Triangle> {
         let faces = |[min, max]: &[[f64; 3]; 2]| {
             let [min, max] = [min, max].map(|corner| Vector3::from(*corner) * MM);
@@ -218,7 +219,7 @@ mod tests {
         let (parts, play) = (&made.task.plug.parts, [0.1 * MM; 2]);
         let bodies = Bodies {
             drawn: [&raised, &socket],
-            // Without what the fingers hold.
+            // Without the part that the fingers hold.
             parts: [&parts[..parts.len() - 1], &made.task.socket],
             depth: 5.0 * MM,
             play,

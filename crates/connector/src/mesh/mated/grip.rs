@@ -44,7 +44,7 @@ pub fn own(plug: &[Triangle], free: f64) -> Option<Grasp> {
     let [left, right] = [-1.0, 1.0].map(|sign| faces(plug, sign));
     let pairs = left.iter().flat_map(|low| right.iter().map(move |high| (low, high)));
     let grasps = pairs.filter_map(|(low, high)| grasp_at(plug, low, high, free));
-    // The first of equal ones.
+    // Of equal areas, the first is kept.
     let best = grasps.reduce(|best, next| if next.0 > best.0 { next } else { best });
     best.map(|(_, grasp)| grasp)
 }

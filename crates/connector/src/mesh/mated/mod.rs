@@ -22,7 +22,7 @@ use reach::Reach;
 use verify::Drawn;
 pub use verify::{Deviation, TOLERANCE};
 
-/// Handle that is put on a plug without a place to hold: width in x, between the jaws, and length, m.
+/// Size of the handle that is added to a plug without faces to hold: in x, between the jaws, and length, m.
 pub const HANDLE: [f64; 3] = [12.0 * MM, 10.0 * MM, 20.0 * MM];
 /// Height of the tip whose middle is the plug's axis, m.
 const TIP: f64 = 1.0 * MM;
@@ -39,7 +39,7 @@ pub struct Pair<'a> {
     pub socket: &'a [Triangle],
     /// Plug and socket with all faces of their drawing.
     pub drawn: [&'a [Triangle]; 2],
-    /// Direction in which the plug leaves.
+    /// Direction in which the plug is withdrawn.
     pub out: Vector3<f64>,
     /// Directions across it along which the jaws may close, the preferred one first.
     pub jaws: &'a [Vector3<f64>],
@@ -53,15 +53,15 @@ pub struct Pair<'a> {
 pub struct Request<'a> {
     /// Name of the task.
     pub name: &'a str,
-    /// Task whose keys are taken, all but the shapes.
+    /// Task from which all keys but the shapes are taken.
     pub like: Option<&'a Task>,
     /// Size of a handle (x, between the jaws, length), m, in place of the plug's own faces.
     pub handle: Option<[f64; 3]>,
 }
 
-/// Task of a pair.
+/// Task derived from a pair.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Made {
+pub struct PairTask {
     /// Task.
     pub task: Task,
     /// Direction along which the jaws close.
@@ -76,11 +76,11 @@ pub struct Made {
     pub deviation: Option<(usize, Deviation)>,
     /// Pose at which the gap between the parts is not as drawn, if any.
     pub difference: Option<gaps::Difference>,
-    /// SVG of the place of either.
+    /// SVG of the place of this deviation or difference.
     pub closeup: Option<String>,
 }
 
-impl Made {
+impl PairTask {
     /// Returns the height of the mated plug's tip, task frame, m.
     pub fn mated_z(&self) -> f64 {
         self.task.success.mated.map_or(0.0, |mated| mated.tip[2])
@@ -88,7 +88,7 @@ impl Made {
 }
 
 /// Pair in the task's axes: the plug in its own frame, the socket in that of the task.
-struct Placed {
+struct AlignedPair {
     plug: Vec<Triangle>,
     socket: Vec<Triangle>,
     drawn: [Vec<Triangle>; 2],
@@ -96,7 +96,7 @@ struct Placed {
     play: [f64; 2],
 }
 
-impl Placed {
+impl AlignedPair {
     fn new(pair: &Pair, jaws: Vector3<f64>) -> Self {
         let turn =
             Matrix3::from_rows(&[jaws.cross(&pair.out), jaws, pair.out].map(|v| v.transpose()));
@@ -109,12 +109,12 @@ impl Placed {
         let tip: Vec<Point3<f64>> = tip.collect();
         let [x, y] = [0, 1].map(|axis| extent(&tip, axis)).map(|[a, b]| (a + b) / 2.0);
         let play = [0, 1].map(|axis| {
-            let along = |(way, _): &&(Vector3<f64>, f64)| (turn * way)[axis].abs() > 0.7;
+            let along = |(v, _): &&(Vector3<f64>, f64)| (turn * v)[axis].abs() > 0.7;
             pair.play.iter().find(along).map_or(0.0, |(_, play)| *play)
         });
         let own = Vector3::new(-x, -y, -low);
         let task = own - Vector3::z() * pair.engaged;
-        Placed {
+        AlignedPair {
             plug: turned(pair.plug, own),
             socket: turned(pair.socket, task),
             drawn: [turned(pair.drawn[0], own), turned(pair.drawn[1], task)],
@@ -125,20 +125,20 @@ impl Placed {
 }
 
 /// Returns the task of a pair in its mated pose.
-pub fn task(pair: &Pair, request: &Request) -> Made {
+pub fn task(pair: &Pair, request: &Request) -> PairTask {
     // Rounded to the grid of files, so that corners stay on it.
     let pair = &Pair { engaged: snap(pair.engaged), ..*pair };
     let first = pair.jaws.first().copied().unwrap_or_else(Vector3::y);
-    let high = |placed: &Placed| extent(placed.socket.iter().flatten(), 2)[1].max(0.0);
+    let high = |placed: &AlignedPair| extent(placed.socket.iter().flatten(), 2)[1].max(0.0);
     let held = |jaws: &Vector3<f64>| {
-        let placed = Placed::new(pair, *jaws);
+        let placed = AlignedPair::new(pair, *jaws);
         let grasp = grip::own(&placed.plug, pair.engaged + high(&placed))?;
         Some((placed, grasp))
     };
     let own = if request.handle.is_some() { None } else { pair.jaws.iter().find_map(held) };
     let handle = own.is_none();
     let (placed, grasp) = own.unwrap_or_else(|| {
-        let placed = Placed::new(pair, first);
+        let placed = AlignedPair::new(pair, first);
         let size = request.handle.unwrap_or(HANDLE);
         let grasp = grip::handle(&placed.plug, size, pair.engaged + high(&placed));
         (placed, grasp)
@@ -149,10 +149,8 @@ pub fn task(pair: &Pair, request: &Request) -> Made {
     let drawn = [&placed.drawn[0][..], &placed.drawn[1]];
     let bodies =
         gaps::Bodies { drawn, parts: [&plug, &socket], depth: pair.engaged, play: placed.play };
-    let difference = match deviation {
-        Some(_) => None,
-        None => gaps::difference(&bodies, &interference),
-    };
+    let difference =
+        if deviation.is_some() { None } else { gaps::difference(&bodies, &interference) };
     let mated = Pose::translation(0.0, 0.0, -pair.engaged);
     let place = deviation.map(|(_, off)| (mated, off.place));
     let place = place.or(difference.map(|off| (off.pose, off.place)));
@@ -169,30 +167,30 @@ pub fn task(pair: &Pair, request: &Request) -> Made {
     (task.grip.shoulder_z, task.grip.faces_y) = (grasp.shoulder, grasp.faces);
     let mut task = plan::mated(&task);
     let like = request.like.map(|like| plan::Family::Like(Box::new(like.clone())));
-    if let Some(strategy) = like.and_then(|family| family.of(&task)) {
+    if let Some(strategy) = like.and_then(|family| family.strategy_for(&task)) {
         task.strategy = strategy;
     }
     let held = width(extent(grasp.part.solid.corners(), 0));
     let jaws = placed.jaws;
-    Made { task, jaws, held, handle, interference, deviation, difference, closeup }
+    PairTask { task, jaws, held, handle, interference, deviation, difference, closeup }
 }
 
-/// Parts of plug and socket where the other one can touch them, and the worst place at which they are not as drawn.
-fn skins(placed: &Placed, depth: f64) -> (Vec<Part>, Vec<Part>, Option<(usize, Deviation)>) {
+/// Returns the parts of plug and socket that the other body can touch, and their worst deviation from the drawing.
+fn skins(placed: &AlignedPair, depth: f64) -> (Vec<Part>, Vec<Part>, Option<(usize, Deviation)>) {
     let mated: Vec<Triangle> =
         placed.plug.iter().map(|t| t.map(|p| p - Vector3::z() * depth)).collect();
     let reach = Reach::new(&mated, &placed.socket, placed.play[0].max(placed.play[1]));
     let ((plug, off), (socket, its)) = rayon::join(
-        || checked("plug", &mated, |face, normal| reach.of_plug(face, normal)),
-        || checked("socket", &placed.socket, |face, normal| reach.of_socket(face, normal)),
+        || checked_skin("plug", &mated, |face, normal| reach.of_plug(face, normal)),
+        || checked_skin("socket", &placed.socket, |face, normal| reach.of_socket(face, normal)),
     );
     let worst = off.map(|off| (0, off)).or(its.map(|off| (1, off)));
     let up = |part: Part| Part { solid: raised(part.solid, depth), ..part };
     (plug.into_iter().map(up).collect(), socket, worst)
 }
 
-/// Parts of the faces that are reached, and the worst place at which they are not as drawn.
-fn checked(
+/// Returns the parts for the faces that can be touched, and their worst deviation from the drawing.
+fn checked_skin(
     name: &str,
     triangles: &[Triangle],
     reached: impl Fn(&Triangle, &Vector3<f64>) -> bool,
@@ -229,8 +227,8 @@ fn raised(solid: Solid, by: f64) -> Solid {
     }
 }
 
-/// Returns the opening that leaves the plug its play, m, about all of the plug that goes below the top, without a
-/// shoulder that rests on it.
+/// Returns the opening: the extent of the plug below the socket's top, without a shoulder that rests on it, plus the
+/// play, m.
 fn opening(plug: &[Triangle], depth: f64, play: [f64; 2]) -> [[f64; 2]; 2] {
     let below = [f64::NEG_INFINITY, depth - plan::BELOW_TOP];
     let below: Vec<Point3<f64>> = plug.iter().flat_map(|face| clipped(face, 2, below)).collect();

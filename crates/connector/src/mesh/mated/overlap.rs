@@ -1,7 +1,7 @@
 //! Interference of plug and socket on the way to the mated pose: drawings show contact springs unloaded, ribs
 //! uncrushed, and press fits with their oversize.
 
-use crate::body::{ConvexBody, Touching, clipped, extent, longest_side, span};
+use crate::body::{ConvexBody, Overlap, clipped, extent, longest_side, span};
 use crate::mesh::skin::cut_below;
 use contact::scene::Pose;
 use input::units::MM;
@@ -78,7 +78,7 @@ fn leave_out(
         parts.iter().map(|part| geometry::volume(&part.solid)).collect()
     });
     let mut out = [vec![0.0_f64; plug.len()], vec![0.0_f64; socket.len()]];
-    for Touching { depth, parts: [i, j], .. } in overlaps([plug, socket], depth, least, [0.0; 2]) {
+    for Overlap { depth, parts: [i, j], .. } in overlaps([plug, socket], depth, least, [0.0; 2]) {
         let body = usize::from(volumes[0][i] > volumes[1][j]);
         let part = [i, j][body];
         out[body][part] = out[body][part].max(depth);
@@ -204,15 +204,14 @@ fn grouped(parts: Vec<(f64, Solid)>, body: usize, cut_back: bool, depth: f64) ->
 
 /// Returns the overlaps deeper than `least`, m, on the way down, except those at the stop; the plug is shifted by x and
 /// y, m.
-fn overlaps(parts: [&[Part]; 2], depth: f64, least: f64, [x, y]: [f64; 2]) -> Vec<Touching> {
+fn overlaps(parts: [&[Part]; 2], depth: f64, least: f64, [x, y]: [f64; 2]) -> Vec<Overlap> {
     let [plug, socket] = parts.map(ConvexBody::new);
     let steps = (depth / STEP).ceil() as usize;
     let at = |i: usize| {
         let above = i as f64 * STEP;
         let pose = Pose::translation(x, y, above - depth);
-        let counts = |touch: &Touching| {
-            touch.depth > least && (above > STOP || touch.normal.z.abs() < ALONG)
-        };
+        let counts =
+            |touch: &Overlap| touch.depth > least && (above > STOP || touch.normal.z.abs() < ALONG);
         plug.overlaps(&pose, &socket, &Pose::identity()).filter(counts).collect::<Vec<_>>()
     };
     (0..=steps).into_par_iter().map(at).collect::<Vec<_>>().concat()

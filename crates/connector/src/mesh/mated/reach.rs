@@ -16,22 +16,21 @@ const ABOVE: f64 = 0.6 * MM;
 const SEARCHED: f64 = 1.5 * MM;
 /// Largest distance of the search moves from the opening, m.
 const SEARCH: f64 = 4.0 * MM;
-/// Sine of the slope beyond which a face looks away from the other body: a body that moves along the axis, tilted, does
-/// not come from behind.
+/// Sine of the slope beyond which a face points away from the other body, which comes along the axis, at most tilted.
 const AWAY: f64 = 0.35;
 /// Largest number of cells along one side of a map.
 const MOST_CELLS: f64 = 2000.0;
 
-/// Heights of the highest triangles over the cells of a grid.
-struct Envelope {
+/// Largest heights of triangles over the cells of a grid.
+struct UpperEnvelope {
     low: [f64; 2],
     cell: f64,
     size: [usize; 2],
     heights: Vec<f64>,
 }
 
-impl Envelope {
-    /// Creates the upper envelope of triangles whose heights are counted in the direction of `sign`.
+impl UpperEnvelope {
+    /// Creates the upper envelope of triangles; `sign` is the direction of z in which heights are counted.
     fn new(triangles: &[Triangle], sign: f64) -> Self {
         let ranges = [0, 1].map(|axis| extent(triangles.iter().flatten(), axis));
         let longest = ranges.iter().map(|[low, high]| high - low).fold(0.0, f64::max);
@@ -39,7 +38,7 @@ impl Envelope {
         let low = ranges.map(|[low, _]| low - cell);
         let size = [0, 1].map(|i| ((ranges[i][1] - low[i]) / cell) as usize + 2);
         let heights = vec![f64::NEG_INFINITY; size[0] * size[1]];
-        let mut map = Envelope { low, cell, size, heights };
+        let mut map = UpperEnvelope { low, cell, size, heights };
         for triangle in triangles {
             let [a, b, c] = *triangle;
             let long = (b - a).norm().max((c - a).norm()).max((c - b).norm());
@@ -56,21 +55,22 @@ impl Envelope {
         map
     }
 
-    fn place(&self, v: f64, axis: usize) -> usize {
+    /// Returns the index of the cell of a coordinate along an axis.
+    fn cell_of(&self, v: f64, axis: usize) -> usize {
         (((v - self.low[axis]) / self.cell).max(0.0) as usize).min(self.size[axis] - 1)
     }
 
     fn index(&self, [x, y]: [f64; 2]) -> usize {
-        self.place(y, 1) * self.size[0] + self.place(x, 0)
+        self.cell_of(y, 1) * self.size[0] + self.cell_of(x, 0)
     }
 
-    /// Returns the largest height over the box of a triangle and of what lies so far in front of it, m.
+    /// Returns the largest height over the bounding box of a triangle, extended by `aside` in front of it, m.
     fn over(&self, triangle: &Triangle, normal: &Vector3<f64>, aside: f64) -> f64 {
         let range = |axis: usize| {
             let ([low, high], ahead) = (extent(triangle, axis), normal[axis] * aside);
             [low + ahead.min(0.0) - self.cell, high + ahead.max(0.0) + self.cell]
         };
-        let [x, y] = [0, 1].map(|axis| range(axis).map(|v| self.place(v, axis)));
+        let [x, y] = [0, 1].map(|axis| range(axis).map(|v| self.cell_of(v, axis)));
         let beside = (0..2).any(|axis| {
             let [low, high] = range(axis);
             let most = self.low[axis] + self.size[axis] as f64 * self.cell;
@@ -86,11 +86,12 @@ impl Envelope {
 
 /// Faces that a plug and a socket can touch; both in their mated pose in the task frame.
 pub struct Reach {
-    socket: Envelope,
-    plug: Envelope,
+    socket: UpperEnvelope,
+    plug: UpperEnvelope,
     tip: f64,
     /// Distance in front of a face within which the other body must pass, m.
     aside: f64,
+    /// Range of the tip in x and y during the search, m.
     about: [[f64; 2]; 2],
 }
 
@@ -98,11 +99,10 @@ impl Reach {
     /// Creates the reach of a plug in its mated pose, with a play, m, and of its socket.
     pub fn new(plug: &[Triangle], socket: &[Triangle], play: f64) -> Self {
         let [tip, _] = extent(plug.iter().flatten(), 2);
-        let low = plug.iter().flatten().filter(|p| p.z < tip + SEARCHED);
-        let low: Vec<_> = low.collect();
+        let low: Vec<_> = plug.iter().flatten().filter(|p| p.z < tip + SEARCHED).collect();
         let about = [0, 1].map(|axis| span(low.iter().map(|p| p[axis])));
         let about = about.map(|[low, high]| [low - SEARCH, high + SEARCH]);
-        let (socket, plug) = (Envelope::new(socket, 1.0), Envelope::new(plug, -1.0));
+        let (socket, plug) = (UpperEnvelope::new(socket, 1.0), UpperEnvelope::new(plug, -1.0));
         Reach { socket, plug, tip, aside: ASIDE + play, about }
     }
 

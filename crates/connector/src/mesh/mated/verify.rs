@@ -79,7 +79,7 @@ impl<'a> Drawn<'a> {
         corners.iter().copied().chain(middles).find_map(off)
     }
 
-    /// Returns the samples of the faces to be covered that have no part nearby, and the places at which parts protrude.
+    /// Returns the samples of the `kept` faces without a part nearby, and the places at which parts protrude.
     pub fn deviations(&self, kept: &[Triangle], parts: &[Part]) -> Vec<Deviation> {
         let body = ConvexBody::new(parts);
         let uncovered = |triangle: &Triangle| -> Vec<Deviation> {
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_that_protrusion_and_a_bare_face_are_found() {
+    fn a_protruding_part_and_a_bare_face_are_found() {
         let drawn = cube();
         let whole = part([0.0; 3], [4.0; 3]);
         assert_eq!(Drawn::new(&drawn).deviations(&drawn, &[whole]), []);
@@ -155,9 +155,9 @@ mod tests {
         let bare = Drawn::new(&drawn).deviations(&drawn, &[short]);
         assert!(!bare.is_empty() && bare.iter().all(|d| d.out.is_none() && d.place.z > 3.9 * MM));
     }
-    /// What a file rounds would else be read as another solid, or as none.
+    /// Otherwise the rounding of a file could change the solid or make it invalid.
     #[test]
-    fn what_is_trimmed_is_on_the_grid_of_files() {
+    fn trimmed_corners_are_on_the_grid_of_files() {
         let Solid::Box { min, max } = part([1.0, 1.0, 3.0], [2.0, 2.0, 4.1]).solid else {
             panic!()
         };

@@ -23,7 +23,7 @@ pub fn polygons(facets: &Facets, flat: &[usize], normal: &Vector3<f64>) -> Vec<V
     edges.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     let mut loops: Vec<Vec<usize>> = flat.iter().map(|&face| facets.faces[face].to_vec()).collect();
     let mut parent: Vec<usize> = (0..flat.len()).collect();
-    // An edge may be in the way of another: as long as one is joined, the rest may be.
+    // A join can make another one convex, so edges are tried until none is joined.
     loop {
         let before = edges.len();
         edges.retain(|(_, ends, faces)| {
@@ -47,7 +47,7 @@ pub fn polygons(facets: &Facets, flat: &[usize], normal: &Vector3<f64>) -> Vec<V
     loops
 }
 
-/// Returns two polygons as one without the edge that the first runs through from `from` to `to`.
+/// Returns the union of two polygons across their common edge, which the first passes from `from` to `to`.
 fn joined(first: &[usize], second: &[usize], [from, to]: [usize; 2]) -> Option<Vec<usize>> {
     let at = |polygon: &[usize], [a, b]: [usize; 2]| {
         let count = polygon.len();
@@ -57,7 +57,7 @@ fn joined(first: &[usize], second: &[usize], [from, to]: [usize; 2]) -> Option<V
     let round = |polygon: &[usize], from: usize| {
         (0..polygon.len()).map(|k| polygon[(from + k) % polygon.len()]).collect::<Vec<_>>()
     };
-    // From `to` round to `from`, then all of the second between them.
+    // The first from `to` round to `from`, then the other corners of the second.
     let mut both = round(first, i + 1);
     both.extend(&round(second, j + 2)[..second.len() - 2]);
     // Along a second common edge the outline runs back and forth.
@@ -71,7 +71,7 @@ fn joined(first: &[usize], second: &[usize], [from, to]: [usize; 2]) -> Option<V
     Some(both)
 }
 
-/// Returns whether no corner of a line lies inside by more than nothing, and it goes round once.
+/// Returns whether a polygon turns right at no corner, within [`NARROW`], and winds around its interior once.
 fn convex(facets: &Facets, polygon: &[usize], normal: &Vector3<f64>) -> bool {
     let count = polygon.len();
     let at = |i: usize| facets.points[polygon[i % count]];

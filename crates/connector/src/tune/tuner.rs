@@ -1,4 +1,4 @@
-//! Windows of a few measured fingers from one start.
+//! Evaluation of a strategy: windows of a few measured fingers.
 
 use input::units::MM;
 use insertion::evaluation::tolerance::{self, Search, offset};
@@ -20,8 +20,8 @@ pub const ENOUGH_MM: f64 = 0.5;
 /// Target force of a slower push, as a share of the limit.
 const SLOWER: f64 = 0.9;
 
-/// Setup in which strategies for a task are tried.
-pub struct Bench<'a> {
+/// Task, robot and fingers with which strategies are tried.
+pub struct Tuner<'a> {
     /// The task, whose strategy is replaced.
     pub task: &'a Task,
     /// Robot that carries the fingers.
@@ -30,27 +30,27 @@ pub struct Bench<'a> {
     pub engine: EngineKind,
     /// A soft, a medium and a stiff finger.
     pub fingers: [Finger; 3],
-    /// Three others, between them.
+    /// Three fingers between these, for checks of the recommended strategy.
     pub others: [Finger; 3],
     /// Largest force between plug and socket, and largest speed of a phase, of a recommended strategy.
     pub limits: Limits,
-    /// Set to stop; results are then invalid.
+    /// Stop flag; once it is set, results are invalid.
     pub stop: &'a AtomicBool,
 }
 
 /// Window of a finger.
-pub struct Measured {
+pub struct MeasuredWindow {
     /// The window.
     pub window: Window,
-    /// Margin by which its nominal start fails, below 0; 0 if it inserts.
+    /// Margin of the nominal start: negative if the start fails, 0 if it inserts.
     pub margin: f64,
-    /// Largest force of its insertions, N.
+    /// Largest force of the insertions, N.
     pub force_n: f64,
 }
 
-/// Result of a strategy.
+/// Tried strategy with its result.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tried {
+pub struct Candidate {
     /// The strategy, with its taught start.
     pub strategy: Strategy,
     /// Windows of the soft, the medium and the stiff finger; empty if the medium one inserts from no start.
@@ -71,15 +71,15 @@ pub fn fingers() -> Option<[Finger; 6]> {
     let mut designs = designs();
     designs.sort_by(|a, b| a.compliance.total_cmp(&b.compliance));
     let last = designs.len().checked_sub(1)?;
-    let at = |fifths: usize| {
-        let design = &designs[last * fifths / 10];
+    let at = |tenths: usize| {
+        let design = &designs[last * tenths / 10];
         Finger::new(design.compliance, design.assembly)
     };
     Some([0, 5, 10, 2, 4, 8].map(at))
 }
 
-impl<'a> Bench<'a> {
-    /// Returns the bench of a task with its limits of force and speed, and with the robot's stop force unless the
+impl<'a> Tuner<'a> {
+    /// Creates the tuner of a task with its limits of force and speed, and with the robot's stop force unless the
     /// task limits the force; `None` if no measured fingers are shipped.
     pub fn new(
         task: &'a Task,
@@ -92,7 +92,7 @@ impl<'a> Bench<'a> {
         let fingers = [soft, medium, stiff];
         let force = task.limits.force.or(Some(robot.stop_force));
         let limits = Limits { force, ..task.limits };
-        Some(Bench { task, robot, engine, fingers, others, limits, stop })
+        Some(Tuner { task, robot, engine, fingers, others, limits, stop })
     }
 
     /// Returns whether tuning was stopped; the last result is then invalid.
@@ -100,40 +100,33 @@ impl<'a> Bench<'a> {
         self.stop.load(Ordering::SeqCst)
     }
 
-    /// Returns the window of a finger.
-    fn window(
-        &self,
-        strategy: &Strategy,
-        finger: &Finger,
-        conditions: Conditions,
-    ) -> Result<Measured, RigError> {
-        let task = Task { strategy: strategy.clone(), ..self.task.clone() };
-        let rig = self.engine.rig(&task, self.robot, finger, 1.0)?;
-        let grasp = Grasp { finger: *finger, conditions, stop: self.stop };
-        let found = tolerance::evaluate_grasp(&*rig, grasp, Search::Strides);
-        let inserts = found.window.nominal == Outcome::Inserted;
-        let margin = if inserts { 0.0 } else { found.end_shares[0].min(0.0) };
-        Ok(Measured { window: found.window, margin, force_n: found.peak_force_n })
-    }
-
-    /// Returns the windows of fingers under some conditions, from the strategy's own start.
+    /// Measures the windows of fingers under some conditions, from the strategy's own start.
     pub fn windows(
         &self,
         strategy: &Strategy,
         fingers: &[Finger],
         conditions: Conditions,
-    ) -> Result<Vec<Measured>, RigError> {
-        fingers.par_iter().map(|finger| self.window(strategy, finger, conditions)).collect()
+    ) -> Result<Vec<MeasuredWindow>, RigError> {
+        let task = Task { strategy: strategy.clone(), ..self.task.clone() };
+        let measured = |finger: &Finger| {
+            let rig = self.engine.rig(&task, self.robot, finger, 1.0)?;
+            let grasp = Grasp { finger: *finger, conditions, stop: self.stop };
+            let found = tolerance::evaluate_in(&*rig, grasp, Search::Strides);
+            let inserts = found.window.nominal == Outcome::Inserted;
+            let margin = if inserts { 0.0 } else { found.end_shares[0].min(0.0) };
+            Ok(MeasuredWindow { window: found.window, margin, force_n: found.peak_force_n })
+        };
+        fingers.par_iter().map(measured).collect()
     }
 
-    /// Returns the strategy from its own start.
-    pub fn given(&self, strategy: &Strategy) -> Result<Tried, RigError> {
+    /// Evaluates a strategy from its own start.
+    pub fn given(&self, strategy: &Strategy) -> Result<Candidate, RigError> {
         let found = self.windows(strategy, &self.fingers, Conditions::NOMINAL)?;
         Ok(self.tried(strategy.clone(), found))
     }
 
-    /// Returns the strategy with its start moved to the middle of the medium finger's window.
-    pub fn taught(&self, strategy: &Strategy) -> Result<Tried, RigError> {
+    /// Evaluates a strategy with its start moved to the middle of the medium finger's window.
+    pub fn taught(&self, strategy: &Strategy) -> Result<Candidate, RigError> {
         let mut strategy = Strategy { rule: StartRule::Given, ..strategy.clone() };
         let most = self.limits.speed.unwrap_or(f64::INFINITY);
         strategy.phases.iter_mut().for_each(|phase| phase.speed = phase.speed.min(most));
@@ -145,22 +138,22 @@ impl<'a> Bench<'a> {
                 strategy.start[1] += offset(taught.shift);
                 let mut found = self.windows(&strategy, &[soft, stiff], Conditions::NOMINAL)?;
                 let (window, force_n) = (taught.window, taught.peak_force_n);
-                found.insert(1, Measured { window, margin: 0.0, force_n });
+                found.insert(1, MeasuredWindow { window, margin: 0.0, force_n });
                 Ok(self.tried(strategy, found))
             }
             Err(nearest) => {
                 strategy.start[1] += offset(nearest.shift);
                 // Below the score of any strategy that inserts with the medium finger.
                 let score = nearest.trial.margin.min(0.0) - 1.0;
-                let nearest = Some(Box::new(nearest.trial));
-                Ok(Tried { strategy, windows: Vec::new(), force_n: 0.0, score, nearest, cost: 1 })
+                let (windows, nearest) = (Vec::new(), Some(Box::new(nearest.trial)));
+                Ok(Candidate { strategy, windows, force_n: 0.0, score, nearest, cost: 1 })
             }
         }
     }
 
-    /// Returns a strategy and, if its force is above the limit, the same with a slower push: the force grows about
-    /// with the speed.
-    pub fn with_slower_push(&self, change: String, tried: Tried) -> Vec<(String, Tried)> {
+    /// Returns a tried strategy and, if its force is above the limit, that strategy with a slower push: the force is
+    /// roughly proportional to the speed.
+    pub fn with_slower_push(&self, change: String, tried: Candidate) -> Vec<(String, Candidate)> {
         let limit = self.limits.force.unwrap_or(f64::INFINITY);
         let mut all = vec![(change, tried)];
         let (change, tried) = &all[0];
@@ -176,7 +169,7 @@ impl<'a> Bench<'a> {
         all
     }
 
-    fn tried(&self, strategy: Strategy, found: Vec<Measured>) -> Tried {
+    fn tried(&self, strategy: Strategy, found: Vec<MeasuredWindow>) -> Candidate {
         let worst = found.iter().map(|found| found.margin).fold(0.0, f64::min);
         let force_n = found.iter().map(|found| found.force_n).fold(0.0, f64::max);
         let inserts = found.iter().all(|found| found.window.nominal == Outcome::Inserted);
@@ -188,23 +181,23 @@ impl<'a> Bench<'a> {
             Some(limit) if force_n > limit => 1.0 - force_n / limit,
             _ => least,
         };
-        Tried { strategy, cost: windows.len(), windows, force_n, score, nearest: None }
+        Candidate { strategy, cost: windows.len(), windows, force_n, score, nearest: None }
     }
 }
 
-impl Tried {
+impl Candidate {
     /// Returns whether all three fingers insert within the limit of force.
     pub fn inserts(&self) -> bool {
         self.score >= 0.0
     }
 
-    /// Returns the medium finger's smaller side, mm.
+    /// Returns the smaller side of the medium finger's window, mm.
     pub fn side_mm(&self) -> f64 {
         let side = |window: &Window| window.positive_mm().min(-window.negative_mm());
         self.windows.get(1).map_or(0.0, side)
     }
 
-    /// Returns whether all three insert, and the medium one far enough to either side.
+    /// Returns whether all three fingers insert, and the medium one from far enough to either side.
     pub fn is_enough(&self) -> bool {
         self.inserts() && self.side_mm() >= ENOUGH_MM
     }

@@ -111,7 +111,7 @@ impl<'a> Tuner<'a> {
         let measured = |finger: &Finger| {
             let rig = self.engine.rig(&task, self.robot, finger, 1.0)?;
             let grasp = Grasp { finger: *finger, conditions, stop: self.stop };
-            let found = tolerance::evaluate_in(&*rig, grasp, Search::Strides);
+            let found = tolerance::evaluate_grasp(&*rig, grasp, Search::Strides);
             let inserts = found.window.nominal == Outcome::Inserted;
             let margin = if inserts { 0.0 } else { found.end_shares[0].min(0.0) };
             Ok(MeasuredWindow { window: found.window, margin, force_n: found.peak_force_n })

@@ -209,21 +209,26 @@ fn described(
     }
     if made.handle {
         let [x, y, z] = options.handle.unwrap_or(HANDLE).map(|side| side / MM);
-        let why = format!(
-            "the plug has no two opposite faces for the pads below a top face for their roofs, so a block of \
-             {x:.1} x {y:.1} x {z:.1} mm is added on top of it; --body sets its size"
-        );
-        findings.push(("handle", why));
+        let why = match options.handle {
+            Some(_) => "",
+            None => "the pads find no two opposite faces below a top face for their roofs: ",
+        };
+        let block = format!("{x:.1} x {y:.1} x {z:.1} mm");
+        let text = format!("{why}a block of {block} is added on top of the plug (--body)");
+        findings.push(("handle", text));
     } else {
         let apart = width(made.task.grip.faces_y) / MM;
         let grip = made.task.plug.parts.iter().rfind(|part| part.name == "grip");
-        let [low, high] =
-            grip.map_or([0.0; 2], |part| extent(part.solid.corners(), 2)).map(|z| z / MM);
-        let why = format!(
-            "pads on two faces {apart:.1} mm apart, {low:.1} to {high:.1} mm above the tip, \
-             roofs on top; --body adds a handle"
+        let z = grip.map_or([0.0; 2], |part| extent(part.solid.corners(), 2));
+        let [low, high] = z.map(|z| z / MM);
+        let text = format!(
+            "faces {apart:.1} mm apart, {low:.1} to {high:.1} mm above the tip; --body adds a handle"
         );
-        findings.push(("grip", why));
+        findings.push(("grip", text));
+    }
+    if let (Some(faces), None) = (made.rejected, options.handle) {
+        let (apart, reason) = (faces.apart / MM, faces.reason);
+        findings.push(("not held", format!("larger faces {apart:.1} mm apart: {reason}")));
     }
     let mut left_out: Vec<LeftOut> = made.interference.iter().map(LeftOut::from).collect();
     left_out.sort_by(|a, b| b.depth_mm.total_cmp(&a.depth_mm));

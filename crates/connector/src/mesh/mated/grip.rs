@@ -39,14 +39,42 @@ struct Face {
     z: [f64; 2],
 }
 
-/// Returns the grasp at the largest faces of the plug that keeps the pads above `free`, m.
-pub fn own(plug: &[Triangle], free: f64) -> Option<Grasp> {
+/// Pair of faces that the fingers cannot hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rejected {
+    /// Distance between the faces, m.
+    pub apart: f64,
+    /// Reason: `the pads would ...`.
+    pub reason: &'static str,
+}
+
+/// Returns the grasp at the largest faces of the plug that keeps the pads above `free`, m, and the largest faces above
+/// `free` that the fingers cannot hold, if they are larger.
+pub fn own(plug: &[Triangle], free: f64) -> (Option<Grasp>, Option<Rejected>) {
     let [left, right] = [-1.0, 1.0].map(|sign| faces(plug, sign));
-    let pairs = left.iter().flat_map(|low| right.iter().map(move |high| (low, high)));
-    let grasps = pairs.filter_map(|(low, high)| grasp_at(plug, low, high, free));
     // Of equal areas, the first is kept.
-    let best = grasps.reduce(|best, next| if next.0 > best.0 { next } else { best });
-    best.map(|(_, grasp)| grasp)
+    let (mut best, mut rejected) = ((0.0, None), (0.0, None));
+    for (low, high) in left.iter().flat_map(|low| right.iter().map(move |high| (low, high))) {
+        match grasp_at(plug, low, high, free) {
+            Ok((area, grasp)) if area > best.0 => best = (area, Some(grasp)),
+            Ok(_) => {}
+            Err(reason) => {
+                let z = [low.z[0].max(high.z[0]).max(free), low.z[1].min(high.z[1])];
+                let x = common(common(low.x, high.x), PAD_X);
+                let area = width(x).max(0.0) * width(z).max(0.0);
+                let apart = high.y - low.y;
+                if area > rejected.0 && apart > 0.0 {
+                    rejected = (area, Some(Rejected { apart, reason }));
+                }
+            }
+        }
+    }
+    (best.1, rejected.1.filter(|_| rejected.0 > best.0))
+}
+
+/// Returns the intersection of two intervals; its end is below its start if they do not overlap.
+fn common(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].max(b[0]), a[1].min(b[1])]
 }
 
 /// Returns the upright faces whose normals point along y in the direction of `sign`; coplanar ones are joined.
@@ -70,15 +98,23 @@ fn faces(plug: &[Triangle], sign: f64) -> Vec<Face> {
     found
 }
 
-/// Returns the grasp at two opposite faces, and the area that the pads touch; `None` if the fingers cannot hold it
-/// there.
-fn grasp_at(plug: &[Triangle], low: &Face, high: &Face, free: f64) -> Option<(f64, Grasp)> {
-    let common = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].min(b[1])];
+/// Returns the area that the pads touch at two opposite faces, and the grasp.
+///
+/// # Errors
+/// The reason if the fingers cannot hold the plug there.
+fn grasp_at(
+    plug: &[Triangle],
+    low: &Face,
+    high: &Face,
+    free: f64,
+) -> Result<(f64, Grasp), &'static str> {
     let (x, z) = (common(low.x, high.x), common(low.z, high.z));
     let faces = [low.y, high.y];
-    let wide = width(faces) / MM;
-    if width(x) < LEAST_WIDTH || !(FACES_MM[0]..=FACES_MM[1]).contains(&wide) {
-        return None;
+    if width(x) < LEAST_WIDTH {
+        return Err("they are less than 1 mm wide");
+    }
+    if !(FACES_MM[0]..=FACES_MM[1]).contains(&(width(faces) / MM)) {
+        return Err("the gripper does not open so far");
     }
     let in_pad = |p: &&Point3<f64>| PAD_X[0] < p.x && p.x < PAD_X[1];
     let points = || plug.iter().flatten().filter(in_pad);
@@ -98,15 +134,20 @@ fn grasp_at(plug: &[Triangle], low: &Face, high: &Face, free: f64) -> Option<(f6
         let [from, to] = extent(face, 1);
         within && near && (from < faces[0] - SEAM || to > faces[1] + SEAM)
     };
-    let fails = (tops[0] - tops[1]).abs() > SEAM
-        || width(held) < LEAST_HEIGHT
-        || pads[0] < free + CLEAR
-        || plug.iter().any(in_the_way);
-    if fails {
-        return None;
+    if (tops[0] - tops[1]).abs() > SEAM {
+        return Err("the roofs of the fingertips would rest at different heights");
+    }
+    if width(held) < LEAST_HEIGHT {
+        return Err("the pads, with their roofs on top, would cover less than 3 mm of them");
+    }
+    if pads[0] < free + CLEAR {
+        return Err("the pads would touch the socket");
+    }
+    if plug.iter().any(in_the_way) {
+        return Err("other parts of the plug are in the way of the pads");
     }
     let part = block("grip", [x, faces, [held[0], shoulder]]);
-    Some((width(held) * width(common(x, PAD_X)), Grasp { shoulder, faces, part }))
+    Ok((width(held) * width(common(x, PAD_X)), Grasp { shoulder, faces, part }))
 }
 
 /// Returns the grasp of a handle of a size (x, y, z), m, which is added to the top of the plug and stays above `free`,

@@ -13,7 +13,7 @@ use super::surface::snap;
 use crate::body::{clipped, extent, span, width};
 use crate::{draft, plan};
 use contact::scene::Pose;
-pub use grip::Grasp;
+pub use grip::{Grasp, Rejected};
 use input::units::MM;
 use insertion::task::{Mated, Part, Solid, Success, Task, geometry};
 use nalgebra::{Matrix3, Point3, Vector3};
@@ -70,6 +70,8 @@ pub struct PairTask {
     pub held: f64,
     /// Whether the plug is held by a handle that its drawing lacks.
     pub handle: bool,
+    /// Larger faces that the fingers cannot hold.
+    pub rejected: Option<Rejected>,
     /// Interference that was removed from the parts.
     pub interference: Vec<Interference>,
     /// Worst place at which the parts of a body (0 plug, 1 socket) are not as drawn, task frame, plug mated, if any.
@@ -130,10 +132,12 @@ pub fn task(pair: &Pair, request: &Request) -> PairTask {
     let pair = &Pair { engaged: snap(pair.engaged), ..*pair };
     let first = pair.jaws.first().copied().unwrap_or_else(Vector3::y);
     let high = |placed: &AlignedPair| extent(placed.socket.iter().flatten(), 2)[1].max(0.0);
+    let mut rejected = None;
     let held = |jaws: &Vector3<f64>| {
         let placed = AlignedPair::new(pair, *jaws);
-        let grasp = grip::own(&placed.plug, pair.engaged + high(&placed))?;
-        Some((placed, grasp))
+        let (grasp, larger) = grip::own(&placed.plug, pair.engaged + high(&placed));
+        rejected = rejected.or(larger);
+        Some((placed, grasp?))
     };
     let own = if request.handle.is_some() { None } else { pair.jaws.iter().find_map(held) };
     let handle = own.is_none();
@@ -172,7 +176,7 @@ pub fn task(pair: &Pair, request: &Request) -> PairTask {
     }
     let held = width(extent(grasp.part.solid.corners(), 0));
     let jaws = placed.jaws;
-    PairTask { task, jaws, held, handle, interference, deviation, difference, closeup }
+    PairTask { task, jaws, held, handle, rejected, interference, deviation, difference, closeup }
 }
 
 /// Returns the parts of plug and socket that the other body can touch, and their worst deviation from the drawing.

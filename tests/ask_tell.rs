@@ -288,7 +288,7 @@ fn sessions_beyond_any_use_are_refused_at_once() {
     let bounds = r#"{"parameters":[{"name":"x","low":1e15,"high":1000000000000001}],
         "optimizer":"random","seed":1,"direction":"minimize"}"#
         .replace('\n', "");
-    talk.error(&bounds, "too small beside");
+    talk.error(&bounds, "too small for");
     talk.say(&wide(10_000, "random").to_string());
     talk.error(r#"{"ask":1000}"#, "1000000 numbers at once");
     assert_eq!(talk.ask(2).len(), 2);

@@ -59,10 +59,10 @@ impl NelderMead {
         Vec::new()
     }
 
-    /// Accepts the results of the last points asked.
+    /// Accepts the results of the points proposed last.
     pub fn tell(&mut self, observations: &[Observation]) {
         self.costs.tell(observations);
-        // Without a value for a point asked, every run would end there.
+        // If a proposed point had no cost, every run would end there.
         for point in self.pending.drain(..) {
             self.costs.by_point.entry(point).or_insert(f64::INFINITY);
         }
@@ -84,8 +84,8 @@ impl NelderMead {
         self.runs += 1;
     }
 
-    /// Returns up to `n` points whose values the run needs, alternately if the points before them fail and if
-    /// they succeed.
+    /// Returns up to `n` points whose values the run needs, alternately on the assumptions that the points before
+    /// them fail and that they succeed.
     fn missing(&self, n: usize) -> Vec<GridPoint> {
         let [failure, success] = [f64::INFINITY, f64::NEG_INFINITY].map(|cost| self.run(cost, n));
         let longest = failure.len().max(success.len());
@@ -98,30 +98,30 @@ impl NelderMead {
         missing
     }
 
-    /// Repeats the run with an assumed cost of points without one, and returns these points: at least the
-    /// first `n` of them, if there are so many.
+    /// Repeats the run with an assumed cost of the points of unknown cost, and returns these points: at least the
+    /// first `n`, if the run evaluates that many.
     fn run(&self, assumed: f64, n: usize) -> Vec<GridPoint> {
         // argmin unwraps the costs of the first simplex.
         let most = n.max(self.simplex.len());
-        let recorded = Recorded { costs: &self.costs, assumed, most, missing: RefCell::default() };
+        let known = KnownCosts { costs: &self.costs, assumed, most, missing: RefCell::default() };
         let solver = neldermead::NelderMead::new(self.simplex.clone()).with_sd_tolerance(0.0);
         let Ok(solver) = solver else { return Vec::new() };
-        let run = Executor::new(&recorded, solver).timer(false);
+        let run = Executor::new(&known, solver).timer(false);
         // The run ends with an error once enough points are missing.
         let _ = run.configure(|state| state.max_iters(MAX_ITERATIONS)).run();
-        recorded.missing.into_inner()
+        known.missing.into_inner()
     }
 }
 
-/// Known costs, and the points without a cost that a run evaluated.
-struct Recorded<'a> {
+/// Known costs, and the points of unknown cost that a run evaluated.
+struct KnownCosts<'a> {
     costs: &'a Costs,
     assumed: f64,
     most: usize,
     missing: RefCell<Vec<GridPoint>>,
 }
 
-impl CostFunction for &Recorded<'_> {
+impl CostFunction for &KnownCosts<'_> {
     type Param = Vec<f64>;
     type Output = f64;
 

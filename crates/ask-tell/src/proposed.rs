@@ -19,7 +19,7 @@ pub(crate) struct Proposed {
 }
 
 impl Proposed {
-    /// Creates an empty set; `seed` is that of the random streams of its optimizer.
+    /// Creates an empty set; `seed` is the seed of its optimizer's random streams.
     pub fn new(grid: Grid, seed: u64) -> Self {
         let cursor = grid.points().next();
         Proposed { grid, seed, points: BTreeSet::new(), cursor }
@@ -33,7 +33,7 @@ impl Proposed {
         self.points.contains(point)
     }
 
-    /// Marks `point` as proposed; false if it already was, or if it is not on the grid.
+    /// Marks `point` as proposed; returns false if it already was or is not on the grid.
     pub fn insert(&mut self, point: &GridPoint) -> bool {
         self.grid.contains(point) && self.points.insert(point.clone())
     }
@@ -71,7 +71,7 @@ impl Proposed {
     }
 }
 
-/// Proposed points, and the costs (negated merits) of those told; infinite without a merit.
+/// Proposed points, and the costs (negated merits) of the observed ones; infinite for those without a merit.
 #[derive(Debug, Clone)]
 pub(crate) struct Costs {
     pub proposed: Proposed,

@@ -12,14 +12,14 @@ use maud::{Markup, html};
 use study::{BenchPrediction, ByRibs};
 
 /// Share of the width on either side that is reserved for the labels of a bar's ends.
-const ROOM: f64 = 0.2;
+const MARGIN: f64 = 0.2;
 
 /// A bar: label, parts from outer to inner (each with its CSS class), and outcomes beyond its ends.
 struct Bar {
     name: String,
     parts: Vec<(&'static str, [f64; 2])>,
     ends: [Option<Outcome>; 2],
-    /// Whether only the range is known: the parts then begin at 0 and have no place on the scale.
+    /// Whether only the range is known: the parts then begin at 0 and have no position on the scale.
     width_only: bool,
 }
 
@@ -28,13 +28,13 @@ impl Bar {
         Bar { name, parts, ends: [None; 2], width_only: false }
     }
 
-    /// Returns a bar of ranges, mm, from outer to inner, whose ends are not known here.
+    /// Returns a bar of ranges, mm, from outer to inner, without the ends of their windows.
     fn width_only(name: String, ranges_mm: &[(&'static str, f64)]) -> Self {
         let parts = ranges_mm.iter().map(|&(class, range_mm)| (class, [0.0, range_mm])).collect();
         Bar { width_only: true, ..Bar::placed(name, parts) }
     }
 
-    fn ending(self, window: &Window) -> Self {
+    fn with_ends(self, window: &Window) -> Self {
         Bar { ends: [window.end_negative, window.end_positive], ..self }
     }
 
@@ -49,39 +49,39 @@ impl Bar {
             None => format!("simulated: {} mm, not confirmed", span(whole)),
         };
         let parts = [("light", whole)].into_iter().chain(inner).collect();
-        Bar::placed(name, parts).ending(window)
+        Bar::placed(name, parts).with_ends(window)
     }
 }
 
-/// Returns the bars, task by task, those on other robots below on the same scale; `None` if no finger is
-/// recommended.
+/// Returns the bars of each task and, below them on the same scale, those of the finger with other robots; `None` if no
+/// finger is recommended.
 pub(super) fn section(answer: &Answer, robots: &[RobotWindow]) -> Option<Markup> {
     answer.verdict.finger()?;
-    let drawn = |task: &str, mut rows: Vec<Bar>| {
+    let with_robots = |task: &str, mut rows: Vec<Bar>| {
         rows.extend(robots.iter().map(on_robot));
         bars(task, &rows)
     };
     if let Some(bench) = &answer.record.on_bench {
-        return Some(drawn("", on_bench(answer, bench)));
+        return Some(with_robots("", on_bench(answer, bench)));
     }
     let found = answer.recommended.as_ref()?;
     Some(html! {
         @for (at, task) in found.tasks.iter().enumerate() {
-            (drawn(&on(&answer.record.config, task.name), rows(answer, found, (at, task))))
+            (with_robots(&on(&answer.record.config, task.name), rows(answer, found, (at, task))))
         }
     })
 }
 
-/// Returns the bar of the same finger on a robot.
+/// Returns the bar of the finger with a given robot.
 fn on_robot(robot: &RobotWindow) -> Bar {
     let window = &robot.measured.window;
     let inserts = window.nominal == Outcome::Inserted;
     let parts = inserts.then(|| ("light", ends_mm(window))).into_iter().collect();
-    Bar::placed(format!("on {}", robot.words()), parts).ending(window)
+    Bar::placed(format!("on {}", robot.words()), parts).with_ends(window)
 }
 
 fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> Vec<Bar> {
-    // The safe choice was not confirmed itself.
+    // Only the recommended design was confirmed, not the safe choice.
     let other = answer.design_to_print().filter(|named| named.index != found.design.index);
     let mut rows = vec![match other.and_then(|named| named.on(at)) {
         Some(other) => Bar::simulated(&other.window, None),
@@ -124,15 +124,15 @@ fn on_bench(answer: &Answer, bench: &BenchPrediction) -> Vec<Bar> {
     rows
 }
 
-/// Draws the bars on one scale: the windows with their ends above its ticks, mere ranges below them.
+/// Draws the bars on one scale: windows above its ticks, ranges without ends below them.
 fn bars(on: &str, rows: &[Bar]) -> Markup {
-    let spans = |row: &Bar| row.parts.iter().flat_map(|(_, span)| *span).collect::<Vec<_>>();
+    let positions = |row: &Bar| row.parts.iter().flat_map(|(_, span)| *span).collect::<Vec<_>>();
     let (ranges, windows): (Vec<&Bar>, Vec<&Bar>) = rows.iter().partition(|row| row.width_only);
-    let all = || windows.iter().flat_map(|row| spans(row));
+    let all = || windows.iter().flat_map(|row| positions(row));
     let (low, high) = (all().fold(-0.5, f64::min), all().fold(0.5, f64::max));
-    let widest = ranges.iter().flat_map(|row| spans(row)).fold(high - low, f64::max);
-    let width = widest / (1.0 - 2.0 * ROOM);
-    let at = |mm: f64| 100.0 * (ROOM + (mm - low) / width);
+    let widest = ranges.iter().flat_map(|row| positions(row)).fold(high - low, f64::max);
+    let width = widest / (1.0 - 2.0 * MARGIN);
+    let at = |mm: f64| 100.0 * (MARGIN + (mm - low) / width);
     let step = if high - low > 4.0 { 2 } else { 1 };
     let ticks = (low.ceil() as i32..=high.floor() as i32).filter(|mm| mm % step == 0);
     let outcome = |end: Option<Outcome>| end.map_or(String::new(), class);
@@ -156,13 +156,13 @@ fn bars(on: &str, rows: &[Bar]) -> Markup {
             @if !ranges.is_empty() { p.muted { "Ranges without their ends, on the same scale" } }
             @for Bar { name, parts, .. } in ranges {
                 p.name { (explained(name)) }
-                div.track.range { (filled(parts, |mm| at(low + mm) - 100.0 * ROOM)) }
+                div.track.range { (filled(parts, |mm| at(low + mm) - 100.0 * MARGIN)) }
             }
         }
     }
 }
 
-/// Returns the parts of a bar; `at` gives the place of a length, percent of the width.
+/// Returns the parts of a bar; `at` maps a length, mm, to a position, percent of the width.
 fn filled(parts: &[(&'static str, [f64; 2])], at: impl Fn(f64) -> f64) -> Markup {
     html! {
         @for (class, [from, to]) in parts {

@@ -17,7 +17,7 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
             &["finger", "range on the bench", "80 % interval", "probability of the best", "fails below | above"],
             &found.best.iter().map(row).collect::<Vec<_>>(),
         ))
-        p { (how(found)) " " a href=(TABLE) { "All predicted fingers" } "." }
+        p { (method(found)) " " a href=(TABLE) { "All predicted fingers" } "." }
     })
 }
 
@@ -33,7 +33,7 @@ fn row(finger: &BenchFinger) -> Vec<String> {
     ]
 }
 
-fn how(found: &BenchPrediction) -> String {
+fn method(found: &BenchPrediction) -> String {
     let simulations = found.effort.simulations;
     format!(
         "From {simulations} simulations with drawn friction, preload, robot and print, and the \

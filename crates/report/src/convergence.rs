@@ -5,7 +5,7 @@ use super::ReportError;
 use super::chart::{Area, DrawResult, axes, padded_range, render, text_style};
 use super::elements::figure;
 use super::marks::{PointMark, Series, dashed, label, legend_above, line, points, stairs};
-use super::selection::{PLOTTED, note, selected, turning};
+use super::selection::{PLOTTED, change_points, note, selected};
 use super::theme::{BLUE, GREEN, MUTED, ORANGE, RED};
 use crate::answer::words::{settled, volume_unit};
 use insertion::evaluation::objective::Measure;
@@ -89,26 +89,26 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> DrawResult {
         return label(&mut chart, (0.5, 0.5), (0, 0), "no evaluations yet", &style);
     }
     let shown = selected(record, &record.evaluations, PLOTTED);
-    let of = |which: &dyn Fn(&Recorded) -> bool| -> Vec<(f64, f64)> {
+    let filtered = |which: &dyn Fn(&Recorded) -> bool| -> Vec<(f64, f64)> {
         shown.iter().copied().filter(|&found| which(found)).filter_map(at).collect()
     };
-    let lost = shown.iter().filter(|found| found.score.is_none());
+    let without_value = shown.iter().filter(|found| found.score.is_none());
     let mut series: Vec<Series<'_>> = vec![(
-        lost.map(|found| (found.index as f64, bottom)).collect(),
+        without_value.map(|found| (found.index as f64, bottom)).collect(),
         PointMark::cross(RED, 4),
         "no value",
     )];
     if objectives.single().is_some() {
         let feasible = |found: &Recorded| found.feasible().is_some();
         series.extend([
-            (of(&|found| found.raced()), PointMark::ring(BLUE, 3, 1), "at most (raced)"),
+            (filtered(&|found| found.raced()), PointMark::ring(BLUE, 3, 1), "at most (raced)"),
             (
-                of(&|found| !found.raced() && feasible(found)),
+                filtered(&|found| !found.raced() && feasible(found)),
                 PointMark::dot(BLUE, 3),
                 "each evaluation",
             ),
             (
-                of(&|found| !found.raced() && !feasible(found)),
+                filtered(&|found| !found.raced() && !feasible(found)),
                 PointMark::ring(MUTED, 3, 1),
                 "violates a constraint",
             ),
@@ -125,5 +125,5 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> DrawResult {
     for (at, mark, _) in series {
         points(&mut chart, at, mark, "")?;
     }
-    line(&mut chart, stairs(turning(best)), best_line, "")
+    line(&mut chart, stairs(change_points(best)), best_line, "")
 }

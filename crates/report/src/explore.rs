@@ -36,7 +36,7 @@ pub(super) fn section(answer: &Answer, dir: &Path) -> Option<Markup> {
             figure #map {
                 p #shown hidden {
                     label { input type="radio" name="shown" value="mean" checked; " model's mean" }
-                    label { input type="radio" name="shown" value="sd"; " its deviation" }
+                    label { input type="radio" name="shown" value="sd"; " its standard deviation" }
                 }
                 svg #surface role="img" aria-label="the model over two parameters, and the designs" {}
                 svg #scale role="img" aria-label="colour scale" {}
@@ -65,7 +65,7 @@ fn best(answer: &Answer) -> Markup {
     };
     let mut best: Vec<(&Recorded, &[f64])> =
         all.into_iter().filter_map(|found| Some((found, found.feasible()?))).collect();
-    // Stable, so that equals stay in their order.
+    // The sorts are stable: designs of equal value stay in their order.
     best.sort_by(|a, b| goals.order(b.1, a.1));
     let named = answer.design_to_print().map(|named| named.index);
     best.sort_by_key(|(found, _)| Some(found.index) != named);
@@ -95,7 +95,7 @@ fn ends(window: &Window) -> [String; 2] {
     [window.end_negative, window.end_positive].map(end)
 }
 
-/// Returns JSON for a script element, which ends at the first `</`.
+/// Returns JSON for a script element, with `<` escaped, because `</` would end the element.
 pub(super) fn embedded(data: &Value) -> String {
     data.to_string().replace('<', "\\u003c")
 }
@@ -149,8 +149,8 @@ fn bound(found: &Recorded) -> Option<String> {
     rates.reduce(|all, one| format!("{all}; {one}"))
 }
 
-/// Returns an evaluation, as a list to keep it short: number, parameters, value, whether it is feasible (1 or 0), both
-/// ends (mm), the outcomes there (as indices of `outcomes`), largest force (N) and compliance (N/mm).
+/// Returns an evaluation as a list, which is shorter than an object: number, parameters, value, whether it is feasible
+/// (1 or 0), both ends (mm), the outcomes there (as indices of `outcomes`), largest force (N) and compliance (N/mm).
 fn row(record: &StudyRecord, found: &Recorded, outcomes: &mut Vec<String>) -> Value {
     let parameters = record.config.space.parameters.iter();
     let window = found.on(0).map(|found| &found.window);

@@ -6,7 +6,7 @@ use super::elements::{figure, table};
 use super::marks::{PointMark, line, points};
 use super::selection::{PLOTTED, selected};
 use super::theme::{BLUE, MUTED, ORANGE};
-use crate::answer::words::{ACROSS, design, stiffness, volume_unit};
+use crate::answer::words::{COMPLIANCE, design, stiffness, volume_unit};
 use crate::answer::{Answer, Front};
 use maud::{Markup, html};
 use plotters::prelude::*;
@@ -70,7 +70,7 @@ fn designs(answer: &Answer, Front { designs: front, volume: found }: &Front) -> 
     }
     let names = objectives.measures().iter().map(|measure| measure.name());
     let head: Vec<&str> =
-        ["evaluation", "design"].into_iter().chain(names).chain([ACROSS]).collect();
+        ["evaluation", "design"].into_iter().chain(names).chain([COMPLIANCE]).collect();
     let row = |recorded: &&Recorded| {
         let values = recorded.feasible().unwrap_or_default();
         let mut row = vec![recorded.index.to_string(), design(&recorded.design)];

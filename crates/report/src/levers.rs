@@ -8,11 +8,11 @@ use analysis::levers::{Lever, Levers, difference_mm, is_relevant, thousandths};
 use plotters::prelude::Color;
 use plotters::style::text_anchor::{HPos, VPos};
 
-/// Bar of the diagram, from the present range to those at both ends of a lever.
+/// Bar of the diagram, from the present range to the ranges at both ends of a lever.
 struct Bar<'a> {
     name: &'a str,
     span_mm: f64,
-    /// Range, mm, and the value that gives it.
+    /// Range at each end, mm, and the label of the end.
     ends: [(f64, String); 2],
     /// The lever; `None` for the infill.
     lever: Option<&'a Lever>,
@@ -39,7 +39,7 @@ fn bars<'a>(levers: &'a Levers) -> Vec<Bar<'a>> {
     bars
 }
 
-/// Returns the sentence and a table within 80 columns, with the sources below.
+/// Returns the summary sentence, a table within 80 columns, and the sources of the intervals.
 pub fn text(levers: &Levers) -> String {
     let base = levers.base;
     let mut text = format!(
@@ -67,7 +67,7 @@ pub fn text(levers: &Levers) -> String {
     text + &format!("\n{} windows{left_out}\nsources\n{sources}", levers.windows)
 }
 
-/// Width of the diagram, which a phone has, too; height of a row, of head and foot, and margin, pixels.
+/// Width of the diagram (that of a phone), heights of a row and of head and foot together, and left margin, pixels.
 const WIDTH: u32 = 356;
 const ROW: u32 = 50;
 const HEAD_AND_FOOT: u32 = 110;
@@ -75,7 +75,7 @@ const LEFT: u32 = 8;
 /// Font size in plot units: 12 pixels on a phone.
 const TEXT: u32 = 15;
 
-/// Draws the ranges at both ends of each lever as bars from the range of the finger as it is, largest
+/// Draws the ranges at both ends of each lever as bars from the present range of the finger, largest
 /// span first; the infill in another colour, negligible levers in grey.
 ///
 /// # Errors
@@ -91,8 +91,8 @@ fn draw(area: &Area<'_>, levers: &Levers, bars: &[Bar<'_>]) -> DrawResult {
     let ends = bars.iter().flat_map(|bar| [bar.ends[0].0, bar.ends[1].0]);
     // Leaves room for the labels beside the bars.
     let range = padded_range(ends.chain([base]), 0.22);
-    let ([left, right], title) =
-        ([range.start, range.end], format!("{}: range with one number changed", levers.task));
+    let [left, right] = [range.start, range.end];
+    let title = format!("{}: range with one number changed", levers.task);
     let now = format!("range (mm), now {base:.1}");
     let mut chart = rows(area, &title, (&now, range), bars.len(), LEFT)?;
     for (row, Bar { name, span_mm, ends, lever }) in bars.iter().enumerate() {
@@ -103,9 +103,9 @@ fn draw(area: &Area<'_>, levers: &Levers, bars: &[Bar<'_>]) -> DrawResult {
         };
         let y = -(row as f64);
         let now = lever.map(|lever| format!(", now {}", lever.amount(lever.value)));
-        let moves = format!("span {span_mm:.1} mm{}", now.unwrap_or_default());
+        let span = format!("span {span_mm:.1} mm{}", now.unwrap_or_default());
         for (words, ink, x, side) in
-            [(*name, ink, left, HPos::Left), (&moves, MUTED, right, HPos::Right)]
+            [(*name, ink, left, HPos::Left), (&span, MUTED, right, HPos::Right)]
         {
             let style = text_style(TEXT, ink, side, VPos::Center);
             label(&mut chart, (x, y - 0.2), (0, 0), words, &style)?;

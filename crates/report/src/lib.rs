@@ -43,7 +43,7 @@ pub use convergence::svg as convergence_svg;
 pub use front::svg as front_svg;
 pub use overview::preferred;
 pub use page::{card, page};
-pub use page_files::{Film, PageFiles, PostAnalysis};
+pub use page_files::{FilmPair, PageFiles, PostAnalysis};
 pub use text_table::text_table;
 
 /// Error of the drawing library.

@@ -3,9 +3,9 @@
 
 use super::elements::{data_url, figure};
 use super::glossary::explained;
-use super::page_files::{Film, PageFiles};
+use super::page_files::{FilmPair, PageFiles};
 use super::printer::{self, recommended};
-use super::replay::{ENDS, pair_file, viewer};
+use super::replay::{ENDS, pair_file, player};
 use super::{bar, explore};
 use crate::answer::words::{design, evaluated, on, outcome, remedy};
 use crate::answer::{Answer, Verdict, command, expectation, lines};
@@ -15,7 +15,7 @@ use insertion::evaluation::grid_mm;
 use insertion::outcome::{FailureClass, Outcome};
 use maud::{Markup, PreEscaped, html};
 
-/// Returns the screen, which precedes all sections.
+/// Returns the first screen, above all sections.
 pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
     let (command, why) = command::next(answer, &files.dir);
     let stuck = matches!(answer.verdict, Verdict::NothingInserts { .. });
@@ -38,21 +38,22 @@ pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
             @else if let Some((_, tasks)) = answer.finger_and_evaluations() { (films(answer, &tasks, files)) }
             div {
                 (bar::section(answer, &files.analyses.robots).unwrap_or_default())
-                (drawn(answer).unwrap_or_default())
-                (printed(answer, files).unwrap_or_default())
+                (drawing(answer).unwrap_or_default())
+                (file_links(answer, files).unwrap_or_default())
             }
         }
         div.next { h2 { "Next step: " (why) } pre { code { (command) } } }
     }
 }
 
-/// Returns why the widest searched design is not the recommended one; bench predictions have other reasons.
+/// Returns the reason why the design of the widest window in the search is not recommended; `None` with bench
+/// predictions, by which the finger is then chosen.
 fn widest(answer: &Answer) -> Option<lines::Line> {
     let found = answer.recommended.as_ref().filter(|_| answer.record.on_bench.is_none())?;
     lines::widest(answer, found)
 }
 
-/// Colours of the sheet, and those of the page.
+/// Colours of the drawing and the colours of the page that replace them.
 const COLOURS: [(&str, &str); 7] = [
     ("#aab7c9", "var(--lines)"),
     ("#223", "var(--ink)"),
@@ -64,7 +65,7 @@ const COLOURS: [(&str, &str); 7] = [
 ];
 
 /// Returns the drawing of the finger.
-fn drawn(answer: &Answer) -> Option<Markup> {
+fn drawing(answer: &Answer) -> Option<Markup> {
     let geometry = recommended(answer)?;
     let finger = answer.verdict.finger()?;
     let first = answer.record.config.objective.first().name();
@@ -75,7 +76,7 @@ fn drawn(answer: &Answer) -> Option<Markup> {
     Some(html! { div.finger { (figure(&svg, "the finger to print", &caption)) } })
 }
 
-fn printed(answer: &Answer, files: &PageFiles) -> Option<Markup> {
+fn file_links(answer: &Answer, files: &PageFiles) -> Option<Markup> {
     recommended(answer)?;
     let names = printer::FILES.into_iter().filter(|(file, _)| files.files.contains(file));
     Some(html! { p.files { @for (file, name) in names { a.button href=(file) { (name) } } } })
@@ -118,10 +119,10 @@ pub fn preferred(answer: &Answer) -> &'static str {
     if below { negative } else { positive }
 }
 
-/// Returns a player of both trials of an end, and buttons for all ends.
+/// Returns a player of the two trials at an end, and a button for each end.
 fn films(answer: &Answer, tasks: &[&Evaluation], files: &PageFiles) -> Markup {
     let films = &files.films;
-    let (shown, linked): (Vec<&Film>, Vec<&Film>) =
+    let (shown, linked): (Vec<&FilmPair>, Vec<&FilmPair>) =
         films.iter().partition(|film| film.data.is_some());
     html! {
         @if !films.is_empty() {
@@ -157,7 +158,7 @@ fn films(answer: &Answer, tasks: &[&Evaluation], files: &PageFiles) -> Markup {
                     }
                 }
                 script type="application/json" id="viewer" {
-                    (PreEscaped(explore::embedded(&viewer().into())))
+                    (PreEscaped(explore::embedded(&player("film", "").into())))
                 }
                 script { (PreEscaped(include_str!("films.js"))) }
             }
@@ -165,14 +166,14 @@ fn films(answer: &Answer, tasks: &[&Evaluation], files: &PageFiles) -> Markup {
     }
 }
 
-fn label(answer: &Answer, film: &Film) -> String {
+fn label(answer: &Answer, film: &FilmPair) -> String {
     let config = &answer.record.config;
     format!("{} end{}", film.end, on(config, config.tasks().nth(film.task).unwrap_or_default()))
 }
 
-/// Returns `Left: the last start that inserts (+5.7 mm). Right: the next (+5.8 mm): jammed (class 3).`, or for the
-/// picture of the failed trial alone its part.
-fn caption(film: &Film, tasks: &[&Evaluation], failed_alone: bool) -> String {
+/// Returns `Left: the last start that inserts (+5.7 mm). Right: the next (+5.8 mm): jammed (class 3).`, or a caption
+/// of the failed trial alone.
+fn caption(film: &FilmPair, tasks: &[&Evaluation], failed_alone: bool) -> String {
     let Some(window) = tasks.get(film.task).map(|task| &task.window) else { return String::new() };
     let (last, end, outward) = match film.end == ENDS[0].0 {
         true => (window.negative_steps, window.end_negative, ENDS[0].1),

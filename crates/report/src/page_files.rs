@@ -14,8 +14,8 @@ const FILMS: usize = 600_000;
 pub struct PageFiles {
     /// The folder, as given to commands.
     pub dir: PathBuf,
-    /// Films in the folder.
-    pub films: Vec<Film>,
+    /// Films in the folder, by end of a window.
+    pub films: Vec<FilmPair>,
     /// Files of [`printer::FILES`](super::printer::FILES) that exist.
     pub files: Vec<&'static str>,
     /// SVG of the nominal start of the design that is nearest to inserting, if nothing inserts.
@@ -35,24 +35,24 @@ pub struct PostAnalysis {
     pub robots: Vec<RobotWindow>,
 }
 
-/// A film at an end of a window.
+/// Films at an end of a window: of the last trial that inserts and of the first that fails.
 #[derive(Debug, Clone)]
-pub struct Film {
+pub struct FilmPair {
     /// Index of the task.
     pub task: usize,
     /// The end, one of [`replay::ENDS`].
     pub end: &'static str,
-    /// Its recordings as JSON without `<`; `None` if it is linked.
+    /// The recordings as JSON without `<`; `None` if their page is linked instead.
     pub data: Option<String>,
-    /// SVG of the end of its failed trial.
+    /// SVG of the end of the failed trial.
     pub poster: Option<String>,
 }
 
 impl PageFiles {
-    /// Adds a film from its page, embedded unless the total size would be too large.
+    /// Adds the films of a page, embedded unless the total size would be too large.
     pub fn add(&mut self, task: usize, end: &'static str, page: &str, poster: Option<String>) {
-        let held: usize = self.films.iter().flat_map(|film| &film.data).map(String::len).sum();
-        let data = replay::data(page).filter(|data| held + data.len() <= FILMS);
-        self.films.push(Film { task, end, data: data.map(str::to_owned), poster });
+        let embedded: usize = self.films.iter().flat_map(|film| &film.data).map(String::len).sum();
+        let data = replay::data(page).filter(|data| embedded + data.len() <= FILMS);
+        self.films.push(FilmPair { task, end, data: data.map(str::to_owned), poster });
     }
 }

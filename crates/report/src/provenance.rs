@@ -11,7 +11,7 @@ use maud::{Markup, html};
 use parameters::numbers::RCC_KEY;
 use study::{Provenance, Recorded, StudyRecord};
 
-/// Lines of the recommended finger that other sections have.
+/// Names of the lines about the recommended finger that other sections show.
 const ELSEWHERE: [&str; 9] = [
     "best design",
     "firm range",
@@ -24,9 +24,9 @@ const ELSEWHERE: [&str; 9] = [
     "  stiffest",
 ];
 
-/// Returns how to read the results, their settings, and the command that reproduces them; folded.
+/// Returns collapsed notes on reading the results and on their settings, and the command that reproduces them.
 pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
-    // The first screen has no lines of a goal's value; with measurements they are in the second list.
+    // With measurements `lines::recommended` already contains the lines of `lines::simulated`.
     let alone = answer.recommended.iter().filter(|_| answer.record.on_bench.is_none());
     let all = answer.recommended.iter().flat_map(|found| lines::recommended(answer, found));
     let found = alone.flat_map(|found| lines::simulated(answer, found)).chain(all);
@@ -60,7 +60,7 @@ fn reading(answer: &Answer, model: &Model) -> Vec<String> {
         "The window search goes outward in steps of 0.5 mm and bisects before the first failure, so it can step over \
          a gap: before you print a design that was not walked, run optimize evaluate --walk."
             .to_owned(),
-        stiffness(model, robust),
+        stiffness_note(model, robust),
     ];
     let draws = "Success rate and robust range hold for the assumed errors, not for your cell; all \
                  designs are evaluated with the same draws.";
@@ -78,22 +78,22 @@ fn reading(answer: &Answer, model: &Model) -> Vec<String> {
     texts
 }
 
-fn stiffness(model: &Model, robust: bool) -> String {
+fn stiffness_note(model: &Model, robust: bool) -> String {
     let error = |axis| {
         let percent = model.chosen(axis)?.mean_absolute_percent;
         percent.is_finite().then(|| format!("{percent:.1} % in {}", axis.label()))
     };
     let errors: Vec<String> = Axis::ALL.into_iter().filter_map(error).collect();
-    let missed = match errors.is_empty() {
+    let accuracy = match errors.is_empty() {
         true => "the error for other fingers is not known".to_owned(),
         false => format!("the mean leave-one-out error is {}", errors.join(" and ")),
     };
     let ribs = if model.ratios { " and from the ribs of the finger" } else { "" };
-    let carried = match robust {
+    let inclusion = match robust {
         true => "only the robust range includes its error",
         false => "the range does not include its error",
     };
-    format!("Stiffness is predicted from {}{ribs}; {missed}; {carried}.", model.counted())
+    format!("Stiffness is predicted from {}{ribs}; {accuracy}; {inclusion}.", model.counted())
 }
 
 pub(super) fn outcomes(record: &StudyRecord) -> Markup {

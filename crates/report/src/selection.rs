@@ -22,13 +22,13 @@ pub(super) fn selected<'a>(
     let merit = |i: usize| all[i].feasible().and_then(|values| Some(sense * values.first()?));
     let mut valued: Vec<(f64, usize)> =
         (0..all.len()).filter_map(|i| Some((merit(i)?, i))).collect();
-    valued.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    valued.sort_by(|a, b| b.0.total_cmp(&a.0));
     let every = all.len().div_ceil(most - best);
     let mut taken: Vec<bool> = (0..all.len()).map(|i| i % every == 0).collect();
     valued.iter().take(best).for_each(|&(_, i)| taken[i] = true);
     let recommended = record.recommended().map(|best| best.index);
-    let wanted = |(one, taken): &(&Recorded, bool)| *taken || Some(one.index) == recommended;
-    all.iter().zip(taken).filter(wanted).map(|(one, _)| one).collect()
+    let wanted = |(found, taken): &(&Recorded, bool)| *taken || Some(found.index) == recommended;
+    all.iter().zip(taken).filter(wanted).map(|(found, _)| found).collect()
 }
 
 /// Returns a note on the selection; `None` if all evaluations are shown.
@@ -39,17 +39,17 @@ pub(super) fn note(record: &StudyRecord) -> Option<String> {
             [LISTED, PLOTTED].map(|most| selected(record, &record.evaluations, most).len());
         format!(
             "Of {all} evaluations {listed} are listed and {plotted} plotted: the best, and others \
-             evenly taken. evaluations.csv has all."
+             at even intervals. evaluations.csv has all."
         )
     })
 }
 
 /// Reduces a long line to the points at which its value changes.
-pub(super) fn turning(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+pub(super) fn change_points(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     if points.len() <= PLOTTED {
         return points;
     }
     let last = points.len() - 1;
-    let turns = |i: usize| i == 0 || i == last || points[i].1 != points[i - 1].1;
-    (0..points.len()).filter(|&i| turns(i)).map(|i| points[i]).collect()
+    let changes = |i: usize| i == 0 || i == last || points[i].1 != points[i - 1].1;
+    (0..points.len()).filter(|&i| changes(i)).map(|i| points[i]).collect()
 }

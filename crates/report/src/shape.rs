@@ -9,12 +9,12 @@ use insertion::space::{Variable, label};
 use maud::{Markup, html};
 use study::{Recorded, StudyRecord};
 
-/// Returns the section; `None` if the space has no such parameter.
+/// Returns the section; `None` if the space has no parameter of the finger's shape.
 pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     let parameters = &record.config.space.parameters;
     let shape: Vec<&Variable> = parameters.iter().filter(|p| is_shape(&p.key)).collect();
     let index = record.recommended().filter(|_| !shape.is_empty())?.index;
-    // Its evaluation in the search: the designs it is compared with were not confirmed either.
+    // The unconfirmed evaluation, because the designs in the comparison were not confirmed.
     let best = record.current().iter().find(|recorded| recorded.index == index)?;
     let file = finger_file(record)?;
     let of_file: Vec<(&str, f64)> = shape
@@ -57,8 +57,8 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
 fn gain(infill_only: &Recorded, best: &Recorded) -> String {
     let of = |(before, now): (&Evaluation, &Evaluation)| {
         let [force, other] = [now, before].map(|task| Measure::PeakForce.show(task.peak_force_n));
-        let more = now.window.range_mm() - before.window.range_mm();
-        format!("{more:+.1} mm of range, with {force} instead of {other}")
+        let change = now.window.range_mm() - before.window.range_mm();
+        format!("{change:+.1} mm of range, with {force} instead of {other}")
     };
     let gains = infill_only.tasks.iter().zip(&best.tasks).map(of);
     format!("the finger's parameters give {}.", gains.collect::<Vec<_>>().join("; "))

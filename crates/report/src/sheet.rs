@@ -34,13 +34,13 @@ pub struct Picture {
 /// commands.
 pub fn page(task: &Task, name: &str, fingers: &[(f64, f64)], pictures: &[Picture]) -> String {
     let body = html! {
-        section { (how(task, pictures)) }
+        section { (instructions(task, pictures)) }
         @for &finger in fingers { section { (boxes(task, name, finger)) } }
     };
     styled(&format!("Measuring sheet: {}", task.name), include_str!("sheet.css"), body)
 }
 
-fn how(task: &Task, pictures: &[Picture]) -> Markup {
+fn instructions(task: &Task, pictures: &[Picture]) -> Markup {
     let [x, y, z] = task.strategy.start.map(|place| format!("{:.1}", place / MM));
     let (depth, tilt) = (task.success.depth / MM, task.success.tilt / DEG);
     html! {
@@ -48,24 +48,24 @@ fn how(task: &Task, pictures: &[Picture]) -> Markup {
         p { (task.description) }
         p.line { "Date" i {} "Robot" i {} "Measured by" i {} "Socket no." i {} "Force limit N" i {} }
         h2 { "Where to teach" }
-        p { "Limit the robot's force before the first insertion. By the task file the search begins with the TCP at x " (x)
-            ", y " (y) ", z " (z) " mm from the middle of the socket's opening (z out of it), the plug tilted by "
-            (format!("{:.1}", task.strategy.tilt / DEG)) "°. Teach the start near there from which the plug inserts "
-            "three times of three: this is 0. Shifts are along y, in which the jaws close; + is away from the wall that "
-            "the search moves to. Keep grasp, speeds, plug and socket the same for all fingers." }
+        p { "Limit the robot's force before the first insertion. According to the task file, the search begins with the "
+            "TCP at x " (x) ", y " (y) ", z " (z) " mm from the middle of the socket's opening (z out of it), the plug "
+            "tilted by " (format!("{:.1}", task.strategy.tilt / DEG)) "°. Near there, teach a start from which the plug "
+            "inserts three times out of three: this is 0. Shifts are along y, in which the jaws close; + is away from "
+            "the wall that the search moves to. Keep grasp, speeds, plug and socket the same for all fingers." }
         (probe())
         h2 { "Which starts, in which order" }
         ol {
             li { "From 0 in steps of 0.5 mm to -, until two neighbouring starts fail; then the same to +." }
             li { "A start that fails while the next one inserts: try it again. If it fails again, it is a gap: note it, and go on." }
-            li { "Near each end, by 0.1 mm: first the middle between the last start that inserted and the first that failed, "
-                 "then where you are least sure, until about half of the attempts insert at one start or between two "
-                 "neighbours; at least 8 attempts. That start is the end." }
+            li { "Near each end, in steps of 0.1 mm: first the middle between the last start that inserted and the first "
+                 "that failed, then where the outcome is least certain, until about half of the attempts insert at one "
+                 "start or between two neighbours; at least 8 attempts. That start is the end." }
         }
         h2 { "What counts as inserted" }
         p { "At rest after the push the tip is at least " (format!("{depth:.1}")) " mm below the socket's top, the plug leans by "
             "at most " (format!("{tilt:.1}")) "°, and both fingers still hold it. Write + for inserted, else the class:" }
-        div.pictures { @for picture in pictures { (drawn(picture)) } }
+        div.pictures { @for picture in pictures { (outcome_figure(picture)) } }
     }
 }
 
@@ -76,15 +76,15 @@ fn probe() -> Markup {
     html! {
         h2 { "First the probe, once with each finger" }
         p { "Hold the plug upright over the flat face beside the opening. Start a log of time, force, pose and commanded "
-            "pose, 125 Hz or more, while the plug is in the air. Press it on the face with " (force) " N and slide it "
-            (stroke) " mm along y, forth and back, " (slides / 2) " times, at " (speed) " mm/s. Stop if it catches. Lift it "
-            "off, then end the log. Log each insertion, too: every log is a line of runs.csv (log, "
+            "pose, 125 Hz or more, while the plug is in the air. Press it against the face with " (force) " N and slide "
+            "it " (stroke) " mm along y, back and forth, " (slides / 2) " times, at " (speed) " mm/s. Stop if it catches. "
+            "Lift it off, then end the log. Log each insertion, too: every log is a line of runs.csv (log, "
             "infill_density_percent, infill_direction_deg, offset_mm, outcome; outcome: probe, inserted or the class), "
             "which optimize identify reads." }
     }
 }
 
-fn drawn(Picture { outcome, svg, task }: &Picture) -> Markup {
+fn outcome_figure(Picture { outcome, svg, task }: &Picture) -> Markup {
     let class = usize::from(outcome.failure().unwrap_or(0));
     html! {
         figure {

@@ -1,7 +1,7 @@
 //! Designs that tie with the recommended one, and reasons to choose another.
 
 use super::elements::stacked;
-use crate::answer::words::{ACROSS, design, mm, stiffness};
+use crate::answer::words::{COMPLIANCE, design, mm, stiffness};
 use crate::answer::{Answer, Ties, lines};
 use insertion::evaluation::objective::Measure;
 use maud::{Markup, html};
@@ -16,7 +16,7 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
     let found = answer.recommended.as_ref()?.ties.as_ref()?;
     let named = answer.design_to_print()?.index;
     let mut designs = found.designs.clone();
-    // The recommended one first, then by increasing loss.
+    // The design to print first, then by increasing loss.
     designs
         .sort_by(|a, b| (a.0.index != named).cmp(&(b.0.index != named)).then(a.1.total_cmp(&b.1)));
     let millimetres = answer.record.config.objective.first().unit() == "mm";
@@ -38,8 +38,8 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
         }
         cells
     };
-    let mut head = vec!["finger", "reason to choose it", "expected loss", "largest force", ACROSS];
-    head.extend(any_measured.then_some("measured"));
+    let head = ["finger", "reason to choose it", "expected loss", "largest force", COMPLIANCE];
+    let head: Vec<&str> = head.into_iter().chain(any_measured.then_some("measured")).collect();
     let rows: Vec<_> = designs.iter().map(row).collect();
     Some(html! {
         p { (lines::tied(answer, found).1) "." }
@@ -51,12 +51,12 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
 }
 
 fn reasons(answer: &Answer, found: &Ties, recorded: &Recorded, named: u64) -> String {
-    let own = |one: &&Recorded| one.index == recorded.index;
-    // With measurements another finger may be recommended.
+    let is_recorded = |other: &&Recorded| other.index == recorded.index;
+    // If there are measurements, the recommended finger may differ from the best one in simulation.
     let recommended = answer.verdict.finger() == Some(&recorded.design);
     let best = if recommended { "recommended" } else { "best in simulation" };
     let named = (recorded.index == named).then_some(best);
-    let safe = found.safe.as_ref().filter(|safe| own(&safe.design)).map(|_| "safe choice");
-    let others = found.alternatives.iter().filter(|(_, one, ..)| own(one)).map(|(why, ..)| *why);
-    named.into_iter().chain(safe).chain(others).collect::<Vec<_>>().join(", ")
+    let safe = found.safe.as_ref().filter(|safe| is_recorded(&safe.design)).map(|_| "safe choice");
+    let others = found.alternatives.iter().filter(|(_, other, ..)| is_recorded(other));
+    named.into_iter().chain(safe).chain(others.map(|(why, ..)| *why)).collect::<Vec<_>>().join(", ")
 }

@@ -26,13 +26,9 @@ impl Restarts {
     /// Starts the first run, with the default population size.
     pub fn new(start: StartBox, seed: u64) -> Self {
         let lambda = default_lambda(start.low.len());
+        let settings = RunSettings { lambda, sigma_factor: 1.0, limit: u64::MAX };
         Restarts {
-            current: CmaEs::new(
-                &start,
-                seed,
-                0,
-                RunSettings { lambda, sigma_factor: 1.0, limit: u64::MAX },
-            ),
+            current: CmaEs::new(&start, seed, 0, settings),
             start,
             seed,
             evaluations: 0,
@@ -50,7 +46,7 @@ impl Restarts {
         (0..self.current.lambda).map(|_| self.current.sample()).collect()
     }
 
-    /// Updates the current run with a generation, and starts the next run if this one has a reason to stop.
+    /// Updates the current run with a generation, and starts the next run if a termination criterion applies.
     pub fn tell(&mut self, solutions: &[Solution]) {
         self.current.tell(solutions);
         self.evaluations += solutions.len() as u64;

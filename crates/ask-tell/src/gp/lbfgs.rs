@@ -1,7 +1,7 @@
 //! L-BFGS of argmin within a box.
 //!
-//! Each coordinate is substituted by `x = middle + half sin(u)`, which makes the problem unconstrained and a
-//! minimum on a face an ordinary one.
+//! The substitution `x = middle + half sin(u)` of each coordinate makes the problem unconstrained and a minimum on a
+//! face a stationary point.
 
 use argmin::core::{CostFunction, Error, Executor, Gradient};
 use argmin::solver::linesearch::MoreThuenteLineSearch;
@@ -14,32 +14,32 @@ const MEMORY: usize = 8;
 /// Length of the first step, in radians: without scaling it would be the norm of the gradient.
 const FIRST_STEP: f64 = 0.3;
 /// Smallest distance of the start from the faces, where the derivative of the sine is zero, in radians.
-const OFF_THE_FACE: f64 = 0.1;
+const FACE_CLEARANCE: f64 = 0.1;
 /// Relative change of the value below which the run ends.
 const MIN_GAIN: f64 = 1e-7;
 
-/// A value and its derivatives.
-type WithSlope = (f64, Vec<f64>);
+/// A value and its gradient.
+type ValueAndGradient = (f64, Vec<f64>);
 
 /// Bounds and budget.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits<'a> {
     pub low: &'a [f64],
     pub high: &'a [f64],
-    /// Evaluations of value and gradient together.
+    /// Largest number of joint evaluations of value and gradient.
     pub evaluations: usize,
 }
 
 /// Minimises `f` (value and gradient, `None` outside its domain) from `start`; returns the best
-/// point met and its value, or `None` if `f` has no value at the start.
+/// point evaluated and its value, or `None` if `f` has no value at the start.
 pub(super) fn minimise(
-    f: impl Fn(&[f64]) -> Option<WithSlope>,
+    f: impl Fn(&[f64]) -> Option<ValueAndGradient>,
     start: &[f64],
     limits: &Limits,
 ) -> Option<(Vec<f64>, f64)> {
     let middle_and_half =
         |i: usize| (0.5 * (limits.low[i] + limits.high[i]), 0.5 * (limits.high[i] - limits.low[i]));
-    let most = FRAC_PI_2 - OFF_THE_FACE;
+    let most = FRAC_PI_2 - FACE_CLEARANCE;
     let angle = |(i, x): (usize, &f64)| {
         let (middle, half) = middle_and_half(i);
         libm::asin(((x - middle) / half).clamp(-1.0, 1.0)).clamp(-most, most)
@@ -48,32 +48,32 @@ pub(super) fn minimise(
     let in_angles = |u: &[f64]| {
         let axes = || u.iter().enumerate().map(|(i, u)| (middle_and_half(i), u));
         let x: Vec<f64> = axes().map(|((middle, half), u)| middle + half * libm::sin(*u)).collect();
-        let (value, slope) = f(&x)?;
-        let slope = axes().zip(slope).map(|(((_, half), u), g)| g * half * libm::cos(*u)).collect();
-        Some((x, value, slope))
+        let (value, g) = f(&x)?;
+        let gradient = axes().zip(g).map(|(((_, half), u), g)| g * half * libm::cos(*u)).collect();
+        Some((x, value, gradient))
     };
-    let (x, value, slope): (_, f64, Vec<f64>) = in_angles(&start)?;
-    let steepness = slope.iter().map(|g| g * g).sum::<f64>().sqrt();
-    let unit = FIRST_STEP / steepness;
-    if !unit.is_finite() {
+    let (x, value, gradient): (_, f64, Vec<f64>) = in_angles(&start)?;
+    let norm = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let scale = FIRST_STEP / norm;
+    if !scale.is_finite() {
         return Some((x, value));
     }
-    let scaled = |value: f64, slope: Vec<f64>| -> WithSlope {
-        (unit * value, slope.iter().map(|g| unit * g).collect())
+    let scaled = |value: f64, gradient: Vec<f64>| -> ValueAndGradient {
+        (scale * value, gradient.iter().map(|g| scale * g).collect())
     };
-    let tolerance = MIN_GAIN * unit * value.abs().max(1.0);
+    let tolerance = MIN_GAIN * scale * value.abs().max(1.0);
     let best = RefCell::new((x, value));
     // argmin evaluates value and gradient of a point separately.
-    let last = RefCell::new((start.clone(), scaled(value, slope)));
+    let last = RefCell::new((start.clone(), scaled(value, gradient)));
     let left = Cell::new(limits.evaluations.saturating_sub(1));
     let evaluate = |u: &[f64]| {
         if last.borrow().0 != u {
             left.set(left.get().checked_sub(1)?);
-            let (x, value, slope) = in_angles(u)?;
+            let (x, value, gradient) = in_angles(u)?;
             if value < best.borrow().1 {
                 best.replace((x, value));
             }
-            last.replace((u.to_vec(), scaled(value, slope)));
+            last.replace((u.to_vec(), scaled(value, gradient)));
         }
         Some(last.borrow().1.clone())
     };
@@ -89,10 +89,10 @@ pub(super) fn minimise(
 
 /// Objective as a function of the angles, scaled so that its first gradient has the length of the first step;
 /// `None` when the budget is spent or a point has no value.
-struct Scaled<'a>(&'a dyn Fn(&[f64]) -> Option<WithSlope>);
+struct Scaled<'a>(&'a dyn Fn(&[f64]) -> Option<ValueAndGradient>);
 
 impl Scaled<'_> {
-    fn at(&self, u: &[f64]) -> Result<WithSlope, Error> {
+    fn at(&self, u: &[f64]) -> Result<ValueAndGradient, Error> {
         (self.0)(u).ok_or_else(|| Error::msg("end of the run"))
     }
 }

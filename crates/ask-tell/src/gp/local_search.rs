@@ -2,7 +2,7 @@
 
 use super::lbfgs::Limits;
 use super::neighbours::{APPROXIMATE_NEIGHBOURS, Neighbours};
-use super::search::{Memory, Search, SearchRegion};
+use super::search::{Acquisitions, Search, SearchRegion};
 use crate::GridPoint;
 
 /// Number of neighbours of the models for L-BFGS and single-level steps.
@@ -11,7 +11,7 @@ const NEIGHBOURS: usize = 90;
 const CANDIDATES: usize = 200;
 /// Grids up to this size are evaluated completely.
 const WHOLE_GRID: u64 = 1000;
-/// Number of candidates that are improved.
+/// Number of candidates that are improved by local search.
 const STARTS: usize = 4;
 /// Largest number of gradient evaluations from one start.
 const MAX_GRADIENTS: usize = 20;
@@ -50,8 +50,8 @@ fn climb(known: &Neighbours, region: SearchRegion, start: &GridPoint) -> Option<
     let top = Search { trained: &trained, region }.ascend(start, &limits);
     let trained = known.near(&region.grid().free_unit(&top), NEIGHBOURS)?;
     let search = Search { trained: &trained, region };
-    let mut memory = Memory::new();
-    search.value(start, &mut memory);
-    search.step_uphill(top, MAX_STEPS, &mut memory);
-    region.best_unseen(memory)
+    let mut computed = Acquisitions::new();
+    search.value(start, &mut computed);
+    search.step_uphill(top, MAX_STEPS, &mut computed);
+    region.best_unseen(computed)
 }

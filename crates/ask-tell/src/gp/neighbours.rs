@@ -4,7 +4,7 @@
 use super::data::{Standardised, spread};
 use super::hyperparameters::Hyperparameters;
 use super::model::{Gp, ScaledPoints};
-use super::trained::{Goal, Trained};
+use super::trained::{Goal, TrainedModels};
 
 /// Number of neighbours for approximate predictions.
 pub(super) const APPROXIMATE_NEIGHBOURS: usize = 24;
@@ -40,22 +40,22 @@ impl Neighbours {
     /// Returns models of the `count` points nearest to a location and of a third as many, evenly
     /// selected from all in the order of observation: the nearest points cluster at an optimum and do not
     /// determine the slopes around it. `None` if a process cannot be conditioned.
-    pub fn near(&self, location: &[f64], count: usize) -> Option<Trained> {
+    pub fn near(&self, location: &[f64], count: usize) -> Option<TrainedModels> {
         self.models_of(&self.chosen(location, count))
     }
 
     /// Returns models of the points with these indices.
-    pub fn models_of(&self, chosen: &[usize]) -> Option<Trained> {
+    pub fn models_of(&self, chosen: &[usize]) -> Option<TrainedModels> {
         let x: Vec<Vec<f64>> = chosen.iter().map(|&i| self.x[i].clone()).collect();
         let model = |(data, theta): (&Standardised, &Hyperparameters)| {
             let y: Vec<f64> = chosen.iter().map(|&i| data.values[i]).collect();
             Gp::new(&x, &y, data.noise_floor, theta)
         };
         let models = self.data.iter().zip(&self.thetas).map(model).collect::<Option<_>>()?;
-        Some(Trained { models, zeros: self.zeros.clone(), goal: self.goal.clone() })
+        Some(TrainedModels { models, zeros: self.zeros.clone(), goal: self.goal.clone() })
     }
 
-    /// Treats the posterior means at a point as observations, as [`Trained::believe`].
+    /// Treats the posterior means at a point as observations, as [`TrainedModels::believe`].
     pub fn believe(&mut self, x: &[f64]) {
         let Some(mut near) = self.near(x, APPROXIMATE_NEIGHBOURS) else { return };
         self.scaled.push(x);

@@ -1,7 +1,7 @@
 //! Search for the grid point with the largest acquisition.
 
 use super::lbfgs::{Limits, minimise};
-use super::trained::Trained;
+use super::trained::TrainedModels;
 use crate::normal::StandardNormal;
 use crate::proposed::Proposed;
 use crate::sobol::SobolSequence;
@@ -12,12 +12,12 @@ use std::collections::BTreeMap;
 
 /// Grids up to this size are searched completely.
 const EXHAUSTIVE: u64 = 20_000;
-/// ... as long as grid size times observations stays below this (some ten milliseconds).
+/// Largest product of grid size and number of observations for a complete search (about ten milliseconds).
 const EXHAUSTIVE_WORK: u64 = 1_000_000;
-/// Number of candidates that are improved.
+/// Number of candidates that are improved by local search.
 const STARTS: usize = 4;
-/// Cost of an acquisition with its gradient, in acquisitions.
-const COST_OF_SLOPE: usize = 3;
+/// Cost of an acquisition with its gradient relative to one without.
+const COST_OF_GRADIENT: usize = 3;
 /// Largest number of gradient evaluations from one start.
 const MAX_GRADIENTS: usize = 40;
 
@@ -31,23 +31,21 @@ pub(super) struct SearchRegion<'a> {
 
 /// Search for the best unseen point.
 pub(super) struct Search<'a> {
-    pub trained: &'a Trained,
+    pub trained: &'a TrainedModels,
     pub region: SearchRegion<'a>,
 }
 
-/// Acquisitions that were computed.
-pub(super) type Memory = BTreeMap<GridPoint, f64>;
+/// Cache of computed acquisitions.
+pub(super) type Acquisitions = BTreeMap<GridPoint, f64>;
 
 impl Search<'_> {
     /// Returns the unseen grid point with the largest acquisition found; `None` if no unseen point was
     /// evaluated or none has a finite acquisition.
     pub fn maximise(&self) -> Option<GridPoint> {
-        let (size, known) =
-            (self.region.grid().size(), self.trained.len() * self.trained.models.len());
-        if size <= EXHAUSTIVE && size.saturating_mul(known as u64) <= EXHAUSTIVE_WORK {
-            return self.exhaustive();
-        }
-        self.sampled()
+        let size = self.region.grid().size();
+        let known = (self.trained.len() * self.trained.models.len()) as u64;
+        let small = size <= EXHAUSTIVE && size.saturating_mul(known) <= EXHAUSTIVE_WORK;
+        if small { self.exhaustive() } else { self.sampled() }
     }
 
     /// Returns the best of all unseen points. The log expected improvement increases with the variance, so an
@@ -63,12 +61,12 @@ impl Search<'_> {
         bounds.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut best: Option<(f64, GridPoint)> = None;
         for (bound, point) in bounds {
-            let record = best.as_ref().map_or(f64::NEG_INFINITY, |b| b.0);
-            if bound <= record {
+            let largest = best.as_ref().map_or(f64::NEG_INFINITY, |b| b.0);
+            if bound <= largest {
                 break;
             }
             let value = self.trained.acquisition(&self.region.grid().free_unit(&point));
-            if value > record {
+            if value > largest {
                 best = Some((value, point));
             }
         }
@@ -79,30 +77,30 @@ impl Search<'_> {
     /// are improved by L-BFGS within the cube and then by single-level steps on the grid.
     fn sampled(&self) -> Option<GridPoint> {
         let (n, models) = (self.trained.len(), self.trained.models.len());
-        // A prediction takes about n^2 / 4 + 15 n nanoseconds; some six milliseconds in all.
+        // A prediction takes about n^2 / 4 + 15 n nanoseconds; about six milliseconds in all.
         let budget = (6_000_000 / models / (n * n / 4 + 15 * n + 200)).clamp(300, 6000);
-        let mut memory = Memory::new();
+        let mut computed = Acquisitions::new();
         let candidates = self.region.candidates(budget / 3);
-        let value = |point| (self.value(&point, &mut memory), point);
+        let value = |point| (self.value(&point, &mut computed), point);
         let mut ranked: Vec<(f64, GridPoint)> = candidates.into_iter().map(value).collect();
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
         ranked.truncate(STARTS);
         let share = (budget - budget / 3) / ranked.len().max(1);
         let axes = self.region.grid().free_axes().len();
-        let evaluations = (share / 2 / COST_OF_SLOPE).min(MAX_GRADIENTS);
+        let evaluations = (share / 2 / COST_OF_GRADIENT).min(MAX_GRADIENTS);
         let limits = Limits { low: &vec![0.0; axes], high: &vec![1.0; axes], evaluations };
         for (_, point) in ranked {
             let top = self.ascend(&point, &limits);
-            self.step_uphill(top, share / 2, &mut memory);
+            self.step_uphill(top, share / 2, &mut computed);
         }
-        self.region.best_unseen(memory).map(|(point, _)| point)
+        self.region.best_unseen(computed).map(|(point, _)| point)
     }
 
     /// Returns the grid point nearest to the result of L-BFGS within a box.
     pub fn ascend(&self, from: &GridPoint, limits: &Limits) -> GridPoint {
         let negated = |x: &[f64]| {
-            let (value, slope) = self.trained.sloped_acquisition(x)?;
-            Some((-value, slope.into_iter().map(|g| -g).collect()))
+            let (value, gradient) = self.trained.acquisition_and_gradient(x)?;
+            Some((-value, gradient.into_iter().map(|g| -g).collect()))
         };
         let Some((top, _)) = minimise(negated, &self.region.grid().free_unit(from), limits) else {
             return from.clone();
@@ -110,15 +108,15 @@ impl Search<'_> {
         self.region.grid().folded(&top)
     }
 
-    pub fn value(&self, point: &GridPoint, memory: &mut Memory) -> f64 {
+    pub fn value(&self, point: &GridPoint, computed: &mut Acquisitions) -> f64 {
         let acquisition = || self.trained.acquisition(&self.region.grid().free_unit(point));
-        *memory.entry(point.clone()).or_insert_with(acquisition)
+        *computed.entry(point.clone()).or_insert_with(acquisition)
     }
 
     /// Moves by single levels along each axis while they improve the acquisition and `budget` lasts. Stores
-    /// every point that it evaluates in `memory`.
-    pub fn step_uphill(&self, mut at: GridPoint, mut budget: usize, memory: &mut Memory) {
-        let mut value = self.value(&at, memory);
+    /// every point that it evaluates in `computed`.
+    pub fn step_uphill(&self, mut at: GridPoint, mut budget: usize, computed: &mut Acquisitions) {
+        let mut value = self.value(&at, computed);
         let free = self.region.grid().free_axes();
         let mut axes_left = free.len();
         for &axis in free.iter().cycle() {
@@ -132,7 +130,7 @@ impl Search<'_> {
                 budget -= 1;
                 let mut next = at.clone();
                 next.0[axis] = level;
-                let there = self.value(&next, memory);
+                let there = self.value(&next, computed);
                 if there > value {
                     (at, value, improved) = (next, there, true);
                     break;
@@ -152,8 +150,8 @@ impl SearchRegion<'_> {
     }
 
     /// Returns the unseen point with the largest finite value.
-    pub fn best_unseen(&self, memory: Memory) -> Option<(GridPoint, f64)> {
-        let unseen = memory.into_iter().filter(|(p, _)| !self.proposed.contains(p));
+    pub fn best_unseen(&self, computed: Acquisitions) -> Option<(GridPoint, f64)> {
+        let unseen = computed.into_iter().filter(|(p, _)| !self.proposed.contains(p));
         let finite = unseen.filter(|(_, v)| *v > f64::NEG_INFINITY);
         finite.reduce(|a, b| if b.1 > a.1 { b } else { a })
     }
@@ -167,7 +165,7 @@ impl SearchRegion<'_> {
         let mut random = stream(seed, call, "gp perturbations");
         for i in 0..if self.incumbents.is_empty() { 0 } else { half } {
             let mut unit = grid.unit(&self.incumbents[i % self.incumbents.len()]);
-            // Radii from a twohundredth of the edge to a third, on a logarithmic scale.
+            // Radii from 1/200 to 1/3 of the edge, on a logarithmic scale.
             let radius = libm::exp(-5.3 + 4.2 * random.random::<f64>());
             for u in &mut unit {
                 *u += 0.7 * radius * random.sample::<f64, _>(StandardNormal);
@@ -201,19 +199,20 @@ mod tests {
             proposed.insert(&GridPoint(vec![2 * k, 0, k]));
         }
         let best = y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let trained = Trained { models: vec![gp], zeros: Vec::new(), goal: Goal::Improve(best) };
+        let trained =
+            TrainedModels { models: vec![gp], zeros: Vec::new(), goal: Goal::Improve(best) };
         let proposed = &proposed;
         let region = SearchRegion { proposed, incumbents: &[] };
         let search = Search { trained: &trained, region };
         let found = search.exhaustive().unwrap();
-        let mut memory = BTreeMap::new();
-        let value = search.value(&found, &mut memory);
+        let mut computed = BTreeMap::new();
+        let value = search.value(&found, &mut computed);
         assert!(!proposed.contains(&found));
         for point in proposed.grid.points() {
-            let other = search.value(&point, &mut memory);
+            let other = search.value(&point, &mut computed);
             assert!(proposed.contains(&point) || other <= value + 1e-9);
         }
         let sampled = search.sampled().unwrap();
-        assert!(search.value(&sampled, &mut memory) > value - 1e-6);
+        assert!(search.value(&sampled, &mut computed) > value - 1e-6);
     }
 }

@@ -9,7 +9,7 @@ const DIFFERENCE: f64 = 1e-4;
 
 /// Models of the observations, and the goal of the acquisition function.
 #[derive(Debug, Clone)]
-pub(super) struct Trained {
+pub(super) struct TrainedModels {
     /// Model of each objective, then of the margin of each constraint.
     pub models: Vec<Gp>,
     /// Smallest feasible margin of each constraint, in the units of its model.
@@ -59,7 +59,7 @@ impl Front {
     }
 }
 
-impl Trained {
+impl TrainedModels {
     /// Returns the number of observations and believed points.
     pub fn len(&self) -> usize {
         self.models.first().map_or(0, Gp::len)
@@ -94,13 +94,13 @@ impl Trained {
     /// Returns the acquisition and its gradient; `None` where it is not finite. The derivatives of the
     /// posterior moments are exact; those with respect to the moments, which are cheap, are central
     /// differences.
-    pub fn sloped_acquisition(&self, x: &[f64]) -> Option<(f64, Vec<f64>)> {
-        let sloped: Vec<_> = self.models.iter().map(|gp| gp.posterior_gradient(x)).collect();
+    pub fn acquisition_and_gradient(&self, x: &[f64]) -> Option<(f64, Vec<f64>)> {
+        let posteriors: Vec<_> = self.models.iter().map(|gp| gp.posterior_gradient(x)).collect();
         let mut moments: Vec<(f64, f64)> =
-            sloped.iter().map(|s| (s.mean, s.variance.sqrt())).collect();
+            posteriors.iter().map(|p| (p.mean, p.variance.sqrt())).collect();
         let value = self.acquisition_of(&moments);
-        let mut slope = vec![0.0; x.len()];
-        for (i, sloped) in sloped.iter().enumerate() {
+        let mut gradient = vec![0.0; x.len()];
+        for (i, posterior) in posteriors.iter().enumerate() {
             let (mean, deviation) = moments[i];
             let step = DIFFERENCE * deviation;
             let mut at = |mean: f64, deviation: f64| {
@@ -111,13 +111,13 @@ impl Trained {
             let by_deviation =
                 (at(mean, deviation + step) - at(mean, deviation - step)) / (2.0 * step);
             moments[i] = (mean, deviation);
-            for (axis, slope) in slope.iter_mut().enumerate() {
-                *slope += by_mean * sloped.mean_slope[axis]
-                    + by_deviation * sloped.variance_slope[axis] / (2.0 * deviation);
+            for (axis, gradient) in gradient.iter_mut().enumerate() {
+                *gradient += by_mean * posterior.mean_slope[axis]
+                    + by_deviation * posterior.variance_slope[axis] / (2.0 * deviation);
             }
         }
-        let finite = value.is_finite() && slope.iter().all(|g| g.is_finite());
-        finite.then_some((value, slope))
+        let finite = value.is_finite() && gradient.iter().all(|g| g.is_finite());
+        finite.then_some((value, gradient))
     }
 
     /// Returns the acquisition for these means and standard deviations of all models.
@@ -130,10 +130,9 @@ impl Trained {
             }
             Goal::Volume(front) => log_expected_volume(objectives, &front.cells),
         };
-        let feasible = margins.iter().zip(&self.zeros);
-        let log =
-            |(&(mean, std), &zero): (&(f64, f64), &f64)| log_probability_above(mean, std, zero);
-        gain + feasible.map(log).sum::<f64>()
+        let margins = margins.iter().zip(&self.zeros);
+        let logs = margins.map(|(&(mean, std), &zero)| log_probability_above(mean, std, zero));
+        gain + logs.sum::<f64>()
     }
 
     /// Returns an upper bound of [`acquisition`](Self::acquisition) that needs no triangular solve.

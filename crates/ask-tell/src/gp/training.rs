@@ -6,7 +6,7 @@ use super::hyperparameters::Hyperparameters;
 use super::local_search;
 use super::neighbours::{APPROXIMATE_NEIGHBOURS, Neighbours};
 use super::search::{Search, SearchRegion};
-use super::trained::{Front, Goal, Trained};
+use super::trained::{Front, Goal, TrainedModels};
 use crate::pareto::front;
 use crate::{GridPoint, Observation};
 
@@ -26,7 +26,7 @@ const EFFORT: FitEffort = FitEffort { evaluations: 12, restarts: false };
 #[derive(Debug, Clone)]
 pub(super) enum Model {
     /// Processes conditioned on all points.
-    Global(Trained),
+    Global(TrainedModels),
     /// Processes conditioned on the points nearest to a location, wherever one is needed.
     Local(Neighbours),
 }

@@ -19,8 +19,8 @@
 //!
 //! Two likelihoods choose a kernel (section 5.4.1):
 //! [`log_likelihood`](Process::log_likelihood), over which the coefficients are integrated out
-//! (2.45), and [`profile_log_likelihood`](Process::profile_log_likelihood), which is the largest
-//! over the coefficients and one factor on `K`.
+//! (2.45), and [`profile_log_likelihood`](Process::profile_log_likelihood), which is maximised over
+//! the coefficients and a factor on `K`.
 //!
 //! ```
 //! use ask_tell::process::{Process, matern52};
@@ -69,8 +69,8 @@ pub struct Process<const P: usize> {
 }
 
 impl<const P: usize> Process<P> {
-    /// Conditions on `values` of this covariance, of which only the lower triangle is read, each
-    /// with the mean's terms at its point. Without values the mean is 0.
+    /// Conditions a process on `values` with their covariance, of which only the lower triangle is
+    /// read, and the terms of the mean at each of their points. Without values the mean is 0.
     ///
     /// `None` if the numbers of rows, columns, terms and values are not the same, if the
     /// covariance is not positive definite to working precision, if the values do not determine
@@ -108,8 +108,8 @@ impl<const P: usize> Process<P> {
         h.iter().zip(&self.coefficients).map(|(h, b)| h * b).sum::<f64>() + k.dot(&self.weights)
     }
 
-    /// Returns the variance, without noise, at a point of covariances `k`, terms `h` and this prior
-    /// variance; it includes that of the coefficients.
+    /// Returns the variance, without noise, at a point of covariances `k`, terms `h` and the variance
+    /// `prior` of the kernel; it includes the variance due to the coefficients.
     pub fn variance(&self, k: &DVector<f64>, h: &[f64; P], prior: f64) -> f64 {
         self.variance_of(k, h, prior, &solve_lower(&self.factor, k))
     }

@@ -2,11 +2,9 @@
 
 use serde::Deserialize;
 
-/// Steps of a parameter without a step: each is 1e-9 of the span.
-const DEFAULT_STEPS: f64 = 1e9;
-/// Largest number of steps of a parameter.
+/// Largest number of steps of a parameter, and the number for a parameter without a step.
 const MAX_STEPS: f64 = 1e9;
-/// Tolerance of values and bounds that should be whole numbers of steps.
+/// Tolerance of the check that a value or span is a whole number of steps, in steps.
 const STEP_TOLERANCE: f64 = 1e-6;
 /// Significant digits to which values are rounded.
 const DIGITS: f64 = 15.0;
@@ -30,8 +28,8 @@ impl Parameter {
     pub fn check(&self) -> Result<(), &'static str> {
         let (span, steps) = (self.high - self.low, self.steps());
         // Neighbours must differ after rounding to binary numbers.
-        let largest = self.largest();
-        let fine = || steps > 0.0 && span / steps < 4.0 * (largest.next_up() - largest);
+        let largest = self.magnitude();
+        let too_fine = || steps > 0.0 && span / steps < 4.0 * (largest.next_up() - largest);
         match self.step {
             _ if self.name.is_empty() => Err("a name must have at least one character"),
             _ if self.low > self.high => Err("low must not be above high"),
@@ -43,8 +41,8 @@ impl Parameter {
             Some(_) if steps > MAX_STEPS || (steps - steps.round()).abs() > STEP_TOLERANCE => {
                 Err("high - low must be a whole number of steps, at most 1e9")
             }
-            _ if fine() => {
-                Err("its steps are too small beside low and high: neighbours would be equal")
+            _ if too_fine() => {
+                Err("the step is too small for low and high: neighbours would be equal")
             }
             _ => Ok(()),
         }
@@ -59,21 +57,21 @@ impl Parameter {
         let span = self.high - self.low;
         match self.step {
             _ if span == 0.0 => 0.0,
-            None => DEFAULT_STEPS,
+            None => MAX_STEPS,
             Some(step) => span / step,
         }
     }
 
-    fn largest(&self) -> f64 {
+    fn magnitude(&self) -> f64 {
         self.low.abs().max(self.high.abs())
     }
 
-    fn width(&self) -> f64 {
-        self.step.unwrap_or((self.high - self.low) / DEFAULT_STEPS)
+    fn step_width(&self) -> f64 {
+        self.step.unwrap_or((self.high - self.low) / MAX_STEPS)
     }
 
-    /// Returns the value of a level, rounded in decimals (0.1 + 2 * 0.1 is 0.3) unless that loses
-    /// digits of the step.
+    /// Returns the value of a level, rounded in decimals (0.1 + 2 * 0.1 is 0.3) unless rounding would
+    /// lose digits of the step.
     pub fn value(&self, level: u32) -> f64 {
         if level == 0 {
             return self.low;
@@ -81,10 +79,10 @@ impl Parameter {
         if level + 1 >= self.levels() {
             return self.high;
         }
-        let value = self.low + f64::from(level) * self.width();
-        let decimals = (DIGITS - 1.0 - libm::log10(self.largest()).floor()).max(0.0) as usize;
+        let value = self.low + f64::from(level) * self.step_width();
+        let decimals = (DIGITS - 1.0 - libm::log10(self.magnitude()).floor()).max(0.0) as usize;
         let rounded = format!("{value:.decimals$}").parse().unwrap_or(value);
-        let same = (rounded - value).abs() <= STEP_TOLERANCE * self.width();
+        let same = (rounded - value).abs() <= STEP_TOLERANCE * self.step_width();
         (if same { rounded } else { value }).clamp(self.low, self.high)
     }
 
@@ -92,7 +90,7 @@ impl Parameter {
     pub fn level(&self, value: f64) -> Result<u32, String> {
         let Parameter { name, low, high, step } = self;
         // The width is 0 if low equals high.
-        let width = self.width().max(f64::MIN_POSITIVE);
+        let width = self.step_width().max(f64::MIN_POSITIVE);
         let level = (((value - low) / width).round() as u32).min(self.levels() - 1);
         let near = (self.value(level) - value).abs() <= STEP_TOLERANCE * width;
         match step {
@@ -149,10 +147,10 @@ mod tests {
             let values: Vec<f64> = some.clone().map(|k| axis.value(k)).collect();
             assert!(values.windows(2).all(|pair| pair[0] < pair[1]) || levels < 100, "{low}");
             for (k, value) in some.zip(values) {
-                let documented = low + f64::from(k) * axis.width();
+                let documented = low + f64::from(k) * axis.step_width();
                 let ulp = documented.abs().next_up() - documented.abs();
                 assert!(
-                    (value - documented).abs() <= (3.0 * ulp).max(1.1e-6 * axis.width()),
+                    (value - documented).abs() <= (3.0 * ulp).max(1.1e-6 * axis.step_width()),
                     "{value}"
                 );
                 assert_eq!(axis.level(value), Ok(k), "{low} {value}");
@@ -166,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn each_wrong_parameter_is_answered_with_what_is_right() {
+    fn the_error_of_an_invalid_parameter_states_the_rule() {
         for (low, high, step, word) in [
             (1.0, 0.0, None, "above high"),
             (-1e308, 1e308, None, "finite"),
@@ -174,9 +172,9 @@ mod tests {
             (0.0, 1.0, Some(1e-12), "at most 1e9"),
             (0.0, 1.0, Some(0.0), "above 0"),
             (0.0, 1.0, Some(1e9), "larger than"),
-            (1e15, 1e15 + 1.0, Some(0.25), "too small beside"),
-            (1e15, 1e15 + 1.0, None, "too small beside"),
-            (0.3, 0.3 + 1e-12, None, "too small beside"),
+            (1e15, 1e15 + 1.0, Some(0.25), "too small for"),
+            (1e15, 1e15 + 1.0, None, "too small for"),
+            (0.3, 0.3 + 1e-12, None, "too small for"),
         ] {
             let wrong = Parameter { name: "x".to_owned(), low, high, step };
             let error = wrong.check().unwrap_err();

@@ -3,6 +3,7 @@
 use super::force::ExcessForce;
 use super::trust::{MeasuredFinger, range_mm};
 use super::words::extent;
+use ask_tell::process::distance2;
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::Measure;
 use insertion::space::label;
@@ -19,7 +20,7 @@ pub struct Ties<'a> {
     /// Share of the space that is nearer to a tied design than to any other design, 0 to 1. The number of tied designs
     /// alone is misleading, since a search samples good regions more densely.
     pub share: f64,
-    /// Designs that are extreme in another quantity: name, design, value and unit; empty if the
+    /// Designs of extreme force or stiffness: reason to choose the design, design, value and unit; empty if the
     /// recommended design has no ties.
     pub alternatives: Vec<(&'static str, &'a Recorded, f64, &'static str)>,
     /// Design to take if no other criterion decides; `None` if the recommended design has no ties.
@@ -67,49 +68,47 @@ impl<'a> Ties<'a> {
         let designs = record.equivalent_designs(index);
         let force = |r: &Recorded| record.measure(r, Measure::PeakForce);
         let stiffness = |r: &Recorded| r.stiffness.compliance.mean / N_PER_MM;
-        let among = if designs.len() < 2 { &[] } else { &designs[..] };
-        let forces = || among.iter().filter_map(|&(design, _)| Some((design, force(design)?)));
-        let stiffnesses = || among.iter().map(|&(design, _)| (design, stiffness(design)));
-        let value = |a: &(&Recorded, f64), b: &(&Recorded, f64)| a.1.total_cmp(&b.1);
-        let named = [
-            ("least force", forces().min_by(value), "N"),
-            ("softest", stiffnesses().min_by(value), "N/mm"),
-            ("stiffest", stiffnesses().max_by(value), "N/mm"),
+        let tied = if designs.len() < 2 { &[] } else { &designs[..] };
+        let forces = tied.iter().filter_map(|&(design, _)| Some((design, force(design)?)));
+        let stiffnesses = || tied.iter().map(|&(design, _)| (design, stiffness(design)));
+        let by_value = |a: &(&Recorded, f64), b: &(&Recorded, f64)| a.1.total_cmp(&b.1);
+        let extremes = [
+            ("least force", forces.min_by(by_value), "N"),
+            ("softest", stiffnesses().min_by(by_value), "N/mm"),
+            ("stiffest", stiffnesses().max_by(by_value), "N/mm"),
         ];
-        let known = named.into_iter().filter_map(|(reason, found, unit)| {
-            found.map(|(design, value)| (reason, design, value, unit))
+        let alternatives = extremes.into_iter().filter_map(|(reason, extreme, unit)| {
+            extreme.map(|(design, value)| (reason, design, value, unit))
         });
-        // Whether a design satisfies the force limits of connectors and robot.
-        let within = |(r, _): &&(&Recorded, f64)| ExcessForce::of(record, &r.tasks()).is_none();
+        let allowed = |(r, _): &&(&Recorded, f64)| ExcessForce::of(record, &r.tasks()).is_none();
         let safe = |&(design, loss): &(&'a Recorded, f64)| SafeChoice {
             design,
             measured_mm: range_mm(measured, &design.design),
             force_n: force(design),
             loss: (10.0 * loss.max(0.0)).round() / 10.0,
         };
-        let all = || among.iter().filter(within).map(safe);
-        let measured = all().filter_map(|safe| Some((safe.measured_mm?, safe)));
-        let measured = measured.max_by(|(a_mm, a), (b_mm, b)| {
-            a_mm.total_cmp(b_mm).then(b.design.index.cmp(&a.design.index))
-        });
-        let gentle = all().filter_map(|safe| Some((safe.force_n?, safe)));
-        let gentle = gentle.min_by(|a, b| a.0.total_cmp(&b.0));
-        let safe = measured.or(gentle).map(|(_, safe)| safe);
+        let eligible = || tied.iter().filter(allowed).map(safe);
+        let measured = eligible().filter_map(|safe| Some((safe.measured_mm?, safe)));
+        // Of equal ranges the first evaluated: `max_by` returns the last maximum.
+        let widest = measured.rev().max_by(|a, b| a.0.total_cmp(&b.0));
+        let simulated = eligible().filter_map(|safe| Some((safe.force_n?, safe)));
+        let least_force = simulated.min_by(|a, b| a.0.total_cmp(&b.0));
+        let safe = widest.or(least_force).map(|(_, safe)| safe);
         let (spread, share) = (spread(record, &designs), share(record, &designs));
-        Ties { spread, share, alternatives: known.collect(), safe, designs }
+        Ties { spread, share, alternatives: alternatives.collect(), safe, designs }
     }
 }
 
 /// Number of points over which the share of the space is estimated.
 const POINTS: u32 = 500;
 
-/// Returns the share of evenly spread points of the unit cube, to which the parameters are scaled, whose nearest design
-/// is in the set.
+/// Estimates the share of the unit cube (the space with each parameter scaled to 0 to 1) that is nearer to a design of
+/// the set than to any other design, from evenly spread points.
 fn share(record: &StudyRecord, set: &[(&Recorded, f64)]) -> f64 {
     let space = &record.config.space;
     let unit = |design: &Recorded| -> Vec<f64> {
-        let shares = space.point(&design.design).0.into_iter().zip(space.levels());
-        shares.map(|(level, levels)| f64::from(level) / f64::from(levels.max(2) - 1)).collect()
+        let axes = space.point(&design.design).0.into_iter().zip(space.levels());
+        axes.map(|(level, levels)| f64::from(level) / f64::from(levels.max(2) - 1)).collect()
     };
     let designs: Vec<(Vec<f64>, bool)> = record
         .current()
@@ -119,19 +118,17 @@ fn share(record: &StudyRecord, set: &[(&Recorded, f64)]) -> f64 {
     // Roberts' low-discrepancy sequence in d dimensions, from the root of x^(d + 1) = x + 1.
     let dimension = space.parameters.len() as u32;
     let root = (0..60).fold(1.5_f64, |x, _| libm::pow(1.0 + x, 1.0 / f64::from(dimension + 1)));
-    let within = |&number: &u32| {
+    let nearest_is_tied = |&number: &u32| {
         let powers = std::iter::successors(Some(1.0 / root), |power| Some(power / root));
-        let at: Vec<f64> = powers
+        let point: Vec<f64> = powers
             .take(space.parameters.len())
             .map(|power| (0.5 + f64::from(number) * power).fract())
             .collect();
-        let from = |design: &[f64]| -> f64 {
-            design.iter().zip(&at).map(|(value, at)| (value - at) * (value - at)).sum()
-        };
-        let nearest = designs.iter().min_by(|a, b| from(&a.0).total_cmp(&from(&b.0)));
+        let distance = |design: &[f64]| distance2(design, &point);
+        let nearest = designs.iter().min_by(|a, b| distance(&a.0).total_cmp(&distance(&b.0)));
         nearest.is_some_and(|(_, member)| *member)
     };
-    f64::from((0..POINTS).filter(within).count() as u32) / f64::from(POINTS)
+    f64::from((0..POINTS).filter(nearest_is_tied).count() as u32) / f64::from(POINTS)
 }
 
 fn spread<'a>(record: &'a StudyRecord, designs: &[(&Recorded, f64)]) -> Vec<Spread<'a>> {

@@ -8,8 +8,8 @@ use insertion::outcome::Outcome;
 use insertion::space::Design;
 use study::Recorded;
 
-/// Smallest share of the space with ties at which any of the tied designs is recommended.
-const MANY: f64 = 0.5;
+/// Smallest share of the space near tied designs ([`Ties::share`]) at which any of them is recommended.
+const MIN_SHARE: f64 = 0.5;
 
 /// Recommended action.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +41,7 @@ pub enum Verdict<'a> {
     },
     /// No finger inserts on a task.
     NothingInserts {
-        /// Place of the task among the tasks.
+        /// Index of the task.
         place: usize,
         /// The task.
         task: &'a str,
@@ -65,7 +65,7 @@ impl<'a> Verdict<'a> {
             let design = &best.design;
             let own = answer.measured.iter().filter(|measured| measured.design == *design);
             // A finger may be measured on several days.
-            let range_mm = mean(own.map(|one| one.range_mm));
+            let range_mm = mean(own.map(|measured| measured.range_mm));
             let mut bounds = answer.record.on_bench.iter().flat_map(|found| &found.bounds);
             let bound = bounds.find(|(printed, _)| printed == design).map(|(_, mm)| *mm);
             return match (range_mm, bound) {
@@ -83,12 +83,12 @@ impl<'a> Verdict<'a> {
         let Some(ties) = &found.ties else { return Verdict::Print(first) };
         let of = ties.designs.len();
         match &ties.safe {
-            Some(safe) if ties.share >= MANY => Verdict::Any { safe: &safe.design.design, of },
+            Some(safe) if ties.share >= MIN_SHARE => Verdict::Any { safe: &safe.design.design, of },
             _ => Verdict::Print(first),
         }
     }
 
-    /// Returns its name in JSON.
+    /// Returns the name of the verdict in JSON.
     pub fn key(&self) -> &'static str {
         match self {
             Verdict::Print(_) => "print",
@@ -141,7 +141,7 @@ impl<'a> Verdict<'a> {
     }
 }
 
-/// Returns the expected performance of the finger and the evidence for it, a sentence without its full stop.
+/// Returns the expected performance of the finger and the evidence for the estimate, as a sentence without a full stop.
 pub fn expectation(answer: &Answer) -> String {
     if let Some(best) = answer.record.on_bench.as_ref().and_then(|found| found.best.first()) {
         let [range, low, high] = [best.range_mm, best.low_mm, best.high_mm];
@@ -157,7 +157,7 @@ pub fn expectation(answer: &Answer) -> String {
         );
     }
     match &answer.recommended {
-        None => none(answer),
+        None => no_recommendation(answer),
         Some(found) => {
             let any = matches!(answer.verdict, Verdict::Any { .. });
             let each = found.ties.as_ref().filter(|_| any).and_then(|set| each(found, set));
@@ -166,8 +166,8 @@ pub fn expectation(answer: &Answer) -> String {
     }
 }
 
-/// Returns why no design can be recommended.
-fn none(answer: &Answer) -> String {
+/// Returns the reason why no design can be recommended.
+fn no_recommendation(answer: &Answer) -> String {
     let Some((design, constraints)) = &answer.nearest else {
         return "no evaluation gave a value".to_owned();
     };

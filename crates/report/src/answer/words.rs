@@ -8,7 +8,7 @@ use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, label};
 use insertion::surrogate::Estimate;
 use study::{Recorded, StudyConfig, StudyRecord};
 
-/// Returns after how many evaluations a search settled, and why.
+/// Returns the number of evaluations after which the search settled, and the criterion.
 pub fn settled(record: &StudyRecord) -> String {
     let (evaluations, gain_mm) = (record.evaluations.len(), record.config.indifference_mm);
     format!("after {evaluations} evaluations: no finger is expected to gain {gain_mm} mm")
@@ -39,8 +39,8 @@ pub fn ends_mm(window: &Window) -> [f64; 2] {
     [window.negative_mm(), window.positive_mm()]
 }
 
-/// Heading of the compliance that trials were simulated with.
-pub const ACROSS: &str = "compliance, measured model";
+/// Table heading of the compliance used in the trials.
+pub const COMPLIANCE: &str = "compliance, measured model";
 
 /// Returns a stiffness with its standard deviation, N/mm.
 pub fn stiffness(estimate: Estimate) -> String {
@@ -49,29 +49,29 @@ pub fn stiffness(estimate: Estimate) -> String {
     format!("{mean:.digits$} ± {sd:.digits$} N/mm")
 }
 
-/// Returns a number with so many decimals and its unit; `none` if it is not finite.
+/// Returns a number with `decimals` decimals and its unit; `none` if it is not finite or too long.
 pub fn number(value: f64, decimals: usize, unit: &str) -> String {
     if !value.is_finite() {
         return "none".to_owned();
     }
     let value = format!("{value:.decimals$}");
-    // A body that a collision threw far away.
+    // For example the position of a body after a collision that threw it far away.
     if value.len() > 15 { "none".to_owned() } else { format!("{value} {unit}") }
 }
 
-/// Returns the smallest and the largest of the values; of none infinity and minus infinity.
+/// Returns the smallest and the largest value; infinity and minus infinity if there are no values.
 pub fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
-/// Rounds a number to so many decimals.
+/// Rounds a number to `decimals` decimals.
 pub fn rounded(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
     // Adding 0 turns -0 into 0.
     (value * scale).round() / scale + 0.0
 }
 
-/// Returns the force of a connector's contact springs, `up to 12 N`, or that none is given.
+/// Returns the force of a connector's contact springs: `up to 12 N` or `none given`.
 pub fn mating_force(largest: Option<f64>) -> String {
     largest.map_or("none given".to_owned(), |largest| format!("up to {}", number(largest, 1, "N")))
 }
@@ -82,7 +82,7 @@ pub fn outcome(outcome: Outcome) -> String {
     format!("{}{class}", outcome.label())
 }
 
-/// Returns what to check if the nominal start ends with this outcome, a sentence without its full stop.
+/// Returns advice for a nominal start that ends with this outcome, as a sentence without a full stop.
 pub fn remedy(nominal: Outcome) -> &'static str {
     match nominal {
         Outcome::Failed(FailureClass::ContactLossBeforeSearch) => {
@@ -156,7 +156,7 @@ pub fn design(design: &Design) -> String {
     infill.iter().cloned().chain(others).collect::<Vec<_>>().join(", ")
 }
 
-/// Returns the values of objectives, that of a single one without its name.
+/// Returns the values of objectives, with their names if there are several.
 pub fn values(objectives: &Objectives, values: &[f64]) -> String {
     match (objectives.single(), values) {
         (Some(measure), [value]) => measure.show(*value),

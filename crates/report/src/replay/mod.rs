@@ -37,7 +37,7 @@ pub fn pair_file(task: usize, end: &str) -> String {
     format!("replay/{}-{end}.html", task + 1)
 }
 
-/// Returns the path of a picture of how the failed trial of the pair ended, shown until the films have loaded.
+/// Returns the path of a picture of the end of the pair's failed trial, shown until the films have loaded.
 pub fn poster_file(task: usize, end: &str) -> String {
     format!("replay/{}-{end}.svg", task + 1)
 }
@@ -46,7 +46,7 @@ pub fn poster_file(task: usize, end: &str) -> String {
 /// 18).
 pub fn page(title: &str, films: &[Film]) -> String {
     let data = films.iter().map(film::data).collect();
-    around(title, &embedded(&data))
+    player(title, &embedded(&data))
 }
 
 const DATA: &str = "<script type=\"application/json\" id=\"films\">";
@@ -57,19 +57,34 @@ pub fn data(page: &str) -> Option<&str> {
     rest.split('<').next()
 }
 
-/// Returns the page without films, for data to be inserted after [`DATA`].
-pub(super) fn viewer() -> String {
-    around("film", "")
-}
-
-fn around(title: &str, data: &str) -> String {
+/// Returns a page that plays the films of `data`; if `data` is empty, a script can insert it after [`DATA`].
+pub(super) fn player(title: &str, data: &str) -> String {
     styled(
         title,
         include_str!("viewer.css"),
         html! {
             h1 { (title) }
             div #views {}
-            (controls())
+            div.controls {
+                button #play type="button" { "Play" }
+                input #time type="range" min="0" step="any" value="0" aria-label="time";
+                output #clock {}
+                label {
+                    "speed"
+                    select #speed {
+                        option value="1" { "real" }
+                        option value="0.25" selected { "1/4" }
+                        option value="0.1" { "1/10" }
+                        option value="0.02" { "1/50" }
+                    }
+                }
+            }
+            div.controls {
+                label { "deflection drawn" input #bend type="range" min="1" max="10" step="1" value="1"; output #times { "1 times" } }
+                label { input #contact type="checkbox" checked; "contact forces" }
+                label { input #grip type="checkbox"; "grip forces" }
+                label { input #glass type="checkbox" checked; "transparent socket" }
+            }
             div #phases {}
             div #curves {}
             p.note {
@@ -83,31 +98,6 @@ fn around(title: &str, data: &str) -> String {
             script { (PreEscaped(include_str!("viewer.js"))) }
         },
     )
-}
-
-fn controls() -> maud::Markup {
-    html! {
-        div.controls {
-            button #play type="button" { "Play" }
-            input #time type="range" min="0" step="any" value="0" aria-label="time";
-            output #clock {}
-            label {
-                "speed"
-                select #speed {
-                    option value="1" { "real" }
-                    option value="0.25" selected { "1/4" }
-                    option value="0.1" { "1/10" }
-                    option value="0.02" { "1/50" }
-                }
-            }
-        }
-        div.controls {
-            label { "deflection drawn" input #bend type="range" min="1" max="10" step="1" value="1"; output #times { "1 times" } }
-            label { input #contact type="checkbox" checked; "contact forces" }
-            label { input #grip type="checkbox"; "grip forces" }
-            label { input #glass type="checkbox" checked; "transparent socket" }
-        }
-    }
 }
 
 #[cfg(test)]

@@ -178,8 +178,8 @@
       for (const kind of ["contact", "grip"]) if (at(kind).checked) this.arrows(film[kind][when.index], BODY[kind]);
       gl.enable(gl.DEPTH_TEST);
     }
-    // The finger between its tip, which is where it is, and its jaw; what bends it is drawn
-    // so many times larger, by moving the jaw.
+    // The finger between its tip, at its simulated position, and its jaw, which is moved to
+    // magnify the bend.
     beam(tip, jaw, side, outline) {
       const { half_mm: half, thick_mm: thick, low_mm: low, high_mm: high } = this.film.beam, sign = side ? 1 : -1;
       const bent = sub(placed(tip, [0, 0, low]), placed(jaw, [0, 0, low]));

@@ -62,6 +62,15 @@ def test_a_window_with_sharp_ends_and_its_line(out, command):
     assert len(robot.offsets) == found.attempts and len(out.read_text().splitlines()) == 2
 
 
+def test_each_attempt_is_a_line_unless_it_is_to_be_silent(out, tmp_path, capsys):
+    found = measure_window(Steps(), out=out, **FINGER)
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == found.attempts
+    assert lines[0] == "attempt 1: start +0 mm, inserted" and "attempt 7: start -3 mm, failed, class 3" in lines
+    measure_window(Steps(), out=tmp_path / "silent.csv", progress=False, **FINGER)
+    assert capsys.readouterr().err == ""
+
+
 def test_a_gap_is_recorded_and_the_ends_lie_beyond(out):
     found = measure_window(Steps(gap=(0.9, 1.2)), out=out, **FINGER)
     (gap,) = found.gaps

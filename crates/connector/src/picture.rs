@@ -179,6 +179,7 @@ impl<'a> Picture<'a> {
         drawing.line(points.iter().copied(), Style::line(PATH, 1.5));
         // Waypoints that coincide in a view share a label.
         let near = |p: &Point2<f64>, q: &Point2<f64>| (p - q).norm() < 9.0;
+        let mut labels: Vec<(Point2<f64>, f64)> = Vec::new();
         for (first, p) in points.iter().enumerate() {
             if points[..first].iter().any(|q| near(p, q)) {
                 continue;
@@ -186,7 +187,18 @@ impl<'a> Picture<'a> {
             let here = points.iter().enumerate().filter(|(_, q)| near(p, q));
             let label = here.map(|(number, _)| number.to_string()).collect::<Vec<_>>().join(",");
             drawing.disc(*p, 2.5, Style::fill(PATH));
-            drawing.text(p + Vector2::new(4.0, -5.0), &label, Font::new(11.0).colour(PATH));
+            // Above or below the point, where no other label is.
+            let wide = 6.5 * label.len() as f64;
+            let places = [-5.0, 14.0, -17.0].map(|dy| p + Vector2::new(4.0, dy));
+            let free = |at: &&Point2<f64>| {
+                let apart = |(q, w): &(Point2<f64>, f64)| {
+                    (at.y - q.y).abs() > 11.0 || at.x > q.x + w || q.x > at.x + wide
+                };
+                labels.iter().all(apart)
+            };
+            let at = *places.iter().find(free).unwrap_or(&places[0]);
+            labels.push((at, wide));
+            drawing.text(at, &label, Font::new(11.0).colour(PATH));
         }
     }
 

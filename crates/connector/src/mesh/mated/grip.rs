@@ -114,7 +114,7 @@ fn grasp_at(
         return Err("they are less than 1 mm wide");
     }
     if !(FACES_MM[0]..=FACES_MM[1]).contains(&(width(faces) / MM)) {
-        return Err("the gripper does not open so far");
+        return Err("they are not 1 to 100 mm apart");
     }
     let in_pad = |p: &&Point3<f64>| PAD_X[0] < p.x && p.x < PAD_X[1];
     let points = || plug.iter().flatten().filter(in_pad);
@@ -160,4 +160,44 @@ pub fn handle(plug: &[Triangle], [x, y, z]: [f64; 3], free: f64) -> Grasp {
     let faces = [-y / 2.0, y / 2.0];
     let part = block("handle", [[-x / 2.0, x / 2.0], faces, [low, shoulder]]);
     Grasp { shoulder, faces, part }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use insertion::task::{Solid, geometry};
+    use nalgebra::Vector3;
+
+    /// Returns the faces of upright blocks about the axis: width in x, width in y, lower and upper z, mm.
+    fn stacked(blocks: &[[f64; 4]]) -> Vec<Triangle> {
+        let faces = |[x, y, low, high]: &[f64; 4]| {
+            let [min, max] = [[-x / 2.0, -y / 2.0, *low], [x / 2.0, y / 2.0, *high]];
+            let [min, max] = [min, max].map(|corner| Vector3::from(corner) * MM);
+            let (corners, faces) = geometry::hull(&Solid::Box { min, max }.corners()).unwrap();
+            faces.into_iter().map(move |face| face.map(|corner| corners[corner]))
+        };
+        blocks.iter().flat_map(faces).collect()
+    }
+
+    #[test]
+    fn larger_faces_that_cannot_be_held_are_named_with_the_reason() {
+        let body = [7.0, 11.0, 10.0, 26.0];
+        let held = |blocks: &[[f64; 4]]| {
+            let (grasp, rejected) = own(&stacked(blocks), 8.0 * MM);
+            let apart = |y: f64| (y / MM).round();
+            (
+                grasp.map(|grasp| apart(width(grasp.faces))),
+                rejected.map(|faces| (apart(faces.apart), faces.reason)),
+            )
+        };
+        assert_eq!(held(&[body]), (Some(11.0), None));
+        // The roofs rest on a narrower block, 14 mm above the body.
+        let low = "the pads, with their roofs on top, would cover less than 3 mm of them";
+        assert_eq!(held(&[body, [5.0, 8.0, 26.0, 40.0]]), (Some(8.0), Some((11.0, low))));
+        // A collar reaches beyond the faces where the pads would be.
+        let obstructed = "other parts of the plug are in the way of the pads";
+        assert_eq!(held(&[body, [7.0, 13.0, 20.0, 21.0]]), (None, Some((11.0, obstructed))));
+        let wide = "they are not 1 to 100 mm apart";
+        assert_eq!(held(&[[7.0, 200.0, 10.0, 26.0]]), (None, Some((200.0, wide))));
+    }
 }

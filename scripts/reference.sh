@@ -279,8 +279,8 @@ settled() {
 identify() {
     local folder="$reference/identify"
     cargo build --release -p lab --features mujoco
-    "$programs/hidden_cells" --cells 1 20 --out "$folder" --logs "$work/logs"
-    record windows "$folder"/*
+    "$programs/hidden_cells" --cells 11 30 --out "$folder/cores" --logs "$work/logs"
+    record windows "$folder"/cores/*
 }
 
 # Prints to the best finger on synthetic benches. Takes half an hour of processor time, most of it for simulations.

@@ -311,7 +311,7 @@ impl fmt::Display for ImportedTask {
         let [wide, high, long] = self.body_mm();
         let mut text = format!(
             "written       {out}\nplug          {plug_parts} convex parts\nsocket        {socket_parts} convex parts\n\
-             clearance     {clearance_y_mm:.3} mm in y, {clearance_x_mm:.3} in x; body {high:.1} x {wide:.1} x {long:.1} mm\n"
+             clearance     {clearance_y_mm:.3} mm in y, {clearance_x_mm:.3} in x; body {wide:.1} x {high:.1} x {long:.1} mm\n"
         );
         for (what, why) in &mated.findings {
             text.push_str(&format!("{what:<14}{why}\n"));

@@ -17,7 +17,7 @@ use connector::{picture, rewrite};
 use input::Place;
 use input::shipped::Source;
 use input::units::{DEG, MM, N_PER_MM};
-use insertion::evaluation::Window;
+use insertion::evaluation::{INDIFFERENCE_MM, Window};
 use insertion::finger::Finger;
 use insertion::robot::Robot;
 use insertion::task::parts_file::without_parts;
@@ -392,7 +392,9 @@ fn text(done: &TunedTask) -> String {
             all.push(line("chosen", text));
             let wider = |step: &Step| step.tried.score > best.tried.score;
             if tuned.steps.iter().any(wider) {
-                let why = format!("wider windows shrink more with the socket turned by {YAW_DEG}°");
+                let why = format!(
+                    "no other has {INDIFFERENCE_MM} mm more both ways: straight and turned by {YAW_DEG}°"
+                );
                 all.push(line("", why));
             }
             all.push(line("push", push_text(done, after.force_n)));

@@ -156,8 +156,7 @@ impl Tuned {
         for (change, last) in tried {
             self.windows += last.cost;
             let best = self.steps.get(self.best).map_or(last.score, |best| best.tried.score);
-            let text =
-                format!("{change}, least range so far {:.1} mm", best.max(last.score).max(0.0));
+            let text = format!("{:.1} mm so far; {change}", best.max(last.score).max(0.0));
             (effort.progress)(&text, last.cost, self.windows, MOST_WINDOWS);
             let second = self.steps.len() == 1;
             let better = self.steps.get(self.best).is_some_and(|best| {

@@ -148,6 +148,12 @@ fn a_force_that_the_connector_does_not_withstand_comes_first() {
     let robot = studies.file("robot.toml", robot);
     let stops = studies.study("stops", 30, &["--robot", &robot, "--no-levers", "--no-map"]);
     assert!(stops.succeeds().contains("stops at 7 N"), "{}", stops.stdout);
+    let finger = "--density 20 --direction 10 --engine fake";
+    let of = |robot: &str| optimize_line(&format!("evaluate --task usb {finger} --robot {robot}"));
+    let (weak, strong) = (of(&robot), of("servo"));
+    let remark = "above the limit of connector or robot, 7 N";
+    assert!(weak.succeeds().contains(remark), "{}", weak.stdout);
+    assert!(!strong.succeeds().contains("above the limit"), "{}", strong.stdout);
     // With a wide indifference some design keeps to the limit, and the safe choice is such a one.
     study("middling", 8.25);
     let task = studies.word("middling.toml");

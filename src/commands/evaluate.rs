@@ -64,6 +64,9 @@ pub struct Evaluated {
     pub evaluation: Evaluation,
     /// Wall-clock duration of the evaluation, s.
     pub wall_s: f64,
+    /// Smaller of the largest force of the connector and the stop force of the robot, N.
+    #[serde(skip)]
+    pub limit_n: f64,
     /// Bands at the window's ends in which repeats differ, with `--repeat`.
     #[serde(serialize_with = "serialize_bands", skip_serializing_if = "Option::is_none")]
     pub bands: Option<Bands>,
@@ -96,7 +99,8 @@ impl command::Request for Request {
         let repeat = self.repeat.filter(|_| window.nominal == Outcome::Inserted);
         let bands = repeat.map(bands).transpose()?;
         let by_ribs = self.by_ribs(&setup, &chosen, stop)?;
-        Ok(Evaluated { chosen, evaluation, bands, by_ribs, wall_s })
+        let limit_n = limit_n(&setup, &chosen);
+        Ok(Evaluated { chosen, evaluation, bands, by_ribs, wall_s, limit_n })
     }
 }
 
@@ -140,6 +144,12 @@ impl Request {
     }
 }
 
+/// Returns the smaller of the largest force of the connector and the stop force of the robot, N.
+pub(crate) fn limit_n(setup: &Setup, chosen: &ChosenFinger) -> f64 {
+    let stop_n = setup.evaluator.robot.stop_force;
+    chosen.specimen.task.limits.force.map_or(stop_n, |force| force.min(stop_n))
+}
+
 /// Serializes the evaluation, or the reason why there is none.
 fn computed<S: Serializer>(by_ribs: &Option<ByRibs>, serializer: S) -> Result<S::Ok, S::Error> {
     match by_ribs {
@@ -176,7 +186,11 @@ impl fmt::Display for Evaluated {
             evaluation.diverged, evaluation.trials
         );
         rest.push(("failures".to_owned(), failures));
-        rest.push(("peak force".to_owned(), number(evaluation.peak_force_n, 1, "N")));
+        let mut force = number(evaluation.peak_force_n, 1, "N");
+        if evaluation.peak_force_n > self.limit_n {
+            force += &format!(", above the limit of connector or robot, {:.0} N", self.limit_n);
+        }
+        rest.push(("peak force".to_owned(), force));
         let mating = words::mating_force(chosen.specimen.task.largest_mating_force());
         rest.push(("mating force".to_owned(), mating));
         rest.extend(lines::taught(evaluation.taught));

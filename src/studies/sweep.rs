@@ -1,6 +1,6 @@
 //! Windows of many fingers on one task.
 
-use crate::commands::evaluate::{Evaluated, Request as EvaluateRequest};
+use crate::commands::evaluate::{Evaluated, Request as EvaluateRequest, limit_n};
 use crate::context::not_stopped;
 use crate::failure::Failure;
 use crate::setup::Setup;
@@ -59,7 +59,8 @@ impl Sweep {
             let (evaluation, _) =
                 evaluator.measure(&chosen.specimen, plan).map_err(Failure::input)?;
             let wall_s = clock.elapsed().as_secs_f64();
-            Ok(Evaluated { chosen, evaluation, bands: None, by_ribs: None, wall_s })
+            let limit_n = limit_n(setup, &chosen);
+            Ok(Evaluated { chosen, evaluation, bands: None, by_ribs: None, wall_s, limit_n })
         };
         let found: Vec<_> = self.pool.install(|| fingers.par_iter().map(one).collect());
         not_stopped(stop)?;

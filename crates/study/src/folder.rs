@@ -352,6 +352,9 @@ fn check_continues(dir: &Path, config: &StudyConfig) -> Result<(), StudyError> {
 pub fn read_config(dir: &Path) -> Result<StudyConfig, StudyError> {
     let path = dir.join(CONFIG_FILE);
     let text = files::read_text(&path, LARGEST_OWN).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound if !dir.is_dir() => {
+            StudyError::file(dir, "not a study: there is no such folder")
+        }
         io::ErrorKind::NotFound => StudyError::file(dir, "not a study: it has no study.toml"),
         _ => StudyError::io("read", &path)(error),
     })?;

@@ -79,15 +79,15 @@ impl Lever {
 }
 
 impl Levers {
-    /// Returns whether the task has the numbers that the shipped space `codesign` varies, and the design does not vary
-    /// them already.
-    fn can_be_varied_together(&self) -> bool {
+    /// Returns whether the shipped space `codesign` varies a lever, the task has all of its numbers, and the design does
+    /// not vary them already.
+    fn is_in_codesign(&self, lever: &Lever) -> bool {
         let codesign = SPACES.iter().find(|space| space.name == "codesign");
         let codesign = codesign.and_then(|space| Space::parse(space.text, space.file).ok());
         let tried = |key: &str| self.levers.iter().any(|lever| lever.key == key);
         let has = |space: Space| {
-            let mut of_task = space.parameters.iter().filter(|of| is_of_task(&of.key));
-            of_task.all(|of| tried(&of.key))
+            let of_task = || space.parameters.iter().filter(|of| is_of_task(&of.key));
+            of_task().all(|of| tried(&of.key)) && of_task().any(|of| of.key == lever.key)
         };
         !self.design.changes_task() && codesign.is_some_and(has)
     }
@@ -95,27 +95,28 @@ impl Levers {
     /// Summarises the most effective change besides the infill in one sentence; effects below 0.3 mm are
     /// omitted.
     pub fn sentence(&self) -> String {
-        let of = |lever: &Lever, end: usize| {
-            (difference_mm([self.base.range_mm, lever.ends[end].unwrap_or(0.0)]), lever.step(end))
+        let by = |lever: &Lever, end: usize| {
+            difference_mm([self.base.range_mm, lever.ends[end].unwrap_or(0.0)])
         };
-        let ends = || self.levers.iter().flat_map(|lever| [0, 1].map(|end| of(lever, end)));
+        let of = |lever| [0, 1].map(|end| (by(lever, end), lever, end));
+        let ends = || self.levers.iter().flat_map(of);
         // The first of equals wins.
         let most = |sign: f64| {
-            let better =
-                |a: (f64, String), b: (f64, String)| if sign * b.0 > sign * a.0 { b } else { a };
-            ends().reduce(better).filter(|(by, _)| is_relevant(sign * by))
+            let best = ends().reduce(|a, b| if sign * b.0 > sign * a.0 { b } else { a });
+            best.filter(|(by, ..)| is_relevant(sign * by))
         };
         let task = &self.task;
         match (most(1.0), most(-1.0)) {
-            (Some((by, step)), _) => {
-                let more = match self.can_be_varied_together() {
+            (Some((by, lever, end)), _) => {
+                let more = match self.is_in_codesign(lever) {
                     true => " --space codesign varies such numbers with the infill.",
                     false => "",
                 };
-                format!("{step} widens {task} by {by:.1} mm.{more}")
+                format!("{} widens {task} by {by:.1} mm.{more}", lever.step(end))
             }
-            (None, Some((by, step))) => format!(
-                "Nothing widens {task} by {INDIFFERENCE_MM} mm, and {step} narrows it by {:.1} mm.",
+            (None, Some((by, lever, end))) => format!(
+                "Nothing widens {task} by {INDIFFERENCE_MM} mm, and {} narrows it by {:.1} mm.",
+                lever.step(end),
                 -by
             ),
             (None, None) if is_relevant(difference_mm(self.infill)) => {

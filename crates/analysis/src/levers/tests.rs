@@ -34,7 +34,8 @@ fn the_sentence_names_the_most_effective_lever_and_ignores_small_effects() {
     }
 }
 
-/// `codesign` is suggested only if the task has all of its numbers and the design changes none of them.
+/// `codesign` is suggested only if it varies the best lever, the task has all of its numbers, and the design changes
+/// none of them.
 #[test]
 fn the_sentence_suggests_the_space_that_varies_the_levers_together() {
     let without_effect = |key: &str| lever(key, [0.0, 5.0, 10.0], [Some(4.0); 2]);
@@ -52,6 +53,9 @@ fn the_sentence_suggests_the_space_that_varies_the_levers_together() {
     let mut all = of([4.0; 2], tried.clone());
     assert!(suggested(&all), "{}", all.sentence());
     assert!(!suggested(&of([4.0; 2], tried[..4].to_vec())));
+    let robot = lever("robot.flange_n_per_mm", [10.0, 20.0, 30.0], [Some(6.0), Some(4.0)]);
+    let of_robot = of([4.0; 2], [&tried[..], &[robot]].concat());
+    assert!(!suggested(&of_robot), "{}", of_robot.sentence());
     all.design = all.design.with("task.strategy.tilt_deg", 8.0);
     assert!(!suggested(&all), "{}", all.sentence());
 }

@@ -235,7 +235,8 @@ class Slow(Recording):
         time.sleep(float(sys.argv[4]))
         return super().insert(offset_mm, log)
 
-print(measure_window(Slow(), out=sys.argv[1], task="usb", density=float(sys.argv[3]), direction=10).attempts)
+density = float(sys.argv[3])
+print(measure_window(Slow(), out=sys.argv[1], task="usb", density=density, direction=10, progress=False).attempts)
 """
 
 

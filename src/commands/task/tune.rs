@@ -10,9 +10,7 @@ use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
 use crate::setup::task::TaskFile;
 use crate::setup::tune::{Tried, outcome, ranges, tried, tuner, turned_text};
 use connector::check::problems;
-use connector::tune::{
-    Effort, MOST_WINDOWS, Robustness, Stage, Step, Stopped, Tuned, Tuner, YAW_DEG, tune,
-};
+use connector::tune::{Effort, MOST_WINDOWS, Robustness, Stage, Step, Stopped, Tuned, Tuner, tune};
 use connector::{picture, rewrite};
 use input::Place;
 use input::shipped::Source;
@@ -393,7 +391,7 @@ fn text(done: &TunedTask) -> String {
             let wider = |step: &Step| step.tried.score > best.tried.score;
             if tuned.steps.iter().any(wider) {
                 let why = format!(
-                    "no other has {INDIFFERENCE_MM} mm more both ways: straight and turned by {YAW_DEG}°"
+                    "no other strategy checked has {INDIFFERENCE_MM} mm more with the socket turned, too"
                 );
                 all.push(line("", why));
             }

@@ -111,10 +111,10 @@ fn grasp_at(
     let (x, z) = (common(low.x, high.x), common(low.z, high.z));
     let faces = [low.y, high.y];
     if width(x) < LEAST_WIDTH {
-        return Err("they are less than 1 mm wide");
+        return Err("they are too narrow");
     }
     if !(FACES_MM[0]..=FACES_MM[1]).contains(&(width(faces) / MM)) {
-        return Err("they are not 1 to 100 mm apart");
+        return Err("they are too close or too far apart for a gripper");
     }
     let in_pad = |p: &&Point3<f64>| PAD_X[0] < p.x && p.x < PAD_X[1];
     let points = || plug.iter().flatten().filter(in_pad);
@@ -138,7 +138,7 @@ fn grasp_at(
         return Err("the roofs of the fingertips would rest at different heights");
     }
     if width(held) < LEAST_HEIGHT {
-        return Err("the pads, with their roofs on top, would cover less than 3 mm of them");
+        return Err("the pads, with their roofs on top, would cover too little of them");
     }
     if pads[0] < free + CLEAR {
         return Err("the pads would touch the socket");
@@ -192,12 +192,12 @@ mod tests {
         };
         assert_eq!(held(&[body]), (Some(11.0), None));
         // The roofs rest on a narrower block, 14 mm above the body.
-        let low = "the pads, with their roofs on top, would cover less than 3 mm of them";
+        let low = "the pads, with their roofs on top, would cover too little of them";
         assert_eq!(held(&[body, [5.0, 8.0, 26.0, 40.0]]), (Some(8.0), Some((11.0, low))));
         // A collar reaches beyond the faces where the pads would be.
         let obstructed = "other parts of the plug are in the way of the pads";
         assert_eq!(held(&[body, [7.0, 13.0, 20.0, 21.0]]), (None, Some((11.0, obstructed))));
-        let wide = "they are not 1 to 100 mm apart";
+        let wide = "they are too close or too far apart for a gripper";
         assert_eq!(held(&[[7.0, 200.0, 10.0, 26.0]]), (None, Some((200.0, wide))));
     }
 }

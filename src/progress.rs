@@ -103,13 +103,22 @@ impl Progress {
     fn step(&mut self, cost: f64, what: &str, last: bool) {
         let left = self.time_left(cost, self.last.elapsed());
         self.last = Instant::now();
+        // A study that settles can take longer than expected; nothing is known then.
+        let known = left >= Duration::from_secs(1);
         if let Some(bar) = &self.bar {
-            bar.set_message(format!("{what}, about {:#} left", HumanDuration(left)));
+            let left = if known {
+                format!(", about {:#} left", HumanDuration(left))
+            } else {
+                String::new()
+            };
+            bar.set_message(format!("{what}{left}"));
             bar.set_length((self.done + self.left).ceil() as u64);
             bar.set_position(self.done as u64);
         } else if self.shown && (last || self.printed.elapsed() >= EVERY) {
             self.printed = Instant::now();
-            say(&format!("{what}, about {} s left", left.as_secs()));
+            let left =
+                if known { format!(", about {} s left", left.as_secs()) } else { String::new() };
+            say(&format!("{what}{left}"));
         }
     }
 

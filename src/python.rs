@@ -50,8 +50,8 @@ impl Format {
             let problem = match named.strip_prefix(file) {
                 Some(problem) => problem.trim_start_matches(':').trim_start().to_owned(),
                 None => format!(
-                    "is {name}, which the Python package reads: pip install 'finger_opt[{extra}]' ({}: \
-                     {named}; {PYTHON} names another interpreter); {otherwise}",
+                    "is {name}, which the Python package reads: pip install './python[{extra}]' in the project's \
+                     folder ({}: {named}; {PYTHON} names another interpreter); {otherwise}",
                     python.display()
                 ),
             };

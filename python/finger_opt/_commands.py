@@ -102,8 +102,8 @@ def evaluate(
     7.2
 
     Args:
-        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, separated by
-            commas.
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have
+            several, separated by commas.
         density: Infill density, percent.
         direction: Infill direction, degrees.
         space: Search space: infill, codesign, finger, or the path of a space file.
@@ -177,8 +177,8 @@ def trial(
     ('inserted', 3)
 
     Args:
-        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, separated by
-            commas.
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have
+            several, separated by commas.
         density: Infill density, percent.
         direction: Infill direction, degrees.
         offset_mm: Shift of the start along y, mm.
@@ -250,8 +250,8 @@ def capture_map(
     points between two equal outcomes are filled in.
 
     Args:
-        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, separated by
-            commas.
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have
+            several, separated by commas.
         density: Infill density, percent.
         direction: Infill direction, degrees.
         space: Search space: infill, codesign, finger, or the path of a space file.
@@ -366,8 +366,8 @@ def sensitivity(
     """Rank the inputs by their share of the variance: design, task, cell, as ``optimize sensitivity`` does.
 
     Args:
-        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, separated by
-            commas.
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have
+            several, separated by commas.
         space: Search space: infill, codesign, finger, or the path of a space file.
         robot: see `optimize robots`, or the path of a robot file [default: servo].
         cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
@@ -417,8 +417,8 @@ def levers(
     """Compare the infill with other ways to widen the window: tilt, strokes, grip, friction, robot, as ``optimize levers`` does.
 
     Args:
-        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, separated by
-            commas.
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have
+            several, separated by commas.
         density: Infill density, percent.
         direction: Infill direction, degrees.
         space: Search space: infill, codesign, finger, or the path of a space file.
@@ -477,8 +477,8 @@ def calibrate(
 
     Args:
         measurements: Bench measurements: published, or the path of a file.
-        task: ket8, ket12, rj45, usb, or the path of a task file; several separated by commas [default: that
-            of the measurements, if they are of one].
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; several separated by
+            commas [default: that of the measurements, if they are of one].
         space: Search space: infill, codesign, finger, or the path of a space file.
         robot: see `optimize robots`, or the path of a robot file [default: servo].
         cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
@@ -536,8 +536,8 @@ def identify(
     unchanged.
 
     Args:
-        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, separated by
-            commas.
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have
+            several, separated by commas.
         runs: Table of the logs: log, infill_density_percent, infill_direction_deg, offset_mm, outcome.
         out: Write the cell, for cell, priors and uncertainty.
         space: Search space: infill, codesign, finger, or the path of a space file.
@@ -600,8 +600,8 @@ def next_print(
 
     Args:
         measurements: Bench measurements: published, or the path of a file.
-        task: ket8, ket12, rj45, usb, or the path of a task file; several separated by commas [default: that
-            of the measurements, if they are of one].
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; several separated by
+            commas [default: that of the measurements, if they are of one].
         space: Search space: infill, codesign, finger, or the path of a space file.
         robot: see `optimize robots`, or the path of a robot file [default: servo].
         cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
@@ -645,7 +645,7 @@ def measuring_sheet(
     """Write a printable sheet for measuring windows by hand, as ``optimize measure sheet`` does.
 
     Args:
-        task: ket8, ket12, rj45, usb, or the path of a task file.
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file.
         fingers: Infill density, percent, and direction, degrees, of a finger.
         out: File to write.
 
@@ -681,8 +681,8 @@ def export_mjcf(
     command and close the jaws. MuJoCo is not needed for the export.
 
     Args:
-        task: ket8, ket12, rj45, usb, or the path of a task file; a study may have several, separated by
-            commas.
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have
+            several, separated by commas.
         density: Infill density, percent.
         direction: Infill direction, degrees.
         out: File to write.
@@ -728,7 +728,7 @@ def export_finger(
     slicers are for the outline, which is written beside them; the slicer fills it with its own ribs.
 
     Args:
-        study: Folder of a study: its best design.
+        study: Folder of a study: its recommended design.
         out: File to write.
         density: Infill density, percent.
         direction: Infill direction, degrees.
@@ -831,7 +831,7 @@ def new_task(
         chamfer_mm: Chamfer of 45 degrees at the opening of a plug with flat sides, mm.
         body: Body that the fingers hold, above the plug: width x height x length, mm [default: the plug
             itself; for pins their block, 20 mm long].
-        like: Task to start from: ket8, ket12, rj45, usb, or the path of a task file.
+        like: Task to start from: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file.
         out: File to write [default: NAME.toml].
         engine: Contact engine for the nominal start.
 

@@ -146,6 +146,6 @@ def test_the_program_and_a_lack_of_open_cascade_name_the_extra(parts, meshes, fa
     (tmp_path / "cascadio.py").write_text("raise ModuleNotFoundError(\"No module named 'cascadio'\")")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     code, _, errors = command("task", "import", *words)
-    assert code == 2 and "pip install 'finger_opt[step]'" in errors
+    assert code == 2 and "pip install './python[step]'" in errors
     with pytest.raises(ImportError, match=r"pip install 'finger_opt\[step\]'"):
         imported(fake, tmp_path, file, meshes[1])

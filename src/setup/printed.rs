@@ -17,7 +17,7 @@ use study::StudyRecord;
 /// Finger to print: the best of a study, or with a given infill.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct PrintRequest {
-    /// Folder of a study: its best design
+    /// Folder of a study: its recommended design
     #[arg(value_name = "DIR", conflicts_with_all = ["density", "direction"])]
     pub dir: Option<PathBuf>,
     /// Its infill.

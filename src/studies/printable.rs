@@ -31,7 +31,9 @@ pub(crate) fn write(dir: &Path, answer: &Answer, evaluator: &Evaluator) -> Resul
     if let Ok(ribs) = mechanics::compute(&geometry) {
         let design = answer.verdict.finger();
         let measured = design.and_then(|design| evaluator.predict(design).ok()).map(|p| p.at_pad());
-        let at_pad = PadStiffness { ribs: &ribs, measured };
+        let study = dir.file_name().unwrap_or_default().to_string_lossy();
+        let origin = &format!("for {}, study {study}", answer.record.config.task_name());
+        let at_pad = PadStiffness { origin, ribs: &ribs, measured };
         write_own_file(&dir.join(SHEET), &sheet::html(&geometry, &at_pad))?;
     }
     Ok(())

@@ -16,9 +16,15 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
     let found = answer.recommended.as_ref()?.ties.as_ref()?;
     let named = answer.design_to_print()?.index;
     let mut designs = found.designs.clone();
-    // The design to print first, then by increasing loss.
-    designs
-        .sort_by(|a, b| (a.0.index != named).cmp(&(b.0.index != named)).then(a.1.total_cmp(&b.1)));
+    // The design to print first, then the safe choice and the others with a reason, each by increasing loss.
+    let safe = found.safe.as_ref().map(|safe| safe.design.index);
+    let order = |recorded: &Recorded| match recorded.index {
+        index if index == named => 0,
+        index if Some(index) == safe => 1,
+        index if found.alternatives.iter().any(|(_, other, ..)| other.index == index) => 2,
+        _ => 3,
+    };
+    designs.sort_by(|a, b| order(a.0).cmp(&order(b.0)).then(a.1.total_cmp(&b.1)));
     let millimetres = answer.record.config.objective.first().unit() == "mm";
     let on_robot = |recorded: &Recorded| answer.on_robot(&recorded.design);
     designs.truncate(LISTED);
@@ -44,7 +50,9 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
     Some(html! {
         p { (lines::tied(answer, found).1) "." }
         @if let Some((name, text)) = lines::safe(found) { p { b { (name) } " " (text) "." } }
-        @if let Some(text) = lines::spread(answer) { p { b { "infill" } " " (text) "." } }
+        @for (name, text) in [("infill", lines::spread(answer)), ("edge", lines::edge(answer))] {
+            @if let Some(text) = text { p { b { (name) } " " (text) "." } }
+        }
         @if rows.len() > 1 { (stacked(&head, &rows)) }
         @if found.designs.len() > LISTED { p.muted { (found.designs.len() - LISTED) " more in the explorer." } }
     })

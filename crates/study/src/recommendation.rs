@@ -63,11 +63,11 @@ impl StudyRecord {
         (0..current.len()).map(expected).collect()
     }
 
-    /// Returns the smallest and the largest range of the evaluations, mm, aggregated over the tasks; `None` if
-    /// no evaluation has a range.
+    /// Returns the smallest and the largest range, mm, aggregated over the tasks, of the designs that insert at every
+    /// nominal start; `None` if there are none. Others have a range of 0, which says nothing about their window.
     pub fn spread_mm(&self) -> Option<[f64; 2]> {
-        let range = |recorded: &Recorded| self.measure(recorded, Measure::Range);
-        let ranges = || self.current().iter().filter_map(range);
+        let inserting = || self.current().iter().filter(|recorded| recorded.inserts_on_all());
+        let ranges = || inserting().filter_map(|recorded| self.measure(recorded, Measure::Range));
         Some([ranges().reduce(f64::min)?, ranges().reduce(f64::max)?])
     }
 

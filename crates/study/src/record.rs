@@ -139,6 +139,11 @@ impl Recorded {
         self.on(task).is_some_and(|found| found.window.nominal == Outcome::Inserted)
     }
 
+    /// Returns whether the design inserts at the nominal start of every task.
+    pub fn inserts_on_all(&self) -> bool {
+        (0..self.tasks.len()).all(|task| self.inserts_on(task))
+    }
+
     /// Returns whether the design inserts at the nominal start of any task.
     pub fn inserts(&self) -> bool {
         (0..self.tasks.len()).any(|task| self.inserts_on(task))

@@ -181,7 +181,10 @@ fn draw_sheet(request: &PrintRequest, geometry: &Geometry, out: &Path) -> Result
     };
     let ribs = mechanics::compute(geometry).map_err(Failure::input)?;
     let measured = request.predicted_stiffness()?.map(|prediction| prediction.at_pad());
-    Ok(write(geometry, &PadStiffness { ribs: &ribs, measured }))
+    let study = request.dir.iter().filter_map(|dir| dir.canonicalize().ok());
+    let study = study.map(|dir| dir.file_name().unwrap_or_default().to_string_lossy().into_owned());
+    let origin = &study.map(|name| format!("study {name}")).collect::<String>();
+    Ok(write(geometry, &PadStiffness { origin, ribs: &ribs, measured }))
 }
 
 /// Writes settings for a slicer with the surfaces of outline and base beside them; returns the files of these.

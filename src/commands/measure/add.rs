@@ -25,7 +25,7 @@ pub struct Request {
     /// The file
     #[arg(value_name = "FILE", default_value = "measurements.csv")]
     pub file: String,
-    /// Task: ket8, ket12, rj45, usb, or the path of a task file
+    /// Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file
     #[arg(long, value_name = "NAME")]
     pub task: Option<String>,
     /// Infill density, percent

@@ -36,7 +36,7 @@ type Example<'a> = (&'a str, (f64, f64), f64, Option<f64>);
     after_help = "Example: optimize measure sheet --task usb --finger 10,0 --out sheet.html"
 )]
 pub struct Request {
-    /// Task: ket8, ket12, rj45, usb, or the path of a task file
+    /// Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file
     #[arg(long, value_name = "NAME")]
     pub task: String,
     /// Infill density, percent, and direction, degrees, of a finger; may be given several times

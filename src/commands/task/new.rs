@@ -69,7 +69,7 @@ pub struct Request {
     /// pins their block, 20 mm long]
     #[arg(long, value_name = "WxHxL", requires = "tip")]
     pub body: Option<Size>,
-    /// Task to start from: ket8, ket12, rj45, usb, or the path of a task file
+    /// Task to start from: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file
     #[arg(long, value_name = "T")]
     pub like: Option<String>,
     /// File to write [default: NAME.toml]

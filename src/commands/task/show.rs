@@ -18,7 +18,7 @@ use study::write_file;
 #[derive(Debug, clap::Args)]
 #[command(display_order = 2, after_help = "Example: optimize task show usb > mine.toml")]
 pub struct Request {
-    /// Task: ket8, ket12, rj45, usb, or the path of a task file
+    /// Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file
     #[arg(value_name = "NAME")]
     pub name: String,
     /// Write a page that shows the task in three dimensions

@@ -69,6 +69,7 @@ pub fn problems(task: &Task) -> Vec<Problem> {
         let seat = SeatSearch::new(task, &case.plug, &case.socket).deepest();
         found.extend(socket::depth(&case, &seat));
     }
+    found.extend(parts::mass(&case));
     found.extend(grasp::problems(&case));
     found.extend(strategy::problems(&case));
     found

@@ -26,7 +26,6 @@ pub(super) fn problems(case: &Case) -> Vec<Problem> {
     }
     found.extend(gaps(&case.plug));
     found.extend(flexure(case));
-    found.extend(mass(case));
     found
 }
 
@@ -106,7 +105,7 @@ fn gaps(plug: &ConvexBody) -> Option<Problem> {
     loose.and_then(problem)
 }
 
-fn mass(case: &Case) -> Option<Problem> {
+pub(super) fn mass(case: &Case) -> Option<Problem> {
     let mass = case.task.plug.mass;
     let volume: f64 = case.plug.parts.iter().map(|part| geometry::volume(&part.solid)).sum();
     let density = mass / volume;

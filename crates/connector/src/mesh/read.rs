@@ -26,8 +26,8 @@ const HEADER: usize = 84;
 const RECORD: usize = 50;
 
 /// Message for STEP files, which the Python package reads.
-const STEP: &str =
-    "is a STEP file, which the Python package reads: pip install 'finger_opt[step]'; or export STL";
+const STEP: &str = "is a STEP file, which the Python package reads: pip install './python[step]' in the project's \
+     folder; or export STL";
 
 /// Returns whether a file is STEP, by its content or its name.
 pub fn is_step(bytes: &[u8], file: &str) -> bool {

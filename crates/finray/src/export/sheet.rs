@@ -1,6 +1,7 @@
 //! Print sheet: one page on how to print a finger and how to check the print.
 
 use super::profile::profile;
+use super::slicer::LAYER;
 use super::{mm, title};
 use crate::geometry::Geometry;
 use crate::holes::{Block, Direction};
@@ -22,6 +23,8 @@ const CORNER: [f64; 2] = [38.0, 58.0];
 /// Stiffness of a finger at its pad, across and along it.
 #[derive(Debug, Clone, Copy)]
 pub struct PadStiffness<'a> {
+    /// Origin of the finger: `for usb, study usb-gp-seed0`; empty if it was given by its infill.
+    pub origin: &'a str,
     /// Stiffness computed from the ribs.
     pub ribs: &'a FingerStiffness,
     /// Mean and standard deviation across and along the pad by the model of measured fingers, N/m, if there is one.
@@ -61,6 +64,7 @@ pub fn svg(geometry: &Geometry, stiffness: &PadStiffness) -> String {
         geometry.finger.description
     );
     drawing.text(Point2::new(15.0, 24.0), &about, Font::new(3.6));
+    drawing.text(Point2::new(282.0, 24.0), stiffness.origin, Font::new(3.6).end());
     let lengths = format!("lengths in mm, drawn {drawn}");
     drawing.text(Point2::new(282.0, 17.0), &lengths, Font::new(3.6).end());
     draw_finger(&mut drawing, geometry, view);
@@ -215,7 +219,7 @@ fn print_rows(geometry: &Geometry) -> Vec<(&'static str, String)> {
         ("lies", "flat, as drawn; layers along the depth".to_owned()),
         ("0°", "ribs straight across the finger".to_owned()),
         ("above 0°", "front (upper) ends lean to the base".to_owned()),
-        ("line width", mm(geometry.finger.line_width)),
+        ("line width", format!("{}, layers {LAYER} mm", mm(geometry.finger.line_width))),
         ("STL, 3MF", "ribs are in the file: thin walls on,".to_owned()),
         ("", "solid infill, no other".to_owned()),
         ("own infill", "3MF with settings: do not turn it. Tried in".to_owned()),
@@ -227,7 +231,7 @@ fn print_rows(geometry: &Geometry) -> Vec<(&'static str, String)> {
 const SCATTER: f64 = 0.175;
 
 fn check_rows(geometry: &Geometry, stiffness: &PadStiffness) -> Vec<(&'static str, String)> {
-    let PadStiffness { ribs, measured } = stiffness;
+    let PadStiffness { ribs, measured, .. } = stiffness;
     let ribs = [ribs.pad.in_compliance(), ribs.pad_and_roof.in_assembly()];
     let [across, along] = ribs.map(|value| format!("{:.2} N/mm, from the ribs", value / N_PER_MM));
     let of = |stiffness: [f64; 2]| {

@@ -14,7 +14,7 @@ use maud::{Markup, html};
 use std::f64::consts::PI;
 
 /// Height of a layer, mm: half the line width of the published fingers, a usual choice.
-const LAYER: f64 = 0.2;
+pub(super) const LAYER: f64 = 0.2;
 /// Version of the settings of Cura 5.0; later versions accept them.
 const CURA_SETTING_VERSION: &str = "20";
 

@@ -8,6 +8,7 @@ use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::REPEATS;
 use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
 use insertion::outcome::Outcome;
+use insertion::space::{Variable, label};
 use insertion::surrogate::Prediction;
 use std::iter;
 use study::{BenchPrediction, ByRibs, Recorded, StudyRecord};
@@ -27,6 +28,7 @@ pub fn brief(answer: &Answer) -> Vec<Line> {
     if let Some(found) = simulated_finger(answer) {
         lines.extend(simulated(answer, found));
         lines.extend(spread(answer).map(|text| line("infill", text)));
+        lines.extend(edge(answer).map(|text| line("edge", text)));
     }
     lines.extend(answer.front.iter().flat_map(|front| members(record, front)));
     lines.push(line("search", searched(answer)));
@@ -170,10 +172,34 @@ pub fn safe(ties: &Ties) -> Option<Line> {
     Some(line("safe choice", format!("{}: {why}{loss}", words::design(&safe.design.design))))
 }
 
-/// Returns the interval of the range over the designs.
+/// Returns the interval of the range over the designs that insert, and the number of the others.
 pub fn spread(answer: &Answer) -> Option<String> {
-    let spread = interval(answer.spread_mm?);
-    Some(format!("changes the range from {spread} over {} designs", answer.designs))
+    let (spread, of) = (interval(answer.spread_mm?), answer.designs);
+    let failing = answer.record.current().iter().filter(|design| !design.inserts_on_all()).count();
+    let others = match failing {
+        0 => format!(" over {of} designs"),
+        _ => format!("; {failing} of {of} designs fail at the start"),
+    };
+    Some(format!("changes the range from {spread}{others}"))
+}
+
+/// Returns the parameters of the finger to print that have the least or the largest value of the space; `None` if there
+/// are none.
+pub fn edge(answer: &Answer) -> Option<String> {
+    let design = answer.design_to_print()?;
+    let at = |parameter: &Variable| {
+        let value = design.design.get(&parameter.key)?;
+        let (name, unit) = label(&parameter.key);
+        let bound = match value {
+            _ if parameter.low == parameter.high => return None,
+            _ if value == parameter.low => "least",
+            _ if value == parameter.high => "largest",
+            _ => return None,
+        };
+        Some(format!("{name} {value}{unit} is the {bound}"))
+    };
+    let found: Vec<String> = answer.record.config.space.parameters.iter().filter_map(at).collect();
+    (!found.is_empty()).then(|| format!("{} of the space searched", found.join(", ")))
 }
 
 fn extrapolated(found: &Recommended) -> Option<Line> {

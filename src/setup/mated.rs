@@ -198,8 +198,8 @@ fn described(
     let depth = mate.engaged_m / MM;
     let long = long / MM;
     let engaged = match depth <= long {
-        true => format!("{depth:.2} mm of the plug's {long:.1} mm engage"),
-        false => format!("the plug of {long:.1} mm goes {depth:.2} mm along a post"),
+        true => format!("{depth:.1} mm of the plug's {long:.1} mm engage"),
+        false => format!("the plug of {long:.1} mm goes {depth:.1} mm along a post"),
     };
     let mut findings = vec![("mate", engaged)];
     if mate.through {
@@ -308,9 +308,9 @@ pub fn unit(
     let units = given.map_or(vec![Unit::Mm, Unit::M, Unit::In], |unit| vec![unit]);
     let Some(unit) = units.into_iter().find(fits) else {
         let problem = format!(
-            "the plug is {plug:.4} long and the socket {socket:.4}, which is outside of 3 to 300 mm, the size of \
-             connectors, in {}",
-            given.map_or("mm, m and in".to_owned(), value)
+            "read as {}, the plug ({plug:.4} long) or the socket ({socket:.4}) is shorter than 3 mm or longer than 300 mm, \
+             the size of connectors",
+            given.map_or("mm, m or in".to_owned(), value)
         );
         return Err(Failure::in_file(files.join(", "), problem));
     };

@@ -101,6 +101,8 @@ pub struct Request {
 /// Imported and written task.
 pub struct ImportedTask {
     mated: MatedTask,
+    /// Names of plug and socket.
+    files: [String; 2],
     /// Strategies that were tried; none if the file has problems.
     tuned: Option<Tuned>,
     /// Check of the written file, with its nominal start.
@@ -125,7 +127,7 @@ impl command::Request for Request {
         mated.made.task = task;
         let written = self.write(out, &mated)?;
         let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine, stop)?;
-        Ok(ImportedTask { mated, tuned, checked, out: out.clone() })
+        Ok(ImportedTask { mated, files: self.names(), tuned, checked, out: out.clone() })
     }
 }
 
@@ -258,7 +260,7 @@ struct Fields<'a> {
 
 impl ImportedTask {
     fn fields(&self) -> Fields<'_> {
-        let ImportedTask { mated, tuned, checked, out } = self;
+        let ImportedTask { mated, tuned, checked, out, .. } = self;
         let task = &mated.made.task;
         let [plug_parts, socket_parts] = [task.plug.parts.len(), task.socket.len()];
         let [clearance_x_mm, clearance_y_mm] = mated.play.map(|play| play / MM);
@@ -305,13 +307,14 @@ impl command::Response for ImportedTask {
 
 impl fmt::Display for ImportedTask {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let ImportedTask { mated, tuned, checked, .. } = self;
+        let ImportedTask { mated, files: [plug, socket], tuned, checked, .. } = self;
         let Fields { out, plug_parts, socket_parts, clearance_x_mm, clearance_y_mm, .. } =
             self.fields();
         let [wide, high, long] = self.body_mm();
         let mut text = format!(
-            "written       {out}\nplug          {plug_parts} convex parts\nsocket        {socket_parts} convex parts\n\
-             clearance     {clearance_y_mm:.3} mm in y, {clearance_x_mm:.3} in x; body {wide:.1} x {high:.1} x {long:.1} mm\n"
+            "written       {out}\nplug          {plug}, {plug_parts} convex parts: held by the fingers\n\
+             socket        {socket}, {socket_parts} convex parts: fixed\n\
+             clearance     {clearance_y_mm:.2} mm in y, {clearance_x_mm:.2} in x; body {wide:.1} x {high:.1} x {long:.1} mm\n"
         );
         for (what, why) in &mated.findings {
             text.push_str(&format!("{what:<14}{why}\n"));

@@ -170,7 +170,7 @@ class SlurmExecutor(Executor):
         return lost
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Stops polling, and cancels the jobs that are left; waits for them first with ``wait``."""
+        """Waits for the jobs with ``wait``, unless ``cancel_futures``; then stops polling and cancels the rest."""
         while wait and not cancel_futures and self._jobs:
             time.sleep(POLL_S)
         self._ended.set()

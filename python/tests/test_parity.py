@@ -147,7 +147,7 @@ WRONG = [
     (lambda: fo.evaluate("usb", 20, 10, repeat=1.5), TypeError, "repeat: has to be a whole number or None, not float"),
     (lambda: fo.evaluate("usb", 20, 10, set=8), TypeError, "set: has to be a mapping or None, not int"),
     (lambda: fo.evaluate(7, 20, 10), TypeError, "task: has to be .*text or a path or Task, not int"),
-    (lambda: fo.evaluate("usb", 20, 10, engine="direkt"), fo.InputError, "engine: unknown value `direkt`; available: .*did you mean `direct`"),
+    (lambda: fo.evaluate("usb", 20, 10, engine="direkt"), fo.InputError, "engine: unknown value `direkt`; .*did you mean `direct`"),
     (lambda: fo.evaluate(density=20), TypeError, r"evaluate\(\) missing a required argument: 'task'"),
     (lambda: fo.Study.create("usb", budget="12"), TypeError, "budget: has to be a whole number or None, not str"),
     (lambda: fo.finger(20, 20, load_n=(1, 2, 3)), TypeError, "load_n: has to be 2 numbers, not 3"),

@@ -125,16 +125,16 @@ def tracks(bag: Path, topics: dict[str, str]) -> tuple[Track, Track, Track | Non
     return found[force], found[pose], found[target] if target else None
 
 
-def chosen(what: str, kind: str, there: Iterable[str], topics: Mapping[str, str], needed: bool = True) -> str:
+def chosen(role: str, kind: str, available: Iterable[str], topics: Mapping[str, str], needed: bool = True) -> str:
     """Returns the selected topic, or the only one of its type; raises ValueError if it is ambiguous or missing."""
-    names = sorted(set(there))
-    if what in topics:
-        return topics[what]
+    names = sorted(set(available))
+    if role in topics:
+        return topics[role]
     if len(names) > 1:
-        raise ValueError(f"has several topics for the {what}: {', '.join(names)}; record one, or select it with "
-                         f"finger_opt.robot.bag_to_csv(.., {what}=..)")
+        raise ValueError(f"has several topics for the {role}: {', '.join(names)}; record one, or select it with "
+                         f"finger_opt.robot.bag_to_csv(.., {role}=..)")
     if not names and needed:
-        raise ValueError(f"has no topic of type {kind} for the {what}; an attempt needs force and pose")
+        raise ValueError(f"has no topic of type {kind} for the {role}; an attempt needs force and pose")
     return names[0] if names else ""
 
 

@@ -115,10 +115,11 @@ def measure_window(
             date = attempts.settings["date"]
             ended = bench.written(date)
             runs = Runs(bench.out.parent, bench.task.name, bench.finger, attempts)
-            course = _WindowMeasurement(robot, search, attempts, runs, bench.task.success.depth_mm, timeout_s, progress)
+            measuring = _WindowMeasurement(
+                robot, search, attempts, runs, bench.task.success.depth_mm, timeout_s, progress)
             if prober is not None and attempts.probed is None:
-                course.probe(prober)
-            measured = course.run(0 if ended else attempts_max)
+                measuring.probe(prober)
+            measured = measuring.run(0 if ended else attempts_max)
             bench.write(measured, date)
     except OSError as error:
         raise StudyError(f"{error.filename or bench.out}: {error.strerror or error}") from error

@@ -1,4 +1,4 @@
-"""Logs of attempts from ROS 2 bags, MCAP files and ROS 1 bags, through ``rosbags``."""
+"""Reads logs of attempts from ROS 2 bags, MCAP files and ROS 1 bags, through ``rosbags``."""
 
 from __future__ import annotations
 
@@ -14,16 +14,17 @@ from ._words import StrPath
 
 Table = NDArray[np.float64]
 
-#: Names by which a topic of poses is that of the command.
+#: Words in the name of a pose topic that mark it as the commanded pose.
 COMMANDED = ("target", "command", "desired", "setpoint", "reference", "goal")
-#: Names of a tool in a tree of frames, in the order in which they are looked for.
+#: Frame names of a tool in /tf, in order of preference.
 TOOLS = ("tcp", "tool0_controller", "tool0", "flange", "ee_link")
+#: Columns of the table, and further columns with a commanded pose.
 HEADER = ["timestamp", *(f"actual_TCP_pose_{i}" for i in range(6)), *(f"actual_TCP_force_{i}" for i in range(3))]
 TARGET = [f"target_TCP_pose_{i}" for i in range(6)]
 
 
 class Track:
-    """What a topic says over time: stamps, ns, rows of numbers, and the frame that they are in."""
+    """Time series of a topic: stamps, ns, rows of numbers, and their frame."""
 
     def __init__(self, topic: str) -> None:
         self.topic, self.frame = topic, ""
@@ -31,39 +32,40 @@ class Track:
         self.rows: list[list[float]] = []
 
     def add(self, header: Any, row: list[float]) -> None:
+        """Appends a message; raises ValueError if its frame changes or its stamp does not increase."""
         frame = str(header.frame_id).lstrip("/")
         if self.frame not in ("", frame):
-            raise ValueError(f"{self.topic} changes its frame from {self.frame} to {frame}; record one")
+            raise ValueError(f"{self.topic} changes its frame from {self.frame} to {frame}; record it in one frame")
         stamp = header.stamp.sec * 10**9 + header.stamp.nanosec
         if self.stamps and stamp <= self.stamps[-1]:
-            raise ValueError(f"{self.topic}: the stamp {stamp} ns does not rise; cut the bag to one attempt")
+            raise ValueError(f"{self.topic}: the stamp {stamp} ns does not increase; cut the bag to one attempt")
         self.frame = frame
         self.stamps.append(stamp)
         self.rows.append(row)
 
     def at(self, stamps: list[int]) -> Table:
-        """Its numbers at these times; a message of the same stamp as it is, else linear between two."""
+        """Returns the rows at these stamps, ns: that of a message with this stamp, else linearly interpolated."""
         rows = np.array(self.rows)
         known = np.array(self.stamps) - self.stamps[0]
-        wanted = np.array(stamps) - self.stamps[0]
-        after = np.clip(np.searchsorted(known, wanted), 1, max(len(known) - 1, 1))
+        times = np.array(stamps) - self.stamps[0]
+        after = np.clip(np.searchsorted(known, times), 1, max(len(known) - 1, 1))
         if len(known) == 1:
             return np.repeat(rows, len(stamps), axis=0)
         before = after - 1
-        share = ((wanted - known[before]) / (known[after] - known[before]))[:, None]
+        share = ((times - known[before]) / (known[after] - known[before]))[:, None]
         found = rows[before] + share * (rows[after] - rows[before])
-        # Not by arithmetic.
-        for same in (before, after):
-            found = np.where((known[same] == wanted)[:, None], rows[same], found)
+        # Rows of equal stamps without rounding errors.
+        for exact in (before, after):
+            found = np.where((known[exact] == times)[:, None], rows[exact], found)
         return np.asarray(found, dtype=np.float64)
 
 
 def text(bag: StrPath, topics: Mapping[str, str] | None = None) -> str:
-    """The log of a bag as a table in the base's frame, with the columns of an RTDE recorder: s, m, rad, N.
+    """Returns the log of a bag as CSV in the base frame, with the columns of an RTDE recorder: s, m, rad, N.
 
-    The force is that of the only WrenchStamped, the pose of the only PoseStamped whose name is not one of a command,
-    or of a tool in /tf; ``topics`` names others by ``force``, ``pose`` and ``target``. A force in another frame than
-    the pose's is one in the tool's, and is turned.
+    The force is the only WrenchStamped; the pose is the only PoseStamped that is not named like a command, or else a
+    tool in /tf; ``topics`` selects other topics by ``force``, ``pose`` and ``target``. A force in another frame than
+    the pose is assumed to be in the tool frame, and is rotated. Raises ValueError if a log cannot be made.
     """
     force, pose, target = tracks(Path(bag), dict(topics or {}))
     span = [stamp for stamp in force.stamps if pose.stamps[0] <= stamp <= pose.stamps[-1]]
@@ -71,12 +73,13 @@ def text(bag: StrPath, topics: Mapping[str, str] | None = None) -> str:
         raise ValueError(f"{force.topic} and {pose.topic} have no time in common")
     poses, forces = vectors(pose.at(span)), force.at(span)
     if force.frame not in ("", pose.frame):
-        forces = np.array([turn(one[3:]) @ by for one, by in zip(poses, forces)])
+        forces = np.array([turn(at[3:]) @ vector for at, vector in zip(poses, forces)])
     columns = [(np.array(span) - span[0])[:, None] / 1e9, poses, forces]
     header = list(HEADER)
     if target is not None:
         if target.frame != pose.frame:
-            raise ValueError(f"{target.topic} is in {target.frame}, {pose.topic} in {pose.frame}; record both in one")
+            frames = f"{target.topic} is in {target.frame}, {pose.topic} in {pose.frame}"
+            raise ValueError(f"{frames}; record both in the same frame")
         columns.append(vectors(target.at(span)))
         header += TARGET
     lines = (",".join(map(repr, map(float, row))) for row in np.hstack(columns))
@@ -84,6 +87,7 @@ def text(bag: StrPath, topics: Mapping[str, str] | None = None) -> str:
 
 
 def tracks(bag: Path, topics: dict[str, str]) -> tuple[Track, Track, Track | None]:
+    """Reads force, pose and, if recorded, commanded pose."""
     try:
         from rosbags.highlevel import AnyReader
         from rosbags.typesys import Stores, get_typestore
@@ -110,54 +114,54 @@ def tracks(bag: Path, topics: dict[str, str]) -> tuple[Track, Track, Track | Non
             if topic in ("/tf", "/tf_static"):
                 follow(found[pose], message, chain)
             elif topic == force:
-                of = message.wrench.force
-                found[topic].add(message.header, [of.x, of.y, of.z])
+                vector = message.wrench.force
+                found[topic].add(message.header, [vector.x, vector.y, vector.z])
             else:
                 at, turned = message.pose.position, message.pose.orientation
                 found[topic].add(message.header, [at.x, at.y, at.z, turned.x, turned.y, turned.z, turned.w])
     for track in found.values():
         if not track.stamps:
-            raise ValueError(f"{track.topic} is empty")
+            raise ValueError(f"{track.topic} has no messages")
     return found[force], found[pose], found[target] if target else None
 
 
-def chosen(what: str, kind: str, there: Iterable[str], topics: Mapping[str, str], needed: bool = True) -> str:
-    """The topic that was named, or the only one of its kind."""
-    names = sorted(set(there))
-    if what in topics:
-        return topics[what]
+def chosen(role: str, kind: str, available: Iterable[str], topics: Mapping[str, str], needed: bool = True) -> str:
+    """Returns the selected topic, or the only one of its type; raises ValueError if it is ambiguous or missing."""
+    names = sorted(set(available))
+    if role in topics:
+        return topics[role]
     if len(names) > 1:
-        raise ValueError(f"has several topics for the {what}: {', '.join(names)}; record one, or convert it by "
-                         f"finger_opt.robot.bag_to_csv(.., {what}=..)")
+        raise ValueError(f"has several topics for the {role}: {', '.join(names)}; record one, or select it with "
+                         f"finger_opt.robot.bag_to_csv(.., {role}=..)")
     if not names and needed:
-        raise ValueError(f"has no topic of type {kind} for the {what}; an attempt needs force and pose")
+        raise ValueError(f"has no topic of type {kind} for the {role}; an attempt needs force and pose")
     return names[0] if names else ""
 
 
 def follow(track: Track, message: Any, chain: dict[str, tuple[str, Table]]) -> None:
-    """Takes in transforms, and adds the pose of the tool in the root of its tree."""
-    for one in message.transforms:
-        by, turned = one.transform.translation, one.transform.rotation
-        place = np.array([by.x, by.y, by.z, turned.x, turned.y, turned.z, turned.w])
-        chain[one.child_frame_id.lstrip("/")] = one.header.frame_id.lstrip("/"), place
+    """Updates the transforms, and appends the pose of the tool in the root frame to the track."""
+    for link in message.transforms:
+        shift, turned = link.transform.translation, link.transform.rotation
+        pose = np.array([shift.x, shift.y, shift.z, turned.x, turned.y, turned.z, turned.w])
+        chain[link.child_frame_id.lstrip("/")] = link.header.frame_id.lstrip("/"), pose
     tool = next((name for name in TOOLS if name in chain), None)
     if tool is None:
         return
-    frame, place = chain[tool]
+    frame, pose = chain[tool]
     while frame in chain:
         frame, outer = chain[frame]
-        place = np.concatenate([outer[:3] + rotation(outer[3:]) @ place[:3], product(outer[3:], place[3:])])
+        pose = np.concatenate([outer[:3] + rotation(outer[3:]) @ pose[:3], product(outer[3:], pose[3:])])
     header = message.transforms[0].header
     stamp = header.stamp.sec * 10**9 + header.stamp.nanosec
-    # Static transforms have stamps of their own.
+    # Messages of static transforms may have older stamps.
     if not track.stamps or stamp > track.stamps[-1]:
         track.frame = frame
         track.stamps.append(stamp)
-        track.rows.append([float(number) for number in place])
+        track.rows.append([float(number) for number in pose])
 
 
 def vectors(poses: Table) -> Table:
-    """Places and rotation vectors of places and quaternions; of two vectors the one near the last."""
+    """Converts poses with quaternions to poses with rotation vectors, each continuous with the one before."""
     found: list[Table] = []
     for pose in poses:
         quaternion = pose[3:] / np.linalg.norm(pose[3:])
@@ -174,7 +178,7 @@ def vectors(poses: Table) -> Table:
 
 
 def turn(vector: Table) -> Table:
-    """The matrix of a rotation vector (Rodrigues)."""
+    """Returns the matrix of a rotation vector, rad (Rodrigues)."""
     angle = float(np.linalg.norm(vector))
     if angle == 0.0:
         return np.eye(3)
@@ -184,10 +188,11 @@ def turn(vector: Table) -> Table:
 
 
 def rotation(quaternion: Table) -> Table:
+    """Returns the matrix of a quaternion x, y, z, w."""
     return turn(vectors(np.concatenate([np.zeros(3), quaternion])[None, :])[0][3:])
 
 
 def product(first: Table, second: Table) -> Table:
-    """The product of two quaternions x, y, z, w."""
+    """Returns the product of two quaternions x, y, z, w."""
     v, w, u, s = first[:3], first[3], second[:3], second[3]
     return np.append(w * u + s * v + np.cross(v, u), w * s - v @ u)

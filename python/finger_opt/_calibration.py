@@ -1,4 +1,4 @@
-"""Measurements from the bench, and what follows from them."""
+"""Measurements from the bench; results of the calibration and of the advice on the next print."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Line(Result):
-    """A line of a measurement file: a finger, its ``values`` by key, and what was measured of it, mm and N."""
+    """Line of a measurement file: design parameters of a finger (``values``, by key) and its measured window."""
 
     line: int
     task: str
@@ -35,7 +35,7 @@ class Line(Result):
 
 
 class Measurements:
-    """A file of measurements from the bench, or ``"published"``: those of the publication.
+    """File of measurements from the bench, or ``"published"``: the measurements of the publication.
 
     >>> import finger_opt as fo
     >>> len(fo.Measurements("published").check())
@@ -44,21 +44,21 @@ class Measurements:
 
     @checked
     def __init__(self, file: StrPath = "measurements.csv", *, tasks: Iterable[StrPath] = ()) -> None:
-        """``tasks`` are files of one's own tasks that its lines name without a comment line."""
+        """Refers to a file; ``tasks`` are files of your own tasks that are not named in its comment lines."""
         self.file: str = os.fspath(file)
         self._tasks: list[StrPath] = [os.fspath(task) for task in tasks]
 
     def check(self) -> tuple[Line, ...]:
-        """The lines, once nothing looks wrong: units, windows without the start, lines given twice, unknown tasks.
+        """Checks the file, and returns its lines.
 
         Raises:
-            InputError: What is wrong, with its line.
+            InputError: A line has an implausible unit, a window without the start, a duplicate or an unknown task.
         """
-        found = called("measure check", {"file": self.file, "task": self._tasks, "rows": True}, Found)
-        return tuple(sorted((Line.from_json(line) for line in found["rows"]), key=lambda line: line.line))
+        output = called("measure check", {"file": self.file, "task": self._tasks, "rows": True}, Found)
+        return tuple(sorted((Line.from_json(line) for line in output["rows"]), key=lambda line: line.line))
 
     def to_dataframe(self) -> DataFrame:
-        """A row for each line, checked, with the columns of the file."""
+        """Checks the file, and returns a row for each line, with the columns of the file."""
         from ._frame import pandas
 
         frame: DataFrame = pandas().DataFrame([line.to_dict() for line in self.check()])
@@ -83,29 +83,30 @@ class Measurements:
         note: str | None = None,
         set: Numbers | None = None,
     ) -> int:
-        """Adds a line, as ``optimize measure add`` does; the file need not exist. Gives how many it has then.
+        """Adds a line, like ``optimize measure add``, to a file that need not exist; returns the number of its lines.
 
         Args:
-            task: A shipped name, or the path of a task file.
+            task: Name of a shipped task, or path of a task file.
             density: Infill density, percent.
             direction: Infill direction, degrees.
             negative_mm: Most negative start that inserted, mm.
             positive_mm: Most positive start that inserted, mm.
             range_mm: Width of the window, mm.
-            not_measurable: The finger was tried, but no range could be measured.
+            not_measurable: Whether the finger was tried, but has no measurable range.
             failure_negative: Failure class below the window, 1 to 4.
             failure_positive: Failure class above the window, 1 to 4.
-            repeats: Measurements that the values are the mean of.
+            repeats: Number of measurements that were averaged.
             peak_force_n: Largest contact force, N.
-            date: Day, YYYY-MM-DD.
-            note: Anything.
-            set: Further design parameters.
+            date: Date of the measurement, YYYY-MM-DD.
+            note: Free text.
+            set: Further design parameters by key.
 
         Raises:
-            InputError: A line that looks wrong; nothing is added.
+            InputError: The line is implausible; nothing is added.
         """
         if not_measurable:
-            without("not_measurable", "there is no range", range_mm=range_mm, negative_mm=negative_mm, positive_mm=positive_mm)
+            without("not_measurable", "there is no range",
+                    range_mm=range_mm, negative_mm=negative_mm, positive_mm=positive_mm)
         return int(called("measure add", {"file": self.file, **given(locals())}, Found)["lines"])
 
     def __fspath__(self) -> str:
@@ -117,7 +118,7 @@ class Measurements:
 
 @dataclass(frozen=True, repr=False)
 class LeftOut(Result):
-    """A measured finger, predicted without it: 80 % of such ranges lie between low and high."""
+    """Leave-one-out prediction of a measured finger; ``low_mm`` to ``high_mm`` is the 80 % prediction interval."""
 
     values: dict[str, float] = field(metadata=REST)
     measured_mm: float
@@ -128,14 +129,14 @@ class LeftOut(Result):
 
 @dataclass(frozen=True, repr=False)
 class Prediction(Result):
-    """What a finger is expected to do on the bench: 80 % of such ranges lie between low and high."""
+    """Predicted range of a finger on the bench; ``low_mm`` to ``high_mm`` is the 80 % prediction interval."""
 
     values: dict[str, float] = field(metadata=REST)
     range_mm: float
     low_mm: float
     high_mm: float
     probability_best: float
-    #: By simulation alone.
+    #: Simulated range, mm, without the correction from measurements.
     simulated_mm: float | None
     failure_negative: int | None
     failure_positive: int | None
@@ -143,7 +144,7 @@ class Prediction(Result):
 
 @dataclass(frozen=True, repr=False)
 class Calibrated(Result):
-    """The predictions for a task, and how far they are to be trusted: fingers left out of the fit."""
+    """Predictions for a task, and their leave-one-out accuracy."""
 
     task: str
     designs: int
@@ -160,7 +161,7 @@ class Calibrated(Result):
 
 @dataclass(frozen=True, repr=False)
 class Parameter(Result):
-    """What nobody measured: 10, 50 and 90 % points before and after; ``moved``: the measurements say something."""
+    """Quantiles (10, 50, 90 %) of a parameter that was not measured; ``moved``: shifted or narrowed by the data."""
 
     name: str
     task: str | None
@@ -175,7 +176,7 @@ class Parameter(Result):
 
 @dataclass(frozen=True, repr=False)
 class Together(Result):
-    """Two parameters that the measurements do not tell apart."""
+    """Two parameters that the measurements cannot distinguish, with their posterior correlation."""
 
     parameters: tuple[str, str]
     correlation: float
@@ -183,17 +184,17 @@ class Together(Result):
 
 @dataclass(frozen=True, repr=False)
 class Calibration(Result):
-    """What every finger does on the bench, from simulation and measurements."""
+    """Predictions for every finger on the bench, from simulation and measurements."""
 
     tasks: tuple[Calibrated, ...]
     parameters: tuple[Parameter, ...]
     not_told_apart: tuple[Together, ...]
 
     def to_dataframe(self) -> DataFrame:
-        """A row for each finger and task, as ``predictions`` has it."""
+        """Returns a row for each finger and task, with the fields of ``predictions``."""
         from ._frame import pandas
 
-        rows = [{"task": one.task, **each.to_dict()} for one in self.tasks for each in one.predictions]
+        rows = [{"task": task.task, **finger.to_dict()} for task in self.tasks for finger in task.predictions]
         frame: DataFrame = pandas().DataFrame(rows)
         return frame
 
@@ -201,15 +202,15 @@ class Calibration(Result):
         return _tables(self)
 
 
-def _tables(found: Calibration) -> str:
-    """A table of the fingers that are expected to be best, for each task."""
+def _tables(calibration: Calibration) -> str:
+    """Returns an HTML table of the five fingers with the largest predicted range, for each task."""
     pieces: list[str] = []
-    for task in found.tasks:
-        best = sorted(task.predictions, key=lambda one: -one.range_mm)[:5]
+    for task in calibration.tasks:
+        best = sorted(task.predictions, key=lambda finger: -finger.range_mm)[:5]
         rows = "".join(
-            f"<tr><td>{html.escape(', '.join(f'{key} {value:g}' for key, value in one.values.items()))}</td>"
-            f"<td>{one.range_mm:.1f} mm</td><td>{one.low_mm:.1f} to {one.high_mm:.1f}</td>"
-            f"<td>{one.probability_best:.0%}</td></tr>" for one in best
+            f"<tr><td>{html.escape(', '.join(f'{key} {value:g}' for key, value in finger.values.items()))}</td>"
+            f"<td>{finger.range_mm:.1f} mm</td><td>{finger.low_mm:.1f} to {finger.high_mm:.1f}</td>"
+            f"<td>{finger.probability_best:.0%}</td></tr>" for finger in best
         )
         error = task.loo_mean_deviation_percent
         trust = "" if error is None else f": {error:.0f} % off on average for fingers left out"
@@ -223,7 +224,7 @@ def _tables(found: Calibration) -> str:
 
 @dataclass(frozen=True, repr=False)
 class Print(Result):
-    """A finger to print next: 80 % of such ranges lie between low and high."""
+    """Finger to print next; ``low_mm`` to ``high_mm`` is the 80 % prediction interval of its range."""
 
     values: dict[str, float] = field(metadata=REST)
     expected_mm: float
@@ -236,7 +237,7 @@ class Print(Result):
 
 @dataclass(frozen=True, repr=False)
 class Choice(Result):
-    """The finger with the largest expected range, to be used if nothing more is printed."""
+    """Finger with the largest expected range, the choice if no more fingers are printed."""
 
     values: dict[str, float] = field(metadata=REST)
     expected_mm: float
@@ -245,11 +246,11 @@ class Choice(Result):
 
 @dataclass(frozen=True, repr=False)
 class Advice(Result):
-    """Which fingers to print next; ``stop``: none is worth its print."""
+    """Fingers to print next; ``stop`` if no print is worth its expected gain."""
 
     task: str
     measured: int
-    #: Fingers that were printed and insert from no start: not proposed again.
+    #: Printed fingers that insert from no start; they are not recommended again.
     not_measurable: tuple[dict[str, float], ...]
     measurements_missing: bool
     best_known_mm: float | None

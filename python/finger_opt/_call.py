@@ -1,4 +1,4 @@
-"""What every call has in common: its keywords are checked, and those that were given go on to the library."""
+"""Checks of arguments, and calls of the commands in the library."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from ._result import Result, plain, suffixed
 P = ParamSpec("P")
 R = TypeVar("R")
 T = TypeVar("T", bound=Result)
-#: Options that are pictures to write.
+#: Options that name a picture file to write.
 PICTURES = ("svg", "plot")
 
 
 def checked(call: Callable[P, R]) -> Callable[P, R]:
-    """Refuses keywords that there are not, with the one that was meant, and values of a wrong type by name."""
+    """Wraps a function to check its arguments: TypeError for wrong keywords and types, InputError for wrong values."""
     signature = inspect.signature(call)
     hints: dict[str, Any] = {}
 
@@ -37,7 +37,8 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
         for name in kwargs:
             if name not in signature.parameters:
-                raise TypeError(f"{call.__name__}() got an unexpected keyword argument '{name}'{_meant(name, signature)}")
+                suggestion = _suggestion(name, signature)
+                raise TypeError(f"{call.__name__}() got an unexpected keyword argument '{name}'{suggestion}")
         try:
             given = signature.bind(*args, **kwargs).arguments
         except TypeError as error:
@@ -50,63 +51,63 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
         try:
             return call(*args, **kwargs)
         except InputError as error:
-            _in_python(error, signature)
+            _rename_options(error, signature)
             raise
 
     return wrapper
 
 
-def _in_python(error: InputError, signature: inspect.Signature) -> None:
-    """Calls what the text names as the command line does by the parameter that it is."""
-    named: list[str] = []
+def _rename_options(error: InputError, signature: inspect.Signature) -> None:
+    """Replaces options of the command line in the text of an error by the names of the parameters."""
+    renamed: list[str] = []
 
-    def parameter(found: re.Match[str]) -> str:
-        option = found[1].replace("-", "_")
+    def parameter(match: re.Match[str]) -> str:
+        option = match[1].replace("-", "_")
         name = next((name for name in (option, f"{option}_", f"{option}s") if name in signature.parameters), None)
-        named.extend([] if name is None else [name])
-        return found[0] if name is None else name
+        renamed.extend([] if name is None else [name])
+        return match[0] if name is None else name
 
     text = re.sub(r"(?<![\w-])--([a-z][a-z-]*)", parameter, str(error))
-    if named:
+    if renamed:
         error.args = (text,)
-        error.key = named[0] if error.key is None or f"{error.key}s" == named[0] else error.key
+        error.key = renamed[0] if error.key is None or f"{error.key}s" == renamed[0] else error.key
 
 
 def without(key: str, reason: str, **others: object) -> None:
-    """Refuses the first of these words that is given, which ``key`` goes without."""
+    """Raises InputError for the first of these arguments that is set, since ``key`` excludes them."""
     for name, value in others.items():
         if value is not None and value is not False:
             raise wrong(name, f"cannot be given with {key}: {reason}")
 
 
 def called(command: str, words: Mapping[str, Any], kind: type[T]) -> T:
-    """Runs a command of ``optimize`` with these options; gives its result."""
+    """Runs a command of ``optimize`` with these options; returns its result."""
     for name in PICTURES:
         suffixed(words.get(name), ".svg")
     text, picture = run(command, keywords(words))
-    found = json.loads(text)
-    return kind.from_json(found if is_table(found) else {"text": found}, picture)
+    output = json.loads(text)
+    return kind.from_json(output if is_table(output) else {"text": output}, picture)
 
 
 def keywords(words: Mapping[str, Any]) -> str:
-    """Options for the library, without those that say nothing."""
+    """Returns the options as JSON for the library, without those that are None or False."""
     return dumps({name: word(value) for name, value in words.items() if value is not None and value is not False})
 
 
 def given(words: Mapping[str, Any], *without: str) -> dict[str, Any]:
-    """The words of a call without these."""
+    """Returns the arguments of a call, its ``locals()``, without these."""
     return {name: value for name, value in words.items() if name not in {"self", "cls", *without}}
 
 
 def wrong(key: str, problem: str) -> InputError:
-    """The error of a wrong value."""
+    """Returns the error of a wrong value."""
     error = InputError(f"{key}: {problem}")
     error.key = key
     return error
 
 
 def misplaced(file: str | os.PathLike[str], line: int | None, key: str | None, problem: str) -> InputError:
-    """The error of a wrong value in a file."""
+    """Returns the error of a wrong value in a file."""
     parts = (os.fspath(file), None if line is None else f"line {line}", key, problem)
     error = InputError(": ".join(part for part in parts if part is not None))
     error.file, error.line, error.key = os.fspath(file), line, key
@@ -114,7 +115,7 @@ def misplaced(file: str | os.PathLike[str], line: int | None, key: str | None, p
 
 
 def shown(value: object) -> str:
-    """A value in a message: never long, whatever it is."""
+    """Returns a value as text for a message, at most 60 characters of its repr."""
     try:
         text = repr(value)
     except Exception:
@@ -123,22 +124,22 @@ def shown(value: object) -> str:
 
 
 def number(value: object) -> float | None:
-    """The finite number that a value is, also one of NumPy or a fraction; None if it is none."""
+    """Converts a number of any type (NumPy, Decimal, Fraction) to a float; None if it is not a finite number."""
     if is_numpy(value):
-        # Of an array with several it is a list.
+        # An array with several elements becomes a list, which is rejected below.
         value = value.tolist()
     if not isinstance(value, (Real, Decimal)) or isinstance(value, bool):
         return None
     try:
-        found = float(value)
+        converted = float(value)
     except Exception:
-        # Larger than any float, or a number of the caller's making.
+        # Too large for a float, or a class of the caller that fails.
         return None
-    return found if math.isfinite(found) else None
+    return converted if math.isfinite(converted) else None
 
 
 def _hints(call: Callable[..., Any]) -> dict[str, Any]:
-    """The types of its parameters. What it gives may be of a module that is not imported."""
+    """Returns the types of the parameters; the return type may be from a module that is not imported."""
 
     def parameters() -> None: ...
 
@@ -146,78 +147,81 @@ def _hints(call: Callable[..., Any]) -> dict[str, Any]:
     return get_type_hints(parameters, call.__globals__)
 
 
-def _meant(name: str, signature: inspect.Signature) -> str:
-    names = [one for one in signature.parameters if one not in ("self", "cls")]
+def _suggestion(name: str, signature: inspect.Signature) -> str:
+    """Returns the most similar keyword, or all keywords, as the end of a message."""
+    names = [known for known in signature.parameters if known not in ("self", "cls")]
     near = difflib.get_close_matches(name, names, 1)
-    return f"; did you mean `{near[0]}`?" if near else f"; there are {', '.join(names)}"
+    return f"; did you mean `{near[0]}`?" if near else f"; available: {', '.join(names)}"
 
 
 def _check(name: str, value: object, hint: Any) -> None:
+    """Checks an argument against its type hint; raises TypeError for a wrong type, InputError for a wrong value."""
     if not _fits(value, hint):
-        more = "; fo.sweep takes several" if name in ("density", "direction") and _several(value) else ""
-        raise TypeError(f"{name}: has to be {' or '.join(_named(hint))}, not {_kind(value)}{more}")
+        advice = "; fo.sweep takes several" if name in ("density", "direction") and _is_collection(value) else ""
+        raise TypeError(f"{name}: has to be {' or '.join(_described(hint))}, not {_type_name(value)}{advice}")
     _check_size(name, value)
     if isinstance(value, (str, os.PathLike)):
         _check_text(name, cast(Any, value), path=hint is not str)
-    words = _words(hint)
-    if isinstance(value, str) and words and value not in words:
-        near = difflib.get_close_matches(value, words, 1)
+    choices = _choices(hint)
+    if isinstance(value, str) and choices and value not in choices:
+        near = difflib.get_close_matches(value, choices, 1)
         meant = f"; did you mean `{near[0]}`?" if near else ""
-        known = ", ".join(word for word in words if word != "fake")
-        raise wrong(name, f"`{value}` is none of {known}{meant}")
+        available = ", ".join(choice for choice in choices if choice != "fake")
+        raise wrong(name, f"unknown value `{value}`; available: {available}{meant}")
 
 
 def _check_size(name: str, value: object) -> None:
-    """Refuses whole numbers that no float holds, by themselves or among several."""
+    """Raises InputError for whole numbers too large for a float, also inside mappings, lists and tuples."""
     if isinstance(value, Integral):
         try:
             float(value)
         except OverflowError:
-            raise wrong(name, f"is {shown(value)}; has to be a number of size 1e308 or less") from None
+            raise wrong(name, f"is {shown(value)}; its absolute value must be 1e308 or less") from None
     elif isinstance(value, Mapping):
-        for key, one in cast("Mapping[object, object]", value).items():
-            _check_size(str(key), one)
+        for key, item in cast("Mapping[object, object]", value).items():
+            _check_size(str(key), item)
     elif isinstance(value, (list, tuple)):
-        for one in cast("Sequence[object]", value):
-            _check_size(name, one)
+        for item in cast("Sequence[object]", value):
+            _check_size(name, item)
 
 
 def _check_text(name: str, value: str | os.PathLike[Any], path: bool) -> None:
-    """Refuses what is no text and, as the name of a file, no path."""
+    """Raises InputError for text with a NUL character or lone surrogates, and for paths of bytes."""
     try:
         text = os.fspath(value)
     except Exception:
-        # A path of the caller's making.
+        # A class of the caller that fails.
         text = b""
     if not isinstance(text, str):
-        raise wrong(name, "has to be a path of text, not of bytes")
+        raise wrong(name, "must be a path of text, not of bytes")
     if "\0" in text:
-        raise wrong(name, "has a NUL character, which no name has")
+        raise wrong(name, "contains a NUL character, which is not allowed")
     if not path and not text.isascii() and any("\ud800" <= letter <= "\udfff" for letter in text):
-        raise wrong(name, "has to be text that UTF-8 can hold")
+        raise wrong(name, "must be text that can be encoded as UTF-8")
 
 
-def _kind(value: object) -> str:
-    """What it is, in words."""
+def _type_name(value: object) -> str:
+    """Returns the type of a value, or the length of a tuple, for a message."""
     return f"{len(value)}" if is_tuple(value) else type(value).__name__
 
 
-def _words(hint: Any) -> tuple[str, ...]:
-    """The words, if nothing but these and ``None`` is right."""
+def _choices(hint: Any) -> tuple[str, ...]:
+    """Returns the values of a Literal, also of an optional one; none for other types."""
     if get_origin(hint) in (Union, types.UnionType):
-        rest = [one for one in get_args(hint) if one is not type(None)]
-        return _words(rest[0]) if len(rest) == 1 else ()
+        rest = [member for member in get_args(hint) if member is not type(None)]
+        return _choices(rest[0]) if len(rest) == 1 else ()
     return get_args(hint) if get_origin(hint) is Literal else ()
 
 
-def _several(value: object) -> TypeGuard[Collection[object]]:
+def _is_collection(value: object) -> TypeGuard[Collection[object]]:
     return isinstance(value, (list, tuple, np.ndarray))
 
 
 def _fits(value: object, hint: Any) -> bool:
+    """Returns whether a value has the type of a hint; for a Literal, whether it is text."""
     origin, args = plain(hint), get_args(hint)
     if origin in (Union, types.UnionType):
-        return any(_fits(value, one) for one in args)
+        return any(_fits(value, member) for member in args)
     if origin is Literal:
         return isinstance(value, str)
     if hint is bool:
@@ -226,31 +230,29 @@ def _fits(value: object, hint: Any) -> bool:
         number = isinstance(value, Real if hint is float else Integral)
         return number and not isinstance(value, (bool, np.bool_))
     if origin is tuple:
-        if not _several(value) or getattr(value, "ndim", 1) == 0 or (args[-1] is not Ellipsis and len(value) != len(args)):
+        if not _is_collection(value) or getattr(value, "ndim", 1) == 0:
             return False
-        return all(_fits(one, args[0]) for one in value)
+        length_fits = args[-1] is Ellipsis or len(value) == len(args)
+        return length_fits and all(_fits(item, args[0]) for item in value)
     kind = origin if isinstance(origin, type) else hint
     if hint is Any or not isinstance(kind, type) or getattr(kind, "_is_protocol", False):
         return True
-    one = isinstance(value, str) or getattr(value, "ndim", 1) == 0
-    return isinstance(value, kind) and not (one and kind in _SEVERAL)
+    # Text and 0-d arrays have the interface of a sequence, but count as one value.
+    single = isinstance(value, str) or getattr(value, "ndim", 1) == 0
+    return isinstance(value, kind) and not (single and kind in (Iterable, Sequence))
 
 
-#: What text is not, though it has letters one after the other, nor an array of a single number.
-_SEVERAL = (Iterable, Sequence)
-
-
-def _named(hint: Any) -> list[str]:
-    """What is right, in words."""
+def _described(hint: Any) -> list[str]:
+    """Returns the accepted types of a hint, for a message."""
     origin, args = plain(hint), get_args(hint)
     if origin in (Union, types.UnionType):
-        return list(dict.fromkeys(name for one in args for name in _named(one)))
+        return list(dict.fromkeys(name for member in args for name in _described(member)))
     if origin is Literal:
-        return [", ".join(repr(word) for word in args)]
+        return [", ".join(repr(choice) for choice in args)]
     if origin is tuple and args[-1] is not Ellipsis:
         return [f"{len(args)} numbers"]
-    known = {float: "a number", int: "a whole number", bool: "True or False", str: "text", os.PathLike: "a path",
+    names = {float: "a number", int: "a whole number", bool: "True or False", str: "text", os.PathLike: "a path",
              type(None): "None"}
     if origin is not None and origin is not os.PathLike:
-        return ["a mapping" if issubclass(origin, Mapping) else "several"]
-    return [known.get(origin or hint, getattr(hint, "__name__", str(hint)))]
+        return ["a mapping" if issubclass(origin, Mapping) else "a sequence"]
+    return [names.get(origin or hint, getattr(hint, "__name__", str(hint)))]

@@ -1,4 +1,4 @@
-"""One's own connector: a task made, checked and tuned."""
+"""Results of creating, checking and tuning a task of your own connector."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Problem(Result):
-    """What is wrong at a key of a task file, and what would be right."""
+    """Problem at a key of a task file, and its remedy."""
 
     key: str
     problem: str
@@ -26,7 +26,7 @@ class Problem(Result):
 
 @dataclass(frozen=True, repr=False)
 class Nominal(Result):
-    """How the insertion from the nominal start ends with a finger of medium stiffness."""
+    """Outcome of the insertion from the nominal start with a finger of medium stiffness."""
 
     outcome: Outcome
     failure: int | None
@@ -41,29 +41,30 @@ class Nominal(Result):
 
 @dataclass(frozen=True, repr=False)
 class Step(Result):
-    """A strategy that was tried: the ranges with a soft, a medium and a stiff finger, mm."""
+    """Strategy that was tried, with its ranges for a soft, a medium and a stiff finger, mm."""
 
     stage: str
     what: str
     least_range_mm: float | None
     range_mm: tuple[float | None, ...]
+    #: Smallest range of further fingers with the socket turned in either direction, mm, if it was checked.
     turned_least_range_mm: float | None = None
 
 
 @dataclass(frozen=True, repr=False)
 class TaskCheck(Result):
-    """What is wrong with a task, and how its nominal start ends; a notebook draws plug, socket and search path."""
+    """Problems of a task, and outcome of its nominal start; a notebook draws plug, socket and search path."""
 
     valid: bool
     problems: tuple[Problem, ...]
     nominal: Nominal | None
-    #: By what a task that does not insert would, if by anything.
+    #: Strategy with which a task that does not insert would insert, if one was found.
     mended_by: Step | None = None
     svg: str = field(default="", repr=False, metadata=PICTURE)
 
     @property
     def inserts(self) -> bool:
-        """Whether nothing is wrong and the plug goes in."""
+        """Whether the task has no problems and its nominal start inserts."""
         return self.valid and self.nominal is not None and self.nominal.outcome == "inserted"
 
     def _repr_html_(self) -> str:
@@ -72,22 +73,22 @@ class TaskCheck(Result):
 
 @dataclass(frozen=True, repr=False)
 class NewTask(Result):
-    """A task file that was written, and its check."""
+    """Written task file, and its check."""
 
     out: str
     check: TaskCheck
-    #: The strategy that was found for it, if it needed one.
+    #: Strategy that was found, if the nominal start did not insert.
     tuned: Step | None = None
 
     @property
     def task(self) -> Task:
-        """The task of the file."""
+        """Task read from the written file."""
         return Task.from_toml(self.out)
 
 
 @dataclass(frozen=True, repr=False)
 class TunedFinger(Result):
-    """The window with one of three fingers, mm from the start."""
+    """Window with one of three fingers, mm from the start."""
 
     compliance_n_per_mm: float
     assembly_n_per_mm: float
@@ -98,7 +99,7 @@ class TunedFinger(Result):
 
 @dataclass(frozen=True, repr=False)
 class Strategy(Result):
-    """Start and tilt of a search, and the windows with a soft, a medium and a stiff finger."""
+    """Start, tilt, push speed and largest force of a strategy; windows with a soft, a medium and a stiff finger."""
 
     start_mm: tuple[float, float, float]
     tilt_deg: float
@@ -109,7 +110,7 @@ class Strategy(Result):
 
 @dataclass(frozen=True, repr=False)
 class TuneLimits(Result):
-    """What a search keeps to, or None: force between plug and socket and speed of a phase."""
+    """Limits of a search, None if unlimited: force between plug and socket, and speed of a phase."""
 
     force_n: float | None
     speed_mm_per_s: float | None
@@ -117,7 +118,7 @@ class TuneLimits(Result):
 
 @dataclass(frozen=True, repr=False)
 class By(Result):
-    """What made the strategy."""
+    """Origin of the recommended strategy: the stage that found it, and a description."""
 
     stage: Literal["as-it-is", "start", "families", "search"]
     what: str
@@ -125,7 +126,7 @@ class By(Result):
 
 @dataclass(frozen=True, repr=False)
 class Kept(Result):
-    """The least range that is kept under a change of the cell, mm."""
+    """Smallest range of the fingers after a change of the cell, mm."""
 
     change: str
     least_range_mm: float
@@ -133,7 +134,7 @@ class Kept(Result):
 
 @dataclass(frozen=True, repr=False)
 class Nearest(Result):
-    """The trial that came nearest, where none inserted."""
+    """Trial that came closest to an insertion, if none inserted."""
 
     outcome: str
     phase: str
@@ -144,7 +145,7 @@ class Nearest(Result):
 
 @dataclass(frozen=True, repr=False)
 class Tuned(Result):
-    """A start and a strategy by which a connector inserts, or what was tried in vain."""
+    """Start and strategy that insert a connector, and all strategies that were tried."""
 
     schema_version: int
     task: str
@@ -160,24 +161,27 @@ class Tuned(Result):
     out: str | None
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
-        """Draws the strategies that were tried; gives the axes."""
+        """Draws the strategies that were tried; returns the axes."""
         return _strategies(self, ax)
 
 
-def _strategies(found: Tuned, ax: Drawing | None) -> Drawing:
-    """The strategies that were tried; a cross fails once the socket is turned, a ring is what was taken."""
+def _strategies(tuned: Tuned, ax: Drawing | None) -> Drawing:
+    """Draws the least range of each strategy; a cross fails with the socket turned, a ring marks the chosen one."""
     axes = axes_of(ax, width=9.0)
     names = {"as-it-is": "as it is", "start": "start taught", "families": "like a shipped task", "search": "searched"}
     colours = dict(zip(names, ("black", *(COLOURS[number] for number in (2, 4, -1))), strict=True))
-    taken = next(at for at, step in enumerate(found.steps, 1) if (step.stage, step.what) == (found.by.stage, found.by.what))
-    for at, step in enumerate(found.steps, 1):
-        axes.plot(at, step.least_range_mm or 0.0, "x" if step.turned_least_range_mm == 0.0 else "o", color=colours[step.stage])
-    axes.plot(taken, found.steps[taken - 1].least_range_mm or 0.0, "o", markersize=13, markerfacecolor="none",
+    chosen = next(at for at, step in enumerate(tuned.steps, 1)
+                  if (step.stage, step.what) == (tuned.by.stage, tuned.by.what))
+    for at, step in enumerate(tuned.steps, 1):
+        marker = "x" if step.turned_least_range_mm == 0.0 else "o"
+        axes.plot(at, step.least_range_mm or 0.0, marker, color=colours[step.stage])
+    axes.plot(chosen, tuned.steps[chosen - 1].least_range_mm or 0.0, "o", markersize=13, markerfacecolor="none",
               color=COLOURS[3], label="taken")
-    for stage in dict.fromkeys(step.stage for step in found.steps):
+    for stage in dict.fromkeys(step.stage for step in tuned.steps):
         axes.plot([], [], "o", color=colours[stage], label=names[stage])
-    if any(step.turned_least_range_mm == 0.0 for step in found.steps):
+    if any(step.turned_least_range_mm == 0.0 for step in tuned.steps):
         axes.plot([], [], "x", color=colours["search"], label="fails with the socket\nturned by 1°")
-    axes.set(xlabel="strategy tried", ylabel="narrowest window of three fingers, mm", title=text(f"{found.task}: {found.by.what}"))
+    axes.set(xlabel="strategy tried", ylabel="narrowest window of three fingers, mm",
+             title=text(f"{tuned.task}: {tuned.by.what}"))
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
     return axes

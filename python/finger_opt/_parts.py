@@ -1,4 +1,4 @@
-"""Tasks from meshes and STEP files of one's own plug and socket."""
+"""Creates tasks from meshes and STEP files of your own plug and socket."""
 
 from __future__ import annotations
 
@@ -17,29 +17,30 @@ from ._step import Body
 from ._task import Task
 from ._words import Engine, StrPath
 
-#: Where the plug points.
+#: Direction of insertion along an axis of the file.
 Along = Literal["x", "-x", "y", "-y", "z", "-z"]
 
 
 @dataclass(frozen=True, repr=False)
 class LeftOut(Result):
-    """Parts that overlap the other half in the mated pose, as unloaded contact springs do; task frame, plug mated."""
+    """Parts that overlap the other half in the mated pose, for example unloaded contact springs; in the task frame."""
 
     body: Literal["plug", "socket"]
-    #: Whether their faces were cut back, as those of a press fit; else the parts were left out.
+    #: Whether their faces were cut back, as for a press fit; otherwise the parts were left out.
     cut_back: bool
     parts: int
-    #: Deepest overlap.
+    #: Depth of the deepest overlap, mm.
     depth_mm: float
+    #: Bounding box: lower and upper corner, mm.
     from_mm: tuple[float, float, float]
     to_mm: tuple[float, float, float]
 
 
 @dataclass(frozen=True, repr=False)
 class Imported(Result):
-    """A task made of parts, as ``optimize task import --json`` says it."""
+    """Imported task, with the fields of ``optimize task import --json``."""
 
-    #: Its file.
+    #: Path of the task file.
     out: str
     parts: int
     plug_parts: int
@@ -47,25 +48,26 @@ class Imported(Result):
     unit: str
     insert_along: str
     jaws: str
-    #: What was found from the shapes, and why.
+    #: Settings that were derived from the shapes, with reasons.
     found: tuple[str, ...]
     clearance_mm: float
     clearance_x_mm: float
     clearance_y_mm: float
-    #: What the fingers hold: width, height, length.
+    #: Size of the body that the fingers hold, mm: width between the jaws, height, length.
     body_mm: tuple[float, float, float]
+    #: Whether the faces of a mesh pointed inward and were flipped.
     plug_was_inward: bool
     socket_was_inward: bool
-    #: What overlaps in the mated pose and was left out of the shapes or cut back.
+    #: Parts that overlap in the mated pose and were left out or cut back.
     left_out: tuple[LeftOut, ...]
-    #: The strategy that was found for it, if it needed one.
+    #: Strategy that was found, if the nominal start did not insert.
     tuned: Step | None
-    #: What is wrong with it, and how its nominal start ends.
+    #: Check of the written file, with its nominal start.
     check: TaskCheck
 
     @property
     def task(self) -> Task:
-        """The task of the file."""
+        """Task read from the written file."""
         return Task.from_toml(self.out)
 
 
@@ -89,59 +91,65 @@ def import_parts(
     tolerance_mm: float = 0.01,
     engine: Engine = "direct",
 ) -> Imported:
-    """Writes a task file from STL, OBJ or STEP files of a plug and its socket, as ``optimize task import`` does.
+    """Writes a task file from STL, OBJ or STEP files of a plug and its socket, like ``optimize task import``.
 
-    STEP (``.step``, ``.stp``) needs Open Cascade: ``pip install 'finger-opt[step]'``. Units and the places of
-    parts are those of the file.
+    STEP (``.step``, ``.stp``) needs Open Cascade: ``pip install 'finger-opt[step]'``. A STEP file defines
+    units and poses of its parts.
 
     Args:
         plug: File of the plug, or of both.
         socket: File of the socket.
-        assembly: File of both in their mated pose, in place of ``plug`` and ``socket``; the plug is the part
+        assembly: File of both in their mated pose, instead of ``plug`` and ``socket``; the plug is the part
             that can be withdrawn.
-        out: Task file to write; the plug's name with ``.toml`` unless given.
-        unit: Unit of the files; found from the shapes unless given.
-        insert_along: Where the plug points in its file.
-        jaws: Along what the jaws close.
-        plug_body: Bodies, parts or assemblies of the file; if it holds both, what they leave is the socket.
+        out: Task file to write; by default the plug's name with ``.toml``.
+        unit: Unit of the files; by default derived from the shapes.
+        insert_along: Direction of insertion in the socket's file; by default derived from the shapes.
+        jaws: Axis of the socket's file along which the jaws close; by default derived from the shapes.
+        plug_body: Bodies, parts or assemblies that form the plug; in a file of both, the rest is the socket.
         socket_body: The same for the socket.
-        leave_out: Bodies of a STEP file to leave out: pins, a thread.
-        like: Task whose grip force, friction, fingers, limits and strategy are taken.
+        leave_out: Bodies of a STEP file to leave out, for example pins or a thread.
+        like: Task from which grip force, friction, fingers, limits and strategy are copied.
         resolution: Without effect: parts are exact within 0.02 mm.
-        body: Handle on a plug that has no faces to grip, width between the jaws x height x length, mm.
-        depth_mm: Depth to be reached in a through hole.
-        tolerance_mm: How far facets may be off the surface of a STEP file, mm.
-        engine: Contact engine that tries the nominal start.
+        body: Handle for a plug without faces to grip: width between the jaws, height, length, mm.
+        depth_mm: Depth to be reached in a through hole, mm.
+        tolerance_mm: Largest deviation of facets from the surfaces of a STEP file, mm.
+        engine: Contact engine for the nominal start.
 
     Raises:
-        InputError: A file that cannot be used, or shapes of which no task can be made.
-        Interrupted: Ctrl-C.
+        InputError: A file cannot be used, or its shapes do not define a task.
+        Interrupted: The import was cancelled by Ctrl-C.
     """
     if (plug is None) == (assembly is None) or (socket is not None and assembly is not None):
         raise InputError("plug: give plug and socket, or assembly")
     files = [Path(file) for file in (assembly, plug, socket) if file is not None]
     steps = [file for file in files if _step.is_step(file)]
-    unneeded, *names = ([given] if isinstance(given, str) else list(given or ()) for given in (leave_out, plug_body, socket_body))
-    if unneeded and len(steps) < len(files):
-        raise InputError("leave_out: goes with STEP files")
+    excluded, *names = (
+        [given] if isinstance(given, str) else list(given or ()) for given in (leave_out, plug_body, socket_body)
+    )
+    if excluded and len(steps) < len(files):
+        raise InputError("leave_out: needs STEP files")
     if steps:
         if unit not in (None, "mm"):
-            raise InputError(f"unit: {steps[0]} is STEP, which names its unit, and is taken in mm")
+            raise InputError(f"unit: {steps[0]} is a STEP file, which contains its unit; omit unit")
         unit = "mm"
-    bodies = _without(unneeded, {file: _step.read(file, tolerance_mm) for file in steps})
+    bodies = _without(excluded, {file: _step.read(file, tolerance_mm) for file in steps})
     sides: list[list[Body] | Path] = [*files]
     if steps and len(files) == 1:
         both = bodies[files[0]]
         if any(names):
-            sides = [_called(files[0], both, *of) for of in (names, names[::-1])]
+            sides = [_selected(files[0], both, *pair) for pair in (names, names[::-1])]
         elif assembly is None:
-            raise InputError(f"plug_body: has to name the plug in {plug}, or give socket; it has {_step.listed(both)}")
+            available = _step.listed(both)
+            raise InputError(f"plug_body: must name the plug in {plug}, or give socket; available: {available}")
         else:
             sides = [both]
     elif steps:
-        sides = [_called(file, bodies[file], of) if file in steps else file for file, of in zip(files, names)]
-    # Names of a STEP file have become those of bodies.
-    own = [[' '.join(body.name.split()) for body in side] if isinstance(side, list) else name for side, name in zip(sides, names)]
+        sides = [_selected(file, bodies[file], own) if file in steps else file for file, own in zip(files, names)]
+    # In a STEP file, the given names of products and assemblies stand for these bodies.
+    body_names = [
+        [' '.join(body.name.split()) for body in side] if isinstance(side, list) else own
+        for side, own in zip(sides, names)
+    ]
     settings: dict[str, Any] = {
         "plug_body": None if files[0] in steps else names[0],
         "socket_body": None if files[-1] in steps else names[1],
@@ -151,7 +159,7 @@ def import_parts(
     }
     with tempfile.TemporaryDirectory() as folder:
         if assembly is not None and len(sides) == 2:
-            settings |= {"plug_body": own[0], "socket_body": own[1]}
+            settings |= {"plug_body": body_names[0], "socket_body": body_names[1]}
             sides = [[body for side in sides if isinstance(side, list) for body in side]]
         meshes = [
             _step.write(side, Path(folder, f"{place}.obj")) if isinstance(side, list) else side
@@ -162,25 +170,29 @@ def import_parts(
         return called("task import", settings, Imported)
 
 
-def _without(unneeded: list[str], bodies: dict[Path, list[Body]]) -> dict[Path, list[Body]]:
-    """The bodies of each file without those that are not needed."""
-    for name in unneeded:
-        if not any(name in body.names for found in bodies.values() for body in found):
-            raise InputError(f"leave_out: no body is called `{name}`; there are {_step.listed(sum(bodies.values(), list[Body]()))}")
-    left = {file: [body for body in found if body.names.isdisjoint(unneeded)] for file, found in bodies.items()}
-    for file, found in left.items():
-        if not found:
-            raise InputError(f"leave_out: leaves nothing of {file}, which has {_step.listed(bodies[file])}")
+def _without(excluded: list[str], bodies: dict[Path, list[Body]]) -> dict[Path, list[Body]]:
+    """Returns the bodies of each file without the excluded ones; raises InputError if none is left."""
+    everything = sum(bodies.values(), list[Body]())
+    for name in excluded:
+        if not any(name in body.names for body in everything):
+            raise InputError(f"leave_out: unknown body `{name}`; available: {_step.listed(everything)}")
+    left = {file: [body for body in group if body.names.isdisjoint(excluded)] for file, group in bodies.items()}
+    for file, group in left.items():
+        if not group:
+            raise InputError(f"leave_out: leaves nothing of {file}; available: {_step.listed(bodies[file])}")
     return left
 
 
-def _called(file: Path, bodies: list[Body], names: list[str], others: list[str] | None = None) -> list[Body]:
-    """The bodies of these names; without names all but those of the others."""
+def _selected(file: Path, bodies: list[Body], names: list[str], others: list[str] | None = None) -> list[Body]:
+    """Returns the bodies with these names; without names, all except the others."""
     for name in names:
         if not any(name in body.names for body in bodies):
-            raise InputError(f"{file}: has no body `{name}`; it has {_step.listed(bodies)}")
+            raise InputError(f"{file}: has no body `{name}`; available: {_step.listed(bodies)}")
     without = set(others or ())
-    found = [body for body in bodies if (not body.names.isdisjoint(names) if names else body.names.isdisjoint(without))]
-    if not found:
-        raise InputError(f"{file}: has nothing but `{'`, `'.join(without)}`; it has {_step.listed(bodies)}")
-    return found
+    selected = [
+        body for body in bodies
+        if (not body.names.isdisjoint(names) if names else body.names.isdisjoint(without))
+    ]
+    if not selected:
+        raise InputError(f"{file}: has no body except `{'`, `'.join(without)}`; available: {_step.listed(bodies)}")
+    return selected

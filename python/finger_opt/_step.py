@@ -1,4 +1,4 @@
-"""STEP files as triangles, by Open Cascade (the extra ``step``)."""
+"""Reads STEP files as triangle meshes through Open Cascade (the extra ``step``)."""
 
 from __future__ import annotations
 
@@ -22,46 +22,46 @@ from ._native import InputError
 
 Floats = NDArray[np.float64]
 
-#: What installs the reader.
+#: Command that installs the reader.
 INSTALL = "pip install 'finger_opt[step]'"
-#: Largest angle between neighbouring facets, rad. It rules radii under 0.13 mm alone, of which a connector has
-#: many: the tolerance rules all others.
+#: Largest angle between neighbouring facets, rad. It limits the facets only at radii below 0.13 mm, of which a
+#: connector has many; elsewhere the tolerance is stricter.
 ANGLE_RAD = 0.8
-#: Triangles of a product above which it is meshed more coarsely: what a body has more is reduced after reading.
-MANY_TRIANGLES = 60_000
-#: How much coarser than asked for, one after the other.
-COARSER = (1, 3, 9)
-#: Time for reading and meshing a file, s.
+#: Number of triangles above which a product is meshed more coarsely; bodies with more are reduced after reading.
+MAX_TRIANGLES = 60_000
+#: Factors on the tolerance, tried in this order.
+TOLERANCE_FACTORS = (1, 3, 9)
+#: Time limit for reading and meshing a file, s.
 LIMIT_S = 60.0
 #: Largest file, bytes.
-LARGEST_FILE = 200 << 20
-#: Most bodies that a message names.
-MOST_NAMED = 12
-#: Meshes a file, in a process of its own: what breaks Open Cascade or takes too long does not harm this one.
+MAX_FILE_BYTES = 200 << 20
+#: Largest number of bodies listed in a message.
+MAX_LISTED = 12
+#: Program that meshes a file in a separate process, so that a crash or timeout of Open Cascade is contained.
 READER = """
 import pathlib, sys, cascadio
 given, glb, tolerance, angle = sys.argv[1:]
 data = cascadio.load(pathlib.Path(given).read_bytes(), tol_linear=float(tolerance), tol_angular=float(angle))
 pathlib.Path(glb).write_bytes(data)
 """
-#: Names that mean nothing: labels of references, and the numbers of occurrences in assemblies.
-NAMELESS = re.compile(r"=>\[|NAUO\d+$")
+#: Generated names: labels of references, and numbers of occurrences in assemblies.
+GENERATED = re.compile(r"=>\[|NAUO\d+$")
 
 
 @dataclass(frozen=True)
 class Body:
-    """A body of a STEP file where its assembly places it."""
+    """Body of a STEP file, in the coordinates of the whole file."""
 
-    #: Its own name, which no other body of the file has.
+    #: Unique name within the file.
     name: str
-    #: All that it may be called by: its own name, its product and the assemblies that it is in.
+    #: Names that refer to the body: its own, and those of its product and the assemblies that contain it.
     names: frozenset[str]
-    #: Corners, mm, shape (n, 3, 3), counter-clockwise from outside.
+    #: Corners of the triangles, mm, shape (n, 3, 3), counter-clockwise from outside.
     triangles: Floats
 
 
 def is_step(path: str | os.PathLike[str]) -> bool:
-    """Whether a file is STEP, by its name or its content."""
+    """Returns whether a file is STEP, by its name or its content."""
     if Path(path).suffix.lower() in (".step", ".stp"):
         return True
     try:
@@ -72,48 +72,49 @@ def is_step(path: str | os.PathLike[str]) -> bool:
 
 
 def read(path: str | os.PathLike[str], tolerance_mm: float) -> list[Body]:
-    """The bodies of a STEP file, meshed within ``tolerance_mm``, in mm whatever its unit.
+    """Returns the bodies of a STEP file, meshed within ``tolerance_mm`` and converted to mm.
 
-    A product of more than ``MANY_TRIANGLES``, as a thread has, is meshed more coarsely, with a warning.
+    A product with more than ``MAX_TRIANGLES``, for example a thread, is meshed more coarsely, with a warning.
+    Raises InputError for a file that cannot be read or meshed.
     """
     if not 1e-4 <= tolerance_mm <= 1:
-        raise InputError(f"tolerance_mm: {tolerance_mm} is not between 0.0001 and 1 mm")
-    until = time.monotonic() + LIMIT_S
+        raise InputError(f"tolerance_mm: {tolerance_mm} mm is out of range; it must be within 0.0001 to 1 mm")
+    deadline = time.monotonic() + LIMIT_S
     products: dict[int, Body] = {}
-    for scale in COARSER:
-        last = scale == COARSER[-1]
-        left = until - time.monotonic()
+    for scale in TOLERANCE_FACTORS:
+        last = scale == TOLERANCE_FACTORS[-1]
+        left = deadline - time.monotonic()
         glb = _mesh(path, scale * tolerance_mm, left if last else left / 2)
         if glb is None:
             continue
-        found = _products(glb)
-        for place, product in enumerate(found):
+        meshed = _products(glb)
+        for place, product in enumerate(meshed):
             count = len(product.triangles)
-            if place in products or (count > MANY_TRIANGLES and not last):
+            if place in products or (count > MAX_TRIANGLES and not last):
                 continue
             products[place] = product
             if scale > 1:
                 warnings.warn(
-                    f"{path}: `{product.name}` is meshed within {scale * tolerance_mm:g} mm, {count} triangles: "
-                    "threads, knurls or text make too many else; better leave them out of the model",
+                    f"{path}: `{product.name}` is meshed within {scale * tolerance_mm:g} mm only ({count} triangles), "
+                    "since it has too many details; remove threads, knurls and text from the model",
                     stacklevel=3,
                 )
-        if len(products) == len(found):
+        if len(products) == len(meshed):
             break
     else:
         raise InputError(
-            f"{path}: is not meshed within {LIMIT_S:g} s; leave threads, knurls and text out of the model, or "
+            f"{path}: meshing took longer than {LIMIT_S:g} s; remove threads, knurls and text from the model, or "
             "export STL"
         )
     bodies = [piece for place in sorted(products) for piece in _pieces(products[place])]
     if not bodies:
-        raise InputError(f"{path}: holds no solid; export the bodies as solids, not as curves")
+        raise InputError(f"{path}: contains no solid; export the bodies as solids, not as curves")
     return _numbered(bodies)
 
 
 def listed(bodies: list[Body]) -> str:
-    """Names and sizes of bodies, for messages."""
-    sizes = [np.ptp(body.triangles.reshape(-1, 3), axis=0) for body in bodies[:MOST_NAMED]]
+    """Returns names and sizes of bodies, mm, for messages."""
+    sizes = [np.ptp(body.triangles.reshape(-1, 3), axis=0) for body in bodies[:MAX_LISTED]]
     named = [
         f"`{body.name}` ({' x '.join(f'{side:.1f}' for side in size)} mm)" for body, size in zip(bodies, sizes)
     ]
@@ -122,7 +123,7 @@ def listed(bodies: list[Body]) -> str:
 
 
 def obj(bodies: list[Body]) -> str:
-    """OBJ in mm with an object for each body, called as the body."""
+    """Returns bodies as OBJ text in mm, with a named object for each body."""
     lines: list[str] = []
     count = 0
     for body in bodies:
@@ -135,16 +136,16 @@ def obj(bodies: list[Body]) -> str:
 
 
 def write(bodies: list[Body], path: Path) -> Path:
-    """Writes bodies as OBJ; gives its path."""
+    """Writes bodies as OBJ; returns the path."""
     path.write_text(obj(bodies), encoding="utf-8")
     return path
 
 
 def _mesh(path: str | os.PathLike[str], tolerance_mm: float, limit_s: float) -> bytes | None:
-    """GLB of a STEP file, read by another process; none after the limit."""
+    """Returns a STEP file as GLB, meshed in a separate process; None after ``limit_s`` seconds."""
     try:
-        if os.path.getsize(path) > LARGEST_FILE:
-            raise InputError(f"{path}: has more than {LARGEST_FILE >> 20} MiB")
+        if os.path.getsize(path) > MAX_FILE_BYTES:
+            raise InputError(f"{path}: is larger than {MAX_FILE_BYTES >> 20} MiB")
         open(path, "rb").close()
     except OSError as error:
         raise InputError(f"{path}: cannot read the STEP file: {error.strerror}") from None
@@ -157,23 +158,23 @@ def _mesh(path: str | os.PathLike[str], tolerance_mm: float, limit_s: float) -> 
             return None
         if done.returncode == 0 and glb.stat().st_size:
             return glb.read_bytes()
-    said = done.stderr + done.stdout
-    if "No module named 'cascadio'" in said:
-        raise ImportError(f"{path} is a STEP file, which Open Cascade reads: {INSTALL}", name="cascadio")
-    last = said.strip().splitlines()[-1:] or [f"exit code {done.returncode}"]
-    syntax = re.search(r"Line \d+: [^*\n]*", said)
+    output = done.stderr + done.stdout
+    if "No module named 'cascadio'" in output:
+        raise ImportError(f"{path} is a STEP file, which needs Open Cascade: {INSTALL}", name="cascadio")
+    last = output.strip().splitlines()[-1:] or [f"exit code {done.returncode}"]
+    syntax = re.search(r"Line \d+: [^*\n]*", output)
     why = syntax.group().strip() if syntax else last[0]
-    raise InputError(f"{path}: is no whole STEP file that Open Cascade can read: {plain(why)}")
+    raise InputError(f"{path}: is not a whole STEP file that Open Cascade can read: {plain(why)}")
 
 
 def plain(text: str) -> str:
-    """What another program said, without the colours and cursor moves that it meant for a terminal."""
+    """Removes terminal control sequences and unprintable characters from the output of another program."""
     text = re.sub(r"\x1b\[[0-9;?]*[ -/]*[@-~]", "", text)
     return "".join(letter if letter.isprintable() else " " for letter in text).strip()
 
 
 def _products(glb: bytes) -> list[Body]:
-    """All that has a mesh in a GLB, where it is placed."""
+    """Returns the products with a mesh in a GLB, each in the coordinates of the whole file, mm."""
     length = int.from_bytes(glb[12:16], "little")
     scene: dict[str, Any] = json.loads(glb[20:20 + length])
     data = glb[28 + length:]
@@ -187,37 +188,37 @@ def _products(glb: bytes) -> list[Body]:
 
     def triangles(mesh: dict[str, Any]) -> Floats:
         corners = [np.empty((0, 3))]
-        for one in mesh.get("primitives", []):
-            # 4 are triangles; curves are something else.
-            if one.get("mode", 4) == 4:
-                points = numbers(scene["accessors"][one["attributes"]["POSITION"]]).reshape(-1, 3)
-                corners.append(points[numbers(scene["accessors"][one["indices"]])].astype(float))
+        for primitive in mesh.get("primitives", []):
+            # Mode 4 is triangles; curves have other modes.
+            if primitive.get("mode", 4) == 4:
+                points = numbers(scene["accessors"][primitive["attributes"]["POSITION"]]).reshape(-1, 3)
+                corners.append(points[numbers(scene["accessors"][primitive["indices"]])].astype(float))
         return np.concatenate(corners)
 
-    found: list[Body] = []
+    products: list[Body] = []
 
     def visit(node: dict[str, Any], above: list[str], place: Floats) -> None:
         if node.keys() & {"translation", "rotation", "scale"}:
-            raise InputError("this version of cascadio places parts in an unknown way: pip install cascadio==0.1.1")
+            raise InputError("this version of cascadio places parts in an unsupported way: pip install cascadio==0.1.1")
         own_place: Floats = np.reshape(node.get("matrix", np.eye(4)), (4, 4), order="F")
         place = place @ own_place
         mesh: dict[str, Any] = scene["meshes"][node["mesh"]] if "mesh" in node else {}
-        own: list[str] = [name for name in (mesh.get("name"), node.get("name")) if name and not NAMELESS.match(name)]
+        own: list[str] = [name for name in (mesh.get("name"), node.get("name")) if name and not GENERATED.match(name)]
         names = [*above, *own]
         if mesh:
-            # The file is in m.
+            # GLB is in m.
             placed = 1e3 * (triangles(mesh) @ np.transpose(place[:3, :3]) + place[:3, 3])
-            found.append(Body(own[-1] if own else "body", frozenset(names), placed.reshape(-1, 3, 3)))
+            products.append(Body(own[-1] if own else "body", frozenset(names), placed.reshape(-1, 3, 3)))
         for child in node.get("children", []):
             visit(scene["nodes"][child], names, place)
 
     for root in scene["scenes"][scene.get("scene", 0)].get("nodes", []):
         visit(scene["nodes"][root], [], np.eye(4))
-    return found
+    return products
 
 
 def _pieces(product: Body) -> list[Body]:
-    """The bodies of a product: what shares no corner."""
+    """Splits a product into its connected bodies, which share no corner."""
     triangles = product.triangles
     if not len(triangles):
         return []
@@ -232,16 +233,16 @@ def _pieces(product: Body) -> list[Body]:
         if np.array_equal(label, before):
             break
     of_face = label[faces[:, 0]]
-    return [Body(product.name, product.names, triangles[of_face == one]) for one in np.unique(of_face)]
+    return [Body(product.name, product.names, triangles[of_face == body]) for body in np.unique(of_face)]
 
 
 def _numbered(bodies: list[Body]) -> list[Body]:
-    """The bodies, those of one name with a number behind it."""
-    many = Counter(body.name for body in bodies)
+    """Returns the bodies with unique names: a number is appended to repeated names."""
+    counts = Counter(body.name for body in bodies)
     seen: Counter[str] = Counter()
     numbered: list[Body] = []
     for body in bodies:
         seen[body.name] += 1
-        name = f"{body.name} {seen[body.name]}" if many[body.name] > 1 else body.name
+        name = f"{body.name} {seen[body.name]}" if counts[body.name] > 1 else body.name
         numbered.append(Body(name, body.names | {name}, body.triangles))
     return numbered

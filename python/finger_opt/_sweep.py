@@ -1,4 +1,4 @@
-"""Many fingers at once."""
+"""Evaluates many fingers in parallel."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ from ._words import Engine, FingerModel, RobotName, SpaceName, Start, StrPath
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-#: A number or several.
+#: One or several numbers.
 Several = Union[float, Sequence[float], NDArray[Any]]
 #: Columns by name.
 Columns = dict[str, NDArray[Any]]
-#: Rows that are measured, and written, at a time; those of one piece of work for workers elsewhere.
+#: Number of rows that are measured and written at a time, and largest number in a part for an executor.
 CHUNK, PART = 2000, 64
-#: Executors of this machine: they get row by row, so that there is little to wait for when it is interrupted.
+#: Local executors, which get single rows, so that an interruption takes effect soon.
 LOCAL = (ProcessPoolExecutor, ThreadPoolExecutor)
-#: Pieces of work of each worker that may have ended before an earlier one.
-AHEAD = 16
-#: What is counted, so no fraction: a class of 1 to 4, -1 for a simulation that diverged, none where none is met.
-COUNTED = ("failure_negative", "failure_positive", "trials")
-#: The first columns; the rest follows by name.
+#: Largest number of parts per worker that may be ahead of the first unfinished part.
+MAX_AHEAD = 16
+#: Integer columns; a failure class is 1 to 4, -1 if the simulation diverged, or missing without a failure.
+INTEGERS = ("failure_negative", "failure_positive", "trials")
+#: First columns of the table; the others follow in alphabetical order.
 FIRST = ("task", "infill_density_percent", "infill_direction_deg", "range_mm", "negative_mm", "positive_mm",
          "failure_negative", "failure_positive", "peak_force_n", "slip_mm", "nominal")
-#: Designs: a column for each number.
+#: Designs, as a column for each parameter.
 Rows = dict[str, list[float]]
 
 
@@ -63,7 +63,7 @@ def sweep(
     cache: StrPath | None = None,
     no_cache: bool = False,
 ) -> DataFrame:
-    """Measures the windows of many fingers in parallel: lists in, a table out with a row for each.
+    """Evaluates the windows of many fingers in parallel; returns a table with a row for each.
 
     >>> import finger_opt as fo
     >>> table = fo.sweep("usb", density=[10, 20], direction=[0, 10], no_cache=True)
@@ -71,63 +71,66 @@ def sweep(
     [10.0, 10.0, 20.0, 20.0]
 
     Args:
-        task: One, or several: a row for each.
-        density: Infill densities, percent: one or several.
-        direction: Infill directions, degrees: one or several.
-        set: Further numbers by their keys, each one or several.
-        grid: All combinations, the last varying fastest; otherwise rows: the first of each, the second of each.
-        out: Write the table to this Parquet file as it comes, in place of giving it, so that it may be larger
-            than the memory; the columns are the same, and what is given is then empty.
-        executor: Any ``concurrent.futures.Executor``: rows are measured there, without the cache.
-        workers: Parts at a time; as many as the executor has unless given.
-        walk: Step by step to the first failure.
-        threads: Threads, which change no result.
-        cache: Folder of evaluations shared with studies; ``results/.cache`` unless given.
-        no_cache: Measure every finger anew, and keep nothing.
+        task: One or several tasks; a row for each.
+        density: One or several infill densities, percent.
+        direction: One or several infill directions, degrees.
+        set: Further parameters by key, each with one or several numbers.
+        grid: Whether to evaluate all combinations, the last parameter varying fastest; otherwise the lists are
+            combined element by element.
+        out: Parquet file to which rows are written as they arrive, so that they may exceed the memory; the returned
+            table then has the same columns, but no rows.
+        executor: ``concurrent.futures.Executor`` that evaluates the rows, without the cache.
+        workers: Number of parts submitted at a time; by default the number of the executor's workers.
+        walk: Whether to step outward to the first failure.
+        threads: Number of threads; it does not affect the results.
+        cache: Folder of evaluations shared with studies; by default ``results/.cache``.
+        no_cache: Whether to evaluate every finger anew and save nothing.
 
-    The rest, and what is raised, is as for :func:`evaluate`. Ctrl-C ends it; with a cache nothing is lost.
+    Other parameters and errors are those of :func:`evaluate`. Ctrl-C interrupts the sweep; evaluations in the cache
+    are kept.
     """
-    words = given(locals(), "task", "density", "direction", "set", "grid", "out", "executor", "workers")
+    settings = given(locals(), "task", "density", "direction", "set", "grid", "out", "executor", "workers")
     for name in ("density", "direction"):
         if name in (set or {}):
-            raise wrong("set", f"{name} has a parameter of its own")
+            raise wrong("set", f"{name} is a separate argument; give it there")
     rows = _rows({"density": density, "direction": direction, **(set or {})}, grid)
-    # What is missing is said before anything is measured.
+    # Imported here, so that a missing package is reported before the first evaluation.
     from ._frame import pandas
 
     frames, tasks = pandas(), listed(task)
     if not tasks:
-        raise wrong("task", "has to name one at least")
+        raise wrong("task", "is empty; give at least one task")
     if out is not None and not os.path.isdir(os.path.dirname(os.path.abspath(out))):
-        raise wrong("out", f"there is no folder {os.path.dirname(os.path.abspath(out))}")
+        raise wrong("out", f"the folder {os.path.dirname(os.path.abspath(out))} does not exist")
     suffixed(out, ".parquet")
     chunks: Iterator[Columns]
     if executor is None:
-        measuring = [_native.Sweep(keywords({"task": sources(one), **words})) for one in tasks]
-        chunks = (chunk for one in measuring for chunk in _measured(one, rows))
+        sweeps = [_native.Sweep(keywords({"task": sources(name), **settings})) for name in tasks]
+        chunks = (chunk for one in sweeps for chunk in _measured(one, rows))
     else:
         if not callable(getattr(executor, "submit", None)):
-            raise wrong("executor", f"has to have a method submit, which {type(executor).__name__} has not")
+            raise wrong("executor", f"{type(executor).__name__} has no method submit; give an Executor")
         if workers is not None and workers < 1:
-            raise wrong("workers", f"is {workers}; has to be at least 1")
-        # The cache is of this machine.
-        alone = [{"task": sources(one), **words, "threads": 1, "cache": None, "no_cache": True} for one in tasks]
-        chunks = _handed_out(executor, workers or workers_of(executor), [keywords(one) for one in alone], rows)
-    found = _written(chunks, out) if out is not None else [_frame(chunk) for chunk in chunks]
-    table: DataFrame = frames.concat(found, ignore_index=True)
+            raise wrong("workers", f"is {workers}; it must be at least 1")
+        # Workers may be on other machines, without this cache.
+        settings |= {"threads": 1, "cache": None, "no_cache": True}
+        requests = [keywords({"task": sources(name), **settings}) for name in tasks]
+        chunks = _distributed(executor, workers or workers_of(executor), requests, rows)
+    parts = _written(chunks, out) if out is not None else [_frame(chunk) for chunk in chunks]
+    table: DataFrame = frames.concat(parts, ignore_index=True)
     return table
 
 
 def _rows(given: Mapping[str, Several], grid: bool) -> Rows:
-    """The designs, a column for each number."""
+    """Returns the designs, a column for each parameter; raises InputError for values that cannot be combined."""
     columns: Columns = {}
-    for name, several in given.items():
+    for name, numbers in given.items():
         try:
-            values = np.atleast_1d(np.asarray(several, dtype=float))
+            values = np.atleast_1d(np.asarray(numbers, dtype=float))
         except (TypeError, ValueError, OverflowError):
             values = np.empty(0)
-        if isinstance(several, str) or values.ndim != 1 or not len(values) or not np.isfinite(values).all():
-            raise wrong(name, "has to be a number or a list of numbers, all finite, at least one")
+        if isinstance(numbers, str) or values.ndim != 1 or not len(values) or not np.isfinite(values).all():
+            raise wrong(name, "has to be a number or a list of numbers, not empty, all finite")
         columns[name] = values
     if grid:
         meshed = np.meshgrid(*columns.values(), indexing="ij")
@@ -140,62 +143,63 @@ def _rows(given: Mapping[str, Several], grid: bool) -> Rows:
 
 
 def _measured(measuring: _native.Sweep, rows: Rows, stop: _native.Stop | None = None) -> Iterator[Columns]:
-    """The rows with their windows, in their order."""
+    """Returns the rows with their windows, in order, in chunks."""
     for at in range(0, len(rows["density"]), CHUNK):
         numbers, texts = measuring.measure({name: values[at : at + CHUNK] for name, values in rows.items()}, stop)
-        found: Columns = {name: np.asarray(column, dtype=object) for name, column in texts.items()}
-        found |= {name: np.frombuffer(column, dtype="<f8") for name, column in numbers.items()}
-        # The clock is no result.
-        yield {name: found[name] for name in sorted(found, key=_place) if name != "wall_s"}
+        columns: Columns = {name: np.asarray(column, dtype=object) for name, column in texts.items()}
+        columns |= {name: np.frombuffer(column, dtype="<f8") for name, column in numbers.items()}
+        # The wall time varies between runs.
+        yield {name: columns[name] for name in sorted(columns, key=_column_order) if name != "wall_s"}
 
 
-def _place(name: str) -> tuple[int, str]:
-    """What a reader looks for stands first."""
+def _column_order(name: str) -> tuple[int, str]:
+    """Returns the sort key of a column: the important columns come first."""
     return (FIRST.index(name) if name in FIRST else len(FIRST), name)
 
 
 class Part:
-    """The unit of work of an executor, which the end of the sweep ends in this process, too."""
+    """Callable submitted to an executor; ``stop`` cancels it if it runs in this process."""
 
     def __init__(self) -> None:
         self.stop = _native.Stop()
-        # Dask names tasks by it.
+        # Dask names its tasks by this attribute.
         self.__name__ = "sweep"
 
-    def __call__(self, words: str, rows: Rows) -> list[Columns]:
-        return list(_measured(_native.Sweep(words), rows, self.stop))
+    def __call__(self, request: str, rows: Rows) -> list[Columns]:
+        """Evaluates rows with the settings of a request, as JSON."""
+        return list(_measured(_native.Sweep(request), rows, self.stop))
 
     def __reduce__(self) -> tuple[type[Part], tuple[()]]:
-        # Another process knows nothing of the sweep.
+        # In another process the copy has its own stop flag.
         return Part, ()
 
 
-def _handed_out(
-    executor: Executor | Any, workers: int, tasks: Iterable[str], rows: Rows
+def _distributed(
+    executor: Executor | Any, workers: int, requests: Iterable[str], rows: Rows
 ) -> Iterator[Columns]:
-    """The same, measured elsewhere; no more pieces of work are out than there are workers."""
+    """Returns the rows with their windows, in order; an executor evaluates up to ``workers`` parts at a time."""
     count = len(rows["density"])
-    # So that every worker has some.
+    # At least about four parts per worker.
     size = 1 if isinstance(executor, LOCAL) else max(1, min(PART, -(-count // (4 * workers))))
-    parts = [(task, at) for task in tasks for at in range(0, count, size)]
+    parts = [(request, at) for request in requests for at in range(0, count, size)]
     part = Part()
     running: dict[Future[list[Columns]], int] = {}
     ended: dict[int, list[Columns]] = {}
-    begun = given = 0
+    begun = returned = 0
     try:
-        while given < len(parts):
-            # What is out cannot be taken back from every executor.
-            while begun < len(parts) and len(running) < workers and begun - given < AHEAD * workers:
-                task, at = parts[begun]
+        while returned < len(parts):
+            # Few at a time, since not every executor can cancel submitted parts.
+            while begun < len(parts) and len(running) < workers and begun - returned < MAX_AHEAD * workers:
+                request, at = parts[begun]
                 columns = {name: values[at : at + size] for name, values in rows.items()}
-                running[executor.submit(part, task, columns)] = begun
+                running[executor.submit(part, request, columns)] = begun
                 begun += 1
             done, _ = wait(running, timeout=LOOK, return_when=FIRST_COMPLETED)
             for future in done:
                 ended[running.pop(future)] = future.result()
-            while given in ended:
-                yield from ended.pop(given)
-                given += 1
+            while returned in ended:
+                yield from ended.pop(returned)
+                returned += 1
     except KeyboardInterrupt:
         raise _native.Interrupted("interrupted") from None
     finally:
@@ -205,20 +209,21 @@ def _handed_out(
 
 
 def _frame(chunk: Columns) -> DataFrame:
+    """Converts a chunk to a DataFrame with nullable integers."""
     from ._frame import pandas
 
-    counted = {name: "Int64" for name in COUNTED if name in chunk}
-    frame: DataFrame = pandas().DataFrame(chunk).astype(counted)
+    integers = {name: "Int64" for name in INTEGERS if name in chunk}
+    frame: DataFrame = pandas().DataFrame(chunk).astype(integers)
     return frame
 
 
 def _written(chunks: Iterator[Columns], file: StrPath) -> list[DataFrame]:
-    """Writes the rows as they come; gives the columns without rows."""
+    """Writes the rows to a Parquet file as they arrive; returns a table of the columns without rows."""
     from ._frame import pyarrow
 
     arrow, writer = pyarrow(), None
     empty: list[DataFrame] = []
-    # Under its name once it is whole.
+    # Renamed when it is complete.
     partial = f"{os.fspath(file)}.part"
     try:
         for chunk in chunks:

@@ -1,6 +1,6 @@
-"""Executors by name, for ``optimize --executor``: ``dask://HOST:PORT``, ``slurm``, ``processes``.
+"""Executors for ``optimize --executor``: ``dask://HOST:PORT``, ``slurm``, ``processes``.
 
-``optimize WORDS.. --executor WHERE`` starts :func:`command` in a process of its own.
+``optimize ARGUMENTS.. --executor WHERE`` runs :func:`command` in a separate process.
 """
 
 from __future__ import annotations
@@ -25,49 +25,50 @@ from . import _native
 from ._run import run_open, say
 from ._shell import open_streams
 
-#: How often the folder of the jobs is looked into for results, s.
-LOOK = 1.0
-#: How often Slurm is asked which jobs it still has, s.
+#: Period of polling the jobs' folder for results, s.
+POLL_S = 1.0
+#: Period of querying Slurm for its jobs, and time limit of the query, s.
 ASK = 30.0
-#: Most processes and most jobs.
-PROCESSES, JOBS = 1024, 10_000
+#: Largest number of processes and of jobs.
+MAX_PROCESSES, MAX_JOBS = 1024, 10_000
 
 
 class Processes(Executor):
-    """Processes of this machine. Where one is lost, which its pool does not survive, a new pool goes on.
+    """Executor of processes on this machine; replaces its pool when a lost process has broken it.
 
-    They end with this process, however it ends.
+    The processes end with this process, even if it is killed.
     """
 
     def __init__(self, workers: int) -> None:
         self._max_workers = workers
-        # Not forked: a copy of a process with threads may stand still.
+        # Not "fork": a forked copy of a process with threads can deadlock.
         self._context = get_context("spawn")
-        # Nothing is ever said: its end is all that counts.
-        self._alive, self._tied = self._context.Pipe(duplex=False)
-        self._pool = self._new()
+        # Nothing is ever sent: the workers exit when the pipe closes.
+        self._alive, self._parent_end = self._context.Pipe(duplex=False)
+        self._pool = self._new_pool()
 
-    def _new(self) -> ProcessPoolExecutor:
+    def _new_pool(self) -> ProcessPoolExecutor:
         with apart():
             return ProcessPoolExecutor(self._max_workers, self._context, tied, (self._alive,))
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Submits a call to the pool."""
         with apart():
             try:
                 return self._pool.submit(fn, *args, **kwargs)
             except BrokenProcessPool:
-                self._pool = self._new()
+                self._pool = self._new_pool()
                 return self._pool.submit(fn, *args, **kwargs)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Ends all processes, whatever they do."""
-        # The pool first: once its processes have gone it trips over work that was cancelled.
+        """Terminates all processes, including busy ones."""
+        # The pool first: it fails on cancelled work once its processes have exited.
         self._pool.shutdown(wait=False, cancel_futures=cancel_futures)
-        self._tied.close()
+        self._parent_end.close()
 
 
 def tied(alive: Connection) -> None:
-    """Ends this process with the one that began it, to which it also leaves Ctrl-C."""
+    """Makes this worker exit with its parent process, and ignore Ctrl-C, which the parent handles."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def end() -> None:
@@ -80,10 +81,10 @@ def tied(alive: Connection) -> None:
 
 @contextmanager
 def apart() -> Generator[None, None, None]:
-    """Processes that begin meanwhile get no Ctrl-C, and import nothing from the user's folder."""
+    """Shields processes that start within the context from Ctrl-C and from modules in the user's folder."""
     masked = hasattr(signal, "pthread_sigmask")
     before: set[int | signal.Signals] = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT]) if masked else set()
-    # Later versions are told by PYTHONSAFEPATH.
+    # For Python 3.11 and later, PYTHONSAFEPATH has this effect.
     folder = os.getcwd() if sys.version_info < (3, 11) else None
     if folder is not None:
         os.chdir(os.sep)
@@ -97,12 +98,12 @@ def apart() -> Generator[None, None, None]:
 
 
 class SlurmExecutor(Executor):
-    """Slurm as an executor, by submitit: each measurement is a job.
+    """Slurm executor, based on submitit: each evaluation is a job.
 
-    ``folder`` (shared by all nodes) takes submitit's files, ``workers`` is how many jobs are
-    handed to Slurm at a time; ``parameters`` go to ``submitit.SlurmExecutor.update_parameters``
-    (``partition="short", time=60, cpus_per_task=1``). A job takes some seconds to start: see
-    ``docs/guide/clusters.md`` for what is better when evaluations take less.
+    ``folder`` (shared by all nodes) is for submitit's files; ``workers`` is the number of jobs submitted at a time;
+    ``parameters`` are passed to ``submitit.SlurmExecutor.update_parameters`` (``partition="short", time=60,
+    cpus_per_task=1``; ``time`` is in minutes). A job takes some seconds to start: ``docs/guide/clusters.md``
+    describes alternatives for shorter evaluations.
     """
 
     def __init__(self, folder: str = "results/.slurm", workers: int = 64, **parameters: Any) -> None:
@@ -114,14 +115,14 @@ class SlurmExecutor(Executor):
         self._executor.update_parameters(**{"time": 60, "job_name": "finger-opt", **parameters})
         self._max_workers = workers
         self._jobs: dict[Future[Any], Any] = {}
-        self._gone: set[str] = set()
+        #: Jobs that were missing in the last reply of Slurm.
+        self._missing: set[str] = set()
         self._lock = threading.Lock()
         self._ended = threading.Event()
-        self._watch = threading.Thread(target=self._look, daemon=True)
-        self._watch.start()
+        threading.Thread(target=self._poll, daemon=True).start()
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Hands a job to Slurm."""
+        """Submits a call as a job to Slurm."""
         future: Future[Any] = Future()
         future.set_running_or_notify_cancel()
         job = self._executor.submit(fn, *args, **kwargs)
@@ -129,14 +130,15 @@ class SlurmExecutor(Executor):
             self._jobs[future] = job
         return future
 
-    def _look(self) -> None:
-        asked = time.monotonic()
-        while not self._ended.wait(LOOK):
+    def _poll(self) -> None:
+        """Polls for results until the shutdown; sets the results and errors of the futures."""
+        queried = time.monotonic()
+        while not self._ended.wait(POLL_S):
             with self._lock:
                 jobs = list(self._jobs.items())
             lost: set[str] = set()
-            if time.monotonic() - asked >= ASK:
-                asked = time.monotonic()
+            if time.monotonic() - queried >= ASK:
+                queried = time.monotonic()
                 lost = self._lost({job.job_id for _, job in jobs})
             for future, job in jobs:
                 done = job.done()
@@ -152,25 +154,25 @@ class SlurmExecutor(Executor):
                     future.set_exception(error)
 
     def _lost(self, jobs: set[str]) -> set[str]:
-        """Jobs that Slurm did not have the last two times it was asked.
+        """Returns the jobs that were missing in the last two replies of Slurm.
 
-        ``sacct`` knows a killed job only where Slurm keeps accounts. A job that has just ended may have
-        a result that the file system does not show yet, hence twice.
+        ``sacct`` would list killed jobs only where accounting is enabled. One reply is not enough: the result of a job
+        that has just ended may not be visible in the file system yet.
         """
         try:
-            said = subprocess.run(["squeue", "--me", "-h", "-o", "%i"], capture_output=True, text=True, timeout=ASK)
+            reply = subprocess.run(["squeue", "--me", "-h", "-o", "%i"], capture_output=True, text=True, timeout=ASK)
         except (OSError, subprocess.TimeoutExpired):
             return set()
-        if said.returncode != 0:
+        if reply.returncode != 0:
             return set()
-        gone = jobs - set(said.stdout.split())
-        lost, self._gone = gone & self._gone, gone
+        missing = jobs - set(reply.stdout.split())
+        lost, self._missing = missing & self._missing, missing
         return lost
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Ends the watch; jobs that still run are cancelled."""
+        """Waits for the jobs with ``wait``, unless ``cancel_futures``; then stops polling and cancels the rest."""
         while wait and not cancel_futures and self._jobs:
-            time.sleep(LOOK)
+            time.sleep(POLL_S)
         self._ended.set()
         with self._lock:
             for job in self._jobs.values():
@@ -178,20 +180,18 @@ class SlurmExecutor(Executor):
 
 
 def needs(extra: str, module: str) -> str:
-    """What to install for an executor."""
+    """Returns the message about a missing package of an executor."""
     return f"--executor {extra} needs {module}: pip install 'finger-opt[{extra}]'"
 
 
 @contextmanager
 def named(name: str) -> Generator[Executor, None, None]:
-    """The executor of this name."""
+    """Opens the executor that ``--executor`` names; shuts it down at the end of the context."""
     scheme, colon, rest = name.partition(":")
     if scheme in ("processes", "slurm"):
-        most = PROCESSES if scheme == "processes" else JOBS
-        if colon and not (re.fullmatch("[0-9]{1,5}", rest) and 1 <= int(rest) <= most):
-            raise _native.InputError(
-                f"--executor {name}: after {scheme}: comes a whole number from 1 to {most}"
-            )
+        largest = MAX_PROCESSES if scheme == "processes" else MAX_JOBS
+        if colon and not (re.fullmatch("[0-9]{1,5}", rest) and 1 <= int(rest) <= largest):
+            raise _native.InputError(f"--executor {name}: `{scheme}:` needs a whole number from 1 to {largest}")
         own: Processes | SlurmExecutor
         if scheme == "processes":
             own = Processes(int(rest) if colon else os.cpu_count() or 1)
@@ -205,7 +205,7 @@ def named(name: str) -> Generator[Executor, None, None]:
         port = re.fullmatch(r"//(?:\[[0-9a-fA-F:.]+\]|[^\s/:\[\]]+):([0-9]{1,5})", rest)
         if port is None or not 1 <= int(port[1]) <= 65535:
             raise _native.InputError(
-                f"--executor {name}: names no scheduler; give its host and port, as in dask://127.0.0.1:8786"
+                f"--executor {name}: needs host and port of a scheduler, as in dask://127.0.0.1:8786"
             )
         try:
             from distributed import Client
@@ -214,28 +214,28 @@ def named(name: str) -> Generator[Executor, None, None]:
         try:
             client = Client("tcp:" + rest, timeout=10)
         except OSError as error:
-            raise _native.StudyError(f"--executor {name}: no scheduler answers there: {error}") from None
+            raise _native.StudyError(f"--executor {name}: no scheduler answers at this address: {error}") from None
         with client:
             yield client.get_executor()
     else:
         raise _native.InputError(
-            f"--executor {name}: is none of dask://HOST:PORT, slurm, slurm:JOBS, processes, processes:N"
+            f"--executor {name}: must be dask://HOST:PORT, slurm, slurm:JOBS, processes or processes:N"
         )
 
 
 def main(words: list[str]) -> int:
-    """Runs the study of these words of ``optimize``; gives its exit code."""
+    """Runs a study from the arguments of ``optimize``; returns the exit code, or raises InputError or StudyError."""
     sources = os.environ.get("FINGER_OPT_SOURCES", _native.source_sha256())
     if sources != _native.source_sha256():
         raise _native.InputError(
-            "the installed Python package finger-opt is of other sources than this program; "
-            "install the one from the same folder: pip install ./python"
+            "the installed Python package finger-opt was built from other sources than this program; "
+            "install it from the project's folder: pip install ./python"
         )
-    asked = _native.StudyRequest.in_words(words)
-    if asked.executor is None:
+    request = _native.StudyRequest.in_words(words)
+    if request.executor is None:
         raise _native.InputError("give --executor")
-    with named(asked.executor) as executor:
-        text, unusable = run_open(asked.open, executor, not asked.quiet, None, 10)
+    with named(request.executor) as executor:
+        text, unusable = run_open(request.open, executor, not request.quiet, None, 10)
     show(text)
     if unusable is not None:
         raise _native.StudyError(unusable)
@@ -243,7 +243,7 @@ def main(words: list[str]) -> int:
 
 
 def show(text: str) -> None:
-    """Prints to standard output, as the program does; a reader that has gone away is no error."""
+    """Prints to standard output like the program; ignores a broken pipe."""
     if sys.stdout is None:
         return
     try:
@@ -256,7 +256,7 @@ def show(text: str) -> None:
 
 
 def let_go(stream: TextIO | None) -> None:
-    """Keeps the interpreter from failing at its end for what a stream could not take."""
+    """Flushes a stream; on failure discards the rest, which would make the interpreter fail at exit."""
     if stream is None:
         return
     try:
@@ -266,35 +266,35 @@ def let_go(stream: TextIO | None) -> None:
 
 
 def nothing(*_: object) -> None:
-    """What a signal does that changes nothing."""
+    """Ignores a signal."""
 
 
 def stop_once(*_: object) -> None:
-    """Ends the study as Ctrl-C does; who asks again changes nothing."""
-    for name in STOPS:
-        # Not SIG_IGN: of a signal that came meanwhile Python would complain.
+    """Ends the study like Ctrl-C; later signals have no effect."""
+    for name in STOP_SIGNALS:
+        # Not SIG_IGN: Python would report an error for a signal that is already pending.
         signal.signal(name, nothing)
     raise KeyboardInterrupt
 
 
-#: What ends the study.
-STOPS = [signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])]
+#: Signals that end the study.
+STOP_SIGNALS = [signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])]
 
 
 def watch_input() -> None:
-    """Ends the study when the input ends: the program wants it to, or has gone."""
+    """Ends the study when standard input closes: the program has cancelled it or has exited."""
     with suppress(OSError):
         os.read(0, 1)
     _thread.interrupt_main()
 
 
 def command() -> int:
-    """The command line of this process; gives its exit code."""
+    """Runs the command line of this process; returns its exit code."""
     try:
         open_streams()
-        for name in STOPS:
+        for name in STOP_SIGNALS:
             signal.signal(name, stop_once)
-        # The program has begun this process, and holds the other end of its input.
+        # Set by the program, which holds the other end of the standard input.
         if "FINGER_OPT_SOURCES" in os.environ:
             threading.Thread(target=watch_input, daemon=True).start()
         return main(sys.argv[1:])

@@ -1,4 +1,4 @@
-"""An insertion as an environment in Gymnasium's interface: for learning a search.
+"""Gymnasium environment of an insertion, for learning a search strategy.
 
 >>> from finger_opt.gym import InsertionEnv                             # doctest: +SKIP
 >>> env = InsertionEnv("usb", density=20, direction=10)                 # doctest: +SKIP
@@ -24,50 +24,49 @@ try:
 except ImportError:
     raise ImportError("finger_opt.gym needs gymnasium: pip install 'finger-opt[gym]'") from None
 
-#: How long an action holds, s of simulated time.
+#: Duration of an action, s of simulated time.
 CONTROL_S = 0.001
-#: What a second of simulated time costs.
+#: Penalty per second of simulated time.
 TIME_COST = 1.0
-#: What an insertion brings, and what a failure costs.
+#: Reward of an insertion, and penalty of a failure.
 END = 10.0
 
-#: Where the numbers of a state are.
+#: Positions of the observation and of the info values in a state.
 OBSERVED, TIP, TILT, SLIP, DISTANCE = slice(1, 10), slice(10, 13), 13, 14, 15
 
-
-#: What is observed, and what acts.
+#: Observations and actions.
 Floats = NDArray[np.float32]
 
 
 class InsertionEnv(gymnasium.Env[Floats, Floats]):
-    """Insert a part that the gripper holds in front of its socket, whose place is not quite known.
+    """Environment in which a gripper inserts a part into a socket whose position is uncertain.
 
     An episode begins where the search of a trial begins: the part is grasped, tilted and brought
-    to the start. What :func:`finger_opt.trial` does with the task's strategy, actions do here.
+    to the start. Actions replace the task's strategy, which :func:`finger_opt.trial` executes.
 
     **Action**: velocity of the commanded TCP along x, y, z, mm/s, each within ``speed_mm_per_s``;
-    shape (3,). It holds for 1 ms (two steps of the engine ``direct``). The robot follows as its
-    model says.
+    shape (3,). It lasts 1 ms (two steps of the engine ``direct``). The robot follows with the
+    dynamics of its model.
 
-    **Observation**, shape (9,), what a robot with a wrist sensor knows: position of the TCP, mm,
-    from the middle of where the opening would be without the shift; turn of the flange, degrees;
-    force of the socket on the plug, N, filtered by 5 ms; each along x, y, z.
+    **Observation**, shape (9,), available to a robot with a wrist sensor: position of the TCP, mm,
+    relative to the centre of the opening without the shift; rotation of the flange, degrees; force of the
+    socket on the plug, N, low-pass filtered with 5 ms; each along x, y, z.
 
-    **Shift**: each episode draws the shift of the start along y from ``offset_mm`` (from, to), or
-    takes ``reset(options={"offset_mm": 0.5})``. The observation does not show it.
+    **Shift**: the shift of the start along y, mm, is drawn in each episode from ``offset_mm`` (from, to), or
+    set by ``reset(options={"offset_mm": 0.5})``. It is not observed.
 
-    **Reward**: millimetres by which the plug's tip came nearer to its seat (the tip's place where
-    the part counts as inserted), less 1 per second of simulated time; 10 for an insertion, -10 for
-    a part that is lost, a force beyond the robot's limit or a simulation that diverged.
+    **Reward**: decrease of the distance, mm, from the plug's tip to its seat (the position of the tip where the
+    part counts as inserted), minus 1 per second of simulated time; plus 10 for an insertion; minus 10 for a lost
+    part, a force above the robot's limit or a diverged simulation.
 
     **End**: terminated when the part has been seated and held for 30 ms, or on such a failure;
     truncated after ``time_limit_s`` of simulated time.
 
-    ``info`` says what a robot does not know: ``tip_mm``, ``tilt_deg``, ``slip_mm``,
+    ``info`` contains values that a robot cannot observe: ``tip_mm``, ``tilt_deg``, ``slip_mm``,
     ``distance_mm`` to the seat, ``offset_mm``, ``time_s``, and ``outcome`` and ``failure`` (class
-    1 to 4) as of a trial, ``None`` while it goes on.
+    1 to 4) as of a trial, ``None`` during the episode.
 
-    Task, finger and the other words are those of :func:`finger_opt.trial`.
+    Task, finger and the other parameters are those of :func:`finger_opt.trial`.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}
@@ -94,55 +93,61 @@ class InsertionEnv(gymnasium.Env[Floats, Floats]):
         finger: StrPath = "finray9",
         start: Start | None = None,
     ) -> None:
-        words = given(locals(), "task", "offset_mm", "speed_mm_per_s", "time_limit_s", "__class__")
+        settings = given(locals(), "task", "offset_mm", "speed_mm_per_s", "time_limit_s", "__class__")
         if not -1000.0 <= offset_mm[0] <= offset_mm[1] <= 1000.0:
-            raise _native.InputError("offset_mm: is (from, to), mm, within 1000 of 0")
+            raise _native.InputError("offset_mm: must be (from, to), mm, ascending, within -1000 to 1000")
         if not (0.0 < speed_mm_per_s < float("inf") and 0.0 < time_limit_s < float("inf")):
-            raise _native.InputError("speed_mm_per_s, time_limit_s: have to be above 0 and finite")
-        self._insertion = _native.Insertion(keywords({"task": sources(task), **words}))
+            raise _native.InputError("speed_mm_per_s, time_limit_s: must be above 0 and finite")
+        self._insertion = _native.Insertion(keywords({"task": sources(task), **settings}))
         self._offsets, self._limit_s = offset_mm, time_limit_s
         self._offset, self._distance, self._ended = 0.0, 0.0, True
         self._speed = float(speed_mm_per_s)
         bound = np.full(3, speed_mm_per_s, dtype=np.float32)
         self.action_space: gymnasium.spaces.Space[Floats] = gymnasium.spaces.Box(-bound, bound)
-        self.observation_space: gymnasium.spaces.Space[Floats] = gymnasium.spaces.Box(-np.inf, np.inf, (9,), dtype=np.float32)
+        self.observation_space: gymnasium.spaces.Space[Floats] = gymnasium.spaces.Box(
+            -np.inf, np.inf, (9,), dtype=np.float32
+        )
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Floats, dict[str, Any]]:
-        """The part at the start, with a shift drawn or given as ``options["offset_mm"]``."""
+        """Begins an episode; the shift, mm, is drawn or ``options["offset_mm"]``. Returns observation and info."""
         super().reset(seed=seed)
         drawn = self.np_random.uniform(*self._offsets)
         self._offset = float((options or {}).get("offset_mm", drawn))
-        observation, info = self._seen(self._insertion.start(self._offset))
+        observation, info = self._observation(self._insertion.start(self._offset))
         self._distance, self._ended = info["distance_mm"], info["outcome"] is not None
         return observation, info
 
     def step(
         self, action: NDArray[np.floating[Any]] | Sequence[float]
     ) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
-        """Commands a velocity (3), mm/s, for 1 ms."""
+        """Commands a velocity, mm/s, shape (3,), for 1 ms.
+
+        Raises :class:`InputError` if the episode has ended or the action is invalid.
+        """
         if self._ended:
-            raise _native.InputError("step: the episode has ended, or was not begun; call reset()")
+            raise _native.InputError("step: no episode is running; call reset()")
         velocity = np.clip(np.asarray(action, dtype=np.float64), -self._speed, self._speed)
         if velocity.shape != (3,):
-            raise _native.InputError(f"step: an action has the shape (3,), not {velocity.shape}")
-        observation, info = self._seen(self._insertion.step(velocity.tolist()))
+            raise _native.InputError(f"step: an action must have shape (3,), not {velocity.shape}")
+        observation, info = self._observation(self._insertion.step(velocity.tolist()))
         outcome, distance = info["outcome"], info["distance_mm"]
         terminated = outcome is not None
         truncated = not terminated and info["time_s"] > self._limit_s - 0.5 * CONTROL_S
         reward = self._distance - distance - TIME_COST * CONTROL_S
         if outcome == "diverged":
-            # Where it is then says nothing.
+            # The position of a diverged simulation is meaningless.
             reward = -TIME_COST * CONTROL_S
         if terminated:
             reward += END if outcome == "inserted" else -END
         self._distance, self._ended = distance, terminated or truncated
         return observation, reward, terminated, truncated, info
 
-    def _seen(
+    def _observation(
         self, state: tuple[list[float], str | None, int | None]
     ) -> tuple[Floats, dict[str, Any]]:
+        """Converts a state of the simulation to observation and info."""
         numbers, outcome, failure = state
         info = {
             "time_s": numbers[0],

@@ -131,7 +131,7 @@ def changed(bag):
     (lambda: (m for m in usual() if m[0] != "/tcp_pose"), "no topic of type PoseStamped for the pose"),
     (lambda: ((f"/{i % 2}", *m[1:]) if m[1] == W else m for i, m in enumerate(usual())), "several topics for the force: /0, /1"),
     (lambda: changed(None), "/tcp_pose changes its frame from base to tool0"),
-    (lambda: (m if m[1] != W else (m[0], W, m[2], wrench(STAMPS[0], FORCES[0])) for m in usual()), "does not rise"),
+    (lambda: (m if m[1] != W else (m[0], W, m[2], wrench(STAMPS[0], FORCES[0])) for m in usual()), "does not increase"),
 ])
 def test_what_cannot_be_a_log_is_refused_with_its_topic(tmp_path: Path, messages, words: str) -> None:
     bag = record(tmp_path / "bag", messages())

@@ -85,11 +85,11 @@ def test_what_names_no_plug_is_told_the_bodies(occ, parts, fake, tmp_path):
     for name in (None, "pulg", "assembly"):
         with pytest.raises(fo.InputError, match=r"`plug` \(8.0 x 12.0 x 26.0 mm\), `socket`"):
             imported(fake, tmp_path, both, plug_body=name)
-    with pytest.raises(fo.InputError, match="called `pins`; there are `plug`"):
+    with pytest.raises(fo.InputError, match="unknown body `pins`; available: `plug`"):
         imported(fake, tmp_path, both, plug_body="plug", leave_out="pins")
     with pytest.raises(fo.InputError, match="leaves nothing of"):
         imported(fake, tmp_path, both, plug_body="plug", leave_out="assembly")
-    with pytest.raises(fo.InputError, match="names its unit"):
+    with pytest.raises(fo.InputError, match="contains its unit"):
         imported(fake, tmp_path, both, plug_body="plug", unit="in")
     found, _ = imported(fake, tmp_path, both, socket_body="socket")
     assert found.clearance_mm == pytest.approx(0.2, abs=0.03)

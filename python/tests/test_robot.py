@@ -141,13 +141,13 @@ def test_a_lie_is_marked_and_tried_again(out, lie, said):
 
 def test_a_robot_that_keeps_lying_is_stopped(out):
     robot = Steps(answer=lambda count, done: dataclasses.replace(done, depth_mm=0.0) if done.inserted else done)
-    with pytest.raises(fo.StudyError, match="3 attempts in a row cannot be"):
+    with pytest.raises(fo.StudyError, match="3 attempts in a row are implausible"):
         measure_window(robot, out=out, **FINGER)
     assert len(log_of(out)) == 4 and not out.exists()
 
 
 def test_what_is_no_attempt_stops_it(out):
-    with pytest.raises(fo.StudyError, match="returned True, which is no Attempt"):
+    with pytest.raises(fo.StudyError, match="returned True, which is not an Attempt"):
         measure_window(Steps(answer=lambda *_: True), out=out, **FINGER)
 
 

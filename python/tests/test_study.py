@@ -167,7 +167,7 @@ def test_what_the_cache_knows_is_not_given_out(create, expected, tmp_path):
 
 
 def test_words_are_checked_before_anything_is_written(create, tmp_path):
-    with pytest.raises(fo.InputError, match="optimizer: `bayes` is none of gp, cma-es"):
+    with pytest.raises(fo.InputError, match="optimizer: unknown value `bayes`; available: gp, cma-es"):
         create("wrong", optimizer="bayes")
     with pytest.raises(fo.InputError, match="async_: cma-es"):
         create("wrong", optimizer="cma-es", async_=True)

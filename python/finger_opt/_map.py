@@ -112,7 +112,7 @@ class Lever(Result):
 class Levers(Result):
     """Levers: effects of parameters on the range of one finger, the largest first.
 
-    ``infill_range_mm`` is the range with the softest and the stiffest infill, for comparison; ``base`` is the range
+    ``infill_range_mm`` are the smallest and the largest range over infills, for comparison; ``base`` is the range
     without a change.
     """
 

@@ -82,7 +82,7 @@ VALUES = (
 
 
 @pytest.mark.parametrize("field", [field.name for field in dataclasses.fields(Attempt)])
-@pytest.mark.filterwarnings("ignore:.*the robot names this log")
+@pytest.mark.filterwarnings("ignore:.*the robot returned this log")
 def test_no_field_of_any_type_ends_in_anything_but_a_window_or_a_study_error(tmp_path, field):
     for number, value in enumerate(VALUES):
         folder = tmp_path / str(number)
@@ -100,7 +100,7 @@ def test_no_field_of_any_type_ends_in_anything_but_a_window_or_a_study_error(tmp
         assert measure_window(robot, out=folder / "bench.csv", **FINGER).settled
 
 
-@pytest.mark.filterwarnings("ignore:.*the robot names this log")
+@pytest.mark.filterwarnings("ignore:.*the robot returned this log")
 def test_robots_that_lie_at_random_lose_no_attempt(tmp_path):
     chance = random.Random(3)
     fields = [field.name for field in dataclasses.fields(Attempt)]

@@ -328,7 +328,7 @@ def test_an_unclosed_quotation_mark_is_told_before_the_robot_moves(out, name):
     lines = file.read_text().splitlines()
     file.write_text("\n".join([*lines[:1], lines[1].replace("20,10", '"20,10'), *lines[2:]]) + "\n")
     robot = Recording()
-    with pytest.raises(fo.InputError, match=f"{name}: line 2: a quoted cell runs over the end of the line"):
+    with pytest.raises(fo.InputError, match=f"{name}: line 2: a quoted cell is not closed at the end of the line"):
         measure_window(robot, out=out, **{**FINGER, "density": 30})
     assert robot.offsets == []
 

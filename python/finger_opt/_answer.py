@@ -27,6 +27,7 @@ class Trust(Result):
     #: Number of measured fingers, and their mean leave-one-out error, percent; only if ``level`` is ``calibrated``.
     measured: int | None = None
     loo_mean_deviation_percent: float | None = None
+    #: Similar measured fingers; only if ``level`` is ``published``.
     nearest_measured: tuple[Measured, ...] = ()
     #: Lowest and highest error on the shipped tasks, percent; only if ``level`` is ``simulated``.
     error_percent_on_shipped_tasks: tuple[float, float] | None = None
@@ -67,6 +68,7 @@ class AsGood(Result):
     within_mm: float
     designs: int
     of: int
+    #: Share of the space that is nearer to a tie than to any other evaluated design, 0 to 1.
     share_of_space: float | None
     evaluations: tuple[int, ...]
     #: Smallest and largest value by key.

@@ -120,6 +120,7 @@ class Attempts:
             self.tried = []
 
     def _begin(self) -> None:
+        """Locks the file, checks its settings and reads its attempts; writes the settings if it is new."""
         if not locked(self._file, wait=False):
             problem = "another process is measuring this finger; wait until it has ended"
             raise misplaced(self.path, None, None, problem)
@@ -127,9 +128,9 @@ class Attempts:
         text = self._file.read()
         complete = text[: text.rfind(b"\n") + 1]
         lines = list(self._lines(complete))
-        for key, now in self.settings.items() if lines else ():
-            if key != "version" and lines[0].get(key) != now:
-                problem = (f"was started with {key} {shown(lines[0].get(key))}, not {now}; "
+        for key, value in self.settings.items() if lines else ():
+            if key != "version" and lines[0].get(key) != value:
+                problem = (f"was started with {key} {shown(lines[0].get(key))}, not {value}; "
                            "use the same value, or move the file away to start again")
                 raise misplaced(self.path, None, key, problem)
         self._file.truncate(len(complete))
@@ -143,6 +144,7 @@ class Attempts:
                 self.tried.append(self._read(line, at))
 
     def _lines(self, text: bytes) -> Iterator[dict[str, Any]]:
+        """Yields the JSON object of each complete line."""
         for at, line in enumerate(text.split(b"\n")[:-1], 1):
             try:
                 fields = json.loads(line)
@@ -153,6 +155,7 @@ class Attempts:
             yield fields
 
     def _field(self, line: dict[str, Any], key: str, field: str, at: int) -> Any:
+        """Returns the value of ``key`` in line ``at``, checked like ``field`` of an attempt."""
         value = line.get(key)
         if field == "log" and isinstance(value, str) and (self.path.parent / value).is_file():
             # Up to version 0.5.0, paths were relative to the working folder, which usually was this folder.
@@ -163,6 +166,7 @@ class Attempts:
             raise misplaced(self.path, at, key, str(wrong).replace(f"{field} ", "", 1)) from None
 
     def _read(self, line: dict[str, Any], at: int) -> Tried:
+        """Returns the attempt of line ``at``; raises InputError for missing, unknown or invalid fields."""
         known = {"offset_mm", "doubt", *FIELDS}
         for key in sorted(known ^ line.keys()):
             raise misplaced(self.path, at, key, "is missing" if key in known else "is not a field of an attempt")

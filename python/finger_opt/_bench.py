@@ -37,7 +37,7 @@ class Bench:
         self.finger = {key: f"{float(value):.10g}" for key, value in infill.items()}
 
     def attempts(self, search: Search) -> Attempts:
-        """Returns the attempts of the unfinished measurement or of today's, otherwise an empty file."""
+        """Returns the attempts of the unfinished measurement or of today's, otherwise a new file."""
         density, direction = self.finger.values()
         stem = self.out.with_name(f"{self.out.stem}-{self.task.name}-{density}-{direction}")
         date = datetime.date.today().isoformat()
@@ -117,10 +117,10 @@ def _write(path: Path, text: str) -> None:
 def _note(measured: Measurement) -> str:
     """Returns the note of a line: intervals, gaps and number of attempts."""
 
-    def end(interval: tuple[float, float] | None) -> str:
+    def bounds(interval: tuple[float, float] | None) -> str:
         return "not met" if interval is None else f"{interval[0]:g} to {interval[1]:g}"
 
-    parts = [f"{NOTE} (95 %: {end(measured.negative_interval_mm)}; {end(measured.positive_interval_mm)})"]
+    parts = [f"{NOTE} (95 %: {bounds(measured.negative_interval_mm)}; {bounds(measured.positive_interval_mm)})"]
     parts += [
         f"gap at {gap.failed_mm[0]:g} to {gap.failed_mm[1]:g} mm within {gap.within_mm[0]:g} to {gap.within_mm[1]:g}"
         + (f" (class {gap.failure})" if gap.failure else "")

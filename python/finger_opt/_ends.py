@@ -80,6 +80,7 @@ class Side:
                 tally.inserted += inserted
                 tally.failed += not inserted
         spacing = search.resolution_mm / 5.0
+        #: Positions of the end, mm.
         self.grid: Floats = np.arange(0.0, search.limit_mm + search.step_mm, spacing, dtype=np.float64)
         widths = np.exp(-0.5 * (np.log(_WIDTHS_MM / WIDTH_MM) / np.log(WIDTH_FACTOR)) ** 2)
         self._prior: Floats = np.log(widths / widths.sum() / len(self.grid))[None, :]
@@ -87,17 +88,18 @@ class Side:
         left_out = {start for run in self.gaps for start in run}
         log = self._log_posterior(left_out)
         joint = np.exp(log - log.max())
+        #: Posterior of position and width, and of the position alone.
         self.joint: Floats = joint / joint.sum()
         self.position: Floats = self.joint.sum(axis=1)
 
     def _inserts(self, starts: Floats) -> Floats:
-        """Returns the probability to insert: (starts, positions of the end, widths)."""
+        """Returns the probability to insert, shape (starts, positions of the end, widths)."""
         distance = (self.grid[None, :, None] - starts[:, None, None]) / (_SCALE * _WIDTHS_MM)
         inserts: Floats = LAPSE + (1.0 - 2.0 * LAPSE) / (1.0 + np.exp(-np.clip(distance, -50.0, 50.0)))
         return inserts
 
     def _log_posterior(self, left_out: set[float]) -> Floats:
-        """Returns the log of prior times likelihood, (positions, widths), without the attempts from some starts."""
+        """Returns log(prior * likelihood), shape (positions, widths), without the attempts from some starts."""
         kept = {start: tally for start, tally in self.tallies.items() if start not in left_out}
         inserts = self._inserts(np.array(list(kept)))
         inserted = np.array([tally.inserted for tally in kept.values()])[:, None, None]

@@ -229,11 +229,11 @@ S = TypeVar("S", bound="Asked")
 
 
 class Asked:
-    """What is asked for by the words of ``optimize``."""
+    """Base class of requests that are made with the options of ``optimize``."""
 
     @classmethod
     def asked(cls: type[S], words: Mapping[str, Any]) -> S:
-        """Of these words."""
+        """Returns the request with these options."""
         raise NotImplementedError
 
 '''
@@ -257,7 +257,7 @@ def modules(commands: list[dict[str, Any]]) -> dict[str, str]:
         if name not in CALLS:
             further += f"\n    {call.name}  {command['about'].splitlines()[0]}"
     return {
-        "_asked.py": module("The words of a study.", created, []),
+        "_asked.py": module("The options of a study.", created, []),
         "_commands.py": module(
             "The commands of ``optimize`` as functions.",
             f"\n\n__all__ = [\n{packed([json.dumps(name) for name in sorted(names)])}\n]\n#: Those that the page of the package does not name.\n"

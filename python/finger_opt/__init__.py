@@ -1,54 +1,54 @@
-"""Finds the 3D-printed compliant finger that makes a connector insertion most robust.
+"""Finds the 3D-printed compliant gripper finger with which a connector insertion tolerates the largest start error.
 
 >>> import finger_opt as fo
 >>> fo.evaluate("usb", density=20, direction=10).range_mm
 7.2
 
-A finger on a task
-    evaluate        the tolerance window of a finger: how far the start may be off
-    sweep           the windows of many fingers, as a table
-    trial           one insertion, with its course; .replay() plays it
-    capture_map     how insertions end over two errors of the start
-    levers          what would help more than the infill
-    sensitivity     which input matters
-A search
-    Study.create    a seeded study in a folder; .run() begins or continues it
-    load_study      the study in a folder; .answer says which finger to print
-    compare         optimizers over studies
-One's own connector
-    import_parts    a task from meshes or STEP files
-    new_task        a task from a few dimensions
-    check_task      what cannot work in it
-    tune_task       a start and a strategy by which it inserts
-    Task            a task file as an object
+Simulation of a finger
+    evaluate        tolerance window of a finger: largest shifts of the start that still insert
+    sweep           windows of many fingers, as a table
+    trial           one insertion with its time series; .replay() plays it
+    capture_map     outcomes over two errors of the start
+    levers          effect of other changes, compared with the infill
+    sensitivity     share of each input in the variance
+Optimization
+    Study.create    seeded study in a folder; .run() starts or continues it
+    load_study      study in a folder; .answer recommends the finger to print
+    compare         comparison of optimizers over studies
+Your own connector
+    import_parts    task from meshes or STEP files
+    new_task        task from a few dimensions
+    check_task      problems of a task
+    tune_task       start and strategy that insert the connector
+    Task            task file as an object
 Finger and bench
-    stiffness       the model fitted to measured fingers
-    finger          the mechanics of a printed finger
+    stiffness       model fitted to measured fingers
+    finger          mechanics of a printed finger
     export_finger   files for the printer
-    export_mjcf     the scene for MuJoCo
-    Measurements    a file of measurements; measuring_sheet prints a sheet for them
-    calibrate       what every finger does on the bench
-    next_print      which finger to print next
-    identify        what a robot's logs say of its cell
-    robot           measure_window with a robot, or with a simulated one
-Else
+    export_mjcf     scene for MuJoCo
+    Measurements    file of measurements; measuring_sheet writes a sheet for them
+    calibrate       predicted range of every finger on the bench
+    next_print      finger to print next
+    identify        parameters of a cell from the robot's logs
+    robot           measure_window, with a real or simulated robot
+Other
     Optimizer       the optimizers, for any problem
-    gym             an insertion as an environment, to learn a search
-    tasks, robots   what is shipped
-    config          the settings of finger-opt.toml, which is read only so
-    perform         the unit of work of a study, for an executor of one's own
+    gym             insertion as a Gymnasium environment, for learning a search
+    tasks, robots   shipped tasks and robots
+    config          settings of finger-opt.toml; functions ignore this file
+    perform         unit of work of a study, for custom executors
 
-Each call takes the words of the command line ``optimize`` as keywords; help(fo.evaluate) lists them. Results are
-frozen dataclasses with the keys of ``--json``, each with its unit; most have .plot(), and a notebook draws them.
+Each function takes the options of the command line ``optimize`` as keywords; help(fo.evaluate) lists them. Results are
+frozen dataclasses with the keys of ``--json``, which contain the units; most have .plot() and a display for notebooks.
 
-Errors: InputError (a ValueError) for a wrong value or file, TaskError if it is a task file, StudyError (a
-RuntimeError) for what fails while it runs, Interrupted (a KeyboardInterrupt) for Ctrl-C; with .file, .key, .line.
-An unknown keyword and a value of a wrong type are a TypeError.
+Errors: InputError (a ValueError) for an invalid value or file, TaskError for an invalid task file, StudyError (a
+RuntimeError) for failures at run time, Interrupted (a KeyboardInterrupt) for Ctrl-C; all have .file, .key and .line.
+Unknown keywords and values of a wrong type raise TypeError.
 """
 
 from typing import TYPE_CHECKING
 
-# Each by its own name: these, and nothing else, are what a user calls.
+# `X as X` marks a name as public for type checkers.
 from ._answer import Answer as Answer
 from ._calibration import Advice as Advice, Calibration as Calibration, Measurements as Measurements
 from ._commands import *
@@ -70,7 +70,7 @@ from .errors import (
     InputError as InputError, Interrupted as Interrupted, StudyError as StudyError, TaskError as TaskError,
 )
 
-# What this page does not name.
+# Commands that the text above does not list.
 __doc__ = (__doc__ or "") + _FURTHER
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ if TYPE_CHECKING:
 
 
 def __getattr__(name: str) -> object:
-    # The one needs gymnasium, which most do without; the other, a robot.
+    # Imported on first use: `gym` needs the optional package gymnasium.
     if name in ("gym", "robot"):
         import importlib
 
@@ -90,6 +90,6 @@ def __getattr__(name: str) -> object:
 def __dir__() -> list[str]:
     from importlib.util import find_spec
 
-    # What cannot be imported would keep help() from its end.
+    # help() imports every name: it would fail on `gym` without gymnasium.
     lazy = {"robot"} if find_spec("gymnasium") is None else {"gym", "robot"}
     return sorted(name for name in {*globals(), *lazy} if not name.startswith("_") and name != "TYPE_CHECKING")

@@ -1,4 +1,4 @@
-"""The answer of a study: which finger to print, what to expect, how far to trust it."""
+"""Answer of a study: finger to print, expected range, and evidence."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ._result import DRAWN, REST, Result
 
 @dataclass(frozen=True, repr=False)
 class Measured(Result):
-    """A finger like it that was measured on a robot."""
+    """A similar finger that was measured on a robot; ``values`` by key."""
 
     task: str
     values: dict[str, float]
@@ -19,21 +19,26 @@ class Measured(Result):
 
 @dataclass(frozen=True, repr=False)
 class Trust(Result):
-    """How far the answer is to be trusted: calibrated on measurements, with published ones at hand, or simulated."""
+    """Evidence for the answer: calibrated on measurements, similar fingers published, or simulated only."""
 
     level: Literal["calibrated", "published", "simulated"]
     label: str
     reason: str
-    #: Of a calibrated answer: fingers measured, and the error for those left out, percent.
+    #: Number of measured fingers, and their mean leave-one-out error, percent; only if ``level`` is ``calibrated``.
     measured: int | None = None
     loo_mean_deviation_percent: float | None = None
+    #: Similar measured fingers; only if ``level`` is ``published``.
     nearest_measured: tuple[Measured, ...] = ()
+    #: Lowest and highest error on the shipped tasks, percent; only if ``level`` is ``simulated``.
     error_percent_on_shipped_tasks: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, repr=False)
 class StartAdvice(Result):
-    """The window about the taught start, mm, and whether to teach it elsewhere."""
+    """Window around the taught start, mm; ``advice`` if the start should be taught elsewhere.
+
+    ``to_middle_mm`` is the shift of the start to the middle of the window.
+    """
 
     negative_mm: float
     positive_mm: float
@@ -44,7 +49,10 @@ class StartAdvice(Result):
 
 @dataclass(frozen=True, repr=False)
 class Safe(Result):
-    """The finger of the set that was measured, else that with the least force; ``loss_mm``: what it loses."""
+    """Safe choice among tied designs: a measured one, otherwise the one with the least force.
+
+    ``loss_mm`` is the difference of its range from that of the recommended design.
+    """
 
     values: dict[str, float]
     evaluation: int
@@ -55,25 +63,26 @@ class Safe(Result):
 
 @dataclass(frozen=True, repr=False)
 class AsGood(Result):
-    """The designs that lose less than a bench can tell."""
+    """Ties: designs within ``within_mm`` of the recommended one, ``designs`` in number ``of`` all evaluated."""
 
     within_mm: float
     designs: int
     of: int
+    #: Share of the space that is nearer to a tie than to any other evaluated design, 0 to 1.
     share_of_space: float | None
     evaluations: tuple[int, ...]
-    #: From, to, by key.
+    #: Smallest and largest value by key.
     spread: dict[str, tuple[float, ...]]
     safe: Safe | None
 
 
 @dataclass(frozen=True, repr=False)
 class ExcessForce(Result):
-    """A contact force that the connector or the robot does not withstand, or only just."""
+    """Contact force above or close to a limit."""
 
     task: str
     peak_force_n: float
-    #: That of the connector, or the stop force of the robot.
+    #: Limit of the connector (``of_connector``), otherwise the stop force of the robot.
     limit_n: float
     of_connector: bool
     warning: str
@@ -81,7 +90,7 @@ class ExcessForce(Result):
 
 @dataclass(frozen=True, repr=False)
 class NextStep(Result):
-    """A command to go on with, and why."""
+    """Recommended next command, and the reason."""
 
     command: str
     why: str
@@ -89,23 +98,23 @@ class NextStep(Result):
 
 @dataclass(frozen=True, repr=False)
 class Answer(Result):
-    """What to do, as ``answer`` of ``--json``.
+    """Recommended action, as ``answer`` of ``--json``.
 
-    ``verdict``: ``print`` the ``finger``; ``any`` will do; one ``measured_before``; ``choose`` of a front;
-    ``nothing_inserts``; ``none_feasible``.
+    ``verdict`` is ``print`` (print ``finger``), ``any`` (print any of the ties), ``measured_before`` (use a finger
+    that was measured), ``choose`` (choose from a Pareto front), ``nothing_inserts`` or ``none_feasible``.
     """
 
     verdict: Literal["print", "any", "measured_before", "choose", "nothing_inserts", "none_feasible"]
     headline: str
     expectation: str
-    #: Its values by key.
+    #: Values of the finger by key.
     finger: dict[str, float] | None
     force: ExcessForce | None
     trust: Trust
     start: StartAdvice | None
     as_good: AsGood | None
     next: NextStep
-    #: The card of the study's page.
+    #: HTML summary of the study.
     card: str = field(default="", repr=False, metadata=DRAWN)
 
     def _repr_html_(self) -> str:
@@ -114,7 +123,10 @@ class Answer(Result):
 
 @dataclass(frozen=True, repr=False)
 class OnBench(Result):
-    """What the finger is expected to do on the bench: 80 % of such ranges lie between low and high."""
+    """Predicted range on the bench, with its 80 % interval from ``low_mm`` to ``high_mm``.
+
+    ``probability_best`` is the probability that the finger is the best of the space, 0 to 1.
+    """
 
     range_mm: float
     low_mm: float
@@ -126,9 +138,9 @@ class OnBench(Result):
 
 @dataclass(frozen=True, repr=False)
 class Recommended(Result):
-    """The recommended design: ``values`` by key; the *firm* window is that which inserts in all repeats.
+    """The recommended design: ``values`` by key; all repeats insert in the *firm* window.
 
-    Of several objectives it is the first of the front, with its ``objectives`` by key.
+    With several objectives: the first design of the Pareto front, with its ``objectives`` by key.
     """
 
     values: dict[str, float]
@@ -142,7 +154,7 @@ class Recommended(Result):
     peak_force_n: float | None = None
     objectives: dict[str, float] | None = None
     tasks: tuple[str, ...] | None = None
-    #: With ``measurements``.
+    #: Prediction for the bench; only with ``measurements``.
     bench: OnBench | None = None
-    #: What springs computed from its ribs make of it, and whatever else ``--json`` has.
+    #: Further keys of ``--json``, for example the result with stiffnesses computed from the ribs.
     rest: dict[str, object] = field(default_factory=dict[str, object], metadata=REST, repr=False)

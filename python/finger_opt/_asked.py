@@ -1,4 +1,4 @@
-"""The words of a study. Written by scripts/generate.py."""
+"""The options of a study. Written by scripts/generate.py."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ S = TypeVar("S", bound="Asked")
 
 
 class Asked:
-    """What is asked for by the words of ``optimize``."""
+    """Base class of requests that are made with the options of ``optimize``."""
 
     @classmethod
     def asked(cls: type[S], words: Mapping[str, Any]) -> S:
-        """Of these words."""
+        """Returns the request with these options."""
         raise NotImplementedError
 
     @classmethod

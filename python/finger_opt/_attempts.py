@@ -1,4 +1,4 @@
-"""Attempts of a robot, and the file in which each stands before the next is made."""
+"""Attempts of a robot, and the file to which each is written before the next one starts."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from ._native import LARGEST_FORCE_N, LARGEST_LENGTH_MM
 
 @dataclass(frozen=True)
 class Attempt:
-    """How one insertion ended.
+    """Result of one attempted insertion.
 
-    ``failure`` is the class 1 to 4 of what did not insert, if it is known; ``depth_mm`` how deep the tip is in
-    the socket at the end; ``peak_force_n`` the largest contact force; ``log`` what was recorded, if it was.
+    ``failure`` is the failure class, 1 to 4, if it failed and the class is known; ``depth_mm`` the final depth of the
+    tip in the socket; ``peak_force_n`` the largest contact force; ``log`` the file of the recording, if there is one.
     """
 
     inserted: bool
@@ -36,75 +36,76 @@ class Attempt:
 
 @dataclass(frozen=True)
 class Tried:
-    """An attempt from a start shifted by ``offset_mm``; ``doubt`` says why it does not count, if so."""
+    """An attempt from a start shifted by ``offset_mm``; ``doubt`` is the reason if it does not count."""
 
     offset_mm: float
     attempt: Attempt
     doubt: str | None = None
 
 
-def _whole(value: object) -> int | None:
-    """The failure class that a value is, of any type of number."""
+def _failure_class(value: object) -> int | None:
+    """Returns a value as failure class, 1 to 4; None if it is not one."""
     found = number(value)
     return None if found not in (1, 2, 3, 4) else int(found)
 
 
-def _truth(value: object) -> bool | None:
+def _boolean(value: object) -> bool | None:
+    """Returns a boolean of Python or NumPy; None for other values."""
     return bool(cast("bool", value)) if isinstance(value, (bool, np.bool_)) else None
 
 
 def _within(low: float, high: float) -> Callable[[object], float | None]:
-    """The number that a value is, if it is within bounds."""
+    """Returns a function that returns a value as float if it is a number within the bounds, otherwise None."""
 
-    def found(value: object) -> float | None:
-        one = number(value)
-        return one if one is not None and low <= one <= high else None
+    def checked(value: object) -> float | None:
+        found = number(value)
+        return found if found is not None and low <= found <= high else None
 
-    return found
+    return checked
 
 
 def _path(value: object) -> Path | None:
-    """The path that a value is, from wherever this process is later; it can stand in a line of a file."""
+    """Returns a value as absolute path; None if it is not a path, or not printable."""
     try:
         text: object = os.fspath(cast("os.PathLike[Any]", value)) if isinstance(value, (str, os.PathLike)) else b""
     except Exception:
-        # A path of the caller's making.
+        # `__fspath__` of the caller raised.
         return None
     return Path(os.path.abspath(text)) if isinstance(text, str) and text and text.isprintable() else None
 
 
-#: What the fields of an attempt may be: how each is taken, and what it must be. Numbers beyond these bounds
-#: are in another unit, and the measurement file would refuse them.
+#: Conversion of each field of an attempt, and the description of accepted values. Numbers outside these bounds are
+#: probably in another unit; the measurement file does not accept them either.
 FIELDS: dict[str, tuple[Callable[[object], Any], str]] = {
-    "inserted": (_truth, "True or False"),
-    "failure": (_whole, "a failure class from 1 to 4, or None"),
+    "inserted": (_boolean, "True or False"),
+    "failure": (_failure_class, "a failure class from 1 to 4, or None"),
     "depth_mm": (_within(-LARGEST_LENGTH_MM, LARGEST_LENGTH_MM), f"a depth of at most {LARGEST_LENGTH_MM:g} mm"),
     "peak_force_n": (_within(0.0, LARGEST_FORCE_N), f"a force from 0 to {LARGEST_FORCE_N:g} N"),
     "log": (_path, "the path of a log, without control characters, or None"),
 }
-#: Those that may be unknown.
+#: Fields that may be None.
 OPTIONAL = ("failure", "log")
 
 
 def taken(key: str, value: object) -> Any:
-    """The value of an attempt's field, as plain Python has it; raises ValueError with what is wrong."""
-    take, wanted = FIELDS[key]
-    found = None if value is None else take(value)
+    """Returns a field of an attempt as a plain Python value; raises ValueError if it is invalid."""
+    convert, accepted = FIELDS[key]
+    found = None if value is None else convert(value)
     if found is None and not (value is None and key in OPTIONAL):
-        raise ValueError(f"{key} is {shown(value)}; it must be {wanted}")
+        raise ValueError(f"{key} is {shown(value)}; it must be {accepted}")
     return found
 
 
 class Attempts:
-    """The attempts of one measurement: lines of JSON in a file, the first of which says of what."""
+    """The attempts of one measurement: a file of JSON lines, the first of which contains the settings."""
 
     def __init__(self, path: Path, settings: dict[str, Any]) -> None:
-        """Begins the file, or goes on where it ends; a line that was cut off does not count.
+        """Creates or continues the file; an incomplete last line is removed.
 
-        Raises :class:`InputError` if another measurement has the file, or if it is not one of these settings.
+        Raises :class:`InputError` if another process has the file open, or if its settings differ.
         """
         self.path, self.settings, self.tried = path, settings, list[Tried]()
-        #: The log of the probe, if it was made.
+        #: The log of the probe, if the robot has probed.
         self.probed: Path | None = None
         self._file = path.open("a+b")
         try:
@@ -112,26 +113,27 @@ class Attempts:
         except BaseException:
             self.close()
             raise
-        #: How many attempts the file has, also those that do not count any more.
+        #: Number of attempts in the file, including discarded ones.
         self.made = len(self.tried)
-        # A start that never inserted was taught anew since.
+        # If no attempt from the taught start inserted, it has been taught anew: discard all attempts.
         if not any(one.attempt.inserted for one in self.counted() if one.offset_mm == 0.0):
             self.tried = []
 
     def _begin(self) -> None:
+        """Locks the file, checks its settings and reads its attempts; writes the settings if it is new."""
         if not locked(self._file, wait=False):
-            problem = "another process measures this finger; wait until it has ended"
+            problem = "another process is measuring this finger; wait until it has ended"
             raise misplaced(self.path, None, None, problem)
         self._file.seek(0)
         text = self._file.read()
-        whole = text[: text.rfind(b"\n") + 1]
-        lines = list(self._lines(whole))
-        for key, now in self.settings.items() if lines else ():
-            if key != "version" and lines[0].get(key) != now:
-                problem = (f"was begun with {key} {shown(lines[0].get(key))}, not {now}; "
-                           "go on with the same, or move the file away to begin anew")
+        complete = text[: text.rfind(b"\n") + 1]
+        lines = list(self._lines(complete))
+        for key, value in self.settings.items() if lines else ():
+            if key != "version" and lines[0].get(key) != value:
+                problem = (f"was started with {key} {shown(lines[0].get(key))}, not {value}; "
+                           "use the same value, or move the file away to start again")
                 raise misplaced(self.path, None, key, problem)
-        self._file.truncate(len(whole))
+        self._file.truncate(len(complete))
         if not lines:
             self._append(self.settings)
             _sync_folder(self.path.parent)
@@ -142,19 +144,21 @@ class Attempts:
                 self.tried.append(self._read(line, at))
 
     def _lines(self, text: bytes) -> Iterator[dict[str, Any]]:
+        """Yields the JSON object of each complete line."""
         for at, line in enumerate(text.split(b"\n")[:-1], 1):
             try:
                 fields = json.loads(line)
             except (ValueError, RecursionError):
                 fields = None
             if not is_table(fields):
-                raise misplaced(self.path, at, None, "is no attempt; move the file away to begin anew")
+                raise misplaced(self.path, at, None, "is not an attempt; move the file away to start again")
             yield fields
 
     def _field(self, line: dict[str, Any], key: str, field: str, at: int) -> Any:
+        """Returns the value of ``key`` in line ``at``, checked like ``field`` of an attempt."""
         value = line.get(key)
         if field == "log" and isinstance(value, str) and (self.path.parent / value).is_file():
-            # Up to 0.5.0 as the robot was given it: from its working folder, most often this one.
+            # Up to version 0.5.0, paths were relative to the working folder, which usually was this folder.
             value = self.path.parent / value
         try:
             return taken(field, value)
@@ -162,9 +166,10 @@ class Attempts:
             raise misplaced(self.path, at, key, str(wrong).replace(f"{field} ", "", 1)) from None
 
     def _read(self, line: dict[str, Any], at: int) -> Tried:
+        """Returns the attempt of line ``at``; raises InputError for missing, unknown or invalid fields."""
         known = {"offset_mm", "doubt", *FIELDS}
         for key in sorted(known ^ line.keys()):
-            raise misplaced(self.path, at, key, "is missing" if key in known else "is no field of an attempt")
+            raise misplaced(self.path, at, key, "is missing" if key in known else "is not a field of an attempt")
         offset, doubt = number(line["offset_mm"]), line["doubt"]
         limit = self.settings["limit_mm"]
         if offset is None or abs(offset) > limit + 1e-6:
@@ -176,11 +181,11 @@ class Attempts:
         return Tried(offset, Attempt(**fields), doubt)
 
     def counted(self) -> list[Tried]:
-        """Those that are no doubt."""
+        """Returns the attempts that count."""
         return [one for one in self.tried if one.doubt is None]
 
     def add(self, tried: Tried) -> None:
-        """Appends an attempt, and returns once it is on the disk."""
+        """Appends an attempt and flushes it to the disk."""
         fields = {"offset_mm": tried.offset_mm, **asdict(tried.attempt), "doubt": tried.doubt}
         fields["log"] = None if tried.attempt.log is None else str(tried.attempt.log)
         self._append(fields)
@@ -188,13 +193,13 @@ class Attempts:
         self.made += 1
 
     def add_probe(self, log: Path) -> None:
-        """Appends that the probe was made, as its log tells."""
+        """Appends the log of the probe."""
         self._append({"probed": str(log)})
         self.probed = log
 
-    def stopped(self, what: float | str, why: str) -> None:
-        """Writes down why there is no attempt from a start, mm, or no probe."""
-        self._append({"stopped": why, **({} if isinstance(what, str) else {"offset_mm": what})})
+    def stopped(self, at: float | str, why: str) -> None:
+        """Appends the reason why the measurement stopped at a start, mm, or at the probe (text)."""
+        self._append({"stopped": why, **({} if isinstance(at, str) else {"offset_mm": at})})
 
     def _append(self, fields: dict[str, Any]) -> None:
         self._file.write(dumps(fields).encode() + b"\n")
@@ -206,16 +211,16 @@ class Attempts:
 
 
 def newest(stem: Path) -> str | None:
-    """The day of the last file of attempts ``<stem>-<day>.jsonl``."""
+    """Returns the date of the latest file of attempts ``<stem>-<date>.jsonl``, None if there is none."""
     found = glob.glob(f"{glob.escape(str(stem))}-[0-9][0-9][0-9][0-9]-[0-9][0-9]-[0-9][0-9].jsonl")
     return max(found)[-len("2026-03-31.jsonl") : -len(".jsonl")] if found else None
 
 
 def _sync_folder(folder: Path) -> None:
-    # Not every system can.
+    # Not supported on every system.
     with suppress(OSError):
-        number = os.open(folder, os.O_RDONLY)
+        descriptor = os.open(folder, os.O_RDONLY)
         try:
-            os.fsync(number)
+            os.fsync(descriptor)
         finally:
-            os.close(number)
+            os.close(descriptor)

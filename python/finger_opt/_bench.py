@@ -1,4 +1,4 @@
-"""The measurement file of a window that a robot measures."""
+"""The measurement file to which windows measured by a robot are written."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ from ._table import rows
 from ._task import Given, Task
 from ._words import TaskName
 
-#: How the note of a line begins.
+#: Beginning of the notes written here, which identifies the lines.
 NOTE = "50 % points"
 
 
 class Bench:
-    """The measurement file, and the line of this finger in it."""
+    """The measurement file, and the line of one finger in it."""
 
     def __init__(self, out: Path, task: Given, density: float, direction: float) -> None:
         if not out.parent.is_dir():
             raise InputError(f"{out}: there is no folder {out.parent}")
-        # Wherever the robot goes: it may change the folder in which this process works.
+        # Absolute, since the robot may change the working folder of this process.
         self.out = Path(os.path.abspath(out))
         self.task = task if isinstance(task, Task) else Task.from_toml(task)
-        #: The name or the file of the task, if it has one: the caller may have changed a task.
-        self.named = None if isinstance(task, Task) or "\n" in str(task) else _from_anywhere(str(task))
+        #: Name or path of the task; None for a `Task` or a TOML text, which may differ from every file.
+        self.task_source = None if isinstance(task, Task) or "\n" in str(task) else _absolute(str(task))
         infill = {"infill_density_percent": density, "infill_direction_deg": direction}
         self.finger = {key: f"{float(value):.10g}" for key, value in infill.items()}
 
     def attempts(self, search: Search) -> Attempts:
-        """The attempts to go on with: those of a measurement that has not ended, or that ended today."""
+        """Returns the attempts of the unfinished measurement or of today's, otherwise a new file."""
         density, direction = self.finger.values()
         stem = self.out.with_name(f"{self.out.stem}-{self.task.name}-{density}-{direction}")
         date = datetime.date.today().isoformat()
@@ -49,30 +49,30 @@ class Bench:
         return Attempts(Path(f"{stem}-{date}.jsonl"), settings)
 
     def written(self, date: str) -> bool:
-        """Whether the file has a line of this finger, measured so, of that day."""
+        """Returns whether the file has a line of this finger, written by this module, with this date."""
         wanted = {"task": self.task.name, **self.finger, "date": date}
         try:
             content = self.out.read_bytes()
         except FileNotFoundError:
-            # Also between two looks: while another finger is checked, the file exists for a moment.
+            # A dry run for another finger can create and remove the file at any moment.
             return False
         header, *lines = rows(self.out, content) or [[]]
         found = [row for row in (dict(zip(header, line)) for line in lines) if wanted.items() <= row.items()]
         return any(row.get("note", "").startswith(NOTE) for row in found)
 
     def check(self, date: str) -> None:
-        """Whether a line of that day could be added, before the robot moves."""
+        """Checks, before the robot moves, that a line with this date can be added."""
         if self.written(date):
             return
         self.add({"range_mm": "1", "date": date}, True)
 
     def write(self, measured: Measurement, date: str) -> None:
-        """Adds the line, unless it is there."""
+        """Adds the line of the measurement, unless the file has it."""
         if self.written(date):
             return
         ends = {"negative_mm": measured.negative_mm, "positive_mm": measured.positive_mm}
         if measured.range_mm is None:
-            # Of an end that was not met the file knows nothing; the farther one says: so wide, or wider.
+            # The file cannot express an open end: write only the farther one, as a lower bound of the range.
             farthest = zip(ends, ends.values(), measured.inserted_mm, strict=True)
             bounds = {key: inserted if end is None else end for key, end, inserted in farthest}
             widest = max(bounds, key=lambda key: abs(bounds[key]))
@@ -85,13 +85,13 @@ class Bench:
         self.add(cells)
 
     def add(self, cells: dict[str, str], dry_run: bool = False) -> None:
-        """Adds a line, or only checks that it can be added."""
-        task = self.named
+        """Adds a line; with ``dry_run``, only checks that it can be added."""
+        task = self.task_source
         if task is None:
-            # Beside the measurements, which name it.
-            own = self.out.with_name(f"{self.out.stem}-{self.task.name}.toml")
-            _write(own, self.task.to_toml())
-            task = str(own)
+            # Store the task beside the measurements, which refer to it.
+            task_file = self.out.with_name(f"{self.out.stem}-{self.task.name}.toml")
+            _write(task_file, self.task.to_toml())
+            task = str(task_file)
         density, direction = self.finger.values()
         try:
             line = {"file": self.out, "task": task, "density": density, "direction": direction, **cells}
@@ -102,23 +102,25 @@ class Bench:
             raise StudyError(str(failed)) from None
 
 
-def _from_anywhere(task: str) -> str:
-    """The name of a shipped task, or the path of a file from wherever this process is later."""
+def _absolute(task: str) -> str:
+    """Returns the name of a shipped task, or the absolute path of a task file."""
     return task if task in get_args(TaskName) else os.path.abspath(task)
 
 
 def _write(path: Path, text: str) -> None:
-    """Writes a whole file at once: another finger of the task may be measured at the same time."""
-    whole = path.with_name(f"{path.name}-{os.getpid()}-{threading.get_ident()}")
-    whole.write_text(text, encoding="utf-8")
-    os.replace(whole, path)
+    """Writes a file atomically, since another process may measure another finger of the task."""
+    temporary = path.with_name(f"{path.name}-{os.getpid()}-{threading.get_ident()}")
+    temporary.write_text(text, encoding="utf-8")
+    os.replace(temporary, path)
 
 
 def _note(measured: Measurement) -> str:
-    def end(interval: tuple[float, float] | None) -> str:
+    """Returns the note of a line: intervals, gaps and number of attempts."""
+
+    def bounds(interval: tuple[float, float] | None) -> str:
         return "not met" if interval is None else f"{interval[0]:g} to {interval[1]:g}"
 
-    parts = [f"{NOTE} (95 %: {end(measured.negative_interval_mm)}; {end(measured.positive_interval_mm)})"]
+    parts = [f"{NOTE} (95 %: {bounds(measured.negative_interval_mm)}; {bounds(measured.positive_interval_mm)})"]
     parts += [
         f"gap at {gap.failed_mm[0]:g} to {gap.failed_mm[1]:g} mm within {gap.within_mm[0]:g} to {gap.within_mm[1]:g}"
         + (f" (class {gap.failure})" if gap.failure else "")

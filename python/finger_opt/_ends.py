@@ -1,4 +1,4 @@
-"""The ends of a tolerance window, from attempts that go either way near them."""
+"""Bayesian estimate of the ends of a tolerance window, near which attempts are random."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-#: Prior of an end's width, over which the probability to insert goes from 90 to 10 %: log-normal, by its
-#: median, mm, and the factor that is a standard deviation. The prior of its place is uniform, from the
-#: taught start to a step beyond the limit.
+#: Log-normal prior of an end's width, the distance over which the probability to insert falls from 90 to 10 %:
+#: median, mm, and geometric standard deviation. The prior of the position is uniform, from the taught start to a step
+#: beyond the limit.
 WIDTH_MM, WIDTH_FACTOR = 0.4, 2.0
-#: Share of attempts that go wrong for reasons which no place tells.
+#: Lapse rate: share of attempts whose outcome does not depend on the start.
 LAPSE = 0.01
-#: Prior probability of a gap on one side, and odds from which one is taken for it.
-GAP, TAKEN = 0.02, 10.0
-#: What the intervals hold.
+#: Prior probability of a gap on one side, and posterior odds above which a run of failures counts as a gap.
+GAP_PRIOR, GAP_ODDS = 0.02, 10.0
+#: Probability content of the credible intervals.
 INTERVAL = 0.95
 
 _WIDTHS_MM: Floats = WIDTH_MM * WIDTH_FACTOR ** np.linspace(-2.5, 2.5, 13, dtype=np.float64)
-#: The logistic's scale for 1 mm from 10 to 90 %.
+#: Scale of the logistic function per mm of width.
 _SCALE = 1.0 / (2.0 * float(np.log(9.0)))
 
 
 @dataclass(frozen=True)
 class Search:
-    """Where is tried; lengths in mm."""
+    """Settings of the search for the ends; lengths in mm."""
 
     step_mm: float
     resolution_mm: float
@@ -38,10 +38,10 @@ class Search:
 
 @dataclass(frozen=True)
 class Gap:
-    """Starts within the window that do not insert, narrower than two steps of the walk.
+    """Gap: starts within the window that do not insert, narrower than two steps of the coarse walk.
 
-    ``failed_mm`` are the first and the last start that failed, ``within_mm`` the nearest that inserted on
-    both sides; ``failure`` is the class.
+    ``failed_mm`` are the first and the last start that failed, ``within_mm`` the nearest starts on both sides that
+    inserted; ``failure`` is the most frequent failure class, 1 to 4, if known.
     """
 
     failed_mm: tuple[float, float]
@@ -51,7 +51,7 @@ class Gap:
 
 @dataclass
 class Tally:
-    """The attempts from one start."""
+    """Outcomes of the attempts from one start; ``first`` is whether the first one inserted."""
 
     first: bool
     inserted: int = 0
@@ -60,15 +60,15 @@ class Tally:
 
 @dataclass
 class Side:
-    """One end of the window: lengths are mm outward from the taught start."""
+    """Posterior of one end of the window; lengths are in mm outward from the taught start."""
 
     search: Search
     sign: int
     #: Starts and whether they inserted, in the order of the attempts.
     tried: Iterable[tuple[float, bool]]
-    #: Runs of starts that are gaps.
+    #: Gaps: runs of starts, ascending.
     gaps: list[list[float]] = field(default_factory=list[list[float]])
-    #: A start in or beyond what may be a gap: to be tried once more.
+    #: Start in or beyond a possible gap that has to be tried again.
     doubtful: float | None = None
 
     def __post_init__(self) -> None:
@@ -80,24 +80,26 @@ class Side:
                 tally.inserted += inserted
                 tally.failed += not inserted
         spacing = search.resolution_mm / 5.0
+        #: Positions of the end, mm.
         self.grid: Floats = np.arange(0.0, search.limit_mm + search.step_mm, spacing, dtype=np.float64)
         widths = np.exp(-0.5 * (np.log(_WIDTHS_MM / WIDTH_MM) / np.log(WIDTH_FACTOR)) ** 2)
         self._prior: Floats = np.log(widths / widths.sum() / len(self.grid))[None, :]
         self._find_gaps()
         left_out = {start for run in self.gaps for start in run}
-        log = self._log(left_out)
+        log = self._log_posterior(left_out)
         joint = np.exp(log - log.max())
+        #: Posterior of position and width, and of the position alone.
         self.joint: Floats = joint / joint.sum()
-        self.place: Floats = self.joint.sum(axis=1)
+        self.position: Floats = self.joint.sum(axis=1)
 
     def _inserts(self, starts: Floats) -> Floats:
-        """Probability to insert from these starts, for each place and width of the end."""
-        away = (self.grid[None, :, None] - starts[:, None, None]) / (_SCALE * _WIDTHS_MM)
-        inserts: Floats = LAPSE + (1.0 - 2.0 * LAPSE) / (1.0 + np.exp(-np.clip(away, -50.0, 50.0)))
+        """Returns the probability to insert, shape (starts, positions of the end, widths)."""
+        distance = (self.grid[None, :, None] - starts[:, None, None]) / (_SCALE * _WIDTHS_MM)
+        inserts: Floats = LAPSE + (1.0 - 2.0 * LAPSE) / (1.0 + np.exp(-np.clip(distance, -50.0, 50.0)))
         return inserts
 
-    def _log(self, left_out: set[float]) -> Floats:
-        """Logarithm of prior times likelihood, without the attempts from some starts."""
+    def _log_posterior(self, left_out: set[float]) -> Floats:
+        """Returns log(prior * likelihood), shape (positions, widths), without the attempts from some starts."""
         kept = {start: tally for start, tally in self.tallies.items() if start not in left_out}
         inserts = self._inserts(np.array(list(kept)))
         inserted = np.array([tally.inserted for tally in kept.values()])[:, None, None]
@@ -106,22 +108,22 @@ class Side:
         return log
 
     def _find_gaps(self) -> None:
-        """Takes for a gap what fails within the window, where one end alone would hardly do that."""
+        """Finds the gaps: runs of failures within the window that a single end would hardly cause."""
         for run in self._runs():
             known = {start for gap in self.gaps for start in gap}
-            alone, with_gap = self._log(known), self._log(known | set(run))
+            alone, with_gap = self._log_posterior(known), self._log_posterior(known | set(run))
             failures = sum(self.tallies[start].failed for start in run)
-            odds = GAP * (1.0 - LAPSE) ** failures * np.exp(_total(with_gap) - _total(alone))
-            if odds > TAKEN:
+            odds = GAP_PRIOR * (1.0 - LAPSE) ** failures * np.exp(_log_sum_exp(with_gap) - _log_sum_exp(alone))
+            if odds > GAP_ODDS:
                 self.gaps.append(run)
             elif odds > 1.0:
-                # Of a gap, what fails and what inserts beyond it tell by turns.
+                # Alternate between the possible gap and the nearest start beyond it that inserted.
                 beyond = min(start for start, tally in self.tallies.items() if tally.inserted and start > run[-1])
                 again = failures > self.tallies[beyond].inserted + self.tallies[beyond].failed
                 self.doubtful = beyond if again else run[len(run) // 2]
 
     def _runs(self) -> list[list[float]]:
-        """Neighbouring starts that always failed, with one beyond that inserted."""
+        """Returns the runs of neighbouring starts that always failed, with a start beyond them that inserted."""
         runs: list[list[float]] = [[]]
         for start in sorted(self.tallies):
             if self.tallies[start].inserted:
@@ -131,16 +133,16 @@ class Side:
         return [run for run in runs[:-1] if run]
 
     def walk(self) -> float | None:
-        """The next start of the coarse walk outward, which ends with two failures in a row or at the limit."""
+        """Returns the next start of the coarse walk outward; None after two failures in a row or at the limit."""
         return self._walked()[0]
 
     @property
     def open(self) -> bool:
-        """Whether the walk came no farther than to starts that inserted: the end lies beyond them."""
+        """Whether the last start of the walk inserted, so that the end lies beyond it."""
         return self._walked()[1] == 0
 
     def _walked(self) -> tuple[float | None, int]:
-        """The walk's next start, and how many failed in a row at its end; what came first counts."""
+        """Returns the next start of the walk, and the number of failures in a row at its end, by first attempts."""
         failed, steps = 0, 0
         while failed < 2:
             steps += 1
@@ -154,16 +156,18 @@ class Side:
 
     @property
     def farthest(self) -> float:
-        """The farthest start that inserted."""
+        """Farthest start that inserted, mm."""
         return max((start for start, tally in self.tallies.items() if tally.inserted), default=0.0)
 
     def quantile(self, share: float) -> float:
-        return float(np.interp(share, np.cumsum(self.place), self.grid))
+        """Returns a quantile of the end's position, mm."""
+        return float(np.interp(share, np.cumsum(self.position), self.grid))
 
     @property
     def deviation(self) -> float:
-        mean = float(self.place @ self.grid)
-        return float(np.sqrt(self.place @ (self.grid - mean) ** 2))
+        """Standard deviation of the end's position, mm."""
+        mean = float(self.position @ self.grid)
+        return float(np.sqrt(self.position @ (self.grid - mean) ** 2))
 
     @property
     def settled(self) -> bool:
@@ -176,8 +180,8 @@ class Side:
         enough = min(inside, outside) >= self.search.repeats
         return self.open or (enough and self.deviation <= self.search.resolution_mm)
 
-    def telling(self) -> float:
-        """The start, a multiple of the resolution, whose outcome is expected to tell most of the end's place."""
+    def most_informative(self) -> float:
+        """Returns the start, a multiple of the resolution, whose outcome has the largest expected information gain."""
         step, search = self.search.resolution_mm, self.search
         low = max(0, int((self.quantile(0.01) - search.step_mm) / step))
         high = min(self.quantile(0.99) + search.step_mm, search.limit_mm)
@@ -185,23 +189,25 @@ class Side:
         if not len(starts):
             return search.limit_mm
         given = np.einsum("sbw,bw->sb", self._inserts(starts), self.joint)
-        given = given / np.maximum(self.place, 1e-300)
-        information = _entropy(given @ self.place) - _entropy(given) @ self.place
+        given = given / np.maximum(self.position, 1e-300)
+        information = _entropy(given @ self.position) - _entropy(given) @ self.position
         return round(float(starts[np.argmax(information)]), 6)
 
 
-def _total(log: Floats) -> float:
+def _log_sum_exp(log: Floats) -> float:
+    """Returns the logarithm of a sum of exponentials."""
     top = log.max()
     return float(top + np.log(np.exp(log - top).sum()))
 
 
 def _entropy(share: Floats) -> Floats:
+    """Returns the entropy of Bernoulli variables, nat."""
     share = np.clip(share, 1e-12, 1.0 - 1e-12)
     return -(share * np.log(share) + (1.0 - share) * np.log1p(-share))
 
 
 class Window:
-    """What is known of a window, and where to try next; of starts in mm, and whether they inserted."""
+    """Posterior of a window and choice of the next start, from ``tried``: starts, mm, and whether they inserted."""
 
     def __init__(self, search: Search, tried: list[tuple[float, bool]]) -> None:
         self.search = search
@@ -214,7 +220,7 @@ class Window:
         return any(self.start)
 
     def next(self) -> float | None:
-        """The next start, mm; none when both ends are known, or the taught start does not insert."""
+        """Returns the next start, mm; None if both ends are known, or if the taught start does not insert."""
         if not self.inserts:
             return 0.0 if len(self.start) < self.search.repeats else None
         walked = [(side.sign, side.walk()) for side in self.sides]
@@ -226,4 +232,4 @@ class Window:
         if not unsettled:
             return None
         side = max(unsettled, key=lambda side: side.deviation)
-        return side.sign * side.telling()
+        return side.sign * side.most_informative()

@@ -1,4 +1,4 @@
-"""The tolerance window of a finger."""
+"""Tolerance window of a finger."""
 
 from __future__ import annotations
 
@@ -18,44 +18,47 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Springs(Result):
-    """The stiffness of a finger, N/mm, with standard deviations; ``inside_hull``: within what was measured."""
+    """Stiffness of a finger, N/mm, with standard deviations.
+
+    ``inside_hull`` is whether the infill lies in the convex hull of the measured designs.
+    """
 
     compliance_n_per_mm: float
     compliance_sd_n_per_mm: float
     assembly_n_per_mm: float
     assembly_sd_n_per_mm: float
-    #: Distance to what was measured, in units of its spread.
+    #: Distance to the hull of the measured designs, in units of their span; 0 inside.
     hull_distance: float
     inside_hull: bool
 
 
 @dataclass(frozen=True, repr=False)
 class Window(Result):
-    """How far the start may be off along y, mm, before the insertion fails, and how it fails.
+    """Tolerance window: the interval of start errors along y, mm, from which the plug inserts.
 
-    ``failure_negative`` and ``failure_positive`` say what ends it: class 1 contact loss before insertion, 2 plug
-    missed, 3 jammed, 4 contact loss in insertion. The fields from ``success_rate`` on are there with
-    ``uncertainty``: the share of drawn errors under which it inserts, and the range that holds under them.
+    ``failure_negative`` and ``failure_positive`` are the failures beyond its ends: class 1 contact loss before
+    insertion, 2 plug missed, 3 jammed, 4 contact loss during insertion. The fields from ``success_rate`` on require
+    ``uncertainty``: share of sampled errors under which the plug inserts, and range under these errors.
     """
 
     range_mm: float
     negative_mm: float
     positive_mm: float
-    #: How the insertion from the nominal start ends.
+    #: Outcome from the nominal start.
     nominal: Outcome
     failure_negative: End | None
     failure_positive: End | None
-    #: Trials that ended so, for classes 1 to 4.
+    #: Number of failed trials by class, 1 to 4.
     failure_counts: tuple[int, int, int, int]
     diverged: int
-    #: Largest force of the socket on the plug, N, and slip in the grasp, mm, from the nominal start.
+    #: Largest contact force between plug and socket, N, and largest slip in the grasp, mm, over the inserted trials.
     peak_force_n: float | None
     slip_mm: float | None
     trials: int
     simulated_s: float
-    #: Share of the jaws' contact that is left at the two ends.
+    #: Position of each end in the grid step beyond it, 0 to 1; if the nominal start fails, its margin, -1 to 0.
     end_shares: tuple[float, float]
-    #: Shift of the start in the middle of the window, if it was taught.
+    #: Shift of the taught start, mm, if the start was taught.
     taught_start_mm: float | None = None
     success_rate: float | None = None
     success_low: float | None = None
@@ -79,7 +82,10 @@ class Window(Result):
 
 @dataclass(frozen=True, repr=False)
 class Bands(Result):
-    """Where repeats end differently: the widths of the bands at both ends, mm (``None``: more than 2)."""
+    """Bands at both ends in which the outcomes of repeats differ: widths, mm (``None``: more than 2 mm).
+
+    ``unsure_inside_mm`` are the offsets, of those tried between the bands, at which not all repeats insert.
+    """
 
     negative_band_mm: float | None
     positive_band_mm: float | None
@@ -89,21 +95,21 @@ class Bands(Result):
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Subject(Result):
-    """Which finger was simulated on which task."""
+    """Simulated finger, task and cell."""
 
     task: str
     robot: str
     #: Name of the cell, if one was given.
     cell: str | None = None
-    #: Paths of the cell that apply to the task, and those that were identified on another one.
+    #: Parameters of the cell that apply to the task, and those that were identified on another task.
     cell_applied: tuple[str, ...] | None = None
     cell_not_applied: tuple[str, ...] | None = None
     infill_density_percent: float | None = None
     infill_direction_deg: float | None = None
-    #: Numbers that were set, by their keys.
+    #: Numbers given as ``set``, by key.
     set: dict[str, float] = field(default_factory=dict[str, float])
     finger_model: FingerModel
-    #: The remote centre of compliance above the tip of the fingers, mm, and what says so.
+    #: Height of the remote centre of compliance above the finger tips, mm, and its source.
     rcc_mm: float
     rcc_from: str
     tilting_nm_per_rad: float
@@ -112,14 +118,17 @@ class Subject(Result):
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Evaluation(Window, Subject):
-    """The tolerance window of one finger on one task; see :class:`Window`."""
+    """Tolerance window of one finger on one task.
+
+    ``range_mm`` is its width, ``negative_mm`` and ``positive_mm`` are its ends.
+    """
 
     wall_s: float = field(compare=False)
-    #: With ``repeat``: where repeats end differently.
+    #: Bands in which the outcomes differ; only with ``repeat``.
     bands: Bands | None = None
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
-        """Draws the window; gives the axes."""
+        """Draws the window; returns the axes."""
         return _bar(self, ax)
 
     def _repr_html_(self) -> str:
@@ -127,7 +136,7 @@ class Evaluation(Window, Subject):
 
 
 def _bar(found: Evaluation, ax: Drawing | None) -> Drawing:
-    """The window as a bar, with what ends it."""
+    """Draws the window as a bar, with the failures beyond its ends; returns the axes."""
     ax = axes = axes_of(ax, height=1.8)
     low, high = found.negative_mm, found.positive_mm
     label = f"{found.task}, {finger(found.infill_density_percent, found.infill_direction_deg)}"
@@ -143,7 +152,8 @@ def _bar(found: Evaluation, ax: Drawing | None) -> Drawing:
         axes.annotate(text, (at, y), (4 if side == "left" else -4, 0), textcoords="offset points", ha=side, va="center",
                       fontsize=8)
     axes.axvline(0.0, color="0.3", linewidth=0.8)
-    axes.set_yticks([*axes.get_yticks(), y] if y else [y], [*(tick.get_text() for tick in axes.get_yticklabels()), label] if y else [label])
+    axes.set_yticks([*axes.get_yticks(), y] if y else [y],
+                    [*(tick.get_text() for tick in axes.get_yticklabels()), label] if y else [label])
     reach = max(2.2 * max(-low, high, 1.0), *(abs(edge) for edge in axes.get_xlim()))
     axes.set_xlim(-reach, reach)
     axes.set_xlabel("shift of the start along y, mm")
@@ -151,7 +161,7 @@ def _bar(found: Evaluation, ax: Drawing | None) -> Drawing:
 
 
 def _card(found: Evaluation) -> str:
-    """A card: the window as a bar over the shift of the start."""
+    """Returns an HTML summary: the window as a bar over the shift of the start."""
     low, high = found.negative_mm, found.positive_mm
     title = html.escape(f"{found.task}, {finger(found.infill_density_percent, found.infill_direction_deg)}")
     if found.nominal != "inserted":
@@ -162,7 +172,8 @@ def _card(found: Evaluation) -> str:
     def at(mm: float) -> float:
         return width * (mm + reach) / (2 * reach)
 
-    bars = [(-reach, low, colour(found.failure_negative)), (low, high, COLOURS[0]), (high, reach, colour(found.failure_positive))]
+    below, above = colour(found.failure_negative), colour(found.failure_positive)
+    bars = [(-reach, low, below), (low, high, COLOURS[0]), (high, reach, above)]
     drawn = "".join(
         f"<rect x='{at(a):.1f}' y='8' width='{max(0.0, at(b) - at(a)):.1f}' height='18' fill='{fill}'/>"
         for a, b, fill in bars

@@ -10,7 +10,7 @@ from ._result import Result
 
 @dataclass(frozen=True, repr=False)
 class Files(Result):
-    """Files that were written: the one asked for, and what belongs beside it."""
+    """Written files: ``out``, and the files that belong to it in the same folder."""
 
     out: str
     beside: tuple[str, ...] = ()
@@ -19,5 +19,5 @@ class Files(Result):
 
     @property
     def paths(self) -> tuple[Path, ...]:
-        """All of them."""
+        """Paths of all written files."""
         return tuple(Path(file) for file in (self.out, *self.beside))

@@ -1,4 +1,4 @@
-"""Tables, which need an extra."""
+"""Optional dependencies for tables."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 
 def pandas() -> Any:
-    """The module pandas."""
+    """Imports pandas; raises ImportError with the extra to install."""
     try:
         import pandas as module
     except ImportError:
@@ -16,7 +16,7 @@ def pandas() -> Any:
 
 
 def pyarrow() -> Any:
-    """The module pyarrow, with its Parquet."""
+    """Imports pyarrow with its module for Parquet; raises ImportError with the extra to install."""
     try:
         importlib.import_module("pyarrow.parquet")
         return importlib.import_module("pyarrow")

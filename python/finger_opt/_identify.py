@@ -1,4 +1,4 @@
-"""What a robot's logs say of its cell."""
+"""Parameters of a cell identified from the robot's logs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ._words import Outcome
 
 @dataclass(frozen=True, repr=False)
 class Remark(Result):
-    """What is odd in a log, at which lines; what is ``serious`` spoils the result."""
+    """Anomaly in a log, with its lines; a ``serious`` one makes the result unreliable."""
 
     log: str
     lines: tuple[int, int] | None
@@ -22,7 +22,10 @@ class Remark(Result):
 
 @dataclass(frozen=True, repr=False)
 class Flange(Result):
-    """The robot along one axis: a spring, a damper and a mass behind a delay; ``explained`` of its motion."""
+    """Model of the robot along one axis: spring, damper and mass with a delay.
+
+    ``explained`` is the share of the motion that the model explains, 0 to 1.
+    """
 
     stiffness_n_per_mm: float
     stiffness_sd_n_per_mm: float
@@ -34,7 +37,7 @@ class Flange(Result):
 
 @dataclass(frozen=True, repr=False)
 class Slide(Result):
-    """A slide of a probe: tangential over normal force; one on which it keeps rising does not count."""
+    """One slide of a probe: tangential over normal force; it does not count if the ratio keeps ``rising``."""
 
     tangential_over_normal: float
     rising: bool
@@ -42,7 +45,7 @@ class Slide(Result):
 
 @dataclass(frozen=True, repr=False)
 class Probe(Result):
-    """The friction that a probe tells."""
+    """Coefficient of friction from the log of a probe, with its standard deviation."""
 
     log: str
     friction: float | None
@@ -52,29 +55,29 @@ class Probe(Result):
 
 @dataclass(frozen=True, repr=False)
 class Unknown(Result):
-    """A number of the cell, before (``prior_low`` to ``prior_high``) and after (``value`` and ``sd``)."""
+    """Parameter of the cell: prior interval (``prior_low`` to ``prior_high``) and estimate (``value``, ``sd``)."""
 
     name: str
-    #: Key that it sets, and how: by itself, as a factor or as an offset.
+    #: Key that the value changes, and how: replaced, multiplied by it, or shifted by it.
     sets: str
     as_: str
     prior_low: float
     prior_high: float
     value: float
     sd: float | None
-    #: ``formula`` or ``fit``; ``prior``: these logs cannot tell it; ``files``: not fitted.
+    #: Origin of the value: ``formula``, ``fit``, ``prior`` (not determined by these logs) or ``files`` (not fitted).
     from_: Literal["formula", "fit", "prior", "files"]
     source: str
-    #: Shares of the prior's deviation that are left: expected, and found.
+    #: Remaining share of the standard deviation of the prior: expected, and actual.
     expected_share_of_prior_sd: float | None
     share_of_prior_sd: float | None
-    #: The attempt that would tell it, if these do not.
+    #: Attempt that would determine the parameter, if these logs do not.
     advice: str | None
 
 
 @dataclass(frozen=True, repr=False)
 class Replayed(Result):
-    """An attempt that was simulated along its commanded path, before and after the fit."""
+    """Attempt simulated along its commanded path: outcomes before and after the fit."""
 
     log: str
     offset_mm: float
@@ -84,8 +87,8 @@ class Replayed(Result):
 
 @dataclass(frozen=True, repr=False)
 class Misfit(Result):
-    """How far a simulated component of the force is from the measured one, in standard deviations (root mean
-    square), before and after the fit."""
+    """Root mean square difference between a simulated and a measured force component, in standard deviations,
+    before and after the fit."""
 
     phase: Literal["search", "push"]
     axis: Literal["fx", "fy", "fz"]
@@ -95,7 +98,10 @@ class Misfit(Result):
 
 @dataclass(frozen=True, repr=False)
 class Validation(Result):
-    """An attempt that was not fitted: as it ended, as predicted, and the misfit of its force in standard deviations."""
+    """Attempt held out from the fit: actual and predicted outcome, and misfit of its force, in standard deviations.
+
+    ``misfit_fitted`` is the misfit of the fitted attempts.
+    """
 
     log: str
     offset_mm: float
@@ -107,23 +113,25 @@ class Validation(Result):
 
 @dataclass(frozen=True, repr=False)
 class Cell(Result):
-    """What logs say of the cell that they come from."""
+    """Cell identified from the robot's logs."""
 
     task: str
     remarks: tuple[Remark, ...]
-    #: By axis.
+    #: Model of the robot by axis.
     robot: dict[str, Flange]
     preload_mm: float | None
     preload_sd_mm: float | None
     probes: tuple[Probe, ...]
     unknowns: tuple[Unknown, ...]
+    #: Misfit before each round of the fit and after the last, in standard deviations.
     misfit: tuple[float, ...]
+    #: Share of the data that enough simulations reach to be compared, 0 to 1.
     compared_share: float
     phases: tuple[Misfit, ...]
     attempts: tuple[Replayed, ...]
-    #: ``None`` if all attempts were fitted: at most five of a finger are.
+    #: ``None`` if all attempts were fitted; at most five per finger are.
     validation: Validation | None
-    #: The page with the curves, measured and simulated.
+    #: HTML page with the measured and simulated curves.
     page: str = field(repr=False, metadata=PICTURE)
 
     def _repr_html_(self) -> str:

@@ -1,4 +1,4 @@
-"""JSON of what callers hold, for the library."""
+"""Conversion of Python values to JSON for the native library."""
 
 from __future__ import annotations
 
@@ -15,37 +15,43 @@ from ._native import InputError
 
 
 class Numbers(Protocol):
-    """A number or an array of NumPy."""
+    """NumPy number or array."""
 
     def tolist(self) -> Any: ...
 
 
 def dumps(value: object) -> str:
-    """The text of a value, in which numbers and arrays of NumPy may be."""
+    """Returns a value as JSON; it may contain NumPy numbers and arrays.
+
+    Raises :class:`InputError` for NaN and infinity.
+    """
     try:
         return json.dumps(value, default=_plain, allow_nan=False)
     except ValueError:
-        raise InputError("a number is NaN or infinite; all have to be finite") from None
+        raise InputError("a number is NaN or infinite; all numbers must be finite") from None
 
 
 def word(value: object) -> Any:
-    """The value of a keyword for the library: paths are text, what holds several a list or a table."""
+    """Returns a keyword value in JSON types: paths become text, iterables lists, mappings objects.
+
+    Raises :class:`InputError` for text that UTF-8 cannot encode.
+    """
     if _is_path(value):
         return word(os.fspath(value))
     if isinstance(value, str):
         try:
             value.encode()
         except UnicodeEncodeError:
-            raise InputError(f"{value!a}: its name has to be UTF-8") from None
+            raise InputError(f"{value!a}: must be valid UTF-8") from None
         return value
     if is_numpy(value):
         return word(value.tolist())
     if _is_mapping(value):
         return {key: word(one) for key, one in value.items()}
-    if _is_several(value):
+    if _is_iterable(value):
         return [word(one) for one in value]
     if isinstance(value, Real) and not isinstance(value, int):
-        # The library says what is wrong with a number that JSON does not know.
+        # JSON has no NaN or infinity: as text, the library rejects them with its own message.
         return float(value) if math.isfinite(value) else str(float(value))
     return value
 
@@ -58,27 +64,27 @@ def _is_mapping(value: object) -> TypeGuard[Mapping[str, Any]]:
     return isinstance(value, Mapping)
 
 
-def _is_several(value: object) -> TypeGuard[Iterable[Any]]:
+def _is_iterable(value: object) -> TypeGuard[Iterable[Any]]:
     return isinstance(value, Iterable)
 
 
 def is_table(value: object) -> TypeGuard[dict[str, Any]]:
-    """Whether it is an object of JSON."""
+    """Returns whether a value is a JSON object."""
     return isinstance(value, dict)
 
 
 def is_list(value: object) -> TypeGuard[list[Any]]:
-    """Whether it is an array of JSON."""
+    """Returns whether a value is a JSON array."""
     return isinstance(value, list)
 
 
 def is_tuple(value: object) -> TypeGuard[tuple[Any, ...]]:
-    """Whether it is a tuple, which JSON writes as an array."""
+    """Returns whether a value is a tuple, which becomes a JSON array."""
     return isinstance(value, tuple)
 
 
 def is_numpy(value: object) -> TypeGuard[Numbers]:
-    """Whether it is a number or an array of NumPy."""
+    """Returns whether a value is a NumPy number or array."""
     return isinstance(value, (np.generic, np.ndarray))
 
 

@@ -1,4 +1,4 @@
-"""What is shipped."""
+"""Lists of shipped tasks, spaces, uncertainties and robots."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ._result import Result
 
 @dataclass(frozen=True, repr=False)
 class Named(Result):
-    """What has a name."""
+    """Name and description of a shipped file."""
 
     name: str
     description: str
@@ -17,7 +17,7 @@ class Named(Result):
 
 @dataclass(frozen=True, repr=False)
 class TaskListed(Named):
-    """A task, with its clearance where the plug seats."""
+    """A task, with the clearance at the seat of the plug."""
 
     clearance_x_mm: float
     clearance_y_mm: float
@@ -25,7 +25,7 @@ class TaskListed(Named):
 
 @dataclass(frozen=True, repr=False)
 class Tasks(Result):
-    """Tasks, search spaces and sets of errors that are shipped."""
+    """Shipped tasks, search spaces and uncertainties (distributions of errors)."""
 
     tasks: tuple[TaskListed, ...]
     spaces: tuple[Named, ...]
@@ -34,12 +34,12 @@ class Tasks(Result):
 
 @dataclass(frozen=True, repr=False)
 class RobotModel(Result):
-    """A robot, and the cell that it stands for."""
+    """A robot model, and the cell that it represents."""
 
     cell: str
     name: str
     description: str
-    #: At the TCP along x, y, z.
+    #: Stiffness at the TCP along x, y, z; None for a rigid robot.
     stiffness_n_per_mm: tuple[float, float, float]
     lag_s: float
     stop_force_n: float
@@ -48,7 +48,7 @@ class RobotModel(Result):
 
 @dataclass(frozen=True, repr=False)
 class Robots(Result):
-    """The robots that are shipped, and the text of a file for one's own."""
+    """Shipped robots, and an example of a robot file (``own_file``)."""
 
     robots: tuple[RobotModel, ...]
     own_file: str

@@ -1,4 +1,4 @@
-"""Locks on open files, between the processes of a machine and the threads of one."""
+"""Locks on open files, between processes and between threads of one machine."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import BinaryIO
 if sys.platform == "win32":
     import msvcrt
 
-    #: The byte that is locked: where nobody reads, since this lock keeps readers out.
+    #: Offset of the locked byte: far beyond the data, since this lock also blocks reading.
     _BYTE = 1 << 40
 
     def _lock(file: BinaryIO, wait: bool) -> None:
@@ -23,12 +23,12 @@ else:
 
 
 def locked(file: BinaryIO, wait: bool) -> bool:
-    """Locks a file until it is closed; returns False if another has it and is not to be waited for."""
+    """Locks a file until it is closed; returns False if it is locked elsewhere and ``wait`` is False."""
     try:
         _lock(file, wait)
     except (BlockingIOError, PermissionError):
         return False
     except OSError:
-        # A file system without locks: a lone process works there as well.
+        # The file system has no locks: continue, which is safe for a single process.
         pass
     return True

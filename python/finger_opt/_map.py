@@ -1,4 +1,4 @@
-"""Capture maps and levers: what else moves the window."""
+"""Capture maps, and levers: effects of other parameters on the window."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ class Axis(Result):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class CaptureMap(Subject):
-    """How insertions of one finger end over two errors of the start.
+    """Outcomes of insertions with one finger over two errors of the start.
 
-    ``outcomes`` and ``simulated`` have a row for each value of the second axis, in it a column for each shift
-    along y. An outcome is 0 if inserted, 1 to 4 for the failure class, -1 if the simulation diverged; what was not
-    simulated is taken over from its neighbours.
+    ``outcomes`` and ``simulated`` have a row for each value of the second axis and a column for each shift along y.
+    An outcome is 0 if inserted, 1 to 4 for the failure class, -1 if the simulation diverged; outcomes that were not
+    simulated are inferred from their neighbours.
     """
 
     design: dict[str, float]
@@ -42,8 +42,9 @@ class CaptureMap(Subject):
     outcomes: NDArray[np.int64] = field(repr=False)
     simulated: NDArray[np.bool_] = field(repr=False)
     trials: int
+    #: Step along either axis at which the border of the inserting region was traced, in the unit of the axis.
     traced_step: float
-    #: Of what inserts.
+    #: Area of the inserting region, in ``area_unit``.
     area: float
     area_unit: str
     taught_start_mm: float | None = None
@@ -53,7 +54,7 @@ class CaptureMap(Subject):
         return equal(self, other)
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
-        """Draws the outcomes; gives the axes."""
+        """Draws the outcomes; returns the axes."""
         return _outcomes(self, ax)
 
     def _repr_html_(self) -> str:
@@ -61,7 +62,7 @@ class CaptureMap(Subject):
 
 
 def _outcomes(found: CaptureMap, ax: Drawing | None) -> Drawing:
-    """How insertions end over the two errors."""
+    """Draws the outcomes over the two errors; returns the axes."""
     axes = axes_of(ax, height=4.2)
     from matplotlib.colors import BoundaryNorm, ListedColormap
     from matplotlib.patches import Patch
@@ -73,8 +74,8 @@ def _outcomes(found: CaptureMap, ax: Drawing | None) -> Drawing:
     axes.pcolormesh(edges[0][: shape[1] + 1], edges[1][: shape[0] + 1], found.outcomes, cmap=colours,
                     norm=BoundaryNorm(np.arange(-1.5, 5.0), colours.N))
     met = [number for number in numbers if (found.outcomes == number).any()]
-    axes.legend(handles=[Patch(color=COLOURS[number], label=ending(number) if number > 0 else WORDS[number]) for number in met], loc="upper left",
-                bbox_to_anchor=(1.0, 1.0), frameon=False)
+    handles = [Patch(color=COLOURS[number], label=ending(number) if number > 0 else WORDS[number]) for number in met]
+    axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
     axes.plot(0, 0, "+", color="white", markersize=10)
     labels = [f"error of the start in {axis.name}, {axis.unit}" for axis in found.axes]
     axes.set(xlabel=labels[0], ylabel=labels[1],
@@ -84,7 +85,7 @@ def _outcomes(found: CaptureMap, ax: Drawing | None) -> Drawing:
 
 @dataclass(frozen=True, repr=False)
 class Taught(Result):
-    """The range, mm, from a start that was taught by this shift along y, mm."""
+    """Range of the finger without a change, mm, and shift of the taught start along y, mm."""
 
     range_mm: float | None
     taught_start_mm: float | None
@@ -92,24 +93,28 @@ class Taught(Result):
 
 @dataclass(frozen=True, repr=False)
 class Lever(Result):
-    """One number of task or cell, moved to ``low`` and to ``high`` (in ``unit``), with the range at both, mm
+    """One parameter of task or cell, changed to ``low`` and to ``high`` (in ``unit``), with the range at both, mm
     (``None``: nothing inserts)."""
 
     name: str
     key: str
     unit: str
-    #: Of the robot, its name.
+    #: Present value; the name if the parameter is the robot.
     value: float | str | None
     low: float | str | None
     high: float | str | None
-    #: Where the two come from.
+    #: Source of ``low`` and ``high``.
     source: str
     range_mm: tuple[float | None, float | None]
 
 
 @dataclass(frozen=True, repr=False)
 class Levers(Result):
-    """What moves the range of one finger, the largest first; ``infill_range_mm`` is what its infill moves."""
+    """Levers: effects of parameters on the range of one finger, the largest first.
+
+    ``infill_range_mm`` are the smallest and the largest range over infills, for comparison; ``base`` is the range
+    without a change.
+    """
 
     sentence: str
     task: str
@@ -117,14 +122,14 @@ class Levers(Result):
     base: Taught
     infill_range_mm: tuple[float, float] | None
     levers: tuple[Lever, ...]
-    #: What would leave the finger without a start that inserts.
+    #: Names of the levers that exceeded the limit on simulated windows.
     left_out: tuple[str, ...]
-    #: Windows that were simulated.
+    #: Number of simulated windows.
     windows: int
     svg: str = field(default="", repr=False, metadata=PICTURE)
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
-        """Draws the ranges at both ends of each lever; gives the axes."""
+        """Draws the ranges at both ends of each lever; returns the axes."""
         return _tornado(self, ax)
 
     def _repr_html_(self) -> str:
@@ -132,7 +137,7 @@ class Levers(Result):
 
 
 def _tornado(found: Levers, ax: Drawing | None) -> Drawing:
-    """The ranges at both ends of each lever."""
+    """Draws the ranges at both ends of each lever; returns the axes."""
     axes = axes_of(ax, width=7.4, height=4.2)
     base = found.base.range_mm or 0.0
     rows = list(reversed(found.levers))
@@ -144,7 +149,8 @@ def _tornado(found: Levers, ax: Drawing | None) -> Drawing:
             axes.annotate(f"{value:g}" if isinstance(value, float) else str(value), (reach, place),
                           (3 if reach >= base else -3, 0), textcoords="offset points", va="center",
                           ha="left" if reach >= base else "right", fontsize=7)
-    axes.set_yticks(range(len(rows)), [f"{lever.name}{f', {lever.unit}' if lever.unit else ''}" for lever in rows], fontsize=8)
+    labels = [f"{lever.name}{f', {lever.unit}' if lever.unit else ''}" for lever in rows]
+    axes.set_yticks(range(len(rows)), labels, fontsize=8)
     axes.axvline(base, color="0.3", linewidth=0.8)
     axes.set(xlabel="tolerable range, mm", title=found.sentence)
     axes.margins(x=0.15)

@@ -1,4 +1,4 @@
-"""The optimizers, for anything that can be measured."""
+"""Ask-and-tell interface to the optimizers, for any problem."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ._words import OptimizerName, SpaceName, StrPath
 
 
 class Point(dict[str, float]):
-    """A point that an optimizer asks for: values by name; ``id`` counts from 0."""
+    """Point proposed by an optimizer: values by name; ``id`` counts from 0."""
 
     id: int
 
@@ -34,14 +34,17 @@ def _by_parameter(point: object) -> TypeGuard[Mapping[object, object]]:
     return isinstance(point, Mapping)
 
 
-def _told(point: object, value: float | None) -> dict[str, Any]:
-    """The result of a point: one that was asked, its id, or the values of another."""
+def _result(point: object, value: float | None) -> dict[str, Any]:
+    """Returns a result as JSON fields, by the id of the point, or by its values if they are given.
+
+    Raises :class:`InputError` for an invalid point.
+    """
     if isinstance(point, Point):
         return {"id": point.id, "value": value}
     if isinstance(point, Integral) and not isinstance(point, bool) and int(point) >= 0:
         return {"id": int(point), "value": value}
     if not _by_parameter(point):
-        raise wrong("points", f"{shown(point)}; accepted: points that were asked, their ids, or a dict of values by parameter")
+        raise wrong("points", f"{shown(point)}; accepted: points from ask, their ids, or a dict of values by parameter")
     values: dict[str, float] = {}
     for name, one in point.items():
         found = number(one)
@@ -52,6 +55,7 @@ def _told(point: object, value: float | None) -> dict[str, Any]:
 
 
 def _value(value: object) -> float | None:
+    """Returns the value of a result as float; raises :class:`InputError` if it is neither finite nor None."""
     found = number(value)
     if found is None and value is not None:
         raise wrong("values", f"{shown(value)}; accepted: a finite number, or None for a failed evaluation")
@@ -59,13 +63,12 @@ def _value(value: object) -> float | None:
 
 
 class Optimizer:
-    """Optimizer by ask and tell, as ``optimize ask-tell``.
+    """Optimizer with ask and tell, as ``optimize ask-tell``.
 
-    ``space`` gives each parameter its bounds, and its step if it has one:
-    ``{"x": (-5, 5), "n": (1, 9, 2)}``; a list of dicts with ``name``, ``low``, ``high`` and
-    ``step``; or the name or path of a space file (``"infill"``). ``optimizer`` is ``gp``, ``cma-es``, ``sobol``, ``grid`` or ``random``.
-    The same seed and values give the same points. An optimizer can be pickled: it is restored by
-    repeating its calls.
+    ``space`` is a dict of bounds and optional step by parameter, ``{"x": (-5, 5), "n": (1, 9, 2)}``; a list of dicts
+    with ``name``, ``low``, ``high`` and ``step``; or the name or path of a space file (``"infill"``). ``optimizer`` is
+    ``gp``, ``cma-es``, ``sobol``, ``grid`` or ``random``. ``batch`` is the number of points per batch. The same seed
+    and values give the same points. A pickled optimizer is restored by repeating its calls.
 
     >>> optimizer = Optimizer({"x": (-5, 5)}, "gp", seed=1, direction="minimize")
     >>> for _ in range(3):
@@ -97,7 +100,8 @@ class Optimizer:
         else:
             several: list[Any] = list(space)
             if not all(isinstance(parameter, Mapping) for parameter in several):
-                raise wrong("space", "has to be a mapping of names to bounds, or a list of mappings with name, low, high")
+                problem = "has to be a mapping of names to bounds, or a list of mappings with name, low, high"
+                raise wrong("space", problem)
             parameters = [dict(parameter) for parameter in several]
         header = {
             "parameters": parameters,
@@ -106,13 +110,13 @@ class Optimizer:
             "direction": direction,
             "batch": batch,
         }
-        self._start()
-        self._say(header)
+        self._reset()
+        self._request(header)
 
-    def _start(self) -> None:
-        #: Best result so far: ``id`` (``None`` for a known result), ``values``, ``value``; ``None`` before the first one.
+    def _reset(self) -> None:
+        #: Best result so far: ``id`` (``None`` for a known result), ``values``, ``value``; ``None`` without results.
         self.best: dict[str, Any] | None = None
-        #: Why nothing more can be asked, if so.
+        #: Reason why ``ask`` returns no more points; ``None`` as long as it does.
         self.stop: str | None = None
         self._session = _native.Session()
         self._lines: list[str] = []
@@ -121,14 +125,14 @@ class Optimizer:
         return self._lines
 
     def __setstate__(self, lines: Iterable[str]) -> None:
-        self._start()
+        self._reset()
         for line in lines:
             self._send(line)
 
     @checked
     def ask(self, n: int = 1) -> list[Point]:
-        """Up to ``n`` new points, no point twice; none once the space is exhausted."""
-        asked = self._say({"ask": n})["asked"]
+        """Returns up to ``n`` new points, never the same twice; an empty list once the space is exhausted."""
+        asked = self._request({"ask": n})["asked"]
         return [Point(one["id"], one["values"]) for one in asked]
 
     def tell(
@@ -138,8 +142,10 @@ class Optimizer:
     ) -> None:
         """Adds results, in any order; ``None`` is a failed evaluation.
 
-        ``points`` are points that were asked, or their ids. A dict of values by parameter
-        (``{"x": 0.5, "n": 3}``) is a known result of a point that was never asked.
+        ``points`` are points from :meth:`ask`, or their ids. A dict of values by parameter
+        (``{"x": 0.5, "n": 3}``) adds a known result of any other point.
+
+        Raises :class:`InputError` for invalid points or values.
         """
         given: Any = points
         numbers: Any = values
@@ -149,12 +155,12 @@ class Optimizer:
             if not isinstance(several, Iterable) or isinstance(several, (str, bytes, Mapping)):
                 raise wrong(name, f"is {shown(cast('object', several))}; accepted: as many points as values")
         given, numbers = list(given), [_value(value) for value in numbers]
-        told = [_told(point, value) for point, value in zip(given, numbers)]
+        told = [_result(point, value) for point, value in zip(given, numbers)]
         if len(given) != len(numbers):
             raise wrong("values", f"{len(numbers)} values for {len(given)} points")
-        self._say({"tell": told})
+        self._request({"tell": told})
 
-    def _say(self, line: Mapping[str, Any]) -> dict[str, Any]:
+    def _request(self, line: Mapping[str, Any]) -> dict[str, Any]:
         return self._send(dumps(line))
 
     def _send(self, line: str) -> dict[str, Any]:

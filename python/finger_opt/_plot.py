@@ -1,4 +1,4 @@
-"""Axes and texts of drawings by matplotlib (the extra ``plot``)."""
+"""Axes and text for drawings with matplotlib (the extra ``plot``)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 def axes(ax: Axes | None, width: float = 6.4, height: float = 3.6) -> Axes:
-    """The axes given, or new ones."""
+    """Returns the given axes, or creates new ones (size in inches); raises ImportError without matplotlib."""
     if ax is not None:
         return ax
     try:
@@ -20,5 +20,5 @@ def axes(ax: Axes | None, width: float = 6.4, height: float = 3.6) -> Axes:
 
 
 def text(words: str) -> str:
-    """Words as they are: a dollar would begin a formula."""
+    """Returns text with dollar signs escaped, which would start a formula in matplotlib."""
     return words.replace("$", r"\$")

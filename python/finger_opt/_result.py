@@ -1,4 +1,4 @@
-"""What is found: frozen dataclasses, made of the JSON that ``--json`` prints."""
+"""Results of functions: frozen dataclasses built from the JSON that ``--json`` prints."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ from ._native import InputError
 
 T = TypeVar("T", bound="Result")
 
-#: Marks the field that takes all keys which are no fields: the parameters of a design, which the space names.
+#: Marks the field for all keys without a field of their own, for example the parameters of a design.
 REST: dict[str, bool] = {"rest": True}
-#: Marks what ``--json`` does not have: drawings, pages, arrays.
+#: Marks fields that ``--json`` does not contain: drawings, pages, arrays.
 DRAWN: dict[str, bool] = {"drawn": True}
-#: Marks the field that takes the drawing or the page of the result.
+#: Marks the field for the drawing or the page of the result.
 PICTURE: dict[str, bool] = {**DRAWN, "picture": True}
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
 class Result:
-    """Fields carry the names and units of ``--json``; a notebook shows them."""
+    """Result whose fields have the names and units of ``--json``; notebooks display it as a table."""
 
     @classmethod
     def from_json(cls: type[T], fields: Mapping[str, Any], picture: str | None = None) -> T:
-        """The result of such fields of JSON, and a picture or a page of it."""
+        """Creates the result from JSON fields, and its picture or page; raises TypeError for an unknown field."""
         drawn = [field.name for field in dataclasses.fields(cls) if field.metadata.get("picture")]
         return _built(cls, {**fields, **dict.fromkeys(drawn, picture or "")})
 
     def to_dict(self) -> dict[str, Any]:
-        """The fields as plain lists, numbers and texts, without what there is not."""
+        """Returns the fields as plain dicts, lists, numbers and text; omits ``None`` and drawings."""
         return _plain_fields(self)
 
     def __repr__(self) -> str:
@@ -50,7 +50,7 @@ class Result:
 
 @dataclasses.dataclass(frozen=True, repr=False)
 class Found(Result):
-    """What a command found, by the keys of ``--json``: as attributes and as items."""
+    """Result with the keys of ``--json`` as attributes and as items."""
 
     _found: dict[str, Any] = dataclasses.field(default_factory=dict[str, Any], metadata=REST)
     svg: str = dataclasses.field(default="", repr=False, metadata=PICTURE)
@@ -67,25 +67,25 @@ class Found(Result):
         return [*self._found, *super().__dir__()]
 
 
-#: Longest lists and texts of a repr that are not cut.
-ITEMS, LETTERS = 6, 200
+#: Largest numbers of items and of characters that a repr does not abbreviate.
+MAX_ITEMS, MAX_CHARACTERS = 6, 200
 
 
 def _short(value: Any) -> str:
-    """The repr of a field: of what is long its beginning and its length."""
-    if (is_tuple(value) or is_list(value)) and len(value) > ITEMS:
-        inner = ", ".join(_short(one) for one in value[: ITEMS // 2])
+    """Returns the repr of a field value, abbreviated if it is long."""
+    if (is_tuple(value) or is_list(value)) and len(value) > MAX_ITEMS:
+        inner = ", ".join(_short(one) for one in value[: MAX_ITEMS // 2])
         return f"<{len(value)}: {inner}, ..>"
     if is_numpy(value):
         array: Any = value
-        if array.size > ITEMS:
+        if array.size > MAX_ITEMS:
             return f"<array of {array.shape}>"
     text = repr(value)
-    return text if isinstance(value, Result) or len(text) <= LETTERS else f"{text[:LETTERS]}.."
+    return text if isinstance(value, Result) or len(text) <= MAX_CHARACTERS else f"{text[:MAX_CHARACTERS]}.."
 
 
 def equal(one: Any, other: Any) -> bool:
-    """Whether two dataclasses with arrays hold the same."""
+    """Returns whether two dataclasses with arrays are equal."""
     if type(one) is not type(other):
         return False
     names = [field.name for field in dataclasses.fields(one) if field.compare]
@@ -95,15 +95,15 @@ def equal(one: Any, other: Any) -> bool:
 
 
 def plain(hint: Any) -> Any:
-    """The class of a generic type; of an alias, as newer versions of NumPy have, that of what it stands for."""
+    """Returns the class of a generic type, with an alias resolved (newer versions of NumPy have aliases)."""
     origin = get_origin(hint)
     return get_origin(origin.__value__) if hasattr(origin, "__value__") else origin
 
 
 def suffixed(file: str | os.PathLike[str] | None, suffix: str) -> None:
-    """Refuses a file whose name promises something else than what is written."""
+    """Checks the suffix of a file to write; raises :class:`InputError` if it does not match the format."""
     if file is not None and not os.fspath(file).lower().endswith(suffix):
-        error = InputError(f"{os.fspath(file)}: what is written is {suffix[1:].upper()}; let its name end in {suffix}")
+        error = InputError(f"{os.fspath(file)}: the format is {suffix[1:].upper()}; the file name must end in {suffix}")
         error.file = os.fspath(file)
         raise error
 
@@ -114,40 +114,42 @@ def _hints(cls: type[Any]) -> dict[str, Any]:
 
 
 def _built(cls: type[T], fields: Mapping[str, Any]) -> T:
+    """Builds a result from JSON fields; raises TypeError for an unknown field."""
     kind: Any = cls
     hints, names, values = _hints(kind), set[str](), dict[str, Any]()
     rest = next((field.name for field in dataclasses.fields(cls) if field.metadata.get("rest")), None)
     for field in dataclasses.fields(cls):
-        # A word of Python has a stroke behind it.
+        # Fields named like Python keywords have a trailing underscore.
         key = field.name.rstrip("_")
         names.add(key)
         if field.name == rest:
             continue
         if key in fields:
-            values[field.name] = _value(hints[field.name], fields[key])
+            values[field.name] = _converted(hints[field.name], fields[key])
         elif type(None) in get_args(hints[field.name]):
-            # What there is not `to_dict` leaves out.
+            # JSON omits optional fields that are None.
             values[field.name] = None
     others = {key: value for key, value in fields.items() if key not in names or key == rest}
     if rest is not None:
-        values[rest] = _value(hints[rest], others.pop(rest, others))
+        values[rest] = _converted(hints[rest], others.pop(rest, others))
     elif others:
         raise TypeError(f"{cls.__name__} has no field {', '.join(others)}")
     return cls(**values)
 
 
-def _value(hint: Any, value: Any) -> Any:
+def _converted(hint: Any, value: Any) -> Any:
+    """Converts a JSON value to the type of a field."""
     origin, args = plain(hint), get_args(hint)
     if value is None:
         return None
     if origin in (Union, types.UnionType):
         kinds = [one for one in args if one is not type(None)]
-        return _value(kinds[0], value) if len(kinds) == 1 else value
+        return _converted(kinds[0], value) if len(kinds) == 1 else value
     if origin is tuple:
         each = args[:1] * len(value) if args[-1] is Ellipsis else args
-        return tuple(_value(kind, one) for kind, one in zip(each, value, strict=True))
+        return tuple(_converted(kind, one) for kind, one in zip(each, value, strict=True))
     if origin is dict:
-        return {key: _value(args[1], one) for key, one in value.items()}
+        return {key: _converted(args[1], one) for key, one in value.items()}
     if origin is np.ndarray:
         return np.asarray(value)
     if hint is float:
@@ -156,6 +158,7 @@ def _value(hint: Any, value: Any) -> Any:
 
 
 def _plain_fields(result: Result) -> dict[str, Any]:
+    """Returns the fields of a result by their JSON keys."""
     found: dict[str, Any] = {}
     for field in dataclasses.fields(result):
         value = getattr(result, field.name)
@@ -167,6 +170,7 @@ def _plain_fields(result: Result) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
+    """Returns a value in JSON types."""
     if isinstance(value, Result):
         return _plain_fields(value)
     if is_list(value) or is_tuple(value):
@@ -177,6 +181,7 @@ def _plain(value: Any) -> Any:
 
 
 def _table(result: Result) -> str:
+    """Returns a result as an HTML table."""
     style = "text-align:left;vertical-align:top"
     rows = "".join(
         f"<tr><th style='{style}'>{html.escape(key)}</th><td style='{style}'>{_cell(value)}</td></tr>"
@@ -186,7 +191,7 @@ def _table(result: Result) -> str:
 
 
 def _cell(value: Any) -> str:
-    """A value in a table: what is long is counted."""
+    """Returns a value as HTML, with long lists abbreviated."""
     if isinstance(value, float):
         return f"{value:.6g}"
     if is_table(value):

@@ -1,4 +1,4 @@
-"""The command ``optimize`` of the wheel: the same command line, in this interpreter."""
+"""The command ``optimize`` of the wheel, which runs the command line in this interpreter."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from . import _native
 
 
 def main() -> int:
-    """Runs ``optimize`` with the arguments of this process; gives its exit code."""
-    # The command line has its own way to stop: Python's would wait until it has ended.
+    """Runs ``optimize`` with the arguments of this process; returns the exit code."""
+    # The command line handles Ctrl-C itself; Python's handler would wait until the command has ended.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     open_streams()
     os.environ.setdefault("FINGER_OPT_PYTHON", sys.executable)
@@ -19,9 +19,12 @@ def main() -> int:
 
 
 def open_streams() -> None:
-    """Standard streams that were closed lead nowhere: else the next file has their number, and what is said goes into it."""
-    for number in range(3):
+    """Opens closed standard streams on the null device.
+
+    Otherwise, the next opened file gets the descriptor of the stream, and messages are written to that file.
+    """
+    for descriptor in range(3):
         try:
-            os.fstat(number)
+            os.fstat(descriptor)
         except OSError:
             os.open(os.devnull, os.O_RDWR)

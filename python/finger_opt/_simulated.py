@@ -1,4 +1,4 @@
-"""A robot that is simulated."""
+"""Simulated robot."""
 
 from __future__ import annotations
 
@@ -16,26 +16,28 @@ from ._rehearsal import Rehearsal
 from ._task import Given
 from ._words import StrPath
 
-#: Engines of a simulated robot: those of a trial, and MuJoCo with a controller of its own.
+#: Engines of a simulated robot: those of a trial, and MuJoCo with its own controller.
 RobotEngine = Literal["direct", "rapier", "fake", "mujoco"]
 
 
 class SimulatedRobot:
-    """A robot that is simulated: for rehearsals, notebooks and tests.
+    """Simulated robot for rehearsals, notebooks and tests.
 
     Task, density (percent), direction (degrees) and ``engine`` are those of :func:`finger_opt.trial`. ``cell``
-    is what the robot hides: words of that function and numbers (``{"robot": "ur5e", "task.friction.plug_socket": 0.3}``),
-    the name or path of a robot file, or the path of a ``cell.toml``. ``noise`` is the width, mm, over which the
-    probability to insert goes from 90 to 10 % at an end: each start is off by a logistic error, which no log
-    shows. The forces in the logs have white noise of standard deviation ``force_noise_n`` and a drift that
-    rises to ``force_drift_n`` until the log ends, N. All is drawn with ``seed``. ``taught_mm`` moves the taught start
-    along y.
+    contains the true parameters: keywords of that function and numbers
+    (``{"robot": "ur5e", "task.friction.plug_socket": 0.3}``), the name or path of a robot file, or the path of a
+    ``cell.toml``. ``noise`` is the width, mm, over which the probability to insert falls from 90 to 10 % at an end:
+    each start has a logistic error, which the logs do not contain. The forces in the logs have white noise of
+    standard deviation ``force_noise_n`` and a drift up to ``force_drift_n`` at the end of the log, N. ``seed``
+    determines all random numbers. ``taught_mm`` shifts the taught start along y.
 
-    With ``engine="mujoco"`` (extra ``finger-opt[mujoco]``) the robot shares neither contact nor controller with the
-    simulation. Without ``cell`` the seed draws friction, preload, stiffnesses and more from the shipped priors; it
-    also draws what the simulation does not know: play and drift of the robot, errors of the start, dry friction in
-    the fingers, a socket on a spring, noise and bias of the sensor. Robots with the same task and seed share the cell,
-    whatever their finger; ``hidden`` is what was drawn, by name.
+    With ``engine="mujoco"`` (extra ``finger-opt[mujoco]``) the robot shares neither contact code nor controller with
+    the simulation. Without ``cell``, friction, preload, stiffnesses and more are drawn from the shipped priors. Effects
+    that the simulation does not model are drawn as well: backlash and drift of the robot, errors of the start, dry
+    friction in the fingers, compliance of the socket's mount, noise and bias of the sensor. Robots with the same task
+    and seed have the same cell, whatever their finger; ``hidden`` contains the drawn values by name.
+
+    Raises :class:`InputError` for invalid values.
     """
 
     @checked
@@ -56,39 +58,39 @@ class SimulatedRobot:
         for name, value, unit in (("noise", noise, "a width in mm"), ("force_noise_n", force_noise_n, "a force in N"),
                                   ("force_drift_n", force_drift_n, "a force in N")):
             if not 0.0 <= value <= 100.0:
-                raise wrong(name, f"is {value}; it is {unit}, 0 to 100")
+                raise wrong(name, f"is {value}; must be {unit}, 0 to 100")
         if seed < 0:
-            raise wrong("seed", f"is {shown(seed)}; it is a whole number, 0 or above")
+            raise wrong("seed", f"is {shown(seed)}; must be a whole number, 0 or above")
         if not -100.0 <= taught_mm <= 100.0:
-            raise wrong("taught_mm", f"is {taught_mm}; it is a length in mm, -100 to 100")
+            raise wrong("taught_mm", f"is {taught_mm}; must be a length in mm, -100 to 100")
         self._taught_mm = taught_mm
         self._finger: dict[str, Any] = {"task": task, "density": density, "direction": direction}
-        self._settings: dict[str, Any] = {"engine": engine, **_hidden(cell)}
+        self._settings: dict[str, Any] = {"engine": engine, **_trial_keywords(cell)}
         self._mujoco: Rehearsal | None = None
-        #: Hidden numbers by name, of a robot in MuJoCo.
+        #: Drawn true parameters by name; empty unless the engine is ``mujoco``.
         self.hidden: dict[str, float] = {}
         if engine == "mujoco":
-            self._mujoco = Rehearsal(task, density, direction, None if cell is None else _hidden(cell), seed)
+            self._mujoco = Rehearsal(task, density, direction, None if cell is None else _trial_keywords(cell), seed)
             self.hidden = self._mujoco.hidden
-        self._scale, self._drawn = noise / (2.0 * math.log(9.0)), np.random.default_rng(seed)
-        # Of its own: the logs change no attempt.
+        self._error_scale_mm, self._start_errors = noise / (2.0 * math.log(9.0)), np.random.default_rng(seed)
+        # A separate stream, so that logging does not change the attempts.
         self._sensor = np.random.default_rng([seed, 1])
         self._noise_n, self._drift_n = force_noise_n, force_drift_n
 
     def insert(self, offset_mm: float, log: Path | None = None) -> Attempt:
-        """Simulates the insertion, and records it in ``log``; the engine ``fake`` has nothing to record."""
-        error_mm = self._scale * float(self._drawn.logistic())
+        """Simulates an insertion, and records it in ``log``, except with the engine ``fake``."""
+        error_mm = self._error_scale_mm * float(self._start_errors.logistic())
         if self._mujoco is not None:
-            seen = self._mujoco.insert(offset_mm + self._taught_mm + error_mm, log)
+            ended = self._mujoco.insert(offset_mm + self._taught_mm + error_mm, log)
             if log is not None:
-                self._sense(log, error_mm)
-            return Attempt(seen.inserted, seen.failure, seen.depth_mm, seen.peak_force_n, log)
+                self._add_sensor_errors(log, error_mm)
+            return Attempt(ended.inserted, ended.failure, ended.depth_mm, ended.peak_force_n, log)
         if self._settings["engine"] == "fake":
             log = None
-        ended = trial(**self._finger, offset_mm=offset_mm + self._taught_mm + error_mm, log=log, **self._settings)
+        found = trial(**self._finger, offset_mm=offset_mm + self._taught_mm + error_mm, log=log, **self._settings)
         if log is not None:
-            self._sense(log, error_mm)
-        return Attempt(ended.outcome == "inserted", ended.failure, ended.depth_mm, ended.peak_force_n, log)
+            self._add_sensor_errors(log, error_mm)
+        return Attempt(found.outcome == "inserted", found.failure, found.depth_mm, found.peak_force_n, log)
 
     def probe(self, log: Path) -> None:
         """Simulates slow slides along y on a flat face, and records them in ``log``."""
@@ -96,10 +98,10 @@ class SimulatedRobot:
             self._mujoco.probe(log)
         else:
             trial(**self._finger, probe=True, log=log, **self._settings)
-        self._sense(log, 0.0)
+        self._add_sensor_errors(log, 0.0)
 
-    def _sense(self, log: Path, error_mm: float) -> None:
-        """Writes the log as the robot would: it does not know by how much its start is off."""
+    def _add_sensor_errors(self, log: Path, error_mm: float) -> None:
+        """Rewrites a log with sensor noise and drift, and without the start error, which a robot would not measure."""
         with log.open(encoding="utf-8") as file:
             header = file.readline().strip()
             rows = np.loadtxt(file, delimiter=",", ndmin=2)
@@ -114,13 +116,13 @@ class SimulatedRobot:
         np.savetxt(log, rows, fmt="%.7g", delimiter=",", header=header, comments="")
 
 
-def _hidden(cell: Mapping[str, Any] | StrPath | None) -> dict[str, Any]:
-    """The settings of a trial that a cell is."""
+def _trial_keywords(cell: Mapping[str, Any] | StrPath | None) -> dict[str, Any]:
+    """Returns a cell as keywords of a trial."""
     if cell is None or isinstance(cell, Mapping):
-        words = {str(name): value for name, value in (cell or {}).items() if "." not in str(name)}
+        keywords = {str(name): value for name, value in (cell or {}).items() if "." not in str(name)}
         numbers = {str(name): value for name, value in (cell or {}).items() if "." in str(name)}
-        return {**words, "set": {**words.get("set", {}), **numbers}}
+        return {**keywords, "set": {**keywords.get("set", {}), **numbers}}
     path = Path(cell)
-    # A robot file has no unknowns.
-    unknowns = path.suffix == ".toml" and path.is_file() and "[[parameter]]" in path.read_text("utf-8", "replace")
-    return {"cell" if unknowns else "robot": cell}
+    # A cell file has [[parameter]] tables, a robot file has not.
+    is_cell = path.suffix == ".toml" and path.is_file() and "[[parameter]]" in path.read_text("utf-8", "replace")
+    return {"cell" if is_cell else "robot": cell}

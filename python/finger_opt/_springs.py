@@ -1,4 +1,4 @@
-"""Stiffness: the model fitted to measurements, and the mechanics of a printed finger."""
+"""Stiffness: model fitted to measurements, and mechanics of a printed finger."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Fit(Result):
-    """A model of the stiffness along one axis, and its errors for designs left out."""
+    """Model of the stiffness along one axis, with its leave-one-out errors."""
 
     axis: str
     model: str
@@ -33,7 +33,10 @@ class Fit(Result):
 
 @dataclass(frozen=True, repr=False)
 class Used(Result):
-    """The model that is used along one axis."""
+    """Chosen model along one axis.
+
+    ``sd_widening`` is the factor by which its standard deviations were widened to match the leave-one-out errors.
+    """
 
     model: str
     parameters: str
@@ -42,19 +45,19 @@ class Used(Result):
 
 @dataclass(frozen=True, repr=False)
 class StiffnessModel(Result):
-    """How well models of the stiffness fit the measured designs."""
+    """Models of the stiffness fitted to the measured designs; ``used`` by axis."""
 
     designs: int
     models: tuple[Fit, ...]
     used: dict[str, Used]
-    #: What it was fitted to, if not to the shipped measurements, and of which finger.
+    #: File of the measurements, ``None`` for the shipped ones, and file of the measured finger.
     stiffness_data: str | None = field(default=None, metadata=DRAWN)
     finger: str = field(default="finray9", metadata=DRAWN)
-    #: The measurements, and what the models make of them.
+    #: Drawing of the measurements and the fitted models.
     svg: str = field(default="", repr=False, metadata=PICTURE)
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
-        """Draws the stiffness in the compliance direction over density and direction; gives the axes."""
+        """Draws the stiffness in the compliance direction over density and direction; returns the axes."""
         return _contours(self, ax)
 
     def _repr_html_(self) -> str:
@@ -62,17 +65,21 @@ class StiffnessModel(Result):
 
 
 def _contours(found: StiffnessModel, ax: Drawing | None) -> Drawing:
-    """The stiffness in the compliance direction over density and direction."""
+    """Draws the stiffness in the compliance direction over density and direction; returns the axes."""
     axes = axes_of(ax, height=4.2)
     infill: list[dict[str, float]] = json.loads(_native.space("infill"))
     density, direction = (np.linspace(axis["low"], axis["high"], 21) for axis in infill)
     values = np.array([
-        [stiffness(float(x), float(y), stiffness_data=found.stiffness_data, finger=found.finger).compliance_n_per_mm for x in density]
+        [
+            stiffness(float(x), float(y), stiffness_data=found.stiffness_data, finger=found.finger).compliance_n_per_mm
+            for x in density
+        ]
         for y in direction
     ])
     filled = axes.contourf(density, direction, values, levels=14, cmap="viridis")
     axes.figure.colorbar(filled, ax=axes, label="stiffness in the compliance direction, N/mm")
-    axes.set(xlabel="infill density, percent", ylabel="infill direction, degrees", title=f"fitted to {found.designs} designs")
+    axes.set(xlabel="infill density, percent", ylabel="infill direction, degrees",
+             title=f"fitted to {found.designs} designs")
     return axes
 
 
@@ -93,7 +100,7 @@ def stiffness(
     finger: StrPath = "finray9",
     svg: StrPath | None = None,
 ) -> StiffnessModel | Springs:
-    """The stiffness predicted for an infill, or, without one, how well the models fit, as ``optimize stiffness``.
+    """Predicts the stiffness for an infill, or returns the fitted models without one, as ``optimize stiffness``.
 
     >>> import finger_opt as fo
     >>> fo.stiffness(20, 10).inside_hull
@@ -102,12 +109,12 @@ def stiffness(
     Args:
         density: Infill density, percent.
         direction: Infill direction, degrees.
-        stiffness_data: CSV file of one's own measurements, in place of the shipped ones.
-        finger: Finger file of the finger that was measured.
-        svg: Write the drawing, without an infill.
+        stiffness_data: CSV file of your own measurements, in place of the shipped ones.
+        finger: Finger file of the measured finger.
+        svg: Write a drawing of all designs to this file; only without an infill.
 
     Raises:
-        InputError: A value or a file that cannot be used.
+        InputError: Invalid value or file.
     """
     if density is None and direction is None:
         model = called("stiffness", {"stiffness_data": stiffness_data, "finger": finger, "svg": svg}, StiffnessModel)
@@ -120,22 +127,23 @@ def stiffness(
 
 @dataclass(frozen=True, repr=False)
 class Pad(Result):
-    """What a force on the pad sees: in the plane of the finger, y towards the part, z up."""
+    """In-plane stiffness at the pad: y towards the part, z up, rotation about x."""
 
     compliance_n_per_mm: float
     assembly_n_per_mm: float
     tilting_nm_per_rad: float
-    #: Where the centre of compliance lies.
+    #: Position of the centre of compliance: below the middle of the pad, and in front of it towards the part.
     centre_below_pad_mm: float
     centre_from_pad_mm: float
+    #: Correlation of the compliances in y and z, -1 to 1.
     coupling_yz: float
-    #: (3, 3): y, z in N/mm, turn in N m/rad, and what couples them.
+    #: (3, 3), for y, z and the rotation at the middle of the pad: N/mm; N/rad for the coupling; N mm/rad.
     stiffness_matrix: tuple[tuple[float, ...], ...]
 
 
 @dataclass(frozen=True, repr=False)
 class Across(Result):
-    """Stiffness out of the plane of the finger."""
+    """Out-of-plane stiffness of the finger: along its depth, and about y and z."""
 
     depth_n_per_mm: float
     about_y_nm_per_rad: float
@@ -144,7 +152,7 @@ class Across(Result):
 
 @dataclass(frozen=True, repr=False)
 class Finger(Result):
-    """A printed finger, computed from its ribs; a notebook draws it at rest and under a force on its pad."""
+    """Mechanics of a printed finger, computed from its ribs; notebooks draw it at rest and under a force on its pad."""
 
     finger: str
     infill_density_percent: float
@@ -152,7 +160,7 @@ class Finger(Result):
     phase_mm: float
     area_mm2: float
     mass_g: float
-    #: What the model fitted to measurements says of it.
+    #: Stiffness predicted by the model fitted to measurements; ``None`` if the model does not apply.
     measured_model: Springs | None
     pad: Pad
     pad_and_roof: Pad

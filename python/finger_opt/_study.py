@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class Study(Asked):
-    """A study in a folder. Make one with :meth:`create`, open one with :func:`finger_opt.load_study`.
+    """Study in a folder, created by :meth:`create` or opened by :func:`finger_opt.load_study`.
 
     >>> import finger_opt as fo
     >>> study = fo.Study.create("rj45", budget=8, out="rj45-study", no_levers=True, no_map=True)
@@ -40,19 +40,22 @@ class Study(Asked):
     True
     """
 
-    def __init__(self, asked: _native.StudyRequest) -> None:
-        #: The folder.
-        self.path: str = os.path.abspath(asked.create())
-        self._asked = asked
+    def __init__(self, request: _native.StudyRequest) -> None:
+        #: Absolute path of the folder.
+        self.path: str = os.path.abspath(request.create())
+        self._request = request
 
     @classmethod
     def asked(cls, words: Mapping[str, Any]) -> Study:
-        """The study of these words, in its folder; a batch that is not given follows from the workers of :meth:`run`."""
+        """Creates a study with these options; the default of ``batch`` depends on the workers of :meth:`run`."""
         return cls(_native.StudyRequest(keywords(words)))
 
     @classmethod
     def resumed(cls, folder: StrPath, words: Mapping[str, Any] | None = None) -> Study:
-        """The study in a folder; :meth:`run` continues it by these words."""
+        """Opens the study in a folder; :meth:`run` continues it with these options.
+
+        Raises :class:`InputError` if the folder is not a study.
+        """
         if not os.path.isfile(os.path.join(folder, "study.toml")):
             raise wrong("folder", f"{os.fspath(folder)} is not a study: it has no study.toml")
         _native.Recorded(os.fspath(folder))
@@ -70,33 +73,33 @@ class Study(Asked):
     ) -> Study:
         """Runs the study until its budget is spent, and writes its report.
 
-        Ctrl-C stops it; what was measured is safe, and ``run`` again goes on.
+        Ctrl-C stops the study; finished evaluations are kept, and calling ``run`` again continues it.
 
         Args:
-            executor: Any ``concurrent.futures.Executor``, or what has its ``submit``: designs are measured there,
-                and the journal is the same as with any other, or none, for the same batch. Without, they are
-                measured on the threads of this process.
-            progress: Show a line on standard error; the bar of ``tqdm`` if it is installed.
-            workers: Measurements at a time; as many as the executor has unless given.
-            retries: How often a measurement that a worker lost, or whose result is refused, is done again.
-            callbacks: Called with the study and the number of its evaluations whenever there are more.
+            executor: Any ``concurrent.futures.Executor``, or object with its ``submit``, on which designs are
+                evaluated; without one, they are evaluated on threads of this process. The journal does not depend on
+                the executor if the batch is the same.
+            progress: Show a progress line on standard error, or the bar of ``tqdm`` if it is installed.
+            workers: Number of simultaneous evaluations; default: the number of workers of the executor.
+            retries: Number of retries of an evaluation that a worker lost, or whose result is rejected.
+            callbacks: Functions called with the study and its number of evaluations whenever that number increases.
 
         Raises:
             StudyError: The executor fails, or the folder cannot be written.
             Interrupted: Ctrl-C.
         """
-        told = [functools.partial(callback, self) for callback in callbacks]
-        _, unusable = run_open(self._open, executor, progress, workers, retries, told)
+        bound = [functools.partial(callback, self) for callback in callbacks]
+        _, unusable = run_open(self._open, executor, progress, workers, retries, bound)
         if unusable is not None:
             raise _native.StudyError(unusable)
         return self
 
     def report(self) -> str:
-        """Writes tables and plots again, as ``optimize report`` does; gives the path of the page."""
+        """Writes tables and plots again, as ``optimize report`` does; returns the path of the page."""
         return str(called("report", {"dir": self.path}, Found)["page"])
 
     def _open(self, workers: int | None) -> _native.AskTellStudy:
-        return self._asked.open(workers)
+        return self._request.open(workers)
 
     def _begun(self) -> bool:
         return os.path.exists(os.path.join(self.path, "journal.jsonl"))
@@ -106,24 +109,27 @@ class Study(Asked):
 
     @property
     def config(self) -> dict[str, Any]:
-        """What was asked for, as ``study.toml`` keeps it."""
+        """Configuration of the study, as in ``study.toml``."""
         config: dict[str, Any] = json.loads(self._read().config())
         return config
 
     @property
     def best(self) -> Recommended | None:
-        """The recommended design, as ``recommended`` of ``--json``; ``None`` while there is none."""
+        """Recommended design, as ``recommended`` of ``--json``; ``None`` as long as there is none."""
         found = json.loads(self._read().best()) if self._begun() else None
         return None if found is None else Recommended.from_json(found)
 
     @property
     def best_params(self) -> dict[str, float]:
-        """Values of the recommended design by key; an error while there is none, as in Optuna."""
+        """Values of the recommended design by key; raises ValueError without one, as Optuna does."""
         return dict(self._recommended().values)
 
     @property
     def best_value(self) -> float:
-        """The first objective of the recommended design, on the bench if there are measurements."""
+        """First objective of the recommended design, or its predicted range on the bench, mm, with measurements.
+
+        Raises ValueError without a recommended design.
+        """
         best = self._recommended()
         if best.bench is not None:
             return best.bench.range_mm
@@ -142,7 +148,7 @@ class Study(Asked):
 
     @property
     def answer(self) -> Answer | None:
-        """What to do, as ``answer`` of ``--json``; ``None`` before it has begun."""
+        """Recommended action, as ``answer`` of ``--json``; ``None`` before the study has started."""
         if not self._begun():
             return None
         read = self._read()
@@ -154,7 +160,7 @@ class Study(Asked):
         return self._begun() and self._read().settled()
 
     def to_dataframe(self) -> DataFrame:
-        """A row for each evaluation; the columns of ``evaluations.csv``, with their units."""
+        """Returns the evaluations as rows, with the columns of ``evaluations.csv``, which contain the units."""
         from ._frame import pandas
 
         table = self._read().table()
@@ -162,15 +168,15 @@ class Study(Asked):
         return frame
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
-        """Draws the objective over the evaluations, and the best so far; gives the axes."""
+        """Draws the objective over the evaluations, and the best so far; returns the axes."""
         return _convergence(self, ax)
 
     def plot_surface(self, ax: Drawing | None = None) -> Drawing:
-        """Draws the designs of an infill with their ranges; gives the axes."""
+        """Draws the infills, coloured by the objective; returns the axes."""
         return _surface(self, ax)
 
     def __len__(self) -> int:
-        """Evaluations in the journal."""
+        """Returns the number of evaluations in the journal."""
         return self._read().length() if self._begun() else 0
 
     def __bool__(self) -> bool:
@@ -181,7 +187,7 @@ class Study(Asked):
 
     def _repr_html_(self) -> str:
         if not self._begun():
-            return f"<p>a study not begun yet: {html.escape(self.path)}</p>"
+            return f"<p>study not started: {html.escape(self.path)}</p>"
         return self._read().card()
 
     def __fspath__(self) -> str:
@@ -192,24 +198,24 @@ class Study(Asked):
 
 
 def _named(study: Study) -> str:
-    """The study's folder, without those that it is in."""
+    """Returns the name of the study's folder."""
     return text(os.path.basename(study.path))
 
 
 def _objective(study: Study) -> tuple[str, str, bool] | None:
-    """Column of the first objective, what it is in words with its unit, and whether less is better."""
+    """Returns column and label (with unit) of the first objective, and whether it is minimized; None without data."""
     columns = [str(column) for column in study.to_dataframe().columns]
     column = next((column for column in columns if column.startswith("objective")), None)
     if column is None:
         return None
     name = str(study.config["objective"]).split(",")[0].strip()
-    words = "tolerable range" if name == "range" else name.replace("-", " ")
+    label = "tolerable range" if name == "range" else name.replace("-", " ")
     unit = column.rpartition("_")[2] if column.count("_") > column.startswith("objective_1") else ""
-    return column, f"{words}, {unit}" if unit in ("mm", "n") else words, name in ("peak-force", "slip")
+    return column, f"{label}, {unit}" if unit in ("mm", "n") else label, name in ("peak-force", "slip")
 
 
 def _convergence(study: Study, ax: Drawing | None) -> Drawing:
-    """Each evaluation, and the best so far."""
+    """Draws the objective of each evaluation, and the best so far; returns the axes."""
     axes = axes_of(ax)
     objective = _objective(study)
     if objective is not None:
@@ -225,7 +231,7 @@ def _convergence(study: Study, ax: Drawing | None) -> Drawing:
 
 
 def _surface(study: Study, ax: Drawing | None) -> Drawing:
-    """The designs, coloured by their objective, and the recommended one."""
+    """Draws the infills, coloured by the objective, and the recommended design; returns the axes."""
     axes = axes_of(ax, height=4.2)
     keys = ("infill_density_percent", "infill_direction_deg")
     objective, frame = _objective(study), study.to_dataframe()
@@ -245,7 +251,7 @@ def _surface(study: Study, ax: Drawing | None) -> Drawing:
 
 @dataclass(frozen=True, repr=False)
 class Quartiles(Result):
-    """Quartiles over seeds; none where too few got there."""
+    """Quartiles over studies; ``None`` where too few of them reached the target or have a value."""
 
     q25: float | None
     median: float | None
@@ -254,7 +260,7 @@ class Quartiles(Result):
 
 @dataclass(frozen=True, repr=False)
 class Compared(Result):
-    """An optimizer: how many evaluations it needs to come near the best known."""
+    """Evaluations that an optimizer needs to reach the target; ``reached`` of its ``studies`` did."""
 
     optimizer: str
     batch: int
@@ -266,7 +272,10 @@ class Compared(Result):
 
 @dataclass(frozen=True, repr=False)
 class Comparison(Result):
-    """Optimizers over studies of the same task and objective."""
+    """Comparison of optimizers over studies of the same task and objective.
+
+    The target, ``target_mm``, is slightly below the best known value.
+    """
 
     task: str
     objective: str
@@ -281,7 +290,10 @@ class Comparison(Result):
 
 @dataclass(frozen=True, repr=False)
 class Factor(Result):
-    """An input from ``low`` to ``high``: its share of the variance by itself (``first``) and with others."""
+    """Sobol indices of an input from ``low`` to ``high``: first-order and total, each with its interval.
+
+    They are the shares of the variance due to the input alone (``first``) and including interactions (``total``).
+    """
 
     name: str
     low: float
@@ -296,7 +308,10 @@ class Factor(Result):
 
 @dataclass(frozen=True, repr=False)
 class Sensitivity(Result):
-    """Which input matters, most first."""
+    """Sensitivity of the objective to its inputs, the most important one first.
+
+    ``diverged`` and ``nominal_start_fails`` are numbers of evaluations.
+    """
 
     task: str
     objective: str
@@ -307,7 +322,7 @@ class Sensitivity(Result):
     svg: str = field(default="", repr=False, metadata=PICTURE)
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
-        """Draws the share of the variance of each factor, alone and with others; gives the axes."""
+        """Draws the share of each input in the variance, alone and with others; returns the axes."""
         return _importances(self, ax)
 
     def _repr_html_(self) -> str:
@@ -315,7 +330,7 @@ class Sensitivity(Result):
 
 
 def _importances(found: Sensitivity, ax: Drawing | None) -> Drawing:
-    """First-order and total Sobol indices with their intervals, the most important factor on top."""
+    """Draws first-order and total Sobol indices with their intervals, the largest on top; returns the axes."""
     axes = axes_of(ax, height=1.2 + 0.4 * len(found.factors))
     rows = list(reversed(found.factors))
     bars = [

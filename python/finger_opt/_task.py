@@ -15,53 +15,54 @@ from .errors import InputError
 
 
 class Fields:
-    """One table of a task file: its keys are attributes, and its tables fields again.
+    """Table of a task file with its keys as attributes; nested tables are ``Fields``, too.
 
-    One of several tables is found by its name or its place: ``strategy.phase["side"]``.
+    An item of an array of tables is accessed by its name or index: ``strategy.phase["side"]``.
     """
 
-    __slots__ = ("_changed", "_table")
+    __slots__ = ("_check", "_table")
 
-    #: What the file holds: a table (a dict), or several (a list of dicts).
+    #: A table (dict), or an array of tables (list of dicts).
     _table: Any
-    #: Checks what was changed.
-    _changed: Callable[[], object]
+    #: Function that checks the task after a change.
+    _check: Callable[[], object]
 
-    def __init__(self, table: Any, changed: Callable[[], object]) -> None:
+    def __init__(self, table: Any, check: Callable[[], object]) -> None:
         object.__setattr__(self, "_table", table)
-        object.__setattr__(self, "_changed", changed)
+        object.__setattr__(self, "_check", check)
 
     def _wrap(self, value: Any) -> Any:
         tables = is_list(value) and any(is_table(one) for one in value)
-        return Fields(value, self._changed) if is_table(value) or tables else value
+        return Fields(value, self._check) if is_table(value) or tables else value
 
-    def _place(self, key: str | int) -> Any:
+    def _resolved(self, key: str | int) -> Any:
+        """Returns the index of a named item, or the key itself; raises KeyError for an unknown name."""
         tables = self._table
         if is_list(tables) and isinstance(key, str):
-            for place, one in enumerate(tables):
-                if one.get("name") == key:
-                    return place
-            names = ", ".join(str(one.get("name")) for one in tables)
-            raise KeyError(f"{key}: there are {names}")
+            for index, table in enumerate(tables):
+                if table.get("name") == key:
+                    return index
+            names = ", ".join(str(table.get("name")) for table in tables)
+            raise KeyError(f"unknown name `{key}`; available: {names}")
         return key
 
     def __getitem__(self, key: str | int) -> Any:
-        return self._wrap(self._table[self._place(key)])
+        return self._wrap(self._table[self._resolved(key)])
 
     def __setitem__(self, key: str | int, value: Any) -> None:
         if isinstance(value, Fields):
             value = value._table
-        table, place = self._table, self._place(key)
-        known = not is_table(table) or place in table
-        before = table[place] if known else None
-        table[place] = value
+        table, key = self._table, self._resolved(key)
+        known = not is_table(table) or key in table
+        before = table[key] if known else None
+        table[key] = value
         try:
-            self._changed()
+            self._check()
         except Exception:
             if known:
-                table[place] = before
+                table[key] = before
             else:
-                del table[place]
+                del table[key]
             raise
 
     def __reduce__(self) -> tuple[Callable[..., Fields], tuple[Any, ...]]:
@@ -70,14 +71,14 @@ class Fields:
     def __getattr__(self, key: str) -> Any:
         if is_table(self._table) and key in self._table:
             return self[key]
-        there = f"; there are {', '.join(self._table)}" if is_table(self._table) else ""
-        raise AttributeError(f"no field is called `{key}`{there}")
+        available = f"; available: {', '.join(self._table)}" if is_table(self._table) else ""
+        raise AttributeError(f"unknown field `{key}`{available}")
 
     def __setattr__(self, key: str, value: Any) -> None:
         try:
             self[key] = value
         except InputError as error:
-            # Files refuse a key that they do not know; an attribute that does not exist is Python's own error.
+            # The parser reports an unknown key as InputError; for an attribute, Python expects AttributeError.
             unknown = f"unknown field `{key}`"
             if unknown not in str(error):
                 raise
@@ -100,15 +101,14 @@ class Fields:
 
 
 def _unchecked() -> None:
-    """The copy of a table belongs to no task, which would check it."""
+    """Accepts any change: a copied table is not part of a task."""
 
 
 class Task(Fields):
-    """A connector task: plug, socket, grip, friction, search strategy and success.
+    """Connector task: plug, socket, grip, friction, search strategy and success criterion.
 
-    Fields are those of the task file (``docs/guide/tasks.md``), each with the unit that its
-    key carries. Setting one checks the whole task; what cannot be simulated raises
-    :class:`InputError` and changes nothing.
+    The fields are those of the task file (``docs/guide/tasks.md``), whose keys contain the units. Setting a field
+    checks the whole task; an invalid value raises :class:`InputError` and is not set.
 
     >>> task = Task.from_toml("usb")
     >>> task.strategy.tilt_deg = 8
@@ -117,11 +117,11 @@ class Task(Fields):
 
     __slots__ = ("file",)
 
-    #: What errors call it.
+    #: Name of the task in error messages.
     file: str
 
     def __init__(self, file: str, text: str) -> None:
-        """Of the text of a task file; ``file`` is what errors call it."""
+        """Creates a task from the text of a task file; ``file`` is its name in error messages."""
         fields = json.loads(_native.task_fields(file, text))
         super().__init__(fields, self.to_toml)
         object.__setattr__(self, "file", file)
@@ -131,25 +131,25 @@ class Task(Fields):
 
     @classmethod
     def from_toml(cls, source: TaskName | StrPath) -> Task:
-        """The task of a shipped name (``"usb"``), of the file at a path, or of a TOML text."""
+        """Reads a shipped task (``"usb"``), a task file, or a TOML text (of several lines)."""
         if isinstance(source, str) and "\n" in source:
             return cls("task", source)
         return cls(*_native.task(word(source)))
 
     def to_toml(self) -> str:
-        """The text of the task file, without the comments of the original."""
+        """Checks the task and returns it as the text of a task file, without the original comments."""
         return str(_native.task_text(getattr(self, "file", "task"), dumps(self._table)))
 
     def __repr__(self) -> str:
         return f"<Task {self.name}: {self.description}>"
 
 
-#: A task: a shipped name, the path of a task file, or the task itself.
+#: Task: a shipped name, the path of a task file, or a :class:`Task`.
 Given = Union[TaskName, str, os.PathLike[str], Task]
 
 
 def sources(task: Given | Iterable[Given] | None) -> str | None:
-    """Tasks for the library: names, and of a :class:`Task` what messages call it and its text."""
+    """Returns tasks as text for the library: names and paths, and name and text of each :class:`Task`."""
     if task is None:
         return None
     found: list[str | dict[str, str]] = []
@@ -159,13 +159,13 @@ def sources(task: Given | Iterable[Given] | None) -> str | None:
         elif isinstance(one, str) and not os.path.isfile(one):
             found += [name.strip() for name in one.split(",") if name]
         elif isinstance(one, (str, os.PathLike)):
-            # A path may have a comma in it.
+            # Paths are not split, since they may contain commas.
             found.append(os.fspath(one))
         else:
-            raise TypeError(f"task: is {one!r}; give a name, the path of a task file, or a Task")
+            raise TypeError(f"task: is {one!r}; accepted: a name, the path of a task file, or a Task")
     return "\0" + dumps(word(found))
 
 
 def listed(task: Given | Iterable[Given]) -> list[Given]:
-    """One task, or several."""
+    """Returns one or several tasks as a list."""
     return [task] if isinstance(task, (str, os.PathLike, Task)) else list(task)

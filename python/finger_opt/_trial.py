@@ -24,7 +24,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, repr=False)
 class PhaseEnd(Result):
-    """The end of a phase of the search: the plug's tip in the task frame, mm."""
+    """State at the end of a phase of the search: tip of the plug in the task frame, tilt, slip, and force so far."""
 
     name: str
     time_s: float
@@ -36,22 +36,24 @@ class PhaseEnd(Result):
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """The course of a trial from the start of the search on, in the task frame: its origin is the middle of the
-    socket's opening, z points out of it. ``n`` samples."""
+    """Time series of a trial from the start of the search, with ``n`` samples.
 
-    #: (n), s.
+    Vectors are in the task frame: the origin is the middle of the socket's opening, and z points out of the socket.
+    """
+
+    #: Time, (n), s.
     time_s: Floats
-    #: (n), place among the trial's ``phases``.
+    #: Index in the trial's ``phases``, (n).
     phase: NDArray[np.int64]
-    #: (n, 3), mm.
+    #: Position of the tool centre point, (n, 3), mm.
     tcp_mm: Floats
-    #: (n, 3), of the plug's tip, mm.
+    #: Position of the plug's tip, (n, 3), mm.
     tip_mm: Floats
-    #: (n), between the plug's axis and z, degrees.
+    #: Angle between the plug's axis and z, (n), degrees.
     tilt_deg: Floats
-    #: (n, 3), of the socket on the plug, N.
+    #: Force of the socket on the plug, (n, 3), N.
     force_n: Floats
-    #: (n), in the grasp, mm.
+    #: Slip in the grasp, (n), mm.
     slip_mm: Floats
 
     def __eq__(self, other: object) -> bool:
@@ -59,7 +61,7 @@ class Series:
 
     @classmethod
     def of(cls, columns: Mapping[str, Any]) -> Series:
-        """Of lists of numbers."""
+        """Creates the series from lists of numbers by field."""
         found = {name: np.asarray(column, dtype=np.float64) for name, column in columns.items()}
         shaped = {name: found[name].reshape(-1, 3) for name in ("tcp_mm", "tip_mm", "force_n")}
         rest = {name: found[name] for name in ("time_s", "tilt_deg", "slip_mm")}
@@ -68,12 +70,12 @@ class Series:
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Trial(Subject):
-    """One simulated insertion: how it ended, how its phases ended, and its course as ``series``."""
+    """One simulated insertion: outcome, ends of the phases, and time series as ``series``."""
 
     #: Shift of the start along y, mm.
     offset_mm: float
     outcome: Outcome
-    #: The class, 1 to 4, of what failed.
+    #: Failure class, 1 to 4; ``None`` if it did not fail.
     failure: int | None = None
     depth_mm: float
     tilt_deg: float
@@ -83,10 +85,10 @@ class Trial(Subject):
     retried_at_half_step: bool
     phases: tuple[PhaseEnd, ...]
     taught_start_mm: float | None = None
-    #: With ``repeat``: how many ended so.
+    #: Number of repeats by outcome; only with ``repeat``.
     repeats: dict[str, int] | None = None
     series: Series = field(repr=False, metadata=DRAWN)
-    #: The film as HTML, if it was asked for.
+    #: Animation as an HTML page; only with ``film=True``.
     film: str | None = field(default=None, repr=False, metadata=DRAWN)
 
     @classmethod
@@ -97,13 +99,13 @@ class Trial(Subject):
         return equal(self, other)
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
-        """Draws the contact force over time, with the phases; gives the axes."""
+        """Draws the contact force over time, with the phases; returns the axes."""
         return _force(self, ax)
 
     def replay(self) -> Film:
-        """The film of the trial, which a notebook plays; of a trial made with ``film=True``."""
+        """Returns the animation of the trial, which notebooks play; raises InputError without ``film=True``."""
         if self.film is None:
-            raise InputError("replay: needs a trial that was made with film=True")
+            raise InputError("replay: the trial has no film; simulate it with film=True")
         return Film(self.film)
 
     def _repr_html_(self) -> str:
@@ -111,19 +113,19 @@ class Trial(Subject):
 
 
 def _force(trial: Trial, ax: Drawing | None) -> Drawing:
-    """The contact force over time; a stroke where a phase ends."""
+    """Draws the contact force over time, with a line at the end of each phase; returns the axes."""
     axes = axes_of(ax)
     series = trial.series
     line = axes.plot(series.time_s, np.linalg.norm(series.force_n, axis=1), color=BLUE, linewidth=1.0)[0]
-    # Room above for the names of the phases, none below.
+    # Margin above for the names of the phases, none below.
     line.sticky_edges.y.append(0.0)
     axes.margins(y=0.2)
     begin = float(series.time_s[0]) if len(series.time_s) else 0.0
     for phase in trial.phases:
         if phase.time_s > begin:
             axes.axvline(phase.time_s, color="0.7", linewidth=0.6)
-            axes.text(phase.time_s, 0.98, phase.name, transform=axes.get_xaxis_transform(), rotation=90, ha="right", va="top",
-                      fontsize=7, color="0.35")
+            axes.text(phase.time_s, 0.98, phase.name, transform=axes.get_xaxis_transform(), rotation=90, ha="right",
+                      va="top", fontsize=7, color="0.35")
     outcome = trial.outcome if trial.failure is None else WORDS[trial.failure]
     axes.set(xlabel="time, s", ylabel="force of the socket on the plug, N",
              title=f"{text(trial.task)}, start {trial.offset_mm:+g} mm: {outcome}")
@@ -132,12 +134,12 @@ def _force(trial: Trial, ax: Drawing | None) -> Drawing:
 
 @dataclass(frozen=True)
 class Film:
-    """A page that plays a trial."""
+    """HTML page with the animation of a trial."""
 
     html: str = field(repr=False)
 
     def save(self, file: StrPath) -> None:
-        """Writes the page."""
+        """Writes the page to a file."""
         with open(file, "w", encoding="utf-8") as page:
             page.write(self.html)
 

@@ -1,4 +1,4 @@
-"""The words and types that calls share."""
+"""Types and accepted words of parameters that several functions share."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from typing import Literal, Union
 
-#: A name of a file, or a path of any kind.
+#: Shipped name, or path of a file or folder.
 StrPath = Union[str, os.PathLike[str]]
 #: Shipped tasks.
 TaskName = Literal["ket8", "ket12", "rj45", "usb", "rj45_latch", "usb_a"]
@@ -14,23 +14,23 @@ TaskName = Literal["ket8", "ket12", "rj45", "usb", "rj45_latch", "usb_a"]
 SpaceName = Literal["infill", "codesign", "finger"]
 #: Shipped robots.
 RobotName = Literal["rigid", "servo", "ur5e", "ur5e_position"]
-#: Contact engines; ``fake``, a closed formula, is there only in a wheel built for tests.
+#: Contact engines; ``fake``, a closed formula, exists only in builds for tests.
 Engine = Literal["direct", "rapier", "fake"]
-#: Where springs come from that nobody measured.
+#: Source of the remote centre and of unmeasured stiffnesses of a finger.
 FingerModel = Literal["paper", "computed"]
-#: What becomes of the nominal start.
+#: How the nominal start is chosen.
 Start = Literal["given", "taught"]
 #: Search methods.
 OptimizerName = Literal["gp", "cma-es", "random", "sobol", "grid"]
-#: What is optimized.
+#: Measures to optimize.
 Objective = Literal["range", "centred-range", "success-rate", "robust-range", "peak-force", "slip"]
-#: What is made of the values of several tasks.
+#: Aggregations over several tasks.
 Aggregate = Literal["min", "mean", "weighted"]
-#: The errors over which a capture map is traced.
+#: Start errors over which a capture map is traced.
 Axes = Literal["y,x", "y,yaw", "y,tilt"]
-#: How an insertion ends.
+#: Outcomes of an insertion.
 Outcome = Literal["inserted", "failed", "diverged"]
-#: Numbers of task and finger by their keys: ``{"task.strategy.tilt_deg": 8}``.
+#: Numbers of task and finger by key: ``{"task.strategy.tilt_deg": 8}``.
 Numbers = Mapping[str, float]
-#: What ends a window: a failure class, 1 to 4, or a simulation that diverged.
+#: Outcome at an end of a window: a failure class, 1 to 4, or a diverged simulation.
 End = Union[int, Literal["diverged"]]

@@ -1,4 +1,4 @@
-"""What is raised. ``file``, ``key`` and ``line`` say where it is wrong, as far as that is known."""
+"""Exceptions of the package; ``file``, ``key`` and ``line`` are the place of the problem, if known."""
 
 from ._native import (
     InputError as InputError, Interrupted as Interrupted, Refused as Refused, StudyError as StudyError,

@@ -191,7 +191,7 @@ def test_names_that_are_no_utf_8(command, tmp_path, fake):
     task.write_text(fo.Task.from_toml("usb").to_toml())
     code, _, errors = command("--task", os.fspath(task), "--budget", "2", "--executor", "processes:1")
     assert code == 2 and errors.startswith("error: "), errors
-    with pytest.raises(fo.InputError, match="its name has to be UTF-8"):
+    with pytest.raises(fo.InputError, match="must be valid UTF-8"):
         fo.evaluate(task, 20, 10, **fake)
 
 

@@ -82,7 +82,7 @@ VALUES = (
 
 
 @pytest.mark.parametrize("field", [field.name for field in dataclasses.fields(Attempt)])
-@pytest.mark.filterwarnings("ignore:.*the robot names this log")
+@pytest.mark.filterwarnings("ignore:.*the robot returned this log")
 def test_no_field_of_any_type_ends_in_anything_but_a_window_or_a_study_error(tmp_path, field):
     for number, value in enumerate(VALUES):
         folder = tmp_path / str(number)
@@ -100,7 +100,7 @@ def test_no_field_of_any_type_ends_in_anything_but_a_window_or_a_study_error(tmp
         assert measure_window(robot, out=folder / "bench.csv", **FINGER).settled
 
 
-@pytest.mark.filterwarnings("ignore:.*the robot names this log")
+@pytest.mark.filterwarnings("ignore:.*the robot returned this log")
 def test_robots_that_lie_at_random_lose_no_attempt(tmp_path):
     chance = random.Random(3)
     fields = [field.name for field in dataclasses.fields(Attempt)]
@@ -193,7 +193,7 @@ def test_a_full_disk_is_a_study_error_and_no_attempt_is_lost(out, monkeypatch):
     ("log", 7, "is 7; it must be the path of a log"),
     ("doubt", 7, "is 7; it must be text, or None"),
     ("probed", 7, "is 7; it must be the path of a log"),
-    ("more", 7, "is no field of an attempt"),
+    ("more", 7, "is not a field of an attempt"),
 ])
 def test_a_changed_line_of_attempts_is_an_error_with_its_place(out, key, value, said):
     measure_window(Steps(), out=out, **FINGER)
@@ -221,7 +221,7 @@ def test_a_nested_line_or_other_bytes_are_no_attempt(out):
     text = log.read_bytes()
     for wrong in (b"[" * 100_000, b"\xff\xfe", b"null", b"[]", b"{'a': 1}"):
         log.write_bytes(text + wrong + b"\n")
-        with pytest.raises(fo.InputError, match=r"line \d+: is no attempt; move the file away"):
+        with pytest.raises(fo.InputError, match=r"line \d+: is not an attempt; move the file away"):
             measure_window(Steps(), out=out, **FINGER)
 
 
@@ -275,7 +275,7 @@ def test_the_second_who_measures_a_finger_is_refused(out):
     assert sorted(process.returncode for process in both) == [0, 1], ended
     (made,) = [int(said) for said, _ in ended if said]
     (error,) = [said for _, said in ended if said]
-    assert "InputError" in error and "another process measures this finger; wait until it has ended" in error
+    assert "InputError" in error and "another process is measuring this finger; wait until it has ended" in error
     # Its robot has not moved.
     assert len([line for line in log_of(out) if "stopped" not in line]) == made == len(runs_of(out))
     # Afterwards the finger is free.
@@ -328,7 +328,7 @@ def test_an_unclosed_quotation_mark_is_told_before_the_robot_moves(out, name):
     lines = file.read_text().splitlines()
     file.write_text("\n".join([*lines[:1], lines[1].replace("20,10", '"20,10'), *lines[2:]]) + "\n")
     robot = Recording()
-    with pytest.raises(fo.InputError, match=f"{name}: line 2: a quoted cell runs over the end of the line"):
+    with pytest.raises(fo.InputError, match=f"{name}: line 2: a quoted cell is not closed at the end of the line"):
         measure_window(robot, out=out, **{**FINGER, "density": 30})
     assert robot.offsets == []
 

@@ -190,7 +190,7 @@ def test_a_file_is_what_its_name_says(fake, tmp_path):
         lambda file: fo.capture_map("usb", 20, 10, svg=file, **fake), lambda file: fo.sweep("usb", 20, 10, out=file, **fake),
     ]
     for call in calls:
-        with pytest.raises(fo.InputError, match="let its name end in") as raised:
+        with pytest.raises(fo.InputError, match="the file name must end in") as raised:
             call(tmp_path / "x.png")
         assert raised.value.file == str(tmp_path / "x.png")
     assert not list(tmp_path.iterdir())

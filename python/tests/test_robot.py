@@ -180,11 +180,11 @@ def test_what_could_not_be_written_is_refused_before_the_robot_moves(out, tmp_pa
 def test_another_search_does_not_go_on_in_the_same_log(out):
     with pytest.raises(fo.StudyError):
         measure_window(Steps(answer=lambda count, done: done if count < 5 else None), out=out, **FINGER)
-    with pytest.raises(fo.InputError, match="was begun with step_mm 0.5, not 0.4"):
+    with pytest.raises(fo.InputError, match="was started with step_mm 0.5, not 0.4"):
         measure_window(Steps(), out=out, step_mm=0.4, **FINGER)
     (log,) = out.parent.glob("*.jsonl")
     log.write_bytes(log.read_bytes() + b"{broken}\n")
-    with pytest.raises(fo.InputError, match="line 7: is no attempt"):
+    with pytest.raises(fo.InputError, match="line 7: is not an attempt"):
         measure_window(Steps(), out=out, **FINGER)
 
 

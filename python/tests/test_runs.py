@@ -99,7 +99,7 @@ def test_a_log_that_is_not_there_is_said(out):
                 log.unlink()
             return done
 
-    with pytest.warns(UserWarning, match="004.csv: the robot names this log, and there is no such file"):
+    with pytest.warns(UserWarning, match="004.csv: the robot returned this log, but the file does not exist"):
         found = measure_window(Forgetful(), out=out, **FINGER)
     assert len(runs_of(out)) == found.attempts - 1
 
@@ -109,13 +109,13 @@ def test_a_probe_that_cannot_be_is_refused_before_the_robot_moves(out):
     with pytest.raises(fo.InputError, match=r"Steps has no method probe\(log\)"):
         measure_window(robot, out=out, probe=True, **FINGER)
     out.with_name("runs.csv").write_text("file,what\n")
-    with pytest.raises(fo.InputError, match="runs.csv: line 1: begins with file,what, not log,infill"):
+    with pytest.raises(fo.InputError, match="runs.csv: line 1: the columns are file,what, not log,infill"):
         measure_window(robot, out=out, **FINGER)
     out.with_name("runs.csv").write_text(
         "log,infill_density_percent,infill_direction_deg,offset_mm,outcome\n"
         "bench-ket8-20-10-2026-01-02/001.csv,20,10,0,inserted\n"
     )
-    with pytest.raises(fo.InputError, match="which is not of usb; measure each task into a folder of its own"):
+    with pytest.raises(fo.InputError, match="which is not a log of usb; use a separate folder for each task"):
         measure_window(robot, out=out, **FINGER)
     assert robot.offsets == []
 
@@ -206,7 +206,7 @@ def test_a_simulated_probe_slides_and_tells_the_friction(tmp_path):
 
 
 def test_the_sensor_and_the_cell_are_checked(tmp_path, fake):
-    with pytest.raises(fo.InputError, match="force_noise_n: is nan; it is a force in N, 0 to 100"):
+    with pytest.raises(fo.InputError, match="force_noise_n: is nan; must be a force in N, 0 to 100"):
         SimulatedRobot("usb", 20, 10, force_noise_n=float("nan"))
     # A closed formula has no course.
     assert SimulatedRobot("usb", 20, 10, **fake).insert(0.0, tmp_path / "log.csv").log is None

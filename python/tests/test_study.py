@@ -100,7 +100,7 @@ def test_every_executor_gives_the_journal_of_one_machine(create, expected):
 
 def test_a_study_as_python_sees_it(create, tmp_path):
     study = create("seen")
-    assert "not begun" in study._repr_html_()
+    assert "not started" in study._repr_html_()
     assert study.config["seed"] == 4, "written at once"
     with pytest.raises(fo.InputError, match="another configuration"):
         create("seen", seed=5)

@@ -6,7 +6,8 @@
 Pages: a small study and a recorded trial with malicious names of space, robot and phase, a study
 of thousands of designs, and a study in which no design inserts; light and dark, desktop and phone.
 Checks: no console messages, no requests, no overflow, required parts of the first screen, contrast
-and size of text, hover, click, keyboard, film. Exits with an error at the first failed check. Needs Chromium; nothing is downloaded.
+and size of text, hover, click, keyboard, film. Exits with an error at the first failed check.
+Needs Chromium; nothing is downloaded.
 """
 import subprocess
 import sys
@@ -73,7 +74,8 @@ def check_page(page, where):
     """Checks that there are no console messages, requests, names executed as scripts, or overflow."""
     check(not page.problems, f"{where}: {page.problems}")
     check(not page.js("window.harmed"), f"{where}: a name was executed as a script")
-    check(page.js("document.title").startswith(("usb", MALICIOUS[:8])), f"{where}: the title is {page.js('document.title')}")
+    check(page.js("document.title").startswith(("usb", MALICIOUS[:8])),
+          f"{where}: the title is {page.js('document.title')}")
     check(page.js("document.documentElement.scrollWidth <= innerWidth"), f"{where}: wider than the screen")
 
 
@@ -199,7 +201,8 @@ def main(program):
                 if width == 1280:
                     check_first_screen(page, f"stuck, {where}", ["h1", "img", ".next code"])
                 text = page.js("document.body.textContent")
-                check("No finger inserts" in text and "class" in text and "finger.stl" not in text, f"stuck, {where}: {text[:200]}")
+                check("No finger inserts" in text and "class" in text and "finger.stl" not in text,
+                      f"stuck, {where}: {text[:200]}")
                 check_legibility(page, f"stuck, {where}", width)
                 check_page(page, f"stuck, {where}")
                 page.close()

@@ -38,7 +38,8 @@ study() {
     sed -E 's/"(datetime_start|datetime_complete|wall_s)":("[^"]*"|[0-9.e-]+),?//g' \
         "$scratch/$name/journal.jsonl" > "$scratch/$name.jsonl"
     if [ "$name" != sources ]; then
-        cmp "$scratch/sources.jsonl" "$scratch/$name.jsonl" || failed "the journal of $name differs from that of $program"
+        cmp "$scratch/sources.jsonl" "$scratch/$name.jsonl" ||
+            failed "the journal of $name differs from that of $program"
         echo "journal of $name: $(wc -l < "$scratch/$name.jsonl") lines, identical to the build from the sources"
     fi
 }

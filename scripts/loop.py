@@ -375,7 +375,8 @@ def table(folder: Path) -> None:
         if len(gains) > 1 and len(shares) > 1:
             low, middle, high = statistics.quantiles(gains, n=4)
             print(f"{way}: {middle:+.1f} mm ({low:+.1f} to {high:+.1f}), "
-                  f"{statistics.median(shares):.0f} % of the best gain; worse than a by more than 0.3 mm in {sum(gain < -0.3 for gain in gains)} of {len(gains)} cells")
+                  f"{statistics.median(shares):.0f} % of the best gain; "
+                  f"worse than a by more than 0.3 mm in {sum(gain < -0.3 for gain in gains)} of {len(gains)} cells")
     left = sorted(set(cells) - set(done))
     if left:
         print(f"incomplete: {', '.join(left)}")

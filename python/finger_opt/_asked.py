@@ -1,4 +1,4 @@
-"""The words of a study. Written by scripts/generate.py."""
+"""The options of a study. Written by scripts/generate.py."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ S = TypeVar("S", bound="Asked")
 
 
 class Asked:
-    """What is asked for by the words of ``optimize``."""
+    """Base class of requests that are made with the options of ``optimize``."""
 
     @classmethod
     def asked(cls: type[S], words: Mapping[str, Any]) -> S:
-        """Of these words."""
+        """Returns the request with these options."""
         raise NotImplementedError
 
     @classmethod
@@ -114,8 +114,8 @@ class Asked:
             samples: Samples of the posterior of a bench prediction [default: 300, or as in the study].
 
         Raises:
-            InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-            StudyError: It fails while it runs, or cannot write a file.
+            InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+            StudyError: The command fails at run time or cannot write a file.
             Interrupted: Ctrl-C.
         """
         return cls.asked({

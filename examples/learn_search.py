@@ -5,8 +5,8 @@
     python examples/learn_search.py               # about a minute
     python examples/learn_search.py 2 4           # generations, candidates per generation
 
-The search is that of the task with four parameters: preload, stroke back, stroke to the side, and
-speed. The cross-entropy method draws candidates from a normal distribution, evaluates each from
+The search has the phases of the task's own search and four parameters: preload, stroke back, stroke
+to the side, and speed. The cross-entropy method draws candidates from a normal distribution, evaluates each from
 several shifted starts, and fits the distribution to the best quarter.
 """
 
@@ -21,32 +21,31 @@ from numpy.typing import NDArray
 import finger_opt as fo
 
 Floats = NDArray[np.float64]
-#: Type of an observation.
-Seen = NDArray[np.float32]
+Observation = NDArray[np.float32]
 
-#: Preload mm, back mm, side mm, speed mm/s: values of the task, and initial standard deviations.
+#: Preload, back, side (mm) and speed (mm/s): values of the task, initial standard deviations, lower bounds.
 FIRST = np.array([0.3, 5.0, 10.0, 80.0])
 SPREAD = np.array([0.1, 1.0, 2.0, 10.0])
 LOWEST = np.array([0.0, 0.5, 1.0, 20.0])
 SHIFTS_MM = (-2.0, 0.0, 2.0)
 
 
-def moves(numbers: Floats) -> Generator[Floats, Seen, None]:
+def moves(numbers: Floats) -> Generator[Floats, Observation, None]:
     """Yields velocities, mm/s, each for 1 ms; receives observations."""
     preload, back, side, speed = numbers
     observation = yield np.array([0.0, 0.0, -20.0])
     while np.linalg.norm(observation[6:]) < 0.05:
         observation = yield np.array([0.0, 0.0, -20.0])
-    for way in np.array([[0, 0, -preload], [back, 0, 0], [-back, 0, 0], [0, -side, 0], [0, 0, -20]]):
-        length = max(float(np.linalg.norm(way)), 1e-9)
+    for move in np.array([[0, 0, -preload], [back, 0, 0], [-back, 0, 0], [0, -side, 0], [0, 0, -20]]):
+        length = max(float(np.linalg.norm(move)), 1e-9)
         for _ in range(round(1000 * length / speed)):
-            yield way / length * speed
+            yield move / length * speed
         for _ in range(30):
             yield np.zeros(3)
 
 
 def episode(env: fo.gym.InsertionEnv, numbers: Floats, shift_mm: float) -> tuple[float, str | None]:
-    """Returns the sum of the rewards and the outcome."""
+    """Returns the sum of the rewards and the outcome of one insertion, ``None`` if it has none."""
     env.reset(options={"offset_mm": shift_mm})
     plan, total = moves(numbers), 0.0
     action = next(plan)
@@ -58,12 +57,12 @@ def episode(env: fo.gym.InsertionEnv, numbers: Floats, shift_mm: float) -> tuple
         try:
             action = plan.send(observation)
         except StopIteration:
-            # All moves are finished without an outcome.
+            # The moves ended without an outcome.
             return total - 10.0, info["outcome"]
 
 
 def score(env: fo.gym.InsertionEnv, numbers: Floats) -> tuple[float, int]:
-    """Returns the mean reward over the shifts, and the number that insert."""
+    """Returns the mean reward over the shifts, and the number of shifts that insert."""
     found = [episode(env, numbers, shift) for shift in SHIFTS_MM]
     return float(np.mean([total for total, _ in found])), sum(end == "inserted" for _, end in found)
 

@@ -1,6 +1,6 @@
 """A UR robot for `finger_opt.robot.measure_window`, controlled with ur_rtde (pip install ur_rtde).
 
-NOT TRIED ON HARDWARE. Only the signatures of its calls were checked, against ur_rtde 1.6.5. Read the code,
+NOT TESTED ON HARDWARE. Only the signatures of its calls were checked, against ur_rtde 1.6.5. Read the code,
 adapt it to your cell, review the moves that it prints (`dry_run=True`), and then run it slowly, with a person
 next to the robot and a hand on the stop button. Set the safety limits of the robot first: simulated insertions
 reach more than 100 N. The gripper stays closed; this program does not move it.
@@ -34,7 +34,7 @@ class DryRun(RuntimeError):
 
 @dataclass(frozen=True)
 class Move:
-    """A straight move of the TCP in the base frame, which ends when the force is reached."""
+    """Straight move of the TCP to a pose (x, y, z, rx, ry, rz; m, rad) in the base frame, or until a force."""
 
     name: str
     pose: list[float]
@@ -47,10 +47,10 @@ class URRobot:
     """Attempts insertions with the strategy of a task file; each phase is a guarded straight move.
 
     ``taught`` is the TCP pose (x, y, z, rx, ry, rz; m, rad) at the start that inserts; ``surface_m`` is the
-    height of the TCP above it, along ``out_of_socket``, at which the tip touches the socket's top (below 0).
-    ``jaws`` and ``out_of_socket`` are the task's y and z in the base frame. ``force_limit_n`` ends a move.
-    ``face`` is the TCP pose at which the plug is upright, a few mm above a flat face beside the opening,
-    where :meth:`probe` measures the friction.
+    height of the TCP relative to it, along ``out_of_socket``, at which the tip touches the top of the socket
+    (below 0). ``jaws`` and ``out_of_socket`` are the task's y and z in the base frame. ``force_limit_n`` is the
+    force that ends an attempt, ``touch_n`` the force that counts as contact. ``face`` is the TCP pose at which
+    the plug is upright, a few mm above a flat face beside the opening, where :meth:`probe` measures the friction.
     """
 
     host: str
@@ -82,7 +82,7 @@ class URRobot:
             self.receive = rtde_receive.RTDEReceiveInterface(self.host)
 
     def pose(self, shift_mm: ArrayLike, taught: Sequence[float] | None = None) -> list[float]:
-        """Returns the taught pose, shifted in the task frame."""
+        """Returns the taught pose, shifted by a vector in the task frame."""
         taught = self.taught if taught is None else taught
         place = np.array(taught[:3], float) + self.axes @ np.asarray(shift_mm, float) / 1000.0
         return [*place.tolist(), *taught[3:]]
@@ -99,16 +99,16 @@ class URRobot:
         return moves
 
     def probe_program(self, height_m: float = -PROBE_DEPTH_M) -> list[Move]:
-        """Returns the moves of the probe, which slides at the height above ``face`` at which the plug met the face."""
+        """Returns the moves of the probe; it slides at the height of the contact relative to ``face``."""
         if self.face is None:
             raise ValueError("face: teach a pose above the flat face beside the opening")
-        half, height = 500.0 * PROBE_M, 1000.0 * height_m
-        above, down = [0.0, -half, 0.0], [0.0, -half, -1000.0 * PROBE_DEPTH_M]
+        half_mm, height_mm = 500.0 * PROBE_M, 1000.0 * height_m
+        above, down = [0.0, -half_mm, 0.0], [0.0, -half_mm, -1000.0 * PROBE_DEPTH_M]
         moves = [Move("above", self.pose(above, self.face), RETREAT_M_S, self.touch_n),
                  Move("down", self.pose(down, self.face), PROBE_M_S, PROBE_N)]
-        # The height is constant and the force varies; the log contains both of its components.
-        for y in (half, -half, half, -half):
-            moves.append(Move("slide", self.pose([0.0, y, height], self.face), PROBE_M_S, 4.0 * PROBE_N))
+        # At constant height the normal force varies; the log contains the normal and the tangential force.
+        for y_mm in (half_mm, -half_mm, half_mm, -half_mm):
+            moves.append(Move("slide", self.pose([0.0, y_mm, height_mm], self.face), PROBE_M_S, 4.0 * PROBE_N))
         return [*moves, Move("up", self.pose(above, self.face), RETREAT_M_S, self.force_limit_n)]
 
     def probe(self, log: Path) -> None:
@@ -122,12 +122,12 @@ class URRobot:
         time.sleep(0.2)
         self.receive.startFileRecording(str(log), RECORDED)
         try:
-            # Before and after, in the air, the log records the sensor without contact.
+            # The log starts and ends in the air, to record the sensor without contact.
             time.sleep(0.2)
             if self.guarded(down) < down.force_n:
-                raise RuntimeError(f"no face within {1000.0 * PROBE_DEPTH_M:g} mm below its start")
-            met = np.array(self.receive.getActualTCPPose()[:3]) - np.array(self.face[:3], float)
-            *slides, up = self.probe_program(float(self.axes[:, 2] @ met))[2:]
+                raise RuntimeError(f"no face within {1000.0 * PROBE_DEPTH_M:g} mm below the start")
+            contact = np.array(self.receive.getActualTCPPose()[:3]) - np.array(self.face[:3], float)
+            *slides, up = self.probe_program(float(self.axes[:, 2] @ contact))[2:]
             caught = any(self.guarded(slide) >= slide.force_n for slide in slides)
             self.guarded(up)
             time.sleep(0.2)
@@ -194,8 +194,8 @@ class URRobot:
 
     def judged(self, depth_mm: float) -> tuple[bool, int | None]:
         """Asks the operator for the outcome: depth alone does not prove that the plug is inserted and still held."""
-        said = self.ask(f"depth {depth_mm:.1f} mm. Inserted: +, else the failure class 1 to 4: ").strip()
-        return said == "+", int(said) if said in ("1", "2", "3", "4") else None
+        answer = self.ask(f"depth {depth_mm:.1f} mm. Inserted: +, else the failure class 1 to 4: ").strip()
+        return answer == "+", int(answer) if answer in ("1", "2", "3", "4") else None
 
     def retreat(self) -> None:
         """Pulls the plug out to the height of the start, along the axis of the socket."""

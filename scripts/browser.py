@@ -15,7 +15,8 @@ from pathlib import Path
 FLAGS = """--headless --no-sandbox --disable-quic --no-first-run --disable-background-networking
  --disable-component-update --disable-sync --disable-default-apps --hide-scrollbars --mute-audio
  --use-angle=swiftshader --enable-unsafe-swiftshader --remote-debugging-pipe""".split()
-PATIENCE_S = 20
+# Longest wait for a page or for the end of Chromium, s.
+TIMEOUT_S = 20
 
 
 def chromium():
@@ -27,73 +28,78 @@ class Browser:
     """A separate Chromium process with a temporary profile."""
 
     def __enter__(self):
-        for left in (2, 1, 0):
+        for retries_left in (2, 1, 0):
             self.start()
             try:
                 self.call("Browser.getVersion")
                 return self
             except (OSError, RuntimeError):
-                # Chromium sometimes ends as soon as it has begun.
+                # Chromium sometimes exits right after its start.
                 self.__exit__()
-                if not left:
+                if not retries_left:
                     raise
 
     def start(self):
         """Starts Chromium with a new profile."""
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
-        to_child, self.out = os.pipe()
-        self.inn, from_child = os.pipe()
+        to_child, self.commands = os.pipe()
+        self.responses, from_child = os.pipe()
 
-        def three_and_four():
-            # Moved away from 3 and 4 first, which may be among them.
+        def connect_pipes():
+            # Chromium reads from descriptor 3 and writes to 4. Duplicated first: the originals may be 3 or 4.
             a, b = os.dup(to_child), os.dup(from_child)
             os.dup2(a, 3)
             os.dup2(b, 4)
 
         self.process = subprocess.Popen(
             [chromium(), *FLAGS, f"--user-data-dir={self.profile.name}", "about:blank"],
-            preexec_fn=three_and_four, close_fds=False, stderr=subprocess.DEVNULL)
+            preexec_fn=connect_pipes, close_fds=False, stderr=subprocess.DEVNULL)
         os.close(to_child)
         os.close(from_child)
-        self.number, self.rest, self.listeners = 0, b"", {}
+        self.last_id, self.buffer, self.listeners = 0, b"", {}
 
     def __exit__(self, *_):
         try:
             self.call("Browser.close")
-            self.process.wait(PATIENCE_S)
+            self.process.wait(TIMEOUT_S)
         except (OSError, RuntimeError, subprocess.TimeoutExpired):
             self.process.kill()
             self.process.wait()
-        os.close(self.out)
-        os.close(self.inn)
+        os.close(self.commands)
+        os.close(self.responses)
         self.profile.cleanup()
 
     def call(self, method, session=None, **params):
-        """Returns the response to a command; events before it are passed to their page."""
-        self.number += 1
-        message = {"id": self.number, "method": method, "params": params}
+        """Sends a command and returns its result; passes events received meanwhile to their page.
+
+        Raises RuntimeError if the command fails or Chromium has exited.
+        """
+        self.last_id += 1
+        message = {"id": self.last_id, "method": method, "params": params}
         if session:
             message["sessionId"] = session
-        os.write(self.out, json.dumps(message).encode() + b"\0")
+        os.write(self.commands, json.dumps(message).encode() + b"\0")
         while True:
-            found = self.read()
-            if found.get("id") == self.number:
-                if "error" in found:
-                    raise RuntimeError(f"{method}: {found['error']['message']}")
-                return found["result"]
-            if found.get("sessionId") in self.listeners:
-                self.listeners[found["sessionId"]](found["method"], found["params"])
+            reply = self.read()
+            if reply.get("id") == self.last_id:
+                if "error" in reply:
+                    raise RuntimeError(f"{method}: {reply['error']['message']}")
+                return reply["result"]
+            if reply.get("sessionId") in self.listeners:
+                self.listeners[reply["sessionId"]](reply["method"], reply["params"])
 
     def read(self):
-        while b"\0" not in self.rest:
-            more = os.read(self.inn, 1 << 20)
+        """Reads one message: a response or an event."""
+        while b"\0" not in self.buffer:
+            more = os.read(self.responses, 1 << 20)
             if not more:
                 raise RuntimeError("Chromium has exited")
-            self.rest += more
-        line, _, self.rest = self.rest.partition(b"\0")
+            self.buffer += more
+        line, _, self.buffer = self.buffer.partition(b"\0")
         return json.loads(line)
 
     def open(self, file, width=1280, height=900, dark=False):
+        """Opens a file in a new tab; width and height of the viewport in px."""
         return Page(self, Path(file), width, height, dark)
 
 
@@ -106,7 +112,7 @@ class Page:
         self.target = target
         self.session = browser.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         self.url = file.resolve().as_uri()
-        browser.listeners[self.session] = self.heard
+        browser.listeners[self.session] = self.on_event
         for domain in ["Page", "Runtime", "Log", "Network"]:
             self.call(f"{domain}.enable")
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1,
@@ -115,12 +121,13 @@ class Page:
         self.call("Emulation.setEmulatedMedia", features=[scheme])
         self.call("Page.navigate", url=self.url)
         self.wait("document.readyState === 'complete' && location.href !== 'about:blank'")
-        self.rest()
+        self.wait_for_drawing()
 
     def call(self, method, **params):
         return self.browser.call(method, self.session, **params)
 
-    def heard(self, method, params):
+    def on_event(self, method, params):
+        """Records console messages, exceptions, requests and dialogs in `problems`."""
         if method == "Runtime.consoleAPICalled":
             self.problems.append("console: " + " ".join(str(a.get("value")) for a in params["args"]))
         elif method == "Runtime.exceptionThrown":
@@ -137,25 +144,26 @@ class Page:
             self.call("Page.handleJavaScriptDialog", accept=True)
 
     def js(self, expression):
-        """Returns the value of an expression; awaits promises."""
-        found = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
-        if "exceptionDetails" in found:
-            raise RuntimeError(f"{expression}: {found['exceptionDetails']}")
-        return found["result"].get("value")
+        """Returns the value of a JavaScript expression; awaits promises."""
+        reply = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in reply:
+            raise RuntimeError(f"{expression}: {reply['exceptionDetails']}")
+        return reply["result"].get("value")
 
     def wait(self, expression):
-        end = time.monotonic() + PATIENCE_S
+        """Waits until a JavaScript expression is true; raises RuntimeError after TIMEOUT_S."""
+        end = time.monotonic() + TIMEOUT_S
         while not self.js(f"Boolean({expression})"):
             if time.monotonic() > end:
-                raise RuntimeError(f"not true within {PATIENCE_S} s: {expression}")
+                raise RuntimeError(f"not true within {TIMEOUT_S} s: {expression}")
             time.sleep(0.05)
 
-    def rest(self):
+    def wait_for_drawing(self):
         """Waits until pending drawing is finished."""
         self.js("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))")
 
-    def middle(self, selector):
-        """Scrolls an element into view and returns its centre."""
+    def centre_of(self, selector):
+        """Scrolls an element into view and returns its centre [x, y], px."""
         return self.js(f"""(() => {{ const e = document.querySelector({json.dumps(selector)});
             e.scrollIntoView({{block: "center", behavior: "instant"}});
             const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; }})()""")
@@ -164,24 +172,24 @@ class Page:
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
 
     def hover(self, selector):
-        x, y = self.middle(selector)
+        x, y = self.centre_of(selector)
         self.mouse("mouseMoved", x, y)
-        self.rest()
+        self.wait_for_drawing()
 
     def click(self, selector):
-        x, y = self.middle(selector)
+        x, y = self.centre_of(selector)
         self.mouse("mouseMoved", x, y)
         for kind in ["mousePressed", "mouseReleased"]:
-            self.mouse(kind, x, y, button="left", clickCount=1)
-        self.rest()
+            self.mouse(kind, x, y, button="retries_left", clickCount=1)
+        self.wait_for_drawing()
 
     def key(self, name, code=0):
         for kind in ["rawKeyDown", "keyUp"]:
             self.call("Input.dispatchKeyEvent", type=kind, key=name, code=name, windowsVirtualKeyCode=code)
-        self.rest()
+        self.wait_for_drawing()
 
     def picture(self, file, whole=False, clip=None, scale=1):
-        """Returns a PNG of the viewport, of the whole page, or of a part [x, y, width, height] of it."""
+        """Writes a PNG of the viewport, of the whole page, or of the rectangle `clip` [x, y, width, height], px."""
         if whole:
             clip = [0, 0, *self.js("[innerWidth, document.documentElement.scrollHeight]")]
         more = {}

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that Optuna and its dashboard read one of our journals unmodified.
+"""Checks that Optuna and its dashboard read the journal of a study unmodified.
 
     python3 -m venv venv && venv/bin/pip install optuna==5.0.0 optuna-dashboard==0.21.0
     venv/bin/python scripts/check_optuna.py results/usb-gp-seed0
@@ -22,22 +22,25 @@ from optuna.storages import JournalStorage
 from optuna.storages.journal import JournalFileBackend
 
 PINNED = {"optuna": "5.0.0", "optuna-dashboard": "0.21.0"}
+# Timeout of the dashboard, s.
 DASHBOARD_S = 60
+# Codes in a journal: the direction, and the states by index.
 MAXIMIZE = 2
 STATES = ["Running", "Complete", "Pruned", "Fail", "Waiting"]
 
 
 def check_best(study, directions, trials):
-    """Checks that Optuna's best trials are the feasible ones not dominated by another feasible one."""
-    kept = [line for line in trials if line["values"] is not None
+    """Checks that Optuna's best trials are the Pareto front of the feasible trials."""
+    feasible = [line for line in trials if line["values"] is not None
             and all(c <= 0 for c in line["system_attrs"].get("constraints", []))]
-    gains = [[v if d == MAXIMIZE else -v for v, d in zip(line["values"], directions)] for line in kept]
-    beaten = lambda a: any(all(x >= y for x, y in zip(b, a)) and b != a for b in gains)
-    front = {line["evaluation"] for line, gain in zip(kept, gains) if not beaten(gain)}
+    objectives = [[v if d == MAXIMIZE else -v for v, d in zip(line["values"], directions)] for line in feasible]
+    dominated = lambda a: any(all(x >= y for x, y in zip(b, a)) and b != a for b in objectives)
+    front = {line["evaluation"] for line, objective in zip(feasible, objectives) if not dominated(objective)}
     assert {trial.number for trial in study.best_trials} == front
 
 
 def check_library(path, create, attributes, trials):
+    """Checks the study loaded by Optuna against the lines of the journal; returns the number of complete trials."""
     storage = JournalStorage(JournalFileBackend(str(path)))
     study = optuna.load_study(study_name=create["study_name"], storage=storage)
     assert [int(direction) for direction in study.directions] == create["directions"]
@@ -59,11 +62,13 @@ def check_library(path, create, attributes, trials):
 
 
 def get(port, path):
-    with urllib.request.urlopen(f"http://127.0.0.1:{port}{path}", timeout=DASHBOARD_S) as answer:
-        return json.load(answer)
+    """Returns the JSON response of the dashboard."""
+    with urllib.request.urlopen(f"http://127.0.0.1:{port}{path}", timeout=DASHBOARD_S) as response:
+        return json.load(response)
 
 
 def wait_for(port, server):
+    """Returns the list of studies as soon as the dashboard responds."""
     end = time.monotonic() + DASHBOARD_S
     while time.monotonic() < end:
         assert server.poll() is None, "the dashboard exited"
@@ -75,6 +80,7 @@ def wait_for(port, server):
 
 
 def check_dashboard(path, create, trials):
+    """Checks the trials shown by the dashboard against the lines of the journal."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]

@@ -4,7 +4,7 @@
 #     scripts/check_release.sh [PROGRAM]
 #
 # The wheel is installed in fresh environments of the oldest and the newest Python available: installation and import
-# time, the Python example of the README, the command `optimize`. The static program runs in an empty root directory:
+# time, the README's Python example, the command `optimize`. The static program runs in an empty root directory:
 # the first study of the README must print the README's block. The same study must give the same journal, except for
 # clock times, with PROGRAM (a build from the sources; by default that of `cargo build --release`), with the wheels and
 # with the static program.
@@ -17,15 +17,15 @@ wheel=$(realpath dist/*.whl)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 failed() { echo "scripts/check_release.sh: $1" >&2; exit 1; }
-# within SECONDS WHAT COMMAND..: runs the command, prints the elapsed time, and fails above the limit.
+# within SECONDS LABEL COMMAND..: runs the command, prints the elapsed time, and fails if the limit is exceeded.
 within() {
-    local limit=$1 what=$2 began seconds
+    local limit=$1 label=$2 began seconds
     shift 2
     began=$EPOCHREALTIME
     "$@"
     seconds=$(awk -v a="$began" -v b="$EPOCHREALTIME" 'BEGIN { printf "%.2f", b - a }')
-    echo "$what: $seconds s (limit $limit s)"
-    awk -v s="$seconds" -v l="$limit" 'BEGIN { exit s > l }' || failed "$what takes too long"
+    echo "$label: $seconds s (limit $limit s)"
+    awk -v s="$seconds" -v l="$limit" 'BEGIN { exit s > l }' || failed "$label takes too long"
 }
 # Prints the first fenced block of the README that contains this line.
 block() { awk -v line="$1" '/^```/ { if (found) exit; text = ""; next } { text = text $0 "\n" }
@@ -38,7 +38,8 @@ study() {
     sed -E 's/"(datetime_start|datetime_complete|wall_s)":("[^"]*"|[0-9.e-]+),?//g' \
         "$scratch/$name/journal.jsonl" > "$scratch/$name.jsonl"
     if [ "$name" != sources ]; then
-        cmp "$scratch/sources.jsonl" "$scratch/$name.jsonl" || failed "the journal of $name is not that of $program"
+        cmp "$scratch/sources.jsonl" "$scratch/$name.jsonl" ||
+            failed "the journal of $name differs from that of $program"
         echo "journal of $name: $(wc -l < "$scratch/$name.jsonl") lines, identical to the build from the sources"
     fi
 }
@@ -53,12 +54,12 @@ mv "$scratch/optimize" "$scratch/alone"
 root=("$(PATH=$PATH:/usr/sbin command -v chroot)")
 if [ "$(id -u)" -ne 0 ]; then root=("$(command -v unshare)" --map-root-user "${root[@]}"); fi
 alone() { env -i "${root[@]}" "$scratch/alone" /optimize "$@"; }
-if "${root[@]}" "$scratch/alone" /bin/true 2> /dev/null; then failed "the folder is not empty"; fi
+if "${root[@]}" "$scratch/alone" /bin/true 2> /dev/null; then failed "the root directory contains /bin/true"; fi
 alone --version
 read -r _ first < <(block "optimize --task usb")
 # shellcheck disable=SC2086
 alone $first > "$scratch/first.txt" 2> "$scratch/first.log"
-diff <(block "Print the finger") "$scratch/first.txt" || failed "README's first study prints something else"
+diff <(block "Print the finger") "$scratch/first.txt" || failed "the output of README's first study differs"
 echo "static program in an empty root: optimize $first prints README's block"
 static() { (cd "$scratch/alone" && alone "$@") && mv "$scratch/alone/static" "$scratch"; }
 study static static
@@ -74,19 +75,19 @@ for minor in 10 11 12 13 14 15; do
 done
 [ ${#pythons[@]} -gt 0 ] || failed "no CPython 3.10 or later"
 block "import finger_opt as fo" > "$scratch/readme.py"
-# Processor time of an import in s, which does not depend on other load.
-imported() { TIMEFORMAT='%U %S'; { time "$1" -c 'import finger_opt'; } 2>&1 | awk '{ print $1 + $2 }'; }
+# Prints the processor time of the import, s: unlike the elapsed time, it does not depend on other load.
+import_time() { TIMEFORMAT='%U %S'; { time "$1" -c 'import finger_opt'; } 2>&1 | awk '{ print $1 + $2 }'; }
 for python in $(printf '%s\n' "${pythons[0]}" "${pythons[-1]}" | uniq); do
     name=wheel-$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
     venv=$scratch/venv-$name
     "$python" -m venv "$venv"
     within 20 "$name: pip install" "$venv/bin/pip" install -q "$wheel"
     "$venv/bin/python" -c 'import finger_opt; print("finger_opt", finger_opt.__version__)'
-    seconds=$(imported "$venv/bin/python")
+    seconds=$(import_time "$venv/bin/python")
     echo "$name: import: $seconds s (limit 0.3 s)"
     if awk -v s="$seconds" 'BEGIN { exit s <= 0.3 }'; then failed "importing finger_opt takes too long"; fi
     "$venv/bin/pip" install -q "$wheel[pandas]"
-    (cd "$scratch" && rm -rf rj45-study && within 300 "$name: README's Python lines" "$venv/bin/python" readme.py)
+    (cd "$scratch" && rm -rf rj45-study && within 300 "$name: README's Python example" "$venv/bin/python" readme.py)
     "$venv/bin/optimize" --version
     study "$name" "$venv/bin/optimize"
 done

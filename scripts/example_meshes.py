@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Regenerates the meshes in examples/meshes/, each a single closed surface as exported by a CAD program.
 
-With a folder as argument, writes the test parts for the import to it.
+With a folder as argument, writes the test parts for `task import` to that folder instead.
 Needs `pip install trimesh==5.2.0 manifold3d numpy`. Lengths in mm.
 """
 
@@ -17,23 +17,26 @@ FOLDER = Path(__file__).parent.parent / "examples" / "meshes"
 
 
 def box(x, y, z):
+    """Returns a box with the bounds (low, high) on each axis."""
     size = [x[1] - x[0], y[1] - y[0], z[1] - z[0]]
     return m.Manifold.cube(size).translate([x[0], y[0], z[0]])
 
 
 def extruded(outline, z, scale=(1.0, 1.0)):
+    """Returns a prism with this outline between the heights z (low, high)."""
     section = m.CrossSection([outline])
     return section.extrude(z[1] - z[0], scale_top=scale).translate([0, 0, z[0]])
 
 
 def write(name, solid, folder=FOLDER, unit=1.0, turn=(0, 0, 0)):
+    """Writes an STL file; `unit` is its length unit in mm, `turn` a rotation in degrees."""
     mesh = solid.rotate(turn).scale([1.0 / unit] * 3).to_mesh()
     points, faces = np.array(mesh.vert_properties)[:, :3], np.array(mesh.tri_verts)
     trimesh.Trimesh(points, faces, process=False).export(folder / name)
 
 
 def usb():
-    """Writes the shipped usb task's plug and socket."""
+    """Writes plug and socket of the shipped task usb."""
     taper = m.Manifold.hull_points(
         [[x, y, z] for x in (-3.8, 3.7) for y, z in
          [(-7.75, 32.2), (7.75, 32.2), (5.38, 36.2), (-5.38, 36.2)]])
@@ -49,8 +52,8 @@ def usb():
     write("usb-socket.stl", socket)
 
 
-def keyed(grow):
-    """Returns the outline (x, y) of a keyed plug, 9 x 4 mm with bevelled corners and a rib at +x."""
+def keyed_outline(grow):
+    """Returns the outline (x, y) of a keyed plug, 9 x 4 mm with bevelled corners and a rib at +x, offset by `grow`."""
     x, y, bevel = 2.0 + grow, 4.5 + grow, 0.8
     rib, out = 0.75 + grow, 0.8
     return [(-x + bevel, -y), (x - bevel, -y), (x, -y + bevel), (x, -rib), (x + out, -rib),
@@ -59,10 +62,10 @@ def keyed(grow):
 
 
 def example():
-    """Returns a keyed plug with a body, and its socket with a lead-in chamfer 0.4 mm deep."""
+    """Writes a keyed plug with a body, and its socket with a lead-in chamfer 0.4 mm deep."""
     body = box((-4, 4), (-6, 6), (8, 26))
-    write("keyed-plug.stl", extruded(keyed(0.0), (0, 8)) + body)
-    pocket = extruded(keyed(0.1), (-8.5, 1))
+    write("keyed-plug.stl", extruded(keyed_outline(0.0), (0, 8)) + body)
+    pocket = extruded(keyed_outline(0.1), (-8.5, 1))
     lead = m.Manifold.hull_points([[x, y, z] for grow, z in ((0.15, -0.4), (0.55, 0.0))
                                    for x in (-2.0 - grow, 2.0 + grow)
                                    for y in (-4.5 - grow, 4.5 + grow)])
@@ -74,17 +77,17 @@ def rectangle(x, y):
 
 
 def d_shape():
-    """Returns a circle of 9 mm with a flat at -x."""
+    """Returns a circle, 9 mm in diameter, with a flat at -x."""
     return m.CrossSection.circle(4.5, 32) - rectangle(4, 20).translate((-5.2, 0))
 
 
 def peg_with_key():
-    """Returns a peg of 8 mm with a key of 2 mm that protrudes by 1 mm at +x."""
+    """Returns a circle, 8 mm in diameter, with a key 2 mm wide that protrudes by 1 mm at +x."""
     return m.CrossSection.circle(4, 32) + rectangle(2, 2).translate((4, 0))
 
 
 def oval():
-    """Returns an oval of two half circles of 4 mm, 10 mm long in y."""
+    """Returns an oval, 10 mm long in y, with semicircular ends 4 mm in diameter."""
     return m.CrossSection.batch_hull([m.CrossSection.circle(2, 32).translate((0, y)) for y in (-3, 3)])
 
 
@@ -98,7 +101,7 @@ def trapezoid():
 
 
 def pair(folder, name, section, clearance, chamfer, depth=8.0, body=(8, 12, 18), flange=0.0, **form):
-    """Returns a plug with this section below a body (x, y, z), and its socket with a chamfer in three steps."""
+    """Writes a plug with this section below a body (x, y, z), and its socket with a chamfer."""
     x, y, length = body
     plug = section.extrude(depth) + box((-x / 2, x / 2), (-y / 2, y / 2), (depth, depth + length))
     if flange:
@@ -124,14 +127,14 @@ def parts(folder):
     pair(folder, "oval", oval(), 0.1, 0.4, body=(8, 14, 18))
     pair(folder, "keyed-square", keyed_square(), 0.15, 0.4, body=(11, 11, 16))
     pair(folder, "d-sub", trapezoid(), 0.12, 0.3, body=(9, 13, 18))
-    draw = random.Random(28)
+    rng = random.Random(28)
     for number in range(1, 13):
-        x, y, depth = draw.uniform(2.5, 9), draw.uniform(5, 14), draw.uniform(5, 12)
-        size = [rectangle(x, y), m.CrossSection.circle(y / 2, 32)][number % 4 == 0]
-        clearance, chamfer = draw.uniform(0.05, 0.3), draw.choice([0, draw.uniform(0.2, 0.8)])
-        wide = max(x, y) if number % 4 == 0 else x
-        body = (wide + draw.uniform(2, 6), y + draw.uniform(2, 6), draw.uniform(12, 22))
-        pair(folder, f"random-{number:02}", size, clearance, chamfer, depth, body)
+        x, y, depth = rng.uniform(2.5, 9), rng.uniform(5, 14), rng.uniform(5, 12)
+        section = [rectangle(x, y), m.CrossSection.circle(y / 2, 32)][number % 4 == 0]
+        clearance, chamfer = rng.uniform(0.05, 0.3), rng.choice([0, rng.uniform(0.2, 0.8)])
+        width = max(x, y) if number % 4 == 0 else x
+        body = (width + rng.uniform(2, 6), y + rng.uniform(2, 6), rng.uniform(12, 22))
+        pair(folder, f"random-{number:02}", section, clearance, chamfer, depth, body)
 
 
 if len(sys.argv) > 1:

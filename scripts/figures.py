@@ -18,6 +18,7 @@ TASKS = ["ket8", "ket12", "rj45", "usb"]
 
 
 def rows(path):
+    """Returns the rows of a CSV file, numbers as float."""
     with open(path, newline="") as file:
         return [
             {key: float(value) if value.replace(".", "", 1).lstrip("-").isdigit() else value for key, value in row.items()}
@@ -26,7 +27,7 @@ def rows(path):
 
 
 def validation(folder, axes):
-    """Plots the range over the compliance stiffness: ours, the published simulation's and the robot's."""
+    """Plots our range, that of the published simulation and that of the robot over the compliance stiffness."""
     table = rows(folder / "validation.csv")
     for task, ax in zip(TASKS, axes):
         own = [row for row in table if row["task"] == task]
@@ -44,11 +45,11 @@ def bench(folder, axes):
     """Plots the leave-one-out prediction of each measured finger with its 80 % interval."""
     for task, ax in zip(TASKS, axes):
         own = rows(folder / f"leave_one_out_{task}.csv")
-        measured, found = ([row[key] for row in own] for key in ("measured_mm", "range_mm"))
+        measured, predicted = ([row[key] for row in own] for key in ("measured_mm", "range_mm"))
         below = [row["range_mm"] - row["low_mm"] for row in own]
         above = [row["high_mm"] - row["range_mm"] for row in own]
-        ax.errorbar(measured, found, yerr=[below, above], fmt="o", markersize=4, label="predicted, 80 % interval")
-        ends = [min(measured + found), max(measured + found)]
+        ax.errorbar(measured, predicted, yerr=[below, above], fmt="o", markersize=4, label="predicted, 80 % interval")
+        ends = [min(measured + predicted), max(measured + predicted)]
         ax.plot(ends, ends, "--", linewidth=1, color="grey", label="equal")
         ax.set(title=task, xlabel="measured range (mm)", ylabel="predicted range (mm)")
 

@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-minutes=${1:?"how many minutes? usage: scripts/fuzz.sh MINUTES [SEED]"}
+minutes=${1:?"missing MINUTES; usage: scripts/fuzz.sh MINUTES [SEED]"}
 export FINGER_OPT_FUZZ_SECONDS=$((60 * minutes))
 export FINGER_OPT_FUZZ_SEED=${2:-$(date +%s)}
 export FINGER_OPT_FUZZ_JOBS=${FINGER_OPT_FUZZ_JOBS:-$(nproc)}

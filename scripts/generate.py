@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Generates files from the commands: their list, their reference page, and the Python functions.
+"""Generates the list of commands, their reference page, and the Python functions.
 
 Usage: generate.py [--check] [PROGRAM]. PROGRAM is the program `optimize`, which is built if omitted. With --check
 nothing is written, and the exit code is 1 if a file is out of date.
@@ -23,7 +23,7 @@ BUILD = ["cargo", "build", "--release", "--locked", "--quiet", "--bin", "optimiz
 
 
 def paths() -> list[tuple[str, ...]]:
-    """Returns the modules of the commands: a file is a command, a folder a group of commands."""
+    """Returns the module path of each command; a folder is a group of commands."""
     files = (file.relative_to(COMMANDS).with_suffix("") for file in COMMANDS.rglob("*.rs"))
     return sorted(file.parts for file in files if file.name != "mod")
 
@@ -47,28 +47,28 @@ def command_list() -> str:
     return "\n".join([*lines, "];", ""])
 
 
-def said(program: str, form: str) -> str:
-    """Returns the program's description of its commands."""
+def description(program: str, form: str) -> str:
+    """Returns the program's description of its commands, in Markdown or JSON."""
     done = subprocess.run([program, "man", "--format", form], stdout=subprocess.PIPE, text=True, check=True)
     return done.stdout
 
 
 def files(program: str | None) -> dict[Path, str]:
-    """Returns the files with their texts; writes the list of commands first, so that the program has them all."""
-    found = {COMMANDS / "mod.rs": command_list()}
+    """Returns the texts by file. Without a program, first writes the list of commands and builds one."""
+    texts = {COMMANDS / "mod.rs": command_list()}
     if program is None:
-        write(found)
+        write(texts)
         subprocess.run(BUILD, cwd=ROOT, check=True)
         program = str(ROOT / "target/release/optimize")
-    found[ROOT / "docs/cli.md"] = said(program, "markdown")
-    for name, text in modules(json.loads(said(program, "json"))).items():
-        found[ROOT / "python/finger_opt" / name] = text
-    return found
+    texts[ROOT / "docs/cli.md"] = description(program, "markdown")
+    for name, text in modules(json.loads(description(program, "json"))).items():
+        texts[ROOT / "python/finger_opt" / name] = text
+    return texts
 
 
-def write(found: dict[Path, str]) -> None:
+def write(texts: dict[Path, str]) -> None:
     """Writes the files that are out of date."""
-    for file, text in found.items():
+    for file, text in texts.items():
         if not current(file, text):
             file.write_text(text, encoding="utf-8")
 
@@ -78,17 +78,17 @@ def current(file: Path, text: str) -> bool:
     return file.exists() and file.read_text(encoding="utf-8") == text
 
 
-def main(words: list[str]) -> int:
+def main(arguments: list[str]) -> int:
     """Writes the files, or lists those that are out of date."""
-    check = "--check" in words
-    programs = [word for word in words if not word.startswith("--")]
+    check = "--check" in arguments
+    programs = [argument for argument in arguments if not argument.startswith("--")]
     if check and not programs:
         sys.exit("generate.py: --check needs PROGRAM")
-    found = files(programs[0] if programs else None)
+    texts = files(programs[0] if programs else None)
     if not check:
-        write(found)
+        write(texts)
         return 0
-    stale = [str(file.relative_to(ROOT)) for file, text in found.items() if not current(file, text)]
+    stale = [str(file.relative_to(ROOT)) for file, text in texts.items() if not current(file, text)]
     for file in stale:
         print(f"{file} is out of date: run scripts/generate.py", file=sys.stderr)
     return 1 if stale else 0

@@ -3,7 +3,7 @@
 # time, the count does not depend on machine load.
 #
 #     scripts/instructions.sh [PROGRAM]          exit 1 if the count exceeds the margin
-#     scripts/instructions.sh [PROGRAM] --renew  writes the count of this compiler
+#     scripts/instructions.sh [PROGRAM] --renew  replaces the committed count
 #
 # PROGRAM is the program built by `cargo test`; it is built here if omitted.
 set -euo pipefail
@@ -46,7 +46,7 @@ echo "compiled by $compiler; the committed count by $(sed -n 's/^compiler //p' "
 # outside SIGN: tests whether the change is outside the margin, above (1) or below (-1).
 outside() { awk -v c="$change" -v m="$margin" -v s="$1" 'BEGIN { exit !(s * c > m) }'; }
 if outside -1; then
-    echo "the trial has become cheaper: run scripts/instructions.sh --renew to detect a later regression"
+    echo "the trial takes fewer instructions: run scripts/instructions.sh --renew to detect a later regression"
 fi
 if outside 1; then
     echo "the trial takes more instructions than committed; if this is intended," \

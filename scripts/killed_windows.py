@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Kills `measure_window` at random times: scripts/killed_windows.py KILLS FOLDER
 
-Each window is restarted until it is complete. Its line and its attempts must be those of an uninterrupted window, with
-no attempt duplicated or lost. Needs the package, built with the feature `fake-engine`.
+Each window is restarted until it is complete. Its line of the table and its attempts must equal those of an
+uninterrupted window, with no attempt duplicated or lost. Needs the package, built with the feature `fake-engine`.
 """
 import random
 import subprocess
@@ -23,14 +23,14 @@ measure_window(Slow("usb", 20, 10, engine="fake"), out=sys.argv[1], task="usb", 
 
 
 def attempts(folder):
-    """Returns the lines of the attempts file, without times."""
+    """Returns the lines of the attempts files except those about a stop."""
     lines = []
     for file in sorted(folder.glob("bench-*.jsonl")):
         lines += [line for line in file.read_text().splitlines() if "stopped" not in line]
     return lines
 
 
-def begun(folder):
+def start(folder):
     """Starts a process that measures into this folder; returns once the package is imported."""
     folder.mkdir(parents=True, exist_ok=True)
     process = subprocess.Popen(
@@ -39,8 +39,8 @@ def begun(folder):
     return process
 
 
-def ended(process, folder):
-    """Waits for a process, which has to succeed; gives its table and its number of attempts."""
+def finish(process, folder):
+    """Waits for a process; returns its table and its number of attempts. Exits if the process failed."""
     _, error = process.communicate()
     if process.returncode != 0:
         sys.exit(f"killed_windows: {folder}: {error}")
@@ -49,21 +49,21 @@ def ended(process, folder):
 
 def main():
     kills, folder = int(sys.argv[1]), Path(sys.argv[2])
-    process, clock = begun(folder / "whole"), time.monotonic()
-    whole = ended(process, folder / "whole")
-    length, chance, done, windows = time.monotonic() - clock, random.Random(1), 0, 0
-    while done < kills:
-        one = folder / str(windows)
+    process, clock = start(folder / "whole"), time.monotonic()
+    reference = finish(process, folder / "whole")
+    duration_s, rng, killed, windows = time.monotonic() - clock, random.Random(1), 0, 0
+    while killed < kills:
+        window = folder / str(windows)
         for _ in range(5):
-            process = begun(one)
-            time.sleep(chance.random() * length)
-            done += process.poll() is None
+            process = start(window)
+            time.sleep(rng.random() * duration_s)
+            killed += process.poll() is None
             process.kill()
             process.communicate()
-        if ended(begun(one), one) != whole:
-            sys.exit(f"killed_windows: {one} differs from {folder / 'whole'}")
+        if finish(start(window), window) != reference:
+            sys.exit(f"killed_windows: {window} differs from {folder / 'whole'}")
         windows += 1
-    print(f"windows       {done} kills of {windows} windows: the same line, {whole[1]} attempts each")
+    print(f"windows       {killed} kills of {windows} windows: the same line, {reference[1]} attempts each")
 
 
 main()

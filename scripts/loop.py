@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""What the loop of study, print, measurement and identification gains in cells whose numbers nobody knows.
+"""Measures the gain of the loop of study, print, measurement and identification in hidden cells.
 
-Each cell is a robot in MuJoCo with numbers drawn by its seed (finger_opt.robot.SimulatedRobot). In each, six ways to
-choose a finger are followed as a lab would, and then the true windows of all named fingers and of twelve fixed ones
-are walked. Everything found is a line of FOLDER/CELL/found.jsonl; the same call goes on there.
+A hidden cell is a robot in MuJoCo whose parameters are drawn by its seed (finger_opt.robot.SimulatedRobot). In each
+cell, six procedures (ways a to f) choose a finger as a lab would. Then the true windows of the chosen fingers and of
+twelve fixed ones are searched. Every result is a line of FOLDER/CELL/found.jsonl; the same call continues there.
 
     scripts/loop.py FOLDER usb:1 ket8:1 ...        runs cells
-    scripts/loop.py FOLDER --table                 prints what was found
+    scripts/loop.py FOLDER --table                 prints the results
 
 Needs the Python package with the extra mujoco.
 """
@@ -27,24 +27,26 @@ import finger_opt as fo
 from finger_opt._rehearsal import Rehearsal
 from finger_opt.robot import SimulatedRobot, measure_window
 
+#: Density, %, and direction, degrees, of the medium finger (way a).
 MEDIUM = (20.0, 20.0)
+#: Prints of ways c and d.
 PRINTS = 4
-#: Strides and resolution of a true window, and how far it is looked for, mm.
-STRIDE_MM, FINE_MM, FARTHEST_MM = 0.5, 0.1, 12.0
-#: Evaluations of a study of finger and strategy, which would take hours to settle.
+#: Stride, resolution and largest distance of the search for an end of a true window, mm.
+STRIDE_MM, RESOLUTION_MM, FARTHEST_MM = 0.5, 0.1, 12.0
+#: Budget of a study of finger and strategy, which would take hours without a budget.
 EVALUATIONS = 80
-#: Numbers of the space codesign that a lab sets without another print.
+#: Parameters of the space codesign that a lab sets without another print.
 STRATEGY = ("task.strategy.tilt_deg", "task.strategy.phase.touch.preload_mm", "task.strategy.phase.side.move_mm.y",
             "task.grip.force_n", "task.strategy.phase.assembly.speed_mm_per_s")
 
 
 def fixed() -> list[tuple[float, float]]:
-    """Twelve fingers of a Sobol set over 10 to 30 % and 0 to 40 degrees."""
+    """Returns twelve fingers of a Sobol set over 10 to 30 % and 0 to 40 degrees."""
     return [(10.0 + round(20.0 * x), round(40.0 * y)) for x, y in sobol(12)]
 
 
 def sobol(count: int) -> Iterator[tuple[float, float]]:
-    """The first points of the two-dimensional Sobol sequence behind 0 (Bratley and Fox 1988)."""
+    """Yields the first points of the two-dimensional Sobol sequence, without 0 (Bratley and Fox 1988)."""
     first, second = [1 << (31 - i) for i in range(32)], [1 << 31]
     for i in range(1, 32):
         second.append(second[i - 1] ^ (second[i - 1] >> 1))
@@ -56,17 +58,17 @@ def sobol(count: int) -> Iterator[tuple[float, float]]:
 
 
 class Cell:
-    """A hidden cell, and what has been found in it."""
+    """Hidden cell and the results so far."""
 
     def __init__(self, root: Path, task: str, seed: int) -> None:
         self.task, self.seed, self.path = task, seed, root / f"{task}-{seed}"
         self.path.mkdir(parents=True, exist_ok=True)
         self.file = self.path / "found.jsonl"
         lines = self.file.read_text(encoding="utf-8").splitlines() if self.file.exists() else []
-        self.found: dict[str, Any] = {one["key"]: one for one in map(json.loads, lines)}
+        self.found: dict[str, Any] = {line["key"]: line for line in map(json.loads, lines)}
 
     def once(self, key: str, find: Callable[[], Any]) -> Any:
-        """What was found under a key, or is now; with its processor time."""
+        """Returns the stored result of a key; computes and stores it if missing, with its processor time."""
         if key not in self.found:
             began = time.process_time()
             value = find()
@@ -77,10 +79,10 @@ class Cell:
             print(f"{self.path.name} {key}: {value} ({line['cpu_s']} s)", flush=True)
         return self.found[key]["value"]
 
-    # The lab.
+    # Work of the lab.
 
     def taught_mm(self, finger: list[float], strategy: dict[str, float]) -> float | None:
-        """The inserting start that is nearest to the task's own, by 1 mm: what somebody teaches."""
+        """Returns the inserting start nearest to that of the task, in steps of 1 mm, as a person would teach it."""
         def find() -> float | None:
             robot = self.truth(finger, strategy)
             near = sorted(range(-8, 9), key=lambda at: (abs(at), -at))
@@ -89,7 +91,7 @@ class Cell:
         return self.once(f"taught {finger} {strategy}", find)
 
     def window_mm(self, finger: list[float], strategy: dict[str, float] | None = None) -> float:
-        """The width of the true window, walked from the taught start."""
+        """Returns the width of the true window, searched from the taught start; 0 if no start inserts."""
         strategy = strategy or {}
         taught = self.taught_mm(finger, strategy)
 
@@ -103,29 +105,31 @@ class Cell:
         return round(high - low, 2)
 
     def truth(self, finger: list[float], strategy: dict[str, float]) -> Rehearsal:
-        return Rehearsal(set_to(self.task, strategy), *finger, None, self.seed)
+        """Returns the robot of the cell, with this finger and strategy."""
+        return Rehearsal(with_strategy(self.task, strategy), *finger, None, self.seed)
 
     def measure(self, folder: Path, finger: list[float], probe: bool) -> int:
-        """Measures a finger into a folder as a lab does; returns the attempts."""
+        """Measures a finger as a lab does, into a folder; returns the number of attempts."""
         taught = self.taught_mm(finger, {})
         bench = folder / "bench.csv"
         folder.mkdir(exist_ok=True)
 
         def find() -> int:
             if taught is None:
-                note_nothing(bench, self.task, finger)
+                add_not_measurable(bench, self.task, finger)
                 return 17
             robot = SimulatedRobot(self.task, *finger, "mujoco", seed=self.seed, taught_mm=taught)
-            # Other jobs may run beside.
+            # Other jobs may run at the same time.
             robot.timeout_s = 3600.0  # type: ignore[attr-defined]
             found = measure_window(robot, task=self.task, density=finger[0], direction=finger[1], out=bench, probe=probe)
             return found.attempts
 
         return self.once(f"measured {folder.name} {finger}", find)
 
-    # The ways.
+    # Procedures.
 
     def run(self, nominal: list[float], ways: str) -> None:
+        """Follows these ways, then searches the windows of all fingers; ``nominal`` is the finger of way b."""
         named = [list(MEDIUM), nominal]
         if "e" in ways:
             found = nominal_strategy(self.path.parent, self.task)
@@ -139,7 +143,7 @@ class Cell:
             self.window_mm(finger)
 
     def by_measurement(self) -> list[list[float]]:
-        """Way c: prints by ``next`` with measured ranges only."""
+        """Follows way c: prints chosen by ``next`` from measured ranges only; returns the fingers."""
         folder, prints = self.path / "c", []
         for i in range(PRINTS):
             finger = self.advised(folder, f"c print {i + 1}")
@@ -150,7 +154,10 @@ class Cell:
         return prints
 
     def by_identification(self, ways: str) -> list[tuple[list[float], dict[str, float]]]:
-        """Ways d, e and f: two fingers' logs, a cell, a study, one finger more."""
+        """Follows ways d, e and f: logs of two fingers, an identified cell, a study; f measures one more finger.
+
+        Returns the fingers with their strategies.
+        """
         folder, chosen = self.path / "d", []
         self.two_windows(folder)
         if not (folder / "runs.csv").exists() or not self.identified(folder, "cell"):
@@ -167,7 +174,7 @@ class Cell:
         return chosen
 
     def two_windows(self, folder: Path) -> None:
-        """Measures the first prints; of those that insert from no start, others by ``next``, four prints in all."""
+        """Measures the first prints; replaces those that insert from no start by prints of ``next``, up to PRINTS."""
         left = first_prints(self.path.parent, self.task)
         for printed in range(PRINTS):
             if not left:
@@ -181,19 +188,21 @@ class Cell:
                 break
 
     def measured(self, folder: Path) -> list[list[float]]:
+        """Returns the fingers measured into a folder."""
         start = f"measured {folder.name} "
         return [json.loads(key.removeprefix(start)) for key in self.found if key.startswith(start)]
 
     def advised(self, folder: Path, key: str) -> list[float] | None:
-        """What ``next`` prints after the windows of a folder."""
-        def ask() -> list[float] | None:
+        """Returns the finger that ``next`` advises after the measurements in a folder; None to stop."""
+        def find() -> list[float] | None:
             folder.mkdir(exist_ok=True)
             advice = fo.next_print(folder / "bench.csv", self.task, cache=self.path.parent / "cache")
             return None if advice.stop or not advice.next else infill(advice.next[0].values)
 
-        return self.once(key, ask)
+        return self.once(key, find)
 
     def identified(self, folder: Path, name: str) -> bool:
+        """Identifies the cell from the logs in a folder and writes NAME.toml; returns whether this succeeded."""
         def find() -> dict[str, float] | None:
             try:
                 cell = fo.identify(self.task, folder / "runs.csv", self.path / f"{name}.toml")
@@ -205,7 +214,7 @@ class Cell:
         return self.once(f"identified {name}", find) is not None
 
     def study(self, cell: str, space: str) -> dict[str, float]:
-        # The lab's start is taught, too.
+        """Returns the values of the best finger in the identified cell, from a taught start as in the lab."""
         budget = None if space == "infill" else EVALUATIONS
         study = fo.Study.create(self.task, space=space, cell=self.path / f"{cell}.toml", start="taught", budget=budget,
                                 out=self.path / f"study-{cell}-{Path(space).stem}", no_levers=True, no_map=True)
@@ -214,29 +223,34 @@ class Cell:
 
 
 def end(inserts: Callable[[float], bool], start: float, sign: int) -> float:
-    """The last start that inserts before two neighbouring ones fail, walked by strides, then bisected."""
+    """Returns the end of a window, mm: the last start that inserts before two neighbouring starts fail.
+
+    Searches in strides, then by bisection.
+    """
     last = at = start
     while abs(at - start) < FARTHEST_MM and at - last <= STRIDE_MM and last - at <= STRIDE_MM:
         at += sign * STRIDE_MM
         if inserts(at):
             last = at
-    low, high = 0, round(STRIDE_MM / FINE_MM)
+    low, high = 0, round(STRIDE_MM / RESOLUTION_MM)
     while high - low > 1:
         middle = (low + high) // 2
-        low, high = (middle, high) if inserts(last + sign * middle * FINE_MM) else (low, middle)
-    return round(last + sign * low * FINE_MM, 2)
+        low, high = (middle, high) if inserts(last + sign * middle * RESOLUTION_MM) else (low, middle)
+    return round(last + sign * low * RESOLUTION_MM, 2)
 
 
 def infill(values: dict[str, float]) -> list[float]:
+    """Returns density, %, and direction, degrees."""
     return [values["infill_density_percent"], values["infill_direction_deg"]]
 
 
 def strategy(values: dict[str, float]) -> dict[str, float]:
+    """Returns the values of the parameters in STRATEGY."""
     return {key: values[key] for key in STRATEGY if key in values}
 
 
-def set_to(name: str, strategy: dict[str, float]) -> fo.Task:
-    """The task with another strategy."""
+def with_strategy(name: str, strategy: dict[str, float]) -> fo.Task:
+    """Returns the task with this strategy."""
     task = fo.Task.from_toml(name)
     for key, value in strategy.items():
         *path, last = key.split(".")[1:]
@@ -244,7 +258,7 @@ def set_to(name: str, strategy: dict[str, float]) -> fo.Task:
         for part in path:
             outer, at = at, at[part]
         if last in ("x", "y", "z") and outer is not None:
-            # A vector is set whole.
+            # A vector cannot be set by component.
             move = list(at)
             move["xyz".index(last)] = value
             outer[path[-1]] = move
@@ -254,7 +268,7 @@ def set_to(name: str, strategy: dict[str, float]) -> fo.Task:
 
 
 def strategy_space(folder: Path) -> Path:
-    """The shipped space codesign without the finger's remote centre, which no print sets by itself."""
+    """Writes the space codesign without the remote centre, which cannot be set independently in a print."""
     from finger_opt import _native
 
     rows = json.loads(_native.space("codesign"))
@@ -269,49 +283,50 @@ def strategy_space(folder: Path) -> Path:
     return path
 
 
-def note_nothing(bench: Path, task: str, finger: list[float]) -> None:
-    """Notes a finger that inserts from no start."""
+def add_not_measurable(bench: Path, task: str, finger: list[float]) -> None:
+    """Adds a finger that inserts from no start to the measurements."""
     subprocess.run([sys.executable, "-m", "finger_opt", "measure", "add", bench, "--task", task, "--density",
                     f"{finger[0]:g}", "--direction", f"{finger[1]:g}", "--not-measurable"], check=True,
                    stdout=subprocess.DEVNULL)
 
 
 def nominal_best(root: Path, task: str) -> list[float]:
-    """Way b: the best finger of a study in the shipped cell."""
+    """Returns the finger of way b: the best of a study in the shipped cell."""
     def find() -> list[float]:
         study = fo.Study.create(task, out=root / f"nominal-{task}", no_levers=True, no_map=True)
         return infill(study.run(progress=False).answer.finger or {})
 
-    return kept(root / f"nominal-{task}.json", find)
+    return cached(root / f"nominal-{task}.json", find)
 
 
 def nominal_strategy(root: Path, task: str) -> dict[str, float]:
-    """Finger and strategy of a study in the shipped cell."""
+    """Returns the best finger and strategy of a study in the shipped cell."""
     def find() -> dict[str, float]:
         study = fo.Study.create(task, space=strategy_space(root), start="taught", budget=EVALUATIONS,
                                 out=root / f"nominal-strategy-{task}", no_levers=True, no_map=True)
         return dict(study.run(progress=False).answer.finger or {})
 
-    return kept(root / f"nominal-strategy-{task}.json", find)
+    return cached(root / f"nominal-strategy-{task}.json", find)
 
 
 def first_prints(root: Path, task: str) -> list[list[float]]:
-    """The two fingers that ``next`` prints before anything is measured: the same for every cell."""
+    """Returns the two fingers that ``next`` advises before any measurement, the same for every cell."""
     def find() -> list[list[float]]:
         advice = fo.next_print(root / "none.csv", task, count=2, cache=root / "cache")
         return [infill(one.values) for one in advice.next]
 
-    return kept(root / f"first-{task}.json", find)
+    return cached(root / f"first-{task}.json", find)
 
 
-def kept(file: Path, find: Callable[[], Any]) -> Any:
+def cached(file: Path, find: Callable[[], Any]) -> Any:
+    """Returns the content of a JSON file; computes and writes it if missing."""
     if not file.exists():
         file.write_text(json.dumps(find()), encoding="utf-8")
     return json.loads(file.read_text(encoding="utf-8"))
 
 
-def gains(folder: Path, cell: Path) -> dict[str, float | None] | None:
-    """The true width of each way's finger, mm, ``None`` of a way not followed; ``None`` for a cell not at its end."""
+def widths_by_way(folder: Path, cell: Path) -> dict[str, float | None] | None:
+    """Returns the true width of each way's finger, mm, ``None`` if not followed; ``None`` for an incomplete cell."""
     task, seed = cell.name.rsplit("-", 1)
     found = Cell(folder, task, int(seed)).found
     widths = {key.removeprefix("window "): round(one["value"][1] - one["value"][0], 2)
@@ -324,7 +339,7 @@ def gains(folder: Path, cell: Path) -> dict[str, float | None] | None:
         return found.get(key, {}).get("value")
 
     def of_study(key: str) -> float | None:
-        """Of a study's finger; where nothing could be identified, the medium one."""
+        """Returns the width of a study's finger; of the medium finger if no cell was identified."""
         if value("identified cell") is None:
             return width(list(MEDIUM))
         return width(infill(value(key)), strategy(value(key))) if value(key) else None
@@ -346,41 +361,42 @@ def gains(folder: Path, cell: Path) -> dict[str, float | None] | None:
 
 
 def table(folder: Path) -> None:
-    """Prints the gain of each way over the medium finger with the shipped strategy, and its share of the possible."""
-    cells = {path.name: gains(folder, path) for path in sorted(folder.glob("*-[0-9]*")) if path.is_dir()}
-    done = {name: one for name, one in cells.items() if one}
+    """Prints the gain of each way over the medium finger with the shipped strategy, and its share of the best gain."""
+    cells = {path.name: widths_by_way(folder, path) for path in sorted(folder.glob("*-[0-9]*")) if path.is_dir()}
+    done = {name: widths for name, widths in cells.items() if widths}
     ways = ("a", "b", "b+e", "c", "d", "e", "f", "f+e", "best shipped", "best")
     print("| cell | " + " | ".join(f"{way}, mm" for way in ways) + " |\n| --- |" + " --- |" * len(ways))
-    for name, one in done.items():
-        print(f"| {name} | " + " | ".join("" if one[way] is None else f"{one[way]:.1f}" for way in ways) + " |")
+    for name, widths in done.items():
+        print(f"| {name} | " + " | ".join("" if widths[way] is None else f"{widths[way]:.1f}" for way in ways) + " |")
     for way in ways[1:]:
         best = "best" if "e" in way else "best shipped"
-        pairs = [(one[way] - one["a"], one[best] - one["a"]) for one in done.values() if one[way] is not None]
-        gain, share = [one for one, _ in pairs], [100.0 * one / most for one, most in pairs if most > 0.0]
-        if len(gain) > 1 and len(share) > 1:
-            low, middle, high = statistics.quantiles(gain, n=4)
-            print(f"{way}: {middle:+.1f} mm ({low:+.1f} to {high:+.1f}), {statistics.median(share):.0f} % of the possible; "
-                  f"worse than a by more than 0.3 mm in {sum(one < -0.3 for one in gain)} of {len(gain)} cells")
+        pairs = [(mm[way] - mm["a"], mm[best] - mm["a"]) for mm in done.values() if mm[way] is not None]
+        gains, shares = [gain for gain, _ in pairs], [100.0 * gain / most for gain, most in pairs if most > 0.0]
+        if len(gains) > 1 and len(shares) > 1:
+            low, middle, high = statistics.quantiles(gains, n=4)
+            print(f"{way}: {middle:+.1f} mm ({low:+.1f} to {high:+.1f}), "
+                  f"{statistics.median(shares):.0f} % of the best gain; "
+                  f"worse than a by more than 0.3 mm in {sum(gain < -0.3 for gain in gains)} of {len(gains)} cells")
     left = sorted(set(cells) - set(done))
     if left:
-        print(f"not at their end: {', '.join(left)}")
+        print(f"incomplete: {', '.join(left)}")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
     parser.add_argument("cells", nargs="*", metavar="TASK:SEED")
-    parser.add_argument("--ways", default="cdef", help="ways besides a and b [default: cdef]; e adds b+e, finger and "
-                        "strategy of the shipped cell; the best is of those followed")
+    parser.add_argument("--ways", default="cdef", help="ways in addition to a and b [default: cdef]; e also runs b+e, "
+                        "the finger and strategy from the shipped cell; the best width is that of the ways followed")
     parser.add_argument("--table", action="store_true")
-    asked = parser.parse_args()
-    asked.folder = asked.folder.resolve()
-    asked.folder.mkdir(parents=True, exist_ok=True)
-    for cell in asked.cells:
+    arguments = parser.parse_args()
+    arguments.folder = arguments.folder.resolve()
+    arguments.folder.mkdir(parents=True, exist_ok=True)
+    for cell in arguments.cells:
         task, seed = cell.rsplit(":", 1)
-        Cell(asked.folder, task, int(seed)).run(nominal_best(asked.folder, task), asked.ways)
-    if asked.table:
-        table(asked.folder)
+        Cell(arguments.folder, task, int(seed)).run(nominal_best(arguments.folder, task), arguments.ways)
+    if arguments.table:
+        table(arguments.folder)
 
 
 if __name__ == "__main__":

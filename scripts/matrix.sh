@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Stress tests of studies, with statistics: scripts/matrix.sh [kills] [commands] [threads] [disks] [cache]
-# Runs all of them by default. KILLS is the number of kills (443 by default; 200 for
+# Runs all parts by default. KILLS is the number of kills (443 by default; 200 for
 # commands); with ENGINE=direct, the killed studies use the real simulation. OPTIMIZE sets an existing
 # program, which needs the feature `fake-engine`. PYTHON sets an interpreter with the
-# package; if set, its `measure_window` is killed, too.
+# package, whose `measure_window` is then killed, too.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -15,6 +15,7 @@ trap 'umount "$work/disk" 2>/dev/null || true; rm -rf "$work"' EXIT
 cd "$work"
 common=(--task usb --engine "${ENGINE:-fake}" --quiet)
 
+# Prints a journal without clock times.
 body() { sed 's/,"datetime_start".*//' "$1/journal.jsonl"; }
 same_walk() { [ ! -e "$2/walk.json" ] || cmp -s "$1/walk.json" "$2/walk.json"; }
 same() { cmp -s <(body "$1") <(body "$2"); }
@@ -23,7 +24,7 @@ fail() { echo "matrix: $*" >&2; exit 1; }
 # Studies of several kinds, killed at random times, resumed and killed again, and with truncated
 # journals.
 kills() {
-    local wanted=${KILLS:-443} done=0 torn=0 studies=0 lengths=() begun kinds=(
+    local wanted=${KILLS:-443} done=0 truncated=0 studies=0 lengths=() begun kinds=(
         "--budget 22" "--budget 14 --polish 6" "--budget 14 --optimizer sobol --objective range,peak-force")
     if [ "${ENGINE:-fake}" != fake ]; then
         kinds=("--budget 4 --polish 2 --batch 2" "--budget 6 --batch 2 --objective range,peak-force")
@@ -46,18 +47,18 @@ kills() {
             if kill -KILL "$id" 2>/dev/null; then done=$((done + 1)); fi
             wait "$id" 2>/dev/null || true
             if [ -s "$name/journal.jsonl" ] && ((RANDOM % 3 == 0)); then
-                truncate -s "-$((RANDOM % 200))" "$name/journal.jsonl" && torn=$((torn + 1))
+                truncate -s "-$((RANDOM % 200))" "$name/journal.jsonl" && truncated=$((truncated + 1))
             fi
         done
         # shellcheck disable=SC2086
         "$optimize" "${common[@]}" ${kinds[kind]} --no-cache --out "$name" >/dev/null
         same "$name" "whole-$kind" || fail "$name differs from whole-$kind"
-        same_walk "$name" "whole-$kind" || fail "$name was confirmed otherwise than whole-$kind"
+        same_walk "$name" "whole-$kind" || fail "the confirmation of $name differs from that of whole-$kind"
         rm -rf "$name"
         studies=$((studies + 1))
     done
-    echo "kills         $done kills and $torn torn tails of $studies studies of ${#kinds[@]} kinds: every" \
-        "journal and walk the same"
+    echo "kills         $done kills and $truncated truncated journals of $studies studies of ${#kinds[@]}" \
+        "kinds: identical journals and confirmations"
 }
 
 # Commands that write a file, killed at random times: the file must be absent, unchanged or complete, and running
@@ -98,7 +99,7 @@ commands() {
         "$PYTHON" "$root/scripts/killed_windows.py" "$((wanted / 4))" "$work/windows" || fail "measure_window"
         count=$((count + 1)) done=$((done + wanted / 4))
     fi
-    echo "commands      $done kills of $count commands: no file in part, the same result afterwards"
+    echo "commands      $done kills of $count commands: no partial file, the same result afterwards"
 }
 
 # Optimizers, tasks, batches and threads: the journal must not depend on the number of threads.
@@ -133,13 +134,13 @@ disks() {
         "$optimize" "${common[@]}" --budget 22 --no-cache --out disk/s >/dev/null 2>error || code=$?
         case $code in
         0) ;;
-        1) grep -q . error || fail "a full disk of $kilobytes KB without a word" ;;
-        *) fail "a full disk of $kilobytes KB ends with $code" ;;
+        1) grep -q . error || fail "a full disk of $kilobytes KB: no error message" ;;
+        *) fail "a full disk of $kilobytes KB: exit code $code" ;;
         esac
         if [ -s disk/s/study.toml ]; then
             mkdir moved && cp -r disk/s/. moved/ && rm -f moved/.optimize-*
             "$optimize" resume --quiet moved >/dev/null
-            same moved whole || fail "what $kilobytes KB kept is no beginning"
+            same moved whole || fail "the study saved on $kilobytes KB resumes to a different journal"
             rm -rf moved
         fi
         umount disk
@@ -165,14 +166,14 @@ disks() {
         code=0
         # shellcheck disable=SC2086
         "$optimize" $command >/dev/null 2>error || code=$?
-        { [ "$code" = 1 ] && grep -q disk/ error; } || fail "$command ends with $code: $(cat error)"
+        { [ "$code" = 1 ] && grep -q disk/ error; } || fail "$command: exit code $code: $(cat error)"
         [ "$(ls -A disk)" = full ] || fail "$command leaves $(ls -A disk)"
         count=$((count + 1))
     done
     mount -o remount,ro disk
     code=0
     "$optimize" "${common[@]}" --budget 3 --no-cache --out disk/s >/dev/null 2>error || code=$?
-    [ "$code" = 1 ] || fail "a read-only disk ends with $code"
+    [ "$code" = 1 ] || fail "a read-only disk: exit code $code"
     umount disk
     echo "disks         $((count + 1)) full or read-only disks: a message, exit code 1, nothing lost"
 }
@@ -199,7 +200,7 @@ cache() {
     done
     "$optimize" "${common[@]}" --budget 22 --cache shared --out damaged >/dev/null
     same damaged alone || fail "a damaged cache changed a journal"
-    echo "cache         6 studies at once, then $entries damaged entries: the same journals"
+    echo "cache         6 concurrent studies, then $entries damaged entries: the same journals"
 }
 
 for part in "${@:-kills commands threads disks cache}"; do

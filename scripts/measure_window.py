@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Accuracy of `finger_opt.robot.measure_window` on windows with known ends: prints a table in Markdown.
+"""Measures the accuracy of `finger_opt.robot.measure_window` on 20 synthetic robots; prints a Markdown table.
 
-20 synthetic robots. Each end is drawn 0.5 to 5 mm from the taught start; the insertion probability is a logistic
-function, 0.6 mm wide from 90 to 10 %. Every fourth window has a gap of 0.3 mm, at least 0.5 mm from the start and from
-the end, in which nothing inserts. The method (priors, lapse, odds of a gap) was tuned on the seeds 1000 to 1399; the
-table is for the seeds 101 to 120.
+Each end is drawn 0.5 to 5 mm from the taught start; the insertion probability is a logistic function, 0.6 mm wide from
+90 to 10 %. Every fourth window has a gap of 0.3 mm, at least 0.5 mm from the start and from the end, in which every
+insertion fails. The method (priors, lapse, odds of a gap) was tuned on the seeds 1000 to 1399; the table is for the
+seeds 101 to 120.
 
-    python scripts/measure_window.py [FIRST SEED] [COUNT] [WIDTH mm]
+    python scripts/measure_window.py [FIRST_SEED] [COUNT] [WIDTH_MM]
 """
 
 import math
@@ -20,36 +20,37 @@ from finger_opt.robot import Attempt, measure_window
 
 
 class Synthetic:
-    """A robot with known ends."""
+    """Robot with a window of known ends, mm."""
 
     def __init__(self, seed: int, width_mm: float) -> None:
-        self.drawn = np.random.default_rng([29, seed])
-        self.ends = self.drawn.uniform(0.5, 5.0, 2) * (-1.0, 1.0)
-        self.scale = width_mm / (2.0 * math.log(9.0))
-        self.gap = self.drawn_gap() if seed % 4 == 0 else None
+        self.rng = np.random.default_rng([29, seed])
+        self.ends = self.rng.uniform(0.5, 5.0, 2) * (-1.0, 1.0)
+        self.scale_mm = width_mm / (2.0 * math.log(9.0))
+        self.gap = self.draw_gap() if seed % 4 == 0 else None
 
-    def drawn_gap(self) -> tuple[float, float]:
-        side = int(self.drawn.random() >= 0.5)
-        # On the other side if there is not enough space.
+    def draw_gap(self) -> tuple[float, float]:
+        """Draws a gap (low, high), mm."""
+        side = int(self.rng.random() >= 0.5)
+        # The other side, if this one has too little space.
         side = side if abs(self.ends[side]) >= 1.5 else 1 - side
-        near = self.drawn.uniform(0.5, max(0.51, abs(self.ends[side]) - 0.8))
+        near = self.rng.uniform(0.5, max(0.51, abs(self.ends[side]) - 0.8))
         return (near, near + 0.3) if side else (-near - 0.3, -near)
 
     def insert(self, offset_mm: float, log: Path | None = None) -> Attempt:
         low, high = self.ends
-        inside = 1.0 / (1.0 + math.exp((low - offset_mm) / self.scale))
-        inside /= 1.0 + math.exp((offset_mm - high) / self.scale)
-        inserted = bool(self.drawn.random() < inside)
+        inside = 1.0 / (1.0 + math.exp((low - offset_mm) / self.scale_mm))
+        inside /= 1.0 + math.exp((offset_mm - high) / self.scale_mm)
+        inserted = bool(self.rng.random() < inside)
         if self.gap and self.gap[0] <= offset_mm <= self.gap[1]:
             inserted = False
         return Attempt(inserted, None if inserted else 3, 12.5 if inserted else 5.0, 30.0)
 
 
 def main() -> None:
-    usual = ("101", "20", "0.6")
-    first, count, width = [*sys.argv[1:], *usual[len(sys.argv) - 1 :]]
+    defaults = ("101", "20", "0.6")
+    first, count, width = [*sys.argv[1:], *defaults[len(sys.argv) - 1 :]]
     first, count, width_mm = int(first), int(count), float(width)
-    errors, attempts, held, gaps, met = [], [], 0, 0, 0
+    errors, attempts, covered, gaps, met = [], [], 0, 0, 0
     print("| seed | ends mm | measured mm | 95 % intervals mm | gap mm | attempts |\n| --- | --- | --- | --- | --- | --- |")
     for seed in range(first, first + count):
         robot = Synthetic(seed, width_mm)
@@ -57,8 +58,8 @@ def main() -> None:
             found = measure_window(robot, task="usb", density=20, direction=10, out=Path(folder) / "bench.csv")
         measured = (found.negative_mm, found.positive_mm)
         intervals = (found.negative_interval_mm, found.positive_interval_mm)
-        errors += [abs(one - end) for one, end in zip(measured, robot.ends, strict=True)]
-        held += sum(low <= end <= high for (low, high), end in zip(intervals, robot.ends, strict=True))
+        errors += [abs(mm - end) for mm, end in zip(measured, robot.ends, strict=True)]
+        covered += sum(low <= end <= high for (low, high), end in zip(intervals, robot.ends, strict=True))
         attempts.append(found.attempts)
         gap = ""
         if robot.gap:
@@ -70,8 +71,8 @@ def main() -> None:
         spans = "; ".join(f"{low:.2f} to {high:.2f}" for low, high in intervals)
         print(f"| {seed} | {ends} | {measured[0]:.2f}, {measured[1]:.2f} | {spans} | {gap} | {found.attempts} |")
     print(f"\nwithin 0.2 mm: {sum(error <= 0.2 for error in errors)} of {len(errors)}; largest error {max(errors):.2f} mm; "
-          f"in the 95 % interval: {held}; attempts: median {statistics.median(attempts):g}, at most {max(attempts)}; "
-          f"gaps met: {met} of {gaps}")
+          f"in the 95 % interval: {covered}; "
+          f"attempts: median {statistics.median(attempts):g}, at most {max(attempts)}; gaps met: {met} of {gaps}")
 
 
 if __name__ == "__main__":

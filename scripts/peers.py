@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures our optimizers and others on test functions and recorded landscapes.
+"""Compares our optimizers with others on test functions and recorded landscapes.
 
     python3 -m venv venv
     venv/bin/pip install cma==4.5.0 optuna==5.0.0 botorch==0.18.1 torch==2.15.0 scipy==1.17.1
@@ -10,8 +10,8 @@
         --landscape results/reference/landscapes/{usb,ket8,ket12,rj45}.csv
     venv/bin/python scripts/peers.py ratios results/reference/optimizers/ours.csv pycma.csv peers.csv
 
-`run` prints a line per problem and appends every run to the CSV (with the columns of
-`ours.csv`); `ratios` prints Markdown. Ours need the package finger_opt, pycma needs neither
+`run` prints one line per problem and method, and appends every run to the CSV (with the columns
+of `ours.csv`); `ratios` prints Markdown. Ours need the package finger_opt, pycma needs neither
 optuna nor torch, tpe needs no torch.
 """
 import argparse
@@ -32,8 +32,11 @@ warnings.filterwarnings("ignore")
 import numpy as np
 
 PINNED = {"cma": "4.5.0", "optuna": "5.0.0", "botorch": "0.18.1"}
+# Levels per axis of a test function.
 LEVELS = 1001
+# Largest number of evaluations, and target.
 CMA_LIMIT, CMA_TARGET = 1_000_000, 1e-8
+# Largest number of evaluations, and accepted difference from the best range.
 LANDSCAPE_LIMIT, SHORTFALL_MM = 100, 0.1
 
 
@@ -94,6 +97,7 @@ class Problem:
 
 
 def functions():
+    """Returns the test functions on the unit cube."""
     def problem(name, function, dimension, minimum, regret, limit):
         levels = [LEVELS] * dimension
         value = lambda point: -function([k / (LEVELS - 1) for k in point])
@@ -105,6 +109,7 @@ def functions():
 
 
 def landscape(file):
+    """Returns the problem of a recorded landscape: the range, mm, over the design."""
     lines = [line for line in Path(file).read_text().splitlines() if not line.startswith("#")]
     rows = list(csv.reader(lines))
     axes = rows[0].index("range_mm")
@@ -116,6 +121,7 @@ def landscape(file):
 
 
 def our_run(method, problem, seed):
+    """Returns the number of evaluations to the target, or None."""
     from finger_opt import Optimizer
 
     names = [f"x{i}" for i in range(len(problem.levels))]
@@ -133,6 +139,7 @@ def our_run(method, problem, seed):
 
 
 def optuna_run(make, problem, seed):
+    """Returns the number of evaluations to the target, or None."""
     import optuna
 
     optuna.logging.set_verbosity(optuna.logging.ERROR)
@@ -148,10 +155,11 @@ def optuna_run(make, problem, seed):
 
 
 def botorch_run(problem, seed):
-    """SingleTaskGP and LogExpectedImprovement with their defaults, after a Sobol start.
+    """Returns the number of evaluations to the target, or None.
 
-    On a small grid the acquisition function is maximised over all points not evaluated yet;
-    otherwise over the cube, where the best maximum that is new on the grid is used.
+    Uses SingleTaskGP and LogExpectedImprovement with their defaults, after a Sobol start. On a
+    small grid the acquisition function is maximised over all points not evaluated yet; otherwise
+    over the cube, and the best local maximum whose grid point is new is used.
     """
     import torch
     from botorch.acquisition import LogExpectedImprovement
@@ -165,14 +173,14 @@ def botorch_run(problem, seed):
     d = len(problem.levels)
     top = torch.tensor(problem.levels, dtype=torch.double) - 1
     start = torch.quasirandom.SobolEngine(d, scramble=True, seed=seed).draw(max(5, 2 * d))
-    waiting = [tuple(int(v) for v in row) for row in torch.round(start.double() * top)]
+    initial = [tuple(int(v) for v in row) for row in torch.round(start.double() * top)]
     small = np.prod(problem.levels) <= 20_000
     grid = [tuple(p) for p in itertools.product(*map(range, problem.levels))] if small else []
     bounds = torch.tensor([[0.0] * d, [1.0] * d], dtype=torch.double)
     points, values = [], []
     for evaluation in range(1, problem.limit + 1):
-        if waiting:
-            point = waiting.pop(0)
+        if initial:
+            point = initial.pop(0)
         else:
             x = torch.tensor(points, dtype=torch.double) / top
             y = torch.tensor(values, dtype=torch.double).unsqueeze(-1)
@@ -180,13 +188,13 @@ def botorch_run(problem, seed):
             fit_gpytorch_mll(ExactMarginalLogLikelihood(model.likelihood, model))
             acquisition = LogExpectedImprovement(model, best_f=y.max())
             if small:
-                seen = set(points)
-                unseen = torch.tensor([p for p in grid if p not in seen], dtype=torch.double) / top
+                evaluated = set(points)
+                unseen = torch.tensor([p for p in grid if p not in evaluated], dtype=torch.double) / top
                 found, _ = optimize_acqf_discrete(acquisition, q=1, choices=unseen)
             else:
-                found, promise = optimize_acqf(acquisition, bounds, q=1, num_restarts=10,
+                found, acquired = optimize_acqf(acquisition, bounds, q=1, num_restarts=10,
                                                raw_samples=512, return_best_only=False)
-                ranked = found.reshape(-1, d)[promise.reshape(-1).argsort(descending=True)]
+                ranked = found.reshape(-1, d)[acquired.reshape(-1).argsort(descending=True)]
                 new = [row for row in ranked
                        if tuple(int(v) for v in torch.round(row * top)) not in set(points)]
                 found = (new or [ranked[0]])[0]
@@ -210,10 +218,11 @@ GRID_METHODS = {
 
 
 class Reached(Exception):
-    pass
+    """Raised once the target is reached."""
 
 
 def pycma_run(f, n, seed):
+    """Returns the number of evaluations to the target, or None."""
     import cma
 
     count = 0
@@ -240,7 +249,7 @@ def pycma_run(f, n, seed):
 
 
 def work(methods, problems):
-    """Yields problem, method and a function that runs a seed."""
+    """Yields the names of problem and method, and the function that runs a seed."""
     if "pycma" in methods:
         for (name, f), n in itertools.product(UNBOUNDED.items(), (2, 5)):
             yield f"{name} {n}-D to 1e-8", "pycma", lambda s, f=f, n=n: pycma_run(f, n, s)
@@ -251,8 +260,9 @@ def work(methods, problems):
 
 
 def run(arguments):
-    need = {"pycma": "cma", "tpe": "optuna", "gpsampler": "optuna", "botorch": "botorch"}
-    for package in {need[method] for method in arguments.methods if method in need}:
+    """Runs the methods on the problems and appends the results to the CSV."""
+    packages = {"pycma": "cma", "tpe": "optuna", "gpsampler": "optuna", "botorch": "botorch"}
+    for package in {packages[method] for method in arguments.methods if method in packages}:
         found = version(package)
         assert found == PINNED[package], f"{package} {PINNED[package]} is required, not {found}"
     problems = functions() + [landscape(file) for file in arguments.landscape]
@@ -270,7 +280,7 @@ def run(arguments):
             file.flush()
             done = sum(r is not None for r in runs)
             print(f"{name}, {method}: {done}/{len(runs)}, median {median(runs)}, "
-                  f"{time.process_time() - begun:.0f} s of processor", flush=True)
+                  f"{time.process_time() - begun:.0f} s of processor time", flush=True)
 
 
 def median(runs):
@@ -279,13 +289,14 @@ def median(runs):
 
 
 def mean(runs):
+    """Returns the mean; infinite if a run failed."""
     return float("inf") if None in runs else statistics.fmean(runs)
 
 
-def interval(ours, theirs, of):
-    """Returns the 95 % interval of the ratio, by 2000 bootstrap samples of both sets of runs."""
-    draw = random.Random(0)
-    ratios = sorted(ratio(of(draw.choices(ours, k=len(ours))), of(draw.choices(theirs, k=len(theirs))))
+def interval(ours, theirs, statistic):
+    """Returns the 95 % interval of the ratio of the statistic, by 2000 bootstrap samples of both sets of runs."""
+    rng = random.Random(0)
+    ratios = sorted(ratio(statistic(rng.choices(ours, k=len(ours))), statistic(rng.choices(theirs, k=len(theirs))))
                     for _ in range(2000))
     return ratios[50], ratios[1949]
 
@@ -297,29 +308,30 @@ def ratio(ours, theirs):
 
 
 def ratios(arguments):
+    """Prints a Markdown table of our results against the best peer."""
     runs = {}
     for name in arguments.csv:
         with open(name, newline="") as file:
             for row in csv.DictReader(file):
-                cell = int(row["evaluations"]) if row["evaluations"] else None
-                runs.setdefault(row["problem"], {}).setdefault(row["method"], []).append(cell)
+                evaluations = int(row["evaluations"]) if row["evaluations"] else None
+                runs.setdefault(row["problem"], {}).setdefault(row["method"], []).append(evaluations)
     show = lambda v: "-" if v == float("inf") else f"{v:.0f}"
     print("| problem | ours | peers, best first | ours / best peer (95 % interval) |")
     print("| --- | --- | --- | --- |")
     for problem, methods in runs.items():
-        ours_name, of = ("cma-es", mean) if "pycma" in methods else ("gp", median)
+        ours_name, statistic = ("cma-es", mean) if "pycma" in methods else ("gp", median)
         peers = {m: r for m, r in methods.items() if m == "pycma" or m in GRID_METHODS and m not in OURS}
         if not peers or ours_name not in methods:
             continue
         reached = lambda r: "" if None not in r else f" ({sum(v is not None for v in r)}/{len(r)})"
-        text = lambda m, r: f"{m} {show(of(r))}{reached(r)}"
+        text = lambda m, r: f"{m} {show(statistic(r))}{reached(r)}"
         ours = methods[ours_name]
-        best_first = sorted(peers.items(), key=lambda p: (of(p[1]), p[1].count(None) / len(p[1])))
+        best_first = sorted(peers.items(), key=lambda p: (statistic(p[1]), p[1].count(None) / len(p[1])))
         best = best_first[0][1]
-        low, high = interval(ours, best, of)
+        low, high = interval(ours, best, statistic)
         print(f"| {problem} | {text(ours_name, ours)} | "
               f"{', '.join(text(m, r) for m, r in best_first)} | "
-              f"{ratio(of(ours), of(best)):.2f} ({low:.2f} to {high:.2f}) |")
+              f"{ratio(statistic(ours), statistic(best)):.2f} ({low:.2f} to {high:.2f}) |")
 
 
 if __name__ == "__main__":

@@ -2,18 +2,18 @@
 """Creates the images of docs/: a report on a desktop and on a phone, and a film.
 
     scripts/pictures.py STUDY/report.html STUDY/replay/1-positive.html docs
-    scripts/pictures.py STUDY/report.html FILE.png    the first screen alone
+    scripts/pictures.py STUDY/report.html FILE.png    only the first screen
 """
 import sys
 from pathlib import Path
 
 from browser import Browser
 
-# Time in the film, s: the plug that will insert has dropped in, the other one jams.
-MOMENT = 1.17
+# Time of the frame, s, at which the inserting plug has dropped in and the other one jams.
+FRAME_S = 1.17
 
 
-def first(report, file):
+def first_screen(report, file):
     """Captures the first screen of a page."""
     with Browser() as browser:
         page = browser.open(report, 1280, 900)
@@ -23,6 +23,7 @@ def first(report, file):
 
 
 def main(report, film, folder):
+    """Captures the report and the film for docs/."""
     folder = Path(folder)
     with Browser() as browser:
         page = browser.open(report, 1280, 900)
@@ -35,11 +36,11 @@ def main(report, film, folder):
         page.wait('document.querySelector("#film").dataset.state')
         page.picture(folder / "report-phone.png")
         page = browser.open(film, 1280, 760)
-        page.js(f"""(() => {{ const time = document.querySelector("#time"); time.value = {MOMENT};
+        page.js(f"""(() => {{ const time = document.querySelector("#time"); time.value = {FRAME_S};
             time.dispatchEvent(new Event("input")); }})()""")
-        page.rest()
+        page.wait_for_drawing()
         page.picture(folder / "replay.png")
 
 
 if __name__ == "__main__":
-    (first if len(sys.argv) == 3 else main)(*sys.argv[1:])
+    (first_screen if len(sys.argv) == 3 else main)(*sys.argv[1:])

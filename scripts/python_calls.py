@@ -1,4 +1,4 @@
-"""Properties of the Python functions that do not follow from the options of the commands."""
+"""Table of the Python functions whose properties do not follow from the options of their commands."""
 
 from __future__ import annotations
 
@@ -16,17 +16,19 @@ class Call:
     positional: tuple[str, ...] = ()
     #: Parameter names by option.
     names: dict[str, str] = field(default_factory=dict)
+    #: Python types by option.
     types: dict[str, str] = field(default_factory=dict)
-    #: Hidden options that are parameters, with their defaults.
-    more: dict[str, str] = field(default_factory=dict)
+    #: Defaults of the hidden options that are parameters.
+    hidden: dict[str, str] = field(default_factory=dict)
     #: Options whose default is not shown and not passed.
     unset: tuple[str, ...] = ()
-    #: Hidden options that are always passed.
+    #: Values of the hidden options that are always passed.
     always: dict[str, str] = field(default_factory=dict)
     #: Type and expression of the return value, if it is not the result itself.
-    gives: tuple[str, str] | None = None
-    #: Python code of additional checks of the arguments.
-    refuses: str = ""
+    returns: tuple[str, str] | None = None
+    #: Python code that checks combinations of arguments.
+    checks: str = ""
+    #: Doctest: expression and output.
     example: str = ""
 
 
@@ -39,12 +41,13 @@ CALLS = {
         example="fo.evaluate(\"usb\", density=20, direction=10).range_mm\n7.2",
     ),
     "trial": Call(
-        "trial", "_trial.Trial", (*SUBJECT, "offset_mm"), unset=("repeat_seed",), more={"every_s": "0.001", "film": ""},
-        refuses="""\
+        "trial", "_trial.Trial", (*SUBJECT, "offset_mm"), unset=("repeat_seed",),
+        hidden={"every_s": "0.001", "film": ""},
+        checks="""\
 if probe:
     if log is None:
         raise wrong("probe", "needs log, the file to write")
-    without("probe", "it is no insertion", repeat=repeat, svg=svg, record=record, plot=plot, film=film)""",
+    without("probe", "a probe is not an insertion", repeat=repeat, svg=svg, record=record, plot=plot, film=film)""",
         example="found = fo.trial(\"usb\", density=20, direction=10, offset_mm=0.5)\n"
         ">>> found.outcome, found.series.force_n.shape[1]\n('inserted', 3)",
     ),
@@ -67,22 +70,22 @@ if probe:
     "robots": Call("robots", "_lists.Robots"),
     "measure sheet": Call(
         "measuring_sheet", positional=("task", "fingers", "out"), names={"finger": "fingers"},
-        types={"task": "TaskName | StrPath"}, gives=("None", ""),
+        types={"task": "TaskName | StrPath"}, returns=("None", ""),
     ),
     "export finger": Call(
-        "export_finger", "_export.Files", names={"dir": "study"}, gives=("tuple[Path, ...]", ".paths"),
-        refuses="""\
+        "export_finger", "_export.Files", names={"dir": "study"}, returns=("tuple[Path, ...]", ".paths"),
+        checks="""\
 if study is not None:
     without("study", "its best design is exported", density=density, direction=direction)""",
     ),
-    "export mjcf": Call("export_mjcf", "_export.Files", SUBJECT, gives=("Path", ".paths[0]")),
+    "export mjcf": Call("export_mjcf", "_export.Files", SUBJECT, returns=("Path", ".paths[0]")),
     "task new": Call(
         "new_task", "_connector.NewTask", types={"name": "str"},
-        refuses="""\
+        checks="""\
 if plug is not None:
-    without("plug", "one of them goes in", round=round)
+    without("plug", "give only one of them", round=round)
 if plug is None and round is None and pins is None:
-    without("no plug", "they go with plug, round or pins", clearance=clearance, body=body)""",
+    without("no plug", "clearance and body require plug, round or pins", clearance=clearance, body=body)""",
     ),
     "task check": Call(
         "check_task", "_connector.TaskCheck", names={"file": "task"}, types={"file": "Given"},

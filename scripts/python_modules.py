@@ -21,8 +21,8 @@ TYPES = {
     "objective": "Objective | Sequence[Objective]", "constraint": "str | Sequence[str]", "engine": "Engine",
     "finger_model": "FingerModel", "start": "Start", "axes": "Axes", "aggregate": "Aggregate",
 }
-#: Names from other modules of the package.
-FROM = {
+#: Names imported from other modules of the package.
+IMPORTS = {
     "_call": ["called", "checked", "without", "wrong"],
     "_result": ["Found"],
     "_task": ["Given", "sources"],
@@ -33,15 +33,15 @@ FROM = {
 }
 RAISES = """\
 Raises:
-    InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-    StudyError: It fails while it runs, or cannot write a file.
+    InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+    StudyError: The command fails at run time or cannot write a file.
     Interrupted: Ctrl-C.
 """
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """Parameter of a function, and its option."""
+    """Parameter of a function, from an option of its command."""
 
     option: str
     name: str
@@ -50,11 +50,11 @@ class Parameter:
     default: str
     help: str
 
-    def declared(self) -> str:
+    def declaration(self) -> str:
         """Returns the parameter as written in the signature."""
         return f"{self.name}: {self.type}" + (f" = {self.default}" if self.default else "")
 
-    def given(self) -> str:
+    def argument(self) -> str:
         """Returns the expression passed to the library."""
         return f"sources({self.name})" if "Given" in self.type else self.name
 
@@ -65,8 +65,8 @@ def parameter(option: dict[str, Any], call: Call) -> Parameter:
     kind, default = kind_of(option, call), option["default"]
     if option["flag"]:
         default = "False"
-    elif option["name"] in call.more:
-        default = call.more[option["name"]]
+    elif option["name"] in call.hidden:
+        default = call.hidden[option["name"]]
     elif option["name"] in call.unset:
         kind, default = f"{kind} | None", "None"
     elif default:
@@ -81,12 +81,12 @@ def parameter(option: dict[str, Any], call: Call) -> Parameter:
         kind, default = f"{kind} | None", "None"
     # Python keywords get a trailing underscore.
     name = f"{name}_" if name == "async" else name
-    help = told(option["help"] or "").removeprefix(f"{option['name'].capitalize()}: ")
+    help = with_parameter_names(option["help"] or "").removeprefix(f"{option['name'].capitalize()}: ")
     return Parameter(option["name"], name, kind, default, help)
 
 
 def kind_of(option: dict[str, Any], call: Call) -> str:
-    """Returns the Python type of an option's values."""
+    """Returns the Python type of an option."""
     name, value = option["name"], option["value"] or ""
     if name in call.types or name in TYPES:
         return call.types.get(name) or TYPES[name]
@@ -119,15 +119,15 @@ def literal(kind: str, default: str) -> str:
     return f'"{default}"'
 
 
-def told(text: str) -> str:
-    """Returns help with options replaced by parameter names."""
+def with_parameter_names(text: str) -> str:
+    """Returns a help text with option names replaced by parameter names."""
     text = text.replace("; may be given several times", "").replace("; may be given\nseveral times", "")
     return re.sub(r"(?<![\w-])--([a-z][a-z-]*)", lambda found: found[1].replace("-", "_"), text)
 
 
 def docstring(command: dict[str, Any], call: Call, parameters: list[Parameter]) -> str:
     """Returns the docstring: purpose and parameters."""
-    first, *rest = told(command["about"]).split("\n\n")
+    first, *rest = with_parameter_names(command["about"]).split("\n\n")
     text = f"{first.rstrip('.')}, as ``optimize {command['name']}`` does.\n\n"
     text += "".join(f"{textwrap.fill(' '.join(part.split()), 104)}\n\n" for part in rest)
     if call.example:
@@ -144,20 +144,20 @@ def docstring(command: dict[str, Any], call: Call, parameters: list[Parameter]) 
 def function(command: dict[str, Any], call: Call) -> str:
     """Returns the source of a command's function."""
     options = [option for option in command["options"] if option["name"] not in LEFT_OUT]
-    options += [option for option in command["hidden"] if option["name"] in call.more]
+    options += [option for option in command["hidden"] if option["name"] in call.hidden]
     parameters = {one.name: one for one in (parameter(option, call) for option in options)}
-    bare = [parameter(option, call).name for option in options if option["positional"]]
-    ordered = [parameters.pop(name) for name in call.positional or bare]
+    positional = [parameter(option, call).name for option in options if option["positional"]]
+    ordered = [parameters.pop(name) for name in call.positional or positional]
     # Required parameters come first.
     named = sorted(parameters.values(), key=lambda one: one.default != "")
-    both = [*ordered, *named]
-    words = [f'"{one.option}": {one.given()}' for one in both]
+    all_parameters = [*ordered, *named]
+    words = [f'"{one.option}": {one.argument()}' for one in all_parameters]
     words += [f'"{name}": {value}' for name, value in call.always.items()]
     kind = call.result.split(".")[-1]
     method = command["name"] == "study"
-    signature = (["cls: type[S]"] if method else []) + [one.declared() for one in ordered]
-    signature += ["*", *(one.declared() for one in named)] if named else []
-    what, then = call.gives or ("S" if method else kind, "")
+    signature = (["cls: type[S]"] if method else []) + [one.declaration() for one in ordered]
+    signature += ["*", *(one.declaration() for one in named)] if named else []
+    returned, suffix = call.returns or ("S" if method else kind, "")
     given = "{" + ", ".join(words) + "}"
     if command["name"] == "study":
         body = f"return cls.asked({given})"
@@ -165,19 +165,19 @@ def function(command: dict[str, Any], call: Call) -> str:
         words = ", ".join(word for word in words if not word.startswith('"dir"'))
         body = f"return {kind}.resumed({ordered[0].name}, {{{words}}})"
     else:
-        found = f'called("{command["name"]}", {given}, {kind})'
-        body = found if what == "None" else f"return {found}{then}"
-    head = [f"def {call.name}(", *(f"    {one}," for one in signature), f") -> {what}:"]
-    lines = ["@checked", *(head if signature else [f"def {call.name}() -> {what}:"])]
-    for part in (docstring(command, call, both), call.refuses, broken(body)):
+        statement = f'called("{command["name"]}", {given}, {kind})'
+        body = statement if returned == "None" else f"return {statement}{suffix}"
+    head = [f"def {call.name}(", *(f"    {one}," for one in signature), f") -> {returned}:"]
+    lines = ["@checked", *(head if signature else [f"def {call.name}() -> {returned}:"])]
+    for part in (docstring(command, call, all_parameters), call.checks, wrapped(body)):
         lines += [f"    {line}" if line else "" for line in part.splitlines()]
     if method:
         lines = [f"    {line}" if line else "" for line in ["@classmethod", *lines]]
     return "\n".join(lines) + "\n"
 
 
-def broken(body: str) -> str:
-    """Wraps a statement to lines of at most 116 characters."""
+def wrapped(body: str) -> str:
+    """Returns a statement wrapped to lines of at most 116 characters."""
     if len(body) <= 116:
         return body
     before, rest = body.split("{", 1)
@@ -197,7 +197,7 @@ def packed(words: list[str]) -> str:
 
 def module(about: str, body: str, results: list[str]) -> str:
     """Returns the text of a module: imports and body."""
-    sources = {name: list(names) for name, names in FROM.items()}
+    sources = {name: list(names) for name, names in IMPORTS.items()}
     for result in results:
         home, kind = result.split(".")
         sources.setdefault(home, []).append(kind)
@@ -240,7 +240,7 @@ class Asked:
 
 
 def modules(commands: list[dict[str, Any]]) -> dict[str, str]:
-    """Returns the modules by name."""
+    """Returns the texts of the modules by file name."""
     functions, results, names = list[str](), list[str](), list[str]()
     created, further = "", ""
     for command in commands:
@@ -260,7 +260,8 @@ def modules(commands: list[dict[str, Any]]) -> dict[str, str]:
         "_asked.py": module("The options of a study.", created, []),
         "_commands.py": module(
             "The commands of ``optimize`` as functions.",
-            f"\n\n__all__ = [\n{packed([json.dumps(name) for name in sorted(names)])}\n]\n#: Those that the page of the package does not name.\n"
+            f"\n\n__all__ = [\n{packed([json.dumps(name) for name in sorted(names)])}\n]\n"
+            "#: Functions and summaries missing from the docstring of the package.\n"
             f'_FURTHER = """{further}"""\n\n\n'
             + "\n\n".join(functions),
             results,

@@ -2,14 +2,14 @@
 # Regenerates every figure under results/reference from the current sources, and records the hash
 # of these sources (scripts/stale.sh). Parts can be selected:
 #
-#     scripts/reference.sh                          all parts but the last six
+#     scripts/reference.sh                          all parts except those of the last line
 #     scripts/reference.sh validation               one part
 #     scripts/reference.sh landscapes settled identify peers prints loop   the parts omitted by default
 #
 # Landscapes are recorded functions for benchmarking optimizers, not figures of the current
 # model: if they change, all of results/reference/optimizers.md must be regenerated. Peers
-# needs the Python packages listed there, loop the Python package with the extra mujoco; both take hours, and loop
-# goes on where it was interrupted.
+# needs the Python packages listed there, loop the Python package with the extra mujoco; both take hours. An
+# interrupted loop is continued.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -17,7 +17,7 @@ parts="stiffness finger shapes bench levers check windows validation validation-
 cargo build --release
 optimize=${OPTIMIZE:-target/release/optimize}
 lab=${LAB:-target/release/lab}
-# The plain programs of lab/src/bin.
+# Folder of the programs in lab/src/bin.
 programs=$(dirname "$lab")
 reference=results/reference
 # The landscapes for comparing optimizers.
@@ -26,9 +26,9 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 record() { scripts/stale.sh --record "$@"; }
-# Draws the tables in a folder.
+# Plots the tables in a folder.
 figures() {
-    python3 scripts/figures.py "$1" || echo "left out: $1/ranges.svg needs Python with matplotlib" >&2
+    python3 scripts/figures.py "$1" || echo "skipped: $1/ranges.svg needs Python with matplotlib" >&2
 }
 
 stiffness() {
@@ -36,7 +36,7 @@ stiffness() {
     record windows "$reference"/stiffness.{svg,txt}
 }
 
-# Stiffness of the measured designs computed from their ribs, and a drawing of one.
+# Stiffness of the measured designs computed from their ribs, and a drawing of one design.
 finger() {
     local folder="$reference/finger" design density direction assembly compliance
     mkdir -p "$folder"
@@ -163,7 +163,7 @@ studies() {
 pictures() {
     "$optimize" task check usb --svg docs/task-usb.svg > /dev/null
     if ! command -v chromium > /dev/null; then
-        echo "left out: the pictures of pages need Chromium (scripts/tools.sh chromium)" >&2
+        echo "skipped: the pictures of pages need Chromium (scripts/tools.sh chromium)" >&2
         return
     fi
     if [ ! -d "$work/usb/replay" ]; then
@@ -176,7 +176,7 @@ pictures() {
 answers() {
     local folder="$reference/answers" tilted="$work/tilted.toml" keyed="$work/keyed.toml"
     mkdir -p "$folder"
-    # So far that the plug misses its opening.
+    # Tilted so far that the plug misses the opening.
     sed -e 's/^name = "usb"/name = "tilted"/' -e '0,/^tilt_deg = .*/s//tilt_deg = 25.0/' tasks/usb.toml > "$tilted"
     "$optimize" task import --plug examples/meshes/keyed-plug.stl --socket examples/meshes/keyed-socket.stl \
         --out "$keyed" > /dev/null 2>&1
@@ -221,7 +221,7 @@ objectives() {
 
 instructions() {
     if ! command -v valgrind > /dev/null; then
-        echo "left out: the count of instructions needs valgrind (scripts/tools.sh valgrind)" >&2
+        echo "skipped: the count of instructions needs valgrind (scripts/tools.sh valgrind)" >&2
         return
     fi
     scripts/instructions.sh --renew
@@ -291,7 +291,7 @@ prints() {
     record bench "$folder"/*/*.csv
 }
 
-# What the loop of study, print, measurement and identification gains in hidden cells.
+# Gain of the loop of study, print, measurement and identification in hidden cells.
 loop() {
     local cells=() seed
     for seed in 1 2 3 4 5 6 7 8; do cells+=("usb:$seed" "ket8:$seed"); done
@@ -300,7 +300,7 @@ loop() {
     record windows "$reference/bench/loop.md"
 }
 
-# All runs of the tables of results/reference/optimizers.md but Rastrigin's, which a test of ask-tell repeats.
+# All runs of results/reference/optimizers.md except those of Rastrigin, which a test of ask-tell repeats.
 peers() {
     local python=${PYTHON:-venv/bin/python} csv="$work/peers.csv" folder="$reference/optimizers"
     local landscapes=() task

@@ -6,7 +6,7 @@
     python scripts/rotated.py target/release/optimize 40 sphere cigar
 
 Each seed has its own rotation, minimum in -2..2 and start in -4..4, the same for both optimizers; the
-first step is 3. Evaluations to 1e-8, at most 300 000; both restart by BIPOP.
+initial step size is 3. Counts the evaluations until 1e-8, at most 300 000; both restart by BIPOP.
 """
 import itertools
 import json
@@ -40,14 +40,14 @@ FUNCTIONS = {
 
 
 class Reached(Exception):
-    pass
+    """Raised at the target, with the number of evaluations."""
 
 
 def problem(name, n, seed):
-    """Returns a function that ends the run at the target with the evaluation count, and a start."""
-    draw = np.random.default_rng([seed, n])
-    rotation, _ = np.linalg.qr(draw.normal(size=(n, n)))
-    minimum, start = draw.uniform(-2, 2, n), draw.uniform(-4, 4, n)
+    """Returns the objective, which raises Reached at the target, and the start."""
+    rng = np.random.default_rng([seed, n])
+    rotation, _ = np.linalg.qr(rng.normal(size=(n, n)))
+    minimum, start = rng.uniform(-2, 2, n), rng.uniform(-4, 4, n)
     counter = itertools.count(1)
 
     def value(x):
@@ -60,39 +60,41 @@ def problem(name, n, seed):
     return value, start
 
 
-def ours(name, n, seed):
+def run_ours(name, n, seed):
+    """Runs `cma-es` until Reached or the limit."""
     value, start = problem(name, n, seed)
     keys = [f"x{i}" for i in range(n)]
     parameters = [{"name": key, "low": -5, "high": 5} for key in keys]
     first = {"parameters": parameters, "optimizer": "cma-es", "seed": seed, "direction": "minimize"}
-    known = {"values": dict(zip(keys, start)), "value": problem(name, n, seed)[0](start)}
-    words = [PROGRAM, "ask-tell"]
-    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as program:
+    initial = {"values": dict(zip(keys, start)), "value": problem(name, n, seed)[0](start)}
+    command = [PROGRAM, "ask-tell"]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as program:
 
-        def say(line, answered=True):
+        def send(line, has_reply=True):
             program.stdin.write(json.dumps(line) + "\n")
             program.stdin.flush()
-            return json.loads(program.stdout.readline()) if answered else None
+            return json.loads(program.stdout.readline()) if has_reply else None
 
-        say(first, answered=False)
-        # The optimizer starts at the given point; its first step is 0.3 of the range: 3.
-        say({"tell": [known]})
+        send(first, has_reply=False)
+        # The optimizer starts at the given point; its initial step size is 0.3 of the range: 3.
+        send({"tell": [initial]})
         for _ in range(LIMIT):
-            point = say({"ask": 1})["asked"][0]
-            say({"tell": [{"id": point["id"], "value": value(list(point["values"].values()))}]})
+            point = send({"ask": 1})["asked"][0]
+            send({"tell": [{"id": point["id"], "value": value(list(point["values"].values()))}]})
 
 
-def pycmas(name, n, seed):
+def run_pycma(name, n, seed):
+    """Runs pycma until Reached or the limit."""
     value, start = problem(name, n, seed)
     # pycma adds 1 to its seed at each restart.
     first = 1 + 1000 * seed
-    draw, starts = np.random.default_rng(first), iter([start])
+    rng, starts = np.random.default_rng(first), iter([start])
     options = {"verbose": -9, "seed": first, "bounds": [-5, 5], "maxfevals": LIMIT}
-    cma.fmin2(value, lambda: next(starts, draw.uniform(-5, 5, n)), STEP, options, restarts=9, bipop=True)
+    cma.fmin2(value, lambda: next(starts, rng.uniform(-5, 5, n)), STEP, options, restarts=9, bipop=True)
 
 
 def evaluations(run, name, n, seeds):
-    """Evaluations of the seeds that reached the target."""
+    """Returns the number of evaluations of each seed that reached the target."""
     found = []
     for seed in range(seeds):
         try:
@@ -104,8 +106,8 @@ def evaluations(run, name, n, seeds):
 
 def interval(a, b):
     """Returns the 95 % interval of the ratio of means, by 1000 bootstrap samples."""
-    draw = random.Random(0)
-    mean = lambda runs: statistics.fmean(draw.choices(runs, k=len(runs)))
+    rng = random.Random(0)
+    mean = lambda runs: statistics.fmean(rng.choices(runs, k=len(runs)))
     ratios = sorted(mean(a) / mean(b) for _ in range(1000))
     return ratios[25], ratios[974]
 
@@ -114,7 +116,7 @@ def main(seeds, names):
     print("| function | ours: mean (median) | pycma: mean (median) | ratio of means |")
     print("| --- | --- | --- | --- |")
     for name, n in itertools.product(names or FUNCTIONS, (3, 6)):
-        a, b = (evaluations(run, name, n, seeds) for run in (ours, pycmas))
+        a, b = (evaluations(run, name, n, seeds) for run in (run_ours, run_pycma))
         text = [f"{statistics.fmean(r):.0f} ({statistics.median(r):.0f}), {len(r)}/{seeds}" for r in (a, b)]
         low, high = interval(a, b)
         ratio = statistics.fmean(a) / statistics.fmean(b)

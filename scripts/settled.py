@@ -1,4 +1,4 @@
-"""Prints a row of the table of settled studies, from a study's folder, its JSON and the landscape of its task."""
+"""Prints the CSV row of a study run without a budget, from its folder, its JSON and the landscape of its task."""
 
 import csv
 import json
@@ -13,11 +13,11 @@ with open(f"{folder}/evaluations.csv") as file:
     trials = sum(int(row["trials"]) for row in csv.DictReader(file))
 walked = [design["walked"] for design in designs if "walked" in design]
 trials += sum(firm["trials"] for design in designs for firm in design["firm"])
-# Counts windows repeated after an exhaustive search; unchanged windows kept their repeats.
+# After an exhaustive search, only windows that changed were repeated.
 for design in designs:
     if "walked" in design:
-        again = [firm for firm in design["walked"]["firm"] if firm not in design["firm"]]
-        trials += sum(task["trials"] for task in design["walked"]["tasks"]) + sum(f["trials"] for f in again)
+        repeated = [firm for firm in design["walked"]["firm"] if firm not in design["firm"]]
+        trials += sum(task["trials"] for task in design["walked"]["tasks"]) + sum(f["trials"] for f in repeated)
 with open(landscape) as file:
     best = max(float(row["firm_mm"]) for row in csv.DictReader(file) if row["firm_mm"])
 firm = found["recommended"]["firm_range_mm"]

@@ -2,7 +2,7 @@
 # Installs optional tools on Debian by package name, unless they are already installed.
 #
 #     scripts/tools.sh                     the tools of .ci/run: valgrind, Python, prusa-slicer
-#     scripts/tools.sh chromium slurm-wlm  these
+#     scripts/tools.sh chromium slurm-wlm  these packages
 #
 # Needs root or sudo. If a package cannot be installed, prints its name and exits with 1; steps that need
 # a missing tool are skipped with a message.

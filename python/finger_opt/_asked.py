@@ -114,8 +114,8 @@ class Asked:
             samples: Samples of the posterior of a bench prediction [default: 300, or as in the study].
 
         Raises:
-            InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-            StudyError: It fails while it runs, or cannot write a file.
+            InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+            StudyError: The command fails at run time or cannot write a file.
             Interrupted: Ctrl-C.
         """
         return cls.asked({

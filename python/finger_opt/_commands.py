@@ -26,7 +26,7 @@ __all__ = [
     "finger", "identify", "levers", "load_study", "measuring_sheet", "new_task", "next_print", "robots",
     "sensitivity", "tasks", "trial", "tune_task",
 ]
-#: Those that the page of the package does not name.
+#: Functions and summaries missing from the docstring of the package.
 _FURTHER = """"""
 
 
@@ -62,8 +62,8 @@ def load_study(
         samples: Samples of the posterior of a bench prediction [default: 300, or as in the study].
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     return Study.resumed(folder, {
@@ -128,8 +128,8 @@ def evaluate(
         repeat_seed: Seed of the repeats.
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     return called("evaluate", {
@@ -207,14 +207,14 @@ def trial(
         film: Include the page that plays the trial in the result.
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     if probe:
         if log is None:
             raise wrong("probe", "needs log, the file to write")
-        without("probe", "it is no insertion", repeat=repeat, svg=svg, record=record, plot=plot, film=film)
+        without("probe", "a probe is not an insertion", repeat=repeat, svg=svg, record=record, plot=plot, film=film)
     return called("trial", {
         "task": sources(task), "density": density, "direction": direction, "offset_mm": offset_mm, "space": space,
         "robot": robot, "cell": cell, "stiffness_data": stiffness_data, "engine": engine,
@@ -270,8 +270,8 @@ def capture_map(
         svg: Draw the map.
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     return called("map", {
@@ -313,8 +313,8 @@ def finger(
             pulls up.
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     return called("finger", {
@@ -338,8 +338,8 @@ def compare(
         html: Write table and chart as an HTML page.
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     return called("compare", {"dirs": studies, "svg": svg, "html": html}, Comparison)
@@ -384,8 +384,8 @@ def sensitivity(
         svg: Write a chart of the shares.
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     return called("sensitivity", {
@@ -436,8 +436,8 @@ def levers(
         svg: Draw the ranges at both ends of each lever.
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     return called("levers", {
@@ -498,8 +498,8 @@ def calibrate(
         out: Folder for the tables.
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     return called("calibrate", {
@@ -557,8 +557,8 @@ def identify(
         seed: Seed of the fit.
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     return called("identify", {
@@ -624,8 +624,8 @@ def next_print(
         no_cache: Simulate again and store nothing.
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     return called("next", {
@@ -650,8 +650,8 @@ def measuring_sheet(
         out: File to write.
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     called("measure sheet", {"task": task, "finger": fingers, "out": out}, Found)
@@ -699,8 +699,8 @@ def export_mjcf(
         set: A number of the task or the finger, as in spaces/codesign.toml.
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     return called("export mjcf", {
@@ -737,8 +737,8 @@ def export_finger(
         format: File format [default: by the extension of FILE; the profile for .svg].
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     if study is not None:
@@ -758,8 +758,8 @@ def config() -> Found:
     cannot be set there.
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     return called("config", {}, Found)
@@ -770,8 +770,8 @@ def robots() -> Robots:
     """List the shipped robots with the cells that they represent, and an example of a robot file, as ``optimize robots`` does.
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     return called("robots", {}, Robots)
@@ -786,8 +786,8 @@ def tasks() -> Tasks:
     ['ket8', 'ket12', 'rj45', 'usb', 'rj45_latch', 'usb_a']
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     return called("tasks", {}, Tasks)
@@ -836,14 +836,14 @@ def new_task(
         engine: Contact engine for the nominal start.
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     if plug is not None:
-        without("plug", "one of them goes in", round=round)
+        without("plug", "give only one of them", round=round)
     if plug is None and round is None and pins is None:
-        without("no plug", "they go with plug, round or pins", clearance=clearance, body=body)
+        without("no plug", "clearance and body require plug, round or pins", clearance=clearance, body=body)
     return called("task new", {
         "name": name, "plug": plug, "round": round, "pins": pins, "pitch_mm": pitch_mm, "pin_mm": pin_mm,
         "pin_length_mm": pin_length_mm, "clearance": clearance, "key": key, "chamfer_mm": chamfer_mm, "body": body,
@@ -874,8 +874,8 @@ def check_task(
         engine: Contact engine.
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     return called("task check", {"file": sources(task), "svg": svg, "robot": robot, "engine": engine}, TaskCheck)
@@ -914,8 +914,8 @@ def tune_task(
         svg: Draw the search before and after.
 
     Raises:
-        InputError: A value or a file that cannot be used; :class:`TaskError` if it is the task.
-        StudyError: It fails while it runs, or cannot write a file.
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
     return called("task tune", {

@@ -23,7 +23,7 @@ from ._native import InputError
 Floats = NDArray[np.float64]
 
 #: Command that installs the reader.
-INSTALL = "pip install 'finger_opt[step]'"
+INSTALL = "pip install cascadio"
 #: Largest angle between neighbouring facets, rad. It limits the facets only at radii below 0.13 mm, of which a
 #: connector has many; elsewhere the tolerance is stricter.
 ANGLE_RAD = 0.8

@@ -112,7 +112,7 @@ def test_wrong_files_are_refused(occ, parts, meshes, fake, tmp_path, wrong):
     else:
         content = {"half": file.read_bytes()[:9000], "empty": b"", "stl": meshes[0].read_bytes()}
         file.write_bytes(content[wrong])
-    with pytest.raises(fo.InputError, match="plug.step.*(whole STEP file|3 to 300 mm|along any|walls on four sides)"):
+    with pytest.raises(fo.InputError, match="plug.step.*(whole STEP file|longer than 300 mm|along any|walls on four sides)"):
         imported(fake, tmp_path, file, meshes[1])
     assert not (tmp_path / "mine.toml").exists()
 
@@ -146,6 +146,6 @@ def test_the_program_and_a_lack_of_open_cascade_name_the_extra(parts, meshes, fa
     (tmp_path / "cascadio.py").write_text("raise ModuleNotFoundError(\"No module named 'cascadio'\")")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     code, _, errors = command("task", "import", *words)
-    assert code == 2 and "pip install './python[step]'" in errors
-    with pytest.raises(ImportError, match=r"pip install 'finger_opt\[step\]'"):
+    assert code == 2 and "pip install cascadio" in errors
+    with pytest.raises(ImportError, match="pip install cascadio"):
         imported(fake, tmp_path, file, meshes[1])

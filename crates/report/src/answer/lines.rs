@@ -1,7 +1,7 @@
 //! Lines of an answer, each with a name and a text, for the terminal and the page.
 
 use super::words::{self, ends_mm, evaluated, interval, mm, span};
-use super::{Answer, Front, OnTask, Recommended, Spread, Ties};
+use super::{Answer, Front, OnTask, Recommended, Spread, Ties, Verdict};
 use ask_tell::statistics::mean;
 use calibration::order::RankCorrelation;
 use insertion::evaluation::objective::Measure;
@@ -184,9 +184,10 @@ pub fn spread(answer: &Answer) -> Option<String> {
 }
 
 /// Returns the parameters of the finger to print that have the least or the largest value of the space; `None` if there
-/// are none.
+/// are none, or if any finger will do.
 pub fn edge(answer: &Answer) -> Option<String> {
-    let design = answer.design_to_print()?;
+    let matters = !matches!(answer.verdict, Verdict::Any { .. });
+    let design = answer.design_to_print().filter(|_| matters)?;
     let at = |parameter: &Variable| {
         let value = design.design.get(&parameter.key)?;
         let (name, unit) = label(&parameter.key);

@@ -70,7 +70,7 @@ class Window(Result):
     success_failure_counts: tuple[int, int, int, int] | None = None
     success_diverged: int | None = None
     success_failed_draws: tuple[int, ...] | None = None
-    success_spared: int | None = None
+    success_spared_draws: int | None = None
     robust_range_mm: float | None = None
     robust_mean_mm: float | None = None
     robust_sd_mm: float | None = None

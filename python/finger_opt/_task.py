@@ -52,17 +52,17 @@ class Fields:
     def __setitem__(self, key: str | int, value: Any) -> None:
         if isinstance(value, Fields):
             value = value._table
-        table, key = self._table, self._resolved(key)
-        known = not is_table(table) or key in table
-        before = table[key] if known else None
-        table[key] = value
+        table, index = self._table, self._resolved(key)
+        known = not is_table(table) or index in table
+        before = table[index] if known else None
+        table[index] = value
         try:
             self._check()
         except Exception:
             if known:
-                table[key] = before
+                table[index] = before
             else:
-                del table[key]
+                del table[index]
             raise
 
     def __reduce__(self) -> tuple[Callable[..., Fields], tuple[Any, ...]]:

@@ -180,7 +180,7 @@ class Page:
         x, y = self.centre_of(selector)
         self.mouse("mouseMoved", x, y)
         for kind in ["mousePressed", "mouseReleased"]:
-            self.mouse(kind, x, y, button="retries_left", clickCount=1)
+            self.mouse(kind, x, y, button="left", clickCount=1)
         self.wait_for_drawing()
 
     def key(self, name, code=0):

@@ -104,21 +104,17 @@ impl Progress {
         let left = self.time_left(cost, self.last.elapsed());
         self.last = Instant::now();
         // A study that settles can take longer than expected; nothing is known then.
-        let known = left >= Duration::from_secs(1);
+        let about = |shown: String| match left < Duration::from_secs(1) {
+            true => what.to_owned(),
+            false => format!("{what}, about {shown} left"),
+        };
         if let Some(bar) = &self.bar {
-            let left = if known {
-                format!(", about {:#} left", HumanDuration(left))
-            } else {
-                String::new()
-            };
-            bar.set_message(format!("{what}{left}"));
+            bar.set_message(about(format!("{:#}", HumanDuration(left))));
             bar.set_length((self.done + self.left).ceil() as u64);
             bar.set_position(self.done as u64);
         } else if self.shown && (last || self.printed.elapsed() >= EVERY) {
             self.printed = Instant::now();
-            let left =
-                if known { format!(", about {} s left", left.as_secs()) } else { String::new() };
-            say(&format!("{what}{left}"));
+            say(&about(format!("{} s", left.as_secs())));
         }
     }
 

@@ -392,6 +392,13 @@ fn a_loose_plug_finds_its_seat() {
     let made = Task::parse(&made, "loose").unwrap();
     assert_eq!(made.friction.plug_socket, 0.15);
     assert_ne!(made.plug.mass, usb.plug.mass);
+    // A mass in kg is noticed in an imported task, too.
+    let text = studies.read("loose.toml");
+    let line = text.lines().find(|line| line.starts_with("mass_g")).unwrap();
+    let light = studies.file("kg.toml", text.replace(line, "mass_g = 0.005"));
+    let ran = optimize_line(&format!("task check --json {light}"));
+    ran.fails(2, &["problem"]);
+    assert!(ran.stdout.contains("plug.mass_g"), "{}", ran.stdout);
 }
 
 /// A surface with a hole, faces that look to both sides, or no volume is no solid; one that looks inward is turned.

@@ -72,7 +72,8 @@ impl TaskSource {
 /// Options of a trial, an evaluation, a calibration and a study.
 #[derive(Debug, Clone, clap::Args)]
 pub struct SetupRequest {
-    /// Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have several, separated by commas
+    /// Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have several, separated
+    /// by commas
     // With the full path of `Vec` the whole list is a single value of the option.
     #[arg(long = "task", value_name = "NAME", value_parser = |names: &str| Ok::<_, Infallible>(TaskSource::list(names)))]
     pub tasks: std::vec::Vec<TaskSource>,

@@ -9,6 +9,7 @@ pub mod open;
 mod optimizer;
 pub mod output;
 mod printable;
+pub(crate) use printable::study_name;
 pub mod recommended;
 pub mod report;
 pub mod request;

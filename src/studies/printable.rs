@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use finray::export::prism::Prism;
-use finray::export::sheet::{self, PadStiffness};
+use finray::export::sheet::{self, SheetData};
 use finray::export::{slicer, title};
 use finray::mechanics;
 use insertion::evaluation::evaluator::Evaluator;
@@ -31,10 +31,15 @@ pub(crate) fn write(dir: &Path, answer: &Answer, evaluator: &Evaluator) -> Resul
     if let Ok(ribs) = mechanics::compute(&geometry) {
         let design = answer.verdict.finger();
         let measured = design.and_then(|design| evaluator.predict(design).ok()).map(|p| p.at_pad());
-        let study = dir.file_name().unwrap_or_default().to_string_lossy();
-        let origin = &format!("for {}, study {study}", answer.record.config.task_name());
-        let at_pad = PadStiffness { origin, ribs: &ribs, measured };
+        let origin = &format!("for {}, {}", answer.record.config.task_name(), study_name(dir));
+        let at_pad = SheetData { origin, ribs: &ribs, measured };
         write_own_file(&dir.join(SHEET), &sheet::html(&geometry, &at_pad))?;
     }
     Ok(())
+}
+
+/// Returns the origin of a finger for its sheet, by the folder of its study: `study usb-gp-seed0`.
+pub(crate) fn study_name(dir: &Path) -> String {
+    let whole = dir.canonicalize().unwrap_or_else(|_| dir.to_owned());
+    format!("study {}", whole.file_name().unwrap_or_default().to_string_lossy())
 }

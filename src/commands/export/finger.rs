@@ -5,9 +5,10 @@ use crate::context::Context;
 use crate::failure::Failure;
 use crate::setup::film::extension;
 use crate::setup::printed::PrintRequest;
+use crate::studies::study_name;
 use clap::ValueEnum;
 use finray::export::prism::{Prism, PrismError};
-use finray::export::sheet::PadStiffness;
+use finray::export::sheet::SheetData;
 use finray::export::{self, profile, sheet, slicer};
 use finray::geometry::Geometry;
 use finray::mechanics;
@@ -181,10 +182,8 @@ fn draw_sheet(request: &PrintRequest, geometry: &Geometry, out: &Path) -> Result
     };
     let ribs = mechanics::compute(geometry).map_err(Failure::input)?;
     let measured = request.predicted_stiffness()?.map(|prediction| prediction.at_pad());
-    let study = request.dir.iter().filter_map(|dir| dir.canonicalize().ok());
-    let study = study.map(|dir| dir.file_name().unwrap_or_default().to_string_lossy().into_owned());
-    let origin = &study.map(|name| format!("study {name}")).collect::<String>();
-    Ok(write(geometry, &PadStiffness { origin, ribs: &ribs, measured }))
+    let origin = &request.dir.as_deref().map_or(String::new(), study_name);
+    Ok(write(geometry, &SheetData { origin, ribs: &ribs, measured }))
 }
 
 /// Writes settings for a slicer with the surfaces of outline and base beside them; returns the files of these.

@@ -20,9 +20,9 @@ const ROOM: [f64; 2] = [215.0, 80.0];
 /// Left and upper edge of the drawing, mm on paper.
 const CORNER: [f64; 2] = [38.0, 58.0];
 
-/// Stiffness of a finger at its pad, across and along it.
+/// Data of a sheet beside the geometry: origin, and stiffness at the pad, across and along it.
 #[derive(Debug, Clone, Copy)]
-pub struct PadStiffness<'a> {
+pub struct SheetData<'a> {
     /// Origin of the finger: `for usb, study usb-gp-seed0`; empty if it was given by its infill.
     pub origin: &'a str,
     /// Stiffness computed from the ribs.
@@ -32,7 +32,7 @@ pub struct PadStiffness<'a> {
 }
 
 /// Returns the print sheet as a page of HTML that prints on one sheet of paper.
-pub fn html(geometry: &Geometry, stiffness: &PadStiffness) -> String {
+pub fn html(geometry: &Geometry, data: &SheetData) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -41,14 +41,14 @@ pub fn html(geometry: &Geometry, stiffness: &PadStiffness) -> String {
                 title { "Print sheet: " (title(geometry)) }
                 style { (PreEscaped("@page{size:A4 landscape;margin:0}body{margin:0}svg{width:100%;max-height:100vh}")) }
             }
-            body { (PreEscaped(svg(geometry, stiffness))) }
+            body { (PreEscaped(svg(geometry, data))) }
         }
     };
     page.into_string()
 }
 
 /// Returns the print sheet as an SVG of an A4 page.
-pub fn svg(geometry: &Geometry, stiffness: &PadStiffness) -> String {
+pub fn svg(geometry: &Geometry, data: &SheetData) -> String {
     let [beyond, wing] = block(geometry);
     let size = geometry.finger.outline;
     let [long, wide] = [size.length / MM + beyond, size.width / MM + 2.0 * wing];
@@ -64,13 +64,13 @@ pub fn svg(geometry: &Geometry, stiffness: &PadStiffness) -> String {
         geometry.finger.description
     );
     drawing.text(Point2::new(15.0, 24.0), &about, Font::new(3.6));
-    drawing.text(Point2::new(282.0, 24.0), stiffness.origin, Font::new(3.6).end());
+    drawing.text(Point2::new(282.0, 24.0), data.origin, Font::new(3.6).end());
     let lengths = format!("lengths in mm, drawn {drawn}");
     drawing.text(Point2::new(282.0, 17.0), &lengths, Font::new(3.6).end());
     draw_finger(&mut drawing, geometry, view);
     write_column(&mut drawing, 15.0, "Finger", &finger_rows(geometry));
     write_column(&mut drawing, 89.0, "Print", &print_rows(geometry));
-    write_column(&mut drawing, 191.0, "Check the print", &check_rows(geometry, stiffness));
+    write_column(&mut drawing, 191.0, "Check the print", &check_rows(geometry, data));
     drawing.svg(PAPER, "mm")
 }
 
@@ -230,8 +230,8 @@ fn print_rows(geometry: &Geometry) -> Vec<(&'static str, String)> {
 /// Standard deviation of the measured from the computed stiffness of the eleven shipped fingers, as a share.
 const SCATTER: f64 = 0.175;
 
-fn check_rows(geometry: &Geometry, stiffness: &PadStiffness) -> Vec<(&'static str, String)> {
-    let PadStiffness { ribs, measured, .. } = stiffness;
+fn check_rows(geometry: &Geometry, data: &SheetData) -> Vec<(&'static str, String)> {
+    let SheetData { ribs, measured, .. } = data;
     let ribs = [ribs.pad.in_compliance(), ribs.pad_and_roof.in_assembly()];
     let [across, along] = ribs.map(|value| format!("{:.2} N/mm, from the ribs", value / N_PER_MM));
     let of = |stiffness: [f64; 2]| {

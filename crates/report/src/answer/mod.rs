@@ -50,7 +50,7 @@ pub struct Answer<'a> {
     pub walked: Vec<(&'a Recorded, f64)>,
     /// Pareto front; `None` for a single objective.
     pub front: Option<Front<'a>>,
-    /// Smallest and largest range of the designs, mm; `None` if no design has a range.
+    /// Smallest and largest range, mm, of the designs that insert at every nominal start; `None` if none does.
     pub spread_mm: Option<[f64; 2]>,
     /// Fingers measured on a robot: those given to the study, else the published ones; empty for
     /// several tasks.

@@ -10,4 +10,4 @@ export FINGER_OPT_FUZZ_SECONDS=$((60 * minutes))
 export FINGER_OPT_FUZZ_SEED=${2:-$(date +%s)}
 export FINGER_OPT_FUZZ_JOBS=${FINGER_OPT_FUZZ_JOBS:-$(nproc)}
 echo "seed $FINGER_OPT_FUZZ_SEED, $minutes minutes, $FINGER_OPT_FUZZ_JOBS at a time"
-nice cargo test --release --test fuzz -- --nocapture
+nice cargo test --release --test all fuzz:: -- --nocapture

@@ -1,9 +1,7 @@
 //! `optimize ask-tell` as another program sees it.
 
-mod common;
-
+use crate::common::{command, run};
 use ask_tell::OptimizerKind;
-use common::{command, run};
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};

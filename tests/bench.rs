@@ -1,8 +1,6 @@
 //! The commands that bring bench and simulation together, on the fake engine.
 
-mod common;
-
-use common::{Studies, command, optimize, optimize_line, run};
+use crate::common::{Studies, command, optimize, optimize_line, run};
 
 #[test]
 fn measurements_are_added_checked_and_refused() {

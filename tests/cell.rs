@@ -1,8 +1,6 @@
 //! `--cell`: a cell's robot and numbers in every command that takes a task.
 
-mod common;
-
-use common::{Studies, optimize_line};
+use crate::common::{Studies, optimize_line};
 use input::shipped::ROBOTS;
 use serde_json::json;
 

@@ -1,8 +1,6 @@
 //! The command line: output, exit codes, and what is said of bad input.
 
-mod common;
-
-use common::{Ran, Studies, optimize, optimize_line};
+use crate::common::{Ran, Studies, optimize, optimize_line};
 use std::fs;
 
 /// Runs a command line, without spaces in its words, on the fake engine.
@@ -205,8 +203,8 @@ fn the_project_file_gives_defaults_that_options_precede() {
     let folder = |name: &str| studies.dir(name);
     fs::create_dir_all(folder("lab/below")).expect("a folder");
     let lines = |below: &str, line: &str| {
-        let mut command = common::command(&line.split_whitespace().collect::<Vec<_>>());
-        common::run(command.current_dir(folder(below)))
+        let mut command = crate::common::command(&line.split_whitespace().collect::<Vec<_>>());
+        crate::common::run(command.current_dir(folder(below)))
     };
     studies.file(
         "lab/finger-opt.toml",

@@ -1,10 +1,8 @@
 //! `optimize compare` on studies of the fake engine.
 
-mod common;
+use crate::common::{Studies, command, run};
 
-use common::{Studies, command, run};
-
-fn compare(studies: &Studies, names: &[&str], more: &[&str]) -> common::Ran {
+fn compare(studies: &Studies, names: &[&str], more: &[&str]) -> crate::common::Ran {
     let mut command = command(&["compare"]);
     command.args(names.iter().map(|name| studies.dir(name))).args(more);
     run(&mut command)

@@ -1,8 +1,6 @@
 //! Connectors as they are drawn: several bodies, thin walls, mates in axes of their own.
 
-mod common;
-
-use common::{Ran, Studies, optimize};
+use crate::common::{Ran, Studies, optimize};
 use std::fmt::Write;
 
 /// Box: least and greatest corner, mm.

@@ -1,9 +1,7 @@
 //! `--executor`: what ends the program ends the interpreter that it has started.
 #![cfg(unix)]
 
-mod common;
-
-use common::Studies;
+use crate::common::Studies;
 use std::io::{BufRead, BufReader};
 use std::os::unix::fs::PermissionsExt;
 use std::process::{Command, Stdio};

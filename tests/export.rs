@@ -1,9 +1,7 @@
 //! Export of fingers: closed solids of the right volume, files that other programs read, and the
 //! ribs of the design in PrusaSlicer's layers.
 
-mod common;
-
-use common::{Studies, optimize_line, read};
+use crate::common::{Studies, optimize_line, read};
 use finray::export::prism::Prism;
 use finray::export::slicer;
 use finray::geometry::Geometry;

@@ -1,9 +1,7 @@
 //! The commands of README and guide, run in their order: each page in a folder of its own, with the files that the
 //! reader has by then. Studies run on the fake engine with a small budget; all else as written.
 
-mod common;
-
-use common::{Studies, command, optimize_line, read, run};
+use crate::common::{Studies, command, optimize_line, read, run};
 use std::fs;
 use std::path::Path;
 
@@ -94,7 +92,7 @@ fn fingers() {
     let folder = Studies::new();
     copied(&folder, "data/measured_stiffness.csv", "mine.csv");
     copied(&folder, "fingers/finray9.toml", "mine.toml");
-    folder.study("results/rj45-gp-seed0", 8, &["--task", "rj45"]).succeeds();
+    folder.study("results/usb-gp-seed0", 8, &["--task", "usb"]).succeeds();
     assert!(follow("docs/guide/fingers.md", &folder) >= 5);
 }
 

@@ -1,16 +1,16 @@
 //! Interference of others with a study while it runs, and files that are not what they should be.
 #![cfg(unix)]
 
-mod common;
-
-use common::{SLOW, Studies, command, end, lines, optimize, optimize_line, read, run, start};
+use crate::common::{
+    SLOW, Studies, command, end, lines, optimize, optimize_line, read, run, start,
+};
 use std::fs;
 use std::os::unix::fs::{FileTypeExt, MetadataExt, symlink};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
 /// The binary by a line of shell, in which it is `"$0"`; gives exit code and output.
-fn shell(line: &str, arguments: &[&str]) -> common::Ran {
+fn shell(line: &str, arguments: &[&str]) -> crate::common::Ran {
     let mut shell = Command::new("bash");
     shell.args(["-c", line, env!("CARGO_BIN_EXE_optimize")]).args(arguments);
     run(shell.stdin(Stdio::null()).env(SLOW.0, "20"))

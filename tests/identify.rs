@@ -1,8 +1,6 @@
 //! `optimize identify`: hidden numbers, found again from the logs of their attempts.
 
-mod common;
-
-use common::{Studies, optimize_line};
+use crate::common::{Studies, optimize_line};
 use input::shipped::ROBOTS;
 use serde_json::Value;
 

@@ -1,11 +1,9 @@
 //! The journal's lines and files: round trips, damage, failing writes, old versions.
 
-mod common;
-
+use crate::common::memory::{self, Memory};
+use crate::common::{Studies, read, sealed};
 use ask_tell::GridPoint;
 use ask_tell::{Grid, Observation, Optimizer, StopReason};
-use common::memory::{self, Memory};
-use common::{Studies, read, sealed};
 use insertion::evaluation::evaluator::{Evaluate, Evaluations};
 use insertion::evaluation::objective::Score;
 use insertion::evaluation::robustness::race::Race;

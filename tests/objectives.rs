@@ -1,8 +1,6 @@
 //! Objectives, constraints, fronts and several tasks, through the real binary on the fake engine.
 
-mod common;
-
-use common::{Ran, Studies, optimize, run};
+use crate::common::{Ran, Studies, optimize, run};
 use serde_json::Value;
 use std::fs;
 
@@ -281,7 +279,8 @@ fn a_study_of_several_tasks_keeps_them_and_has_its_own_folder() {
     let rate = |of: &Value| number(&of["success_rate"]);
     let (usb, far) = (rate(&line["user_attrs"]["tasks"][0]), rate(&line["user_attrs"]["tasks"][1]));
     assert_eq!(number(&line["values"][0]), usb.min(far));
-    let mut named = common::command(&["--task", "usb,rj45", "--engine", "fake", "--budget", "2"]);
+    let mut named =
+        crate::common::command(&["--task", "usb,rj45", "--engine", "fake", "--budget", "2"]);
     run(named.current_dir(&studies.0)).succeeds();
     assert!(studies.dir("results/usb+rj45-gp-seed0/report.html").exists());
 }

@@ -1,8 +1,6 @@
 //! Paths of numbers: an unknown one is refused wherever it stands, with the nearest that is known.
 
-mod common;
-
-use common::{Ran, Studies, optimize_line};
+use crate::common::{Ran, Studies, optimize_line};
 
 const CELL: &str = include_str!("fixtures/v0.5.0/cell.toml");
 const BENCH: &str = include_str!("../priors/bench.toml");

@@ -1,11 +1,9 @@
 //! Races for the success rate: exact, and the same whoever runs them and however often.
 
-mod common;
-
+use crate::common::Studies;
+use crate::common::memory::{self, Memory};
 use ::study::StudyRecord;
 use ask_tell::{Grid, Optimizer, OptimizerKind, build};
-use common::Studies;
-use common::memory::{self, Memory};
 use finger_opt::command::parse;
 use finger_opt::commands::study;
 use finger_opt::studies::ask_tell::{AskTellStudy, NextStep, perform};

@@ -1,9 +1,7 @@
 //! What interruptions, other programs, lying workers and changed files must not cost.
 
-mod common;
-
+use crate::common::{Studies, answer, command, optimize, read, run};
 use ask_tell::stream::stream;
-use common::{Studies, answer, command, optimize, read, run};
 use rand::RngExt;
 use std::fs;
 use std::process::{Child, Stdio};

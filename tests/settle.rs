@@ -1,10 +1,8 @@
 //! Studies without a budget: they end when no design is expected to gain, wherever they were
 //! interrupted, and their confirmations are kept with them.
 
-mod common;
-
+use crate::common::{Ran, Studies, answer, command, read, run, start};
 use ask_tell::stream::stream;
-use common::{Ran, Studies, answer, command, read, run, start};
 use rand::RngExt;
 use serde_json::Value;
 use std::process::{Child, Command};

@@ -1,10 +1,8 @@
 //! Studies: the same seed gives the same journal, whatever happens on the way.
 
-mod common;
-
+use crate::common::{SLOW, Studies, end, optimize_line, read, run, start};
 use ask_tell::OptimizerKind;
 use ask_tell::stream::stream;
-use common::{SLOW, Studies, end, optimize_line, read, run, start};
 use rand::RngExt;
 use std::fs;
 use std::io::Write;
@@ -333,7 +331,8 @@ fn a_study_of_other_sources_is_not_resumed() {
     let hash = config.split("source_sha256 = \"").nth(1).expect("it is recorded")[..64].to_owned();
     let other = |text: &str| text.replace(&hash, &"0".repeat(64));
     studies.file("s/study.toml", other(&config));
-    studies.file("s/journal.jsonl", common::sealed(&other(&studies.read("s/journal.jsonl"))));
+    studies
+        .file("s/journal.jsonl", crate::common::sealed(&other(&studies.read("s/journal.jsonl"))));
     let parts = ["source_sha256: the study has", "now has", "--accept-changed", "--out"];
     studies.resume("s").fails(2, &parts);
     studies.study("s", 6, &[]).fails(2, &parts);

@@ -1,8 +1,6 @@
 //! `optimize task`: drafted, imported and checked tasks of your own connector.
 
-mod common;
-
-use common::{Ran, Studies, optimize, optimize_line};
+use crate::common::{Ran, Studies, optimize, optimize_line};
 use connector::check::problems;
 use connector::draft::{Dimensions, Size, draft};
 use connector::mesh::{Surface, pick, read};

@@ -1,8 +1,6 @@
 //! A start and a strategy by which a connector inserts, as a user looks for them.
 
-mod common;
-
-use common::{Studies, optimize};
+use crate::common::{Studies, optimize};
 use connector::tune::{Effort, Stage, tune};
 use finger_opt::setup::files::robot;
 use finger_opt::setup::tune::tuner;

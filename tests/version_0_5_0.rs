@@ -1,10 +1,8 @@
 //! What version 0.5.0 wrote opens, reports and goes on.
 
-mod common;
-
+use crate::common::{Studies, lines, optimize, optimize_line, read};
 use calibration::identify::log::RunLabel;
 use calibration::identify::runs;
-use common::{Studies, lines, optimize, optimize_line, read};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use study::StudyRecord;

@@ -73,7 +73,7 @@ class TaskCheck(Result):
 
 @dataclass(frozen=True, repr=False)
 class NewTask(Result):
-    """Written task file, and its check."""
+    """Written task file, and its check; accepted wherever a task is, as the path of its file."""
 
     out: str
     check: TaskCheck
@@ -84,6 +84,9 @@ class NewTask(Result):
     def task(self) -> Task:
         """Task read from the written file."""
         return Task.from_toml(self.out)
+
+    def __fspath__(self) -> str:
+        return self.out
 
 
 @dataclass(frozen=True, repr=False)

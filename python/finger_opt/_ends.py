@@ -219,6 +219,18 @@ class Window:
         """Whether the taught start has inserted."""
         return any(self.start)
 
+    @property
+    def start_fails(self) -> bool:
+        """Whether the taught start fails more often than it inserts, after ``repeats`` failures."""
+        failed = self.start.count(False)
+        return failed >= self.search.repeats and failed > self.start.count(True)
+
+    @property
+    def middle(self) -> float | None:
+        """Middle of the starts that inserted, mm; None if there are none besides the taught one."""
+        ends = [side.sign * side.farthest for side in self.sides]
+        return sum(ends) / 2.0 if any(ends) else None
+
     def next(self) -> float | None:
         """Returns the next start, mm; None if both ends are known, or if the taught start does not insert."""
         if not self.inserts:

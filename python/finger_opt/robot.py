@@ -102,7 +102,7 @@ def measure_window(
     Raises :class:`InputError`, before the robot moves, for wrong arguments and if another process is measuring the
     same finger into the same folder; :class:`StudyError` if the robot raises an error, exceeds its ``timeout_s``, or
     reports implausible results three times in a row (a single one is marked and repeated), if a file cannot be
-    written, or if no attempt from the taught start inserts.
+    written, or if the taught start does not insert or fails more often than it inserts.
     """
     search = _checked(Search(float(step_mm), float(resolution_mm), float(limit_mm), int(repeats)), attempts_max)
     timeout_s = _timeout(robot)
@@ -190,7 +190,7 @@ class _WindowMeasurement:
             tried = [(one.offset_mm, one.attempt.inserted) for one in self.attempts.counted()]
             window = Window(self.search, tried)
             offset = window.next()
-            if offset is None or len(self.attempts.tried) >= attempts_max:
+            if offset is None or window.start_fails or len(self.attempts.tried) >= attempts_max:
                 break
             done = self.attempt(offset)
             self.attempts.add(done)
@@ -202,6 +202,10 @@ class _WindowMeasurement:
         if not window.inserts:
             why = "no attempt from the taught start inserts: teach another; if none inserts, record the finger with "
             raise self.stopped(0.0, why + "`optimize measure add --not-measurable`")
+        if window.start_fails:
+            near = "" if window.middle is None else f", near {window.middle:+.1f} mm"
+            failed = f"{window.start.count(False)} of {len(window.start)} attempts from the taught start failed"
+            raise self.stopped(0.0, f"{failed}: teach another{near}, and remove the attempts of this one")
         return self.measurement(window, settled=offset is None)
 
     def show(self, done: Tried) -> None:

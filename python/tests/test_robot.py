@@ -87,6 +87,16 @@ def test_ends_that_are_not_met_are_bounds(out, command):
     assert code == 0 and "1 lower bound," in said, errors
 
 
+def test_a_start_that_fails_more_often_than_it_inserts_has_to_be_taught_again(out):
+    lucky = Steps(low=0.05, answer=lambda count, done: Attempt(True, None, 12.5, 20.0) if count == 1 else done)
+    with pytest.raises(fo.StudyError, match=r"2 of 3 attempts from the taught start failed: teach another, near \+1\.[56]"):
+        measure_window(lucky, out=out, **FINGER)
+    assert not out.exists()
+    # One failure by chance is none of the start.
+    once = Steps(answer=lambda count, done: Attempt(False, 3, 4.0, 20.0) if count == 1 else done)
+    assert measure_window(once, out=out.with_name("other.csv"), **FINGER).settled
+
+
 def test_attempts_max_ends_it(out):
     found = measure_window(Steps(), out=out, attempts_max=20, **FINGER)
     assert found.attempts == 20 and not found.settled and "ended before" in out.read_text()

@@ -222,7 +222,7 @@ fn described(
         let z = grip.map_or([0.0; 2], |part| extent(part.solid.corners(), 2));
         let [low, high] = z.map(|z| z / MM);
         let text = format!(
-            "faces {apart:.1} mm apart, {low:.1} to {high:.1} mm above the tip; --body adds a handle"
+            "faces {apart:.1} mm apart, {low:.1} to {high:.1} mm above the tip; --jaws selects others, --body adds a handle"
         );
         findings.push(("grip", text));
     }

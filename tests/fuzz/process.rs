@@ -1,6 +1,6 @@
 //! The binary under limits: 10 s of processor time, 1 GB, an exit code that is documented.
 
-use super::common::Ran;
+use crate::common::Ran;
 use anyhow::{Result, bail};
 use std::io::Write;
 use std::path::Path;

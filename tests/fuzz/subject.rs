@@ -1,8 +1,8 @@
 //! Subjects of the mutation, and what is asked of the program about it.
 
-use super::common::Ran;
 use super::mutation::{Mutation, mutated};
 use super::process::{no_number, run};
+use crate::common::Ran;
 use anyhow::{Context, Result, bail, ensure};
 use ask_tell::OptimizerKind;
 use connector::mesh::{Surface, read};

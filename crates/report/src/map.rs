@@ -73,7 +73,8 @@ fn wrapped(
 
 /// Returns the rows of the title and of the legend below.
 fn head(map: &CaptureMap) -> [Vec<Vec<Entry>>; 2] {
-    let area = format!("area that inserts {:.1} {}", map.area, map.area_unit.replace('2', "²"));
+    let area =
+        format!("area of the map that inserts {:.1} {}", map.area, map.area_unit.replace('2', "²"));
     let design = map.design.labelled();
     let of = [&*map.task, &design].into_iter().filter(|text| !text.is_empty());
     let of = of.flat_map(|text| text.split(", ")).map(|part| format!("{part},"));

@@ -70,9 +70,14 @@ impl Lever {
         format!("{}{space}{}", thousandths(value), self.unit)
     }
 
-    /// Describes the step from the current value to an end: `5° more tilt`.
+    /// Describes the step from the current value to an end: `5° more tilt`; an end by its value if the ends differ in
+    /// sign, where both could be more: `-5° of tilt`.
     fn step(&self, end: usize) -> String {
-        let by = [self.low, self.high][end].abs() - self.value.abs();
+        let to = [self.low, self.high][end];
+        if self.low < 0.0 && self.high > 0.0 {
+            return format!("{} of {}", self.amount(to), self.name);
+        }
+        let by = to.abs() - self.value.abs();
         let word = if by < 0.0 { "less" } else { "more" };
         format!("{} {word} {}", self.amount(by.abs()), self.name)
     }

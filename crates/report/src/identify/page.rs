@@ -103,6 +103,36 @@ fn evidence(found: &Identified) -> String {
     format!("From {attempts} and {probes}{fixed}.")
 }
 
+/// Agreement of simulated outcomes with those measured.
+pub(super) struct Outcomes {
+    attempts: usize,
+    /// Attempts that end as measured, with the files' numbers and with the identified ones.
+    before: usize,
+    after: usize,
+}
+
+impl Outcomes {
+    pub(super) fn of(compared: &[Compared]) -> Outcomes {
+        let [before, after] =
+            [|one: &Compared| one.before.1, |one: &Compared| one.after.1].map(|of| {
+                compared.iter().filter(|one| one.logged.label.outcome() == Some(of(one))).count()
+            });
+        Outcomes { attempts: compared.len(), before, after }
+    }
+
+    /// Returns whether the identified numbers predict fewer outcomes than the files' numbers.
+    pub(super) fn is_worse(&self) -> bool {
+        self.after < self.before
+    }
+
+    pub(super) fn text(&self) -> String {
+        let Outcomes { attempts, before, after } = self;
+        format!(
+            "{after} of {attempts} attempts are simulated to end as measured; {before} with the files' numbers"
+        )
+    }
+}
+
 /// Returns the identified numbers by the origin of their values, the agreement of the outcomes, and the misfit.
 fn summary(found: &Identified) -> Vec<(String, String)> {
     let named = |from: ValueOrigin| {
@@ -117,14 +147,7 @@ fn summary(found: &Identified) -> Vec<(String, String)> {
     };
     let all =
         [ValueOrigin::Formula, ValueOrigin::Fit, ValueOrigin::Prior, ValueOrigin::Files].map(named);
-    let compared = &found.compared;
-    let [before, after] = [|one: &Compared| one.before.1, |one: &Compared| one.after.1].map(|of| {
-        compared.iter().filter(|one| one.logged.label.outcome() == Some(of(one))).count()
-    });
-    let outcomes = format!(
-        "{after} of {} attempts are simulated to end as measured; {before} with the files' numbers",
-        compared.len()
-    );
+    let outcomes = Outcomes::of(&found.compared).text();
     let share = format!("{:.0} % of the data compared", 100.0 * found.smoothed.compared);
     let misfit = match found.smoothed.misfit[..] {
         [first, .., last] if last.is_finite() => {

@@ -5,8 +5,6 @@
 //! fails is shrunk to the fewest mutations and printed, and the search goes on.
 #![cfg(unix)]
 
-#[path = "../common/mod.rs"]
-mod common;
 mod mutation;
 mod process;
 mod subject;

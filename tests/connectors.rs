@@ -379,24 +379,18 @@ fn of_50_random_sockets_48_insert() {
 fn an_assembly_is_taken_apart() {
     let folder = Studies::new();
     let [plug, socket] = shell();
-    let file = folder.file("lying.stl", assembly(&[socket.clone(), plug.clone()], [1, 2, 0]));
+    // Of several bodies those that are in contact stay together.
+    let (tip, grip) = plug.split_at(5);
+    let bodies = [&socket[..7], &socket[7..8], &socket[8..], tip, grip].map(<[Block]>::to_vec);
+    let file = folder.file("lying.stl", assembly(&bodies, [1, 2, 0]));
     let out = folder.word("lying.toml");
     let found = optimize(&["task", "import", &file, "--out", &out, "--json"]).json();
     assert_eq!(found["check"]["nominal"]["outcome"], "inserted", "{found}");
     assert_eq!(found["insert_along"], "-x", "{found}");
     let near = |key: &str, mm: f64| (found[key].as_f64().unwrap() - mm).abs() < 0.03;
     assert!(near("clearance_x_mm", 0.1) && near("clearance_y_mm", 0.1), "{found}");
-    // Of several bodies those that are in contact stay together.
-    let (tip, grip) = plug.split_at(5);
-    let bodies = [&socket[..7], &socket[7..8], &socket[8..], tip, grip].map(<[Block]>::to_vec);
-    let file = folder.file("several.stl", assembly(&bodies, [0, 1, 2]));
-    let out = folder.word("several.toml");
-    let several = optimize(&["task", "import", &file, "--out", &out, "--json"]).json();
-    let said = several["found"].to_string();
+    let said = found["found"].to_string();
     assert!(said.contains("plug's bodies `body 4`, `body 5`;"), "{said}");
-    for key in ["clearance_x_mm", "clearance_y_mm", "plug_parts", "socket_parts"] {
-        assert_eq!(several[key], found[key], "{key}");
-    }
     // What is not mated cannot be withdrawn.
     let apart = tip.iter().map(|of| of.map(|[x, y, z]| [x + 30.0, y, z])).collect();
     let file = folder.file("apart.stl", assembly(&[socket, apart], [0, 1, 2]));

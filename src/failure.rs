@@ -139,7 +139,7 @@ impl Failure {
 /// Replaces the standard library's errors of numbers in a text of clap by the accepted values.
 pub(crate) fn plain_number_errors(text: &str) -> String {
     const PROBLEMS: [(&str, &str); 6] = [
-        ("invalid digit found in string", "must be a whole number"),
+        ("invalid digit found in string", "must be a whole number, 0 or above"),
         ("cannot parse integer from empty string", "must be a whole number"),
         ("number too large to fit in target type", "the number is too large"),
         ("number too small to fit in target type", "the number is too small"),

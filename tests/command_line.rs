@@ -637,6 +637,8 @@ fn an_evaluation_gives_the_widths_of_the_unsure_bands() {
     assert!((0.4..=0.7).contains(&width("negative_band_mm")), "{json}");
     assert!((0.0..=0.1).contains(&width("positive_band_mm")), "{json}");
     assert_eq!(json["bands"]["unsure_inside_mm"], serde_json::json!([]));
+    let firm = json["bands"]["firm_negative_mm"].as_f64().expect("an end");
+    assert!(json["negative_mm"].as_f64().expect("an end") <= firm && firm < 0.0, "{json}");
     let text = optimize_line(&evaluate);
     assert!(text.succeeds().contains("unsure bands"), "{}", text.stdout);
 }

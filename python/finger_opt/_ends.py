@@ -244,4 +244,5 @@ class Window:
         if not unsettled:
             return None
         side = max(unsettled, key=lambda side: side.deviation)
-        return side.sign * side.most_informative()
+        # Without the sign of a zero.
+        return side.sign * side.most_informative() + 0.0

@@ -82,11 +82,14 @@ class Window(Result):
 
 @dataclass(frozen=True, repr=False)
 class Bands(Result):
-    """Bands at both ends in which the outcomes of repeats differ: widths, mm (``None``: more than 2 mm).
+    """Firm window, whose ends insert in all repeats, and the bands at both ends in which the outcomes of repeats differ:
+    widths, mm (``None``: more than 2 mm).
 
     ``unsure_inside_mm`` are the offsets, of those tried between the bands, at which not all repeats insert.
     """
 
+    firm_negative_mm: float | None
+    firm_positive_mm: float | None
     negative_band_mm: float | None
     positive_band_mm: float | None
     offsets_tried_inside: int

@@ -66,6 +66,9 @@ class Found(Result):
     def __dir__(self) -> list[str]:
         return [*self._found, *super().__dir__()]
 
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{key}={_short(value)}' for key, value in self._found.items())})"
+
 
 #: Largest numbers of items and of characters that a repr does not abbreviate.
 MAX_ITEMS, MAX_CHARACTERS = 6, 200

@@ -40,6 +40,9 @@ class SimulatedRobot:
     Raises :class:`InputError` for invalid values.
     """
 
+    #: Longest time of an attempt, s: a loaded machine simulates slowly.
+    timeout_s = 3600.0
+
     @checked
     def __init__(
         self,

@@ -69,8 +69,11 @@ pub fn bands_text(bands: &Bands) -> String {
             )
         }
     };
+    let firm = bands.firm_mm().map_or("unknown".to_owned(), |[from, to]| {
+        format!("{:.1} mm ({from:+.1} to {to:+.1}), whose ends insert in every repeat", to - from)
+    });
     format!(
-        "unsure bands  {} below, {} above\nbetween them  {inside}\n",
+        "firm          {firm}\nunsure bands  {} below, {} above\nbetween them  {inside}\n",
         width(&bands.negative),
         width(&bands.positive)
     )
@@ -86,6 +89,8 @@ pub fn serialize_bands<S: Serializer>(
 ) -> Result<S::Ok, S::Error> {
     let fields = bands.as_ref().map(|bands| {
         json!({
+            "firm_negative_mm": bands.firm_mm().map(|[from, _]| from),
+            "firm_positive_mm": bands.firm_mm().map(|[_, to]| to),
             "negative_band_mm": bands.negative.width_mm(),
             "positive_band_mm": bands.positive.width_mm(),
             "offsets_tried_inside": bands.tried_inside,

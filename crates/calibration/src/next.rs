@@ -302,9 +302,9 @@ fn side(own: StiffnessPoint, tried: &[StiffnessPoint]) -> Option<String> {
     let more = |other: &StiffnessPoint| own[axis] > other[axis];
     // The first axis is 1 / ky: more of it is softer.
     let way = match (tried.iter().all(more), tried.iter().any(more), axis) {
-        (true, _, 0) | (_, false, 1) => "softer than any tried",
-        (true, ..) | (_, false, _) => "stiffer than any tried",
-        _ => "between those tried",
+        (true, _, 0) | (_, false, 1) => "softer than all before",
+        (true, ..) | (_, false, _) => "stiffer than all before",
+        _ => "between earlier ones",
     };
     (difference(axis).abs() > INFORMATIVE).then(|| format!("informative about {name} ({way})"))
 }

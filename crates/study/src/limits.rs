@@ -6,7 +6,7 @@ use insertion::task::Task;
 
 /// Largest acceptable force as a share of a robot's stop force. An assumption: the scatter of
 /// peak forces on a robot is not measured.
-const STOP_SHARE: f64 = 0.9;
+pub const STOP_SHARE: f64 = 0.9;
 
 /// Largest contact forces of a study, N.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -13,6 +13,7 @@ use finray::export::{self, profile, sheet, slicer};
 use finray::geometry::Geometry;
 use finray::mechanics;
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use study::write_file;
 
@@ -142,10 +143,13 @@ impl Request {
                 )))
             }
             (Some(format), _) | (None, Some(&format)) => Ok(format),
-            (None, None) => Err(Failure::usage(format!(
-                "--out {}: the extension is not that of a format; give --format",
-                self.out.display()
-            ))),
+            (None, None) => {
+                let known = Format::value_variants().iter().flat_map(|format| format.extensions());
+                let known: BTreeSet<_> = known.map(|name| format!(".{name}")).collect();
+                let known = known.into_iter().collect::<Vec<_>>().join(", ");
+                let out = self.out.display();
+                Err(Failure::usage(format!("--out {out}: the file must end in one of {known}")))
+            }
         }
     }
 }

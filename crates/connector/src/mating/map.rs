@@ -197,7 +197,7 @@ impl HeightMap {
         &self,
         before: [usize; 2],
         after: [usize; 2],
-        take: fn(Envelope, f32, f32) -> f32,
+        take: impl Fn(Envelope, f32, f32) -> f32,
     ) -> HeightMap {
         let [nx, ny] = self.count;
         let mut map = self.clone();
@@ -207,11 +207,14 @@ impl HeightMap {
         let (envelope, empty) = (self.envelope, self.envelope.empty());
         let along = |row: &mut [f32]| {
             let old = row.to_vec();
-            let near = |at: isize| usize::try_from(at).ok().and_then(|at| old.get(at)).copied();
-            for (i, cell) in row.iter_mut().enumerate() {
-                for at in i as isize - before[0] as isize..=(i + after[0]) as isize {
-                    *cell = take(envelope, *cell, near(at).unwrap_or(empty));
-                }
+            for by in -(before[0] as isize)..=after[0] as isize {
+                // Cells whose neighbour `by` cells after them is in the row.
+                let from = usize::try_from(-by).unwrap_or(0).min(nx);
+                let to = usize::try_from(nx as isize - by).unwrap_or(0).clamp(from, nx);
+                let near = &old[from.saturating_add_signed(by).min(nx)..];
+                row[..from].iter_mut().for_each(|a| *a = take(envelope, *a, empty));
+                row[from..to].iter_mut().zip(near).for_each(|(a, b)| *a = take(envelope, *a, *b));
+                row[to..].iter_mut().for_each(|a| *a = take(envelope, *a, empty));
             }
         };
         map.heights.chunks_mut(nx).for_each(along);

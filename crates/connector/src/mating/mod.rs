@@ -5,6 +5,7 @@
 //! z(d) = max over x of S(x) - P(x - d). Closed solids are not needed.
 
 mod assembled;
+mod cells;
 mod engagement;
 mod frame;
 mod map;

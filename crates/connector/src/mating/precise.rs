@@ -1,6 +1,7 @@
 //! Seat and play of a pose, measured on fine maps.
 
 use super::Mate;
+use super::cells::CellSet;
 use super::frame::{Parts, rotations_to_z, turns};
 use super::map::{Envelope, HeightMap, Window, rest};
 use super::refine::{Fine, Pose};
@@ -8,7 +9,6 @@ use super::search::Scene;
 use crate::mesh::Triangle;
 use input::units::MM;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
-use std::collections::BTreeSet;
 
 /// Cell along the direction in which play is measured, m, and largest number of cells of a map.
 const CELL: f64 = 0.005 * MM;
@@ -26,7 +26,7 @@ struct PlayMeasurement<'a> {
     plug: &'a [Triangle],
     window: Window,
     /// Cells of the plug, of side `step`, that interfere, with a margin about them.
-    interfering: BTreeSet<[i32; 2]>,
+    interfering: CellSet,
     step: f64,
     shift: [f64; 2],
 }
@@ -50,7 +50,7 @@ impl PlayMeasurement<'_> {
         for index in 0..map.heights.len() {
             let place = [map.middle(0, index % nx), map.middle(1, index / nx)];
             let cell = [0, 1].map(|a| ((place[a] - self.shift[a]) / self.step).floor() as i32);
-            if self.interfering.contains(&cell) {
+            if self.interfering.contains(cell) {
                 map.heights[index] = empty;
             }
         }
@@ -98,7 +98,8 @@ pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
     let about = move |[x, y]: [i32; 2]| {
         (-margin..=margin).flat_map(move |dy| (-margin..=margin).map(move |dx| [x + dx, y + dy]))
     };
-    let interfering = fine.overlap(pose).into_iter().flat_map(about).collect();
+    let interfering: Vec<_> = fine.overlap(pose).into_iter().flat_map(about).collect();
+    let interfering = CellSet::new(&interfering);
     let (socket, plug) = (&scene.sockets[pose.out], &scene.plugs[pose.turn]);
     let (window, step, shift) = (fine.window, fine.step, pose.shift);
     let mut measurement = PlayMeasurement { socket, plug, window, interfering, step, shift };

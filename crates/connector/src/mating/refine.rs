@@ -1,12 +1,12 @@
 //! Refinement of rough seats: shift, height, interference and engagement.
 
+use super::cells::CellSet;
 use super::engagement::{PlugWalls, SIDES, SocketWalls, overlap, score};
 use super::map::{Envelope, HeightMap, NOWHERE, Window, bounds, rest};
 use super::search::{CoarseSeat, FINE, Scene};
 use super::{MatingError, check_cancelled};
 use input::units::MM;
 use rayon::prelude::*;
-use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 
 /// Largest distance between walls that face each other, as a share of the play.
@@ -310,14 +310,8 @@ impl Fine {
 
     /// Returns the width of the region that both parts fill at a pose, m.
     fn interference(&self, pose: &Pose) -> f64 {
-        let mut cells: BTreeSet<[i32; 2]> = self.overlap(pose).into_iter().collect();
-        let mut width = if cells.is_empty() { 0.0 } else { TOLERANCE };
-        while !cells.is_empty() {
-            let inner =
-                |[x, y]: &[i32; 2]| SIDES.iter().all(|[dx, dy]| cells.contains(&[x + dx, y + dy]));
-            cells = cells.iter().copied().filter(inner).collect();
-            width += 2.0 * self.step;
-        }
-        width
+        let cells = CellSet::new(&self.overlap(pose));
+        let width = if cells.is_empty() { 0.0 } else { TOLERANCE };
+        (0..cells.depth()).fold(width, |width, _| width + 2.0 * self.step)
     }
 }

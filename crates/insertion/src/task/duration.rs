@@ -1,6 +1,7 @@
 //! Largest duration of a trial, in simulated time.
 
 use super::{Ending, Phase, Strategy};
+use input::units::MM;
 
 /// Longest trial that is accepted, s.
 pub const LONGEST_TRIAL_S: f64 = 60.0;
@@ -45,7 +46,12 @@ impl Strategy {
         }
         let longest = self.phases.iter().max_by(|a, b| seconds(a).total_cmp(&seconds(b)));
         let longest = longest.map_or(String::new(), |phase| {
-            format!(", of which \"{}\" takes {:.1} s", phase.name, seconds(phase))
+            let speed_mm_per_s = phase.speed / MM;
+            format!(
+                ", of which \"{}\" takes {:.1} s at {speed_mm_per_s} mm/s",
+                phase.name,
+                seconds(phase)
+            )
         });
         Err(format!("a trial takes {total:.1} s{longest}; at most {LONGEST_TRIAL_S} s is accepted"))
     }

@@ -3,7 +3,7 @@
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
 use serde::Serialize;
-use study::StudyRecord;
+use study::{STOP_SHARE, StudyRecord};
 
 /// Contact force above the limit of a connector, or above the acceptable share of the stop force of the robot.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -39,12 +39,16 @@ impl ExcessForce {
         record.config.tasks().zip(tasks).enumerate().find_map(exceeds)
     }
 
-    /// Returns the force and the limit in words: `up to 149 N on ket8: the robot ur5e stops at 150 N`.
+    /// Returns the force and the limit in words: `up to 149 N on ket8: more than 90 % of the
+    /// 150 N at which the robot ur5e stops`.
     pub fn words(&self) -> String {
         let ExcessForce { task, peak_force_n, limit_n, of_connector, robot } = self;
         let limit = match of_connector {
             true => format!("its connector withstands {limit_n:.0} N (limits.force_n)"),
-            false => format!("the robot {robot} stops at {limit_n:.0} N"),
+            false => format!(
+                "more than {:.0} % of the {limit_n:.0} N at which the robot {robot} stops",
+                100.0 * STOP_SHARE
+            ),
         };
         format!("up to {peak_force_n:.0} N on {task}: {limit}")
     }

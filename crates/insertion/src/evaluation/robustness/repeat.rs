@@ -134,6 +134,15 @@ pub struct Bands {
     pub uncertain_inside: Vec<f64>,
 }
 
+impl Bands {
+    /// Returns the ends of the firm window, mm: the outermost offsets at which all repeats insert; `None` if a band
+    /// extends beyond 2 mm inwards.
+    pub fn firm_mm(&self) -> Option<[f64; 2]> {
+        let [below, above] = [self.negative, self.positive].map(|band| band.surely_inserts);
+        Some([grid_mm(-below?), grid_mm(above?)])
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -152,6 +161,12 @@ mod tests {
         assert!((0.5..=0.7).contains(&below), "{bands:?}");
         let above = bands.positive.width_mm().unwrap();
         assert!((0.0..=0.1).contains(&above), "{bands:?}");
+        let [from, to] = bands.firm_mm().unwrap();
+        assert!(
+            grid_mm(-window.negative_steps) <= from
+                && from < -2.5
+                && to <= grid_mm(window.positive_steps)
+        );
         assert_eq!(bands.uncertain_inside, Vec::<f64>::new());
         assert!(bands.tried_inside >= 8, "{bands:?}");
     }

@@ -369,7 +369,8 @@ mod tests {
         let all = [[-1.0, 0.0], [1.0, 0.0], [2.0, 0.0], [-2.0, 0.0], [0.0, 0.1], [1.1, 0.0]];
         let side = |finger: usize| side(all[finger], &all[..2]).unwrap_or_default();
         // More of 1 / ky is softer.
-        for (finger, words) in [(2, "(softer than"), (3, "(stiffer than"), (4, "(between those")] {
+        for (finger, words) in [(2, "(softer than"), (3, "(stiffer than"), (4, "(between earlier")]
+        {
             assert!(side(finger).contains(words), "{finger}: {}", side(finger));
         }
         assert_eq!(side(5), "");

@@ -145,7 +145,7 @@ fn a_force_that_the_connector_does_not_withstand_comes_first() {
         include_str!("../robots/servo.toml").replace("stop_force_n = 150.0", "stop_force_n = 7.0");
     let robot = studies.file("robot.toml", robot);
     let stops = studies.study("stops", 30, &["--robot", &robot, "--no-levers", "--no-map"]);
-    assert!(stops.succeeds().contains("stops at 7 N"), "{}", stops.stdout);
+    assert!(stops.succeeds().contains("of the 7 N at which"), "{}", stops.stdout);
     let finger = "--density 20 --direction 10 --engine fake";
     let of = |robot: &str| optimize_line(&format!("evaluate --task usb {finger} --robot {robot}"));
     let (weak, strong) = (of(&robot), of("servo"));

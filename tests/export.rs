@@ -173,7 +173,8 @@ fn every_format_of_a_studys_best_finger_is_written() {
     export("stl", "f.3MF").fails(2, &["--format stl", "f.3MF", "must end in .stl"]);
     export("dxf", "f.html").fails(2, &["--format dxf", "must end in .dxf"]);
     let unknown = format!("export finger {} --out f.txt", studies.dir("usb").display());
-    optimize_line(&unknown).fails(2, &["--out f.txt", "must end in one of .3mf, .curaprofile, .dxf"]);
+    optimize_line(&unknown)
+        .fails(2, &["--out f.txt", "must end in one of .3mf, .curaprofile, .dxf"]);
     let finger = include_str!("../fingers/finray9.toml").replace("data/measured", "none");
     let finger = studies.file("finger.toml", &finger);
     for command in

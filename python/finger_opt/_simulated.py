@@ -41,7 +41,7 @@ class SimulatedRobot:
     """
 
     #: Longest time of an attempt, s: a loaded machine simulates slowly.
-    timeout_s = 3600.0
+    timeout_s: float = 3600.0
 
     @checked
     def __init__(

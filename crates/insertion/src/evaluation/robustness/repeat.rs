@@ -163,7 +163,7 @@ mod tests {
         assert!((0.0..=0.1).contains(&above), "{bands:?}");
         let [from, to] = bands.firm_mm().unwrap();
         assert!(
-            grid_mm(-window.negative_steps) <= from
+            grid_mm(window.negative_steps) <= from
                 && from < -2.5
                 && to <= grid_mm(window.positive_steps)
         );

@@ -18,7 +18,13 @@ fn the_sentence_names_the_most_effective_lever_and_ignores_small_effects() {
     let stroke = || lever("stroke", [-8.0, -10.0, -14.0], [Some(3.0), None]);
     let little = || lever("preload", [0.1, 0.3, 0.9], [Some(3.8), Some(4.2)]);
     let just = || lever("grip force", [2.5, 5.0, 10.0], [Some(4.0), Some(4.3)]);
+    let about_zero = || lever("tilt", [-5.0, 0.0, 5.0], [Some(1.0), Some(3.0)]);
     for (infill, levers, said) in [
+        (
+            [4.0; 2],
+            vec![about_zero()],
+            "Nothing widens usb by 0.3 mm, and -5 mm of tilt narrows it by 3.0 mm.",
+        ),
         ([3.6, 4.0], vec![tilt()], "5 mm more tilt widens usb by 0.9 mm."),
         ([3.8, 4.0], vec![little(), tilt()], "5 mm more tilt widens usb by 0.9 mm."),
         ([3.7, 4.0], vec![little()], "Nothing but the infill moves usb by 0.3 mm."),

@@ -48,7 +48,7 @@ impl Strategy {
         let longest = longest.map_or(String::new(), |phase| {
             let speed_mm_per_s = phase.speed / MM;
             format!(
-                ", of which \"{}\" takes {:.1} s at {speed_mm_per_s} mm/s",
+                ", of which \"{}\" takes {:.1} s at {speed_mm_per_s:.3} mm/s",
                 phase.name,
                 seconds(phase)
             )

@@ -43,7 +43,7 @@ impl CellSet {
     fn index(&self, [x, y]: [i32; 2]) -> Option<usize> {
         // A negative number becomes larger than any count.
         let [i, j] = [x - self.first[0], y - self.first[1]].map(|index| index as usize);
-        (i < self.count[0] && j < self.count[1]).then_some(j * self.count[0] + i)
+        (i < self.count[0] && j < self.count[1]).then(|| j * self.count[0] + i)
     }
 
     /// Returns how often the set can be eroded by one cell along both axes until it is empty: the largest city-block

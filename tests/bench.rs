@@ -24,6 +24,26 @@ fn measurements_are_added_checked_and_refused() {
 }
 
 #[test]
+fn an_evaluation_shows_what_was_measured_and_warns_where_it_is_far_off() {
+    let folder = Studies::new();
+    let lines = "usb,20,10,0.1\nusb,20,20,3\nket8,20,10,7\nusb,20,30,not measurable\n";
+    let head = "task,infill_density_percent,infill_direction_deg,range_mm\n";
+    let file = folder.file("bench.csv", format!("{head}{lines}"));
+    let of = |direction: u32, more: &str| {
+        let finger = format!("--task usb --density 20 --direction {direction} --engine fake");
+        optimize_line(&format!("evaluate {finger} --measurements {file} {more}"))
+    };
+    let found = of(10, "--json").json();
+    assert_eq!(found["measured"].as_array().map(Vec::len), Some(1), "{found}");
+    assert_eq!(found["measured"][0]["range_mm"], 0.1);
+    let far = of(10, "");
+    assert!(
+        far.succeeds().contains("measured      0.1 mm on the bench\nwarning       do not trust")
+    );
+    assert!(!of(30, "").succeeds().contains("measured  "));
+}
+
+#[test]
 fn calibration_and_the_next_print_answer_in_the_agreed_form() {
     let few = "--task ket8 --engine fake --simulations 24 --samples 20 --json --measurements";
     let found = optimize_line(&format!("calibrate {few} published")).json();

@@ -247,7 +247,8 @@ fn the_project_file_gives_defaults_that_options_precede() {
     studies.file("lab/cell.toml", include_str!("fixtures/v0.5.0/cell.toml"));
     let cell = lines("lab", "evaluate --engine fake --density 20 --direction 10");
     assert!(
-        cell.stderr.starts_with("finger-opt.toml sets task usb, cell cell.toml\n"),
+        cell.stderr
+            .starts_with("finger-opt.toml sets task usb, cell cell.toml, measurements bench.csv\n"),
         "{}",
         cell.stderr
     );

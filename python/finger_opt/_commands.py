@@ -94,6 +94,7 @@ def evaluate(
     seed: int | None = None,
     repeat: int | None = None,
     repeat_seed: int | None = None,
+    measurements: StrPath | None = None,
 ) -> Evaluation:
     """Simulate the tolerance window of one finger, as ``optimize evaluate`` does.
 
@@ -126,6 +127,7 @@ def evaluate(
         repeat: Repeat N times with friction varied within 10 %, start within 0.02 mm, and half the step in
             every other one.
         repeat_seed: Seed of the repeats.
+        measurements: Also print the finger's measured ranges from this file: published, or a path.
 
     Raises:
         InputError: A value or file is invalid; :class:`TaskError` if it is the task.
@@ -137,7 +139,7 @@ def evaluate(
         "cell": cell, "stiffness_data": stiffness_data, "engine": engine, "finger_model": finger_model,
         "finger": finger, "start": start, "stiffness_compliance": stiffness_compliance,
         "stiffness_assembly": stiffness_assembly, "set": set, "walk": walk, "uncertainty": uncertainty, "seed": seed,
-        "repeat": repeat, "repeat_seed": repeat_seed, "no_ribs": True,
+        "repeat": repeat, "repeat_seed": repeat_seed, "measurements": measurements, "no_ribs": True,
     }, Evaluation)
 
 

@@ -7,6 +7,7 @@ import textwrap
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from ._calibration import Line
 from ._drawn import COLOURS, colour, ending, finger
 from ._plot import axes as axes_of
 from ._result import Result
@@ -129,6 +130,8 @@ class Evaluation(Window, Subject):
     wall_s: float = field(compare=False)
     #: Bands in which the outcomes differ; only with ``repeat``.
     bands: Bands | None = None
+    #: Lines with a measured range of the finger; only with ``measurements``.
+    measured: tuple[Line, ...] | None = None
 
     def plot(self, ax: Drawing | None = None) -> Drawing:
         """Draws the window; returns the axes."""

@@ -29,6 +29,12 @@ def test_an_evaluation_has_the_bits_of_the_command_line(command_json):
     assert f"{here.range_mm:.1f} mm" in here._repr_html_() and "<svg" in here._repr_html_()
 
 
+def test_an_evaluation_has_the_measured_ranges_of_its_finger(fake):
+    found = fo.evaluate("usb", 10, 0, measurements="published", **fake).measured
+    assert found is not None and [line.range_mm for line in found] == [4.7]
+    assert fo.evaluate("usb", 12, 0, measurements="published", **fake).measured is None
+
+
 def test_levers_have_the_bits_of_the_command_line(command_json, fake):
     there = command_json("levers", "--task", "usb", "--density", "20", "--direction", "10", "--engine", "fake")
     here = fo.levers("usb", density=20, direction=10, **fake)

@@ -4,10 +4,11 @@ use crate::command;
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout;
-use crate::setup::Setup;
 use crate::setup::finger::{ChosenFinger, FingerRequest};
 use crate::setup::repeat::{RepeatRequest, bands_text, serialize_bands};
 use crate::setup::request::SetupRequest;
+use crate::setup::{Setup, measured};
+use calibration::experiments::Experiment;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::robustness::repeat::Bands;
@@ -47,6 +48,9 @@ pub struct Request {
     /// Repeats at the window's ends.
     #[command(flatten)]
     pub repeat: Option<RepeatRequest>,
+    /// Also print the finger's measured ranges from this file: published, or a path
+    #[arg(long, value_name = "FILE")]
+    pub measurements: Option<String>,
     /// Skip the window with stiffness computed from the ribs
     // Which of the two agrees better with the bench depends on the task (docs/notes/finger.md).
     #[arg(long, hide = true)]
@@ -64,6 +68,9 @@ pub struct Evaluated {
     pub evaluation: Evaluation,
     /// Wall-clock duration of the evaluation, s.
     pub wall_s: f64,
+    /// Measurements of this finger on the bench.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub measured: Vec<Experiment>,
     /// Smaller of the largest force of the connector and the stop force of the robot, N.
     #[serde(skip)]
     pub limit_n: f64,
@@ -86,6 +93,7 @@ impl command::Request for Request {
         let stop = context.stop;
         let (setup, plan) = self.prepared()?;
         let chosen = self.finger.choose(&setup)?;
+        let measured = self.measured(&chosen)?;
         let clock = Instant::now();
         let evaluation = setup.evaluator.measure(&chosen.specimen, self.search(), &plan, stop);
         let evaluation = evaluation.map_err(Failure::input)?;
@@ -100,7 +108,7 @@ impl command::Request for Request {
         let bands = repeat.map(bands).transpose()?;
         let by_ribs = self.by_ribs(&setup, &chosen, stop)?;
         let limit_n = limit_n(&setup, &chosen);
-        Ok(Evaluated { chosen, evaluation, bands, by_ribs, wall_s, limit_n })
+        Ok(Evaluated { chosen, evaluation, bands, by_ribs, wall_s, measured, limit_n })
     }
 }
 
@@ -113,6 +121,16 @@ impl Request {
         }
         let plan = setup.plan(self.seed, |_| setup.uncertainty.is_some())?;
         Ok((setup, plan))
+    }
+
+    /// Returns the lines of the measurement file that have a range of the finger on its task.
+    fn measured(&self, chosen: &ChosenFinger) -> Result<Vec<Experiment>, Failure> {
+        let Some(name) = &self.measurements else { return Ok(Vec::new()) };
+        let task = &chosen.specimen.task.name;
+        let mut lines = measured::lines(&measured::file(name)?, &[task])?;
+        lines.retain(|line| line.task == *task && line.design == chosen.design);
+        lines.retain(|line| line.extent().is_some());
+        Ok(lines)
     }
 
     pub(crate) fn search(&self) -> Search {
@@ -162,6 +180,25 @@ fn computed<S: Serializer>(by_ribs: &Option<ByRibs>, serializer: S) -> Result<S:
 impl command::Response for Evaluated {}
 
 impl Evaluated {
+    /// Returns each measured range, and advice if the simulated one differs from one by more than a factor of two.
+    fn measured_lines(&self) -> Vec<lines::Line> {
+        let extents = self.measured.iter().filter_map(Experiment::extent);
+        let line = |(range_mm, at_least): (f64, bool)| {
+            let text = if at_least { "or more, on the bench" } else { "on the bench" };
+            ("measured".to_owned(), format!("{} {text}", mm(range_mm)))
+        };
+        let simulated_mm = self.evaluation.window.range_mm();
+        let apart = |(range_mm, at_least): (f64, bool)| {
+            simulated_mm < 0.5 * range_mm || !at_least && range_mm < 0.5 * simulated_mm
+        };
+        let advice = extents.clone().any(apart).then(|| {
+            let text = "do not trust the simulated range here: `optimize next` and a study with \
+                        --measurements correct it by the measured ones";
+            ("warning".to_owned(), text.to_owned())
+        });
+        extents.map(line).chain(advice).collect()
+    }
+
     /// Returns a remark if the ranges by the two finger models differ by more than a factor of two.
     fn disagreement(&self) -> Option<&'static str> {
         let Some(ByRibs::Measured(tasks)) = &self.by_ribs else { return None };
@@ -180,6 +217,7 @@ impl fmt::Display for Evaluated {
         let Evaluated { chosen, evaluation, .. } = self;
         let [c1, c2, c3, c4] = evaluation.failure_counts;
         let mut rest = vec![("range".to_owned(), mm(evaluation.window.range_mm()))];
+        rest.extend(self.measured_lines());
         rest.extend(lines::window(evaluation));
         let failures = format!(
             "{c1} of class 1, {c2} of 2, {c3} of 3, {c4} of 4, {} diverged in {} trials",

@@ -272,17 +272,17 @@ fn said(
 #[test]
 fn clean_logs_draw_no_remark() {
     let evaluator = evaluator();
-    (1..=20).into_par_iter().for_each(|cell| {
+    (1..=10).into_par_iter().for_each(|cell| {
         let found = said(&evaluator, cell, &recorded(&evaluator, cell), |_| ());
         assert_eq!(found, Ok(Vec::new()), "cell {cell}");
     });
 }
 
-#[test]
-fn each_fault_draws_its_likely_cause_in_nine_of_ten_cells() {
+/// Asserts that each fault draws its cause in nine of ten of these cells.
+fn each_fault_draws_its_cause_in(cells: std::ops::RangeInclusive<u64>) {
     let evaluator = evaluator();
     let cells: Vec<_> =
-        (1..=10).into_par_iter().map(|cell| (cell, recorded(&evaluator, cell))).collect();
+        cells.into_par_iter().map(|cell| (cell, recorded(&evaluator, cell))).collect();
     FAULTS.into_par_iter().for_each(|(fault, change, causes)| {
         let missed = cells.iter().filter_map(|(cell, logs)| {
             let found = said(&evaluator, *cell, logs, change).unwrap_or_else(|error| vec![error]);
@@ -290,6 +290,17 @@ fn each_fault_draws_its_likely_cause_in_nine_of_ten_cells() {
             (!found.iter().any(told)).then_some((cell, found))
         });
         let missed: Vec<_> = missed.collect();
-        assert!(missed.len() <= 1, "{fault}: {missed:#?}");
+        assert!(10 * missed.len() <= cells.len(), "{fault}: {missed:#?}");
     });
+}
+
+#[test]
+fn each_fault_draws_its_likely_cause_in_two_cells() {
+    each_fault_draws_its_cause_in(1..=2);
+}
+
+#[test]
+#[ignore = "takes two minutes"]
+fn each_fault_draws_its_likely_cause_in_nine_of_ten_cells() {
+    each_fault_draws_its_cause_in(1..=10);
 }

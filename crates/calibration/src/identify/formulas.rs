@@ -1,6 +1,6 @@
 //! Closed-form estimates from the logs: stiffness of the robot, preload, friction.
 
-use super::curves::{Curves, STEP_S, accelerations, rates, smoothed};
+use super::curves::{self, Curves, STEP_S, accelerations, rates, smoothed};
 use ask_tell::statistics::{Moments, mean};
 use insertion::surrogate::Estimate;
 use nalgebra::{DMatrix, DVector, Vector3};
@@ -228,8 +228,7 @@ fn undrifted(probe: &Curves, sliding: impl Fn(usize) -> bool) -> Option<Vec<Vect
     let air = |range: Range<usize>| {
         let middle = 0.5 * (range.start + range.end) as f64;
         let forces = &probe.force[range];
-        let count = forces.len() as f64;
-        (forces.len() > 4 * REACH).then(|| (middle, forces.iter().sum::<Vector3<f64>>() / count))
+        (forces.len() > 4 * REACH).then(|| (middle, curves::mean(forces)))
     };
     let before = air(0..first)?;
     let after = air(probe.tcp.len() - last..probe.tcp.len()).unwrap_or(before);

@@ -4,7 +4,6 @@ use super::question::{Compared, Identified};
 use super::replay::Phase;
 use ask_tell::statistics::mean;
 use input::units::MM;
-use insertion::outcome::Outcome;
 use serde::Serialize;
 
 /// Names of the components of the force.
@@ -55,7 +54,7 @@ impl Validation {
         Some(Validation {
             log: held_out.logged.file.clone(),
             offset_mm: held_out.logged.offset / MM,
-            outcome: held_out.logged.label.outcome().unwrap_or(Outcome::Inserted).word(),
+            outcome: held_out.logged.outcome.word(),
             outcome_predicted: held_out.after.1.word(),
             misfit: after(std::slice::from_ref(held_out)),
             misfit_fitted: after(&found.compared),

@@ -5,7 +5,7 @@ use super::check::{self, Remark};
 use super::curves::Curves;
 use super::flange;
 use super::formulas::{self, Flange, Friction};
-use super::log::{Run, RunLabel};
+use super::log::Run;
 use super::replay::Logged;
 use super::smoother::{Datum, Predicted, Settings, Smoothed, smooth};
 use super::touch::bias;
@@ -211,7 +211,7 @@ impl Identification<'_> {
 
     /// Returns the friction of each probe, by its file.
     fn probes(&self) -> Vec<(String, Friction)> {
-        let probes = self.runs.iter().filter(|run| run.label == RunLabel::Probe);
+        let probes = self.runs.iter().filter(|run| run.outcome.is_none());
         let friction = |run: &Run| {
             let found = formulas::friction(&Curves::of_log(&run.log, bias(&run.log)))?;
             Some((run.log.file.clone(), found))
@@ -319,9 +319,8 @@ impl Identification<'_> {
         attempts: Vec<Logged>,
         unknowns: &[Unknown],
     ) -> Result<Vec<Compared>, DesignError> {
-        let now: Vec<(&Parameter, f64)> =
-            unknowns.iter().map(|one| (&one.posterior, one.posterior.middle())).collect();
-        let now: Vec<_> = now.into_iter().filter(|(row, _)| row.path != FLANGE).collect();
+        let rows = unknowns.iter().map(|one| &one.posterior).filter(|row| row.path != FLANGE);
+        let now: Vec<_> = rows.map(|row| (row, row.middle())).collect();
         let before = self.replayed((&self.evaluator.robot, 1.0), &attempts, &[])?;
         let after = self.replayed((robot, 1.0), &attempts, &now)?;
         let each = attempts.into_iter().zip(before).zip(after);

@@ -2,7 +2,7 @@
 
 use crate::numbers::Kind;
 pub use crate::numbers::{DENSITY as DENSITY_KEY, DIRECTION as DIRECTION_KEY};
-use crate::{Parameter, Path, Scale, numbers};
+use crate::{Parameter, Path, Scale};
 use ask_tell::GridPoint;
 use input::{Check, InputError, read, shown};
 use serde::{Deserialize, Serialize};
@@ -168,21 +168,6 @@ impl Design {
     /// Returns a design with infill density (percent) and direction (degrees).
     pub fn infill(density_percent: f64, direction_deg: f64) -> Self {
         Design::default().with(DENSITY_KEY, density_percent).with(DIRECTION_KEY, direction_deg)
-    }
-
-    /// Returns the same as [`infill`](Self::infill) after checking the bounds; `given` names the source in errors.
-    ///
-    /// # Errors
-    /// If a value is out of bounds or NaN.
-    pub fn checked_infill(
-        density_percent: f64,
-        direction_deg: f64,
-        given: &str,
-    ) -> Result<Self, InputError> {
-        let check = Check { file: given };
-        numbers::check(check, DENSITY_KEY, density_percent)?;
-        numbers::check(check, DIRECTION_KEY, direction_deg)?;
-        Ok(Design::infill(density_percent, direction_deg))
     }
 
     /// Returns the design with a key set to a value, in the unit of the key.

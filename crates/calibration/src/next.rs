@@ -271,10 +271,8 @@ fn reason(
     }
     let side = side(own, tried);
     let Some(best_mm) = best_mm else {
-        return format!(
-            "large expected range, and {}",
-            side.as_deref().unwrap_or("near the first")
-        );
+        let place = side.as_deref().unwrap_or("near the first");
+        return format!("large expected range, and {place}");
     };
     match (expected_mm - best_mm, side) {
         (gain, Some(side)) if gain > 0.0 => {

@@ -57,11 +57,7 @@ pub fn write_named(path: &Path, content: &[u8]) -> io::Result<()> {
     match fs::symlink_metadata(path) {
         Ok(found) if found.is_file() && found.permissions().readonly() => Err(read_only()),
         Ok(found) if found.is_file() => write_whole(path, content, Some(found.permissions())),
-        Ok(found) if !found.is_dir() => {
-            let mut file = File::create(path)?;
-            file.write_all(content)?;
-            file.flush()
-        }
+        Ok(found) if !found.is_dir() => fs::write(path, content),
         _ => write_whole(path, content, None),
     }
 }

@@ -137,10 +137,8 @@ impl Subject {
 }
 
 impl Simulator for Subject {
-    fn ranges_mm(&self, fingers: &[usize], shares: &[f64]) -> Vec<f64> {
-        let range =
-            |&finger: &usize| self.emulator.range_mm(&[&self.shares[finger], shares].concat());
-        fingers.iter().map(range).collect()
+    fn range_mm(&self, finger: usize, shares: &[f64]) -> f64 {
+        self.emulator.range_mm(&[&self.shares[finger], shares].concat())
     }
 }
 

@@ -2,7 +2,6 @@
 //!
 //! A path from the user may be anything that opens: a link, a pipe, a device.
 
-use std::fmt::Write as _;
 use std::fs::{self, File, Metadata, OpenOptions, Permissions};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -236,11 +235,9 @@ pub fn visible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
         let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-        if turns || (c.is_control() && !"\n\t\r".contains(c)) {
-            // Writing to a String cannot fail.
-            let _ = write!(shown, "\\u{:04x}", u32::from(c));
-        } else {
-            shown.push(c);
+        match turns || (c.is_control() && !"\n\t\r".contains(c)) {
+            true => shown += &format!("\\u{:04x}", u32::from(c)),
+            false => shown.push(c),
         }
     }
     shown

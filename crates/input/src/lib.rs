@@ -154,15 +154,11 @@ pub fn bad_text(table: &toml::Table) -> Option<(String, &'static str)> {
     const CONTROL: &str = "has a control character, such as \\u001b";
     fn problem(key: &str, value: &toml::Value) -> Option<&'static str> {
         match value {
-            toml::Value::String(text) if key == "name" && text.trim().is_empty() => {
-                Some("is empty; give a name")
-            }
-            toml::Value::String(text) if key == "name" && text.contains('\n') => {
-                Some("has a line break; a name is one line")
-            }
-            toml::Value::String(text) => {
-                text.chars().any(|c| c.is_control() && c != '\n').then_some(CONTROL)
-            }
+            toml::Value::String(text) => match key == "name" {
+                true if text.trim().is_empty() => Some("is empty; give a name"),
+                true if text.contains('\n') => Some("has a line break; a name is one line"),
+                _ => text.chars().any(|c| c.is_control() && c != '\n').then_some(CONTROL),
+            },
             toml::Value::Array(items) => items.iter().find_map(|item| problem("", item)),
             toml::Value::Table(table) => bad_text(table).map(|(_, problem)| problem),
             _ => None,
@@ -232,10 +228,9 @@ impl Check<'_> {
         fits: bool,
         must: &str,
     ) -> Result<f64, InputError> {
-        if fits {
-            Ok(value)
-        } else {
-            self.fail(key, format!("is {}; it must {must}", shown(value)))
+        match fits {
+            true => Ok(value),
+            false => self.fail(key, format!("is {}; it must {must}", shown(value))),
         }
     }
 

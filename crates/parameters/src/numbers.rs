@@ -89,6 +89,10 @@ const fn length(pattern: &'static str) -> NumberSpec {
 const fn size(pattern: &'static str) -> NumberSpec {
     file(pattern, 1e-3, 1e3)
 }
+/// A spring, a damper or the mass of the finger.
+const fn finger(pattern: &'static str) -> NumberSpec {
+    number(Kind::Finger, pattern, SMALLEST, 1e6)
+}
 const fn fixed(pattern: &'static str, low: f64, high: f64) -> NumberSpec {
     number(Kind::Fixed, pattern, low, high)
 }
@@ -160,14 +164,9 @@ pub static NUMBERS: &[NumberSpec] = &[
     number(Kind::Springs, STIFFNESS, SMALLEST, 1e6),
     // The remote centre may lie on either side of the TCP.
     number(Kind::Finger, RCC_KEY, -1e6, 1e6),
-    number(
-        Kind::Finger,
-        "finger.rotation_x_nm_per_rad|rotation_y_nm_per_rad|rotation_z_nm_per_rad",
-        SMALLEST,
-        1e6,
-    ),
-    number(Kind::Finger, "finger.depth_n_per_mm|mass_g", SMALLEST, 1e6),
-    number(Kind::Finger, "finger.damping_n_s_per_m|rotational_damping_nm_s_per_rad", SMALLEST, 1e6),
+    finger("finger.rotation_x_nm_per_rad|rotation_y_nm_per_rad|rotation_z_nm_per_rad"),
+    finger("finger.depth_n_per_mm|mass_g"),
+    finger("finger.damping_n_s_per_m|rotational_damping_nm_s_per_rad"),
     // From a cushion to a machine tool. Ten times the value of a stiff industrial arm is a value in N/m.
     number(Kind::Robot, "robot.stiffness_n_per_mm", 0.01, 5e3),
     number(Kind::Robot, "robot.stop_force_n", 0.1, 1e5),

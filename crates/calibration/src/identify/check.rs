@@ -66,15 +66,10 @@ pub(super) struct Remarks<'a> {
 }
 
 impl Remarks<'_> {
-    /// Adds a remark on the samples between two indices.
-    pub(super) fn add(
-        &mut self,
-        serious: bool,
-        between: Option<[usize; 2]>,
-        text: impl Into<String>,
-    ) {
+    /// Adds a remark on the samples from the first to the second index.
+    pub(super) fn add(&mut self, serious: bool, span: Option<[usize; 2]>, text: impl Into<String>) {
         let last = self.log.samples.len() - 1;
-        let lines = between.map(|ends| ends.map(|at| self.log.samples[at.min(last)].line));
+        let lines = span.map(|ends| ends.map(|at| self.log.samples[at.min(last)].line));
         self.found.push(Remark { file: self.log.file.clone(), lines, text: text.into(), serious });
     }
 }
@@ -244,7 +239,7 @@ fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
 fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
     let log = remarks.log;
     let quiet = air(log, touched);
-    let AirForce { bias, noise } = AirForce::of(quiet);
+    let bias = mean(quiet);
     let span = touched.map(|_| [0, quiet.len() - 1]);
     if touched.is_some() && bias.norm() > DRIFT.0 {
         let text = format!(
@@ -254,7 +249,7 @@ fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
         );
         remarks.add(false, span, text);
     }
-    let (slope, error) = slope(quiet, bias, noise);
+    let (slope, error) = slope(quiet);
     if touched.is_some() && slope.norm() > DRIFT.1.max(4.0 * error.norm()) {
         let text = format!(
             "the force in the air changes by ({}) N/s: the sensor drifts, or the tool accelerates",
@@ -281,11 +276,8 @@ fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
 }
 
 /// Returns the slope of the force over time by least squares, N/s, and its standard deviation.
-fn slope(
-    samples: &[LogSample],
-    bias: Vector3<f64>,
-    noise: Vector3<f64>,
-) -> (Vector3<f64>, Vector3<f64>) {
+fn slope(samples: &[LogSample]) -> (Vector3<f64>, Vector3<f64>) {
+    let AirForce { bias, noise } = AirForce::of(samples);
     let middle = Moments::of(samples.iter().map(|sample| sample.time_s)).mean;
     let late = |sample: &LogSample| sample.time_s - middle;
     let spread: f64 = samples.iter().map(|sample| late(sample).powi(2)).sum::<f64>().max(1e-12);

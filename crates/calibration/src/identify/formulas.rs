@@ -193,13 +193,10 @@ pub fn friction(probe: &Curves) -> Option<Friction> {
     let fastest = speed.iter().map(|v| v.abs()).fold(0.0, f64::max);
     let moving = |i: usize| speed[i].abs() > MOVING * fastest;
     let force = undrifted(probe, moving)?;
-    let sliding = |sign: f64| {
-        let on = |i: usize| sign * speed[i] > MOVING * fastest && force[i].z > CONTACT_N;
-        runs_of(speed.len(), on)
-    };
     let least = (SLIDE_S / STEP_S) as usize;
     let each = |sign: f64| -> Vec<Slide> {
-        let long = sliding(sign).into_iter().filter(|range| range.len() >= least);
+        let on = |i: usize| sign * speed[i] > MOVING * fastest && force[i].z > CONTACT_N;
+        let long = runs_of(speed.len(), on).into_iter().filter(|range| range.len() >= least);
         long.map(|range| slide(&force, sign, range)).collect()
     };
     let [forth, back] = [1.0, -1.0].map(each);

@@ -32,13 +32,6 @@ const NO_CONTACT_N: f64 = 1.5;
 const CONTACT_N: f64 = 4.0;
 const APART_BINS: usize = 3;
 
-/// Part of an attempt, for reports.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Phase {
-    Search,
-    Push,
-}
-
 /// Logged attempt, prepared for replay.
 #[derive(Debug, Clone)]
 pub struct Logged {
@@ -91,10 +84,9 @@ impl Logged {
         (0..bins).map(|i| self.touch + i * BIN..self.touch + (i + 1) * BIN)
     }
 
-    /// Returns the phase of each datum.
-    pub fn phases(&self) -> impl Iterator<Item = Phase> + '_ {
-        let phase =
-            |bin: Range<usize>| if bin.start < self.push { Phase::Search } else { Phase::Push };
+    /// Returns the phase of each datum, `search` or `push`.
+    pub fn phases(&self) -> impl Iterator<Item = &'static str> + '_ {
+        let phase = |bin: Range<usize>| if bin.start < self.push { "search" } else { "push" };
         self.bins().flat_map(move |bin| std::iter::repeat_n(phase(bin), self.data_per_bin()))
     }
 

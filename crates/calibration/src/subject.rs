@@ -165,11 +165,10 @@ fn strategies<'a>(space: &Space, printed: impl Iterator<Item = &'a Design>) -> V
         }
     }
     let set = designed(space, STRATEGIES / fingers.len().max(1), "strategies");
-    let with = |shape: &Design, mut design: Design| {
-        design.0.extend(shape.0.clone());
-        design
+    let with = |shape: &Design, one: &Design| {
+        Design(one.0.clone().into_iter().chain(shape.0.clone()).collect())
     };
-    fingers.iter().flat_map(|shape| set.iter().cloned().map(move |one| with(shape, one))).collect()
+    fingers.iter().flat_map(|shape| set.iter().map(move |one| with(shape, one))).collect()
 }
 
 /// Returns a design without numbers of the task.

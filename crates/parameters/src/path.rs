@@ -22,10 +22,8 @@ impl Path {
     pub fn new(text: impl Into<String>) -> Result<Self, String> {
         let text = text.into();
         let words: Vec<&str> = text.split('.').collect();
-        let all = NUMBERS
-            .iter()
-            .filter(|number| number.kind != Kind::Fixed)
-            .flat_map(|number| number.paths().into_iter().map(move |p| (p, number)));
+        let variable = NUMBERS.iter().filter(|number| number.kind != Kind::Fixed);
+        let all = variable.flat_map(|number| number.paths().into_iter().map(move |p| (p, number)));
         let known: Vec<_> = all.map(|(path, number)| (filled(&path, &words), number)).collect();
         match known.iter().find(|(path, _)| *path == text) {
             Some((_, number)) => Ok(Path { text, number }),

@@ -178,12 +178,9 @@ impl Identification<'_> {
         let rows: Vec<&Parameter> =
             fitted.iter().map(|(prior, known)| known.as_ref().unwrap_or(prior)).collect();
         let smoothed = self.smoothed(&robot, &attempts, &rows)?;
-        let unknowns: Vec<Unknown> = fitted
-            .iter()
-            .enumerate()
-            .map(|(i, (prior, known))| fit(prior, known.as_ref(), &smoothed, i))
-            .chain(rest)
-            .collect();
+        let fits = fitted.iter().enumerate();
+        let fits = fits.map(|(i, (prior, known))| fit(prior, known.as_ref(), &smoothed, i));
+        let unknowns: Vec<Unknown> = fits.chain(rest).collect();
         let held_out = self.held_out(&attempts).into_iter().collect();
         let compared = self.compared(&robot, attempts, &unknowns)?;
         let held_out = self.compared(&robot, held_out, &unknowns)?.pop();

@@ -144,11 +144,8 @@ impl Calibration {
 /// Returns the share of the draws in which each finger is the best, 0 to 1.
 fn shares_best(drawn: &[Vec<f64>], fingers: usize) -> Vec<f64> {
     let mut counts = vec![0_u32; fingers];
-    for draw in drawn {
-        if let Some((best, _)) = draw.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)) {
-            counts[best] += 1;
-        }
-    }
+    let best = |draw: &Vec<f64>| (0..fingers).max_by(|&a, &b| draw[a].total_cmp(&draw[b]));
+    drawn.iter().filter_map(best).for_each(|best| counts[best] += 1);
     counts.iter().map(|&count| f64::from(count) / drawn.len().max(1) as f64).collect()
 }
 

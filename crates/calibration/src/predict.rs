@@ -139,15 +139,11 @@ pub fn draws(
         let bounded: Vec<Finger> =
             fingers.iter().copied().chain(at.bounds.iter().map(|b| b.0)).collect();
         for _ in 0..each {
-            let mut drawn = draw(&at, &bounded, random);
-            for _ in 1..TRIES {
-                let kept =
-                    drawn[fingers.len()..].iter().zip(&at.bounds).all(|(value, b)| *value >= b.1);
-                if kept {
-                    break;
-                }
-                drawn = draw(&at, &bounded, random);
-            }
+            let kept = |drawn: &Vec<f64>| {
+                drawn[fingers.len()..].iter().zip(&at.bounds).all(|(value, b)| *value >= b.1)
+            };
+            let found = (1..TRIES).map(|_| draw(&at, &bounded, random)).find(kept);
+            let mut drawn = found.unwrap_or_else(|| draw(&at, &bounded, random));
             drawn.truncate(fingers.len());
             all.push(drawn.into_iter().map(|value| (value * bench.scale_mm).max(0.0)).collect());
         }

@@ -117,19 +117,15 @@ impl<'a> Document<'a> {
         if let Some((key, problem)) = bad_text(&table) {
             return Check { file: self.file }.fail(&key, problem);
         }
-        self.check_lengths::<T>(table)?;
-        Ok(value)
-    }
-
-    /// Checks that no array is too long. The deserializer of TOML text ignores surplus elements: it would read
-    /// `[-4,175, 4,175]`, with decimal commas, as -4 and 175.
-    fn check_lengths<T: DeserializeOwned>(&self, table: toml::Table) -> Result<(), InputError> {
-        T::deserialize(toml::Value::Table(table)).map(|_| ()).map_err(|error| InputError {
+        // No array may be too long. The deserializer of TOML text ignores surplus elements: it would read
+        // `[-4,175, 4,175]`, with decimal commas, as -4 and 175.
+        T::deserialize(toml::Value::Table(table)).map_err(|error| InputError {
             file: self.file.to_owned(),
             line: None,
             key: error.to_string().rsplit('`').nth(1).map(str::to_owned),
             problem: error.message().to_owned(),
-        })
+        })?;
+        Ok(value)
     }
 
     fn deserialize<T: DeserializeOwned>(&self) -> Result<T, InputError> {

@@ -73,18 +73,16 @@ impl Log {
             return whole(format!("has {count} samples; it must have {FEWEST} to {MOST}"));
         }
         for (i, sample) in samples.iter().enumerate() {
-            let wrong = match i.checked_sub(1).and_then(|before| samples.get(before)) {
-                _ if !sample.is_finite() => Some("has a number that is not finite".to_owned()),
-                Some(before) if sample.time_s <= before.time_s => Some(format!(
+            let problem = match i.checked_sub(1).and_then(|before| samples.get(before)) {
+                _ if !sample.is_finite() => "has a number that is not finite".to_owned(),
+                Some(before) if sample.time_s <= before.time_s => format!(
                     "time goes from {} s in line {} to {} s; it must increase: cut the log where \
                      its clock was set",
                     before.time_s, before.line, sample.time_s
-                )),
-                _ => None,
+                ),
+                _ => continue,
             };
-            if let Some(problem) = wrong {
-                return Err(Place::file(file).line(sample.line).fault(problem));
-            }
+            return Err(Place::file(file).line(sample.line).fault(problem));
         }
         let lasts = samples[samples.len() - 1].time_s - samples[0].time_s;
         if lasts > LONGEST_S {

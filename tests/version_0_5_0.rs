@@ -1,8 +1,8 @@
 //! What version 0.5.0 wrote opens, reports and goes on.
 
 use crate::common::{Studies, lines, optimize, optimize_line, read};
-use calibration::identify::log::RunLabel;
 use calibration::identify::runs;
+use insertion::outcome::Outcome;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use study::StudyRecord;
@@ -150,7 +150,7 @@ fn measurements_and_logs_are_read() {
     assert_eq!(of("next")["measured"], 1);
     let runs = runs::read(&copy.dir("robot/runs.csv"), None, calibration::identify::read::text)
         .expect("a table of logs");
-    assert_eq!((runs.len(), runs[0].label, runs[0].offset), (1, RunLabel::Inserted, 0.0));
+    assert_eq!((runs.len(), runs[0].outcome, runs[0].offset), (1, Some(Outcome::Inserted), 0.0));
     assert_eq!(runs[0].log.samples.len(), 363);
 }
 

@@ -2,7 +2,7 @@
 
 use crate::compare::published as beside;
 use crate::{Failure, print, print_json};
-use calibration::published::{self, Origin};
+use calibration::published::{self, SIMULATION};
 use clap::{Args, ValueEnum};
 use finger_opt::setup::files;
 use finger_opt::setup::request::{DEFAULT_ROBOT, FingerModelRequest};
@@ -125,7 +125,7 @@ pub fn tasks(name: &str) -> Result<Vec<Task>, Failure> {
 
 fn task(name: &str) -> Result<Task, Failure> {
     let TaskFile { source, task } = read_task(name)?;
-    if published::of_task(&task.name, Origin::Simulation).is_empty() {
+    if published::of_task(&task.name, SIMULATION).is_empty() {
         let names = TASKS.iter().map(|shipped| shipped.name).collect::<Vec<_>>().join(", ");
         let (file, task) = (source.file, task.name);
         return Err(Failure::usage(format!(

@@ -9,8 +9,8 @@ use crate::setup::measured;
 use calibration::bench::Settings;
 use calibration::calibrate::Calibration;
 use calibration::subject::Subject;
-use calibration::table::{self, CalibrationOutput};
-use serde_json::{Value, json};
+use calibration::table;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 use study::write_file;
 
@@ -37,7 +37,7 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    /// Predictions for every finger of the tasks: [`CalibrationOutput`].
+    /// Predictions for every finger of the tasks: [`table::json`].
     type Response = Output<Value>;
     const PROGRESS: bool = true;
 
@@ -58,7 +58,7 @@ impl command::Request for Request {
             write(out, &subjects, &found)?;
             text.push(format!("tables are in {}\n", out.display()));
         }
-        let value = json!(CalibrationOutput::new(&found, &subjects));
+        let value = table::json(&found, &subjects);
         Ok(Output { value, text: text.join("\n"), picture: None })
     }
 }

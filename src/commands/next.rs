@@ -7,7 +7,6 @@ use crate::progress::cost;
 use crate::setup::bench::{BenchRequest, CalibrationRequest, Prepared};
 use crate::setup::measured;
 use ask_tell::stream::stream;
-use calibration::calibrate::posterior;
 use calibration::next::{Advice, Fingers, advise};
 use input::shipped::Source;
 use insertion::space::Design;
@@ -116,7 +115,7 @@ impl command::Request for Request {
             failed: &failed,
             printed: &subject.printed(),
         };
-        let posterior = posterior(&benches, layout.dimension(), &settings);
+        let posterior = layout.posterior(&benches, &settings);
         let mut random = stream(settings.seed, 0, "next");
         let (count, cost_mm) = (usize::from(self.count), self.print_cost_mm);
         let advice = advise(bench, &posterior, fingers, count, cost_mm, &mut random);

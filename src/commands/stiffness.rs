@@ -5,8 +5,9 @@ use crate::context::Context;
 use crate::failure::Failure;
 use crate::setup::files::{DEFAULT_FINGER, printed_finger, stiffness_data, surrogate};
 use crate::setup::finger::InfillRequest;
-use insertion::space::Design;
+use input::Check;
 use insertion::surrogate::{Model, Prediction};
+use parameters::numbers::{self, DENSITY, DIRECTION};
 use report::stiffness as shown;
 use serde::{Serialize, Serializer};
 use std::fmt;
@@ -50,7 +51,9 @@ impl command::Request for Request {
         let given = self.infill != InfillRequest::default();
         let infill = given.then(|| self.infill.required()).transpose()?;
         if let Some([density, direction]) = infill {
-            Design::checked_infill(density, direction, "stiffness").map_err(Failure::input)?;
+            let check = Check { file: "stiffness" };
+            numbers::check(check, DENSITY, density).map_err(Failure::input)?;
+            numbers::check(check, DIRECTION, direction).map_err(Failure::input)?;
         }
         let finger = printed_finger(&self.finger)?;
         let model = surrogate(&stiffness_data(self.stiffness_data.as_deref(), &finger)?, &finger)?;

@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Simulated ranges as a function of the uncertain parameters.
 pub trait Simulator: Sync {
-    /// Returns the ranges of fingers, mm; `shares` are the levels of the quantiles of the parameters' priors, 0 to 1.
-    fn ranges_mm(&self, fingers: &[usize], shares: &[f64]) -> Vec<f64>;
+    /// Returns the range of a finger, mm; `shares` are the levels of the quantiles of the parameters' priors, 0 to 1.
+    fn range_mm(&self, finger: usize, shares: &[f64]) -> f64;
 }
 
 /// Measured range of a finger.
@@ -49,8 +49,9 @@ impl Bench<'_> {
 
     /// Returns fingers with their simulated ranges at a sample.
     pub fn fingers(&self, numbers: &[usize], state: &[f64]) -> Vec<Finger> {
-        let ranges_mm = self.simulator.ranges_mm(numbers, &self.shares(state));
-        numbers.iter().zip(ranges_mm).map(|(&number, range)| self.finger(number, range)).collect()
+        let shares = self.shares(state);
+        let range_mm = |number: usize| self.simulator.range_mm(number, &shares);
+        numbers.iter().map(|&number| self.finger(number, range_mm(number))).collect()
     }
 
     fn finger(&self, number: usize, range_mm: f64) -> Finger {
@@ -63,15 +64,14 @@ impl Bench<'_> {
         Hyperparameters::from_coordinates(own, self.error_mm / self.scale_mm)
     }
 
-    /// Returns the finger of each observation.
-    fn measured(&self) -> Vec<usize> {
-        self.observations.iter().map(|observation| observation.finger).collect()
+    /// Returns the simulated range of the finger of each observation, mm.
+    fn simulated_mm(&self, shares: &[f64]) -> Vec<f64> {
+        self.observations.iter().map(|one| self.simulator.range_mm(one.finger, shares)).collect()
     }
 
     /// Conditions the process on the observations at a sample; `None` if their covariance is not positive definite.
     pub fn at(&self, state: &[f64]) -> Option<Conditioned> {
-        let ranges_mm = self.simulator.ranges_mm(&self.measured(), &self.shares(state));
-        self.conditioned(state, &ranges_mm)
+        self.conditioned(state, &self.simulated_mm(&self.shares(state)))
     }
 
     /// Conditions the process on the observations, given their simulated ranges.
@@ -109,7 +109,7 @@ pub fn sampled(
         let shares = bench.shares(state);
         let mut cached = cached[part].borrow_mut();
         if cached.0 != shares || cached.1.len() != bench.observations.len() {
-            let ranges = bench.simulator.ranges_mm(&bench.measured(), &shares);
+            let ranges = bench.simulated_mm(&shares);
             *cached = (shares, ranges);
         }
         bench.conditioned(state, &cached.1).map_or(f64::NEG_INFINITY, |at| at.log_likelihood())
@@ -163,8 +163,7 @@ fn sample(
         }
         for c in 0..dimension {
             let old = state[c];
-            let jump: f64 = random.sample(StandardNormal);
-            state[c] = old + step[c] * jump;
+            state[c] = old + step[c] * random.sample::<f64, _>(StandardNormal);
             let new: Vec<f64> = parts[c].iter().map(|&part| log_likelihood(part, &state)).collect();
             let before: f64 = parts[c].iter().map(|&part| current[part]).sum();
             let gain = new.iter().sum::<f64>() - before - 0.5 * (state[c] * state[c] - old * old);

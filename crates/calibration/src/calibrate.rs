@@ -58,6 +58,13 @@ impl Layout {
         self.coordinates.len() + COORDINATES * self.of_task.len()
     }
 
+    /// Returns samples of the posterior given all measurements; all predictions from the same files use the same
+    /// samples.
+    pub fn posterior(&self, benches: &[Bench<'_>], settings: &Settings<'_>) -> Vec<Vec<f64>> {
+        let mut random = stream(settings.seed, 0, "calibrate");
+        sampled(benches, self.dimension(), settings, &mut random)
+    }
+
     pub fn benches<'a>(&self, subjects: &'a [Subject]) -> Vec<Bench<'a>> {
         let bench = |(i, subject): (usize, &'a Subject)| {
             subject.bench(self.of_task[i].clone(), self.coordinates.len() + COORDINATES * i)
@@ -101,8 +108,7 @@ impl Calibration {
     /// Calibrates the subjects, and leaves out each measured finger in turn.
     pub fn new(layout: Layout, subjects: &[Subject], settings: &Settings<'_>) -> Self {
         let benches = layout.benches(subjects);
-        let dimension = layout.dimension();
-        let posterior = posterior(&benches, dimension, settings);
+        let posterior = layout.posterior(&benches, settings);
         let task = |(i, subject): (usize, &Subject)| {
             let mut random = stream(settings.seed, i as u64, "draws");
             let fingers: Vec<usize> = (0..subject.of_space).collect();
@@ -126,7 +132,8 @@ impl Calibration {
                 }
             };
             let each = ranges.into_iter().zip(shares_best(&drawn, fingers.len())).enumerate();
-            let left_out = leave_one_out((&benches, i), &subject.designs, dimension, settings);
+            let left_out =
+                leave_one_out((&benches, i), &subject.designs, layout.dimension(), settings);
             TaskResult { predictions: each.map(prediction).collect(), left_out }
         };
         let tasks = subjects.iter().enumerate().map(task).collect();
@@ -134,23 +141,11 @@ impl Calibration {
     }
 }
 
-/// Returns samples of the posterior given all measurements; all predictions from the same files use the same samples.
-pub fn posterior(
-    benches: &[Bench<'_>],
-    dimension: usize,
-    settings: &Settings<'_>,
-) -> Vec<Vec<f64>> {
-    sampled(benches, dimension, settings, &mut stream(settings.seed, 0, "calibrate"))
-}
-
 /// Returns the share of the draws in which each finger is the best, 0 to 1.
 fn shares_best(drawn: &[Vec<f64>], fingers: usize) -> Vec<f64> {
     let mut counts = vec![0_u32; fingers];
-    for draw in drawn {
-        if let Some((best, _)) = draw.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)) {
-            counts[best] += 1;
-        }
-    }
+    let best = |draw: &Vec<f64>| (0..fingers).max_by(|&a, &b| draw[a].total_cmp(&draw[b]));
+    drawn.iter().filter_map(best).for_each(|best| counts[best] += 1);
     counts.iter().map(|&count| f64::from(count) / drawn.len().max(1) as f64).collect()
 }
 

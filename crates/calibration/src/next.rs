@@ -271,21 +271,19 @@ fn reason(
     }
     let side = side(own, tried);
     let Some(best_mm) = best_mm else {
-        return format!(
-            "large expected range, and {}",
-            side.as_deref().unwrap_or("near the first")
-        );
+        let place = side.as_deref().unwrap_or("near the first");
+        return format!("large expected range, and {place}");
     };
-    match (expected_mm - best_mm, side) {
-        (gain, Some(side)) if gain > 0.0 => {
-            format!("expected {gain:.1} mm wider than the best measured, and {side}")
-        }
-        (gain, None) if gain > 0.0 => format!("expected {gain:.1} mm wider than the best measured"),
-        (_, Some(side)) => format!("{side}; may reach {high_mm:.1} mm"),
-        (_, None) if high_mm > best_mm => {
+    let gain = expected_mm - best_mm;
+    let wider = format!("expected {gain:.1} mm wider than the best measured");
+    match side {
+        Some(side) if gain > 0.0 => format!("{wider}, and {side}"),
+        None if gain > 0.0 => wider,
+        Some(side) => format!("{side}; may reach {high_mm:.1} mm"),
+        None if high_mm > best_mm => {
             format!("may reach {high_mm:.1} mm, more than the best measured")
         }
-        (_, None) => "close to those measured, and hardly wider than the best of them".to_owned(),
+        None => "close to those measured, and hardly wider than the best of them".to_owned(),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Rank correlation of simulated and measured ranges.
 
 use crate::experiments::Experiment;
-use crate::published::{Origin, of_task};
+use crate::published::{BENCH, of_task};
 use ask_tell::statistics::{mean, spearman};
 use input::shipped::TASKS;
 use insertion::evaluation::objective::Measure;
@@ -38,7 +38,7 @@ struct ValidationRow {
 /// committed validation.
 pub fn rank_correlation(record: &StudyRecord, task: usize) -> Option<RankCorrelation> {
     let name = record.config.tasks().nth(task)?;
-    let bench = of_task(name, Origin::Bench);
+    let bench = of_task(name, BENCH);
     let pair = |bench: &Experiment| {
         let found = record.current().iter().find(|recorded| recorded.design == bench.design)?;
         Some((Measure::Range.value(found.on(task)?)?, bench.range_mm?))

@@ -88,10 +88,7 @@ fn from_draws(
             posterior.iter().flat_map(|state| std::iter::repeat_n(state, DRAWS_PER_SAMPLE));
         for (draw, state) in drawn.iter_mut().zip(states) {
             let noise = bench.hyperparameters(state).noise * bench.scale_mm;
-            for value in draw {
-                let normal: f64 = random.sample(StandardNormal);
-                *value += noise * normal;
-            }
+            draw.iter_mut().for_each(|value| *value += noise * normal(&mut random));
         }
     }
     let simulated = |number: &usize| {
@@ -142,15 +139,11 @@ pub fn draws(
         let bounded: Vec<Finger> =
             fingers.iter().copied().chain(at.bounds.iter().map(|b| b.0)).collect();
         for _ in 0..each {
-            let mut drawn = draw(&at, &bounded, random);
-            for _ in 1..TRIES {
-                let kept =
-                    drawn[fingers.len()..].iter().zip(&at.bounds).all(|(value, b)| *value >= b.1);
-                if kept {
-                    break;
-                }
-                drawn = draw(&at, &bounded, random);
-            }
+            let kept = |drawn: &Vec<f64>| {
+                drawn[fingers.len()..].iter().zip(&at.bounds).all(|(value, b)| *value >= b.1)
+            };
+            let found = (1..TRIES).map(|_| draw(&at, &bounded, random)).find(kept);
+            let mut drawn = found.unwrap_or_else(|| draw(&at, &bounded, random));
             drawn.truncate(fingers.len());
             all.push(drawn.into_iter().map(|value| (value * bench.scale_mm).max(0.0)).collect());
         }
@@ -162,14 +155,15 @@ pub fn draws(
 fn draw(at: &Conditioned, fingers: &[Finger], random: &mut impl Rng) -> Vec<f64> {
     let prior = Discrepancy::drawn(&at.hyperparameters, random);
     let measured = at.fingers.iter().zip(&at.noises);
-    let known: Vec<f64> = measured
-        .map(|(finger, noise)| {
-            let normal: f64 = random.sample(StandardNormal);
-            prior.at(finger) + noise * normal
-        })
-        .collect();
+    let known: Vec<f64> =
+        measured.map(|(finger, noise)| prior.at(finger) + noise * normal(random)).collect();
     let prior: Vec<f64> = fingers.iter().map(|finger| prior.at(finger)).collect();
     at.update(fingers, &prior, &known)
+}
+
+/// Draws from the standard normal distribution.
+fn normal(random: &mut impl Rng) -> f64 {
+    random.sample(StandardNormal)
 }
 
 /// Prior draw of the discrepancy between bench and simulation: linear trends, and random Fourier features of the
@@ -183,12 +177,9 @@ struct Discrepancy {
 
 impl Discrepancy {
     fn drawn(hyperparameters: &Hyperparameters, random: &mut impl Rng) -> Self {
-        let terms = hyperparameters.terms.map(|sd| {
-            let normal: f64 = random.sample(StandardNormal);
-            sd * normal
-        });
+        let terms = hyperparameters.terms.map(|sd| sd * normal(random));
         let mut feature = || {
-            let [a, b]: [f64; 2] = std::array::from_fn(|_| random.sample(StandardNormal));
+            let [a, b]: [f64; 2] = std::array::from_fn(|_| normal(random));
             let stretch = (chi_squared(FREEDOM, random) / FREEDOM).sqrt();
             let length = hyperparameters.length_scale * stretch;
             [a / length, b / length, random.random::<f64>() * std::f64::consts::TAU]

@@ -137,10 +137,8 @@ impl Subject {
 }
 
 impl Simulator for Subject {
-    fn ranges_mm(&self, fingers: &[usize], shares: &[f64]) -> Vec<f64> {
-        let range =
-            |&finger: &usize| self.emulator.range_mm(&[&self.shares[finger], shares].concat());
-        fingers.iter().map(range).collect()
+    fn range_mm(&self, finger: usize, shares: &[f64]) -> f64 {
+        self.emulator.range_mm(&[&self.shares[finger], shares].concat())
     }
 }
 
@@ -167,11 +165,10 @@ fn strategies<'a>(space: &Space, printed: impl Iterator<Item = &'a Design>) -> V
         }
     }
     let set = designed(space, STRATEGIES / fingers.len().max(1), "strategies");
-    let with = |shape: &Design, mut design: Design| {
-        design.0.extend(shape.0.clone());
-        design
+    let with = |shape: &Design, one: &Design| {
+        Design(one.0.clone().into_iter().chain(shape.0.clone()).collect())
     };
-    fingers.iter().flat_map(|shape| set.iter().cloned().map(move |one| with(shape, one))).collect()
+    fingers.iter().flat_map(|shape| set.iter().map(move |one| with(shape, one))).collect()
 }
 
 /// Returns a design without numbers of the task.

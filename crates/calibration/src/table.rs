@@ -7,6 +7,7 @@ use ask_tell::statistics::{Moments, normal_cdf, pearson, quantile, sorted};
 use insertion::evaluation::Evaluation;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use serde::Serialize;
+use serde_json::{Value, json};
 use study::{BenchEffort, BenchFinger, BenchPrediction, Provenance};
 
 /// Standard deviation of a coordinate below which, and magnitude of its mean above which, it counts as moved (prior: 1
@@ -108,61 +109,31 @@ pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
     lines
 }
 
-/// Result of one task in the output of `--json`.
-#[derive(Serialize)]
-struct CalibratedTask<'a> {
-    task: &'a str,
-    designs: usize,
-    loo_mean_deviation_percent: Option<f64>,
-    loo_spearman: Option<f64>,
-    loo_coverage_80_percent: Option<f64>,
-    simulations: usize,
-    fresh_simulations: usize,
-    emulator_error_mm: f64,
-    warnings: Vec<String>,
-    leave_one_out: &'a [LeftOut],
-    predictions: &'a [Prediction],
-}
-
-impl<'a> CalibratedTask<'a> {
-    fn new(subject: &'a Subject, result: &'a TaskResult) -> Self {
+/// Returns the output of `--json` of a calibration of these subjects.
+pub fn json(calibration: &Calibration, subjects: &[Subject]) -> Value {
+    let task = |(subject, result): (&Subject, &TaskResult)| {
         let emulator = &subject.emulator;
         let accuracy = result.accuracy(emulator.error_mm);
         let inside = || 100.0 * accuracy.inside as f64 / accuracy.fingers as f64;
-        CalibratedTask {
-            task: &subject.task,
-            designs: accuracy.fingers,
-            loo_mean_deviation_percent: accuracy.mean_deviation_percent,
-            loo_spearman: accuracy.spearman,
-            loo_coverage_80_percent: (accuracy.fingers > 0).then(inside),
-            simulations: emulator.simulations,
-            fresh_simulations: emulator.held_out,
-            emulator_error_mm: emulator.error_mm,
-            warnings: warnings(subject, result),
-            leave_one_out: &result.left_out,
-            predictions: &result.predictions,
-        }
-    }
-}
-
-/// Output of `--json`.
-#[derive(Serialize)]
-pub struct CalibrationOutput<'a> {
-    tasks: Vec<CalibratedTask<'a>>,
-    parameters: Vec<ParameterUpdate>,
-    not_told_apart: Vec<Confounded>,
-}
-
-impl<'a> CalibrationOutput<'a> {
-    /// Returns the output of a calibration of these subjects.
-    pub fn new(calibration: &'a Calibration, subjects: &'a [Subject]) -> Self {
-        let tasks = subjects.iter().zip(&calibration.tasks);
-        CalibrationOutput {
-            tasks: tasks.map(|(subject, result)| CalibratedTask::new(subject, result)).collect(),
-            parameters: updates(calibration),
-            not_told_apart: confounded(calibration),
-        }
-    }
+        json!({
+            "task": subject.task,
+            "designs": accuracy.fingers,
+            "loo_mean_deviation_percent": accuracy.mean_deviation_percent,
+            "loo_spearman": accuracy.spearman,
+            "loo_coverage_80_percent": (accuracy.fingers > 0).then(inside),
+            "simulations": emulator.simulations,
+            "fresh_simulations": emulator.held_out,
+            "emulator_error_mm": emulator.error_mm,
+            "warnings": warnings(subject, result),
+            "leave_one_out": result.left_out,
+            "predictions": result.predictions,
+        })
+    };
+    json!({
+        "tasks": subjects.iter().zip(&calibration.tasks).map(task).collect::<Vec<_>>(),
+        "parameters": updates(calibration),
+        "not_told_apart": confounded(calibration),
+    })
 }
 
 /// Returns `predictions.csv` of one task: a line per finger of the space.
@@ -174,18 +145,14 @@ pub fn predictions_csv(subject: &Subject, result: &TaskResult) -> String {
         keys.join(",")
     );
     for one in &result.predictions {
+        let Prediction { range_mm, low_mm, high_mm, probability_best, simulated_mm, .. } = one;
         let values: Vec<String> = keys.iter().map(|key| one.design.0[*key].to_string()).collect();
         let [below, above] = [one.failure_negative, one.failure_positive]
             .map(|end| end.map_or(String::new(), |class| class.number().to_string()));
         text += &format!(
-            "{},{},{:.3},{:.3},{:.3},{:.4},{:.3},{below},{above}\n",
+            "{},{},{range_mm:.3},{low_mm:.3},{high_mm:.3},{probability_best:.4},{simulated_mm:.3},{below},{above}\n",
             subject.task,
-            values.join(","),
-            one.range_mm,
-            one.low_mm,
-            one.high_mm,
-            one.probability_best,
-            one.simulated_mm
+            values.join(",")
         );
     }
     text
@@ -196,17 +163,12 @@ pub fn left_out_csv(calibration: &Calibration, subjects: &[Subject]) -> String {
     let head =
         format!("task,{DENSITY_KEY},{DIRECTION_KEY},measured_mm,range_mm,low_mm,high_mm,inside\n");
     let line = |subject: &Subject, one: &LeftOut| {
-        let value =
-            |key: &str| one.design.get(key).map_or(String::new(), |value| value.to_string());
+        let LeftOut { design, measured_mm, range_mm, low_mm, high_mm } = one;
+        let [density, direction] = [DENSITY_KEY, DIRECTION_KEY]
+            .map(|key| design.get(key).map_or(String::new(), |value| value.to_string()));
         format!(
-            "{},{},{},{:.2},{:.3},{:.3},{:.3},{}\n",
+            "{},{density},{direction},{measured_mm:.2},{range_mm:.3},{low_mm:.3},{high_mm:.3},{}\n",
             subject.task,
-            value(DENSITY_KEY),
-            value(DIRECTION_KEY),
-            one.measured_mm,
-            one.range_mm,
-            one.low_mm,
-            one.high_mm,
             one.inside()
         )
     };

@@ -20,13 +20,10 @@ struct MadeUp {
 }
 
 impl Simulator for MadeUp {
-    fn ranges_mm(&self, fingers: &[usize], shares: &[f64]) -> Vec<f64> {
-        let range = |&finger: &usize| {
-            let [x, y] = self.places[finger];
-            let (a, b) = (shares[0], shares[1]);
-            5.0 + 1.5 * (a - 0.5) * x + 2.0 * (b - 0.5) + 0.5 * y * (1.0 - a)
-        };
-        fingers.iter().map(range).collect()
+    fn range_mm(&self, finger: usize, shares: &[f64]) -> f64 {
+        let [x, y] = self.places[finger];
+        let (a, b) = (shares[0], shares[1]);
+        5.0 + 1.5 * (a - 0.5) * x + 2.0 * (b - 0.5) + 0.5 * y * (1.0 - a)
     }
 }
 
@@ -71,13 +68,10 @@ fn calibrated(number: u64, discrepancy: f64, noise: f64) -> Outcome {
     let hidden = [normal(), normal()];
     let [a, b, c] = [normal(), normal(), 0.5 * normal()].map(|sd| SCALE_MM * discrepancy * sd);
     let all: Vec<usize> = (0..FINGERS).collect();
-    let simulated = simulator.ranges_mm(&all, &hidden.map(normal_cdf));
-    let beside = |[x, y]: &StiffnessPoint| a + b * x + c * libm::sin(2.0 * y);
-    let truth: Vec<f64> = simulated
-        .iter()
-        .zip(&simulator.places)
-        .map(|(range, place)| range + beside(place))
-        .collect();
+    let shares = hidden.map(normal_cdf);
+    let beside = |[x, y]: StiffnessPoint| a + b * x + c * libm::sin(2.0 * y);
+    let of = |&i: &usize| simulator.range_mm(i, &shares) + beside(simulator.places[i]);
+    let truth: Vec<f64> = all.iter().map(of).collect();
     let measured = |i: &usize| i % 2 == (number % 2) as usize;
     let mut observation = |finger: usize| {
         let range_mm = truth[finger] + SCALE_MM * noise * normal();
@@ -125,7 +119,7 @@ fn a_discrepancy_outside_the_model_is_predicted_better_than_by_simulation() {
     let outcomes: Vec<Outcome> = (0..30).map(|number| calibrated(number, 0.12, 0.05)).collect();
     let errors = |o: &Outcome| {
         let of = |(finger, predicted): &(usize, Predicted)| {
-            let nominal = simulator.ranges_mm(&[*finger], &[0.5, 0.5])[0];
+            let nominal = simulator.range_mm(*finger, &[0.5, 0.5]);
             let truth = o.truth[*finger];
             [(predicted.mean_mm - truth).abs(), (nominal - truth).abs()]
         };

@@ -2,7 +2,7 @@
 
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
-use calibration::identify::log::{Log, Run, RunLabel, of_samples};
+use calibration::identify::log::{Log, Run, of_samples};
 use calibration::identify::question::Identification;
 use calibration::identify::read;
 use finray::printed::PrintedFinger;
@@ -45,7 +45,7 @@ type Table = Vec<Vec<f64>>;
 struct Recorded {
     design: Design,
     offset_mm: f64,
-    label: RunLabel,
+    outcome: Option<Outcome>,
     text: String,
 }
 
@@ -112,24 +112,20 @@ fn recorded(evaluator: &Evaluator, cell: u64) -> Vec<Recorded> {
         let mm = |column: &str| at(row, &format!("direct_{column}_mm"));
         let starts = [mm("start"), mm("negative") + 0.2, mm("positive") + 0.2];
         for start in [None].into_iter().chain(starts.map(Some)) {
-            let (label, samples) = match start {
+            let (outcome, samples) = match start {
                 None => {
                     let probe = rig.follow(grasp, Course::Probe(Probe::DEFAULT), EVERY_S).remove(0);
-                    (RunLabel::Probe, probe.1)
+                    (None, probe.1)
                 }
                 Some(mm) => {
                     let (trial, samples) = rig.hold(grasp).logged(mm * MM, EVERY_S);
-                    let label = match trial.outcome {
-                        Outcome::Failed(class) => RunLabel::Failed(class),
-                        _ => RunLabel::Inserted,
-                    };
-                    (label, samples)
+                    (Some(trial.outcome), samples)
                 }
             };
             let mut log = of_samples("a.csv", &samples).unwrap();
             sense(&mut log, cell, all.len() as u64);
             let (design, offset_mm) = (infill.clone(), start.unwrap_or(0.0));
-            all.push(Recorded { design, offset_mm, label, text: log.csv() });
+            all.push(Recorded { design, offset_mm, outcome, text: log.csv() });
         }
     }
     all
@@ -249,7 +245,7 @@ fn said(
         let log =
             read::parse(&text, &format!("{i}.csv"), None).map_err(|fault| fault.to_string())?;
         let design = one.design.clone();
-        Ok(Run { log, design, offset: one.offset_mm * MM, label: one.label, line: 2 })
+        Ok(Run { log, design, offset: one.offset_mm * MM, outcome: one.outcome, line: 2 })
     };
     let runs = logs.iter().enumerate().map(run).collect::<Result<Vec<_>, String>>()?;
     let identification = Identification {

@@ -2,7 +2,6 @@
 //!
 //! A path from the user may be anything that opens: a link, a pipe, a device.
 
-use std::fmt::Write as _;
 use std::fs::{self, File, Metadata, OpenOptions, Permissions};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -57,11 +56,7 @@ pub fn write_named(path: &Path, content: &[u8]) -> io::Result<()> {
     match fs::symlink_metadata(path) {
         Ok(found) if found.is_file() && found.permissions().readonly() => Err(read_only()),
         Ok(found) if found.is_file() => write_whole(path, content, Some(found.permissions())),
-        Ok(found) if !found.is_dir() => {
-            let mut file = File::create(path)?;
-            file.write_all(content)?;
-            file.flush()
-        }
+        Ok(found) if !found.is_dir() => fs::write(path, content),
         _ => write_whole(path, content, None),
     }
 }
@@ -240,11 +235,9 @@ pub fn visible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
         let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-        if turns || (c.is_control() && !"\n\t\r".contains(c)) {
-            // Writing to a String cannot fail.
-            let _ = write!(shown, "\\u{:04x}", u32::from(c));
-        } else {
-            shown.push(c);
+        match turns || (c.is_control() && !"\n\t\r".contains(c)) {
+            true => shown += &format!("\\u{:04x}", u32::from(c)),
+            false => shown.push(c),
         }
     }
     shown

@@ -117,19 +117,15 @@ impl<'a> Document<'a> {
         if let Some((key, problem)) = bad_text(&table) {
             return Check { file: self.file }.fail(&key, problem);
         }
-        self.check_lengths::<T>(table)?;
-        Ok(value)
-    }
-
-    /// Checks that no array is too long. The deserializer of TOML text ignores surplus elements: it would read
-    /// `[-4,175, 4,175]`, with decimal commas, as -4 and 175.
-    fn check_lengths<T: DeserializeOwned>(&self, table: toml::Table) -> Result<(), InputError> {
-        T::deserialize(toml::Value::Table(table)).map(|_| ()).map_err(|error| InputError {
+        // No array may be too long. The deserializer of TOML text ignores surplus elements: it would read
+        // `[-4,175, 4,175]`, with decimal commas, as -4 and 175.
+        T::deserialize(toml::Value::Table(table)).map_err(|error| InputError {
             file: self.file.to_owned(),
             line: None,
             key: error.to_string().rsplit('`').nth(1).map(str::to_owned),
             problem: error.message().to_owned(),
-        })
+        })?;
+        Ok(value)
     }
 
     fn deserialize<T: DeserializeOwned>(&self) -> Result<T, InputError> {
@@ -154,15 +150,11 @@ pub fn bad_text(table: &toml::Table) -> Option<(String, &'static str)> {
     const CONTROL: &str = "has a control character, such as \\u001b";
     fn problem(key: &str, value: &toml::Value) -> Option<&'static str> {
         match value {
-            toml::Value::String(text) if key == "name" && text.trim().is_empty() => {
-                Some("is empty; give a name")
-            }
-            toml::Value::String(text) if key == "name" && text.contains('\n') => {
-                Some("has a line break; a name is one line")
-            }
-            toml::Value::String(text) => {
-                text.chars().any(|c| c.is_control() && c != '\n').then_some(CONTROL)
-            }
+            toml::Value::String(text) => match key == "name" {
+                true if text.trim().is_empty() => Some("is empty; give a name"),
+                true if text.contains('\n') => Some("has a line break; a name is one line"),
+                _ => text.chars().any(|c| c.is_control() && c != '\n').then_some(CONTROL),
+            },
             toml::Value::Array(items) => items.iter().find_map(|item| problem("", item)),
             toml::Value::Table(table) => bad_text(table).map(|(_, problem)| problem),
             _ => None,
@@ -232,10 +224,9 @@ impl Check<'_> {
         fits: bool,
         must: &str,
     ) -> Result<f64, InputError> {
-        if fits {
-            Ok(value)
-        } else {
-            self.fail(key, format!("is {}; it must {must}", shown(value)))
+        match fits {
+            true => Ok(value),
+            false => self.fail(key, format!("is {}; it must {must}", shown(value))),
         }
     }
 

@@ -107,6 +107,7 @@ fn numbers<'a>(path: &str, value: &'a mut Value) -> Vec<(String, &'a mut Value)>
 pub fn unknown_path(path: &str, paths: &[&str]) -> String {
     let near = nearest(path, paths).map(|near| format!("; did you mean `{near}`?"));
     let hint = near.as_deref().unwrap_or(";");
+    let unknown = format!("unknown path `{path}`");
     let mut end = path.len();
     loop {
         let prefix = if end == 0 { String::new() } else { format!("{}.", &path[..end]) };
@@ -116,15 +117,12 @@ pub fn unknown_path(path: &str, paths: &[&str]) -> String {
         match (end, names.split_last()) {
             (0, Some((last, others))) => {
                 let others = others.join(", ");
-                return format!(
-                    "unknown path `{path}`{hint} a path begins with {others} or {last}"
-                );
+                return format!("{unknown}{hint} a path begins with {others} or {last}");
             }
             (_, Some(_)) => {
-                let names = names.join(", ");
-                return format!("unknown path `{path}`{hint} `{prefix}` continues with {names}");
+                return format!("{unknown}{hint} `{prefix}` continues with {}", names.join(", "));
             }
-            (0, None) => return format!("unknown path `{path}`"),
+            (0, None) => return unknown,
             (_, None) => end = path[..end].rfind('.').unwrap_or(0),
         }
     }

@@ -106,13 +106,11 @@ pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, Sh
         return Ok(Source { file: found.file.to_owned(), text: found.text.to_owned() });
     }
     if name.contains(['/', '\\']) || Path::new(name).extension().is_some() {
-        return match files::read_text(Path::new(name), LARGEST_INPUT) {
-            Ok(text) => Ok(Source { file: name.to_owned(), text }),
-            Err(error) => {
-                let text = format!("{name}: cannot read the {kind}: {error}");
-                Err(ShippedError { place: Place::file(name), text })
-            }
-        };
+        let text = files::read_text(Path::new(name), LARGEST_INPUT).map_err(|error| {
+            let text = format!("{name}: cannot read the {kind}: {error}");
+            ShippedError { place: Place::file(name), text }
+        })?;
+        return Ok(Source { file: name.to_owned(), text });
     }
     let names: Vec<&'static str> = shipped.iter().map(|shipped| shipped.name).collect();
     let hint = nearest(name, &names).map(|name| format!(" (did you mean `{name}`?)"));

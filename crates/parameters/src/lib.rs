@@ -13,4 +13,4 @@ pub mod plan;
 pub mod space;
 
 pub use parameter::{Parameter, Scale, Transform, draws};
-pub use path::{Path, UnknownPath, label};
+pub use path::{Path, label};

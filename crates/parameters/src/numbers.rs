@@ -89,6 +89,10 @@ const fn length(pattern: &'static str) -> NumberSpec {
 const fn size(pattern: &'static str) -> NumberSpec {
     file(pattern, 1e-3, 1e3)
 }
+/// A spring, a damper or the mass of the finger.
+const fn finger(pattern: &'static str) -> NumberSpec {
+    number(Kind::Finger, pattern, SMALLEST, 1e6)
+}
 const fn fixed(pattern: &'static str, low: f64, high: f64) -> NumberSpec {
     number(Kind::Fixed, pattern, low, high)
 }
@@ -160,14 +164,9 @@ pub static NUMBERS: &[NumberSpec] = &[
     number(Kind::Springs, STIFFNESS, SMALLEST, 1e6),
     // The remote centre may lie on either side of the TCP.
     number(Kind::Finger, RCC_KEY, -1e6, 1e6),
-    number(
-        Kind::Finger,
-        "finger.rotation_x_nm_per_rad|rotation_y_nm_per_rad|rotation_z_nm_per_rad",
-        SMALLEST,
-        1e6,
-    ),
-    number(Kind::Finger, "finger.depth_n_per_mm|mass_g", SMALLEST, 1e6),
-    number(Kind::Finger, "finger.damping_n_s_per_m|rotational_damping_nm_s_per_rad", SMALLEST, 1e6),
+    finger("finger.rotation_x_nm_per_rad|rotation_y_nm_per_rad|rotation_z_nm_per_rad"),
+    finger("finger.depth_n_per_mm|mass_g"),
+    finger("finger.damping_n_s_per_m|rotational_damping_nm_s_per_rad"),
     // From a cushion to a machine tool. Ten times the value of a stiff industrial arm is a value in N/m.
     number(Kind::Robot, "robot.stiffness_n_per_mm", 0.01, 5e3),
     number(Kind::Robot, "robot.stop_force_n", 0.1, 1e5),
@@ -255,9 +254,9 @@ pub fn check(check: Check<'_>, path: &str, value: f64) -> Result<(), InputError>
 ///
 /// # Errors
 /// If a number is out of bounds; the error is about the first one.
-pub fn check_file(root: &str, table: &toml::Table, file: &str) -> Result<(), InputError> {
+pub fn check_file(root: &str, content: &Value, file: &str) -> Result<(), InputError> {
     let all: Vec<_> = NUMBERS.iter().map(|number| (number, number.pattern)).collect();
-    check_table(Check { file }, "", table, &advance(&all, |word| word == root))
+    check_value(Check { file }, "", content, &advance(&all, |word| word == root))
 }
 
 /// Entry of the table whose pattern begins like the path, and the rest of the pattern.
@@ -272,27 +271,6 @@ fn advance(rows: &[PartialMatch], fits: impl Fn(&str) -> bool) -> Vec<PartialMat
     rows.iter().filter_map(after).collect()
 }
 
-fn check_table(
-    check: Check<'_>,
-    key: &str,
-    table: &toml::Table,
-    rows: &[PartialMatch],
-) -> Result<(), InputError> {
-    let name = table.get("name").and_then(Value::as_str).filter(|_| !key.is_empty());
-    for (word, value) in table {
-        let rows = advance(rows, |one| one == word);
-        if !rows.is_empty() {
-            let key = match name {
-                Some(name) => format!("{key} \"{name}\" {word}"),
-                None if key.is_empty() => word.clone(),
-                None => format!("{key}.{word}"),
-            };
-            check_value(check, &key, value, &rows)?;
-        }
-    }
-    Ok(())
-}
-
 fn check_value(
     check: Check<'_>,
     key: &str,
@@ -300,7 +278,17 @@ fn check_value(
     rows: &[PartialMatch],
 ) -> Result<(), InputError> {
     match value {
-        Value::Table(table) => check_table(check, key, table, rows),
+        Value::Table(table) => {
+            let name = table.get("name").and_then(Value::as_str).filter(|_| !key.is_empty());
+            table.iter().try_for_each(|(word, value)| {
+                let key = match name {
+                    Some(name) => format!("{key} \"{name}\" {word}"),
+                    None if key.is_empty() => word.clone(),
+                    None => format!("{key}.{word}"),
+                };
+                check_value(check, &key, value, &advance(rows, |one| one == word))
+            })
+        }
         Value::Array(items) => {
             let mut below = advance(rows, |one| one == "*");
             // The numbers of a list that vary together have one path.

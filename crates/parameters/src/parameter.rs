@@ -158,28 +158,24 @@ impl Parameter {
     /// Returns an error message if bounds or transform do not suit the path.
     fn mismatch(&self) -> Option<String> {
         use Transform::{Factor, Shift, Value};
-        let [least, most] = self.path.bounds();
-        let within = || self.low >= least && self.high <= most;
-        let must = || format!("low and high must lie in {} .. {}", shown(least), shown(most));
-        match (self.path.kind(), self.transform) {
-            (Kind::Infill | Kind::Error, _) => {
-                let path = &self.path;
-                Some(format!(
-                    "`{path}` cannot be set by a cell; set it in a space or an uncertainty file"
-                ))
-            }
-            (Kind::Added, Factor) => {
-                Some("must be as = \"shift\": its nominal value is 0".to_owned())
-            }
-            (Kind::Springs, Shift | Value) => {
-                Some("must be as = \"factor\": it sets two stiffnesses".to_owned())
-            }
+        let path = &self.path;
+        let [least, most] = path.bounds();
+        let within = self.low >= least && self.high <= most;
+        let problem = match (path.kind(), self.transform) {
+            (Kind::Infill | Kind::Error, _) => &format!(
+                "`{path}` cannot be set by a cell; set it in a space or an uncertainty file"
+            ),
+            (Kind::Added, Factor) => "must be as = \"shift\": its nominal value is 0",
+            (Kind::Springs, Shift | Value) => "must be as = \"factor\": it sets two stiffnesses",
             (Kind::Finger | Kind::Robot, Shift) if least > 0.0 => {
-                Some("must be as = \"factor\" or \"value\": it stays above 0".to_owned())
+                "must be as = \"factor\" or \"value\": it stays above 0"
             }
-            (Kind::Added, _) | (_, Value) if !within() => Some(must()),
-            _ => None,
-        }
+            (Kind::Added, _) | (_, Value) if !within => {
+                &format!("low and high must lie in {} .. {}", shown(least), shown(most))
+            }
+            _ => return None,
+        };
+        Some(problem.to_owned())
     }
 }
 

@@ -14,29 +14,22 @@ pub struct Path {
     number: &'static NumberSpec,
 }
 
-/// Error for a path that is not in the table; suggests the closest match.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct UnknownPath(String);
-
 impl Path {
     /// Looks up a path in the table.
     ///
     /// # Errors
-    /// If it is not in the table.
-    pub fn new(text: impl Into<String>) -> Result<Self, UnknownPath> {
+    /// If it is not in the table; the message suggests the closest match.
+    pub fn new(text: impl Into<String>) -> Result<Self, String> {
         let text = text.into();
         let words: Vec<&str> = text.split('.').collect();
-        let all = NUMBERS
-            .iter()
-            .filter(|number| number.kind != Kind::Fixed)
-            .flat_map(|number| number.paths().into_iter().map(move |p| (p, number)));
+        let variable = NUMBERS.iter().filter(|number| number.kind != Kind::Fixed);
+        let all = variable.flat_map(|number| number.paths().into_iter().map(move |p| (p, number)));
         let known: Vec<_> = all.map(|(path, number)| (filled(&path, &words), number)).collect();
         match known.iter().find(|(path, _)| *path == text) {
             Some((_, number)) => Ok(Path { text, number }),
             None => {
                 let known: Vec<&str> = known.iter().map(|(path, _)| path.as_str()).collect();
-                Err(UnknownPath(unknown_path(&text, &known)))
+                Err(unknown_path(&text, &known))
             }
         }
     }
@@ -72,8 +65,8 @@ fn filled(path: &str, words: &[&str]) -> String {
 }
 
 impl TryFrom<String> for Path {
-    type Error = UnknownPath;
-    fn try_from(text: String) -> Result<Self, UnknownPath> {
+    type Error = String;
+    fn try_from(text: String) -> Result<Self, String> {
         Path::new(text)
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::numbers::Kind;
 pub use crate::numbers::{DENSITY as DENSITY_KEY, DIRECTION as DIRECTION_KEY};
-use crate::{Parameter, Path, Scale, numbers};
+use crate::{Parameter, Path, Scale};
 use ask_tell::GridPoint;
 use input::{Check, InputError, read, shown};
 use serde::{Deserialize, Serialize};
@@ -39,6 +39,7 @@ impl Variable {
         let (linear, steps) = (is_linear(&self.scale), self.steps());
         let wide = linear && high > low && step > (high - low) * (1.0 + 1e-9);
         let uneven = (steps - steps.round()).abs() > 1e-6 || steps > 1e6;
+        let finite = [low, high, step].iter().all(|v| v.is_finite());
         let within = format!("must lie in {} .. {}", shown(least), shown(most));
         let log = "on a log scale step must be above 1 and low above 0";
         let settable = matches!(self.key.kind(), Kind::Infill | Kind::File | Kind::Finger);
@@ -46,10 +47,7 @@ impl Variable {
             "cannot be set by a design; accepted are numbers of infill, task file and finger";
         let problems = [
             (!settable, unset),
-            (
-                ![low, high, step].iter().all(|v| v.is_finite()),
-                "low, high and step must be finite numbers",
-            ),
+            (!finite, "low, high and step must be finite numbers"),
             (low > high, "low must not be above high"),
             (linear && step <= 0.0, "step must be above 0"),
             (!linear && (step <= 1.0 || low <= 0.0), log),
@@ -91,10 +89,7 @@ impl Variable {
     /// Returns the value of a level, rounded so that it prints as written in the file.
     pub fn value(&self, level: u32) -> f64 {
         match self.scale {
-            Scale::Linear => {
-                let value = self.low + f64::from(level) * self.step;
-                (value * 1e9).round() / 1e9
-            }
+            Scale::Linear => ((self.low + f64::from(level) * self.step) * 1e9).round() / 1e9,
             Scale::Log => {
                 let share = f64::from(level) / self.steps().round().max(1.0);
                 let value = self.low * libm::pow(self.high / self.low, share);
@@ -127,10 +122,8 @@ pub fn corners<'a>(parameters: impl IntoIterator<Item = &'a Variable>, most: usi
     for parameter in parameters {
         let values = parameter.extremes();
         if values.len() <= most / designs.len() {
-            let each = |design: &Design| {
-                values.iter().map(|&value| design.with(&parameter.key, value)).collect()
-            };
-            designs = designs.iter().flat_map::<Vec<Design>, _>(each).collect();
+            let pairs = designs.iter().flat_map(|design| values.iter().map(move |v| (design, *v)));
+            designs = pairs.map(|(design, value)| design.with(&parameter.key, value)).collect();
         }
     }
     designs
@@ -168,21 +161,6 @@ impl Design {
     /// Returns a design with infill density (percent) and direction (degrees).
     pub fn infill(density_percent: f64, direction_deg: f64) -> Self {
         Design::default().with(DENSITY_KEY, density_percent).with(DIRECTION_KEY, direction_deg)
-    }
-
-    /// Returns the same as [`infill`](Self::infill) after checking the bounds; `given` names the source in errors.
-    ///
-    /// # Errors
-    /// If a value is out of bounds or NaN.
-    pub fn checked_infill(
-        density_percent: f64,
-        direction_deg: f64,
-        given: &str,
-    ) -> Result<Self, InputError> {
-        let check = Check { file: given };
-        numbers::check(check, DENSITY_KEY, density_percent)?;
-        numbers::check(check, DIRECTION_KEY, direction_deg)?;
-        Ok(Design::infill(density_percent, direction_deg))
     }
 
     /// Returns the design with a key set to a value, in the unit of the key.

@@ -13,6 +13,9 @@ use std::time::{Duration, SystemTime};
 /// Largest difference between a range and its window, mm: both are rounded to 0.1.
 const ROUNDING_MM: f64 = 0.151;
 
+/// Parser of the text of a cell.
+type Parser<T> = fn(&str) -> Result<T, String>;
+
 /// Cells of one line, and the problems found so far.
 pub(crate) struct Cells<'a> {
     pub(super) header: &'a StringRecord,
@@ -29,20 +32,12 @@ impl<'a> Cells<'a> {
     }
 
     /// Parses the value of a column; records a problem if it is invalid.
-    pub(crate) fn read<T>(
-        &mut self,
-        column: &str,
-        value: fn(&str) -> Result<T, String>,
-    ) -> Option<T> {
+    pub(crate) fn read<T>(&mut self, column: &str, value: Parser<T>) -> Option<T> {
         value(self.text(column)).map_err(|words| self.problem(column, &words)).ok()
     }
 
     /// Parses the value of a column that may be empty.
-    pub(crate) fn optional<T>(
-        &mut self,
-        column: &str,
-        value: fn(&str) -> Result<T, String>,
-    ) -> Option<T> {
+    pub(crate) fn optional<T>(&mut self, column: &str, value: Parser<T>) -> Option<T> {
         if self.text(column).is_empty() { None } else { self.read(column, value) }
     }
 

@@ -4,7 +4,7 @@
 use super::check::{Remark, Remarks};
 use super::curves::Curves;
 use super::formulas::{Friction, explained};
-use super::log::{LogSample, Run, RunLabel};
+use super::log::{LogSample, Run};
 use input::units::MM;
 use insertion::task::{Stage, Task};
 use nalgebra::{Vector2, Vector3};
@@ -87,7 +87,7 @@ pub(super) fn cause(first: Vector3<f64>, start: Vector3<f64>) -> &'static str {
 /// Adds remarks on the motion of one log.
 pub(super) fn motion(remarks: &mut Remarks<'_>, run: &Run, task: &Task, touched: Option<usize>) {
     commanded(remarks);
-    if run.label != RunLabel::Probe {
+    if run.outcome.is_some() {
         search(remarks, task);
         if let Some(touched) = touched {
             second_attempt(remarks, touched);

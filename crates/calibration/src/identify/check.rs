@@ -2,12 +2,12 @@
 
 use super::axes::{cause, motion};
 use super::formulas::runs_of;
-use super::log::{Log, LogSample, Run, RunLabel};
+use super::log::{Log, LogSample, Run};
 use super::read::median_gap;
 use super::touch::{AirForce, after, air, any_touch, mean, touch};
 use ask_tell::statistics::Moments;
 use input::units::{DEG, MM};
-use insertion::outcome::FailureClass;
+use insertion::outcome::{FailureClass, Outcome};
 use insertion::task::Task;
 use nalgebra::Vector3;
 use std::ops::Range;
@@ -66,15 +66,10 @@ pub(super) struct Remarks<'a> {
 }
 
 impl Remarks<'_> {
-    /// Adds a remark on the samples between two indices.
-    pub(super) fn add(
-        &mut self,
-        serious: bool,
-        between: Option<[usize; 2]>,
-        text: impl Into<String>,
-    ) {
+    /// Adds a remark on the samples from the first to the second index.
+    pub(super) fn add(&mut self, serious: bool, span: Option<[usize; 2]>, text: impl Into<String>) {
         let last = self.log.samples.len() - 1;
-        let lines = between.map(|ends| ends.map(|at| self.log.samples[at.min(last)].line));
+        let lines = span.map(|ends| ends.map(|at| self.log.samples[at.min(last)].line));
         self.found.push(Remark { file: self.log.file.clone(), lines, text: text.into(), serious });
     }
 }
@@ -82,10 +77,8 @@ impl Remarks<'_> {
 /// Returns the remarks on the logs of the runs of a task; `file` is the table of the runs.
 pub(super) fn remarks(file: &str, runs: &[Run], task: &Task) -> Vec<Remark> {
     let frame = rotated_frame(file, runs);
-    let each = runs.iter().flat_map(|run| of_log(run, task, frame.is_some()));
-    let mut found: Vec<Remark> = each.collect();
-    found.extend(frame);
-    found
+    let rotated = frame.is_some();
+    runs.iter().flat_map(|run| of_log(run, task, rotated)).chain(frame).collect()
 }
 
 /// Returns the remarks on one log; `rotated` if the forces of all logs are in a rotated frame.
@@ -144,7 +137,7 @@ fn pose(remarks: &mut Remarks<'_>, run: &Run, task: &Task) {
     let (log, first) = (remarks.log, remarks.log.samples[0]);
     let start = Vector3::from(task.strategy.start) + Vector3::y() * run.offset;
     let far = (first.position - start).norm();
-    let probe = run.label == RunLabel::Probe;
+    let probe = run.outcome.is_none();
     if far > ASTRAY {
         let text = format!(
             "it begins at ({}) mm, {:.0} mm from the start of the task and offset, ({}) mm: {}",
@@ -246,7 +239,7 @@ fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
 fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
     let log = remarks.log;
     let quiet = air(log, touched);
-    let AirForce { bias, noise } = AirForce::of(quiet);
+    let bias = mean(quiet);
     let span = touched.map(|_| [0, quiet.len() - 1]);
     if touched.is_some() && bias.norm() > DRIFT.0 {
         let text = format!(
@@ -256,7 +249,7 @@ fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
         );
         remarks.add(false, span, text);
     }
-    let (slope, error) = slope(quiet, bias, noise);
+    let (slope, error) = slope(quiet);
     if touched.is_some() && slope.norm() > DRIFT.1.max(4.0 * error.norm()) {
         let text = format!(
             "the force in the air changes by ({}) N/s: the sensor drifts, or the tool accelerates",
@@ -283,11 +276,8 @@ fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
 }
 
 /// Returns the slope of the force over time by least squares, N/s, and its standard deviation.
-fn slope(
-    samples: &[LogSample],
-    bias: Vector3<f64>,
-    noise: Vector3<f64>,
-) -> (Vector3<f64>, Vector3<f64>) {
+fn slope(samples: &[LogSample]) -> (Vector3<f64>, Vector3<f64>) {
+    let AirForce { bias, noise } = AirForce::of(samples);
     let middle = Moments::of(samples.iter().map(|sample| sample.time_s)).mean;
     let late = |sample: &LogSample| sample.time_s - middle;
     let spread: f64 = samples.iter().map(|sample| late(sample).powi(2)).sum::<f64>().max(1e-12);
@@ -301,7 +291,7 @@ fn phases(remarks: &mut Remarks<'_>, run: &Run, task: &Task, touched: usize) {
     let depth = |sample: &LogSample| task.grip.tcp_z * libm::cos(sample.tilt) - sample.position.z;
     let deepest = log.samples.iter().map(depth).fold(f64::MIN, f64::max);
     let last = log.samples.len() - 1;
-    if run.label == RunLabel::Inserted && deepest < 0.5 * task.success.depth {
+    if run.outcome == Some(Outcome::Inserted) && deepest < 0.5 * task.success.depth {
         let text = format!(
             "its outcome is `inserted`, but according to the TCP the tip is never deeper than {:.1} mm; \
              {:.1} mm are required: a phase is missing, or the frame's origin or the outcome is wrong",
@@ -310,7 +300,8 @@ fn phases(remarks: &mut Remarks<'_>, run: &Run, task: &Task, touched: usize) {
         );
         remarks.add(true, Some([touched, last]), text);
     }
-    let seated = matches!(run.label, RunLabel::Inserted | RunLabel::Failed(FailureClass::Jammed));
+    let end = run.outcome;
+    let seated = matches!(end, Some(Outcome::Inserted | Outcome::Failed(FailureClass::Jammed)));
     if seated && deepest > 0.0 && depth(&log.samples[last]) < 0.0 {
         let left = log.samples.iter().rposition(|sample| depth(sample) >= 0.0).unwrap_or(0);
         let text = "it ends in the air, above the socket: cut it where the attempt ends";

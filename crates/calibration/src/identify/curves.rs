@@ -19,8 +19,8 @@ pub struct Curves {
     pub target: Option<Vec<Vector3<f64>>>,
     /// Force on the tool, without the bias in the air.
     pub force: Vec<Vector3<f64>>,
-    /// Tilt of the TCP.
-    pub tilt: Vec<f64>,
+    /// Tilt of the TCP at the first point.
+    pub tilt: f64,
 }
 
 impl Curves {
@@ -44,7 +44,7 @@ impl Curves {
             tcp: points.iter().map(|point| point.position).collect(),
             target: points.iter().map(target).collect(),
             force: points.iter().map(|point| point.force - bias).collect(),
-            tilt: points.iter().map(|point| point.tilt).collect(),
+            tilt: points.first().map_or(0.0, |point| point.tilt),
         }
     }
 
@@ -59,7 +59,7 @@ impl Curves {
         Curves {
             force: force.into_iter().zip(inertia).map(|(force, inertia)| force - inertia).collect(),
             target: Some(vectors(|sample| sample.target_mm, MM)),
-            tilt: samples.iter().map(|sample| sample.tcp_tilt_deg * DEG).collect(),
+            tilt: samples.first().map_or(0.0, |sample| sample.tcp_tilt_deg * DEG),
             tcp,
         }
     }
@@ -67,23 +67,21 @@ impl Curves {
     /// Returns the commanded trajectory, or the measured one if none was recorded, with the tilt of the first point.
     pub fn trajectory(&self) -> Option<Trajectory> {
         let commanded = self.target.as_ref().unwrap_or(&self.tcp);
-        let tilt = self.tilt.first().copied().unwrap_or(0.0);
         let place = |(i, position): (usize, &Vector3<f64>)| {
-            (i as f64 * STEP_S, Tcp { position: *position, tilt })
+            (i as f64 * STEP_S, Tcp { position: *position, tilt: self.tilt })
         };
         Trajectory::new(commanded.iter().enumerate().map(place))
     }
 
     /// Returns the curves along the axes of the tilted tool, which are those of the springs of a soft flange.
     pub fn in_tool(&self) -> Self {
-        let tilt = self.tilt.first().copied().unwrap_or(0.0);
-        let turn = UnitQuaternion::from_scaled_axis(-tilt * Vector3::x());
+        let turn = UnitQuaternion::from_scaled_axis(-self.tilt * Vector3::x());
         let turned = |all: &Vec<Vector3<f64>>| all.iter().map(|one| turn * one).collect();
         Curves {
             tcp: turned(&self.tcp),
             target: self.target.as_ref().map(turned),
             force: turned(&self.force),
-            tilt: self.tilt.clone(),
+            tilt: self.tilt,
         }
     }
 
@@ -137,10 +135,11 @@ pub fn accelerations(points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
 
 /// Returns moving averages over `reach` points on either side.
 pub fn smoothed(points: &[Vector3<f64>], reach: usize) -> Vec<Vector3<f64>> {
-    let mean = |i: usize| {
-        let range = i.saturating_sub(reach)..(i + reach + 1).min(points.len());
-        let count = range.len() as f64;
-        points[range].iter().sum::<Vector3<f64>>() / count
-    };
-    (0..points.len()).map(mean).collect()
+    let around = |i: usize| i.saturating_sub(reach)..(i + reach + 1).min(points.len());
+    (0..points.len()).map(|i| mean(&points[around(i)])).collect()
+}
+
+/// Returns the mean; NaN without vectors.
+pub(super) fn mean(vectors: &[Vector3<f64>]) -> Vector3<f64> {
+    vectors.iter().sum::<Vector3<f64>>() / vectors.len() as f64
 }

@@ -22,7 +22,7 @@ const SOFT: Servo = Servo {
 pub fn identified_robot(own: &Robot, flange: &[Option<Flange>; 3]) -> (Robot, Option<f64>) {
     let identified = flange.iter().flatten().count();
     let base = match own.drive {
-        Drive::Servo(servo) => servo,
+        Drive::Servo(servo) if identified > 0 => servo,
         _ if identified == 3 => SOFT,
         _ => return (own.clone(), None),
     };
@@ -36,9 +36,6 @@ pub fn identified_robot(own: &Robot, flange: &[Option<Flange>; 3]) -> (Robot, Op
         .iter()
         .flatten()
         .fold((0.0, 0.0), |(sum, all), (log, sd)| (sum + weight(*sd) * log, all + weight(*sd)));
-    if identified == 0 {
-        return (own.clone(), None);
-    }
     let common = sums.0 / sums.1;
     let each = axes.map(|axis| match axis {
         None => common,

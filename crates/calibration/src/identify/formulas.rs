@@ -1,6 +1,6 @@
 //! Closed-form estimates from the logs: stiffness of the robot, preload, friction.
 
-use super::curves::{Curves, STEP_S, accelerations, rates, smoothed};
+use super::curves::{self, Curves, STEP_S, accelerations, rates, smoothed};
 use ask_tell::statistics::{Moments, mean};
 use insertion::surrogate::Estimate;
 use nalgebra::{DMatrix, DVector, Vector3};
@@ -193,13 +193,10 @@ pub fn friction(probe: &Curves) -> Option<Friction> {
     let fastest = speed.iter().map(|v| v.abs()).fold(0.0, f64::max);
     let moving = |i: usize| speed[i].abs() > MOVING * fastest;
     let force = undrifted(probe, moving)?;
-    let sliding = |sign: f64| {
-        let on = |i: usize| sign * speed[i] > MOVING * fastest && force[i].z > CONTACT_N;
-        runs_of(speed.len(), on)
-    };
     let least = (SLIDE_S / STEP_S) as usize;
     let each = |sign: f64| -> Vec<Slide> {
-        let long = sliding(sign).into_iter().filter(|range| range.len() >= least);
+        let on = |i: usize| sign * speed[i] > MOVING * fastest && force[i].z > CONTACT_N;
+        let long = runs_of(speed.len(), on).into_iter().filter(|range| range.len() >= least);
         long.map(|range| slide(&force, sign, range)).collect()
     };
     let [forth, back] = [1.0, -1.0].map(each);
@@ -228,8 +225,7 @@ fn undrifted(probe: &Curves, sliding: impl Fn(usize) -> bool) -> Option<Vec<Vect
     let air = |range: Range<usize>| {
         let middle = 0.5 * (range.start + range.end) as f64;
         let forces = &probe.force[range];
-        let count = forces.len() as f64;
-        (forces.len() > 4 * REACH).then(|| (middle, forces.iter().sum::<Vector3<f64>>() / count))
+        (forces.len() > 4 * REACH).then(|| (middle, curves::mean(forces)))
     };
     let before = air(0..first)?;
     let after = air(probe.tcp.len() - last..probe.tcp.len()).unwrap_or(before);

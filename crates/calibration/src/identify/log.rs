@@ -2,7 +2,7 @@
 
 use input::units::{DEG, MM};
 use input::{Fault, Place};
-use insertion::outcome::{FailureClass, Outcome};
+use insertion::outcome::Outcome;
 use insertion::space::Design;
 use insertion::trial::{Sample, Tcp};
 use nalgebra::Vector3;
@@ -46,28 +46,6 @@ pub struct Log {
     pub samples: Vec<LogSample>,
 }
 
-/// Label of a run in the table of runs: outcome of the attempt, or probe.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RunLabel {
-    /// The plug was inserted.
-    Inserted,
-    /// The attempt failed.
-    Failed(FailureClass),
-    /// The log is of a probe: slow motions on a flat face of the socket.
-    Probe,
-}
-
-impl RunLabel {
-    /// Returns the outcome on the robot; `None` for a probe.
-    pub fn outcome(self) -> Option<Outcome> {
-        match self {
-            RunLabel::Inserted => Some(Outcome::Inserted),
-            RunLabel::Failed(class) => Some(Outcome::Failed(class)),
-            RunLabel::Probe => None,
-        }
-    }
-}
-
 /// Log with its row of the table of runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
@@ -77,8 +55,8 @@ pub struct Run {
     pub design: Design,
     /// Shift of the start along y, m; 0 for a probe that has none.
     pub offset: f64,
-    /// Outcome of the attempt, or probe.
-    pub label: RunLabel,
+    /// Outcome on the robot; `None` for a probe: slow motions on a flat face of the socket.
+    pub outcome: Option<Outcome>,
     /// Line in the table of runs.
     pub line: usize,
 }
@@ -95,18 +73,16 @@ impl Log {
             return whole(format!("has {count} samples; it must have {FEWEST} to {MOST}"));
         }
         for (i, sample) in samples.iter().enumerate() {
-            let wrong = match i.checked_sub(1).and_then(|before| samples.get(before)) {
-                _ if !sample.is_finite() => Some("has a number that is not finite".to_owned()),
-                Some(before) if sample.time_s <= before.time_s => Some(format!(
+            let problem = match i.checked_sub(1).and_then(|before| samples.get(before)) {
+                _ if !sample.is_finite() => "has a number that is not finite".to_owned(),
+                Some(before) if sample.time_s <= before.time_s => format!(
                     "time goes from {} s in line {} to {} s; it must increase: cut the log where \
                      its clock was set",
                     before.time_s, before.line, sample.time_s
-                )),
-                _ => None,
+                ),
+                _ => continue,
             };
-            if let Some(problem) = wrong {
-                return Err(Place::file(file).line(sample.line).fault(problem));
-            }
+            return Err(Place::file(file).line(sample.line).fault(problem));
         }
         let lasts = samples[samples.len() - 1].time_s - samples[0].time_s;
         if lasts > LONGEST_S {

@@ -1,10 +1,8 @@
 //! Misfit of the simulated curves, per phase of an attempt, and validation by a held-out attempt.
 
 use super::question::{Compared, Identified};
-use super::replay::Phase;
 use ask_tell::statistics::mean;
 use input::units::MM;
-use insertion::outcome::Outcome;
 use serde::Serialize;
 
 /// Names of the components of the force.
@@ -55,7 +53,7 @@ impl Validation {
         Some(Validation {
             log: held_out.logged.file.clone(),
             offset_mm: held_out.logged.offset / MM,
-            outcome: held_out.logged.label.outcome().unwrap_or(Outcome::Inserted).word(),
+            outcome: held_out.logged.outcome.word(),
             outcome_predicted: held_out.after.1.word(),
             misfit: after(std::slice::from_ref(held_out)),
             misfit_fitted: after(&found.compared),
@@ -70,11 +68,9 @@ impl Validation {
 
 /// Returns the misfit of each phase and component of the force.
 pub fn misfits(compared: &[Compared]) -> Vec<Misfit> {
-    let phases = [(Phase::Search, "search"), (Phase::Push, "push")];
-    let each = phases
-        .into_iter()
-        .flat_map(|phase| FORCES.into_iter().enumerate().map(move |axis| (phase, axis)));
-    each.map(|((phase, name), (axis, force))| {
+    let axes = |phase| FORCES.into_iter().enumerate().map(move |axis| (phase, axis));
+    let each = ["search", "push"].into_iter().flat_map(axes);
+    each.map(|(phase, (axis, force))| {
         let mut sums = [(0.0, 0.0); 2];
         for one in compared {
             let data = one.logged.data();
@@ -93,7 +89,7 @@ pub fn misfits(compared: &[Compared]) -> Vec<Misfit> {
             }
         }
         let [before, after] = sums.map(|(squares, count)| (squares / f64::max(count, 1.0)).sqrt());
-        Misfit { phase: name, axis: force, before, after }
+        Misfit { phase, axis: force, before, after }
     })
     .collect()
 }

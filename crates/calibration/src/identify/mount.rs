@@ -73,7 +73,7 @@ mod tests {
             tcp: (0..120).map(at).collect(),
             target: None,
             force: (0..120).map(|i| Vector3::z() * force(i)).collect(),
-            tilt: vec![0.0; 120],
+            tilt: 0.0,
         }
     }
 

@@ -5,7 +5,7 @@ use super::check::{self, Remark};
 use super::curves::Curves;
 use super::flange;
 use super::formulas::{self, Flange, Friction};
-use super::log::{Run, RunLabel};
+use super::log::Run;
 use super::replay::Logged;
 use super::smoother::{Datum, Predicted, Settings, Smoothed, smooth};
 use super::touch::bias;
@@ -178,12 +178,9 @@ impl Identification<'_> {
         let rows: Vec<&Parameter> =
             fitted.iter().map(|(prior, known)| known.as_ref().unwrap_or(prior)).collect();
         let smoothed = self.smoothed(&robot, &attempts, &rows)?;
-        let unknowns: Vec<Unknown> = fitted
-            .iter()
-            .enumerate()
-            .map(|(i, (prior, known))| fit(prior, known.as_ref(), &smoothed, i))
-            .chain(rest)
-            .collect();
+        let fits = fitted.iter().enumerate();
+        let fits = fits.map(|(i, (prior, known))| fit(prior, known.as_ref(), &smoothed, i));
+        let unknowns: Vec<Unknown> = fits.chain(rest).collect();
         let held_out = self.held_out(&attempts).into_iter().collect();
         let compared = self.compared(&robot, attempts, &unknowns)?;
         let held_out = self.compared(&robot, held_out, &unknowns)?.pop();
@@ -211,7 +208,7 @@ impl Identification<'_> {
 
     /// Returns the friction of each probe, by its file.
     fn probes(&self) -> Vec<(String, Friction)> {
-        let probes = self.runs.iter().filter(|run| run.label == RunLabel::Probe);
+        let probes = self.runs.iter().filter(|run| run.outcome.is_none());
         let friction = |run: &Run| {
             let found = formulas::friction(&Curves::of_log(&run.log, bias(&run.log)))?;
             Some((run.log.file.clone(), found))
@@ -319,9 +316,8 @@ impl Identification<'_> {
         attempts: Vec<Logged>,
         unknowns: &[Unknown],
     ) -> Result<Vec<Compared>, DesignError> {
-        let now: Vec<(&Parameter, f64)> =
-            unknowns.iter().map(|one| (&one.posterior, one.posterior.middle())).collect();
-        let now: Vec<_> = now.into_iter().filter(|(row, _)| row.path != FLANGE).collect();
+        let rows = unknowns.iter().map(|one| &one.posterior).filter(|row| row.path != FLANGE);
+        let now: Vec<_> = rows.map(|row| (row, row.middle())).collect();
         let before = self.replayed((&self.evaluator.robot, 1.0), &attempts, &[])?;
         let after = self.replayed((robot, 1.0), &attempts, &now)?;
         let each = attempts.into_iter().zip(before).zip(after);

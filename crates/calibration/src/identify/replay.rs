@@ -1,7 +1,7 @@
 //! Simulation of logged attempts along their commanded trajectories, and the data that are compared.
 
-use super::curves::{Curves, STEP_S};
-use super::log::{Log, LogSample, Run, RunLabel};
+use super::curves::{Curves, STEP_S, mean};
+use super::log::{Log, LogSample, Run};
 use super::question::Identification;
 use super::smoother::{Datum, Predicted};
 use super::touch::{bias, touch};
@@ -32,20 +32,14 @@ const NO_CONTACT_N: f64 = 1.5;
 const CONTACT_N: f64 = 4.0;
 const APART_BINS: usize = 3;
 
-/// Part of an attempt, for reports.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Phase {
-    Search,
-    Push,
-}
-
 /// Logged attempt, prepared for replay.
 #[derive(Debug, Clone)]
 pub struct Logged {
     pub file: String,
     pub design: Design,
     pub offset: f64,
-    pub label: RunLabel,
+    /// Outcome on the robot.
+    pub outcome: Outcome,
     pub curves: Curves,
     trajectory: Trajectory,
     /// Index of the touch, the first compared point.
@@ -57,7 +51,7 @@ pub struct Logged {
 impl Logged {
     /// Prepares the attempt of a run; `None` if nothing is touched, or for a probe.
     pub fn new(run: &Run) -> Option<Self> {
-        let touched = touch(&run.log).filter(|_| run.label != RunLabel::Probe)?;
+        let (outcome, touched) = run.outcome.zip(touch(&run.log))?;
         let touched_s = run.log.samples[touched].time_s;
         let before = |sample: &LogSample| sample.time_s < touched_s - AIR_S;
         // Motion in the air gives no information.
@@ -70,7 +64,7 @@ impl Logged {
             file: run.log.file.clone(),
             design: run.design.clone(),
             offset: run.offset,
-            label: run.label,
+            outcome,
             touch: (since / STEP_S) as usize,
             push: (trajectory.push_start() / STEP_S) as usize,
             curves,
@@ -90,10 +84,9 @@ impl Logged {
         (0..bins).map(|i| self.touch + i * BIN..self.touch + (i + 1) * BIN)
     }
 
-    /// Returns the phase of each datum.
-    pub fn phases(&self) -> impl Iterator<Item = Phase> + '_ {
-        let phase =
-            |bin: Range<usize>| if bin.start < self.push { Phase::Search } else { Phase::Push };
+    /// Returns the phase of each datum, `search` or `push`.
+    pub fn phases(&self) -> impl Iterator<Item = &'static str> + '_ {
+        let phase = |bin: Range<usize>| if bin.start < self.push { "search" } else { "push" };
         self.bins().flat_map(move |bin| std::iter::repeat_n(phase(bin), self.data_per_bin()))
     }
 
@@ -106,13 +99,14 @@ impl Logged {
     pub fn data(&self) -> Vec<Datum> {
         let offsets = offsets(&self.curves);
         let datum = |bin: Range<usize>| {
-            let force = mean(&self.curves.force, &bin);
+            let force = mean(&self.curves.force[bin.clone()]);
             let sd = libm::hypot(FORCE_N, FORCE_SHARE * force.norm());
             let forces = force.iter().map(|&value| Datum { value, sd }).collect::<Vec<_>>();
-            let poses = offsets.iter().map(|offsets| mean(offsets, &bin)).flat_map(|offset| {
-                let sd = libm::hypot(POSE, POSE_SHARE * offset.norm());
-                [0, 1, 2].map(|i| Datum { value: offset[i], sd })
-            });
+            let poses =
+                offsets.iter().map(|offsets| mean(&offsets[bin.clone()])).flat_map(|offset| {
+                    let sd = libm::hypot(POSE, POSE_SHARE * offset.norm());
+                    [0, 1, 2].map(|i| Datum { value: offset[i], sd })
+                });
             forces.into_iter().chain(poses).collect::<Vec<_>>()
         };
         self.bins().flat_map(datum).collect()
@@ -128,13 +122,13 @@ impl Logged {
                 return vec![None; self.data_per_bin()];
             }
             let [measured, simulated] =
-                [&self.curves.force, &replayed.force].map(|force| mean(force, &bin));
+                [&self.curves.force, &replayed.force].map(|force| mean(&force[bin.clone()]));
             let (a, b) = (measured.norm(), simulated.norm());
             let differ = a.min(b) < NO_CONTACT_N && a.max(b) > CONTACT_N;
             apart = if differ { apart + 1 } else { 0 };
             over = apart >= APART_BINS;
-            let poses =
-                offsets.iter().take(self.data_per_bin() / 6).map(|offsets| mean(offsets, &bin));
+            let offsets = offsets.iter().take(self.data_per_bin() / 6);
+            let poses = offsets.map(|offsets| mean(&offsets[bin.clone()]));
             let all = [simulated].into_iter().chain(poses);
             all.flat_map(|vector| [0, 1, 2].map(|i| Some(vector[i]))).collect()
         };
@@ -146,10 +140,6 @@ impl Logged {
 fn offsets(curves: &Curves) -> Option<Vec<Vector3<f64>>> {
     let target = curves.target.as_ref()?;
     Some(curves.tcp.iter().zip(target).map(|(tcp, target)| tcp - target).collect())
-}
-
-fn mean(points: &[Vector3<f64>], bin: &Range<usize>) -> Vector3<f64> {
-    points[bin.clone()].iter().sum::<Vector3<f64>>() / bin.len() as f64
 }
 
 impl Identification<'_> {

@@ -1,13 +1,14 @@
 //! `runs.csv`: a line for each log, with the finger, the offset and the outcome.
 
 use super::frame::Frame;
-use super::log::{Log, Run, RunLabel};
+use super::log::{Log, Run};
 use super::read;
 use crate::experiments::line::{Cells, failure, length};
 use crate::experiments::{Columns, Problems, problem, rows};
 use input::files::{self, LARGEST_INPUT};
 use input::units::MM;
 use input::{Fault, Place};
+use insertion::outcome::Outcome;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use std::path::Path;
 
@@ -22,7 +23,7 @@ struct RunLine {
     log: String,
     design: Design,
     offset_mm: f64,
-    label: RunLabel,
+    outcome: Option<Outcome>,
     line: u64,
 }
 
@@ -37,21 +38,22 @@ fn run_line(cells: &mut Cells<'_>, before: &[RunLine]) -> RunLine {
         }
         None => {}
     }
-    let label = cells.read("outcome", label).unwrap_or(RunLabel::Probe);
-    let offset_mm = match label {
-        RunLabel::Probe => cells.optional("offset_mm", length),
-        _ => cells.read("offset_mm", length),
+    let outcome = cells.read("outcome", outcome).flatten();
+    let offset_mm = match outcome {
+        None => cells.optional("offset_mm", length),
+        Some(_) => cells.read("offset_mm", length),
     };
     let (design, line) = (cells.design(), cells.line);
-    RunLine { log, design, offset_mm: offset_mm.unwrap_or(0.0), label, line }
+    RunLine { log, design, offset_mm: offset_mm.unwrap_or(0.0), outcome, line }
 }
 
-fn label(text: &str) -> Result<RunLabel, String> {
+/// Parses the outcome of an attempt; `None` for a probe.
+fn outcome(text: &str) -> Result<Option<Outcome>, String> {
     match text {
-        "inserted" => Ok(RunLabel::Inserted),
-        "probe" => Ok(RunLabel::Probe),
+        "inserted" => Ok(Some(Outcome::Inserted)),
+        "probe" => Ok(None),
         class => failure(class)
-            .map(RunLabel::Failed)
+            .map(|class| Some(Outcome::Failed(class)))
             .map_err(|words| format!("{words}, `inserted`, `probe`")),
     }
 }
@@ -71,14 +73,14 @@ pub fn read(
         .map_err(|error| Place::file(&file).fault(format!("cannot be read: {error}")))?;
     let why = "each line needs a log, the infill of its finger, its offset and its outcome";
     let table = rows(&text, &file, &Columns { all: &COLUMNS, required: 5, why }, run_line)?;
-    if table.iter().all(|row| row.label == RunLabel::Probe) {
+    if table.iter().all(|row| row.outcome.is_none()) {
         let words =
             "has no attempt; give at least one line with outcome `inserted` or a failure class";
         return Err(Place::file(file).fault(words).into());
     }
     let folder = path.parent().unwrap_or(Path::new(""));
     let (mut runs, mut samples) = (Vec::new(), 0);
-    for RunLine { log, design, offset_mm, label, line } in table {
+    for RunLine { log, design, offset_mm, outcome, line } in table {
         let log = folder.join(log);
         let log: Log = read::parse(&text_of(&log)?, &log.display().to_string(), frame)?;
         samples += log.samples.len();
@@ -88,7 +90,7 @@ pub fn read(
             );
             return Err(Problems::of(&file, vec![problem(line, "log", &words)]));
         }
-        runs.push(Run { log, design, offset: offset_mm * MM, label, line: line as usize });
+        runs.push(Run { log, design, offset: offset_mm * MM, outcome, line: line as usize });
     }
     Ok(runs)
 }

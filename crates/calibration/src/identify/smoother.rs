@@ -182,12 +182,9 @@ impl Regression {
             return members.to_vec();
         };
         let gain = covariance * weighted;
-        let limits: Vec<f64> = ensemble
-            .predicted
-            .row_iter()
-            .zip(self.variances.iter())
-            .map(|(row, variance)| MAX_RESIDUAL * (row.variance() + variance).sqrt())
-            .collect();
+        let rows = ensemble.predicted.row_iter().zip(self.variances.iter());
+        let limits: Vec<f64> =
+            rows.map(|(row, variance)| MAX_RESIDUAL * (row.variance() + variance).sqrt()).collect();
         let each = members.iter().zip(ensemble.predicted.column_iter());
         let update = |(member, predicted): (&Coordinates, nalgebra::DVectorView<'_, f64>)| {
             let innovation = DVector::from_fn(ensemble.data.len(), |i, _| {

@@ -2,12 +2,13 @@ use super::check::{self, Remark};
 use super::curves::{Curves, STEP_S};
 use super::fixtures::synthetic;
 use super::frame::Frame;
-use super::log::{Log, LogSample, Run, RunLabel};
+use super::log::{Log, LogSample, Run};
 use super::touch::{bias, touch};
 use super::{read, runs};
 use input::shipped::{ROBOTS, TASKS};
 use input::units::{MM, N_PER_MM};
 use insertion::finger::Finger;
+use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::task::Task;
@@ -21,8 +22,8 @@ fn usb() -> Task {
 }
 
 fn said(log: Log) -> Vec<Remark> {
-    let (design, label) = (Design::infill(20.0, 10.0), RunLabel::Inserted);
-    check::remarks("runs.csv", &[Run { log, design, offset: 0.0, label, line: 2 }], &usb())
+    let (design, outcome) = (Design::infill(20.0, 10.0), Some(Outcome::Inserted));
+    check::remarks("runs.csv", &[Run { log, design, offset: 0.0, outcome, line: 2 }], &usb())
 }
 
 fn said_of(change: impl FnMut((usize, &mut LogSample))) -> String {
@@ -196,8 +197,8 @@ fn a_frame_is_rotated_if_it_looks_so_in_most_logs() {
         let mut log = synthetic(0.5, 1.0);
         let turn = |sample: &mut LogSample| sample.force = sample.force.zxy();
         log.samples.iter_mut().filter(|_| sideways).for_each(turn);
-        let (design, label) = (Design::infill(20.0, 10.0), RunLabel::Inserted);
-        Run { log, design, offset: 0.0, label, line: 2 }
+        let (design, outcome) = (Design::infill(20.0, 10.0), Some(Outcome::Inserted));
+        Run { log, design, offset: 0.0, outcome, line: 2 }
     };
     let found = |runs: &[Run]| {
         let remarks = check::remarks("runs.csv", runs, &usb()).into_iter();
@@ -220,8 +221,8 @@ fn a_table_of_runs_names_logs_beside_it() {
         runs::read(&path, None, read::text).map_err(|error| error.to_string())
     };
     let found = of("a.csv,20,10,1.5,3\np.csv,20,10,,probe").unwrap();
-    assert_eq!((found[0].offset, found[0].line, found[1].label), (1.5 * MM, 3, RunLabel::Probe));
-    assert_eq!(found[0].label, RunLabel::Failed(3_u8.try_into().unwrap()));
+    assert_eq!((found[0].offset, found[0].line, found[1].outcome), (1.5 * MM, 3, None));
+    assert_eq!(found[0].outcome, Some(Outcome::Failed(3_u8.try_into().unwrap())));
     for (lines, words) in [
         ("a.csv,20,10,1.5,5", "line 3: outcome: unknown failure class `5`"),
         ("a.csv,20,10,,inserted", "line 3: offset_mm: `` is not a number"),

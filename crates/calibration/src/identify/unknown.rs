@@ -63,14 +63,8 @@ pub(super) fn identified(prior: Parameter, posterior: Parameter, from: ValueOrig
 
 /// Returns an unknown that keeps its prior, with advice.
 pub(super) fn unidentified(prior: Parameter, remaining_sd: Option<[f64; 2]>) -> Unknown {
-    let advice = advice(&prior);
-    Unknown {
-        posterior: prior.clone(),
-        prior,
-        remaining_sd,
-        from: ValueOrigin::Prior,
-        advice: Some(advice),
-    }
+    let advice = Some(advice(&prior));
+    Unknown { posterior: prior.clone(), prior, remaining_sd, from: ValueOrigin::Prior, advice }
 }
 
 /// Returns an unknown with its fitted posterior; with its prior if the logs do not identify it.
@@ -86,10 +80,8 @@ pub(super) fn fit(
     let remaining_sd = Some([smoothed.expected_sd[i], INFLATION * sd]);
     if let Some(known) = known {
         // A value measured directly is not changed to compensate for errors of the model.
-        return Unknown {
-            remaining_sd,
-            ..identified(prior.clone(), known.clone(), ValueOrigin::Formula)
-        };
+        let unknown = identified(prior.clone(), known.clone(), ValueOrigin::Formula);
+        return Unknown { remaining_sd, ..unknown };
     }
     if sd > UNIDENTIFIED {
         return unidentified(prior.clone(), remaining_sd);

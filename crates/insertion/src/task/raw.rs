@@ -14,7 +14,7 @@ use input::units::read::{deg, gram, mm};
 use input::{Check, Document, InputError, shown, syntax};
 use parameters::numbers;
 use serde::Deserialize;
-use toml::Table;
+use toml::{Table, Value};
 
 /// Task file; SI units.
 #[derive(Deserialize)]
@@ -114,6 +114,7 @@ impl Task {
     /// # Errors
     /// Same as for [`Task::parse`].
     pub fn from_table(table: Table, file: &str) -> Result<Self, InputError> {
+        let table = Value::Table(table);
         numbers::check_file("task", &table, file)?;
         convert(table.try_into().map_err(|error| syntax(file, "", &error))?, file)
     }

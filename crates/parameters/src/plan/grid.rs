@@ -96,8 +96,7 @@ impl<T: Traceable> TracedMap<'_, T> {
         let first = (self.low, self.high);
         loop {
             let coarse = self.coarse;
-            let new = self.lattice(coarse);
-            self.simulate(new, MAX_TRIALS);
+            self.simulate(self.lattice(coarse), MAX_TRIALS);
             let before = (self.low, self.high);
             for axis in [0, 1] {
                 let inserts = |edge: i32| {

@@ -1,7 +1,7 @@
 //! Evidence for an answer: robot measurements of its finger or of similar ones.
 
 use calibration::order::errors_percent;
-use calibration::published::{Origin, of_task};
+use calibration::published::{BENCH, of_task};
 use insertion::space::Design;
 use insertion::stiffness::Measurement;
 use insertion::stiffness::designs;
@@ -127,7 +127,7 @@ fn ranges(fingers: &[MeasuredFinger]) -> String {
 
 /// Returns the fingers with published measurements on a task, with their stiffness; empty for a user's own task.
 pub(super) fn published(task: &str) -> Vec<(MeasuredFinger, Measurement)> {
-    let bench = of_task(task, Origin::Bench);
+    let bench = of_task(task, BENCH);
     let one = |measurement: Measurement| {
         let design = Design::infill(measurement.density_percent, measurement.direction_deg);
         let range_mm = bench.iter().find(|found| found.design == design)?.range_mm?;

@@ -113,10 +113,8 @@ pub(super) struct Outcomes {
 
 impl Outcomes {
     pub(super) fn of(compared: &[Compared]) -> Outcomes {
-        let [before, after] =
-            [|one: &Compared| one.before.1, |one: &Compared| one.after.1].map(|of| {
-                compared.iter().filter(|one| one.logged.label.outcome() == Some(of(one))).count()
-            });
+        let [before, after] = [|one: &Compared| one.before.1, |one: &Compared| one.after.1]
+            .map(|of| compared.iter().filter(|one| one.logged.outcome == of(one)).count());
         Outcomes { attempts: compared.len(), before, after }
     }
 
@@ -266,9 +264,8 @@ fn shorter(one: &Compared, simulated: &(Curves, Outcome), name: &str) -> Option<
 }
 
 fn attempt(one: &Compared) -> Markup {
-    let (logged, measured) = (&one.logged, one.logged.label.outcome());
-    let ended = measured.map_or("probe".to_owned(), outcome);
-    let off = measured.is_some_and(|measured| measured != one.after.1);
+    let logged = &one.logged;
+    let (ended, off) = (outcome(logged.outcome), logged.outcome != one.after.1);
     html! {
         article {
             h3 { (design(&logged.design)) ", start " (format!("{:+.1} mm", logged.offset / MM)) ": " (ended) }

@@ -3,7 +3,7 @@ use calibration::identify::check::Remark;
 use calibration::identify::curves::Curves;
 use calibration::identify::fixtures::synthetic;
 use calibration::identify::formulas::{Friction, Slide};
-use calibration::identify::log::{Run, RunLabel};
+use calibration::identify::log::Run;
 use calibration::identify::misfit::Validation;
 use calibration::identify::question::{Compared, IdentificationResult, Identified};
 use calibration::identify::replay::Logged;
@@ -22,7 +22,8 @@ fn attempt() -> Compared {
     let mut log = synthetic(0.5, 1.0);
     log.file = FILE.to_owned();
     let design = Design::infill(10.0, 0.0);
-    let run = Run { log, design, offset: 0.0022, label: RunLabel::Inserted, line: 2 };
+    let outcome = Some(Outcome::Inserted);
+    let run = Run { log, design, offset: 0.0022, outcome, line: 2 };
     let logged = Logged::new(&run).unwrap();
     let simulated = |share: f64| {
         let force = logged.curves.force.iter().map(|force| force * share).collect();

@@ -8,7 +8,7 @@ pub use table::{accuracy, csv, json};
 
 use super::failures;
 use ask_tell::statistics::{mean, spearman};
-use calibration::published::{self, Origin};
+use calibration::published::{self, BENCH, SIMULATION};
 use insertion::evaluation::Window;
 use insertion::evaluation::taught::{Shifted, teach};
 use insertion::evaluation::template::DesignError;
@@ -69,7 +69,7 @@ pub struct TaskTable {
 
 impl TaskTable {
     pub fn new(task: &str, windows: impl IntoIterator<Item = (Measurement, Window)>) -> Self {
-        let published = [Origin::Simulation, Origin::Bench].map(|of| published::of_task(task, of));
+        let published = [SIMULATION, BENCH].map(|table| published::of_task(task, table));
         let row = |(design, window): (Measurement, Window)| {
             let infill = Design::infill(design.density_percent, design.direction_deg);
             let [simulation, bench] = published.each_ref().map(|rows| {

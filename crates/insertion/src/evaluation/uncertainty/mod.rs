@@ -12,7 +12,7 @@ use input::units::read::{deg, mm, percent};
 use input::{Check, Document, InputError};
 use parameters::numbers;
 use serde::Deserialize;
-use toml::Table;
+use toml::Value;
 
 /// Distribution of errors, and settings of the measures under sampled errors; SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -186,8 +186,8 @@ impl Uncertainty {
     /// If the text is not an uncertainty or cell file, or a value is out of range.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         let document = Document::parse(text, file)?;
-        let table: Table = document.read()?;
-        if table.contains_key("parameter") {
+        let table: Value = document.read()?;
+        if table.get("parameter").is_some() {
             return Self::of_cell(Priors::parse(text, file)?, file);
         }
         let raw: RawUncertainty = document.read()?;

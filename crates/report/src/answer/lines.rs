@@ -60,8 +60,9 @@ pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
             line("ends", format!("{below} below, {above} above{}", words::on(config, task.name)));
         iter::once(ends).chain(drawn(task.measured)).collect::<Vec<_>>()
     };
-    let limits = found.constraints.iter();
-    let limits = limits.map(|(measure, text)| line("constraint", format!("{measure} {text}")));
+    let tasks = found.design.tasks();
+    let limits = config.constraints.iter().map(|c| format!("{} {}", c.measure, c.words(&tasks)));
+    let limits = limits.map(|text| line("constraint", text));
     let tied = found.ties.iter().map(|ties| tied(answer, ties));
     let safe = found.ties.iter().filter_map(safe);
     let why = widest(answer, found);
@@ -101,7 +102,12 @@ pub fn caveats(answer: &Answer) -> Vec<Line> {
     let advice = found.and_then(|found| found.start?.advice()).map(|text| line("start", text));
     let bench = answer.record.on_bench.iter().flat_map(|bench| &bench.warnings);
     let warnings = bench.map(|words| line("warning", words));
-    advice.into_iter().chain(found.and_then(extrapolated)).chain(warnings).collect()
+    let stiffness = found.map(|found| &found.design.stiffness).filter(|of| !of.inside_hull());
+    let extrapolated = stiffness.map(|of| {
+        let distance = format!("{:.2} of the measured span", of.hull_distance);
+        line("warning", format!("stiffness extrapolated by {distance}: measure this finger"))
+    });
+    advice.into_iter().chain(extrapolated).chain(warnings).collect()
 }
 
 /// Returns a contact force that the connector or the robot does not withstand, with a remedy.
@@ -203,14 +209,6 @@ pub fn edge(answer: &Answer) -> Option<String> {
     (!found.is_empty()).then(|| format!("{} of the space searched", found.join(", ")))
 }
 
-fn extrapolated(found: &Recommended) -> Option<Line> {
-    let distance = found.design.stiffness.hull_distance;
-    let text = format!(
-        "stiffness extrapolated by {distance:.2} of the measured span: measure this finger"
-    );
-    (!found.design.stiffness.inside_hull()).then(|| line("warning", text))
-}
-
 /// Returns the details of the recommendation by simulation that [`brief`] omits.
 pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
     let config = &answer.record.config;
@@ -245,8 +243,10 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
     }));
     lines.extend(stiffness(&found.design.stiffness));
     if let Some((measure, _)) = found.objective.filter(|_| !answer.walked.is_empty()) {
-        let before = found
-            .searched
+        let mut same = answer.record.current().iter().filter(|of| of.index == found.design.index);
+        let before = same.next().and_then(Recorded::value);
+        let before = before.filter(|before| Some(*before) != found.design.value());
+        let before = before
             .map_or(String::new(), |before| format!("; {} in the search", measure.show(before)));
         let count = answer.walked.len();
         let plural = if count == 1 { "" } else { "s" };

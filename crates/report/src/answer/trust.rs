@@ -7,14 +7,8 @@ use insertion::stiffness::Measurement;
 use insertion::stiffness::designs;
 use study::{Recorded, StudyRecord};
 
-/// Finger whose tolerable range was measured on a robot.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MeasuredFinger {
-    /// Design of the finger.
-    pub design: Design,
-    /// Tolerable range, mm.
-    pub range_mm: f64,
-}
+/// Finger whose tolerable range was measured on a robot: its design and that range, mm.
+pub type MeasuredFinger = (Design, f64);
 
 /// Evidence for an answer.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,13 +108,13 @@ impl Trust {
 
 /// Returns the range of a finger, mm, if it is among the measured ones.
 pub(super) fn range_mm(measured: &[MeasuredFinger], finger: &Design) -> Option<f64> {
-    measured.iter().find(|measured| measured.design == *finger).map(|found| found.range_mm)
+    measured.iter().find(|(design, _)| design == finger).map(|(_, range_mm)| *range_mm)
 }
 
 /// Returns the ranges in words: `4.7 and 4.9 mm`.
 fn ranges(fingers: &[MeasuredFinger]) -> String {
     let mut mm: Vec<String> =
-        fingers.iter().map(|finger| format!("{:.1}", finger.range_mm)).collect();
+        fingers.iter().map(|(_, range_mm)| format!("{range_mm:.1}")).collect();
     mm.dedup();
     format!("{} mm", mm.join(" and "))
 }
@@ -131,7 +125,7 @@ pub(super) fn published(task: &str) -> Vec<(MeasuredFinger, Measurement)> {
     let one = |measurement: Measurement| {
         let design = Design::infill(measurement.density_percent, measurement.direction_deg);
         let range_mm = bench.iter().find(|found| found.design == design)?.range_mm?;
-        Some((MeasuredFinger { design, range_mm }, measurement))
+        Some(((design, range_mm), measurement))
     };
     designs().into_iter().filter_map(one).collect()
 }
@@ -139,7 +133,7 @@ pub(super) fn published(task: &str) -> Vec<(MeasuredFinger, Measurement)> {
 /// Returns the finger itself, if it was measured, else those of the most similar stiffness, nearest first
 /// (the simulation distinguishes fingers by stiffness only).
 fn nearest(mut all: Vec<(MeasuredFinger, Measurement)>, finger: &Recorded) -> Vec<MeasuredFinger> {
-    if let Some((itself, _)) = all.iter().find(|(found, _)| found.design == finger.design) {
+    if let Some((itself, _)) = all.iter().find(|((design, _), _)| *design == finger.design) {
         return vec![itself.clone()];
     }
     let finger = &finger.stiffness;
@@ -165,14 +159,14 @@ mod tests {
         let all = || published("usb");
         finger.design = Design::infill(20.0, 20.0);
         assert_eq!(
-            nearest(all(), &finger).iter().map(|one| one.range_mm).collect::<Vec<_>>(),
+            nearest(all(), &finger).iter().map(|(_, range_mm)| *range_mm).collect::<Vec<_>>(),
             [4.1]
         );
         // This finger was not measured; designs 8 and 11 have similar stiffness.
         finger.design = Design::infill(27.0, 39.0);
         finger.stiffness = insertion::surrogate::Prediction::exact(3.65e3, 31e3);
         assert_eq!(
-            nearest(all(), &finger).iter().map(|one| one.range_mm).collect::<Vec<_>>(),
+            nearest(all(), &finger).iter().map(|(_, range_mm)| *range_mm).collect::<Vec<_>>(),
             [5.0, 5.6]
         );
         assert!(published("mine").is_empty());

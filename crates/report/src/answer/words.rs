@@ -4,7 +4,7 @@ use input::units::N_PER_MM;
 use insertion::evaluation::objective::{Measure, Objectives};
 use insertion::evaluation::{RobustRange, SuccessRate, Window};
 use insertion::outcome::{FailureClass, Outcome};
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, label};
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::Estimate;
 use study::{Recorded, StudyConfig, StudyRecord};
 
@@ -146,14 +146,11 @@ pub fn evaluated(recorded: &Recorded) -> String {
 /// Returns a design in words: `10 % infill at 26°`, then the other parameters of its space.
 pub fn design(design: &Design) -> String {
     let infill = design.get(DENSITY_KEY).zip(design.get(DIRECTION_KEY));
-    let infill = infill.map(|(density, direction)| format!("{density} % infill at {direction}°"));
-    let named = |key: &str| infill.is_some() && [DENSITY_KEY, DIRECTION_KEY].contains(&key);
-    let others = design.0.iter().filter(|(key, _)| !named(key));
-    let others = others.map(|(key, value)| {
-        let (name, unit) = label(key);
-        format!("{name} {value}{unit}")
-    });
-    infill.iter().cloned().chain(others).collect::<Vec<_>>().join(", ")
+    let Some((density, direction)) = infill else { return design.labelled() };
+    let infill = format!("{density} % infill at {direction}°");
+    let mut others = design.clone();
+    others.0.retain(|key, _| ![DENSITY_KEY, DIRECTION_KEY].contains(&key.as_str()));
+    if others.0.is_empty() { infill } else { format!("{infill}, {}", others.labelled()) }
 }
 
 /// Returns the values of objectives, with their names if there are several.

@@ -4,7 +4,6 @@ mod page;
 #[cfg(test)]
 mod tests;
 
-use page::Outcomes;
 pub use page::html;
 
 use crate::answer::words::number;
@@ -122,13 +121,11 @@ pub fn text(result: &IdentificationResult) -> String {
             100.0 * found.smoothed.compared
         );
     }
-    let outcomes = Outcomes::of(&found.compared);
-    let warning = if outcomes.is_worse() {
-        "\nwarning: fewer than before: do not trust predictions of this cell"
-    } else {
-        ""
-    };
-    text += &format!("outcomes      {}{warning}\n", outcomes.text());
+    let (outcomes, worse) = page::outcomes(&found.compared);
+    text += &format!("outcomes      {outcomes}\n");
+    if worse {
+        text += "warning: fewer than before: do not trust predictions of this cell\n";
+    }
     if let Some(one) = Validation::of(found) {
         let warning = if one.is_doubtful() { "warning: " } else { "" };
         text += &format!("{warning}{}\n", validated(&one));

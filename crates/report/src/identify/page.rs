@@ -92,10 +92,8 @@ fn headline(IdentificationResult { task, found, .. }: &IdentificationResult) -> 
 
 /// Returns a sentence on the number of logs and of numbers that were not fitted.
 fn evidence(found: &Identified) -> String {
-    let several =
-        |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
-    let attempts = several(found.compared.len(), "attempt");
-    let probes = several(found.probes.len(), "probe");
+    let attempts = input::counted(found.compared.len(), "attempt");
+    let probes = input::counted(found.probes.len(), "probe");
     let fixed = match counted(found, &[ValueOrigin::Files]) {
         0 => String::new(),
         count => format!("; {count} more numbers were not fitted"),
@@ -103,34 +101,17 @@ fn evidence(found: &Identified) -> String {
     format!("From {attempts} and {probes}{fixed}.")
 }
 
-/// Agreement of simulated outcomes with those measured.
-pub(super) struct Outcomes {
-    attempts: usize,
-    /// Attempts that end as measured, with the files' numbers and with the identified ones.
-    before: usize,
-    after: usize,
-}
-
-impl Outcomes {
-    pub(super) fn of(compared: &[Compared]) -> Outcomes {
-        let [before, after] =
-            [|one: &Compared| one.before.1, |one: &Compared| one.after.1].map(|of| {
-                compared.iter().filter(|one| one.logged.label.outcome() == Some(of(one))).count()
-            });
-        Outcomes { attempts: compared.len(), before, after }
-    }
-
-    /// Returns whether the identified numbers predict fewer outcomes than the files' numbers.
-    pub(super) fn is_worse(&self) -> bool {
-        self.after < self.before
-    }
-
-    pub(super) fn text(&self) -> String {
-        let Outcomes { attempts, before, after } = self;
-        format!(
-            "{after} of {attempts} attempts are simulated to end as measured; {before} with the files' numbers"
-        )
-    }
+/// Returns the numbers of attempts that are simulated to end as measured, in words, and whether the identified numbers
+/// predict fewer outcomes than the files' numbers.
+pub(super) fn outcomes(compared: &[Compared]) -> (String, bool) {
+    let [before, after] = [|one: &Compared| one.before.1, |one: &Compared| one.after.1].map(|of| {
+        compared.iter().filter(|one| one.logged.label.outcome() == Some(of(one))).count()
+    });
+    let text = format!(
+        "{after} of {} attempts are simulated to end as measured; {before} with the files' numbers",
+        compared.len()
+    );
+    (text, after < before)
 }
 
 /// Returns the identified numbers by the origin of their values, the agreement of the outcomes, and the misfit.
@@ -147,7 +128,7 @@ fn summary(found: &Identified) -> Vec<(String, String)> {
     };
     let all =
         [ValueOrigin::Formula, ValueOrigin::Fit, ValueOrigin::Prior, ValueOrigin::Files].map(named);
-    let outcomes = Outcomes::of(&found.compared).text();
+    let (outcomes, _) = outcomes(&found.compared);
     let share = format!("{:.0} % of the data compared", 100.0 * found.smoothed.compared);
     let misfit = match found.smoothed.misfit[..] {
         [first, .., last] if last.is_finite() => {
@@ -355,7 +336,7 @@ fn draw(area: &Area<'_>, one: &Compared, axis: usize) -> DrawResult {
         let style = text_style(15, INK, HPos::Left, VPos::Top);
         label(&mut chart, (time + aside, top), (0, 0), phase, &style)?;
     }
-    line(&mut chart, measured, MUTED.rgb().stroke_width(1), "")?;
-    line(&mut chart, before, ORANGE.rgb().stroke_width(2), "")?;
-    line(&mut chart, after, BLUE.rgb().stroke_width(2), "")
+    line(&mut chart, measured, MUTED.rgb.stroke_width(1), "")?;
+    line(&mut chart, before, ORANGE.rgb.stroke_width(2), "")?;
+    line(&mut chart, after, BLUE.rgb.stroke_width(2), "")
 }

@@ -268,7 +268,7 @@ fn draw(area: &Area<'_>, comparison: &Comparison, title: &str) -> DrawResult {
         let mut outline = quartile(group, 0);
         outline.extend(quartile(group, 2).into_iter().rev());
         if !outline.is_empty() {
-            chart.draw_series([Polygon::new(outline, colour.rgb().mix(0.16).filled())])?;
+            chart.draw_series([Polygon::new(outline, colour.rgb.mix(0.16).filled())])?;
         }
     }
     let several =
@@ -277,11 +277,11 @@ fn draw(area: &Area<'_>, comparison: &Comparison, title: &str) -> DrawResult {
         let batch = if several(group) { format!(", batch {}", group.batch) } else { String::new() };
         let plural = if group.studies == 1 { "study" } else { "studies" };
         let label = format!("{}{batch} ({} {plural})", group.optimizer, group.studies);
-        line(&mut chart, quartile(group, 1), colour.rgb().stroke_width(3), label)?;
+        line(&mut chart, quartile(group, 1), colour.rgb.stroke_width(3), label)?;
     }
     let target = vec![(0.0, comparison.target_mm), (longest, comparison.target_mm)];
     let label = format!("best known - {TOLERANCE_MM} mm");
-    line(&mut chart, target, MUTED.rgb().stroke_width(1), label)?;
+    line(&mut chart, target, MUTED.rgb.stroke_width(1), label)?;
     legend(&mut chart, SeriesLabelPosition::LowerRight)
 }
 

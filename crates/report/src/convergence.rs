@@ -116,7 +116,7 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> DrawResult {
         ]);
     }
     series.retain(|(points, ..)| !points.is_empty());
-    let best_line = ORANGE.rgb().stroke_width(3);
+    let best_line = ORANGE.rgb.stroke_width(3);
     let area = legend_above(area, &series, (best_line, name))?;
     let mut chart = axes(&area, "", x, (&y_label, range))?;
     if record.settled {

@@ -54,7 +54,7 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> DrawResult {
     points(&mut chart, front.iter().copied(), PointMark::ring(ORANGE, 5, 2), "front")?;
     // With three objectives the projected front is not a line.
     if record.config.objective.measures().len() == 2 {
-        line(&mut chart, front, ORANGE.rgb().stroke_width(2), "")?;
+        line(&mut chart, front, ORANGE.rgb.stroke_width(2), "")?;
     }
     legend(&mut chart, SeriesLabelPosition::UpperLeft)
 }

@@ -113,7 +113,7 @@ fn draw(area: &Area<'_>, levers: &Levers, bars: &[Bar<'_>]) -> DrawResult {
         for ((mm, words), top) in ends.iter().zip([y - 0.37, y - 0.65]) {
             let (by, anchor) = if *mm < base { (-5, HPos::Right) } else { (5, HPos::Left) };
             let style = text_style(TEXT, ink, anchor, VPos::Center);
-            bar(&mut chart, [base, *mm], [top, top - 0.27], fill.rgb().mix(share).filled())?;
+            bar(&mut chart, [base, *mm], [top, top - 0.27], fill.rgb.mix(share).filled())?;
             label(&mut chart, (*mm, top - 0.14), (by, 0), words, &style)?;
         }
         // Between the lines of text.

@@ -9,7 +9,6 @@ use crate::answer::{Answer, command, expectation, lines};
 use insertion::surrogate::Model;
 use maud::{Markup, html};
 use std::path::Path;
-use study::StudyRecord;
 
 /// Size of a plot in the page, pixels: narrow, so that its text stays readable when scaled down on
 /// a phone.
@@ -30,7 +29,9 @@ pub fn page(answer: &Answer, model: &Model, files: &PageFiles) -> Result<String,
             }
         }
     };
-    Ok(document(&title(answer.record), body))
+    let config = &answer.record.config;
+    let method = config.method();
+    Ok(document(&format!("{} with {method}, seed {}", config.task_name(), config.seed), body))
 }
 
 /// Returns the answer of the study in a folder as an HTML fragment, for notebooks.
@@ -45,10 +46,6 @@ pub fn card(answer: &Answer, dir: &Path) -> String {
         }
     };
     card.into_string()
-}
-
-fn title(StudyRecord { config, .. }: &StudyRecord) -> String {
-    format!("{} with {}, seed {}", config.task_name(), config.method(), config.seed)
 }
 
 type Section = (&'static str, String, Markup);

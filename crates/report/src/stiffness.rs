@@ -166,11 +166,11 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> DrawR
         let upper = band.iter().map(|(x, e)| (*x, e.mean + e.sd));
         let lower = band.iter().rev().map(|(x, e)| (*x, (e.mean - e.sd).max(0.0)));
         let outline: Vec<(f64, f64)> = upper.chain(lower).collect();
-        chart.draw_series([Polygon::new(outline, colour.rgb().mix(0.15).filled())])?;
+        chart.draw_series([Polygon::new(outline, colour.rgb.mix(0.15).filled())])?;
     }
     for ((band, colour), &curve) in bands.iter().zip(SERIES).zip(&curves) {
         let means = band.iter().map(|(x, e)| (*x, e.mean)).collect();
-        line(&mut chart, means, colour.rgb().stroke_width(2), name(curve))?;
+        line(&mut chart, means, colour.rgb.stroke_width(2), name(curve))?;
     }
     for m in measured {
         let (x, level) = of(m);

@@ -35,9 +35,9 @@ fn draw(area: &Area<'_>, film: &Film) -> DrawResult {
     let title = format!("{}, {}: {}", film.task.name, film.label, recording.trial.outcome.label());
     let mut chart = axes(area, &title, x, y)?;
     let success = vec![(needed, 0.0), (needed, top)];
-    line(&mut chart, success, MUTED.rgb().stroke_width(1), "depth that counts as inserted")?;
+    line(&mut chart, success, MUTED.rgb.stroke_width(1), "depth that counts as inserted")?;
     let ended = path.last().copied();
-    line(&mut chart, path, BLUE.rgb().stroke_width(2), "force")?;
+    line(&mut chart, path, BLUE.rgb.stroke_width(2), "force")?;
     let colour = if recording.trial.outcome == Outcome::Inserted { BLUE } else { RED };
     points(&mut chart, ended, PointMark::dot(colour, 5), "end")?;
     legend(&mut chart, SeriesLabelPosition::UpperLeft)

@@ -38,12 +38,6 @@ impl InputArguments<'_> {
         }
     }
 
-    fn tasks(&self) -> String {
-        let tasks = 1..=self.record.config.tasks.len();
-        let tasks = tasks.map(|number| self.input(&format!("task_{number}"), TASKS));
-        tasks.collect::<Vec<_>>().join(",")
-    }
-
     /// Returns the user's own file of the task at `place`; `None` if it was passed as text from Python.
     fn own_file(&self, place: usize) -> Option<&String> {
         let own = self.shipped(&format!("task_{}", place + 1), TASKS).is_none();
@@ -117,7 +111,9 @@ pub fn own_task(record: &StudyRecord) -> bool {
 pub fn rerun(record: &StudyRecord) -> Vec<String> {
     let config = &record.config;
     let inputs = InputArguments { record, dir: Path::new("") };
-    let mut words = vec!["optimize".to_owned(), format!("--task {}", inputs.tasks())];
+    let tasks = (1..=config.tasks.len()).map(|n| inputs.input(&format!("task_{n}"), TASKS));
+    let tasks = tasks.collect::<Vec<_>>().join(",");
+    let mut words = vec!["optimize".to_owned(), format!("--task {tasks}")];
     words.extend(setup(&inputs));
     words.push(format!("--optimizer {}", config.optimizer));
     words.push(format!("--objective {}", config.objective));

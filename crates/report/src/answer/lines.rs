@@ -125,7 +125,7 @@ pub fn force(answer: &Answer) -> Option<Line> {
         }
         None => format!("try --constraint 'peak-force<={:.0}'", acceptable(answer)),
     };
-    Some(line("force", format!("{}; {remedy}", excess.words())))
+    Some(line("force", format!("{}; {remedy}", excess.words(&answer.record.config.robot))))
 }
 
 /// Returns the largest force that all connectors and the robot withstand, N.

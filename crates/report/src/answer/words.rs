@@ -3,7 +3,7 @@
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::{Measure, Objectives};
 use insertion::evaluation::{RobustRange, SuccessRate, Window};
-use insertion::outcome::{FailureClass, Outcome};
+use insertion::outcome::Outcome;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::Estimate;
 use study::{Recorded, StudyConfig, StudyRecord};
@@ -82,23 +82,18 @@ pub fn outcome(outcome: Outcome) -> String {
     format!("{}{class}", outcome.label())
 }
 
+/// Advice for a nominal start without a failure class, then for each class.
+const REMEDIES: [&str; 5] = [
+    "Check the task's masses, shapes and strokes",
+    "Check the grip's force and friction, and that the start is clear of the socket",
+    "Check the task's start and the strokes of its search: the plug does not reach the opening",
+    "Check the clearance of plug and socket, the strokes, and the finger's remote centre",
+    "Check the grip's force and friction against the force that the insertion needs",
+];
+
 /// Returns advice for a nominal start that ends with this outcome, as a sentence without a full stop.
 pub fn remedy(nominal: Outcome) -> &'static str {
-    match nominal {
-        Outcome::Failed(FailureClass::ContactLossBeforeSearch) => {
-            "Check the grip's force and friction, and that the start is clear of the socket"
-        }
-        Outcome::Failed(FailureClass::PlugMissed) => {
-            "Check the task's start and the strokes of its search: the plug does not reach the opening"
-        }
-        Outcome::Failed(FailureClass::Jammed) => {
-            "Check the clearance of plug and socket, the strokes, and the finger's remote centre"
-        }
-        Outcome::Failed(FailureClass::ContactLossInInsertion) => {
-            "Check the grip's force and friction against the force that the insertion needs"
-        }
-        Outcome::Diverged | Outcome::Inserted => "Check the task's masses, shapes and strokes",
-    }
+    REMEDIES[usize::from(nominal.failure().unwrap_or(0))]
 }
 
 /// Returns the outcome that ends a window on one side, in words.

@@ -15,7 +15,7 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     Some(html! {
         (table(
             &["finger", "range on the bench", "80 % interval", "probability of the best", "fails below | above"],
-            &found.best.iter().map(row).collect::<Vec<_>>(),
+            found.best.iter().map(row),
         ))
         p {
             "From " (found.effort.simulations) " simulations with drawn friction, preload, robot and print, and the \

@@ -8,7 +8,8 @@ use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::FontTransform;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::text_anchor::Pos;
+pub(super) use plotters::style::text_anchor::{HPos, VPos};
 use std::ops::Range;
 
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;

@@ -227,7 +227,7 @@ pub fn page(comparison: &Comparison) -> Result<String, ReportError> {
             )
         },
     );
-    let rows: Vec<_> = groups.iter().map(|group| group.row("–").to_vec()).collect();
+    let rows = groups.iter().map(|group| group.row("–").to_vec());
     let convergence = render("the comparison", PLOT, |area| draw(area, comparison, ""))?;
     let caption = "Best so far: the median as a line, the quartiles as a band.";
     let body = html! {
@@ -240,7 +240,7 @@ pub fn page(comparison: &Comparison) -> Result<String, ReportError> {
                     " (TOLERANCE_MM) " mm below it."
                 }
             }
-            section { h2 { "Evaluations" } (table(&HEAD, &rows)) }
+            section { h2 { "Evaluations" } (table(&HEAD, rows)) }
             section { h2 { "Convergence" } (figure(&convergence, "best so far by optimizer", caption)) }
         }
     };

@@ -2,7 +2,7 @@
 //! hypervolume.
 
 use super::ReportError;
-use super::chart::{Area, DrawResult, axes, padded_range, render, text_style};
+use super::chart::{Area, DrawResult, HPos, VPos, axes, padded_range, render, text_style};
 use super::elements::figure;
 use super::marks::{PointMark, Series, dashed, label, legend_above, line, points, stairs};
 use super::selection::{PLOTTED, change_points, note, selected};
@@ -11,7 +11,6 @@ use crate::answer::words::{settled, volume_unit};
 use insertion::evaluation::objective::Measure;
 use maud::Markup;
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
 use study::{Recorded, StudyRecord, volume};
 
 /// Plots the value of each evaluation and the best so far (with several objectives the hypervolume)

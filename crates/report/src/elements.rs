@@ -48,7 +48,7 @@ pub(super) fn definitions(pairs: &[(String, String)]) -> Markup {
 }
 
 /// Returns a table, which scrolls horizontally if it is wider than the page.
-pub(super) fn table(head: &[&str], rows: &[Vec<String>]) -> Markup {
+pub(super) fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Markup {
     html! {
         div.wide {
             table {

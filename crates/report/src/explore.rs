@@ -88,7 +88,7 @@ fn best(answer: &Answer) -> Markup {
     };
     let mut head = vec!["evaluation", "design", "value in the search", "window", "ends"];
     head.extend(any_measured.then_some("measured"));
-    table(&head, &best.iter().filter_map(row).collect::<Vec<_>>())
+    table(&head, best.iter().filter_map(row))
 }
 
 fn ends(window: &Window) -> [String; 2] {

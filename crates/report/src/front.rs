@@ -87,6 +87,6 @@ fn designs(answer: &Answer, Front { designs: front, volume: found }: &Front) -> 
             " from the reference point " (objectives.show(&found.reference))
             " (0 for objectives to be maximized, the largest value of the study for others)."
         }
-        (table(&head, &front.iter().map(row).collect::<Vec<_>>()))
+        (table(&head, front.iter().map(row)))
     }
 }

@@ -1,12 +1,11 @@
 //! Levers: table and tornado diagram.
 
-use super::chart::{Area, DrawResult, padded_range, render, rows, text_style};
+use super::chart::{Area, DrawResult, HPos, VPos, padded_range, render, rows, text_style};
 use super::marks::{bar, dashed, label};
 use super::theme::{BLUE, INK, MUTED, ORANGE};
 use super::{ReportError, text_table};
 use analysis::levers::{Lever, Levers, difference_mm, is_relevant, thousandths};
 use plotters::prelude::Color;
-use plotters::style::text_anchor::{HPos, VPos};
 
 /// Bar of the diagram, from the present range to the ranges at both ends of a lever.
 struct Bar<'a> {

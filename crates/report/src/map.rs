@@ -1,7 +1,7 @@
 //! Picture of a capture map.
 
 use super::ReportError;
-use super::chart::{Area, DrawResult, axes, render, text_style};
+use super::chart::{Area, DrawResult, HPos, VPos, axes, render, text_style};
 use super::marks::{PointMark, bar, points};
 use super::theme::{
     Colour, DIVERGED, INK, INSERTED, JAMMED, LOST, LOST_EARLY, MISSED, MUTED, PAPER,
@@ -10,7 +10,6 @@ use crate::answer::words::outcome as numbered;
 use analysis::map::{CaptureMap, MapAxis, OutcomeCode};
 use insertion::outcome::{FailureClass, Outcome};
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
 
 /// Outcomes and their colours, in the order of the legend.
 const COLOURS: [(Outcome, Colour); 6] = [

@@ -1,9 +1,8 @@
 //! Elements drawn in plots: marked points, lines, stairs.
 
-use super::chart::{Area, Chart, DrawResult, PlotError, text_style};
+use super::chart::{Area, Chart, DrawResult, HPos, PlotError, VPos, text_style};
 use super::theme::{Colour, INK, MUTED};
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
 
 /// Mark of a point: shape (circle or cross), size in pixels, and style.
 #[derive(Clone, Copy)]

@@ -1,6 +1,6 @@
 //! Sensitivity of a measure to its inputs: table, JSON and chart.
 
-use super::chart::{Area, DrawResult, render, rows, text_style};
+use super::chart::{Area, DrawResult, HPos, VPos, render, rows, text_style};
 use super::marks::{bar, label, line};
 use super::theme::{BLUE, INK};
 use super::{ReportError, text_table};
@@ -8,7 +8,6 @@ use analysis::levers::thousandths;
 use parameters::Parameter;
 use parameters::plan::saltelli::Indices;
 use plotters::prelude::Color;
-use plotters::style::text_anchor::{HPos, VPos};
 use serde::Serialize;
 
 /// Result of a sensitivity analysis, as `--json` prints it.

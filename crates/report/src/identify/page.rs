@@ -2,7 +2,7 @@
 
 use super::{AXES, origin, short, unmodelled, validated};
 use crate::answer::words::{design, number, outcome, stiffness};
-use crate::chart::{Area, DrawResult, axes, padded_range, render, text_style};
+use crate::chart::{Area, DrawResult, HPos, VPos, axes, padded_range, render, text_style};
 use crate::elements::{definitions, document, stacked, table};
 use crate::marks::{dashed, label, line};
 use crate::page::PLOT;
@@ -18,7 +18,6 @@ use insertion::outcome::Outcome;
 use maud::{Markup, PreEscaped, html};
 use parameters::{Parameter, Scale, Transform};
 use plotters::prelude::Color;
-use plotters::style::text_anchor::{HPos, VPos};
 
 /// Largest number of points of a curve, and of points before the first contact (0.1 s).
 const POINTS: usize = 400;
@@ -279,22 +278,19 @@ fn attempt(one: &Compared) -> Markup {
 
 /// Returns the misfit of the force by phase and axis.
 fn misfit(compared: &[Compared]) -> Markup {
+    let number = |misfit: f64| match misfit > 0.0 {
+        true => format!("{misfit:.2}"),
+        false => "not compared".to_owned(),
+    };
+    let row = |phase: &[Misfit]| {
+        let cells = phase.iter().map(|one| match one.before.max(one.after) > 0.0 {
+            true => format!("{} → {}", number(one.before), number(one.after)),
+            false => number(0.0),
+        });
+        phase.first().map(|one| one.phase.to_owned()).into_iter().chain(cells).collect()
+    };
     let all = misfits(compared);
-    let rows: Vec<Vec<String>> = all
-        .chunk_by(|a, b| a.phase == b.phase)
-        .map(|phase| {
-            let number = |misfit: f64| match misfit > 0.0 {
-                true => format!("{misfit:.2}"),
-                false => "not compared".to_owned(),
-            };
-            let cells = phase.iter().map(|one| match one.before.max(one.after) > 0.0 {
-                true => format!("{} → {}", number(one.before), number(one.after)),
-                false => number(0.0),
-            });
-            phase.first().map(|one| one.phase.to_owned()).into_iter().chain(cells).collect()
-        })
-        .collect();
-    table(&["misfit", "fx", "fy", "fz"], &rows)
+    table(&["misfit", "fx", "fy", "fz"], all.chunk_by(|a, b| a.phase == b.phase).map(row))
 }
 
 /// Returns a sentence on the components of the force that the identified numbers explain less well.

@@ -173,7 +173,7 @@ fn trust(trust: &Trust) -> Value {
             json["measured"] = json!(fingers);
             json["loo_mean_deviation_percent"] = json!(error_percent);
         }
-        Trust::Published { nearest, .. } => {
+        Trust::Published { nearest } => {
             let of_task = nearest.iter().flat_map(|(task, fingers)| {
                 fingers.iter().map(move |(finger, range_mm)| {
                     json!({"task": task, "values": finger, "range_mm": range_mm})

@@ -88,13 +88,12 @@ fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> V
         let text = lines::by_ribs(by_ribs).into_iter().nth(at);
         let text = text.map_or(String::new(), |(name, text)| format!("{name}: {text}"));
         let window = match by_ribs {
-            ByRibs::Measured(tasks) => tasks.get(at).map(|task| ends_mm(&task.window)),
+            ByRibs::Measured(tasks) => tasks.get(at).map(|task| ("ribs", ends_mm(&task.window))),
             ByRibs::Refused(_) => None,
         };
-        let parts = window.map(|window| ("ribs", window)).into_iter().collect();
-        rows.push(Bar::placed(text, parts, None));
+        rows.push(Bar::placed(text, window.into_iter().collect(), None));
     }
-    if let Trust::Published { nearest, .. } = &answer.trust {
+    if let Trust::Published { nearest } = &answer.trust {
         rows.extend(nearest.get(at).iter().flat_map(|(_, fingers)| fingers).map(published));
     }
     rows

@@ -17,10 +17,7 @@ use study::{Recorded, StudyRecord};
 pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<Option<String>, ReportError> {
     let several = record.config.objective.single().is_none();
     let any = record.evaluations.iter().any(|recorded| recorded.score.is_some());
-    if !several || !any {
-        return Ok(None);
-    }
-    render("the front", size, |area| draw(area, record)).map(Some)
+    (several && any).then(|| render("the front", size, |area| draw(area, record))).transpose()
 }
 
 /// Returns the plot, hypervolume and designs; `None` for a single objective.

@@ -106,8 +106,7 @@ fn nominal(nearest: &Recorded, fails: Option<Outcome>, files: &PageFiles) -> Mar
 /// Returns the end of the window that is shown first: a jam or a miss is more informative than a lost plug.
 pub fn preferred(answer: &Answer) -> &'static str {
     let informative = |end: Option<Outcome>| {
-        let informative = [FailureClass::PlugMissed, FailureClass::Jammed].map(Outcome::Failed);
-        end.is_some_and(|end| informative.contains(&end))
+        matches!(end, Some(Outcome::Failed(FailureClass::PlugMissed | FailureClass::Jammed)))
     };
     let [negative, positive] = ENDS.map(|(end, _)| end);
     let window =

@@ -6,7 +6,6 @@ use input::shipped::{
     FINGERS, MEASUREMENTS, ROBOTS, SPACES, STIFFNESS, Shipped, TASKS, UNCERTAINTIES,
 };
 use insertion::evaluation::INDIFFERENCE_MM;
-use insertion::evaluation::objective::Aggregate;
 use insertion::trial::engine::EngineKind;
 use std::path::Path;
 use study::{CELL, FINGER, Provenance, StudyRecord, input_path, sha256_hex};
@@ -121,7 +120,9 @@ pub fn rerun(record: &StudyRecord) -> Vec<String> {
     if config.uncertainty.is_some() {
         words.push(format!("--uncertainty {}", inputs.input("uncertainty", UNCERTAINTIES)));
     }
-    words.extend(config.aggregate.as_ref().map(aggregate));
+    let aggregate = config.aggregate.iter().map(|of| format!("--aggregate {of}"));
+    // Weights follow the word in the configuration, and have their own option.
+    words.extend(aggregate.map(|of| of.replace("weighted ", "weighted --weights ")));
     if config.indifference_mm != INDIFFERENCE_MM {
         words.push(format!("--indifference-mm {}", config.indifference_mm));
     }
@@ -173,14 +174,4 @@ fn setup(inputs: &InputArguments) -> Vec<String> {
         words.push(format!("--engine {engine}"));
     }
     words
-}
-
-fn aggregate(aggregate: &Aggregate) -> String {
-    match aggregate {
-        Aggregate::Weighted(weights) => {
-            let weights: Vec<String> = weights.iter().map(f64::to_string).collect();
-            format!("--aggregate weighted --weights {}", weights.join(","))
-        }
-        other => format!("--aggregate {other}"),
-    }
 }

@@ -248,9 +248,8 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
         let before = before.filter(|before| Some(*before) != found.design.value());
         let before = before
             .map_or(String::new(), |before| format!("; {} in the search", measure.show(before)));
-        let count = answer.walked.len();
-        let plural = if count == 1 { "" } else { "s" };
-        lines.push(line("walked", format!("step by step: {count} design{plural}{before}")));
+        let designs = input::counted(answer.walked.len(), "design");
+        lines.push(line("walked", format!("step by step: {designs}{before}")));
     }
     if answer.record.on_bench.is_some() {
         lines.extend(simulated(answer, found));
@@ -361,11 +360,11 @@ pub fn drawn(evaluation: &Evaluation) -> Vec<Line> {
 
 /// Returns the window with stiffness computed from the ribs, task by task.
 pub fn by_ribs(found: &ByRibs) -> Vec<Line> {
-    let tasks = match found {
-        ByRibs::Refused(why) => return vec![line("from its ribs", why)],
-        ByRibs::Measured(tasks) => tasks,
+    let texts = match found {
+        ByRibs::Refused(why) => vec![why.clone()],
+        ByRibs::Measured(tasks) => tasks.iter().map(tolerated).collect(),
     };
-    tasks.iter().map(|evaluation| line("from its ribs", tolerated(evaluation))).collect()
+    texts.into_iter().map(|text| line("from its ribs", text)).collect()
 }
 
 /// Returns range, window and taught start in one line.

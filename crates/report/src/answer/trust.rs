@@ -25,8 +25,6 @@ pub enum Trust {
         /// For each task the finger itself, if it was measured, or the measured fingers of the most similar stiffness,
         /// nearest first.
         nearest: Vec<(String, Vec<MeasuredFinger>)>,
-        /// Whether the finger itself was measured on all tasks.
-        itself: bool,
     },
     /// Simulated only.
     Simulated {
@@ -54,10 +52,7 @@ impl Trust {
         let nearest: Option<Vec<(String, Vec<MeasuredFinger>)>> =
             record.config.tasks().map(nearest).collect();
         match nearest {
-            Some(nearest) => {
-                let itself = nearest.iter().all(|(_, named)| named.len() == 1);
-                Trust::Published { nearest, itself }
-            }
+            Some(nearest) => Trust::Published { nearest },
             None => Trust::Simulated { error_percent: errors_percent() },
         }
     }
@@ -89,8 +84,9 @@ impl Trust {
                     .map_or(String::new(), |error| format!(", leave-one-out error {error:.1} %"));
                 format!("{} measured{missed}", input::counted(*fingers, "finger"))
             }
-            Trust::Published { nearest, itself } => {
-                let who = if *itself { "this finger" } else { "similar fingers" };
+            Trust::Published { nearest } => {
+                let itself = nearest.iter().all(|(_, fingers)| fingers.len() == 1);
+                let who = if itself { "this finger" } else { "similar fingers" };
                 let several = nearest.len() > 1;
                 let of = |(task, fingers): &(String, Vec<MeasuredFinger>)| {
                     let on = if several { format!(" on {task}") } else { String::new() };

@@ -31,7 +31,6 @@ pub fn html(result: &IdentificationResult) -> String {
     let (serious, notes): (Vec<_>, Vec<_>) = remarks.iter().partition(|remark| remark.serious);
     let (of_all, of_logs): (Vec<&Remark>, Vec<&Remark>) =
         notes.into_iter().partition(|note| note.file == *runs);
-    let rows: Vec<_> = found.unknowns.iter().map(unknown).collect();
     let body = html! {
         main {
             h1 { (headline(result)) }
@@ -45,7 +44,7 @@ pub fn html(result: &IdentificationResult) -> String {
             }
             section {
                 h2 { "Numbers of the cell" }
-                (stacked(&["number", "before", "identified", "remaining deviation", "from"], &rows))
+                (stacked(&["number", "before", "identified", "remaining deviation", "from"], found.unknowns.iter().map(unknown)))
                 p.muted {
                     "× is a factor on the number in the file. Remaining deviation: share of the prior's standard deviation; "
                     "the dashed mark is the share that was expected from these logs."
@@ -209,15 +208,14 @@ fn robot(found: &Identified) -> Markup {
         };
         [vec![format!("along {name}")], cells].concat()
     };
-    let axes: Vec<_> = AXES.into_iter().zip(&found.flange).map(axis).collect();
-    let probes: Vec<_> = found.probes.iter().map(probe).collect();
+    let axes = AXES.into_iter().zip(&found.flange).map(axis);
     html! {
-        (stacked(&["axis", "stiffness", "damping", "mass", "delay of the force", "force explained"], &axes))
+        (stacked(&["axis", "stiffness", "damping", "mass", "delay of the force", "force explained"], axes))
         @if let Some(preload) = found.preload {
             p { "Preload: " (number(preload.mean / MM, 3, "mm")) ", standard error " (number(preload.sd / MM, 5, "mm")) }
         }
-        @if !probes.is_empty() {
-            (stacked(&["probe", "friction", "tangential over normal force, along y", "and back"], &probes))
+        @if !found.probes.is_empty() {
+            (stacked(&["probe", "friction", "tangential over normal force, along y", "and back"], found.probes.iter().map(probe)))
         }
     }
 }

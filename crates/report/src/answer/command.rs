@@ -127,16 +127,10 @@ pub fn rerun(record: &StudyRecord) -> Vec<String> {
         words.push(format!("--indifference-mm {}", config.indifference_mm));
     }
     words.push(format!("--seed {}", config.seed));
-    if !config.settles {
-        words.push(format!("--budget {}", config.budget));
-    }
-    if config.polish > 0 {
-        words.push(format!("--polish {}", config.polish));
-    }
+    words.extend((!config.settles).then(|| format!("--budget {}", config.budget)));
+    words.extend((config.polish > 0).then(|| format!("--polish {}", config.polish)));
     words.push(format!("--batch {}", config.batch));
-    if config.asynchronous {
-        words.push("--async".to_owned());
-    }
+    words.extend(config.asynchronous.then(|| "--async".to_owned()));
     words
 }
 
@@ -170,8 +164,6 @@ fn setup(inputs: &InputArguments) -> Vec<String> {
         words.push(format!("--finger {}", inputs.input(FINGER, FINGERS)));
     }
     let engine = &provenance.engine.name;
-    if engine != EngineKind::Direct.name() {
-        words.push(format!("--engine {engine}"));
-    }
+    words.extend((engine != EngineKind::Direct.name()).then(|| format!("--engine {engine}")));
     words
 }

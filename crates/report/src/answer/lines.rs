@@ -197,15 +197,12 @@ pub fn edge(answer: &Answer) -> Option<String> {
     let at = |parameter: &Variable| {
         let value = design.design.get(&parameter.key)?;
         let (name, unit) = label(&parameter.key);
-        let bound = match value {
-            _ if parameter.low == parameter.high => return None,
-            _ if value == parameter.low => "least",
-            _ if value == parameter.high => "largest",
-            _ => return None,
-        };
+        let bounds = [(parameter.low, "least"), (parameter.high, "largest")];
+        let (_, bound) = bounds.into_iter().find(|(bound, _)| *bound == value)?;
         Some(format!("{name} {value}{unit} is the {bound}"))
     };
-    let found: Vec<String> = answer.record.config.space.parameters.iter().filter_map(at).collect();
+    let free = answer.record.config.space.parameters.iter().filter(|p| p.low != p.high);
+    let found: Vec<String> = free.filter_map(at).collect();
     (!found.is_empty()).then(|| format!("{} of the space searched", found.join(", ")))
 }
 
@@ -223,9 +220,7 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
         lines.push(line(measure.name(), format!("{}{of}", measure.show(value))));
     }
     for task in &found.tasks {
-        if config.several_tasks() {
-            lines.push(line("task", task.name));
-        }
+        lines.extend(config.several_tasks().then(|| line("task", task.name)));
         lines.extend(window(task.measured).into_iter().take(1));
         lines.extend(task.firm.map(|firm| match firm.window_mm() {
             None => line("firm window", "none: a repeat fails even at the nominal start"),
@@ -284,10 +279,7 @@ fn robot((task, found): &(&str, RankCorrelation)) -> Line {
     // A random order of n fingers has a rank correlation of mean 0 and variance 1 / (n - 1), taken as
     // normal: it exceeds this bound in less than 5 % of cases.
     let beyond_chance = found.spearman * (found.fingers as f64 - 1.0).sqrt() > 1.645;
-    let chance = match beyond_chance {
-        true => "",
-        false => "; not significant: measure the best few",
-    };
+    let chance = if beyond_chance { "" } else { "; not significant: measure the best few" };
     line(
         "robot",
         format!(

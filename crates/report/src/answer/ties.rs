@@ -56,10 +56,8 @@ impl Spread<'_> {
         let [low, high] = self.values;
         let short = ["infill density", "infill direction"].contains(&name.as_str());
         let name = if short { String::new() } else { format!("{name} ") };
-        match low == high {
-            true => format!("{name}{low}{unit}"),
-            false => format!("{name}{low} to {high}{unit}"),
-        }
+        let to = if low == high { String::new() } else { format!(" to {high}") };
+        format!("{name}{low}{to}{unit}")
     }
 }
 

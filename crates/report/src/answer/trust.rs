@@ -3,8 +3,7 @@
 use calibration::order::errors_percent;
 use calibration::published::{Origin, of_task};
 use insertion::space::Design;
-use insertion::stiffness::Measurement;
-use insertion::stiffness::designs;
+use insertion::stiffness::{Measurement, designs};
 use study::{Recorded, StudyRecord};
 
 /// Finger whose tolerable range was measured on a robot: its design and that range, mm.

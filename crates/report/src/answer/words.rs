@@ -51,12 +51,9 @@ pub fn stiffness(estimate: Estimate) -> String {
 
 /// Returns a number with `decimals` decimals and its unit; `none` if it is not finite or too long.
 pub fn number(value: f64, decimals: usize, unit: &str) -> String {
-    if !value.is_finite() {
-        return "none".to_owned();
-    }
-    let value = format!("{value:.decimals$}");
-    // For example the position of a body after a collision that threw it far away.
-    if value.len() > 15 { "none".to_owned() } else { format!("{value} {unit}") }
+    let text = format!("{value:.decimals$}");
+    // Too long is for example the position of a body after a collision that threw it far away.
+    if !value.is_finite() || text.len() > 15 { "none".to_owned() } else { format!("{text} {unit}") }
 }
 
 /// Returns the smallest and the largest value; infinity and minus infinity if there are no values.

@@ -81,9 +81,7 @@ fn best(answer: &Answer) -> Markup {
             format!("{} mm", span(ends_mm(window))),
             ends(window).join(" | "),
         ];
-        if any_measured {
-            cells.push(on_robot(found).map_or(String::new(), mm));
-        }
+        cells.extend(any_measured.then(|| on_robot(found).map_or(String::new(), mm)));
         Some(cells)
     };
     let mut head = vec!["evaluation", "design", "value in the search", "window", "ends"];

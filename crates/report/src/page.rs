@@ -58,10 +58,7 @@ fn sections(
 ) -> Result<Vec<Section>, ReportError> {
     let record = answer.record;
     let section = |id, title: &str, body: Option<Markup>| Some((id, title.to_owned(), body?));
-    let set_title = match record.on_bench {
-        None => "Ties",
-        Some(_) => "Ties by simulation alone",
-    };
+    let set_title = if record.on_bench.is_none() { "Ties" } else { "Ties by simulation alone" };
     let PostAnalysis { levers, maps, .. } = &files.analyses;
     let captioned = |svg: Result<String, ReportError>, caption: String| {
         svg.map(|svg| figure(&svg, &caption, &caption))

@@ -39,9 +39,7 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
             force.map_or(String::new(), |force| format!("{force:.0} N")),
             stiffness(recorded.stiffness.compliance),
         ];
-        if any_measured {
-            cells.push(on_robot(recorded).map_or(String::new(), mm));
-        }
+        cells.extend(any_measured.then(|| on_robot(recorded).map_or(String::new(), mm)));
         cells
     };
     let head = ["finger", "reason to choose it", "expected loss", "largest force", COMPLIANCE];

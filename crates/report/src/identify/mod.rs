@@ -109,11 +109,8 @@ pub fn text(result: &IdentificationResult) -> String {
     });
     text += "\n";
     text += &text_table(4, ["number", "prior", "identified", "from"], numbers);
-    for Unknown { posterior, advice, .. } in &found.unknowns {
-        if let Some(advice) = advice {
-            text += &format!("\n{}: {advice}", posterior.name);
-        }
-    }
+    let advice = |one: &Unknown| Some(format!("\n{}: {}", one.posterior.name, one.advice?));
+    text.extend(found.unknowns.iter().filter_map(advice));
     let misfit = &found.smoothed.misfit;
     if let (Some(first), Some(last)) = (misfit.first(), misfit.last()) {
         text += &format!(
@@ -130,9 +127,7 @@ pub fn text(result: &IdentificationResult) -> String {
         let warning = if one.is_doubtful() { "warning: " } else { "" };
         text += &format!("{warning}{}\n", validated(&one));
     }
-    for one in unmodelled(&found.compared) {
-        text += &format!("warning: {one}\n");
-    }
+    text.extend(unmodelled(&found.compared).iter().map(|one| format!("warning: {one}\n")));
     text
 }
 

@@ -2,9 +2,8 @@
 
 use super::Film;
 use crate::answer::words::{self, rounded};
-use contact::ContactPoint;
 use contact::scene::{Geom, Pose};
-use contact::shapes;
+use contact::{ContactPoint, shapes};
 use input::units::MM;
 use insertion::trial::record::Frame;
 use serde_json::{Value, json};

@@ -23,7 +23,7 @@ const SHOWN: usize = 10;
 pub(super) fn section(answer: &Answer, dir: &Path) -> Option<Markup> {
     let record = answer.record;
     record.best()?;
-    let model = surface::Model::of(record);
+    let model = surface::model(record);
     let data = data(answer, model.as_ref(), dir);
     Some(html! {
         p.muted {
@@ -99,7 +99,7 @@ pub(super) fn embedded(data: &Value) -> String {
 }
 
 /// Returns the data of the explorer.
-fn data(answer: &Answer, model: Option<&surface::Model>, dir: &Path) -> Value {
+fn data(answer: &Answer, model: Option<&impl Fn(&[f64]) -> (f64, f64)>, dir: &Path) -> Value {
     let (record, config) = (answer.record, &answer.record.config);
     let measure = config.objective.first();
     let parameter = |p: &Variable| {

@@ -17,12 +17,8 @@ fn draw(area: &Area<'_>, film: &Film) -> DrawResult {
     let recording = film.recording;
     let touched = recording.frames.iter().find(|frame| frame.force.norm() > 0.01);
     let from = touched.map_or(0.0, |frame| frame.time_s - 0.02);
-    let path: Vec<(f64, f64)> = recording
-        .frames
-        .iter()
-        .filter(|frame| frame.time_s >= from)
-        .map(|frame| (frame.depth_mm(), frame.force.norm()))
-        .collect();
+    let shown = recording.frames.iter().filter(|frame| frame.time_s >= from);
+    let path: Vec<_> = shown.map(|frame| (frame.depth_mm(), frame.force.norm())).collect();
     let needed = film.task.success.depth / input::units::MM;
     let x = (
         "depth of the plug's tip below the socket's top (mm)",

@@ -112,9 +112,8 @@ const SERIES: [Colour; 3] = [BLUE, ORANGE, GREEN];
 /// Draws the panel of one axis of stiffness against the direction or the density.
 fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> DrawResult {
     // Converts (density, direction) to (value along x, value of the curve), or back.
-    let swapped = |(density, direction): (f64, f64)| match by_direction {
-        true => (direction, density),
-        false => (density, direction),
+    let swapped = |(density, direction): (f64, f64)| {
+        if by_direction { (direction, density) } else { (density, direction) }
     };
     let of = |m: &Measurement| swapped((m.density_percent, m.direction_deg));
     let predict = |x: f64, curve: f64| {
@@ -122,9 +121,8 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> DrawR
         let Estimate { mean, sd } = model.predict(density, direction)?.axis(axis);
         Ok::<_, PlotError>((x, Estimate { mean: mean / N_PER_MM, sd: sd / N_PER_MM }))
     };
-    let name = |curve: f64| match by_direction {
-        true => format!("density {curve} %"),
-        false => format!("direction {curve}°"),
+    let name = |curve: f64| {
+        if by_direction { format!("density {curve} %") } else { format!("direction {curve}°") }
     };
     let measured = &model.measurements;
     let limits = padded_range(measured.iter().map(|m| of(m).0), 0.0);

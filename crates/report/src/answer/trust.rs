@@ -48,9 +48,7 @@ impl Trust {
             let named = nearest(fingers, finger);
             Some((String::from(task), (!named.is_empty()).then_some(named)?))
         };
-        let nearest: Option<Vec<(String, Vec<MeasuredFinger>)>> =
-            record.config.tasks().map(nearest).collect();
-        match nearest {
+        match record.config.tasks().map(nearest).collect() {
             Some(nearest) => Trust::Published { nearest },
             None => Trust::Simulated { error_percent: errors_percent() },
         }

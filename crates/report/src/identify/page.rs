@@ -31,6 +31,7 @@ pub fn html(result: &IdentificationResult) -> String {
     let (serious, notes): (Vec<_>, Vec<_>) = remarks.iter().partition(|remark| remark.serious);
     let (of_all, of_logs): (Vec<&Remark>, Vec<&Remark>) =
         notes.into_iter().partition(|note| note.file == *runs);
+    let unknowns = found.unknowns.iter().map(unknown);
     let body = html! {
         main {
             h1 { (headline(result)) }
@@ -44,7 +45,7 @@ pub fn html(result: &IdentificationResult) -> String {
             }
             section {
                 h2 { "Numbers of the cell" }
-                (stacked(&["number", "before", "identified", "remaining deviation", "from"], found.unknowns.iter().map(unknown)))
+                (stacked(&["number", "before", "identified", "remaining deviation", "from"], unknowns))
                 p.muted {
                     "× is a factor on the number in the file. Remaining deviation: share of the prior's standard deviation; "
                     "the dashed mark is the share that was expected from these logs."
@@ -209,13 +210,14 @@ fn robot(found: &Identified) -> Markup {
         [vec![format!("along {name}")], cells].concat()
     };
     let axes = AXES.into_iter().zip(&found.flange).map(axis);
+    let probes = found.probes.iter().map(probe);
     html! {
         (stacked(&["axis", "stiffness", "damping", "mass", "delay of the force", "force explained"], axes))
         @if let Some(preload) = found.preload {
             p { "Preload: " (number(preload.mean / MM, 3, "mm")) ", standard error " (number(preload.sd / MM, 5, "mm")) }
         }
         @if !found.probes.is_empty() {
-            (stacked(&["probe", "friction", "tangential over normal force, along y", "and back"], found.probes.iter().map(probe)))
+            (stacked(&["probe", "friction", "tangential over normal force, along y", "and back"], probes))
         }
     }
 }

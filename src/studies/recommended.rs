@@ -69,7 +69,7 @@ fn simulated(answer: &Answer) -> Value {
         "positive_mm": positive,
         "firm_negative_mm": firm[0],
         "firm_positive_mm": firm[1],
-        "peak_force_n": found.peak_force_n,
+        "peak_force_n": answer.record.measure(found.design, Measure::PeakForce),
     });
     match found.by_ribs {
         Some(ByRibs::Measured(tasks)) => json["computed"] = json!({"tasks": tasks}),
@@ -173,10 +173,10 @@ fn trust(trust: &Trust) -> Value {
             json["measured"] = json!(fingers);
             json["loo_mean_deviation_percent"] = json!(error_percent);
         }
-        Trust::Published { nearest, .. } => {
+        Trust::Published { nearest } => {
             let of_task = nearest.iter().flat_map(|(task, fingers)| {
-                fingers.iter().map(move |finger| {
-                    json!({"task": task, "values": finger.design, "range_mm": finger.range_mm})
+                fingers.iter().map(move |(finger, range_mm)| {
+                    json!({"task": task, "values": finger, "range_mm": range_mm})
                 })
             });
             json["nearest_measured"] = of_task.collect();

@@ -39,8 +39,7 @@ pub fn evaluate(
     unit: &[f64],
     stop: &AtomicBool,
 ) -> Result<Evaluation, DesignError> {
-    let at = |(input, unit): (&'_ Parameter, &f64)| input.at(unit.clamp(0.0, 1.0));
-    let values = inputs.iter().zip(unit).map(|both| (both.0, at(both)));
+    let values = inputs.iter().zip(unit).map(|(input, at)| (input, input.at(at.clamp(0.0, 1.0))));
     let (errors, numbers): (Vec<_>, Vec<_>) =
         values.partition(|(input, _)| input.path.kind() == Kind::Error);
     let design =

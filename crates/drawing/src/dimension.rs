@@ -23,12 +23,8 @@ impl Drawing {
             self.line([at - tick, at + tick], LINE);
         }
         self.line(shown, LINE);
-        self.text_along(shown, words);
-    }
-
-    /// Writes a text above the middle of a line, never upside down.
-    fn text_along(&mut self, [a, b]: [Point2<f64>; 2], words: &str) {
-        let (at, along) = (center(&a, &b), b - a);
+        let (at, along) = (center(&shown[0], &shown[1]), shown[1] - shown[0]);
+        // Never upside down.
         let back = along.x < -1e-9 || (along.x < 1e-9 && along.y > 0.0);
         let along = if back { -along } else { along };
         let [x, y, turn] = [at.x, at.y, libm::atan2(along.y, along.x).to_degrees()].map(rounded);

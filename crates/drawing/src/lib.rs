@@ -11,7 +11,6 @@ mod style;
 pub use style::{Font, Style};
 
 use nalgebra::{Point2, Vector2};
-use std::fmt::Write;
 
 /// Placement of a view on the drawing.
 #[derive(Debug, Clone, Copy)]
@@ -130,13 +129,11 @@ impl Drawing {
 
 /// Returns the path data of a line through points.
 fn path(points: impl IntoIterator<Item = Point2<f64>>) -> String {
-    let mut data = String::new();
-    for (i, point) in points.into_iter().enumerate() {
+    let step = |(i, point): (usize, Point2<f64>)| {
         let [x, y] = [point.x, point.y].map(rounded);
-        // Writing to a string cannot fail.
-        let _ = write!(data, "{}{x},{y}", if i == 0 { 'M' } else { 'L' });
-    }
-    data
+        format!("{}{x},{y}", if i == 0 { 'M' } else { 'L' })
+    };
+    points.into_iter().enumerate().map(step).collect()
 }
 
 /// Rounds to three decimals, finer than the eye can resolve; adding 0 turns -0 into 0.

@@ -24,18 +24,15 @@ struct Bar {
 }
 
 impl Bar {
-    fn placed(name: String, parts: Vec<(&'static str, [f64; 2])>) -> Self {
-        Bar { name, parts, ends: [None; 2], width_only: false }
+    fn placed(name: String, parts: Vec<(&'static str, [f64; 2])>, window: Option<&Window>) -> Self {
+        let ends = window.map_or([None; 2], |window| [window.end_negative, window.end_positive]);
+        Bar { name, parts, ends, width_only: false }
     }
 
     /// Returns a bar of ranges, mm, from outer to inner, without the ends of their windows.
     fn width_only(name: String, ranges_mm: &[(&'static str, f64)]) -> Self {
         let parts = ranges_mm.iter().map(|&(class, range_mm)| (class, [0.0, range_mm])).collect();
-        Bar { width_only: true, ..Bar::placed(name, parts) }
-    }
-
-    fn with_ends(self, window: &Window) -> Self {
-        Bar { ends: [window.end_negative, window.end_positive], ..self }
+        Bar { width_only: true, ..Bar::placed(name, parts, None) }
     }
 
     fn simulated(window: &Window, firm: Option<[f64; 2]>) -> Self {
@@ -49,7 +46,7 @@ impl Bar {
             None => format!("simulated: {} mm, not confirmed", span(whole)),
         };
         let parts = [("light", whole)].into_iter().chain(inner).collect();
-        Bar::placed(name, parts).with_ends(window)
+        Bar::placed(name, parts, Some(window))
     }
 }
 
@@ -77,7 +74,7 @@ fn on_robot(robot: &RobotWindow) -> Bar {
     let window = &robot.measured.window;
     let inserts = window.nominal == Outcome::Inserted;
     let parts = inserts.then(|| ("light", ends_mm(window))).into_iter().collect();
-    Bar::placed(format!("on {}", robot.words()), parts).with_ends(window)
+    Bar::placed(format!("on {}", robot.words()), parts, Some(window))
 }
 
 fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> Vec<Bar> {
@@ -91,19 +88,19 @@ fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> V
         let text = lines::by_ribs(by_ribs).into_iter().nth(at);
         let text = text.map_or(String::new(), |(name, text)| format!("{name}: {text}"));
         let window = match by_ribs {
-            ByRibs::Measured(tasks) => tasks.get(at).map(|task| ends_mm(&task.window)),
+            ByRibs::Measured(tasks) => tasks.get(at).map(|task| ("ribs", ends_mm(&task.window))),
             ByRibs::Refused(_) => None,
         };
-        rows.push(Bar::placed(text, window.map(|window| ("ribs", window)).into_iter().collect()));
+        rows.push(Bar::placed(text, window.into_iter().collect(), None));
     }
-    if let Trust::Published { nearest, .. } = &answer.trust {
+    if let Trust::Published { nearest } = &answer.trust {
         rows.extend(nearest.get(at).iter().flat_map(|(_, fingers)| fingers).map(published));
     }
     rows
 }
 
 /// Returns the bar of a published finger, of which only the range is known.
-fn published(MeasuredFinger { design: finger, range_mm }: &MeasuredFinger) -> Bar {
+fn published((finger, range_mm): &MeasuredFinger) -> Bar {
     let range = mm(*range_mm);
     let name = format!("measured on a robot, {}: {range}, ends not recorded", design(finger));
     Bar::width_only(name, &[("measured", *range_mm)])

@@ -4,7 +4,7 @@ use super::elements::table;
 use crate::answer::words::{design, interval, mm};
 use insertion::outcome::FailureClass;
 use maud::{Markup, html};
-use study::{BenchFinger, BenchPrediction, StudyRecord};
+use study::{BenchFinger, StudyRecord};
 
 /// File with the predictions for every finger of the space, next to the page.
 const TABLE: &str = "bench_predictions.csv";
@@ -15,9 +15,14 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     Some(html! {
         (table(
             &["finger", "range on the bench", "80 % interval", "probability of the best", "fails below | above"],
-            &found.best.iter().map(row).collect::<Vec<_>>(),
+            found.best.iter().map(row),
         ))
-        p { (method(found)) " " a href=(TABLE) { "All predicted fingers" } "." }
+        p {
+            "From " (found.effort.simulations) " simulations with drawn friction, preload, robot and print, and the \
+            measurements; the error of the emulator (a Gaussian process) on further simulations is "
+            (format!("{:.2}", found.trust.emulator_error_mm)) " mm. The search did not use the measurements: it \
+            maximized the simulated window. " a href=(TABLE) { "All predicted fingers" } "."
+        }
     })
 }
 
@@ -31,14 +36,4 @@ fn row(finger: &BenchFinger) -> Vec<String> {
         format!("{:.1} %", 100.0 * finger.probability_best),
         format!("{below} | {above}"),
     ]
-}
-
-fn method(found: &BenchPrediction) -> String {
-    let simulations = found.effort.simulations;
-    format!(
-        "From {simulations} simulations with drawn friction, preload, robot and print, and the \
-         measurements; the error of the emulator (a Gaussian process) on further simulations is \
-         {:.2} mm. The search did not use the measurements: it maximized the simulated window.",
-        found.trust.emulator_error_mm
-    )
 }

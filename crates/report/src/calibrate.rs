@@ -42,10 +42,8 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
     });
     let head = ["best on the bench", "range mm", "80 % interval", "is the best", "simulated"];
     text += &text_table(1, head, best);
-    text + &warnings(subject, result)
-        .iter()
-        .map(|words| format!("warning: {words}\n"))
-        .collect::<String>()
+    text.extend(warnings(subject, result).iter().map(|words| format!("warning: {words}\n")));
+    text
 }
 
 /// Returns prior and posterior intervals of the parameters, within 80 columns.

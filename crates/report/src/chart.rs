@@ -8,7 +8,8 @@ use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::FontTransform;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::text_anchor::Pos;
+pub(super) use plotters::style::text_anchor::{HPos, VPos};
 use std::ops::Range;
 
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -27,7 +28,7 @@ pub(super) fn render(
     let mut svg = String::new();
     let canvas = |svg| -> DrawResult {
         let area = SVGBackend::with_string(svg, size).into_drawing_area();
-        area.fill(&PAPER.rgb())?;
+        area.fill(&PAPER.rgb)?;
         draw(&area)?;
         Ok(area.present()?)
     };
@@ -72,7 +73,7 @@ fn framed<'a, 'b>(
     let mut builder = ChartBuilder::on(area);
     builder.margin(10).margin_right(18).x_label_area_size(48).y_label_area_size(left);
     if !title.is_empty() {
-        builder.caption(title, font(19).color(&INK.rgb()));
+        builder.caption(title, font(19).color(&INK.rgb));
     }
     let mut chart = builder.build_cartesian_2d(x.1, y.1)?;
     let mut mesh = chart.configure_mesh();
@@ -85,11 +86,11 @@ fn framed<'a, 'b>(
         .y_labels(7)
         .x_label_formatter(&|v| thousandths(*v))
         .y_label_formatter(&|v| thousandths(*v))
-        .axis_style(MUTED.rgb())
-        .bold_line_style(LINES.rgb())
+        .axis_style(MUTED.rgb)
+        .bold_line_style(LINES.rgb)
         .light_line_style(TRANSPARENT)
-        .label_style(font(15).color(&INK.rgb()))
-        .axis_desc_style(font(16).color(&INK.rgb()))
+        .label_style(font(15).color(&INK.rgb))
+        .axis_desc_style(font(16).color(&INK.rgb))
         .draw()?;
     Ok(chart)
 }
@@ -104,9 +105,9 @@ pub(super) fn legend<'a, 'b: 'a>(
         .position(corner)
         .margin(8)
         .legend_area_size(26)
-        .label_font(font(15).color(&INK.rgb()))
-        .background_style(PAPER.rgb().mix(0.85))
-        .border_style(LINES.rgb())
+        .label_font(font(15).color(&INK.rgb))
+        .background_style(PAPER.rgb.mix(0.85))
+        .border_style(LINES.rgb)
         .draw();
     Ok(legend?)
 }
@@ -118,7 +119,7 @@ pub(super) fn font(size: u32) -> FontDesc<'static> {
 
 /// Returns a text style whose anchor is at `h` and `v` of the text.
 pub(super) fn text_style(size: u32, colour: Colour, h: HPos, v: VPos) -> TextStyle<'static> {
-    font(size).color(&colour.rgb()).pos(Pos::new(h, v))
+    font(size).color(&colour.rgb).pos(Pos::new(h, v))
 }
 
 /// Returns the range of the finite values, widened by a share `room` of it on either side.

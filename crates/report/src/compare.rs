@@ -113,9 +113,8 @@ pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, String> 
         best.ok_or("no evaluation of these studies has a value: there is nothing to compare")?;
     let target_mm = best_known_mm - TOLERANCE_MM;
     let group = |((optimizer, batch), studies): ((String, u64), Vec<&(String, StudyRecord)>)| {
-        let to_target: Vec<Option<u64>> =
+        let to_target: Vec<f64> =
             studies.iter().map(|(_, record)| reached(record, target_mm)).collect();
-        let late = |n: &Option<u64>| n.map_or(f64::INFINITY, |n| n as f64);
         let shortest = studies.iter().map(|(_, record)| record.evaluations.len()).min();
         let curves: Vec<Vec<f64>> = studies.iter().map(|(_, record)| curve(record)).collect();
         let band = |n| Quartiles::of(curves.iter().map(|curve| curve[n]).collect());
@@ -123,8 +122,8 @@ pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, String> 
             optimizer,
             batch,
             studies: studies.len(),
-            reached: to_target.iter().flatten().count(),
-            evaluations_to_target: Quartiles::of(to_target.iter().map(late).collect()),
+            reached: to_target.iter().filter(|n| n.is_finite()).count(),
+            evaluations_to_target: Quartiles::of(to_target),
             best_so_far_mm: (0..shortest.unwrap_or(0)).map(band).collect(),
         }
     };
@@ -167,11 +166,11 @@ fn check_same_problem(
     }
 }
 
-/// Returns the number of evaluations until a value of at least `target`, mm.
-fn reached(record: &StudyRecord, target: f64) -> Option<u64> {
+/// Returns the number of evaluations until a value of at least `target`, mm; infinite if there is none.
+fn reached(record: &StudyRecord, target: f64) -> f64 {
     let mut values = record.evaluations.iter().map(|r| r.feasible()?.first().copied());
-    let index = values.position(|v| v.is_some_and(|v| v >= target - ROUNDING_MM))?;
-    Some(index as u64 + 1)
+    let index = values.position(|v| v.is_some_and(|v| v >= target - ROUNDING_MM));
+    index.map_or(f64::INFINITY, |index| index as f64 + 1.0)
 }
 
 /// Returns the best so far after each evaluation; minus infinity before the first value.
@@ -227,7 +226,7 @@ pub fn page(comparison: &Comparison) -> Result<String, ReportError> {
             )
         },
     );
-    let rows: Vec<_> = groups.iter().map(|group| group.row("–").to_vec()).collect();
+    let rows = groups.iter().map(|group| group.row("–").to_vec());
     let convergence = render("the comparison", PLOT, |area| draw(area, comparison, ""))?;
     let caption = "Best so far: the median as a line, the quartiles as a band.";
     let body = html! {
@@ -240,7 +239,7 @@ pub fn page(comparison: &Comparison) -> Result<String, ReportError> {
                     " (TOLERANCE_MM) " mm below it."
                 }
             }
-            section { h2 { "Evaluations" } (table(&HEAD, &rows)) }
+            section { h2 { "Evaluations" } (table(&HEAD, rows)) }
             section { h2 { "Convergence" } (figure(&convergence, "best so far by optimizer", caption)) }
         }
     };
@@ -268,7 +267,7 @@ fn draw(area: &Area<'_>, comparison: &Comparison, title: &str) -> DrawResult {
         let mut outline = quartile(group, 0);
         outline.extend(quartile(group, 2).into_iter().rev());
         if !outline.is_empty() {
-            chart.draw_series([Polygon::new(outline, colour.rgb().mix(0.16).filled())])?;
+            chart.draw_series([Polygon::new(outline, colour.rgb.mix(0.16).filled())])?;
         }
     }
     let several =
@@ -277,11 +276,11 @@ fn draw(area: &Area<'_>, comparison: &Comparison, title: &str) -> DrawResult {
         let batch = if several(group) { format!(", batch {}", group.batch) } else { String::new() };
         let plural = if group.studies == 1 { "study" } else { "studies" };
         let label = format!("{}{batch} ({} {plural})", group.optimizer, group.studies);
-        line(&mut chart, quartile(group, 1), colour.rgb().stroke_width(3), label)?;
+        line(&mut chart, quartile(group, 1), colour.rgb.stroke_width(3), label)?;
     }
     let target = vec![(0.0, comparison.target_mm), (longest, comparison.target_mm)];
     let label = format!("best known - {TOLERANCE_MM} mm");
-    line(&mut chart, target, MUTED.rgb().stroke_width(1), label)?;
+    line(&mut chart, target, MUTED.rgb.stroke_width(1), label)?;
     legend(&mut chart, SeriesLabelPosition::LowerRight)
 }
 

@@ -2,7 +2,7 @@
 //! hypervolume.
 
 use super::ReportError;
-use super::chart::{Area, DrawResult, axes, padded_range, render, text_style};
+use super::chart::{Area, DrawResult, HPos, VPos, axes, padded_range, render, text_style};
 use super::elements::figure;
 use super::marks::{PointMark, Series, dashed, label, legend_above, line, points, stairs};
 use super::selection::{PLOTTED, change_points, note, selected};
@@ -11,7 +11,6 @@ use crate::answer::words::{settled, volume_unit};
 use insertion::evaluation::objective::Measure;
 use maud::Markup;
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
 use study::{Recorded, StudyRecord, volume};
 
 /// Plots the value of each evaluation and the best so far (with several objectives the hypervolume)
@@ -116,7 +115,7 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> DrawResult {
         ]);
     }
     series.retain(|(points, ..)| !points.is_empty());
-    let best_line = ORANGE.rgb().stroke_width(3);
+    let best_line = ORANGE.rgb.stroke_width(3);
     let area = legend_above(area, &series, (best_line, name))?;
     let mut chart = axes(&area, "", x, (&y_label, range))?;
     if record.settled {

@@ -48,7 +48,7 @@ pub(super) fn definitions(pairs: &[(String, String)]) -> Markup {
 }
 
 /// Returns a table, which scrolls horizontally if it is wider than the page.
-pub(super) fn table(head: &[&str], rows: &[Vec<String>]) -> Markup {
+pub(super) fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Markup {
     html! {
         div.wide {
             table {
@@ -60,7 +60,7 @@ pub(super) fn table(head: &[&str], rows: &[Vec<String>]) -> Markup {
 }
 
 /// Returns a table whose cells are stacked with their headings on a phone.
-pub(super) fn stacked(head: &[&str], rows: &[Vec<impl Render>]) -> Markup {
+pub(super) fn stacked(head: &[&str], rows: impl IntoIterator<Item = Vec<impl Render>>) -> Markup {
     html! {
         table.stacked {
             thead { tr { @for name in head { th { (name) } } } }

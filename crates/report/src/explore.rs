@@ -23,7 +23,7 @@ const SHOWN: usize = 10;
 pub(super) fn section(answer: &Answer, dir: &Path) -> Option<Markup> {
     let record = answer.record;
     record.best()?;
-    let model = surface::Model::of(record);
+    let model = surface::model(record);
     let data = data(answer, model.as_ref(), dir);
     Some(html! {
         p.muted {
@@ -81,14 +81,12 @@ fn best(answer: &Answer) -> Markup {
             format!("{} mm", span(ends_mm(window))),
             ends(window).join(" | "),
         ];
-        if any_measured {
-            cells.push(on_robot(found).map_or(String::new(), mm));
-        }
+        cells.extend(any_measured.then(|| on_robot(found).map_or(String::new(), mm)));
         Some(cells)
     };
     let mut head = vec!["evaluation", "design", "value in the search", "window", "ends"];
     head.extend(any_measured.then_some("measured"));
-    table(&head, &best.iter().filter_map(row).collect::<Vec<_>>())
+    table(&head, best.iter().filter_map(row))
 }
 
 fn ends(window: &Window) -> [String; 2] {
@@ -101,7 +99,7 @@ pub(super) fn embedded(data: &Value) -> String {
 }
 
 /// Returns the data of the explorer.
-fn data(answer: &Answer, model: Option<&surface::Model>, dir: &Path) -> Value {
+fn data(answer: &Answer, model: Option<&impl Fn(&[f64]) -> (f64, f64)>, dir: &Path) -> Value {
     let (record, config) = (answer.record, &answer.record.config);
     let measure = config.objective.first();
     let parameter = |p: &Variable| {

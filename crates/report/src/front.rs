@@ -17,10 +17,7 @@ use study::{Recorded, StudyRecord};
 pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<Option<String>, ReportError> {
     let several = record.config.objective.single().is_none();
     let any = record.evaluations.iter().any(|recorded| recorded.score.is_some());
-    if !several || !any {
-        return Ok(None);
-    }
-    render("the front", size, |area| draw(area, record)).map(Some)
+    (several && any).then(|| render("the front", size, |area| draw(area, record))).transpose()
 }
 
 /// Returns the plot, hypervolume and designs; `None` for a single objective.
@@ -54,7 +51,7 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> DrawResult {
     points(&mut chart, front.iter().copied(), PointMark::ring(ORANGE, 5, 2), "front")?;
     // With three objectives the projected front is not a line.
     if record.config.objective.measures().len() == 2 {
-        line(&mut chart, front, ORANGE.rgb().stroke_width(2), "")?;
+        line(&mut chart, front, ORANGE.rgb.stroke_width(2), "")?;
     }
     legend(&mut chart, SeriesLabelPosition::UpperLeft)
 }
@@ -87,6 +84,6 @@ fn designs(answer: &Answer, Front { designs: front, volume: found }: &Front) -> 
             " from the reference point " (objectives.show(&found.reference))
             " (0 for objectives to be maximized, the largest value of the study for others)."
         }
-        (table(&head, &front.iter().map(row).collect::<Vec<_>>()))
+        (table(&head, front.iter().map(row)))
     }
 }

@@ -1,12 +1,11 @@
 //! Levers: table and tornado diagram.
 
-use super::chart::{Area, DrawResult, padded_range, render, rows, text_style};
+use super::chart::{Area, DrawResult, HPos, VPos, padded_range, render, rows, text_style};
 use super::marks::{bar, dashed, label};
 use super::theme::{BLUE, INK, MUTED, ORANGE};
 use super::{ReportError, text_table};
 use analysis::levers::{Lever, Levers, difference_mm, is_relevant, thousandths};
 use plotters::prelude::Color;
-use plotters::style::text_anchor::{HPos, VPos};
 
 /// Bar of the diagram, from the present range to the ranges at both ends of a lever.
 struct Bar<'a> {
@@ -113,7 +112,7 @@ fn draw(area: &Area<'_>, levers: &Levers, bars: &[Bar<'_>]) -> DrawResult {
         for ((mm, words), top) in ends.iter().zip([y - 0.37, y - 0.65]) {
             let (by, anchor) = if *mm < base { (-5, HPos::Right) } else { (5, HPos::Left) };
             let style = text_style(TEXT, ink, anchor, VPos::Center);
-            bar(&mut chart, [base, *mm], [top, top - 0.27], fill.rgb().mix(share).filled())?;
+            bar(&mut chart, [base, *mm], [top, top - 0.27], fill.rgb.mix(share).filled())?;
             label(&mut chart, (*mm, top - 0.14), (by, 0), words, &style)?;
         }
         // Between the lines of text.

@@ -1,7 +1,7 @@
 //! Picture of a capture map.
 
 use super::ReportError;
-use super::chart::{Area, DrawResult, axes, render, text_style};
+use super::chart::{Area, DrawResult, HPos, VPos, axes, render, text_style};
 use super::marks::{PointMark, bar, points};
 use super::theme::{
     Colour, DIVERGED, INK, INSERTED, JAMMED, LOST, LOST_EARLY, MISSED, MUTED, PAPER,
@@ -10,7 +10,6 @@ use crate::answer::words::outcome as numbered;
 use analysis::map::{CaptureMap, MapAxis, OutcomeCode};
 use insertion::outcome::{FailureClass, Outcome};
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
 
 /// Outcomes and their colours, in the order of the legend.
 const COLOURS: [(Outcome, Colour); 6] = [
@@ -96,8 +95,8 @@ fn draw_head(area: &Area<'_>, [title, legend]: &[Vec<Vec<Entry>>; 2]) -> DrawRes
         for (entry, colour, x) in row {
             let square = [(x - 20, y - 7), (x - 6, y + 7)];
             match colour {
-                Some(colour) => area.draw(&Rectangle::new(square, colour.rgb().filled())),
-                None => area.draw(&Circle::new((x - 13, y), 2, MUTED.rgb().filled())),
+                Some(colour) => area.draw(&Rectangle::new(square, colour.rgb.filled())),
+                None => area.draw(&Circle::new((x - 13, y), 2, MUTED.rgb.filled())),
             }?;
             area.draw_text(entry, &text(15), (*x, y))?;
         }
@@ -120,7 +119,7 @@ fn draw(area: &Area<'_>, map: &CaptureMap) -> DrawResult {
             let to = from + stretch.len();
             let colour = COLOURS.into_iter().find(|(outcome, _)| *outcome == stretch[0].0);
             let x = [from, to].map(|at| first.value(at) - half(first));
-            let style = colour.map_or(PAPER, |(_, colour)| colour).rgb().filled();
+            let style = colour.map_or(PAPER, |(_, colour)| colour).rgb.filled();
             bar(&mut chart, x, [y - half(second), y + half(second)], style)?;
             from = to;
         }

@@ -1,9 +1,8 @@
 //! Elements drawn in plots: marked points, lines, stairs.
 
-use super::chart::{Area, Chart, DrawResult, PlotError, text_style};
+use super::chart::{Area, Chart, DrawResult, HPos, PlotError, VPos, text_style};
 use super::theme::{Colour, INK, MUTED};
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
 
 /// Mark of a point: shape (circle or cross), size in pixels, and style.
 #[derive(Clone, Copy)]
@@ -16,20 +15,20 @@ pub(super) struct PointMark {
 impl PointMark {
     /// Returns a translucent disc.
     pub fn dot(colour: Colour, size: i32) -> Self {
-        PointMark { cross: false, size, style: colour.rgb().mix(0.55).filled() }
+        PointMark { cross: false, size, style: colour.rgb.mix(0.55).filled() }
     }
 
     /// Returns an opaque disc.
     pub fn disc(colour: Colour, size: i32) -> Self {
-        PointMark { cross: false, size, style: colour.rgb().filled() }
+        PointMark { cross: false, size, style: colour.rgb.filled() }
     }
 
     pub fn ring(colour: Colour, size: i32, width: u32) -> Self {
-        PointMark { cross: false, size, style: colour.rgb().stroke_width(width) }
+        PointMark { cross: false, size, style: colour.rgb.stroke_width(width) }
     }
 
     pub fn cross(colour: Colour, size: i32) -> Self {
-        PointMark { cross: true, size, style: colour.rgb().stroke_width(2) }
+        PointMark { cross: true, size, style: colour.rgb.stroke_width(2) }
     }
 
     fn at<'a, C: Clone + 'static>(self, at: C) -> DynElement<'static, SVGBackend<'a>, C> {
@@ -111,7 +110,7 @@ pub(super) fn line(
 
 /// Draws a dashed line between two points.
 pub(super) fn dashed(chart: &mut Chart<'_, '_>, ends: [(f64, f64); 2]) -> DrawResult {
-    chart.draw_series(DashedLineSeries::new(ends, 5, 4, MUTED.rgb().stroke_width(1)))?;
+    chart.draw_series(DashedLineSeries::new(ends, 5, 4, MUTED.rgb.stroke_width(1)))?;
     Ok(())
 }
 

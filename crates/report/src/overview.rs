@@ -10,15 +10,14 @@ use super::{bar, explore};
 use crate::answer::words::{design, evaluated, on, outcome, remedy};
 use crate::answer::{Answer, Verdict, command, expectation, lines};
 use finray::export::sheet;
-use insertion::evaluation::Evaluation;
-use insertion::evaluation::grid_mm;
+use insertion::evaluation::{Evaluation, grid_mm};
 use insertion::outcome::{FailureClass, Outcome};
 use maud::{Markup, PreEscaped, html};
+use study::Recorded;
 
 /// Returns the first screen, above all sections.
 pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
     let (command, why) = command::next(answer, &files.dir);
-    let stuck = matches!(answer.verdict, Verdict::NothingInserts { .. });
     html! {
         header {
             p.muted { (lines::searched(answer)) " · " (answer.record.config.robot) }
@@ -34,12 +33,12 @@ pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
             @for (_, text) in lines::caveats(answer) { p.warn { (text) } }
         }
         div.first {
-            @if stuck { (nominal(answer, files)) }
-            @else if let Some((_, tasks)) = answer.finger_and_evaluations() { (films(answer, &tasks, files)) }
+            @if let Verdict::NothingInserts { nearest, fails, .. } = &answer.verdict {
+                (nominal(nearest, *fails, files))
+            } @else if let Some((_, tasks)) = answer.finger_and_evaluations() { (films(answer, &tasks, files)) }
             div {
                 (bar::section(answer, &files.analyses.robots).unwrap_or_default())
-                (drawing(answer).unwrap_or_default())
-                (file_links(answer, files).unwrap_or_default())
+                (drawing_and_files(answer, files).unwrap_or_default())
             }
         }
         div.next { h2 { "Next step: " (why) } pre { code { (command) } } }
@@ -64,8 +63,8 @@ const COLOURS: [(&str, &str); 7] = [
     ("#444", "var(--muted)"),
 ];
 
-/// Returns the drawing of the finger.
-fn drawing(answer: &Answer) -> Option<Markup> {
+/// Returns the drawing of the finger and links to its files.
+fn drawing_and_files(answer: &Answer, files: &PageFiles) -> Option<Markup> {
     let geometry = recommended(answer)?;
     let finger = answer.verdict.finger()?;
     let first = answer.record.config.objective.first().name();
@@ -73,24 +72,21 @@ fn drawing(answer: &Answer) -> Option<Markup> {
     let caption = format!("{}{best}, {} ribs", design(finger), geometry.ribs);
     let svg = sheet::part(&geometry);
     let svg = COLOURS.iter().fold(svg, |svg, (from, to)| svg.replace(from, to));
-    Some(html! { div.finger { (figure(&svg, "the finger to print", &caption)) } })
-}
-
-fn file_links(answer: &Answer, files: &PageFiles) -> Option<Markup> {
-    recommended(answer)?;
     let names = printer::FILES.into_iter().filter(|(file, _)| files.files.contains(file));
-    Some(html! { p.files { @for (file, name) in names { a.button href=(file) { (name) } } } })
+    Some(html! {
+        div.finger { (figure(&svg, "the finger to print", &caption)) }
+        p.files { @for (file, name) in names { a.button href=(file) { (name) } } }
+    })
 }
 
 /// Returns how the design that is nearest to inserting fails, and what to check.
-fn nominal(answer: &Answer, files: &PageFiles) -> Markup {
-    let Verdict::NothingInserts { nearest, fails, .. } = &answer.verdict else { return html! {} };
+fn nominal(nearest: &Recorded, fails: Option<Outcome>, files: &PageFiles) -> Markup {
     html! {
         div.whole {
             @if let Some(fails) = fails {
                 p {
                     "Nearest to inserting: " (evaluated(nearest)) ". \
-                    Its nominal start ends with " b { (outcome(*fails)) } ". " (remedy(*fails)) "."
+                    Its nominal start ends with " b { (outcome(fails)) } ". " (remedy(fails)) "."
                 }
             }
             @if let Some(svg) = &files.nominal {
@@ -109,8 +105,7 @@ fn nominal(answer: &Answer, files: &PageFiles) -> Markup {
 /// Returns the end of the window that is shown first: a jam or a miss is more informative than a lost plug.
 pub fn preferred(answer: &Answer) -> &'static str {
     let informative = |end: Option<Outcome>| {
-        let informative = [FailureClass::PlugMissed, FailureClass::Jammed].map(Outcome::Failed);
-        end.is_some_and(|end| informative.contains(&end))
+        matches!(end, Some(Outcome::Failed(FailureClass::PlugMissed | FailureClass::Jammed)))
     };
     let [negative, positive] = ENDS.map(|(end, _)| end);
     let window =

@@ -9,7 +9,6 @@ use crate::answer::{Answer, command, expectation, lines};
 use insertion::surrogate::Model;
 use maud::{Markup, html};
 use std::path::Path;
-use study::StudyRecord;
 
 /// Size of a plot in the page, pixels: narrow, so that its text stays readable when scaled down on
 /// a phone.
@@ -30,7 +29,9 @@ pub fn page(answer: &Answer, model: &Model, files: &PageFiles) -> Result<String,
             }
         }
     };
-    Ok(document(&title(answer.record), body))
+    let config = &answer.record.config;
+    let method = config.method();
+    Ok(document(&format!("{} with {method}, seed {}", config.task_name(), config.seed), body))
 }
 
 /// Returns the answer of the study in a folder as an HTML fragment, for notebooks.
@@ -47,10 +48,6 @@ pub fn card(answer: &Answer, dir: &Path) -> String {
     card.into_string()
 }
 
-fn title(StudyRecord { config, .. }: &StudyRecord) -> String {
-    format!("{} with {}, seed {}", config.task_name(), config.method(), config.seed)
-}
-
 type Section = (&'static str, String, Markup);
 
 /// Returns id, title and body of each section that applies.
@@ -61,10 +58,7 @@ fn sections(
 ) -> Result<Vec<Section>, ReportError> {
     let record = answer.record;
     let section = |id, title: &str, body: Option<Markup>| Some((id, title.to_owned(), body?));
-    let set_title = match record.on_bench {
-        None => "Ties",
-        Some(_) => "Ties by simulation alone",
-    };
+    let set_title = if record.on_bench.is_none() { "Ties" } else { "Ties by simulation alone" };
     let PostAnalysis { levers, maps, .. } = &files.analyses;
     let captioned = |svg: Result<String, ReportError>, caption: String| {
         svg.map(|svg| figure(&svg, &caption, &caption))

@@ -27,10 +27,7 @@ pub const FILES: [(&str, &str); 5] = [
 
 /// Returns the finger file of a study, else the shipped one.
 pub(super) fn finger_file(record: &StudyRecord) -> Option<FingerFile> {
-    record.finger.clone().or_else(|| {
-        let shipped = FINGERS.first()?;
-        FingerFile::parse(shipped.text, shipped.file).ok()
-    })
+    record.finger.clone().or_else(|| FingerFile::parse(FINGERS[0].text, FINGERS[0].file).ok())
 }
 
 /// Returns the recommended finger; `None` if there is none or it cannot be printed.

@@ -117,7 +117,7 @@ pub(super) fn outcomes(record: &StudyRecord) -> Markup {
         vec![words::outcome(outcome), count.to_string(), share]
     };
     let outcomes = FailureClass::ALL.map(Outcome::Failed).into_iter();
-    let rows: Vec<_> = outcomes.chain([Outcome::Diverged, Outcome::Inserted]).map(row).collect();
+    let rows = outcomes.chain([Outcome::Diverged, Outcome::Inserted]).map(row);
     let at_nominal = searches().filter(|found| found.window.nominal != Outcome::Inserted);
     html! {
         p {
@@ -125,7 +125,7 @@ pub(super) fn outcomes(record: &StudyRecord) -> Markup {
             " do not insert at the nominal start. A window search stops at the failures \
             next to the window, so these counts are not probabilities of failure."
         }
-        (table(&["outcome", "trials", "share"], &rows))
+        (table(&["outcome", "trials", "share"], rows))
     }
 }
 

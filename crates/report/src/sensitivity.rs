@@ -1,6 +1,6 @@
 //! Sensitivity of a measure to its inputs: table, JSON and chart.
 
-use super::chart::{Area, DrawResult, render, rows, text_style};
+use super::chart::{Area, DrawResult, HPos, VPos, render, rows, text_style};
 use super::marks::{bar, label, line};
 use super::theme::{BLUE, INK};
 use super::{ReportError, text_table};
@@ -8,7 +8,6 @@ use analysis::levers::thousandths;
 use parameters::Parameter;
 use parameters::plan::saltelli::Indices;
 use plotters::prelude::Color;
-use plotters::style::text_anchor::{HPos, VPos};
 use serde::Serialize;
 
 /// Result of a sensitivity analysis, as `--json` prints it.
@@ -120,11 +119,11 @@ fn draw(area: &Area<'_>, found: &SensitivityResult) -> DrawResult {
         let y = -0.5 - row as f64;
         let shares = [(factor.total, 0.3, BLUE, 0.6), (factor.first, 0.15, INK, 0.7)];
         for (share, half, colour, opacity) in shares {
-            let style = colour.rgb().mix(opacity).filled();
+            let style = colour.rgb.mix(opacity).filled();
             bar(&mut chart, [0.0, share.max(0.0)], [y - half, y + half], style)?;
         }
         let [low, high] = [factor.total_low, factor.total_high].map(|share| (share.max(0.0), y));
-        line(&mut chart, vec![low, high], INK.rgb().stroke_width(2), "")?;
+        line(&mut chart, vec![low, high], INK.rgb.stroke_width(2), "")?;
         let name = short(&factor.name);
         let name = format!("{name} ({} to {})", thousandths(factor.low), thousandths(factor.high));
         let style = text_style(13, INK, HPos::Right, VPos::Center);

@@ -26,15 +26,11 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     };
     let infill_only =
         study::best(&record.config.goals(), record.current().iter().filter(has_finger_of_file));
-    let changed: Vec<String> = of_file
-        .iter()
-        .filter_map(|&(key, from)| Some((key, from, best.design.get(key)?)))
-        .filter(|(_, from, to)| from != to)
-        .map(|(key, from, to)| {
-            let (name, unit) = label(key);
-            format!("{name} {to}{unit} instead of {from}{unit}")
-        })
-        .collect();
+    let change = |&(key, from): &(&str, f64)| {
+        let (to, (name, unit)) = (best.design.get(key)?, label(key));
+        (from != to).then(|| format!("{name} {to}{unit} instead of {from}{unit}"))
+    };
+    let changed: Vec<String> = of_file.iter().filter_map(change).collect();
     Some(html! {
         @match infill_only {
             Some(infill_only) => p { "Compared with the best design that changes only the infill, " (evaluated(infill_only)) ": " (gain(infill_only, best)) }

@@ -1,6 +1,8 @@
 //! Fit of the stiffness model as table, JSON and plot.
 
-use super::chart::{Area, DrawResult, PlotError, axes, legend, padded_range, render, text_style};
+use super::chart::{
+    Area, DrawResult, HPos, PlotError, VPos, axes, legend, padded_range, render, text_style,
+};
 use super::marks::{PointMark, dashed, line, points};
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE};
 use super::{ReportError, text_table};
@@ -9,7 +11,6 @@ use input::units::N_PER_MM;
 use insertion::stiffness::{Axis, Measurement};
 use insertion::surrogate::{Estimate, Model};
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
 use serde_json::{Value, json};
 
 /// Returns the leave-one-out errors of every model on both axes, and the models that are used.
@@ -95,21 +96,12 @@ pub fn svg(model: &Model) -> Result<String, ReportError> {
                      curve's value    open: measured in between (colour of the nearest curve)    \
                      dashed: limits of the measurements";
         head.draw_text(note, &style(15, MUTED), (20, 36))?;
-        let panels = body.split_evenly((2, 2));
-        for (panel, (axis, by)) in panels.iter().zip(PANELS) {
-            draw(panel, model, axis, by)?;
-        }
-        Ok(())
+        let rows = [Axis::Compliance, Axis::Assembly].into_iter();
+        let plots = rows.flat_map(|axis| [true, false].map(|by_direction| (axis, by_direction)));
+        let mut panels = body.split_evenly((2, 2)).into_iter().zip(plots);
+        panels.try_for_each(|(panel, (axis, by_direction))| draw(&panel, model, axis, by_direction))
     })
 }
-
-/// Axis of stiffness of each panel, and whether its x axis is the direction rather than the density.
-const PANELS: [(Axis, bool); 4] = [
-    (Axis::Compliance, true),
-    (Axis::Compliance, false),
-    (Axis::Assembly, true),
-    (Axis::Assembly, false),
-];
 
 /// Number of steps along a curve, unless the model computes fingers from their ribs.
 const SAMPLES: u32 = 80;
@@ -117,12 +109,11 @@ const SAMPLES: u32 = 80;
 /// Colours of the curves.
 const SERIES: [Colour; 3] = [BLUE, ORANGE, GREEN];
 
-/// Draws the panel of one axis of stiffness.
+/// Draws the panel of one axis of stiffness against the direction or the density.
 fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> DrawResult {
     // Converts (density, direction) to (value along x, value of the curve), or back.
-    let swapped = |(density, direction): (f64, f64)| match by_direction {
-        true => (direction, density),
-        false => (density, direction),
+    let swapped = |(density, direction): (f64, f64)| {
+        if by_direction { (direction, density) } else { (density, direction) }
     };
     let of = |m: &Measurement| swapped((m.density_percent, m.direction_deg));
     let predict = |x: f64, curve: f64| {
@@ -130,9 +121,8 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> DrawR
         let Estimate { mean, sd } = model.predict(density, direction)?.axis(axis);
         Ok::<_, PlotError>((x, Estimate { mean: mean / N_PER_MM, sd: sd / N_PER_MM }))
     };
-    let name = |curve: f64| match by_direction {
-        true => format!("density {curve} %"),
-        false => format!("direction {curve}°"),
+    let name = |curve: f64| {
+        if by_direction { format!("density {curve} %") } else { format!("direction {curve}°") }
     };
     let measured = &model.measurements;
     let limits = padded_range(measured.iter().map(|m| of(m).0), 0.0);
@@ -166,11 +156,11 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> DrawR
         let upper = band.iter().map(|(x, e)| (*x, e.mean + e.sd));
         let lower = band.iter().rev().map(|(x, e)| (*x, (e.mean - e.sd).max(0.0)));
         let outline: Vec<(f64, f64)> = upper.chain(lower).collect();
-        chart.draw_series([Polygon::new(outline, colour.rgb().mix(0.15).filled())])?;
+        chart.draw_series([Polygon::new(outline, colour.rgb.mix(0.15).filled())])?;
     }
     for ((band, colour), &curve) in bands.iter().zip(SERIES).zip(&curves) {
         let means = band.iter().map(|(x, e)| (*x, e.mean)).collect();
-        line(&mut chart, means, colour.rgb().stroke_width(2), name(curve))?;
+        line(&mut chart, means, colour.rgb.stroke_width(2), name(curve))?;
     }
     for m in measured {
         let (x, level) = of(m);

@@ -6,7 +6,7 @@ use ask_tell::gp::{FitEffort, Gp, fit};
 use ask_tell::statistics::Moments;
 use insertion::space::Variable;
 use serde_json::{Value, json};
-use study::StudyRecord;
+use study::{Recorded, StudyRecord};
 
 /// Largest number of evaluations to which the model is fitted; of more evaluations, it uses every nth.
 const MAX_EVALUATIONS: usize = 300;
@@ -17,48 +17,35 @@ const CELLS: u32 = 41;
 /// Number of steps along an axis over which its influence is determined.
 const LEVELS: u32 = 20;
 
-/// Gaussian process of a study, fitted once per page.
-pub(super) struct Model {
-    gp: Gp,
-    mean: f64,
-    sd: f64,
-}
-
-impl Model {
-    /// Fits the model; `None` for too few evaluations or equal values.
-    pub(super) fn of(record: &StudyRecord) -> Option<Self> {
-        let parameters = &record.config.space.parameters;
-        let known: Vec<(Vec<f64>, f64)> = record
-            .current()
-            .iter()
-            .filter_map(|recorded| {
-                let x = parameters.iter().map(|p| Some(p.share(recorded.design.get(&p.key)?)));
-                Some((x.collect::<Option<Vec<f64>>>()?, recorded.known_value()?))
-            })
-            .collect();
-        let every = known.len().div_ceil(MAX_EVALUATIONS).max(1);
-        let (x, y): (Vec<Vec<f64>>, Vec<f64>) = known.into_iter().step_by(every).unzip();
-        let moments = Moments::of(&y);
-        let (mean, sd) = (moments.mean, moments.deviation());
-        if y.len() < 5 || sd.is_nan() || sd < 1e-9 {
-            return None;
-        }
-        let values: Vec<f64> = y.iter().map(|y| (y - mean) / sd).collect();
-        let floor = (NOISE / sd).powi(2);
-        let theta = fit(&x, &values, floor, None, FitEffort::for_observations(x.len()));
-        Some(Model { gp: Gp::new(&x, &values, floor, &theta)?, mean, sd })
+/// Fits the Gaussian process of a study, once per page: the mean and standard deviation at a point of the unit cube,
+/// in the unit of the value; `None` for too few evaluations or equal values.
+pub(super) fn model(record: &StudyRecord) -> Option<impl Fn(&[f64]) -> (f64, f64)> {
+    let parameters = &record.config.space.parameters;
+    let known = |recorded: &Recorded| {
+        let x = parameters.iter().map(|p| Some(p.share(recorded.design.get(&p.key)?)));
+        Some((x.collect::<Option<Vec<f64>>>()?, recorded.known_value()?))
+    };
+    let known: Vec<(Vec<f64>, f64)> = record.current().iter().filter_map(known).collect();
+    let every = known.len().div_ceil(MAX_EVALUATIONS).max(1);
+    let (x, y): (Vec<Vec<f64>>, Vec<f64>) = known.into_iter().step_by(every).unzip();
+    let moments = Moments::of(&y);
+    let (mean, sd) = (moments.mean, moments.deviation());
+    if y.len() < 5 || sd.is_nan() || sd < 1e-9 {
+        return None;
     }
-
-    /// Returns mean and standard deviation at a point of the unit cube, in the unit of the value.
-    fn at(&self, x: &[f64]) -> (f64, f64) {
-        let (mean, variance) = self.gp.predict(x);
-        (self.mean + self.sd * mean, self.sd * variance.max(0.0).sqrt())
-    }
+    let values: Vec<f64> = y.iter().map(|y| (y - mean) / sd).collect();
+    let floor = (NOISE / sd).powi(2);
+    let theta = fit(&x, &values, floor, None, FitEffort::for_observations(x.len()));
+    let gp = Gp::new(&x, &values, floor, &theta)?;
+    Some(move |x: &[f64]| {
+        let (scaled, variance) = gp.predict(x);
+        (mean + sd * scaled, sd * variance.max(0.0).sqrt())
+    })
 }
 
 /// Returns mean and standard deviation of the model, row by row, over the two most influential parameters; the others
 /// have their recommended values. `None` for a single parameter.
-pub(super) fn of(record: &StudyRecord, model: &Model) -> Option<Value> {
+pub(super) fn of(record: &StudyRecord, model: &impl Fn(&[f64]) -> (f64, f64)) -> Option<Value> {
     let parameters = &record.config.space.parameters;
     if parameters.len() < 2 {
         return None;
@@ -81,7 +68,7 @@ pub(super) fn of(record: &StudyRecord, model: &Model) -> Option<Value> {
     let at = |(y, x): (&f64, &f64)| {
         let mut point = base.clone();
         (point[axes[0]], point[axes[1]]) = (p.share(*x), q.share(*y));
-        let (mean, sd) = model.at(&point);
+        let (mean, sd) = model(&point);
         (rounded(mean, 4), rounded(sd, 4))
     };
     let points = ys.iter().flat_map(|y| xs.iter().map(move |x| (y, x)));
@@ -90,11 +77,11 @@ pub(super) fn of(record: &StudyRecord, model: &Model) -> Option<Value> {
 }
 
 /// Returns the difference between the largest and the smallest mean of the model along an axis through a point.
-fn influence(model: &Model, base: &[f64], axis: usize) -> f64 {
+fn influence(model: &impl Fn(&[f64]) -> (f64, f64), base: &[f64], axis: usize) -> f64 {
     let along = (0..=LEVELS).map(|level| {
         let mut point = base.to_vec();
         point[axis] = f64::from(level) / f64::from(LEVELS);
-        model.at(&point).0
+        model(&point).0
     });
     let [low, high] = extent(along);
     high - low

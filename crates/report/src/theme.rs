@@ -6,13 +6,15 @@ use plotters::style::RGBColor;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Colour {
     name: &'static str,
-    light: (u8, u8, u8),
+    /// For light pages and for plots in files.
+    pub rgb: RGBColor,
     dark: &'static str,
 }
 
 macro_rules! colours {
-    ($($id:ident = $name:literal, $light:expr, $dark:literal;)*) => {
-        $(pub(super) const $id: Colour = Colour { name: $name, light: $light, dark: $dark };)*
+    ($($id:ident = $name:literal, ($($rgb:literal),*), $dark:literal;)*) => {
+        $(pub(super) const $id: Colour =
+            Colour { name: $name, rgb: RGBColor($($rgb),*), dark: $dark };)*
         const ALL: &[Colour] = &[$($id),*];
     };
 }
@@ -37,14 +39,9 @@ colours! {
 }
 
 impl Colour {
-    /// Returns the colour for plots in files.
-    pub fn rgb(self) -> RGBColor {
-        RGBColor(self.light.0, self.light.1, self.light.2)
-    }
-
     /// Returns the colour for plots in files as `#RRGGBB`, the format of the drawing library.
     pub fn hex(self) -> String {
-        format!("#{:02X}{:02X}{:02X}", self.light.0, self.light.1, self.light.2)
+        format!("#{:02X}{:02X}{:02X}", self.rgb.0, self.rgb.1, self.rgb.2)
     }
 }
 

@@ -39,21 +39,18 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
             force.map_or(String::new(), |force| format!("{force:.0} N")),
             stiffness(recorded.stiffness.compliance),
         ];
-        if any_measured {
-            cells.push(on_robot(recorded).map_or(String::new(), mm));
-        }
+        cells.extend(any_measured.then(|| on_robot(recorded).map_or(String::new(), mm)));
         cells
     };
     let head = ["finger", "reason to choose it", "expected loss", "largest force", COMPLIANCE];
     let head: Vec<&str> = head.into_iter().chain(any_measured.then_some("measured")).collect();
-    let rows: Vec<_> = designs.iter().map(row).collect();
     Some(html! {
         p { (lines::tied(answer, found).1) "." }
         @if let Some((name, text)) = lines::safe(found) { p { b { (name) } " " (text) "." } }
         @for (name, text) in [("infill", lines::spread(answer)), ("edge", lines::edge(answer))] {
             @if let Some(text) = text { p { b { (name) } " " (text) "." } }
         }
-        @if rows.len() > 1 { (stacked(&head, &rows)) }
+        @if designs.len() > 1 { (stacked(&head, designs.iter().map(row))) }
         @if found.designs.len() > LISTED { p.muted { (found.designs.len() - LISTED) " more in the explorer." } }
     })
 }

@@ -38,13 +38,9 @@ pub struct LeverAnalysis<'a> {
 /// Specimen and robot for one window.
 pub(super) type Setup = (Specimen, Robot);
 
-/// Lever to be measured: its parameter, its end values, and the index of the window of each end. An end that changes
-/// nothing has the index of the baseline.
-struct Candidate {
-    parameter: LeverParameter,
-    values: [f64; 2],
-    windows: [usize; 2],
-}
+/// Lever to be measured, and the index of the window of each end. An end that changes nothing has the index of the
+/// baseline.
+type Candidate = (Lever, [usize; 2]);
 
 impl LeverAnalysis<'_> {
     /// Measures the levers, on the threads of the current pool. `infill` is the smallest and the
@@ -58,10 +54,11 @@ impl LeverAnalysis<'_> {
         infill: Option<[f64; 2]>,
         stop: &AtomicBool,
     ) -> Result<Levers, DesignError> {
-        let mut setups = vec![self.setup(self.design, self.given)?];
+        let LeverAnalysis { evaluator, template, design, given, .. } = *self;
+        let mut setups = vec![evaluator.apply(template, (design, given), &[])?];
         if infill.is_none() {
             for design in self.extremes()? {
-                setups.push(self.setup(&design, None)?);
+                setups.push(evaluator.apply(template, (&design, None), &[])?);
             }
         }
         let infills = setups.len();
@@ -73,8 +70,9 @@ impl LeverAnalysis<'_> {
             range_mm: ranges[0].unwrap_or(0.0),
             taught_start_mm: grid_mm(found[0].taught.unwrap_or(0)),
         };
-        let mut levers: Vec<_> =
-            candidates.into_iter().map(|candidate| candidate.lever(&ranges)).collect();
+        let ends =
+            |(lever, windows): Candidate| Lever { ends: windows.map(|at| ranges[at]), ..lever };
+        let mut levers: Vec<_> = candidates.into_iter().map(ends).collect();
         // Stable sort: equal levers keep their order.
         levers.sort_by(|a, b| b.span_mm(base).total_cmp(&a.span_mm(base)));
         let over = || {
@@ -82,8 +80,8 @@ impl LeverAnalysis<'_> {
             [all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max)]
         };
         Ok(Levers {
-            task: self.template.task.name.clone(),
-            design: self.design.clone(),
+            task: template.task.name.clone(),
+            design: design.clone(),
             base,
             infill: infill.unwrap_or_else(over),
             levers,
@@ -119,13 +117,9 @@ impl LeverAnalysis<'_> {
                 continue;
             }
             setups.append(&mut more);
-            candidates.push(Candidate { parameter: lever, values, windows });
+            candidates.push((lever.unmeasured(values), windows));
         }
         Ok((candidates, left_out))
-    }
-
-    fn setup(&self, design: &Design, given: Option<Prediction>) -> Result<Setup, DesignError> {
-        self.evaluator.apply(self.template, (design, given), &[])
     }
 
     /// Returns the design with the softest and with the stiffest infill of the space.
@@ -139,14 +133,12 @@ impl LeverAnalysis<'_> {
         for density in values(DENSITY_KEY) {
             for direction in values(DIRECTION_KEY) {
                 let stiffness = evaluator.surrogate.predict(density, direction)?.compliance.mean;
-                all.push((stiffness, density, direction));
+                let design = design.with(DENSITY_KEY, density).with(DIRECTION_KEY, direction);
+                all.push((stiffness, design));
             }
         }
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let with = |&(_, density, direction): &(f64, f64, f64)| {
-            design.with(DENSITY_KEY, density).with(DIRECTION_KEY, direction)
-        };
-        Ok([all.first(), all.last()].map(|of| of.map_or_else(|| (*design).clone(), with)))
+        Ok([all.first(), all.last()].map(|of| of.map_or(*design, |(_, design)| design).clone()))
     }
 
     /// Measures the window around the start taught for this setup.
@@ -176,14 +168,12 @@ fn range_mm(evaluation: &Evaluation) -> Option<f64> {
     (window.nominal == Outcome::Inserted).then(|| window.range_mm())
 }
 
-/// Rounds a value to 9 decimals to remove floating-point noise.
-fn rounded(value: f64) -> f64 {
-    (value * 1e9).round() / 1e9
-}
-
-impl Candidate {
-    fn lever(self, ranges: &[Option<f64>]) -> Lever {
-        let Candidate { parameter: LeverParameter { parameter, value }, values, windows } = self;
+impl LeverParameter {
+    /// Returns the lever with these end values, without the ranges there.
+    fn unmeasured(self, values: [f64; 2]) -> Lever {
+        let LeverParameter { parameter, value } = self;
+        // To 9 decimals, without floating-point noise.
+        let rounded = |value: f64| (value * 1e9).round() / 1e9;
         Lever {
             unit: parameter.path.unit().trim().to_owned(),
             key: parameter.path.to_string(),
@@ -192,7 +182,7 @@ impl Candidate {
             low: rounded(values[0]),
             high: rounded(values[1]),
             source: parameter.source,
-            ends: windows.map(|window| ranges[window]),
+            ends: [None; 2],
         }
     }
 }

@@ -6,7 +6,6 @@ use input::shipped::{
     FINGERS, MEASUREMENTS, ROBOTS, SPACES, STIFFNESS, Shipped, TASKS, UNCERTAINTIES,
 };
 use insertion::evaluation::INDIFFERENCE_MM;
-use insertion::evaluation::objective::Aggregate;
 use insertion::trial::engine::EngineKind;
 use std::path::Path;
 use study::{CELL, FINGER, Provenance, StudyRecord, input_path, sha256_hex};
@@ -36,12 +35,6 @@ impl InputArguments<'_> {
             Some(name) => name.to_owned(),
             None => input_path(self.dir, segment, role).display().to_string(),
         }
-    }
-
-    fn tasks(&self) -> String {
-        let tasks = 1..=self.record.config.tasks.len();
-        let tasks = tasks.map(|number| self.input(&format!("task_{number}"), TASKS));
-        tasks.collect::<Vec<_>>().join(",")
     }
 
     /// Returns the user's own file of the task at `place`; `None` if it was passed as text from Python.
@@ -117,7 +110,9 @@ pub fn own_task(record: &StudyRecord) -> bool {
 pub fn rerun(record: &StudyRecord) -> Vec<String> {
     let config = &record.config;
     let inputs = InputArguments { record, dir: Path::new("") };
-    let mut words = vec!["optimize".to_owned(), format!("--task {}", inputs.tasks())];
+    let tasks = (1..=config.tasks.len()).map(|n| inputs.input(&format!("task_{n}"), TASKS));
+    let tasks = tasks.collect::<Vec<_>>().join(",");
+    let mut words = vec!["optimize".to_owned(), format!("--task {tasks}")];
     words.extend(setup(&inputs));
     words.push(format!("--optimizer {}", config.optimizer));
     words.push(format!("--objective {}", config.objective));
@@ -125,21 +120,17 @@ pub fn rerun(record: &StudyRecord) -> Vec<String> {
     if config.uncertainty.is_some() {
         words.push(format!("--uncertainty {}", inputs.input("uncertainty", UNCERTAINTIES)));
     }
-    words.extend(config.aggregate.as_ref().map(aggregate));
+    let aggregate = config.aggregate.iter().map(|of| format!("--aggregate {of}"));
+    // Weights follow the word in the configuration, and have their own option.
+    words.extend(aggregate.map(|of| of.replace("weighted ", "weighted --weights ")));
     if config.indifference_mm != INDIFFERENCE_MM {
         words.push(format!("--indifference-mm {}", config.indifference_mm));
     }
     words.push(format!("--seed {}", config.seed));
-    if !config.settles {
-        words.push(format!("--budget {}", config.budget));
-    }
-    if config.polish > 0 {
-        words.push(format!("--polish {}", config.polish));
-    }
+    words.extend((!config.settles).then(|| format!("--budget {}", config.budget)));
+    words.extend((config.polish > 0).then(|| format!("--polish {}", config.polish)));
     words.push(format!("--batch {}", config.batch));
-    if config.asynchronous {
-        words.push("--async".to_owned());
-    }
+    words.extend(config.asynchronous.then(|| "--async".to_owned()));
     words
 }
 
@@ -173,18 +164,6 @@ fn setup(inputs: &InputArguments) -> Vec<String> {
         words.push(format!("--finger {}", inputs.input(FINGER, FINGERS)));
     }
     let engine = &provenance.engine.name;
-    if engine != EngineKind::Direct.name() {
-        words.push(format!("--engine {engine}"));
-    }
+    words.extend((engine != EngineKind::Direct.name()).then(|| format!("--engine {engine}")));
     words
-}
-
-fn aggregate(aggregate: &Aggregate) -> String {
-    match aggregate {
-        Aggregate::Weighted(weights) => {
-            let weights: Vec<String> = weights.iter().map(f64::to_string).collect();
-            format!("--aggregate weighted --weights {}", weights.join(","))
-        }
-        other => format!("--aggregate {other}"),
-    }
 }

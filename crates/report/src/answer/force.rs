@@ -16,8 +16,6 @@ pub struct ExcessForce {
     pub limit_n: f64,
     /// Whether the limit is that of the connector.
     pub of_connector: bool,
-    #[serde(skip)]
-    robot: String,
 }
 
 impl ExcessForce {
@@ -31,18 +29,17 @@ impl ExcessForce {
             }
             let connector = limits.connectors.get(place).copied().flatten();
             let connector = connector.filter(|&limit| peak_force_n > limit);
-            let (task, robot) = (task.to_owned(), record.config.robot.clone());
             let limit_n = connector.or(limits.stop)?;
             let of_connector = connector.is_some();
-            Some(ExcessForce { task, peak_force_n, limit_n, of_connector, robot })
+            Some(ExcessForce { task: task.to_owned(), peak_force_n, limit_n, of_connector })
         };
         record.config.tasks().zip(tasks).enumerate().find_map(exceeds)
     }
 
     /// Returns the force and the limit in words: `up to 149 N on ket8: more than 90 % of the
     /// 150 N at which the robot ur5e stops`.
-    pub fn words(&self) -> String {
-        let ExcessForce { task, peak_force_n, limit_n, of_connector, robot } = self;
+    pub fn words(&self, robot: &str) -> String {
+        let ExcessForce { task, peak_force_n, limit_n, of_connector } = self;
         let limit = match of_connector {
             true => format!("its connector withstands {limit_n:.0} N (limits.force_n)"),
             false => format!(

@@ -60,8 +60,9 @@ pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
             line("ends", format!("{below} below, {above} above{}", words::on(config, task.name)));
         iter::once(ends).chain(drawn(task.measured)).collect::<Vec<_>>()
     };
-    let limits = found.constraints.iter();
-    let limits = limits.map(|(measure, text)| line("constraint", format!("{measure} {text}")));
+    let tasks = found.design.tasks();
+    let limits = config.constraints.iter().map(|c| format!("{} {}", c.measure, c.words(&tasks)));
+    let limits = limits.map(|text| line("constraint", text));
     let tied = found.ties.iter().map(|ties| tied(answer, ties));
     let safe = found.ties.iter().filter_map(safe);
     let why = widest(answer, found);
@@ -101,7 +102,12 @@ pub fn caveats(answer: &Answer) -> Vec<Line> {
     let advice = found.and_then(|found| found.start?.advice()).map(|text| line("start", text));
     let bench = answer.record.on_bench.iter().flat_map(|bench| &bench.warnings);
     let warnings = bench.map(|words| line("warning", words));
-    advice.into_iter().chain(found.and_then(extrapolated)).chain(warnings).collect()
+    let stiffness = found.map(|found| &found.design.stiffness).filter(|of| !of.inside_hull());
+    let extrapolated = stiffness.map(|of| {
+        let distance = format!("{:.2} of the measured span", of.hull_distance);
+        line("warning", format!("stiffness extrapolated by {distance}: measure this finger"))
+    });
+    advice.into_iter().chain(extrapolated).chain(warnings).collect()
 }
 
 /// Returns a contact force that the connector or the robot does not withstand, with a remedy.
@@ -119,7 +125,7 @@ pub fn force(answer: &Answer) -> Option<Line> {
         }
         None => format!("try --constraint 'peak-force<={:.0}'", acceptable(answer)),
     };
-    Some(line("force", format!("{}; {remedy}", excess.words())))
+    Some(line("force", format!("{}; {remedy}", excess.words(&answer.record.config.robot))))
 }
 
 /// Returns the largest force that all connectors and the robot withstand, N.
@@ -191,24 +197,13 @@ pub fn edge(answer: &Answer) -> Option<String> {
     let at = |parameter: &Variable| {
         let value = design.design.get(&parameter.key)?;
         let (name, unit) = label(&parameter.key);
-        let bound = match value {
-            _ if parameter.low == parameter.high => return None,
-            _ if value == parameter.low => "least",
-            _ if value == parameter.high => "largest",
-            _ => return None,
-        };
+        let bounds = [(parameter.low, "least"), (parameter.high, "largest")];
+        let (_, bound) = bounds.into_iter().find(|(bound, _)| *bound == value)?;
         Some(format!("{name} {value}{unit} is the {bound}"))
     };
-    let found: Vec<String> = answer.record.config.space.parameters.iter().filter_map(at).collect();
+    let free = answer.record.config.space.parameters.iter().filter(|p| p.low != p.high);
+    let found: Vec<String> = free.filter_map(at).collect();
     (!found.is_empty()).then(|| format!("{} of the space searched", found.join(", ")))
-}
-
-fn extrapolated(found: &Recommended) -> Option<Line> {
-    let distance = found.design.stiffness.hull_distance;
-    let text = format!(
-        "stiffness extrapolated by {distance:.2} of the measured span: measure this finger"
-    );
-    (!found.design.stiffness.inside_hull()).then(|| line("warning", text))
 }
 
 /// Returns the details of the recommendation by simulation that [`brief`] omits.
@@ -225,9 +220,7 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
         lines.push(line(measure.name(), format!("{}{of}", measure.show(value))));
     }
     for task in &found.tasks {
-        if config.several_tasks() {
-            lines.push(line("task", task.name));
-        }
+        lines.extend(config.several_tasks().then(|| line("task", task.name)));
         lines.extend(window(task.measured).into_iter().take(1));
         lines.extend(task.firm.map(|firm| match firm.window_mm() {
             None => line("firm window", "none: a repeat fails even at the nominal start"),
@@ -245,12 +238,13 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
     }));
     lines.extend(stiffness(&found.design.stiffness));
     if let Some((measure, _)) = found.objective.filter(|_| !answer.walked.is_empty()) {
-        let before = found
-            .searched
+        let mut same = answer.record.current().iter().filter(|of| of.index == found.design.index);
+        let before = same.next().and_then(Recorded::value);
+        let before = before.filter(|before| Some(*before) != found.design.value());
+        let before = before
             .map_or(String::new(), |before| format!("; {} in the search", measure.show(before)));
-        let count = answer.walked.len();
-        let plural = if count == 1 { "" } else { "s" };
-        lines.push(line("walked", format!("step by step: {count} design{plural}{before}")));
+        let designs = input::counted(answer.walked.len(), "design");
+        lines.push(line("walked", format!("step by step: {designs}{before}")));
     }
     if answer.record.on_bench.is_some() {
         lines.extend(simulated(answer, found));
@@ -285,10 +279,7 @@ fn robot((task, found): &(&str, RankCorrelation)) -> Line {
     // A random order of n fingers has a rank correlation of mean 0 and variance 1 / (n - 1), taken as
     // normal: it exceeds this bound in less than 5 % of cases.
     let beyond_chance = found.spearman * (found.fingers as f64 - 1.0).sqrt() > 1.645;
-    let chance = match beyond_chance {
-        true => "",
-        false => "; not significant: measure the best few",
-    };
+    let chance = if beyond_chance { "" } else { "; not significant: measure the best few" };
     line(
         "robot",
         format!(
@@ -361,11 +352,11 @@ pub fn drawn(evaluation: &Evaluation) -> Vec<Line> {
 
 /// Returns the window with stiffness computed from the ribs, task by task.
 pub fn by_ribs(found: &ByRibs) -> Vec<Line> {
-    let tasks = match found {
-        ByRibs::Refused(why) => return vec![line("from its ribs", why)],
-        ByRibs::Measured(tasks) => tasks,
+    let texts = match found {
+        ByRibs::Refused(why) => vec![why.clone()],
+        ByRibs::Measured(tasks) => tasks.iter().map(tolerated).collect(),
     };
-    tasks.iter().map(|evaluation| line("from its ribs", tolerated(evaluation))).collect()
+    texts.into_iter().map(|text| line("from its ribs", text)).collect()
 }
 
 /// Returns range, window and taught start in one line.

@@ -15,7 +15,7 @@ pub mod words;
 use calibration::order::{RankCorrelation, rank_correlation};
 use insertion::evaluation::Evaluation;
 use insertion::space::Design;
-use study::{Recorded, StudyRecord, Volume, Walked, nearest, volume};
+use study::{Recorded, StudyRecord, Volume, Walked, volume};
 
 pub use force::ExcessForce;
 use recommended::firm_range_mm;
@@ -42,9 +42,6 @@ pub struct Answer<'a> {
     /// The recommended design, or the first of a front; `None` if none has a value and satisfies all
     /// constraints.
     pub recommended: Option<Recommended<'a>>,
-    /// Design with the least constraint violation, and a description of each constraint with its
-    /// value; `None` if no design has values.
-    pub nearest: Option<(&'a Recorded, Vec<String>)>,
     /// Confirmed designs (walked step by step and repeated at their ends), best first, each with
     /// its firm range, mm, aggregated over the tasks.
     pub walked: Vec<(&'a Recorded, f64)>,
@@ -77,7 +74,11 @@ impl<'a> Answer<'a> {
         let front = || Front { designs: record.front(), volume: volume(&config.goals(), current) };
         let walked = |walked: &'a Walked| (&walked.recorded, firm_range_mm(record, walked));
         let correlation = |(at, task)| Some((task, rank_correlation(record, at)?));
-        let measured = measured(record);
+        let measured = match (&record.on_bench, &config.tasks[..]) {
+            (Some(bench), _) => bench.ranges.clone(),
+            (None, [task]) => trust::published(task).into_iter().map(|(found, _)| found).collect(),
+            (None, _) => Vec::new(),
+        };
         let recommended = Recommended::of(record, &measured);
         let mut answer = Answer {
             record,
@@ -86,10 +87,6 @@ impl<'a> Answer<'a> {
             designs: current.len(),
             feasible: current.iter().filter(|recorded| recorded.feasible().is_some()).count(),
             recommended,
-            nearest: nearest(current).map(|design| {
-                let words = config.constraints.iter().map(|c| c.words(&design.tasks()));
-                (design, words.collect())
-            }),
             walked: record.walked.iter().map(walked).collect(),
             front: config.objective.single().is_none().then(front),
             spread_mm: record.spread_mm(),
@@ -126,18 +123,5 @@ impl<'a> Answer<'a> {
             Some(bench) => Some((finger, vec![&bench.simulated])),
             None => self.design_to_print().map(|design| (finger, design.tasks())),
         }
-    }
-}
-
-/// Returns the fingers measured on a robot: those given to the study, else the published ones.
-fn measured(record: &StudyRecord) -> Vec<MeasuredFinger> {
-    let finger = |(design, range_mm): &(Design, f64)| MeasuredFinger {
-        design: design.clone(),
-        range_mm: *range_mm,
-    };
-    match (&record.on_bench, &record.config.tasks[..]) {
-        (Some(bench), _) => bench.ranges.iter().map(finger).collect(),
-        (None, [task]) => trust::published(task).into_iter().map(|(found, _)| found).collect(),
-        (None, _) => Vec::new(),
     }
 }

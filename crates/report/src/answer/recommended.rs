@@ -16,8 +16,6 @@ pub struct Recommended<'a> {
     pub design: &'a Recorded,
     /// Single objective and its value; `None` for a Pareto front.
     pub objective: Option<(Measure, f64)>,
-    /// Constrained measures, each with the design's value in words.
-    pub constraints: Vec<(Measure, String)>,
     /// Range, mm; `None` if the nominal start diverged.
     pub range_mm: Option<f64>,
     /// Both ends of the window, mm.
@@ -26,14 +24,10 @@ pub struct Recommended<'a> {
     pub firm_range_mm: Option<f64>,
     /// Both ends of the window in which all repeats insert, mm; `None` also if there is none for a task.
     pub firm_window_mm: Option<[f64; 2]>,
-    /// Largest force between plug and socket over the inserted trials, N.
-    pub peak_force_n: Option<f64>,
     /// Evaluation on each task.
     pub tasks: Vec<OnTask<'a>>,
     /// Evaluations with the stiffness computed from the finger's ribs, if there are any.
     pub by_ribs: Option<&'a ByRibs>,
-    /// Objective value in the search, if the confirmation resulted in a different one.
-    pub searched: Option<f64>,
     /// Start in the (firm) window; `None` for several tasks.
     pub start: Option<Start>,
     /// Designs that tie with the recommended one; `None` for a Pareto front.
@@ -64,23 +58,18 @@ impl<'a> Recommended<'a> {
             measured,
             firm: firm.and_then(|firm| firm.get(at)),
         };
-        let tasks = design.tasks();
-        let window_mm = intersection(tasks.iter().map(|task| words::ends_mm(&task.window)));
+        let window_mm = intersection(design.tasks.iter().map(|task| words::ends_mm(&task.window)));
         let firm_window_mm = windows.map(|windows| intersection(windows.into_iter()));
         let start = Start::of(firm_window_mm.unwrap_or(window_mm));
-        let limits = config.constraints.iter();
         Some(Recommended {
             design,
             objective: config.objective.single().zip(design.value()),
-            constraints: limits.map(|limit| (limit.measure, limit.words(&tasks))).collect(),
             range_mm: record.measure(design, Measure::Range),
             window_mm,
             firm_range_mm: walked.map(|walked| firm_range_mm(record, walked)),
             firm_window_mm,
-            peak_force_n: record.measure(design, Measure::PeakForce),
             tasks: config.tasks().zip(&design.tasks).enumerate().map(on).collect(),
             by_ribs: walked.and_then(|walked| walked.by_ribs.as_ref()),
-            searched: searched(record, design),
             start: start.filter(|_| record.config.tasks.len() == 1),
             ties: found.map(|found| Ties::of(record, found.index, measured)),
         })
@@ -97,11 +86,4 @@ pub(super) fn firm_range_mm(record: &StudyRecord, walked: &Walked) -> f64 {
 fn intersection(windows: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
     windows
         .fold([f64::NEG_INFINITY, f64::INFINITY], |[low, high], [a, b]| [low.max(a), high.min(b)])
-}
-
-/// Returns the objective value in the search, if it differs from the confirmed one.
-fn searched(record: &StudyRecord, design: &Recorded) -> Option<f64> {
-    let same = |recorded: &&Recorded| recorded.index == design.index;
-    let before = record.current().iter().find(same)?.value()?;
-    (Some(before) != design.value()).then_some(before)
 }

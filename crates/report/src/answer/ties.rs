@@ -56,10 +56,8 @@ impl Spread<'_> {
         let [low, high] = self.values;
         let short = ["infill density", "infill direction"].contains(&name.as_str());
         let name = if short { String::new() } else { format!("{name} ") };
-        match low == high {
-            true => format!("{name}{low}{unit}"),
-            false => format!("{name}{low} to {high}{unit}"),
-        }
+        let to = if low == high { String::new() } else { format!(" to {high}") };
+        format!("{name}{low}{to}{unit}")
     }
 }
 
@@ -110,20 +108,16 @@ fn share(record: &StudyRecord, set: &[(&Recorded, f64)]) -> f64 {
         let axes = space.point(&design.design).0.into_iter().zip(space.levels());
         axes.map(|(level, levels)| f64::from(level) / f64::from(levels.max(2) - 1)).collect()
     };
-    let designs: Vec<(Vec<f64>, bool)> = record
-        .current()
-        .iter()
-        .map(|found| (unit(found), set.iter().any(|(member, _)| member.index == found.index)))
-        .collect();
+    let is_member = |found: &Recorded| set.iter().any(|(member, _)| member.index == found.index);
+    let designs = record.current().iter().map(|found| (unit(found), is_member(found)));
+    let designs: Vec<(Vec<f64>, bool)> = designs.collect();
     // Roberts' low-discrepancy sequence in d dimensions, from the root of x^(d + 1) = x + 1.
     let dimension = space.parameters.len() as u32;
     let root = (0..60).fold(1.5_f64, |x, _| libm::pow(1.0 + x, 1.0 / f64::from(dimension + 1)));
     let nearest_is_tied = |&number: &u32| {
         let powers = std::iter::successors(Some(1.0 / root), |power| Some(power / root));
-        let point: Vec<f64> = powers
-            .take(space.parameters.len())
-            .map(|power| (0.5 + f64::from(number) * power).fract())
-            .collect();
+        let point = powers.map(|power| (0.5 + f64::from(number) * power).fract());
+        let point: Vec<f64> = point.take(space.parameters.len()).collect();
         let distance = |design: &[f64]| distance2(design, &point);
         let nearest = designs.iter().min_by(|a, b| distance(&a.0).total_cmp(&distance(&b.0)));
         nearest.is_some_and(|(_, member)| *member)

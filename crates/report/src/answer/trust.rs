@@ -3,18 +3,11 @@
 use calibration::order::errors_percent;
 use calibration::published::{BENCH, of_task};
 use insertion::space::Design;
-use insertion::stiffness::Measurement;
-use insertion::stiffness::designs;
+use insertion::stiffness::{Measurement, designs};
 use study::{Recorded, StudyRecord};
 
-/// Finger whose tolerable range was measured on a robot.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MeasuredFinger {
-    /// Design of the finger.
-    pub design: Design,
-    /// Tolerable range, mm.
-    pub range_mm: f64,
-}
+/// Finger whose tolerable range was measured on a robot: its design and that range, mm.
+pub type MeasuredFinger = (Design, f64);
 
 /// Evidence for an answer.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,8 +24,6 @@ pub enum Trust {
         /// For each task the finger itself, if it was measured, or the measured fingers of the most similar stiffness,
         /// nearest first.
         nearest: Vec<(String, Vec<MeasuredFinger>)>,
-        /// Whether the finger itself was measured on all tasks.
-        itself: bool,
     },
     /// Simulated only.
     Simulated {
@@ -57,13 +48,8 @@ impl Trust {
             let named = nearest(fingers, finger);
             Some((String::from(task), (!named.is_empty()).then_some(named)?))
         };
-        let nearest: Option<Vec<(String, Vec<MeasuredFinger>)>> =
-            record.config.tasks().map(nearest).collect();
-        match nearest {
-            Some(nearest) => {
-                let itself = nearest.iter().all(|(_, named)| named.len() == 1);
-                Trust::Published { nearest, itself }
-            }
+        match record.config.tasks().map(nearest).collect() {
+            Some(nearest) => Trust::Published { nearest },
             None => Trust::Simulated { error_percent: errors_percent() },
         }
     }
@@ -95,8 +81,9 @@ impl Trust {
                     .map_or(String::new(), |error| format!(", leave-one-out error {error:.1} %"));
                 format!("{} measured{missed}", input::counted(*fingers, "finger"))
             }
-            Trust::Published { nearest, itself } => {
-                let who = if *itself { "this finger" } else { "similar fingers" };
+            Trust::Published { nearest } => {
+                let itself = nearest.iter().all(|(_, fingers)| fingers.len() == 1);
+                let who = if itself { "this finger" } else { "similar fingers" };
                 let several = nearest.len() > 1;
                 let of = |(task, fingers): &(String, Vec<MeasuredFinger>)| {
                     let on = if several { format!(" on {task}") } else { String::new() };
@@ -114,13 +101,13 @@ impl Trust {
 
 /// Returns the range of a finger, mm, if it is among the measured ones.
 pub(super) fn range_mm(measured: &[MeasuredFinger], finger: &Design) -> Option<f64> {
-    measured.iter().find(|measured| measured.design == *finger).map(|found| found.range_mm)
+    measured.iter().find(|(design, _)| design == finger).map(|(_, range_mm)| *range_mm)
 }
 
 /// Returns the ranges in words: `4.7 and 4.9 mm`.
 fn ranges(fingers: &[MeasuredFinger]) -> String {
     let mut mm: Vec<String> =
-        fingers.iter().map(|finger| format!("{:.1}", finger.range_mm)).collect();
+        fingers.iter().map(|(_, range_mm)| format!("{range_mm:.1}")).collect();
     mm.dedup();
     format!("{} mm", mm.join(" and "))
 }
@@ -131,7 +118,7 @@ pub(super) fn published(task: &str) -> Vec<(MeasuredFinger, Measurement)> {
     let one = |measurement: Measurement| {
         let design = Design::infill(measurement.density_percent, measurement.direction_deg);
         let range_mm = bench.iter().find(|found| found.design == design)?.range_mm?;
-        Some((MeasuredFinger { design, range_mm }, measurement))
+        Some(((design, range_mm), measurement))
     };
     designs().into_iter().filter_map(one).collect()
 }
@@ -139,7 +126,7 @@ pub(super) fn published(task: &str) -> Vec<(MeasuredFinger, Measurement)> {
 /// Returns the finger itself, if it was measured, else those of the most similar stiffness, nearest first
 /// (the simulation distinguishes fingers by stiffness only).
 fn nearest(mut all: Vec<(MeasuredFinger, Measurement)>, finger: &Recorded) -> Vec<MeasuredFinger> {
-    if let Some((itself, _)) = all.iter().find(|(found, _)| found.design == finger.design) {
+    if let Some((itself, _)) = all.iter().find(|((design, _), _)| *design == finger.design) {
         return vec![itself.clone()];
     }
     let finger = &finger.stiffness;
@@ -165,14 +152,14 @@ mod tests {
         let all = || published("usb");
         finger.design = Design::infill(20.0, 20.0);
         assert_eq!(
-            nearest(all(), &finger).iter().map(|one| one.range_mm).collect::<Vec<_>>(),
+            nearest(all(), &finger).iter().map(|(_, range_mm)| *range_mm).collect::<Vec<_>>(),
             [4.1]
         );
         // This finger was not measured; designs 8 and 11 have similar stiffness.
         finger.design = Design::infill(27.0, 39.0);
         finger.stiffness = insertion::surrogate::Prediction::exact(3.65e3, 31e3);
         assert_eq!(
-            nearest(all(), &finger).iter().map(|one| one.range_mm).collect::<Vec<_>>(),
+            nearest(all(), &finger).iter().map(|(_, range_mm)| *range_mm).collect::<Vec<_>>(),
             [5.0, 5.6]
         );
         assert!(published("mine").is_empty());

@@ -6,7 +6,7 @@ use ask_tell::statistics::mean;
 use insertion::evaluation::objective::Measure;
 use insertion::outcome::Outcome;
 use insertion::space::Design;
-use study::Recorded;
+use study::{Recorded, StudyRecord, nearest};
 
 /// Smallest share of the space near tied designs ([`Ties::share`]) at which any of them is recommended.
 const MIN_SHARE: f64 = 0.5;
@@ -63,9 +63,9 @@ impl<'a> Verdict<'a> {
         }
         if let Some(best) = answer.record.on_bench.as_ref().and_then(|found| found.best.first()) {
             let design = &best.design;
-            let own = answer.measured.iter().filter(|measured| measured.design == *design);
+            let own = answer.measured.iter().filter(|(measured, _)| measured == design);
             // A finger may be measured on several days.
-            let range_mm = mean(own.map(|measured| measured.range_mm));
+            let range_mm = mean(own.map(|(_, range_mm)| *range_mm));
             let mut bounds = answer.record.on_bench.iter().flat_map(|found| &found.bounds);
             let bound = bounds.find(|(printed, _)| printed == design).map(|(_, mm)| *mm);
             return match (range_mm, bound) {
@@ -157,7 +157,7 @@ pub fn expectation(answer: &Answer) -> String {
         );
     }
     match &answer.recommended {
-        None => no_recommendation(answer),
+        None => no_recommendation(answer.record),
         Some(found) => {
             let any = matches!(answer.verdict, Verdict::Any { .. });
             let each = found.ties.as_ref().filter(|_| any).and_then(|set| each(found, set));
@@ -166,16 +166,14 @@ pub fn expectation(answer: &Answer) -> String {
     }
 }
 
-/// Returns the reason why no design can be recommended.
-fn no_recommendation(answer: &Answer) -> String {
-    let Some((design, constraints)) = &answer.nearest else {
+/// Returns the reason why no design can be recommended, with the design of the least constraint violation.
+fn no_recommendation(record: &StudyRecord) -> String {
+    let Some(nearest) = nearest(record.current()) else {
         return "no evaluation gave a value".to_owned();
     };
-    format!(
-        "none satisfies all constraints; nearest {}: {}",
-        evaluated(design),
-        constraints.join("; ")
-    )
+    let constraints = record.config.constraints.iter().map(|limit| limit.words(&nearest.tasks()));
+    let constraints = constraints.collect::<Vec<_>>().join("; ");
+    format!("none satisfies all constraints; nearest {}: {constraints}", evaluated(nearest))
 }
 
 /// Returns `simulated 4.9 to 5.2 mm each`; `None` if the objective is not a length.

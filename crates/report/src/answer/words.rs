@@ -3,8 +3,8 @@
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::{Measure, Objectives};
 use insertion::evaluation::{RobustRange, SuccessRate, Window};
-use insertion::outcome::{FailureClass, Outcome};
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, label};
+use insertion::outcome::Outcome;
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::Estimate;
 use study::{Recorded, StudyConfig, StudyRecord};
 
@@ -51,12 +51,9 @@ pub fn stiffness(estimate: Estimate) -> String {
 
 /// Returns a number with `decimals` decimals and its unit; `none` if it is not finite or too long.
 pub fn number(value: f64, decimals: usize, unit: &str) -> String {
-    if !value.is_finite() {
-        return "none".to_owned();
-    }
-    let value = format!("{value:.decimals$}");
-    // For example the position of a body after a collision that threw it far away.
-    if value.len() > 15 { "none".to_owned() } else { format!("{value} {unit}") }
+    let text = format!("{value:.decimals$}");
+    // Too long is for example the position of a body after a collision that threw it far away.
+    if !value.is_finite() || text.len() > 15 { "none".to_owned() } else { format!("{text} {unit}") }
 }
 
 /// Returns the smallest and the largest value; infinity and minus infinity if there are no values.
@@ -82,23 +79,18 @@ pub fn outcome(outcome: Outcome) -> String {
     format!("{}{class}", outcome.label())
 }
 
+/// Advice for a nominal start without a failure class, then for each class.
+const REMEDIES: [&str; 5] = [
+    "Check the task's masses, shapes and strokes",
+    "Check the grip's force and friction, and that the start is clear of the socket",
+    "Check the task's start and the strokes of its search: the plug does not reach the opening",
+    "Check the clearance of plug and socket, the strokes, and the finger's remote centre",
+    "Check the grip's force and friction against the force that the insertion needs",
+];
+
 /// Returns advice for a nominal start that ends with this outcome, as a sentence without a full stop.
 pub fn remedy(nominal: Outcome) -> &'static str {
-    match nominal {
-        Outcome::Failed(FailureClass::ContactLossBeforeSearch) => {
-            "Check the grip's force and friction, and that the start is clear of the socket"
-        }
-        Outcome::Failed(FailureClass::PlugMissed) => {
-            "Check the task's start and the strokes of its search: the plug does not reach the opening"
-        }
-        Outcome::Failed(FailureClass::Jammed) => {
-            "Check the clearance of plug and socket, the strokes, and the finger's remote centre"
-        }
-        Outcome::Failed(FailureClass::ContactLossInInsertion) => {
-            "Check the grip's force and friction against the force that the insertion needs"
-        }
-        Outcome::Diverged | Outcome::Inserted => "Check the task's masses, shapes and strokes",
-    }
+    REMEDIES[usize::from(nominal.failure().unwrap_or(0))]
 }
 
 /// Returns the outcome that ends a window on one side, in words.
@@ -146,14 +138,11 @@ pub fn evaluated(recorded: &Recorded) -> String {
 /// Returns a design in words: `10 % infill at 26°`, then the other parameters of its space.
 pub fn design(design: &Design) -> String {
     let infill = design.get(DENSITY_KEY).zip(design.get(DIRECTION_KEY));
-    let infill = infill.map(|(density, direction)| format!("{density} % infill at {direction}°"));
-    let named = |key: &str| infill.is_some() && [DENSITY_KEY, DIRECTION_KEY].contains(&key);
-    let others = design.0.iter().filter(|(key, _)| !named(key));
-    let others = others.map(|(key, value)| {
-        let (name, unit) = label(key);
-        format!("{name} {value}{unit}")
-    });
-    infill.iter().cloned().chain(others).collect::<Vec<_>>().join(", ")
+    let Some((density, direction)) = infill else { return design.labelled() };
+    let infill = format!("{density} % infill at {direction}°");
+    let mut others = design.clone();
+    others.0.retain(|key, _| ![DENSITY_KEY, DIRECTION_KEY].contains(&key.as_str()));
+    if others.0.is_empty() { infill } else { format!("{infill}, {}", others.labelled()) }
 }
 
 /// Returns the values of objectives, with their names if there are several.

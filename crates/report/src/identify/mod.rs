@@ -4,7 +4,6 @@ mod page;
 #[cfg(test)]
 mod tests;
 
-use page::Outcomes;
 pub use page::html;
 
 use crate::answer::words::number;
@@ -110,11 +109,8 @@ pub fn text(result: &IdentificationResult) -> String {
     });
     text += "\n";
     text += &text_table(4, ["number", "prior", "identified", "from"], numbers);
-    for Unknown { posterior, advice, .. } in &found.unknowns {
-        if let Some(advice) = advice {
-            text += &format!("\n{}: {advice}", posterior.name);
-        }
-    }
+    let advice = |one: &Unknown| Some(format!("\n{}: {}", one.posterior.name, one.advice?));
+    text.extend(found.unknowns.iter().filter_map(advice));
     let misfit = &found.smoothed.misfit;
     if let (Some(first), Some(last)) = (misfit.first(), misfit.last()) {
         text += &format!(
@@ -122,20 +118,16 @@ pub fn text(result: &IdentificationResult) -> String {
             100.0 * found.smoothed.compared
         );
     }
-    let outcomes = Outcomes::of(&found.compared);
-    let warning = if outcomes.is_worse() {
-        "\nwarning: fewer than before: do not trust predictions of this cell"
-    } else {
-        ""
-    };
-    text += &format!("outcomes      {}{warning}\n", outcomes.text());
+    let (outcomes, worse) = page::outcomes(&found.compared);
+    text += &format!("outcomes      {outcomes}\n");
+    if worse {
+        text += "warning: fewer than before: do not trust predictions of this cell\n";
+    }
     if let Some(one) = Validation::of(found) {
         let warning = if one.is_doubtful() { "warning: " } else { "" };
         text += &format!("{warning}{}\n", validated(&one));
     }
-    for one in unmodelled(&found.compared) {
-        text += &format!("warning: {one}\n");
-    }
+    text.extend(unmodelled(&found.compared).iter().map(|one| format!("warning: {one}\n")));
     text
 }
 

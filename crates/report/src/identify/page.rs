@@ -2,7 +2,7 @@
 
 use super::{AXES, origin, short, unmodelled, validated};
 use crate::answer::words::{design, number, outcome, stiffness};
-use crate::chart::{Area, DrawResult, axes, padded_range, render, text_style};
+use crate::chart::{Area, DrawResult, HPos, VPos, axes, padded_range, render, text_style};
 use crate::elements::{definitions, document, stacked, table};
 use crate::marks::{dashed, label, line};
 use crate::page::PLOT;
@@ -18,7 +18,6 @@ use insertion::outcome::Outcome;
 use maud::{Markup, PreEscaped, html};
 use parameters::{Parameter, Scale, Transform};
 use plotters::prelude::Color;
-use plotters::style::text_anchor::{HPos, VPos};
 
 /// Largest number of points of a curve, and of points before the first contact (0.1 s).
 const POINTS: usize = 400;
@@ -32,7 +31,7 @@ pub fn html(result: &IdentificationResult) -> String {
     let (serious, notes): (Vec<_>, Vec<_>) = remarks.iter().partition(|remark| remark.serious);
     let (of_all, of_logs): (Vec<&Remark>, Vec<&Remark>) =
         notes.into_iter().partition(|note| note.file == *runs);
-    let rows: Vec<_> = found.unknowns.iter().map(unknown).collect();
+    let unknowns = found.unknowns.iter().map(unknown);
     let body = html! {
         main {
             h1 { (headline(result)) }
@@ -46,7 +45,7 @@ pub fn html(result: &IdentificationResult) -> String {
             }
             section {
                 h2 { "Numbers of the cell" }
-                (stacked(&["number", "before", "identified", "remaining deviation", "from"], &rows))
+                (stacked(&["number", "before", "identified", "remaining deviation", "from"], unknowns))
                 p.muted {
                     "× is a factor on the number in the file. Remaining deviation: share of the prior's standard deviation; "
                     "the dashed mark is the share that was expected from these logs."
@@ -92,10 +91,8 @@ fn headline(IdentificationResult { task, found, .. }: &IdentificationResult) -> 
 
 /// Returns a sentence on the number of logs and of numbers that were not fitted.
 fn evidence(found: &Identified) -> String {
-    let several =
-        |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
-    let attempts = several(found.compared.len(), "attempt");
-    let probes = several(found.probes.len(), "probe");
+    let attempts = input::counted(found.compared.len(), "attempt");
+    let probes = input::counted(found.probes.len(), "probe");
     let fixed = match counted(found, &[ValueOrigin::Files]) {
         0 => String::new(),
         count => format!("; {count} more numbers were not fitted"),
@@ -103,32 +100,16 @@ fn evidence(found: &Identified) -> String {
     format!("From {attempts} and {probes}{fixed}.")
 }
 
-/// Agreement of simulated outcomes with those measured.
-pub(super) struct Outcomes {
-    attempts: usize,
-    /// Attempts that end as measured, with the files' numbers and with the identified ones.
-    before: usize,
-    after: usize,
-}
-
-impl Outcomes {
-    pub(super) fn of(compared: &[Compared]) -> Outcomes {
-        let [before, after] = [|one: &Compared| one.before.1, |one: &Compared| one.after.1]
-            .map(|of| compared.iter().filter(|one| one.logged.outcome == of(one)).count());
-        Outcomes { attempts: compared.len(), before, after }
-    }
-
-    /// Returns whether the identified numbers predict fewer outcomes than the files' numbers.
-    pub(super) fn is_worse(&self) -> bool {
-        self.after < self.before
-    }
-
-    pub(super) fn text(&self) -> String {
-        let Outcomes { attempts, before, after } = self;
-        format!(
-            "{after} of {attempts} attempts are simulated to end as measured; {before} with the files' numbers"
-        )
-    }
+/// Returns the numbers of attempts that are simulated to end as measured, in words, and whether the identified numbers
+/// predict fewer outcomes than the files' numbers.
+pub(super) fn outcomes(compared: &[Compared]) -> (String, bool) {
+    let [before, after] = [|one: &Compared| one.before.1, |one: &Compared| one.after.1]
+        .map(|of| compared.iter().filter(|one| one.logged.outcome == of(one)).count());
+    let text = format!(
+        "{after} of {} attempts are simulated to end as measured; {before} with the files' numbers",
+        compared.len()
+    );
+    (text, after < before)
 }
 
 /// Returns the identified numbers by the origin of their values, the agreement of the outcomes, and the misfit.
@@ -145,7 +126,7 @@ fn summary(found: &Identified) -> Vec<(String, String)> {
     };
     let all =
         [ValueOrigin::Formula, ValueOrigin::Fit, ValueOrigin::Prior, ValueOrigin::Files].map(named);
-    let outcomes = Outcomes::of(&found.compared).text();
+    let (outcomes, _) = outcomes(&found.compared);
     let share = format!("{:.0} % of the data compared", 100.0 * found.smoothed.compared);
     let misfit = match found.smoothed.misfit[..] {
         [first, .., last] if last.is_finite() => {
@@ -227,15 +208,15 @@ fn robot(found: &Identified) -> Markup {
         };
         [vec![format!("along {name}")], cells].concat()
     };
-    let axes: Vec<_> = AXES.into_iter().zip(&found.flange).map(axis).collect();
-    let probes: Vec<_> = found.probes.iter().map(probe).collect();
+    let axes = AXES.into_iter().zip(&found.flange).map(axis);
+    let probes = found.probes.iter().map(probe);
     html! {
-        (stacked(&["axis", "stiffness", "damping", "mass", "delay of the force", "force explained"], &axes))
+        (stacked(&["axis", "stiffness", "damping", "mass", "delay of the force", "force explained"], axes))
         @if let Some(preload) = found.preload {
             p { "Preload: " (number(preload.mean / MM, 3, "mm")) ", standard error " (number(preload.sd / MM, 5, "mm")) }
         }
-        @if !probes.is_empty() {
-            (stacked(&["probe", "friction", "tangential over normal force, along y", "and back"], &probes))
+        @if !found.probes.is_empty() {
+            (stacked(&["probe", "friction", "tangential over normal force, along y", "and back"], probes))
         }
     }
 }
@@ -295,22 +276,19 @@ fn attempt(one: &Compared) -> Markup {
 
 /// Returns the misfit of the force by phase and axis.
 fn misfit(compared: &[Compared]) -> Markup {
+    let number = |misfit: f64| match misfit > 0.0 {
+        true => format!("{misfit:.2}"),
+        false => "not compared".to_owned(),
+    };
+    let row = |phase: &[Misfit]| {
+        let cells = phase.iter().map(|one| match one.before.max(one.after) > 0.0 {
+            true => format!("{} → {}", number(one.before), number(one.after)),
+            false => number(0.0),
+        });
+        phase.first().map(|one| one.phase.to_owned()).into_iter().chain(cells).collect()
+    };
     let all = misfits(compared);
-    let rows: Vec<Vec<String>> = all
-        .chunk_by(|a, b| a.phase == b.phase)
-        .map(|phase| {
-            let number = |misfit: f64| match misfit > 0.0 {
-                true => format!("{misfit:.2}"),
-                false => "not compared".to_owned(),
-            };
-            let cells = phase.iter().map(|one| match one.before.max(one.after) > 0.0 {
-                true => format!("{} → {}", number(one.before), number(one.after)),
-                false => number(0.0),
-            });
-            phase.first().map(|one| one.phase.to_owned()).into_iter().chain(cells).collect()
-        })
-        .collect();
-    table(&["misfit", "fx", "fy", "fz"], &rows)
+    table(&["misfit", "fx", "fy", "fz"], all.chunk_by(|a, b| a.phase == b.phase).map(row))
 }
 
 /// Returns a sentence on the components of the force that the identified numbers explain less well.
@@ -352,7 +330,7 @@ fn draw(area: &Area<'_>, one: &Compared, axis: usize) -> DrawResult {
         let style = text_style(15, INK, HPos::Left, VPos::Top);
         label(&mut chart, (time + aside, top), (0, 0), phase, &style)?;
     }
-    line(&mut chart, measured, MUTED.rgb().stroke_width(1), "")?;
-    line(&mut chart, before, ORANGE.rgb().stroke_width(2), "")?;
-    line(&mut chart, after, BLUE.rgb().stroke_width(2), "")
+    line(&mut chart, measured, MUTED.rgb.stroke_width(1), "")?;
+    line(&mut chart, before, ORANGE.rgb.stroke_width(2), "")?;
+    line(&mut chart, after, BLUE.rgb.stroke_width(2), "")
 }

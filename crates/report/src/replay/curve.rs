@@ -17,12 +17,8 @@ fn draw(area: &Area<'_>, film: &Film) -> DrawResult {
     let recording = film.recording;
     let touched = recording.frames.iter().find(|frame| frame.force.norm() > 0.01);
     let from = touched.map_or(0.0, |frame| frame.time_s - 0.02);
-    let path: Vec<(f64, f64)> = recording
-        .frames
-        .iter()
-        .filter(|frame| frame.time_s >= from)
-        .map(|frame| (frame.depth_mm(), frame.force.norm()))
-        .collect();
+    let shown = recording.frames.iter().filter(|frame| frame.time_s >= from);
+    let path: Vec<_> = shown.map(|frame| (frame.depth_mm(), frame.force.norm())).collect();
     let needed = film.task.success.depth / input::units::MM;
     let x = (
         "depth of the plug's tip below the socket's top (mm)",
@@ -35,9 +31,9 @@ fn draw(area: &Area<'_>, film: &Film) -> DrawResult {
     let title = format!("{}, {}: {}", film.task.name, film.label, recording.trial.outcome.label());
     let mut chart = axes(area, &title, x, y)?;
     let success = vec![(needed, 0.0), (needed, top)];
-    line(&mut chart, success, MUTED.rgb().stroke_width(1), "depth that counts as inserted")?;
+    line(&mut chart, success, MUTED.rgb.stroke_width(1), "depth that counts as inserted")?;
     let ended = path.last().copied();
-    line(&mut chart, path, BLUE.rgb().stroke_width(2), "force")?;
+    line(&mut chart, path, BLUE.rgb.stroke_width(2), "force")?;
     let colour = if recording.trial.outcome == Outcome::Inserted { BLUE } else { RED };
     points(&mut chart, ended, PointMark::dot(colour, 5), "end")?;
     legend(&mut chart, SeriesLabelPosition::UpperLeft)

@@ -2,9 +2,8 @@
 
 use super::Film;
 use crate::answer::words::{self, rounded};
-use contact::ContactPoint;
 use contact::scene::{Geom, Pose};
-use contact::shapes;
+use contact::{ContactPoint, shapes};
 use input::units::MM;
 use insertion::trial::record::Frame;
 use serde_json::{Value, json};
@@ -17,20 +16,16 @@ const MAX_FRAMES: f64 = 500.0;
 const JAW_MM: f64 = 45.0;
 
 /// Returns the bodies of a film: kind, key of their pose, shapes.
-pub(super) fn bodies(film: &Film) -> Vec<(&'static str, &'static str, Vec<Geom>)> {
+fn bodies(film: &Film) -> [(&'static str, &'static str, Vec<Geom>); 5] {
     let task = film.task;
     let tip = |side| film.pad.geoms(film.task.grip.shoulder(), side);
-    let mut bodies = vec![
+    [
         ("socket", "socket", task.socket.iter().map(|part| part.geom()).collect()),
         ("plug", "plug", task.plug.rigid().map(|part| part.geom()).collect()),
         ("finger", "finger0", tip(-1.0)),
         ("finger", "finger1", tip(1.0)),
-    ];
-    let latch: Vec<Geom> = task.plug.latch_parts().map(|part| part.geom()).collect();
-    if !latch.is_empty() {
-        bodies.push(("plug", "latch", latch));
-    }
-    bodies
+        ("plug", "latch", task.plug.latch_parts().map(|part| part.geom()).collect()),
+    ]
 }
 
 /// Returns the data of a film in mm, s, N and degrees.
@@ -115,17 +110,15 @@ fn surfaces((kind, of, geoms): (&'static str, &'static str, Vec<Geom>)) -> Vec<V
 }
 
 /// Returns a pose as its position, mm, and its quaternion x, y, z, w.
-fn pose(pose: &Pose) -> [f64; 7] {
+fn pose(pose: &Pose) -> Vec<f64> {
     let (p, q) = (pose.translation.vector / MM, pose.rotation.coords);
-    let [x, y, z] = [p.x, p.y, p.z].map(|mm| rounded(mm, 3));
-    let [i, j, k, w] = [q.x, q.y, q.z, q.w].map(|value| rounded(value, 5));
-    [x, y, z, i, j, k, w]
+    let turn = q.iter().map(|value| rounded(*value, 5));
+    p.iter().map(|mm| rounded(*mm, 3)).chain(turn).collect()
 }
 
 /// Returns a contact as its point, mm, and its force, N.
-fn contact(contact: &ContactPoint) -> [f64; 6] {
-    let (p, f) = (contact.point.coords / MM, contact.force);
-    let [x, y, z] = [p.x, p.y, p.z].map(|mm| rounded(mm, 2));
-    let [f_x, f_y, f_z] = [f.x, f.y, f.z].map(|newtons| rounded(newtons, 1));
-    [x, y, z, f_x, f_y, f_z]
+fn contact(contact: &ContactPoint) -> Vec<f64> {
+    let point = contact.point.coords / MM;
+    let force = contact.force.iter().map(|newtons| rounded(*newtons, 1));
+    point.iter().map(|mm| rounded(*mm, 2)).chain(force).collect()
 }

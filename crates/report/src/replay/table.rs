@@ -2,7 +2,7 @@
 
 use input::units::MM;
 use insertion::trial::Recording;
-use std::fmt::Write;
+use insertion::trial::record::Frame;
 
 const HEADER: &str = "time_s,phase,force_n,force_x_n,force_y_n,force_z_n,depth_mm,tilt_deg,slip_mm,\
     tip_x_mm,tip_y_mm,tip_z_mm,finger_minus_y_bend_y_mm,finger_minus_y_bend_z_mm,\
@@ -10,20 +10,17 @@ const HEADER: &str = "time_s,phase,force_n,force_x_n,force_y_n,force_z_n,depth_m
 
 /// Returns the recording as CSV.
 pub fn csv(recording: &Recording) -> String {
-    let mut out = HEADER.to_owned() + "\n";
-    for frame in &recording.frames {
+    let row = |frame: &Frame| {
         let phase = phase(recording, frame.time_s).replace(['"', ',', '\n'], " ");
         let (f, tip) = (frame.force, frame.poses.plug.translation.vector / MM);
         let [[_, ly, lz], [_, ry, rz]] = [0, 1].map(|finger| frame.deflection_mm(finger));
-        // Writing to a String cannot fail.
-        let _ = write!(out, "{:.4},{phase},", frame.time_s);
-        let _ = write!(out, "{:.4},{:.4},{:.4},{:.4},", f.norm(), f.x, f.y, f.z);
         let (depth, tilt, slip) = (frame.depth_mm(), frame.tilt_deg(), frame.slip / MM);
-        let _ = write!(out, "{depth:.4},{tilt:.4},{slip:.4},");
-        let _ = write!(out, "{:.4},{:.4},{:.4},", tip.x, tip.y, tip.z);
-        let _ = writeln!(out, "{ly:.4},{lz:.4},{ry:.4},{rz:.4},{}", frame.contacts.len());
-    }
-    out
+        let numbers = [f.norm(), f.x, f.y, f.z, depth, tilt, slip, tip.x, tip.y, tip.z];
+        let numbers = [&numbers[..], &[ly, lz, ry, rz]].concat();
+        let numbers: String = numbers.iter().map(|number| format!("{number:.4},")).collect();
+        format!("{:.4},{phase},{numbers}{}\n", frame.time_s, frame.contacts.len())
+    };
+    HEADER.to_owned() + "\n" + &recording.frames.iter().map(row).collect::<String>()
 }
 
 /// Returns the name of the phase at a time; after the end, that of the last phase.

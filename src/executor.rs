@@ -1,5 +1,6 @@
 //! `--executor WHERE`: passes the command to the installed Python package, which contains the executors.
 
+use crate::context::watch;
 use crate::failure::Failure;
 use crate::python::{PYTHON, command, interpreter, output};
 use std::ffi::OsString;
@@ -27,9 +28,7 @@ pub fn run(executor: &str, words: &[OsString]) -> Result<ExitCode, Failure> {
     // first, since a signal may come as soon as the package runs.
     let input = Arc::new(Mutex::new(Input { stopped: false, pipe: None }));
     let watched = Arc::clone(&input);
-    let stop = move || *locked(&watched) = Input { stopped: true, pipe: None };
-    let watch = ctrlc::set_handler(stop);
-    watch.map_err(|error| Failure::running(format!("cannot watch for Ctrl-C: {error}")))?;
+    watch(move || *locked(&watched) = Input { stopped: true, pipe: None })?;
     let mut study = command("from finger_opt.executors import command; sys.exit(command())");
     let study = study.args(words).env(SOURCES_KEY, SOURCES).stdin(Stdio::piped()).spawn();
     let mut study = study.map_err(|error| missing(&error.to_string()))?;

@@ -38,10 +38,10 @@ pub struct Request {
 
 impl command::Request for Request {
     /// Predictions for every finger of the tasks: [`CalibrationOutput`].
-    type Response = Output<Value>;
+    type Response = Value;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
         let simulations = self.bench.setup.tasks.len().max(1) * self.calibration.simulations();
         context.begin(simulations as f64 * cost::SIMULATION);
         let source = measured::file(&self.bench.measurements)?;
@@ -59,7 +59,7 @@ impl command::Request for Request {
             text.push(format!("tables are in {}\n", out.display()));
         }
         let value = json!(CalibrationOutput::new(&found, &subjects));
-        Ok(Output { value, text: text.join("\n"), picture: None })
+        Ok(Output::new(text.join("\n"), value))
     }
 }
 

@@ -28,14 +28,14 @@ pub struct CurrentSettings {
 }
 
 impl command::Request for Request {
-    type Response = Output<CurrentSettings>;
+    type Response = CurrentSettings;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output<CurrentSettings>, Failure> {
         let found = Project::current()?;
         found.iter().try_for_each(check)?;
         let (file, settings) = found.map(|found| (found.file, found.settings)).unzip();
         let value = CurrentSettings { file, settings: settings.unwrap_or_default() };
-        Ok(Output { text: value.text(), value, picture: None })
+        Ok(Output::new(value.text(), value))
     }
 }
 

@@ -1,6 +1,6 @@
 //! `optimize evaluate`: measures the tolerance window of one finger.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout;
@@ -17,7 +17,6 @@ use report::answer::lines;
 use report::answer::words::{self, mm, number};
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
-use std::fmt;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use study::ByRibs;
@@ -82,7 +81,7 @@ pub struct Evaluated {
 impl command::Request for Request {
     type Response = Evaluated;
 
-    fn run(&self, context: &Context<'_>) -> Result<Evaluated, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Evaluated>, Failure> {
         let stop = context.stop;
         let (setup, plan) = self.prepared()?;
         let chosen = self.finger.choose(&setup)?;
@@ -100,7 +99,8 @@ impl command::Request for Request {
         let bands = repeat.map(bands).transpose()?;
         let by_ribs = self.by_ribs(&setup, &chosen, stop)?;
         let limit_n = limit_n(&setup, &chosen);
-        Ok(Evaluated { chosen, evaluation, bands, by_ribs, wall_s, limit_n })
+        let value = Evaluated { chosen, evaluation, bands, by_ribs, wall_s, limit_n };
+        Ok(Output::new(value.text(), value))
     }
 }
 
@@ -159,8 +159,6 @@ fn computed<S: Serializer>(by_ribs: &Option<ByRibs>, serializer: S) -> Result<S:
     }
 }
 
-impl command::Response for Evaluated {}
-
 impl Evaluated {
     /// Returns a remark if the ranges by the two finger models differ by more than a factor of two.
     fn disagreement(&self) -> Option<&'static str> {
@@ -173,10 +171,8 @@ impl Evaluated {
         let remark = "the ranges differ by more than a factor of two: measure a finger before you rely on either";
         tasks.iter().any(apart).then_some(remark)
     }
-}
 
-impl fmt::Display for Evaluated {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn text(&self) -> String {
         let Evaluated { chosen, evaluation, .. } = self;
         let [c1, c2, c3, c4] = evaluation.failure_counts;
         let mut rest = vec![("range".to_owned(), mm(evaluation.window.range_mm()))];
@@ -205,6 +201,6 @@ impl fmt::Display for Evaluated {
             self.bands.as_ref().map(bands_text).unwrap_or_default(),
             self.wall_s
         );
-        f.write_str(&layout::wrapped(&text))
+        layout::wrapped(&text)
     }
 }

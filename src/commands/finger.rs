@@ -93,9 +93,9 @@ struct Across {
 }
 
 impl command::Request for Request {
-    type Response = Output<ComputedFinger>;
+    type Response = ComputedFinger;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output<ComputedFinger>, Failure> {
         if let Some((key, _)) = self.set.iter().find(|(key, _)| !is_shape(key)) {
             return Err(Failure::usage(format!(
                 "--set {key}: must be a number of the finger file, for example finger.skin.thickness_mm"
@@ -113,8 +113,7 @@ impl command::Request for Request {
         let value =
             ComputedFinger::new(&geometry, &computed, predicted_stiffness(&file.finger, &design)?);
         let svg = picture::svg(&geometry, self.load_n).map_err(Failure::input)?;
-        let text = value.text(&geometry);
-        Output::drawn((value, text), svg, self.svg.as_ref())
+        Output::new(value.text(&geometry), value).drawn(svg, self.svg.as_ref())
     }
 }
 

@@ -44,11 +44,11 @@ pub struct LeverReport {
 }
 
 impl command::Request for Request {
-    type Response = Output<LeverReport>;
+    type Response = LeverReport;
     const PROGRESS: bool = true;
 
     /// Measures the levers, and for comparison the softest and the stiffest infill of the space.
-    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<LeverReport>, Failure> {
         let _busy = context.busy("measuring the levers");
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
@@ -57,7 +57,7 @@ impl command::Request for Request {
         let levers = levers(&setup, setup.only_task()?, finger, None, context.stop)?;
         let (svg, text) = (output::svg(&levers)?, layout::wrapped(&output::text(&levers)));
         let value = LeverReport { sentence: levers.sentence(), levers };
-        Output::drawn((value, text), svg, self.svg.as_ref())
+        Output::new(text, value).drawn(svg, self.svg.as_ref())
     }
 }
 

@@ -74,10 +74,10 @@ pub struct Advised {
 }
 
 impl command::Request for Request {
-    type Response = Output<Advised>;
+    type Response = Advised;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Advised>, Failure> {
         context.begin(self.calibration.simulations() as f64 * cost::SIMULATION);
         if self.bench.setup.tasks.len() > 1 {
             return Err(Failure::usage("give one --task"));
@@ -128,7 +128,7 @@ impl command::Request for Request {
             measurements_missing: missing,
             advice,
         };
-        Ok(Output { text: value.text(file, cost_mm), value, picture: None })
+        Ok(Output::new(value.text(file, cost_mm), value))
     }
 }
 

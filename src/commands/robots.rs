@@ -20,9 +20,9 @@ pub struct ShippedRobots {
 }
 
 impl command::Request for Request {
-    type Response = Output<ShippedRobots>;
+    type Response = ShippedRobots;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output<ShippedRobots>, Failure> {
         let (robots, own_file) = (robots()?, include_str!("robot.toml"));
         let list: String = robots.iter().map(text).collect();
         let text = format!(
@@ -32,7 +32,7 @@ impl command::Request for Request {
              damping_nms_per_rad / stiffness_nm_per_rad, see robots/ur5e_position.toml.\n",
             wrapped(&list),
         );
-        Ok(Output { value: ShippedRobots { robots, own_file }, text, picture: None })
+        Ok(Output::new(text, ShippedRobots { robots, own_file }))
     }
 }
 

@@ -47,15 +47,15 @@ pub struct Request {
 
 impl command::Request for Request {
     /// Shares of the objective's variance.
-    type Response = Output<SensitivityResult>;
+    type Response = SensitivityResult;
     const PROGRESS: bool = true;
 
     /// Simulates the sample and ranks the inputs.
-    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<SensitivityResult>, Failure> {
         let _busy = context.busy("simulating the sample");
         let found = self.found(context.stop)?;
-        let (text, svg) = (shown::text(&found), shown::svg(&found)?);
-        Output::drawn((found, text), svg, self.svg.as_ref())
+        let svg = shown::svg(&found)?;
+        Output::new(shown::text(&found), found).drawn(svg, self.svg.as_ref())
     }
 }
 

@@ -8,7 +8,6 @@ use connector::seat::clearance;
 use input::shipped::{COMMERCIAL, SPACES, Shipped, Source, TASKS, UNCERTAINTIES};
 use input::units::MM;
 use serde::Serialize;
-use std::fmt;
 
 /// List tasks, spaces and uncertainties
 #[derive(Debug, clap::Args)]
@@ -39,14 +38,13 @@ struct TaskEntry {
 }
 
 impl command::Request for Request {
-    type Response = Output<ShippedFiles>;
+    type Response = ShippedFiles;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output<ShippedFiles>, Failure> {
         let tasks = TASKS.iter().chain(COMMERCIAL).map(entry).collect::<Result<Vec<_>, _>>()?;
         let [spaces, uncertainties] = [SPACES, UNCERTAINTIES].map(file_entries);
         let value = ShippedFiles { tasks, spaces: spaces?, uncertainties: uncertainties? };
-        let text = value.to_string();
-        Ok(Output { value, text, picture: None })
+        Ok(Output::new(value.text(), value))
     }
 }
 
@@ -71,15 +69,19 @@ fn entry(file: &Shipped) -> Result<TaskEntry, Failure> {
     Ok(TaskEntry { file, clearance_x_mm, clearance_y_mm })
 }
 
-impl fmt::Display for ShippedFiles {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let line = |of: &FileEntry| format!("  {:<10} {}\n", of.name, of.description);
-        writeln!(f, "tasks, with their clearance in x and y")?;
-        for TaskEntry { file, clearance_x_mm, clearance_y_mm } in &self.tasks {
+impl ShippedFiles {
+    fn text(&self) -> String {
+        let task = |TaskEntry { file, clearance_x_mm, clearance_y_mm }: &TaskEntry| {
             let FileEntry { name, description } = file;
-            writeln!(f, "  {name:<10} {clearance_x_mm:.2}, {clearance_y_mm:.2} mm  {description}")?;
-        }
+            format!("  {name:<10} {clearance_x_mm:.2}, {clearance_y_mm:.2} mm  {description}\n")
+        };
+        let line = |of: &FileEntry| format!("  {:<10} {}\n", of.name, of.description);
         let lines = |files: &[FileEntry]| files.iter().map(line).collect::<String>();
-        write!(f, "spaces\n{}uncertainties\n{}", lines(&self.spaces), lines(&self.uncertainties))
+        format!(
+            "tasks, with their clearance in x and y\n{}spaces\n{}uncertainties\n{}",
+            self.tasks.iter().map(task).collect::<String>(),
+            lines(&self.spaces),
+            lines(&self.uncertainties)
+        )
     }
 }

@@ -77,9 +77,9 @@ pub struct Written {
 }
 
 impl command::Request for Request {
-    type Response = Output<Written>;
+    type Response = Written;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output<Written>, Failure> {
         let geometry = self.finger.geometry()?;
         let (out, title) = (&self.out, export::title(&geometry));
         let format = self.format()?;
@@ -121,7 +121,7 @@ impl command::Request for Request {
             ),
             _ => format!("wrote {title}: {}\n", out.display()),
         };
-        Ok(Output { value: Written { out: out.clone(), title, beside }, text, picture: None })
+        Ok(Output::new(text, Written { out: out.clone(), title, beside }))
     }
 }
 

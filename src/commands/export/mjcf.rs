@@ -42,13 +42,13 @@ pub struct ExportedScene {
 }
 
 impl command::Request for Request {
-    type Response = Output<ExportedScene>;
+    type Response = ExportedScene;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output<ExportedScene>, Failure> {
         let (task, scene) = self.scene()?;
         write_file(&self.out, &scene)?;
         let text = format!("wrote the scene of {task} to {} for MuJoCo\n", self.out.display());
-        Ok(Output { value: ExportedScene { out: self.out.clone(), task }, text, picture: None })
+        Ok(Output::new(text, ExportedScene { out: self.out.clone(), task }))
     }
 }
 

@@ -94,9 +94,9 @@ pub struct Added {
 }
 
 impl command::Request for Request {
-    type Response = Output<Added>;
+    type Response = Added;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output<Added>, Failure> {
         let (file, mut cells) = (&self.file, self.cells());
         if MEASUREMENTS.iter().any(|shipped| shipped.name == file) {
             let problem = format!("`{file}` is shipped; give the path of your own file");
@@ -107,7 +107,7 @@ impl command::Request for Request {
         }
         let lines = add(file, cells, self.dry_run)?.len();
         let text = format!("{file}: {}\n", input::counted(lines, "line"));
-        Ok(Output { value: Added { file: file.clone(), lines }, text, picture: None })
+        Ok(Output::new(text, Added { file: file.clone(), lines }))
     }
 }
 

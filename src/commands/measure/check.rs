@@ -48,9 +48,9 @@ struct TaskLines {
 }
 
 impl command::Request for Request {
-    type Response = Output<Checked>;
+    type Response = Checked;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output<Checked>, Failure> {
         let own = self.task.iter().map(|name| Ok(read_task(name)?.task.name));
         let own = own.collect::<Result<Vec<_>, Failure>>()?;
         let own: Vec<&str> = own.iter().map(String::as_str).collect();
@@ -80,6 +80,6 @@ impl command::Request for Request {
         let text = tasks.iter().map(line).collect::<String>()
             + &format!("{file}: {}, no problems found\n", input::counted(lines, "line"));
         let rows = self.rows.then_some(found);
-        Ok(Output { value: Checked { file, lines, tasks, rows }, text, picture: None })
+        Ok(Output::new(text, Checked { file, lines, tasks, rows }))
     }
 }

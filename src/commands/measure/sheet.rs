@@ -61,10 +61,10 @@ pub struct Written {
 }
 
 impl command::Request for Request {
-    type Response = Output<Written>;
+    type Response = Written;
 
     /// Simulates insertions of the fingers and writes the sheet.
-    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Written>, Failure> {
         let task = read_task(&self.task)?.task;
         let shifts = (1..=FARTHEST_MM).flat_map(|mm| [f64::from(mm), -f64::from(mm)]);
         let outward = shifts.filter_map(|shift| Some((self.fingers.first()?, shift)));
@@ -77,7 +77,7 @@ impl command::Request for Request {
         pictures.dedup_by_key(|picture| picture.outcome);
         write_file(&self.out, &sheet::page(&task, &self.task, &self.fingers, &pictures))?;
         let text = format!("wrote {}\n", self.out.display());
-        Ok(Output { value: Written { out: self.out.clone() }, text, picture: None })
+        Ok(Output::new(text, Written { out: self.out.clone() }))
     }
 }
 

@@ -1,6 +1,6 @@
 //! `optimize task import`: creates a task from meshes of plug and socket.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
 use crate::failure::{Failure, within};
 use crate::layout::wrapped;
@@ -8,18 +8,18 @@ use crate::setup::bodies::{Parts, PartsRequest, parts};
 use crate::setup::mated::{LeftOut, MateOptions, MatedTask, mated};
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
-use crate::setup::tune::{Tried, brief, chosen, tune_new};
+use crate::setup::tune::{brief, chosen, tune_new};
 use connector::body::width;
 use connector::draft::{DENSITY, Size};
 use connector::mesh::axes::{Along, Jaws, Unit, value};
+use connector::mesh::mated::PairTask;
 use connector::tune::Tuned;
 use connector::write::{self, Notes};
 use input::shipped::Source;
 use input::units::MM;
 use insertion::task::parts_file::{PartsFile, joined, sha256};
 use insertion::trial::engine::EngineKind;
-use serde::{Serialize, Serializer};
-use std::fmt;
+use serde_json::{Value, json};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use study::write_file;
@@ -98,22 +98,11 @@ pub struct Request {
     pub names: Vec<String>,
 }
 
-/// Imported and written task.
-pub struct ImportedTask {
-    mated: MatedTask,
-    /// Names of plug and socket.
-    files: [String; 2],
-    /// Strategies that were tried; none if the file has problems.
-    tuned: Option<Tuned>,
-    /// Check of the written file, with its nominal start.
-    checked: TaskCheck,
-    out: PathBuf,
-}
-
 impl command::Request for Request {
-    type Response = ImportedTask;
+    /// The parts of the imported task, the strategies that were tried, and the check of its file.
+    type Response = Value;
 
-    fn run(&self, context: &Context<'_>) -> Result<ImportedTask, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
         let stop = context.stop;
         let out = &self.out();
         within("--depth-mm", self.depth_mm, &DEPTHS_MM)?;
@@ -127,7 +116,10 @@ impl command::Request for Request {
         mated.made.task = task;
         let written = self.write(out, &mated)?;
         let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine, stop)?;
-        Ok(ImportedTask { mated, files: self.names(), tuned, checked, out: out.clone() })
+        let tuned = tuned.as_ref();
+        let text = text(&self.names(), &mated, tuned, &checked);
+        let failure = checked.failure_of_new(tuned);
+        Ok(Output { failure, ..Output::new(text, json(&mated, tuned, &checked)) })
     }
 }
 
@@ -237,95 +229,64 @@ fn description(files: &[String; 2]) -> String {
     }
 }
 
-#[derive(Serialize)]
-struct Fields<'a> {
-    parts: usize,
-    plug_parts: usize,
-    socket_parts: usize,
-    unit: String,
-    insert_along: String,
-    jaws: String,
-    found: Vec<String>,
-    clearance_mm: f64,
-    clearance_x_mm: f64,
-    clearance_y_mm: f64,
-    body_mm: [f64; 3],
-    plug_was_inward: bool,
-    socket_was_inward: bool,
-    left_out: Vec<LeftOut>,
-    out: String,
-    tuned: Option<Tried<'a>>,
-    check: &'a TaskCheck,
+/// Returns an imported task as JSON: its parts, the strategies that were tried, and the check of its file.
+fn json(mated: &MatedTask, tuned: Option<&Tuned>, checked: &TaskCheck) -> Value {
+    let task = &mated.made.task;
+    let [plug_parts, socket_parts] = [task.plug.parts.len(), task.socket.len()];
+    let [clearance_x_mm, clearance_y_mm] = mated.play.map(|play| play / MM);
+    let found = mated.findings.iter().map(|(what, why)| format!("{what} {why}"));
+    let left_out = mated.made.interference.iter().map(LeftOut::from);
+    json!({
+        "parts": plug_parts + socket_parts,
+        "plug_parts": plug_parts,
+        "socket_parts": socket_parts,
+        "unit": value(mated.unit),
+        "insert_along": value(mated.along),
+        "jaws": value(mated.jaws),
+        "found": found.collect::<Vec<_>>(),
+        "clearance_mm": clearance_x_mm.min(clearance_y_mm),
+        "clearance_x_mm": clearance_x_mm,
+        "clearance_y_mm": clearance_y_mm,
+        "body_mm": body_mm(&mated.made),
+        "plug_was_inward": mated.inward[0],
+        "socket_was_inward": mated.inward[1],
+        "left_out": left_out.collect::<Vec<_>>(),
+        "out": checked.source.file,
+        "tuned": chosen(tuned),
+        "check": checked.json(),
+    })
 }
 
-impl ImportedTask {
-    fn fields(&self) -> Fields<'_> {
-        let ImportedTask { mated, tuned, checked, out, .. } = self;
-        let task = &mated.made.task;
-        let [plug_parts, socket_parts] = [task.plug.parts.len(), task.socket.len()];
-        let [clearance_x_mm, clearance_y_mm] = mated.play.map(|play| play / MM);
-        Fields {
-            parts: plug_parts + socket_parts,
-            plug_parts,
-            socket_parts,
-            unit: value(mated.unit),
-            insert_along: value(mated.along),
-            jaws: value(mated.jaws),
-            found: mated.findings.iter().map(|(what, why)| format!("{what} {why}")).collect(),
-            clearance_mm: clearance_x_mm.min(clearance_y_mm),
-            clearance_x_mm,
-            clearance_y_mm,
-            body_mm: self.body_mm(),
-            plug_was_inward: mated.inward[0],
-            socket_was_inward: mated.inward[1],
-            left_out: mated.made.interference.iter().map(LeftOut::from).collect(),
-            out: out.display().to_string(),
-            tuned: tuned.as_ref().and_then(chosen),
-            check: checked,
+/// Returns the body that the fingers hold: width between the jaws, height in x, length above the seated socket.
+fn body_mm(made: &PairTask) -> [f64; 3] {
+    let grip = &made.task.grip;
+    [width(grip.faces_y), made.held, grip.shoulder_z + made.mated_z()].map(|side| side / MM)
+}
+
+fn text(
+    [plug, socket]: &[String; 2],
+    mated: &MatedTask,
+    tuned: Option<&Tuned>,
+    checked: &TaskCheck,
+) -> String {
+    let (task, out) = (&mated.made.task, &checked.source.file);
+    let [plug_parts, socket_parts] = [task.plug.parts.len(), task.socket.len()];
+    let [clearance_x_mm, clearance_y_mm] = mated.play.map(|play| play / MM);
+    let [wide, high, long] = body_mm(&mated.made);
+    let mut text = format!(
+        "written       {out}\nplug          {plug}, {plug_parts} convex parts: held by the fingers\n\
+         socket        {socket}, {socket_parts} convex parts: fixed\n\
+         clearance     {clearance_y_mm:.2} mm in y, {clearance_x_mm:.2} in x; body {wide:.1} x {high:.1} x {long:.1} mm\n"
+    );
+    for (what, why) in &mated.findings {
+        text.push_str(&format!("{what:<14}{why}\n"));
+    }
+    for (name, inward) in ["plug", "socket"].into_iter().zip(mated.inward) {
+        if inward {
+            text.push_str(&format!("normals       of the {name} pointed inward; reversed\n"));
         }
     }
-
-    /// Returns the body that the fingers hold: width between the jaws, height in x, length above the seated socket.
-    fn body_mm(&self) -> [f64; 3] {
-        let made = &self.mated.made;
-        let grip = &made.task.grip;
-        [width(grip.faces_y), made.held, grip.shoulder_z + made.mated_z()].map(|side| side / MM)
-    }
-}
-
-impl Serialize for ImportedTask {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.fields().serialize(serializer)
-    }
-}
-
-impl command::Response for ImportedTask {
-    fn verdict(self) -> Result<(), Failure> {
-        self.checked.check_new(self.tuned.as_ref())
-    }
-}
-
-impl fmt::Display for ImportedTask {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let ImportedTask { mated, files: [plug, socket], tuned, checked, .. } = self;
-        let Fields { out, plug_parts, socket_parts, clearance_x_mm, clearance_y_mm, .. } =
-            self.fields();
-        let [wide, high, long] = self.body_mm();
-        let mut text = format!(
-            "written       {out}\nplug          {plug}, {plug_parts} convex parts: held by the fingers\n\
-             socket        {socket}, {socket_parts} convex parts: fixed\n\
-             clearance     {clearance_y_mm:.2} mm in y, {clearance_x_mm:.2} in x; body {wide:.1} x {high:.1} x {long:.1} mm\n"
-        );
-        for (what, why) in &mated.findings {
-            text.push_str(&format!("{what:<14}{why}\n"));
-        }
-        for (name, inward) in ["plug", "socket"].into_iter().zip(mated.inward) {
-            if inward {
-                text.push_str(&format!("normals       of the {name} pointed inward; reversed\n"));
-            }
-        }
-        text.extend(tuned.iter().map(|tuned| brief("strategy", tuned)));
-        text += &format!("{}next          optimize task tune {out}\n", checked.text());
-        f.write_str(&wrapped(&text))
-    }
+    text.extend(tuned.map(|tuned| brief("strategy", tuned)));
+    text += &format!("{}next          optimize task tune {out}\n", checked.text());
+    wrapped(&text)
 }

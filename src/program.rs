@@ -60,31 +60,23 @@ pub fn program() -> clap::Command {
         .args_conflicts_with_subcommands(true);
     let root = help::with_headings((STUDY.augment)(root).arg(help::no_config()));
     let root = described(root, ABOUT, "Example: optimize --task usb --budget 200");
-    let mut groups = GROUPS.map(|(order, name, about, example)| {
+    let commands_in = |group: &[&str]| {
+        let members = COMMANDS
+            .iter()
+            .filter(|command| matches!(command.path, [above @ .., _] if above == group));
+        let mut commands: Vec<_> =
+            members.map(|command| help::with_headings(command.clap())).collect();
+        commands.sort_by_key(clap::Command::get_display_order);
+        commands
+    };
+    let mut commands = commands_in(&[]);
+    commands.extend(GROUPS.map(|(order, name, about, example)| {
         let group = clap::Command::new(name)
             .display_order(order)
             .subcommand_required(true)
             .arg_required_else_help(true);
-        described(group, about, example)
-    });
-    let mut commands = Vec::new();
-    let mut below: Vec<_> = COMMANDS
-        .iter()
-        .map(|command| (command.path, help::with_headings(command.clap())))
-        .collect();
-    below.sort_by_key(|(_, command)| command.get_display_order());
-    for (path, command) in below {
-        match *path {
-            [group, _] => {
-                let group = groups.iter_mut().find(|found| found.get_name() == group);
-                group
-                    .into_iter()
-                    .for_each(|group| *group = group.clone().subcommand(command.clone()));
-            }
-            _ => commands.push(command),
-        }
-    }
-    commands.extend(groups);
+        described(group, about, example).subcommands(commands_in(&[name]))
+    }));
     commands.sort_by_key(clap::Command::get_display_order);
     root.subcommands(commands)
 }
@@ -124,7 +116,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         // Only a study has this option.
         match matches.try_get_one::<String>("executor").ok().flatten() {
             Some(executor) => {
-                let set = defaults.iter().map(|set| set.word().into());
+                let word = |set: &OptionDefault| format!("--{}={}", set.option, set.value).into();
+                let set = defaults.iter().map(word);
                 let words: Vec<OsString> = words.iter().skip(1).cloned().chain(set).collect();
                 executor::run(executor, &words)
             }

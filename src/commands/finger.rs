@@ -18,6 +18,7 @@ use nalgebra::Matrix3;
 use report::answer::lines;
 use report::text_table;
 use serde::Serialize;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 
 /// Largest drawn force on the pad, N, since displacements are linear.
@@ -68,34 +69,11 @@ fn force(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
-/// Finger with its computed stiffness, and the prediction of the stiffness model.
-#[derive(Serialize)]
-pub struct ComputedFinger {
-    finger: String,
-    infill_density_percent: f64,
-    infill_direction_deg: f64,
-    phase_mm: f64,
-    area_mm2: f64,
-    mass_g: f64,
-    /// `None` if the stiffness model does not cover this infill, or if `set` changes the shape.
-    measured_model: Option<Prediction>,
-    pad: Planar,
-    pad_and_roof: Planar,
-    across: Across,
-}
-
-/// Stiffness out of the plane.
-#[derive(Serialize)]
-struct Across {
-    depth_n_per_mm: f64,
-    about_y_nm_per_rad: f64,
-    about_z_nm_per_rad: f64,
-}
-
 impl command::Request for Request {
-    type Response = ComputedFinger;
+    /// The finger with its computed stiffness, and the prediction of the stiffness model.
+    type Response = Value;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Output<ComputedFinger>, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output<Value>, Failure> {
         if let Some((key, _)) = self.set.iter().find(|(key, _)| !is_shape(key)) {
             return Err(Failure::usage(format!(
                 "--set {key}: must be a number of the finger file, for example finger.skin.thickness_mm"
@@ -110,10 +88,10 @@ impl command::Request for Request {
         let computed = mechanics::compute(&geometry).map_err(Failure::input)?;
         let mut design = Design::infill(density, direction);
         design.0.extend(set.0);
-        let value =
-            ComputedFinger::new(&geometry, &computed, predicted_stiffness(&file.finger, &design)?);
+        let model = predicted_stiffness(&file.finger, &design)?;
         let svg = picture::svg(&geometry, self.load_n).map_err(Failure::input)?;
-        Output::new(value.text(&geometry), value).drawn(svg, self.svg.as_ref())
+        let value = json(&geometry, &computed, model.as_ref());
+        Output::new(text(&geometry, &computed, model.as_ref()), value).drawn(svg, self.svg.as_ref())
     }
 }
 
@@ -144,53 +122,61 @@ impl From<&PlanarStiffness> for Planar {
     }
 }
 
-impl ComputedFinger {
-    fn new(geometry: &Geometry, computed: &FingerStiffness, model: Option<Prediction>) -> Self {
-        let (design, cross) = (&geometry.design, &computed.cross);
-        ComputedFinger {
-            finger: geometry.finger.name.clone(),
-            infill_density_percent: design.density_percent,
-            infill_direction_deg: design.direction_deg,
-            phase_mm: design.phase_mm.unwrap_or(geometry.finger.ribs.phase / MM),
-            area_mm2: geometry.area() / (MM * MM),
-            mass_g: geometry.mass() / GRAM,
-            measured_model: model,
-            pad: (&computed.pad).into(),
-            pad_and_roof: (&computed.pad_and_roof).into(),
-            across: Across {
-                depth_n_per_mm: cross.in_depth / N_PER_MM,
-                about_y_nm_per_rad: cross.about_y,
-                about_z_nm_per_rad: cross.about_z,
-            },
-        }
-    }
+/// Returns the stiffness of a finger as JSON; `model` is `None` if the stiffness model does not cover this infill, or if
+/// `set` changes the shape.
+fn json(geometry: &Geometry, computed: &FingerStiffness, model: Option<&Prediction>) -> Value {
+    json!({
+        "finger": geometry.finger.name,
+        "infill_density_percent": geometry.design.density_percent,
+        "infill_direction_deg": geometry.design.direction_deg,
+        "phase_mm": first_rib_mm(geometry),
+        "area_mm2": geometry.area() / (MM * MM),
+        "mass_g": geometry.mass() / GRAM,
+        "measured_model": model,
+        "pad": Planar::from(&computed.pad),
+        "pad_and_roof": Planar::from(&computed.pad_and_roof),
+        "across": {
+            "depth_n_per_mm": computed.cross.in_depth / N_PER_MM,
+            "about_y_nm_per_rad": computed.cross.about_y,
+            "about_z_nm_per_rad": computed.cross.about_z,
+        },
+    })
+}
 
-    fn text(&self, geometry: &Geometry) -> String {
-        let ComputedFinger {
-            finger, infill_density_percent, infill_direction_deg, phase_mm, ..
-        } = self;
-        let material = &geometry.finger.material;
-        let model = self.measured_model.as_ref();
-        let model = model.map(|prediction| lines::stiffness(prediction)[0].1.clone());
-        let model = model.unwrap_or_else(|| "not covered by the measured model".to_owned());
-        let rows = [self.pad.row("pad"), self.pad_and_roof.row("pad and roof")];
-        let Across { depth_n_per_mm, about_y_nm_per_rad, about_z_nm_per_rad } = self.across;
-        format!(
-            "finger        {finger}, {infill_density_percent} %, {infill_direction_deg}°, first rib at {phase_mm} mm\n\
-             material      {}, {} GPa ({})\n\
-             area, mass    {:.1} mm2, {:.2} g\n\
-             stiffness     {model}\n\n\
-             from the ribs\n{}\n\
-             across        {depth_n_per_mm:.1} N/mm in x, {about_y_nm_per_rad:.2} Nm/rad about y, \
-             {about_z_nm_per_rad:.2} about z\n",
-            material.name,
-            material.modulus / 1e9,
-            material.source,
-            self.area_mm2,
-            self.mass_g,
-            text_table(1, PLANAR, rows),
-        )
-    }
+fn text(geometry: &Geometry, computed: &FingerStiffness, model: Option<&Prediction>) -> String {
+    let (design, material) = (&geometry.design, &geometry.finger.material);
+    let model = model.map(|prediction| lines::stiffness(prediction)[0].1.clone());
+    let model = model.unwrap_or_else(|| "not covered by the measured model".to_owned());
+    let rows = [("pad", &computed.pad), ("pad and roof", &computed.pad_and_roof)];
+    let rows = rows.map(|(name, found)| Planar::from(found).row(name));
+    let cross = &computed.cross;
+    format!(
+        "finger        {}, {} %, {}°, first rib at {} mm\n\
+         material      {}, {} GPa ({})\n\
+         area, mass    {:.1} mm2, {:.2} g\n\
+         stiffness     {model}\n\n\
+         from the ribs\n{}\n\
+         across        {:.1} N/mm in x, {:.2} Nm/rad about y, \
+         {:.2} about z\n",
+        geometry.finger.name,
+        design.density_percent,
+        design.direction_deg,
+        first_rib_mm(geometry),
+        material.name,
+        material.modulus / 1e9,
+        material.source,
+        geometry.area() / (MM * MM),
+        geometry.mass() / GRAM,
+        text_table(1, PLANAR, rows),
+        cross.in_depth / N_PER_MM,
+        cross.about_y,
+        cross.about_z,
+    )
+}
+
+/// Returns the position of the first rib, mm.
+fn first_rib_mm(geometry: &Geometry) -> f64 {
+    geometry.design.phase_mm.unwrap_or(geometry.finger.ribs.phase / MM)
 }
 
 /// Column headings for [`Planar::row`].

@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::progress::cost;
 use crate::setup::bench::{BenchRequest, CalibrationRequest, Prepared};
 use crate::setup::measured;
+use crate::setup::words::parse_at_least_0;
 use ask_tell::stream::stream;
 use calibration::calibrate::posterior;
 use calibration::next::{Advice, Fingers, advise};
@@ -47,18 +48,11 @@ pub struct Request {
     #[arg(long, value_enum, default_value = "space")]
     pub among: Among,
     /// Smallest expected gain of the chosen finger's range that is worth a print and its measurement, mm
-    #[arg(long, value_name = "MM", default_value_t = 0.1, value_parser = print_cost)]
+    #[arg(long, value_name = "MM", default_value_t = 0.1, value_parser = |text: &str| parse_at_least_0(text, "mm"))]
     pub print_cost_mm: f64,
     /// Options of the calibration.
     #[command(flatten)]
     pub calibration: CalibrationRequest,
-}
-
-fn print_cost(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(mm) if mm.is_finite() && mm >= 0.0 => Ok(mm),
-        _ => Err("must be a number of at least 0 (mm)".to_owned()),
-    }
 }
 
 /// Recommended fingers.

@@ -3,8 +3,9 @@
 use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
-use crate::setup::files::{DEFAULT_FINGER, printed_finger, stiffness_data, surrogate};
+use crate::setup::files::{DEFAULT_FINGER, stiffness_data, surrogate};
 use crate::setup::finger::InfillRequest;
+use crate::setup::printed::finger_file;
 use insertion::space::Design;
 use report::stiffness as shown;
 use serde_json::{Value, json};
@@ -43,7 +44,7 @@ impl command::Request for Request {
         if let Some([density, direction]) = infill {
             Design::checked_infill(density, direction, "stiffness").map_err(Failure::input)?;
         }
-        let finger = printed_finger(&self.finger)?;
+        let finger = finger_file(&self.finger)?.finger;
         let model = surrogate(&stiffness_data(self.stiffness_data.as_deref(), &finger)?, &finger)?;
         let predict = |[density, direction]: [f64; 2]| model.predict(density, direction);
         let predicted = infill.map(predict).transpose().map_err(Failure::input)?;

@@ -9,6 +9,7 @@ use crate::setup::film::FilmRequest;
 use crate::setup::finger::{ChosenFinger, FingerRequest};
 use crate::setup::repeat::RepeatRequest;
 use crate::setup::request::SetupRequest;
+use crate::setup::words::{parse_at_least_0, parse_number};
 use calibration::identify::curves::STEP_S;
 use calibration::identify::log::of_samples;
 use input::units::MM;
@@ -28,19 +29,9 @@ use study::write_file;
 const LARGEST_OFFSET_MM: f64 = 1000.0;
 
 fn offset(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(mm) if mm.abs() <= LARGEST_OFFSET_MM => Ok(mm),
-        _ => Err(format!(
-            "must be a number between -{LARGEST_OFFSET_MM} and {LARGEST_OFFSET_MM} (mm)"
-        )),
-    }
-}
-
-fn sampling(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(seconds) if seconds.is_finite() && seconds >= 0.0 => Ok(seconds),
-        _ => Err("must be a number of at least 0 (s)".to_owned()),
-    }
+    let problem =
+        format!("must be a number between -{LARGEST_OFFSET_MM} and {LARGEST_OFFSET_MM} (mm)");
+    parse_number(text, |mm| mm.abs() <= LARGEST_OFFSET_MM, &problem)
 }
 
 /// Simulate one insertion
@@ -64,7 +55,7 @@ pub struct Request {
     #[command(flatten)]
     pub repeat: Option<RepeatRequest>,
     /// Simulated time between two samples of the time series in the JSON, s
-    #[arg(long, value_name = "S", hide = true, value_parser = sampling)]
+    #[arg(long, value_name = "S", hide = true, value_parser = |text: &str| parse_at_least_0(text, "s"))]
     pub every_s: Option<f64>,
     /// Recordings.
     #[command(flatten)]

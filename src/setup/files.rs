@@ -83,12 +83,6 @@ pub fn robot(name: &str) -> Result<Robot, Failure> {
     Robot::parse(&source.text, &source.file).map_err(Failure::input)
 }
 
-/// Reads the finger of that name, or of the file at that path.
-pub fn printed_finger(name: &str) -> Result<PrintedFinger, Failure> {
-    let source = find("finger", FINGERS, name)?;
-    PrintedFinger::parse(&source.text, &source.file).map_err(Failure::input)
-}
-
 /// Stiffness model with the data and the finger of its fit.
 type Fit = (Source, PrintedFinger, Arc<Model>);
 

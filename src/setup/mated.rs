@@ -95,10 +95,8 @@ pub fn mated(
 ) -> Result<MatedTask, Failure> {
     let (unit, why) = unit(files, triangles, options.unit)?;
     let mut findings: Vec<(&str, String)> = why.map(|why| ("unit", why)).into_iter().collect();
-    let scaled = |of: usize| -> Vec<Triangle> {
-        triangles[of].iter().map(|t| t.map(|p| p * unit.metres())).collect()
-    };
-    let drawn = [scaled(0), scaled(1)];
+    let drawn: [Vec<Triangle>; 2] =
+        triangles.map(|of| of.iter().map(|t| t.map(|p| p * unit.metres())).collect());
     let (plug, plug_inward) = oriented(files[0], triangles[0], unit, context);
     let (socket, socket_inward) = oriented(files[1], triangles[1], unit, context);
     if !options.assembled {
@@ -107,7 +105,7 @@ pub fn mated(
     let mate = mate(files, [&plug, &socket], options, context, &mut findings)?;
     let out = mate.out.into_inner();
     let across = mate.across.map(|way| way.into_inner());
-    let chosen = |way: &&Vector3<f64>| options.jaws.is_none_or(|jaws| axis(jaws) == way.iamax());
+    let chosen = |way: &&Vector3<f64>| options.jaws.is_none_or(|jaws| jaws == jaws_of(way));
     let jaws: Vec<Vector3<f64>> = across.iter().filter(chosen).copied().collect();
     if jaws.is_empty() {
         let [a, b] = across.map(|way| value(jaws_of(&way)));
@@ -348,14 +346,6 @@ fn oriented(
         triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
     }
     (triangles, inward)
-}
-
-fn axis(jaws: Jaws) -> usize {
-    match jaws {
-        Jaws::X => 0,
-        Jaws::Y => 1,
-        Jaws::Z => 2,
-    }
 }
 
 fn jaws_of(way: &Vector3<f64>) -> Jaws {

@@ -3,6 +3,7 @@
 use super::Setup;
 use super::files::{DEFAULT_FINGER, Fingers, find, stiffness_data};
 use crate::failure::Failure;
+use connector::mesh::axes::value;
 use input::files::{LARGEST_INPUT, read_text};
 use input::shipped::{COMMERCIAL, FINGERS, ROBOTS, SPACES, Source, TASKS, resolve};
 use insertion::evaluation::cell::Priors;
@@ -228,10 +229,6 @@ fn cell(path: &str) -> Result<(Source, Priors), Failure> {
 fn with_start_rule(task: Source, rule: StartRule) -> Source {
     let Ok(mut table) = task.text.parse::<toml::Table>() else { return task };
     let Some(toml::Value::Table(strategy)) = table.get_mut("strategy") else { return task };
-    let word = match rule {
-        StartRule::Given => "given",
-        StartRule::Taught => "taught",
-    };
-    strategy.insert("start".to_owned(), word.into());
+    strategy.insert("start".to_owned(), value(rule).into());
     Source { text: table.to_string(), ..task }
 }

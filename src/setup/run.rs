@@ -55,11 +55,6 @@ pub struct EffortRequest {
 }
 
 impl EffortRequest {
-    /// Returns the given or default number of simulations per task, for a command without a study.
-    pub(crate) fn simulations(self) -> usize {
-        usize::from(self.simulations.unwrap_or(EFFORT.simulations))
-    }
-
     /// Returns the effort; values not given are those of the study, or else the defaults.
     pub(crate) fn completed(self, of_study: Option<BenchEffort>) -> BenchEffort {
         let other = of_study.unwrap_or(EFFORT);

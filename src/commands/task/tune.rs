@@ -9,6 +9,7 @@ use crate::setup::files::robot;
 use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
 use crate::setup::task::TaskFile;
 use crate::setup::tune::{outcome, ranges, step_json, tried, tuner, turned_text};
+use crate::setup::words::parse_number;
 use connector::check::problems;
 use connector::tune::{Effort, MOST_WINDOWS, Stage, Step, Tuned, Tuner, tune};
 use connector::{picture, rewrite};
@@ -74,9 +75,7 @@ struct TunedWindows {
 
 /// Parses a finite number above 0.
 fn positive(text: &str) -> Result<f64, String> {
-    let value = text.parse().unwrap_or(f64::NAN);
-    let accepted = value > 0.0 && f64::is_finite(value);
-    if accepted { Ok(value) } else { Err("give a number above 0".to_owned()) }
+    parse_number(text, |value| value > 0.0 && value.is_finite(), "give a number above 0")
 }
 
 /// Result of tuning a task.

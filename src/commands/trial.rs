@@ -82,13 +82,9 @@ pub struct Done {
     /// Its outcome.
     #[serde(flatten, serialize_with = "whole")]
     pub trial: Trial,
-    /// Shift of a taught start relative to that of the task, grid steps.
-    #[serde(
-        rename = "taught_start_mm",
-        serialize_with = "taught_mm",
-        skip_serializing_if = "Option::is_none"
-    )]
-    pub taught: Option<OffsetStep>,
+    /// Shift of a taught start relative to that of the task, mm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub taught_start_mm: Option<f64>,
     /// Number of repeats with each outcome, with `--repeat`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub repeats: Option<BTreeMap<String, usize>>,
@@ -150,19 +146,20 @@ impl command::Request for Request {
         });
         let written = layout::wrote(self.svg.iter().chain(&self.log).chain(self.film.files()));
         let series = self.every_s.map(|_| series(&samples));
-        let value = Done { chosen, offset_mm, trial, taught, repeats, series, page };
-        Ok(Output::new(value.text() + &written, value))
+        let taught_start_mm = taught.map(grid_mm);
+        let value = Done { chosen, offset_mm, trial, taught_start_mm, repeats, series, page };
+        Ok(Output::new(value.text(taught) + &written, value))
     }
 }
 
 impl Done {
-    fn text(&self) -> String {
+    fn text(&self, taught: Option<OffsetStep>) -> String {
         // `repeats       18 inserted, 2 failed: jammed`.
         let repeats = self.repeats.as_ref().map_or(String::new(), |counts| {
             let counts = counts.iter().map(|(outcome, count)| format!("{count} {outcome}"));
             format!("repeats       {}\n", counts.collect::<Vec<_>>().join(", "))
         });
-        let start = layout::lines(lines::taught(self.taught));
+        let start = layout::lines(lines::taught(taught));
         format!("{}{start}{}{repeats}", self.chosen.text(), text(&self.trial))
     }
 }
@@ -199,10 +196,6 @@ fn whole<S: Serializer>(trial: &Trial, serializer: S) -> Result<S::Ok, S::Error>
     json["retried_at_half_step"] = json!(trial.retried);
     json["phases"] = json!(trial.phases);
     json.serialize(serializer)
-}
-
-fn taught_mm<S: Serializer>(taught: &Option<OffsetStep>, serializer: S) -> Result<S::Ok, S::Error> {
-    taught.map(grid_mm).serialize(serializer)
 }
 
 fn text(trial: &Trial) -> String {

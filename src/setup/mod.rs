@@ -15,7 +15,6 @@ pub mod repeat;
 pub mod request;
 pub mod robots;
 pub mod run;
-pub mod step;
 pub mod task;
 pub mod tune;
 pub mod words;
@@ -117,7 +116,7 @@ impl Setup {
         let finger = fingers.source.iter().map(|source| (FINGER.to_owned(), source));
         let sources = roles.chain(others).chain(finger);
         let inputs = sources.map(|(role, source)| (role, source.text.clone())).collect();
-        let surrogate = surrogate(stiffness_source, fingers.measured_finger())?;
+        let surrogate = surrogate(stiffness_source, &fingers.file.finger)?;
         let finger_source = fingers.finger_source();
         let evaluator =
             Evaluator { surrogate, fingers: finger_source, templates, robot, engine, cell: None };
@@ -252,12 +251,10 @@ fn check_compatible(evaluator: &Evaluator, space: &Space, file: &str) -> Result<
 /// Checks that no task is given twice.
 fn check_distinct(templates: &[Template]) -> Result<(), Failure> {
     let names: Vec<&str> = templates.iter().map(|template| &*template.task.name).collect();
-    match names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
-        None => Ok(()),
-        Some((_, twice)) => {
-            Err(Failure::usage(format!("two tasks are called `{twice}`; give each task once")))
-        }
-    }
+    let twice = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name));
+    twice.map_or(Ok(()), |(_, twice)| {
+        Err(Failure::usage(format!("two tasks are called `{twice}`; give each task once")))
+    })
 }
 
 /// Parses the file of a cell; it must contain a robot.
@@ -293,5 +290,5 @@ fn finger_input(inputs: &Inputs) -> Result<Option<Source>, Failure> {
 /// Returns the stiffness model of the inputs in a study's folder.
 pub(crate) fn surrogate_of(inputs: &Inputs) -> Result<Arc<Model>, Failure> {
     let fingers = Fingers::parse(finger_input(inputs)?)?;
-    surrogate(&input(inputs, STIFFNESS_DATA)?, fingers.measured_finger())
+    surrogate(&input(inputs, STIFFNESS_DATA)?, &fingers.file.finger)
 }

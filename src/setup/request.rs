@@ -155,7 +155,7 @@ impl SetupRequest {
         let robot = self.robot(priors.and_then(Priors::robot_text), cell.as_ref())?;
         let parsed = Space::parse(&space.text, &space.file).map_err(Failure::input)?;
         let fingers = Fingers::parse(self.finger_model.file(Some(&parsed))?)?;
-        let stiffness = stiffness_data(self.stiffness_data.as_deref(), fingers.measured_finger())?;
+        let stiffness = stiffness_data(self.stiffness_data.as_deref(), &fingers.file.finger)?;
         let setup =
             Setup::new(&tasks, (&space, parsed), [&robot, &stiffness], fingers, self.engine)?;
         match cell {

@@ -5,7 +5,8 @@ use crate::context::{Context, not_stopped};
 use crate::failure::{Failure, within};
 use crate::layout::wrapped;
 use crate::setup::bodies::{Parts, PartsRequest, parts};
-use crate::setup::mated::{LeftOut, MateOptions, MatedTask, mated};
+use crate::setup::files::check_is_new;
+use crate::setup::mated::{MateOptions, MatedTask, left_out_json, mated};
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
@@ -47,25 +48,9 @@ const DEPTHS_MM: RangeInclusive<f64> = 0.4..=300.0;
     after_help = "Example: optimize task import --plug plug.stl --socket socket.stl --out mine.toml"
 )]
 pub struct Request {
-    /// Mesh of plug and socket in their mated pose; the plug is the part that can be withdrawn
-    #[arg(conflicts_with_all = ["plug", "socket"])]
-    pub assembly: Option<PathBuf>,
-    /// Mesh of the plug, or of both
-    #[arg(long, value_name = "P.stl", required_unless_present = "assembly")]
-    pub plug: Option<PathBuf>,
-    /// Mesh of the socket [default: the rest of the plug's file without --plug-body]
-    #[arg(long, value_name = "S.stl")]
-    pub socket: Option<PathBuf>,
-    /// Body of the file that belongs to the plug: `o` or `g` of an OBJ, `solid` of a text STL, or the number of
-    /// a shell, from 1; may be repeated [default: all, or the rest without --socket-body]
-    #[arg(long, value_name = "NAME")]
-    pub plug_body: Vec<String>,
-    /// Body of the socket's file that belongs to the socket; may be repeated
-    #[arg(long, value_name = "NAME")]
-    pub socket_body: Vec<String>,
-    /// Unit of both files [default: the one that makes plug and clearance plausible]
-    #[arg(long, value_enum)]
-    pub unit: Option<Unit>,
+    /// Files and bodies of plug and socket.
+    #[command(flatten)]
+    pub parts: PartsRequest,
     /// Direction of insertion in the socket's file [default: the one in which most walls of the two engage]
     #[arg(long, value_name = "AXIS", value_enum, allow_hyphen_values = true)]
     pub insert_along: Option<Along>,
@@ -106,10 +91,7 @@ impl command::Request for Request {
         let stop = context.stop;
         let out = &self.out();
         within("--depth-mm", self.depth_mm, &DEPTHS_MM)?;
-        if out.exists() {
-            let file = out.display();
-            return Err(Failure::usage(format!("{file} exists; name another file with --out")));
-        }
+        check_is_new(out)?;
         let mut mated = self.mated_task(context)?;
         not_stopped(stop)?;
         let (task, tuned) = tune_new(mated.made.task, self.engine, stop)?;
@@ -126,14 +108,15 @@ impl command::Request for Request {
 impl Request {
     /// Returns the names of plug and socket in messages.
     fn names(&self) -> [String; 2] {
-        let paths = || [self.plug(), self.socket()].map(|path| path.display().to_string());
+        let paths =
+            || [self.parts.plug(), self.parts.socket()].map(|path| path.display().to_string());
         <[String; 2]>::try_from(self.names.clone()).unwrap_or_else(|_| paths())
     }
 
     /// Returns the file to write.
     fn out(&self) -> PathBuf {
         self.out.clone().unwrap_or_else(|| {
-            let stem = self.plug().file_stem().unwrap_or_default();
+            let stem = self.parts.plug().file_stem().unwrap_or_default();
             PathBuf::from(stem).with_extension("toml")
         })
     }
@@ -162,21 +145,13 @@ impl Request {
     fn mated_task(&self, context: &Context<'_>) -> Result<MatedTask, Failure> {
         let like = self.like.as_deref().map(read_task).transpose()?;
         let files = self.names();
-        let request = PartsRequest {
-            plug: self.plug(),
-            socket: self.socket(),
-            assembled: self.assembly.is_some(),
-            plug_body: &self.plug_body,
-            socket_body: &self.socket_body,
-            unit: self.unit,
-        };
         let Parts { triangles: [plug, socket], unit, finding } =
-            parts([&files[0], &files[1]], &request, context)?;
+            parts([&files[0], &files[1]], &self.parts, context)?;
         not_stopped(context.stop)?;
         let options = MateOptions {
             name: &self.name(),
             unit,
-            assembled: self.assembly.is_some(),
+            assembled: self.parts.assembly.is_some(),
             along: self.insert_along,
             jaws: self.jaws,
             like: like.as_ref().map(|like| &like.task),
@@ -192,17 +167,6 @@ impl Request {
 
     fn name(&self) -> String {
         self.out().file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
-    }
-
-    /// Returns the file of the plug.
-    fn plug(&self) -> &Path {
-        // One of the two is required.
-        let given = self.assembly.as_ref().or(self.plug.as_ref());
-        given.map_or(Path::new(""), PathBuf::as_path)
-    }
-
-    fn socket(&self) -> &Path {
-        self.socket.as_ref().map_or(self.plug(), PathBuf::as_path)
     }
 
     fn notes(&self, MatedTask { made, unit, along, jaws, .. }: &MatedTask) -> Notes {
@@ -235,7 +199,7 @@ fn json(mated: &MatedTask, tuned: Option<&Tuned>, checked: &TaskCheck) -> Value 
     let [plug_parts, socket_parts] = [task.plug.parts.len(), task.socket.len()];
     let [clearance_x_mm, clearance_y_mm] = mated.play.map(|play| play / MM);
     let found = mated.findings.iter().map(|(what, why)| format!("{what} {why}"));
-    let left_out = mated.made.interference.iter().map(LeftOut::from);
+    let left_out = mated.made.interference.iter().map(left_out_json);
     json!({
         "parts": plug_parts + socket_parts,
         "plug_parts": plug_parts,

@@ -4,6 +4,7 @@ use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout::wrapped;
+use crate::setup::files::check_is_new;
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
@@ -93,9 +94,7 @@ impl command::Request for Request {
         let file = out.display().to_string();
         // Checks the name and that the file can be read.
         let written = TaskFile::parse(Source { file: file.clone(), text })?;
-        if out.exists() {
-            return Err(Failure::usage(format!("{file} exists; name another file with --out")));
-        }
+        check_is_new(&out)?;
         write_file(&out, &written.source.text)?;
         let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine, context.stop)?;
         let tuned = tuned.as_ref();

@@ -5,7 +5,7 @@ use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout::{lines, wrapped};
 use crate::progress::Part;
-use crate::setup::files::robot;
+use crate::setup::files::{check_is_new, robot};
 use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
 use crate::setup::task::TaskFile;
 use crate::setup::tune::{outcome, ranges, step_json, tried, tuner, turned_text};
@@ -79,23 +79,15 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 /// Result of tuning a task.
-struct TunedTask {
-    /// Task file, as given on the command line.
-    file: String,
-    /// The task before tuning.
-    task: Task,
+struct TunedTask<'a> {
+    /// The task before tuning, with fingers and limits.
+    tuner: Tuner<'a>,
     /// All strategies that were tried.
     tuned: Tuned,
-    /// The soft, the medium and the stiff finger.
-    fingers: [Finger; 3],
-    /// Three others, between them, with which the chosen strategy is checked.
-    others: [Finger; 3],
-    /// Limits of force and speed.
-    limits: Limits,
     /// Windows of the fingers on the tuned task; `None` if no strategy inserts.
     after: Option<TunedWindows>,
     /// The file that was written, if one was.
-    written: Option<PathBuf>,
+    written: Option<&'a Path>,
 }
 
 impl command::Request for Request {
@@ -126,28 +118,19 @@ impl command::Request for Request {
         if context.check().is_err() {
             return Err(self.interrupted(&file, &tuned, target)?);
         }
-        let Tuner { fingers, others, limits, .. } = tuner;
-        let mut done = TunedTask {
-            file: self.file.clone(),
-            task: file.task.clone(),
-            tuned,
-            fingers,
-            others,
-            limits,
-            after: None,
-            written: None,
-        };
-        if done.tuned.inserts() {
-            done.after = match self.write(&file, &done, &robot, (target, stop)) {
+        let (mut after, mut written) = (None, None);
+        if tuned.inserts() {
+            after = match self.write(&file, &tuned, &robot, (target, stop)) {
                 Err(Failure::Interrupted(_)) => {
-                    return Err(self.interrupted(&file, &done.tuned, target)?);
+                    return Err(self.interrupted(&file, &tuned, target)?);
                 }
                 found => Some(found?),
             };
-            done.written = target.filter(|_| !self.dry_run).map(Path::to_path_buf);
+            written = target.filter(|_| !self.dry_run);
         }
+        let done = TunedTask { tuner, tuned, after, written };
         let output = Output::new(wrapped(&text(&done)), json(&done));
-        Ok(Output { failure: failure(&done), ..output })
+        Ok(Output { failure: failure(&self.file, &done), ..output })
     }
 }
 
@@ -169,11 +152,7 @@ impl Request {
     /// Returns the file to write; a shipped task cannot be overwritten.
     fn target(&self) -> Result<Option<&Path>, Failure> {
         match &self.out {
-            Some(out) if out.exists() => {
-                let out = out.display();
-                Err(Failure::usage(format!("{out} exists; name another file with --out")))
-            }
-            Some(out) => Ok(Some(out)),
+            Some(out) => check_is_new(out).map(|()| Some(out.as_path())),
             None if Path::new(&self.file).is_file() => Ok(Some(Path::new(&self.file))),
             None if self.dry_run => Ok(None),
             None => Err(Failure::usage(format!(
@@ -187,11 +166,11 @@ impl Request {
     fn write(
         &self,
         file: &TaskFile,
-        done: &TunedTask,
+        tuned: &Tuned,
         robot: &Robot,
         (target, stop): (Option<&Path>, &AtomicBool),
     ) -> Result<TunedWindows, Failure> {
-        let after = rewritten(file, &done.tuned)?;
+        let after = rewritten(file, tuned)?;
         let tuner = self.tuner(&after.task, robot, stop)?;
         let found = tuner.windows(&after.task.strategy, &tuner.fingers, Conditions::NOMINAL);
         not_stopped(stop)?;
@@ -280,7 +259,8 @@ fn push_speed_mm_per_s(strategy: &Strategy) -> f64 {
     strategy.phases.last().map_or(0.0, |push| (push.speed / MM * 10.0).round() / 10.0)
 }
 
-fn json(TunedTask { task, tuned, fingers, limits, after, written, .. }: &TunedTask) -> Value {
+fn json(TunedTask { tuner, tuned, after, written }: &TunedTask<'_>) -> Value {
+    let Tuner { task, fingers, limits, .. } = tuner;
     let (best, first) = (tuned.best(), &tuned.steps[0].tried);
     let state = |after: &TunedWindows| {
         strategy_json(&best.tried.strategy, &after.windows, after.force_n, fingers)
@@ -300,13 +280,13 @@ fn json(TunedTask { task, tuned, fingers, limits, after, written, .. }: &TunedTa
         "steps": tuned.steps.iter().map(step_json).collect::<Vec<_>>(),
         "kept": tuned.robustness,
         "nearest": tuned.nearest(task),
-        "out": written.as_ref().map(|path| path.display().to_string()),
+        "out": written.map(|path| path.display().to_string()),
     })
 }
 
 /// Returns the error if no strategy inserts.
-fn failure(TunedTask { file, tuned, limits, after, .. }: &TunedTask) -> Option<Failure> {
-    let within = tuned.least_force_n().zip(limits.force);
+fn failure(file: &str, TunedTask { tuner, tuned, after, .. }: &TunedTask<'_>) -> Option<Failure> {
+    let within = tuned.least_force_n().zip(tuner.limits.force);
     let within = within.map_or(String::new(), |(least, limit)| {
         format!(" with at most {limit:.0} N (at least {least:.0} N; see --max-force-n)")
     });
@@ -314,8 +294,9 @@ fn failure(TunedTask { file, tuned, limits, after, .. }: &TunedTask) -> Option<F
     after.is_none().then(|| Failure::running(problem))
 }
 
-fn text(done: &TunedTask) -> String {
-    let TunedTask { task, tuned, fingers, others, after, written, .. } = done;
+fn text(done: &TunedTask<'_>) -> String {
+    let TunedTask { tuner, tuned, after, written } = done;
+    let Tuner { task, fingers, others, .. } = tuner;
     let line = |name: &str, text: String| (name.to_owned(), text);
     let mut all = vec![
         line("task", task.name.clone()),
@@ -352,18 +333,17 @@ fn text(done: &TunedTask) -> String {
                 }
             }));
             let name = if tuned.best == 0 { "unchanged" } else { "written" };
-            let wrote = written.as_ref();
-            all.extend(wrote.map(|path| line(name, path.display().to_string())));
+            all.extend(written.map(|path| line(name, path.display().to_string())));
         }
     }
     all.push(line("windows", format!("{} measured", tuned.windows)));
-    let next = written.as_ref();
-    all.extend(next.map(|path| line("next", format!("optimize --task {}", path.display()))));
+    all.extend(written.map(|path| line("next", format!("optimize --task {}", path.display()))));
     lines(all)
 }
 
 /// Returns speed and largest force of the push, before and after tuning, as text.
-fn push_text(TunedTask { task, tuned, limits, .. }: &TunedTask, after_n: f64) -> String {
+fn push_text(TunedTask { tuner, tuned, .. }: &TunedTask<'_>, after_n: f64) -> String {
+    let Tuner { task, limits, .. } = tuner;
     let [old, new] = [&task.strategy, &tuned.best().tried.strategy].map(push_speed_mm_per_s);
     let before = match tuned.steps[0].tried.force_n {
         0.0 => "none".to_owned(),

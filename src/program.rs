@@ -90,44 +90,39 @@ fn described(command: clap::Command, about: &'static str, example: &'static str)
 /// Runs `optimize` with these arguments, the program's name first.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     survive_size_limit();
-    let words: Vec<OsString> = arguments.into_iter().collect();
-    let (program, defaults) = match with_project(program(), &words) {
-        Ok(found) => found,
-        Err(failure) => {
-            say(&format!("error: {failure}"));
-            return ExitCode::from(failure.exit_code());
-        }
-    };
+    run(&arguments.into_iter().collect::<Vec<_>>()).unwrap_or_else(|failure| {
+        say(&format!("error: {failure}"));
+        ExitCode::from(failure.exit_code())
+    })
+}
+
+fn run(words: &[OsString]) -> Result<ExitCode, Failure> {
+    let (program, defaults) = with_project(program(), words)?;
     let short = !words.iter().any(|word| word == "--help");
     let program = match short {
         true => program.clone().override_help(help::short(&program)),
         false => program,
     };
-    let matches = match program.try_get_matches_from(&words) {
+    let matches = match program.try_get_matches_from(words) {
         Ok(matches) => matches,
         Err(usage) if usage.use_stderr() => {
             say(plain_number_errors(&usage.render().to_string()).trim_end());
-            return ExitCode::from(2);
+            return Ok(ExitCode::from(2));
         }
         // Help and version.
         Err(shown) => shown.exit(),
     };
-    let done = chosen(&matches).and_then(|(command, matches)| {
-        // Only a study has this option.
-        match matches.try_get_one::<String>("executor").ok().flatten() {
-            Some(executor) => {
-                let word = |set: &OptionDefault| format!("--{}={}", set.option, set.value).into();
-                let set = defaults.iter().map(word);
-                let words: Vec<OsString> = words.iter().skip(1).cloned().chain(set).collect();
-                executor::run(executor, &words)
-            }
-            None => (command.print)(matches, self::program).map(|()| ExitCode::SUCCESS),
+    let (command, matches) = chosen(&matches)?;
+    // Only a study has this option.
+    match matches.try_get_one::<String>("executor").ok().flatten() {
+        Some(executor) => {
+            let word = |set: &OptionDefault| format!("--{}={}", set.option, set.value).into();
+            let set = defaults.iter().map(word);
+            let words: Vec<OsString> = words.iter().skip(1).cloned().chain(set).collect();
+            executor::run(executor, &words)
         }
-    });
-    done.unwrap_or_else(|failure| {
-        say(&format!("error: {failure}"));
-        ExitCode::from(failure.exit_code())
-    })
+        None => (command.print)(matches, self::program).map(|()| ExitCode::SUCCESS),
+    }
 }
 
 /// Returns the command line with the defaults of the project file, which are named on standard error.

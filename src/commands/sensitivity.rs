@@ -2,7 +2,7 @@
 
 use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
-use crate::failure::{Failure, wide};
+use crate::failure::Failure;
 use crate::setup::request::SetupRequest;
 use crate::setup::words::WordParser;
 use analysis::sensitivity::{evaluate, inputs};
@@ -15,7 +15,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-const SAMPLES: RangeInclusive<u32> = 4..=10_000;
+const SAMPLES: RangeInclusive<i64> = 4..=10_000;
 
 /// Rank the inputs by their share of the variance: design, task, cell
 #[derive(Debug, Clone, clap::Args)]
@@ -35,7 +35,7 @@ pub struct Request {
     #[arg(long, value_name = "NAME", default_value = "typical")]
     pub uncertainty: String,
     /// Rows of the sample; the number of evaluations is this times (inputs + 2)
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(wide(&SAMPLES)))]
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(SAMPLES))]
     pub samples: u32,
     /// Seed of the sample
     #[arg(long, value_name = "N", default_value_t = 0)]

@@ -117,9 +117,8 @@ impl TaskCheck {
         engine: EngineKind,
         stop: &AtomicBool,
     ) -> Result<Option<Tuned>, Failure> {
-        let fails = |(_, trial, _): &(Finger, Trial, String)| trial.outcome != Outcome::Inserted;
         match (&self.task, &self.nominal) {
-            (Some(task), Some(nominal)) if fails(nominal) => {
+            (Some(task), Some((_, trial, _))) if trial.outcome != Outcome::Inserted => {
                 tune_until_success(task, (robot_name, engine), Stage::Search, stop).map(Some)
             }
             _ => Ok(None),

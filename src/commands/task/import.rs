@@ -12,7 +12,7 @@ use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
 use connector::body::width;
 use connector::draft::{DENSITY, Size};
-use connector::mesh::axes::{Along, Jaws, Unit, value};
+use connector::mesh::axes::{Along, Jaws, value};
 use connector::mesh::mated::PairTask;
 use connector::tune::Tuned;
 use connector::write::{self, Notes};
@@ -25,7 +25,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use study::write_file;
 
-const RESOLUTIONS: [u32; 2] = [8, 1000];
+const RESOLUTIONS: RangeInclusive<i64> = 8..=1000;
 /// Default of --resolution.
 const RESOLUTION: u32 = 64;
 /// Largest number of parts that are written into the task file itself.
@@ -63,7 +63,7 @@ pub struct Request {
     pub like: Option<String>,
     /// Without effect, since the parts are exact within 0.02 mm
     #[arg(long, hide = true, value_name = "N", default_value_t = RESOLUTION,
-          value_parser = clap::value_parser!(u32).range(i64::from(RESOLUTIONS[0])..=i64::from(RESOLUTIONS[1])))]
+          value_parser = clap::value_parser!(u32).range(RESOLUTIONS))]
     pub resolution: u32,
     /// Handle on a plug that has no faces to grip, width between the jaws x height x length in mm
     /// [default: 10x12x20 where one is needed]

@@ -70,12 +70,8 @@ pub struct Evaluated {
     #[serde(serialize_with = "serialize_bands", skip_serializing_if = "Option::is_none")]
     pub bands: Option<Bands>,
     /// The same finger with stiffness computed from its ribs.
-    #[serde(
-        rename = "computed",
-        serialize_with = "computed",
-        skip_serializing_if = "Option::is_none"
-    )]
-    pub by_ribs: Option<ByRibs>,
+    #[serde(serialize_with = "computed", skip_serializing_if = "Option::is_none")]
+    pub computed: Option<ByRibs>,
 }
 
 impl command::Request for Request {
@@ -97,9 +93,9 @@ impl command::Request for Request {
         };
         let repeat = self.repeat.filter(|_| window.nominal == Outcome::Inserted);
         let bands = repeat.map(bands).transpose()?;
-        let by_ribs = self.by_ribs(&setup, &chosen, stop)?;
+        let computed = self.by_ribs(&setup, &chosen, stop)?;
         let limit_n = limit_n(&setup, &chosen);
-        let value = Evaluated { chosen, evaluation, bands, by_ribs, wall_s, limit_n };
+        let value = Evaluated { chosen, evaluation, bands, computed, wall_s, limit_n };
         Ok(Output::new(value.text(), value))
     }
 }
@@ -162,7 +158,7 @@ fn computed<S: Serializer>(by_ribs: &Option<ByRibs>, serializer: S) -> Result<S:
 impl Evaluated {
     /// Returns a remark if the ranges by the two finger models differ by more than a factor of two.
     fn disagreement(&self) -> Option<&'static str> {
-        let Some(ByRibs::Measured(tasks)) = &self.by_ribs else { return None };
+        let Some(ByRibs::Measured(tasks)) = &self.computed else { return None };
         let range_mm = self.evaluation.window.range_mm();
         let apart = |ribs: &Evaluation| {
             let other_mm = ribs.window.range_mm();
@@ -191,7 +187,7 @@ impl Evaluated {
         rest.push(("mating force".to_owned(), mating));
         rest.extend(lines::taught(evaluation.taught));
         rest.extend(lines::drawn(evaluation));
-        rest.extend(self.by_ribs.iter().flat_map(lines::by_ribs));
+        rest.extend(self.computed.iter().flat_map(lines::by_ribs));
         rest.extend(self.disagreement().map(|remark| (String::new(), remark.to_owned())));
         let text = format!(
             "task          {}\n{}{}{}time          {:.1} s\n",

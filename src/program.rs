@@ -132,11 +132,8 @@ fn with_project(
 ) -> Result<(clap::Command, Vec<OptionDefault>), Failure> {
     let texts: Vec<&str> = words.iter().skip(1).filter_map(|word| word.to_str()).collect();
     let given = |option: &str| {
-        let named = |word: &str| word.strip_prefix("--")?.strip_prefix(option).map(str::to_owned);
-        texts
-            .iter()
-            .filter_map(|word| named(word))
-            .any(|rest| rest.is_empty() || rest.starts_with('='))
+        let mut names = texts.iter().filter_map(|word| word.strip_prefix("--")?.split('=').next());
+        names.any(|name| name == option)
     };
     let (mut path, mut command) = (Vec::new(), &program);
     while let Some(below) = texts.get(path.len()).and_then(|name| command.find_subcommand(name)) {

@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::setup::files::DEFAULT_FINGER;
 use crate::setup::finger::{InfillRequest, setting};
 use crate::setup::printed::{finger_file, predicted_stiffness};
+use crate::setup::words::parse_pair;
 use finray::geometry::Geometry;
 use finray::mechanics::{self, FingerStiffness};
 use finray::picture;
@@ -58,9 +59,7 @@ pub struct Request {
 }
 
 fn force(text: &str) -> Result<[f64; 2], String> {
-    let number = |part: &str| part.trim().parse::<f64>().ok();
-    let parts = text.split_once(',').and_then(|(y, z)| Some([number(y)?, number(z)?]));
-    let [y, z] = parts.unwrap_or_default();
+    let (y, z) = parse_pair(text).unwrap_or_default();
     match (1e-3..=LARGEST_LOAD_N).contains(&libm::hypot(y, z)) {
         true => Ok([y, z]),
         false => {

@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use crate::setup::finger::{FingerRequest, InfillRequest};
 use crate::setup::request::{SetupRequest, TaskSource};
 use crate::setup::task::read_task;
+use crate::setup::words::parse_pair;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::outcome::Outcome;
 use insertion::trial::picture;
@@ -48,10 +49,7 @@ pub struct Request {
 }
 
 fn infill(text: &str) -> Result<(f64, f64), String> {
-    match text.split_once(',').map(|(a, b)| (a.trim().parse(), b.trim().parse())) {
-        Some((Ok(density), Ok(direction))) => Ok((density, direction)),
-        _ => Err("must be PERCENT,DEG, for example 10,0".to_owned()),
-    }
+    parse_pair(text).ok_or_else(|| "must be PERCENT,DEG, for example 10,0".to_owned())
 }
 
 /// Sheet that was written.

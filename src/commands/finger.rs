@@ -18,7 +18,6 @@ use insertion::surrogate::Prediction;
 use nalgebra::Matrix3;
 use report::answer::lines;
 use report::text_table;
-use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
@@ -94,31 +93,23 @@ impl command::Request for Request {
     }
 }
 
-/// In-plane stiffness of a finger.
-#[derive(Serialize)]
-struct Planar {
-    compliance_n_per_mm: f64,
-    assembly_n_per_mm: f64,
-    tilting_nm_per_rad: f64,
-    centre_below_pad_mm: f64,
-    centre_from_pad_mm: f64,
-    coupling_yz: f64,
-    /// For y, z and rx at the middle of the pad: N/mm, N, N mm.
-    stiffness_matrix: [[f64; 3]; 3],
+/// Returns the numbers of an in-plane stiffness: key of `--json`, value, and decimals in the text.
+fn planar(found: &PlanarStiffness) -> [(&'static str, f64, usize); 6] {
+    [
+        ("compliance_n_per_mm", found.in_compliance() / N_PER_MM, 2),
+        ("assembly_n_per_mm", found.in_assembly() / N_PER_MM, 1),
+        ("tilting_nm_per_rad", found.tilting(), 2),
+        ("centre_below_pad_mm", found.centre_below_pad() / MM, 1),
+        ("centre_from_pad_mm", found.centre_in_front() / MM, 1),
+        ("coupling_yz", found.coupling_yz(), 2),
+    ]
 }
 
-impl From<&PlanarStiffness> for Planar {
-    fn from(found: &PlanarStiffness) -> Self {
-        Planar {
-            compliance_n_per_mm: found.in_compliance() / N_PER_MM,
-            assembly_n_per_mm: found.in_assembly() / N_PER_MM,
-            tilting_nm_per_rad: found.tilting(),
-            centre_below_pad_mm: found.centre_below_pad() / MM,
-            centre_from_pad_mm: found.centre_in_front() / MM,
-            coupling_yz: found.coupling_yz(),
-            stiffness_matrix: in_mm(found.matrix()),
-        }
-    }
+/// Returns an in-plane stiffness as JSON; its matrix is for y, z and rx at the middle of the pad, N/mm, N, N mm.
+fn planar_json(found: &PlanarStiffness) -> Value {
+    let mut json: Value = planar(found).into_iter().map(|(key, value, _)| (key, value)).collect();
+    json["stiffness_matrix"] = json!(in_mm(found.matrix()));
+    json
 }
 
 /// Returns the stiffness of a finger as JSON; `model` is `None` if the stiffness model does not cover this infill, or if
@@ -132,8 +123,8 @@ fn json(geometry: &Geometry, computed: &FingerStiffness, model: Option<&Predicti
         "area_mm2": geometry.area() / (MM * MM),
         "mass_g": geometry.mass() / GRAM,
         "measured_model": model,
-        "pad": Planar::from(&computed.pad),
-        "pad_and_roof": Planar::from(&computed.pad_and_roof),
+        "pad": planar_json(&computed.pad),
+        "pad_and_roof": planar_json(&computed.pad_and_roof),
         "across": {
             "depth_n_per_mm": computed.cross.in_depth / N_PER_MM,
             "about_y_nm_per_rad": computed.cross.about_y,
@@ -146,8 +137,7 @@ fn text(geometry: &Geometry, computed: &FingerStiffness, model: Option<&Predicti
     let (design, material) = (&geometry.design, &geometry.finger.material);
     let model = model.map(|prediction| lines::stiffness(prediction)[0].1.clone());
     let model = model.unwrap_or_else(|| "not covered by the measured model".to_owned());
-    let rows = [("pad", &computed.pad), ("pad and roof", &computed.pad_and_roof)];
-    let rows = rows.map(|(name, found)| Planar::from(found).row(name));
+    let rows = [row("pad", &computed.pad), row("pad and roof", &computed.pad_and_roof)];
     let cross = &computed.cross;
     format!(
         "finger        {}, {} %, {}°, first rib at {} mm\n\
@@ -178,7 +168,7 @@ fn first_rib_mm(geometry: &Geometry) -> f64 {
     geometry.design.phase_mm.unwrap_or(geometry.finger.ribs.phase / MM)
 }
 
-/// Column headings for [`Planar::row`].
+/// Column headings for [`row`].
 const PLANAR: [&str; 7] = [
     "contact\nat",
     "compliance\nN/mm",
@@ -189,18 +179,10 @@ const PLANAR: [&str; 7] = [
     "coupling\ny-z",
 ];
 
-impl Planar {
-    fn row(&self, name: &str) -> [String; 7] {
-        [
-            name.to_owned(),
-            format!("{:.2}", self.compliance_n_per_mm),
-            format!("{:.1}", self.assembly_n_per_mm),
-            format!("{:.2}", self.tilting_nm_per_rad),
-            format!("{:.1}", self.centre_below_pad_mm),
-            format!("{:.1}", self.centre_from_pad_mm),
-            format!("{:.2}", self.coupling_yz),
-        ]
-    }
+/// Returns the row of an in-plane stiffness, with its name.
+fn row(name: &str, found: &PlanarStiffness) -> [String; 7] {
+    let [a, b, c, d, e, f] = planar(found).map(|(_, value, places)| format!("{value:.places$}"));
+    [name.to_owned(), a, b, c, d, e, f]
 }
 
 /// Converts N/m, N/rad and N m/rad to N/mm, N and N mm.

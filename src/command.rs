@@ -1,4 +1,4 @@
-//! Interface of a command: a request, parsed from the command line or from keywords, and a response, printed as text
+//! Interface of a command: a request, parsed from the command line or from keywords, and its output, printed as text
 //! or as JSON.
 
 use crate::context::{Context, Program};
@@ -7,14 +7,13 @@ use crate::terminal;
 use clap::{Arg, ArgAction, ArgMatches, Args};
 use serde::Serialize;
 use std::ffi::OsString;
-use std::fmt;
 use std::path::PathBuf;
 use study::write_file;
 
 /// Input of a command: its fields are the options, its doc comments their help.
 pub trait Request: Args {
-    /// Result of the command.
-    type Response: Response;
+    /// Result of the command, serialized for `--json` and Python.
+    type Response: Serialize;
     /// Whether the result can be printed as JSON.
     const JSON: bool = true;
     /// Whether the command shows its progress.
@@ -24,66 +23,35 @@ pub trait Request: Args {
     ///
     /// # Errors
     /// If an input cannot be used, a file cannot be written, or the run is cancelled.
-    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure>;
+    fn run(&self, context: &Context<'_>) -> Result<Output<Self::Response>, Failure>;
 }
 
-/// Result of a command, serialized for `--json` and Python, displayed for a terminal.
-pub trait Response: Serialize + fmt::Display + Sized {
-    /// Returns an SVG or a page that shows the result, if there is one.
-    ///
-    /// # Errors
-    /// If it cannot be drawn.
-    fn picture(&self) -> Result<Option<String>, Failure> {
-        Ok(None)
-    }
-
-    /// Returns the error with which the program ends after printing the result.
-    ///
-    /// # Errors
-    /// If the result is a failure, for example a task that does not insert.
-    fn verdict(self) -> Result<(), Failure> {
-        Ok(())
-    }
-}
-
-/// Value for `--json` and its text for a terminal.
-#[derive(Debug, Default, Serialize)]
-#[serde(transparent)]
+/// Result of a command with its text for a terminal.
+#[derive(Debug, Default)]
 pub struct Output<T> {
-    /// The value.
+    /// The result.
     pub value: T,
     /// Its text.
-    #[serde(skip)]
     pub text: String,
     /// SVG or page that shows it, if there is one.
-    #[serde(skip)]
     pub picture: Option<String>,
+    /// Error with which the program ends after printing the result, for example if a task does not insert.
+    pub failure: Option<Failure>,
 }
 
 impl<T> Output<T> {
-    /// Returns a value with its picture, which is also written to `file`, if that is given.
+    /// Returns a result with its text.
+    pub fn new(text: String, value: T) -> Self {
+        Output { value, text, picture: None, failure: None }
+    }
+
+    /// Adds a picture, which is also written to `file`, if that is given.
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn drawn(
-        (value, text): (T, String),
-        picture: String,
-        file: Option<&PathBuf>,
-    ) -> Result<Self, Failure> {
+    pub fn drawn(self, picture: String, file: Option<&PathBuf>) -> Result<Self, Failure> {
         file.map_or(Ok(()), |file| write_file(file, &picture))?;
-        Ok(Output { value, text, picture: Some(picture) })
-    }
-}
-
-impl<T> fmt::Display for Output<T> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text)
-    }
-}
-
-impl<T: Serialize> Response for Output<T> {
-    fn picture(&self) -> Result<Option<String>, Failure> {
-        Ok(self.picture.clone())
+        Ok(Output { picture: Some(picture), ..self })
     }
 }
 
@@ -92,7 +60,7 @@ pub type Text = Output<String>;
 
 impl From<String> for Text {
     fn from(text: String) -> Self {
-        Output { value: text.clone(), text, picture: None }
+        Output::new(text.clone(), text)
     }
 }
 
@@ -112,7 +80,7 @@ pub struct Command {
     pub path: &'static [&'static str],
     /// Adds its options to a command of clap.
     pub augment: fn(clap::Command) -> clap::Command,
-    /// Runs it and prints its result; fails if the request does, or by [`Response::verdict`].
+    /// Runs it and prints its result; fails if the request does, or with [`Output::failure`].
     pub print: fn(&ArgMatches, Program) -> Result<(), Failure>,
     /// Runs it for another program.
     pub call: fn(&ArgMatches, &Context<'_>) -> Result<CallResult, Failure>,
@@ -163,18 +131,15 @@ fn print<R: Request>(matches: &ArgMatches, program: Program) -> Result<(), Failu
     let json = set(JSON);
     let request = request::<R>(matches)?;
     let context = Context::terminal(json, set(QUIET), program);
-    let response = request.run(&context)?;
+    let Output { value, text, failure, .. } = request.run(&context)?;
     drop(context);
-    match json {
-        true => terminal::print(&(to_json(&response)? + "\n"))?,
-        false => terminal::print(&response.to_string())?,
-    }
-    response.verdict()
+    terminal::print(&if json { to_json(&value)? + "\n" } else { text })?;
+    failure.map_or(Ok(()), Err)
 }
 
 fn call<R: Request>(matches: &ArgMatches, context: &Context<'_>) -> Result<CallResult, Failure> {
-    let response = request::<R>(matches)?.run(context)?;
-    Ok(CallResult { json: to_json(&response)?, picture: response.picture()? })
+    let Output { value, picture, .. } = request::<R>(matches)?.run(context)?;
+    Ok(CallResult { json: to_json(&value)?, picture })
 }
 
 fn to_json(response: &impl Serialize) -> Result<String, Failure> {

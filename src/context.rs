@@ -44,11 +44,8 @@ impl<'a> Context<'a> {
     /// # Errors
     /// If signals cannot be watched.
     pub fn stop_on_interrupt(&self, dir: &Path) -> Result<(), Failure> {
-        if self.terminal.is_none() {
-            return Ok(());
-        }
         let dir = dir.display().to_string();
-        watch(move || {
+        self.watch(move || {
             INTERRUPTED.store(true, Ordering::SeqCst);
             std::thread::sleep(GRACE);
             say(&format!("stopped; continue with: optimize resume {dir}"));
@@ -62,14 +59,21 @@ impl<'a> Context<'a> {
     /// # Errors
     /// If signals cannot be watched.
     pub fn cancel_on_interrupt(&self) -> Result<(), Failure> {
-        if self.terminal.is_none() {
-            return Ok(());
-        }
-        watch(|| {
+        self.watch(|| {
             if INTERRUPTED.swap(true, Ordering::SeqCst) {
                 std::process::exit(1);
             }
         })
+    }
+
+    /// Sets the handler of Ctrl-C and SIGTERM for a command of the terminal.
+    fn watch(&self, handler: impl FnMut() + 'static + Send) -> Result<(), Failure> {
+        if self.is_terminal() { watch(handler) } else { Ok(()) }
+    }
+
+    /// Returns whether the command was started from a terminal.
+    pub fn is_terminal(&self) -> bool {
+        self.terminal.is_some()
     }
 
     /// Checks that the command has not been cancelled.
@@ -173,7 +177,8 @@ impl Terminal {
     }
 }
 
-fn watch(handler: impl FnMut() + 'static + Send) -> Result<(), Failure> {
+/// Sets the handler of Ctrl-C and SIGTERM.
+pub(crate) fn watch(handler: impl FnMut() + 'static + Send) -> Result<(), Failure> {
     ctrlc::set_handler(handler)
         .map_err(|error| Failure::running(format!("cannot watch for Ctrl-C: {error}")))
 }

@@ -1,5 +1,6 @@
 //! `--executor WHERE`: passes the command to the installed Python package, which contains the executors.
 
+use crate::context::watch;
 use crate::failure::Failure;
 use crate::python::{PYTHON, command, interpreter, output};
 use std::ffi::OsString;
@@ -24,18 +25,15 @@ pub fn run(executor: &str, words: &[OsString]) -> Result<ExitCode, Failure> {
     };
     output(&mut command("import finger_opt")).map_err(|message| missing(&message))?;
     // The package ends the study when its standard input closes, also if this process is killed. The handler is set
-    // first, since a signal may come as soon as the package runs.
-    let input = Arc::new(Mutex::new(Input { stopped: false, pipe: None }));
+    // first, since a signal may come as soon as the package runs; it waits until the input is known.
+    let input = Arc::new(Mutex::new(None));
     let watched = Arc::clone(&input);
-    let stop = move || *locked(&watched) = Input { stopped: true, pipe: None };
-    let watch = ctrlc::set_handler(stop);
-    watch.map_err(|error| Failure::running(format!("cannot watch for Ctrl-C: {error}")))?;
+    let mut held = locked(&input);
+    watch(move || *locked(&watched) = None)?;
     let mut study = command("from finger_opt.executors import command; sys.exit(command())");
     let study = study.args(words).env(SOURCES_KEY, SOURCES).stdin(Stdio::piped()).spawn();
     let mut study = study.map_err(|error| missing(&error.to_string()))?;
-    let pipe = study.stdin.take();
-    let mut held = locked(&input);
-    held.pipe = pipe.filter(|_| !held.stopped);
+    *held = study.stdin.take();
     drop(held);
     let status = study.wait().map_err(|error| Failure::running(error.to_string()))?;
     match status.code() {
@@ -44,12 +42,6 @@ pub fn run(executor: &str, words: &[OsString]) -> Result<ExitCode, Failure> {
     }
 }
 
-/// Standard input of the interpreter, and whether the run was cancelled.
-struct Input {
-    stopped: bool,
-    pipe: Option<ChildStdin>,
-}
-
-fn locked(input: &Mutex<Input>) -> MutexGuard<'_, Input> {
+fn locked(input: &Mutex<Option<ChildStdin>>) -> MutexGuard<'_, Option<ChildStdin>> {
     input.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -165,11 +165,6 @@ pub fn within<T: PartialOrd + fmt::Display>(
     }
 }
 
-/// Converts a range of smaller integers to the type that clap accepts.
-pub(crate) fn wide<T: Copy + Into<i64>>(range: &RangeInclusive<T>) -> RangeInclusive<i64> {
-    (*range.start()).into()..=(*range.end()).into()
-}
-
 /// Returns an error of bad configuration in the folder of a study.
 pub fn bad_config(error: impl fmt::Display) -> Failure {
     Failure::in_file("study.toml", error)

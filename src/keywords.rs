@@ -75,7 +75,9 @@ fn words(program: &clap::Command, keywords: &Map<String, Value>) -> Result<Vec<O
             (true, _) => positional.extend(values),
             (false, ArgAction::SetTrue) => words.push(format!("--{name}")),
             (false, _) if *value == Value::Bool(true) => words.push(format!("--{name}")),
-            (false, ArgAction::Append) if min_values(arg) > 1 => {
+            (false, ArgAction::Append)
+                if arg.get_num_args().is_some_and(|count| count.min_values() > 1) =>
+            {
                 words.push(format!("--{name}"));
                 words.extend(values);
             }
@@ -91,10 +93,6 @@ fn words(program: &clap::Command, keywords: &Map<String, Value>) -> Result<Vec<O
 fn takes_several(arg: &Arg) -> bool {
     let many = arg.get_num_args().is_some_and(|count| count.max_values() > 1);
     matches!(arg.get_action(), ArgAction::Append) && arg.get_value_delimiter().is_none() || many
-}
-
-fn min_values(arg: &Arg) -> usize {
-    arg.get_num_args().map_or(1, |count| count.min_values())
 }
 
 /// Joins the parts of a value by `x` if the option takes `WxHxL`, else by commas.

@@ -2,7 +2,7 @@
 
 use crate::project::NO_CONFIG;
 use clap::{Arg, ArgAction};
-use serde::Serialize;
+use serde_json::{Value, json};
 use std::any::TypeId;
 use std::path::PathBuf;
 
@@ -26,32 +26,9 @@ pub fn reference(program: clap::Command) -> String {
     page
 }
 
-/// A command and its options, with Python's names; `hidden` are options for other programs only.
-#[derive(Serialize)]
-pub struct Described {
-    name: String,
-    about: Option<String>,
-    options: Vec<DescribedOption>,
-    hidden: Vec<DescribedOption>,
-}
-
-#[derive(Serialize)]
-struct DescribedOption {
-    name: String,
-    positional: bool,
-    required: bool,
-    multiple: bool,
-    flag: bool,
-    kind: &'static str,
-    value: Option<String>,
-    words: Vec<String>,
-    default: String,
-    help: Option<String>,
-}
-
-/// Returns all commands with their options.
-pub fn commands(mut program: clap::Command) -> Vec<Described> {
-    fn below(command: &clap::Command, path: &str, found: &mut Vec<Described>) {
+/// Returns all commands with their options, with Python's names; `hidden` are options for other programs only.
+pub fn commands(mut program: clap::Command) -> Vec<Value> {
+    fn below(command: &clap::Command, path: &str, found: &mut Vec<Value>) {
         let nested =
             || command.get_subcommands().filter(|c| !c.is_hide_set() && c.get_name() != "help");
         if nested().next().is_none() {
@@ -61,7 +38,7 @@ pub fn commands(mut program: clap::Command) -> Vec<Described> {
             let [options, hidden] =
                 [shown, hidden].map(|some| some.into_iter().map(option).collect::<Vec<_>>());
             let about = command.get_long_about().or(command.get_about()).map(ToString::to_string);
-            found.push(Described { name: path.to_owned(), about, options, hidden });
+            found.push(json!({"name": path, "about": about, "options": options, "hidden": hidden}));
         }
         for command in nested() {
             below(command, format!("{path} {}", command.get_name()).trim_start(), found);
@@ -73,29 +50,27 @@ pub fn commands(mut program: clap::Command) -> Vec<Described> {
     found
 }
 
-fn option(argument: &Arg) -> DescribedOption {
+fn option(argument: &Arg) -> Value {
     let words = argument.get_possible_values();
     let words = words.iter().filter(|word| !word.is_hide_set()).map(|word| word.get_name());
     let default = argument.get_default_values().iter().map(|value| value.to_string_lossy());
     let name = argument.get_long().unwrap_or(argument.get_id().as_str()).replace('-', "_");
     let takes = argument.get_action().takes_values();
+    let listed = takes && !argument.is_hide_possible_values_set();
     let value = argument.get_value_names().and_then(|names| names.first());
     let many = argument.get_num_args().is_some_and(|count| count.max_values() > 1);
-    DescribedOption {
-        name,
-        positional: argument.is_positional(),
-        required: argument.is_required_set(),
-        multiple: matches!(argument.get_action(), ArgAction::Append) || many,
-        flag: !takes,
-        kind: kind(argument),
-        value: value.filter(|_| takes).map(ToString::to_string),
-        words: words
-            .filter(|_| takes && !argument.is_hide_possible_values_set())
-            .map(str::to_owned)
-            .collect(),
-        default: default.filter(|_| takes).collect::<Vec<_>>().join(","),
-        help: argument.get_help().map(ToString::to_string),
-    }
+    json!({
+        "name": name,
+        "positional": argument.is_positional(),
+        "required": argument.is_required_set(),
+        "multiple": matches!(argument.get_action(), ArgAction::Append) || many,
+        "flag": !takes,
+        "kind": kind(argument),
+        "value": value.filter(|_| takes).map(ToString::to_string),
+        "words": words.filter(|_| listed).collect::<Vec<_>>(),
+        "default": default.filter(|_| takes).collect::<Vec<_>>().join(","),
+        "help": argument.get_help().map(ToString::to_string),
+    })
 }
 
 /// Returns the type of an option's value.

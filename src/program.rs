@@ -60,31 +60,23 @@ pub fn program() -> clap::Command {
         .args_conflicts_with_subcommands(true);
     let root = help::with_headings((STUDY.augment)(root).arg(help::no_config()));
     let root = described(root, ABOUT, "Example: optimize --task usb --budget 200");
-    let mut groups = GROUPS.map(|(order, name, about, example)| {
+    let commands_in = |group: &[&str]| {
+        let members = COMMANDS
+            .iter()
+            .filter(|command| matches!(command.path, [above @ .., _] if above == group));
+        let mut commands: Vec<_> =
+            members.map(|command| help::with_headings(command.clap())).collect();
+        commands.sort_by_key(clap::Command::get_display_order);
+        commands
+    };
+    let mut commands = commands_in(&[]);
+    commands.extend(GROUPS.map(|(order, name, about, example)| {
         let group = clap::Command::new(name)
             .display_order(order)
             .subcommand_required(true)
             .arg_required_else_help(true);
-        described(group, about, example)
-    });
-    let mut commands = Vec::new();
-    let mut below: Vec<_> = COMMANDS
-        .iter()
-        .map(|command| (command.path, help::with_headings(command.clap())))
-        .collect();
-    below.sort_by_key(|(_, command)| command.get_display_order());
-    for (path, command) in below {
-        match *path {
-            [group, _] => {
-                let group = groups.iter_mut().find(|found| found.get_name() == group);
-                group
-                    .into_iter()
-                    .for_each(|group| *group = group.clone().subcommand(command.clone()));
-            }
-            _ => commands.push(command),
-        }
-    }
-    commands.extend(groups);
+        described(group, about, example).subcommands(commands_in(&[name]))
+    }));
     commands.sort_by_key(clap::Command::get_display_order);
     root.subcommands(commands)
 }
@@ -98,43 +90,39 @@ fn described(command: clap::Command, about: &'static str, example: &'static str)
 /// Runs `optimize` with these arguments, the program's name first.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     survive_size_limit();
-    let words: Vec<OsString> = arguments.into_iter().collect();
-    let (program, defaults) = match with_project(program(), &words) {
-        Ok(found) => found,
-        Err(failure) => {
-            say(&format!("error: {failure}"));
-            return ExitCode::from(failure.exit_code());
-        }
-    };
+    run(&arguments.into_iter().collect::<Vec<_>>()).unwrap_or_else(|failure| {
+        say(&format!("error: {failure}"));
+        ExitCode::from(failure.exit_code())
+    })
+}
+
+fn run(words: &[OsString]) -> Result<ExitCode, Failure> {
+    let (program, defaults) = with_project(program(), words)?;
     let short = !words.iter().any(|word| word == "--help");
     let program = match short {
         true => program.clone().override_help(help::short(&program)),
         false => program,
     };
-    let matches = match program.try_get_matches_from(&words) {
+    let matches = match program.try_get_matches_from(words) {
         Ok(matches) => matches,
         Err(usage) if usage.use_stderr() => {
             say(plain_number_errors(&usage.render().to_string()).trim_end());
-            return ExitCode::from(2);
+            return Ok(ExitCode::from(2));
         }
         // Help and version.
         Err(shown) => shown.exit(),
     };
-    let done = chosen(&matches).and_then(|(command, matches)| {
-        // Only a study has this option.
-        match matches.try_get_one::<String>("executor").ok().flatten() {
-            Some(executor) => {
-                let set = defaults.iter().map(|set| set.word().into());
-                let words: Vec<OsString> = words.iter().skip(1).cloned().chain(set).collect();
-                executor::run(executor, &words)
-            }
-            None => (command.print)(matches, self::program).map(|()| ExitCode::SUCCESS),
+    let (command, matches) = chosen(&matches)?;
+    // Only a study has this option.
+    match matches.try_get_one::<String>("executor").ok().flatten() {
+        Some(executor) => {
+            let word = |set: &OptionDefault| format!("--{}={}", set.option, set.value).into();
+            let set = defaults.iter().map(word);
+            let words: Vec<OsString> = words.iter().skip(1).cloned().chain(set).collect();
+            executor::run(executor, &words)
         }
-    });
-    done.unwrap_or_else(|failure| {
-        say(&format!("error: {failure}"));
-        ExitCode::from(failure.exit_code())
-    })
+        None => (command.print)(matches, self::program).map(|()| ExitCode::SUCCESS),
+    }
 }
 
 /// Returns the command line with the defaults of the project file, which are named on standard error.
@@ -144,11 +132,8 @@ fn with_project(
 ) -> Result<(clap::Command, Vec<OptionDefault>), Failure> {
     let texts: Vec<&str> = words.iter().skip(1).filter_map(|word| word.to_str()).collect();
     let given = |option: &str| {
-        let named = |word: &str| word.strip_prefix("--")?.strip_prefix(option).map(str::to_owned);
-        texts
-            .iter()
-            .filter_map(|word| named(word))
-            .any(|rest| rest.is_empty() || rest.starts_with('='))
+        let mut names = texts.iter().filter_map(|word| word.strip_prefix("--")?.split('=').next());
+        names.any(|name| name == option)
     };
     let (mut path, mut command) = (Vec::new(), &program);
     while let Some(below) = texts.get(path.len()).and_then(|name| command.find_subcommand(name)) {

@@ -78,7 +78,9 @@ impl Progress {
 
     /// Returns the progress through so many evaluations' worth of work.
     pub fn of(left: f64, shown: bool) -> Self {
-        let bar = (shown && stderr().is_terminal()).then(|| bar(left));
+        let bar = || ProgressBar::new(left.ceil() as u64);
+        let bar = (shown && stderr().is_terminal())
+            .then(|| styled(bar(), "{bar:12} {msg}, {elapsed} elapsed"));
         let now = Instant::now();
         let computed = (0.0, Duration::ZERO);
         Progress { bar, shown, printed: now, last: now, done: 0.0, left, computed, search: None }
@@ -154,10 +156,7 @@ impl Busy {
     pub fn new(what: &'static str) -> Self {
         if stderr().is_terminal() {
             let spinner = ProgressBar::new_spinner().with_message(what);
-            if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}, {elapsed} elapsed") {
-                spinner.set_style(style);
-            }
-            spinner.enable_steady_tick(Duration::from_millis(500));
+            let spinner = styled(spinner, "{spinner} {msg}, {elapsed} elapsed");
             return Busy { spinner: Some(spinner), lines: None };
         }
         let (sender, receiver) = channel();
@@ -182,9 +181,9 @@ impl Drop for Busy {
     }
 }
 
-fn bar(left: f64) -> ProgressBar {
-    let bar = ProgressBar::new(left.ceil() as u64);
-    if let Ok(style) = ProgressStyle::with_template("{bar:12} {msg}, {elapsed} elapsed") {
+/// Sets the template of a bar, which is drawn twice a second.
+fn styled(bar: ProgressBar, template: &str) -> ProgressBar {
+    if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);
     }
     bar.enable_steady_tick(Duration::from_millis(500));

@@ -132,13 +132,6 @@ impl Project {
     }
 }
 
-impl OptionDefault {
-    /// Returns the word of the command line that sets the option.
-    pub fn word(&self) -> String {
-        format!("--{}={}", self.option, self.value)
-    }
-}
-
 /// Returns the path of a file in the folder of the project, or the unchanged name if it is not a path.
 fn beside(folder: &Path, name: &str) -> String {
     let path = folder.join(name);

@@ -18,7 +18,7 @@ fn each_input_file_is_parsed_once() {
         let request: evaluate::Request = parse(words.chain(more)).ok().unwrap();
         let before = input::parsed();
         let found = request.run(&Context::silent(&NEVER)).ok().unwrap();
-        assert!(found.evaluation.window.range_mm() > 0.0);
+        assert!(found.value.evaluation.window.range_mm() > 0.0);
         assert_eq!(input::parsed() - before, files.len() as u64, "{files:?}");
     }
 }

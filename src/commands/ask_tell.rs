@@ -16,7 +16,7 @@ use std::io::{self, BufRead, Read};
 pub struct Request {}
 
 impl command::Request for Request {
-    type Response = Text;
+    type Response = String;
     const JSON: bool = false;
 
     /// Answers each line before the next is read, until the input ends.

@@ -8,10 +8,9 @@ use crate::setup::bench::{BenchRequest, CalibrationRequest, Prepared, folds};
 use crate::setup::measured;
 use calibration::bench::Settings;
 use calibration::calibrate::Calibration;
-use calibration::subject::Subject;
 use calibration::table;
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use study::write_file;
 
 /// Predict the range of every finger on the bench: from simulations and a few measurements.
@@ -38,10 +37,10 @@ pub struct Request {
 
 impl command::Request for Request {
     /// Predictions for every finger of the tasks: [`table::json`].
-    type Response = Output<Value>;
+    type Response = Value;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
         let simulations = self.bench.setup.tasks.len().max(1) * self.calibration.simulations();
         context.begin(simulations as f64 * cost::SIMULATION);
         let source = measured::file(&self.bench.measurements)?;
@@ -55,20 +54,14 @@ impl command::Request for Request {
             tasks.map(|(subject, result)| report::calibrate::text(subject, result)).collect();
         text.push(report::calibrate::parameters_text(&found));
         if let Some(out) = &self.out {
-            write(out, &subjects, &found)?;
+            for (subject, result) in subjects.iter().zip(&found.tasks) {
+                let name = format!("predictions_{}.csv", subject.task);
+                write_file(&out.join(name), &table::predictions_csv(subject, result))?;
+            }
+            write_file(&out.join("leave_one_out.csv"), &table::left_out_csv(&found, &subjects))?;
+            write_file(&out.join("parameters.csv"), &table::parameters_csv(&found))?;
             text.push(format!("tables are in {}\n", out.display()));
         }
-        let value = table::json(&found, &subjects);
-        Ok(Output { value, text: text.join("\n"), picture: None })
+        Ok(Output::new(text.join("\n"), table::json(&found, &subjects)))
     }
-}
-
-/// Writes the tables into a folder.
-fn write(out: &Path, subjects: &[Subject], found: &Calibration) -> Result<(), Failure> {
-    for (subject, result) in subjects.iter().zip(&found.tasks) {
-        let name = format!("predictions_{}.csv", subject.task);
-        write_file(&out.join(name), &table::predictions_csv(subject, result))?;
-    }
-    write_file(&out.join("leave_one_out.csv"), &table::left_out_csv(found, subjects))?;
-    Ok(write_file(&out.join("parameters.csv"), &table::parameters_csv(found))?)
 }

@@ -27,16 +27,16 @@ pub struct Request {
 
 impl command::Request for Request {
     /// Studies side by side.
-    type Response = Output<Comparison>;
+    type Response = Comparison;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output<Comparison>, Failure> {
         let load = |dir: &PathBuf| Ok((dir.display().to_string(), StudyRecord::load(dir)?));
         let studies = self.dirs.iter().map(load).collect::<Result<Vec<_>, Failure>>()?;
         let comparison = compare(&studies).map_err(Failure::usage)?;
         if let Some(file) = &self.html {
             write_file(file, &page(&comparison)?)?;
         }
-        let (text, picture) = (text(&comparison), svg(&comparison)?);
-        Output::drawn((comparison, text), picture, self.svg.as_ref())
+        let picture = svg(&comparison)?;
+        Output::new(text(&comparison), comparison).drawn(picture, self.svg.as_ref())
     }
 }

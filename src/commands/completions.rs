@@ -14,7 +14,7 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    type Response = Text;
+    type Response = String;
     const JSON: bool = false;
 
     fn run(&self, context: &Context<'_>) -> Result<Text, Failure> {

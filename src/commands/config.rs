@@ -8,7 +8,7 @@ use crate::project::{PROJECT_FILE, Project, Settings};
 use crate::setup::files::robot;
 use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE};
 use crate::setup::task::{read_space, read_task};
-use serde::Serialize;
+use serde_json::{Value, json};
 
 /// Print the settings of finger-opt.toml in this folder or above
 ///
@@ -18,24 +18,17 @@ use serde::Serialize;
 #[command(display_order = 45, after_help = "Example: optimize config --json")]
 pub struct Request {}
 
-/// Settings in effect in the current folder.
-#[derive(Serialize)]
-pub struct CurrentSettings {
-    /// Path of the project file.
-    file: Option<String>,
-    /// Values that it sets, by option.
-    settings: Settings,
-}
-
 impl command::Request for Request {
-    type Response = Output<CurrentSettings>;
+    /// Path of the project file, and the values that it sets, by option.
+    type Response = Value;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output<Value>, Failure> {
         let found = Project::current()?;
         found.iter().try_for_each(check)?;
         let (file, settings) = found.map(|found| (found.file, found.settings)).unzip();
-        let value = CurrentSettings { file, settings: settings.unwrap_or_default() };
-        Ok(Output { text: value.text(), value, picture: None })
+        let settings = settings.unwrap_or_default();
+        let value = json!({"file": file, "settings": settings});
+        Ok(Output::new(text(file.as_deref(), settings), value))
     }
 }
 
@@ -49,28 +42,26 @@ fn check(Project { file, settings }: &Project) -> Result<(), Failure> {
     problem.map_or(Ok(()), |problem| Err(Failure::in_file(file, problem)))
 }
 
-impl CurrentSettings {
-    fn text(&self) -> String {
-        let Settings { task, robot, cell, measurements, space, threads } = self.settings.clone();
-        let none = format!("no {PROJECT_FILE} in this folder or above");
-        let from = self.file.as_deref().unwrap_or_default();
-        let threads = threads.map(|count| count.to_string());
-        let rows = [
-            ("task", task, "none"),
-            ("robot", robot, DEFAULT_ROBOT),
-            ("cell", cell, "none"),
-            ("measurements", measurements, "none"),
-            ("space", space, DEFAULT_SPACE),
-            ("threads", threads, "one per processor"),
-        ];
-        let rows = rows.into_iter().map(|(key, set, default)| {
-            let (value, origin) = match &set {
-                Some(value) => (value.as_str(), from),
-                None => (default, "default"),
-            };
-            (key.to_owned(), format!("{value:<24} ({origin})"))
-        });
-        let first = ("file".to_owned(), self.file.clone().unwrap_or(none));
-        lines(std::iter::once(first).chain(rows))
-    }
+fn text(file: Option<&str>, settings: Settings) -> String {
+    let Settings { task, robot, cell, measurements, space, threads } = settings;
+    let none = format!("no {PROJECT_FILE} in this folder or above");
+    let from = file.unwrap_or_default();
+    let threads = threads.map(|count| count.to_string());
+    let rows = [
+        ("task", task, "none"),
+        ("robot", robot, DEFAULT_ROBOT),
+        ("cell", cell, "none"),
+        ("measurements", measurements, "none"),
+        ("space", space, DEFAULT_SPACE),
+        ("threads", threads, "one per processor"),
+    ];
+    let rows = rows.into_iter().map(|(key, set, default)| {
+        let (value, origin) = match &set {
+            Some(value) => (value.as_str(), from),
+            None => (default, "default"),
+        };
+        (key.to_owned(), format!("{value:<24} ({origin})"))
+    });
+    let first = ("file".to_owned(), file.map_or(none, str::to_owned));
+    lines(std::iter::once(first).chain(rows))
 }

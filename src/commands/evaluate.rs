@@ -1,6 +1,6 @@
 //! `optimize evaluate`: measures the tolerance window of one finger.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout;
@@ -18,7 +18,6 @@ use report::answer::lines;
 use report::answer::words::{self, mm, number};
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
-use std::fmt;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use study::ByRibs;
@@ -78,18 +77,14 @@ pub struct Evaluated {
     #[serde(serialize_with = "serialize_bands", skip_serializing_if = "Option::is_none")]
     pub bands: Option<Bands>,
     /// The same finger with stiffness computed from its ribs.
-    #[serde(
-        rename = "computed",
-        serialize_with = "computed",
-        skip_serializing_if = "Option::is_none"
-    )]
-    pub by_ribs: Option<ByRibs>,
+    #[serde(serialize_with = "computed", skip_serializing_if = "Option::is_none")]
+    pub computed: Option<ByRibs>,
 }
 
 impl command::Request for Request {
     type Response = Evaluated;
 
-    fn run(&self, context: &Context<'_>) -> Result<Evaluated, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Evaluated>, Failure> {
         let stop = context.stop;
         let (setup, plan) = self.prepared()?;
         let chosen = self.finger.choose(&setup)?;
@@ -106,9 +101,10 @@ impl command::Request for Request {
         };
         let repeat = self.repeat.filter(|_| window.nominal == Outcome::Inserted);
         let bands = repeat.map(bands).transpose()?;
-        let by_ribs = self.by_ribs(&setup, &chosen, stop)?;
+        let computed = self.by_ribs(&setup, &chosen, stop)?;
         let limit_n = limit_n(&setup, &chosen);
-        Ok(Evaluated { chosen, evaluation, bands, by_ribs, wall_s, measured, limit_n })
+        let value = Evaluated { chosen, evaluation, bands, computed, wall_s, measured, limit_n };
+        Ok(Output::new(value.text(), value))
     }
 }
 
@@ -177,8 +173,6 @@ fn computed<S: Serializer>(by_ribs: &Option<ByRibs>, serializer: S) -> Result<S:
     }
 }
 
-impl command::Response for Evaluated {}
-
 impl Evaluated {
     /// Returns each measured range, and advice if the simulated one differs from one by more than a factor of two.
     fn measured_lines(&self) -> Vec<lines::Line> {
@@ -201,7 +195,7 @@ impl Evaluated {
 
     /// Returns a remark if the ranges by the two finger models differ by more than a factor of two.
     fn disagreement(&self) -> Option<&'static str> {
-        let Some(ByRibs::Measured(tasks)) = &self.by_ribs else { return None };
+        let Some(ByRibs::Measured(tasks)) = &self.computed else { return None };
         let range_mm = self.evaluation.window.range_mm();
         let apart = |ribs: &Evaluation| {
             let other_mm = ribs.window.range_mm();
@@ -210,10 +204,8 @@ impl Evaluated {
         let remark = "the ranges differ by more than a factor of two: measure a finger before you rely on either";
         tasks.iter().any(apart).then_some(remark)
     }
-}
 
-impl fmt::Display for Evaluated {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn text(&self) -> String {
         let Evaluated { chosen, evaluation, .. } = self;
         let [c1, c2, c3, c4] = evaluation.failure_counts;
         let mut rest = vec![("range".to_owned(), mm(evaluation.window.range_mm()))];
@@ -233,7 +225,7 @@ impl fmt::Display for Evaluated {
         rest.push(("mating force".to_owned(), mating));
         rest.extend(lines::taught(evaluation.taught));
         rest.extend(lines::drawn(evaluation));
-        rest.extend(self.by_ribs.iter().flat_map(lines::by_ribs));
+        rest.extend(self.computed.iter().flat_map(lines::by_ribs));
         rest.extend(self.disagreement().map(|remark| (String::new(), remark.to_owned())));
         let text = format!(
             "task          {}\n{}{}{}time          {:.1} s\n",
@@ -243,6 +235,6 @@ impl fmt::Display for Evaluated {
             self.bands.as_ref().map(bands_text).unwrap_or_default(),
             self.wall_s
         );
-        f.write_str(&layout::wrapped(&text))
+        layout::wrapped(&text)
     }
 }

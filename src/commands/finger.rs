@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::setup::files::DEFAULT_FINGER;
 use crate::setup::finger::{InfillRequest, setting};
 use crate::setup::printed::{finger_file, predicted_stiffness};
+use crate::setup::words::parse_pair;
 use finray::geometry::Geometry;
 use finray::mechanics::{self, FingerStiffness};
 use finray::picture;
@@ -17,7 +18,7 @@ use insertion::surrogate::Prediction;
 use nalgebra::Matrix3;
 use report::answer::lines;
 use report::text_table;
-use serde::Serialize;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 
 /// Largest drawn force on the pad, N, since displacements are linear.
@@ -57,9 +58,7 @@ pub struct Request {
 }
 
 fn force(text: &str) -> Result<[f64; 2], String> {
-    let number = |part: &str| part.trim().parse::<f64>().ok();
-    let parts = text.split_once(',').and_then(|(y, z)| Some([number(y)?, number(z)?]));
-    let [y, z] = parts.unwrap_or_default();
+    let (y, z) = parse_pair(text).unwrap_or_default();
     match (1e-3..=LARGEST_LOAD_N).contains(&libm::hypot(y, z)) {
         true => Ok([y, z]),
         false => {
@@ -68,34 +67,11 @@ fn force(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
-/// Finger with its computed stiffness, and the prediction of the stiffness model.
-#[derive(Serialize)]
-pub struct ComputedFinger {
-    finger: String,
-    infill_density_percent: f64,
-    infill_direction_deg: f64,
-    phase_mm: f64,
-    area_mm2: f64,
-    mass_g: f64,
-    /// `None` if the stiffness model does not cover this infill, or if `set` changes the shape.
-    measured_model: Option<Prediction>,
-    pad: Planar,
-    pad_and_roof: Planar,
-    across: Across,
-}
-
-/// Stiffness out of the plane.
-#[derive(Serialize)]
-struct Across {
-    depth_n_per_mm: f64,
-    about_y_nm_per_rad: f64,
-    about_z_nm_per_rad: f64,
-}
-
 impl command::Request for Request {
-    type Response = Output<ComputedFinger>;
+    /// The finger with its computed stiffness, and the prediction of the stiffness model.
+    type Response = Value;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output<Value>, Failure> {
         if let Some((key, _)) = self.set.iter().find(|(key, _)| !is_shape(key)) {
             return Err(Failure::usage(format!(
                 "--set {key}: must be a number of the finger file, for example finger.skin.thickness_mm"
@@ -110,91 +86,89 @@ impl command::Request for Request {
         let computed = mechanics::compute(&geometry).map_err(Failure::input)?;
         let mut design = Design::infill(density, direction);
         design.0.extend(set.0);
-        let value =
-            ComputedFinger::new(&geometry, &computed, predicted_stiffness(&file.finger, &design)?);
+        let model = predicted_stiffness(&file.finger, &design)?;
         let svg = picture::svg(&geometry, self.load_n).map_err(Failure::input)?;
-        let text = value.text(&geometry);
-        Output::drawn((value, text), svg, self.svg.as_ref())
+        let value = json(&geometry, &computed, model.as_ref());
+        Output::new(text(&geometry, &computed, model.as_ref()), value).drawn(svg, self.svg.as_ref())
     }
 }
 
-/// In-plane stiffness of a finger.
-#[derive(Serialize)]
-struct Planar {
-    compliance_n_per_mm: f64,
-    assembly_n_per_mm: f64,
-    tilting_nm_per_rad: f64,
-    centre_below_pad_mm: f64,
-    centre_from_pad_mm: f64,
-    coupling_yz: f64,
-    /// For y, z and rx at the middle of the pad: N/mm, N, N mm.
-    stiffness_matrix: [[f64; 3]; 3],
+/// Returns the numbers of an in-plane stiffness: key of `--json`, value, and decimals in the text.
+fn planar(found: &PlanarStiffness) -> [(&'static str, f64, usize); 6] {
+    [
+        ("compliance_n_per_mm", found.in_compliance() / N_PER_MM, 2),
+        ("assembly_n_per_mm", found.in_assembly() / N_PER_MM, 1),
+        ("tilting_nm_per_rad", found.tilting(), 2),
+        ("centre_below_pad_mm", found.centre_below_pad() / MM, 1),
+        ("centre_from_pad_mm", found.centre_in_front() / MM, 1),
+        ("coupling_yz", found.coupling_yz(), 2),
+    ]
 }
 
-impl From<&PlanarStiffness> for Planar {
-    fn from(found: &PlanarStiffness) -> Self {
-        Planar {
-            compliance_n_per_mm: found.in_compliance() / N_PER_MM,
-            assembly_n_per_mm: found.in_assembly() / N_PER_MM,
-            tilting_nm_per_rad: found.tilting(),
-            centre_below_pad_mm: found.centre_below_pad() / MM,
-            centre_from_pad_mm: found.centre_in_front() / MM,
-            coupling_yz: found.coupling_yz(),
-            stiffness_matrix: in_mm(found.matrix()),
-        }
-    }
+/// Returns an in-plane stiffness as JSON; its matrix is for y, z and rx at the middle of the pad, N/mm, N, N mm.
+fn planar_json(found: &PlanarStiffness) -> Value {
+    let mut json: Value = planar(found).into_iter().map(|(key, value, _)| (key, value)).collect();
+    json["stiffness_matrix"] = json!(in_mm(found.matrix()));
+    json
 }
 
-impl ComputedFinger {
-    fn new(geometry: &Geometry, computed: &FingerStiffness, model: Option<Prediction>) -> Self {
-        let (design, cross) = (&geometry.design, &computed.cross);
-        ComputedFinger {
-            finger: geometry.finger.name.clone(),
-            infill_density_percent: design.density_percent,
-            infill_direction_deg: design.direction_deg,
-            phase_mm: design.phase_mm.unwrap_or(geometry.finger.ribs.phase / MM),
-            area_mm2: geometry.area() / (MM * MM),
-            mass_g: geometry.mass() / GRAM,
-            measured_model: model,
-            pad: (&computed.pad).into(),
-            pad_and_roof: (&computed.pad_and_roof).into(),
-            across: Across {
-                depth_n_per_mm: cross.in_depth / N_PER_MM,
-                about_y_nm_per_rad: cross.about_y,
-                about_z_nm_per_rad: cross.about_z,
-            },
-        }
-    }
-
-    fn text(&self, geometry: &Geometry) -> String {
-        let ComputedFinger {
-            finger, infill_density_percent, infill_direction_deg, phase_mm, ..
-        } = self;
-        let material = &geometry.finger.material;
-        let model = self.measured_model.as_ref();
-        let model = model.map(|prediction| lines::stiffness(prediction)[0].1.clone());
-        let model = model.unwrap_or_else(|| "not covered by the measured model".to_owned());
-        let rows = [self.pad.row("pad"), self.pad_and_roof.row("pad and roof")];
-        let Across { depth_n_per_mm, about_y_nm_per_rad, about_z_nm_per_rad } = self.across;
-        format!(
-            "finger        {finger}, {infill_density_percent} %, {infill_direction_deg}°, first rib at {phase_mm} mm\n\
-             material      {}, {} GPa ({})\n\
-             area, mass    {:.1} mm2, {:.2} g\n\
-             stiffness     {model}\n\n\
-             from the ribs\n{}\n\
-             across        {depth_n_per_mm:.1} N/mm in x, {about_y_nm_per_rad:.2} Nm/rad about y, \
-             {about_z_nm_per_rad:.2} about z\n",
-            material.name,
-            material.modulus / 1e9,
-            material.source,
-            self.area_mm2,
-            self.mass_g,
-            text_table(1, PLANAR, rows),
-        )
-    }
+/// Returns the stiffness of a finger as JSON; `model` is `None` if the stiffness model does not cover this infill, or if
+/// `set` changes the shape.
+fn json(geometry: &Geometry, computed: &FingerStiffness, model: Option<&Prediction>) -> Value {
+    json!({
+        "finger": geometry.finger.name,
+        "infill_density_percent": geometry.design.density_percent,
+        "infill_direction_deg": geometry.design.direction_deg,
+        "phase_mm": first_rib_mm(geometry),
+        "area_mm2": geometry.area() / (MM * MM),
+        "mass_g": geometry.mass() / GRAM,
+        "measured_model": model,
+        "pad": planar_json(&computed.pad),
+        "pad_and_roof": planar_json(&computed.pad_and_roof),
+        "across": {
+            "depth_n_per_mm": computed.cross.in_depth / N_PER_MM,
+            "about_y_nm_per_rad": computed.cross.about_y,
+            "about_z_nm_per_rad": computed.cross.about_z,
+        },
+    })
 }
 
-/// Column headings for [`Planar::row`].
+fn text(geometry: &Geometry, computed: &FingerStiffness, model: Option<&Prediction>) -> String {
+    let (design, material) = (&geometry.design, &geometry.finger.material);
+    let model = model.map(|prediction| lines::stiffness(prediction)[0].1.clone());
+    let model = model.unwrap_or_else(|| "not covered by the measured model".to_owned());
+    let rows = [row("pad", &computed.pad), row("pad and roof", &computed.pad_and_roof)];
+    let cross = &computed.cross;
+    format!(
+        "finger        {}, {} %, {}°, first rib at {} mm\n\
+         material      {}, {} GPa ({})\n\
+         area, mass    {:.1} mm2, {:.2} g\n\
+         stiffness     {model}\n\n\
+         from the ribs\n{}\n\
+         across        {:.1} N/mm in x, {:.2} Nm/rad about y, \
+         {:.2} about z\n",
+        geometry.finger.name,
+        design.density_percent,
+        design.direction_deg,
+        first_rib_mm(geometry),
+        material.name,
+        material.modulus / 1e9,
+        material.source,
+        geometry.area() / (MM * MM),
+        geometry.mass() / GRAM,
+        text_table(1, PLANAR, rows),
+        cross.in_depth / N_PER_MM,
+        cross.about_y,
+        cross.about_z,
+    )
+}
+
+/// Returns the position of the first rib, mm.
+fn first_rib_mm(geometry: &Geometry) -> f64 {
+    geometry.design.phase_mm.unwrap_or(geometry.finger.ribs.phase / MM)
+}
+
+/// Column headings for [`row`].
 const PLANAR: [&str; 7] = [
     "contact\nat",
     "compliance\nN/mm",
@@ -205,18 +179,10 @@ const PLANAR: [&str; 7] = [
     "coupling\ny-z",
 ];
 
-impl Planar {
-    fn row(&self, name: &str) -> [String; 7] {
-        [
-            name.to_owned(),
-            format!("{:.2}", self.compliance_n_per_mm),
-            format!("{:.1}", self.assembly_n_per_mm),
-            format!("{:.2}", self.tilting_nm_per_rad),
-            format!("{:.1}", self.centre_below_pad_mm),
-            format!("{:.1}", self.centre_from_pad_mm),
-            format!("{:.2}", self.coupling_yz),
-        ]
-    }
+/// Returns the row of an in-plane stiffness, with its name.
+fn row(name: &str, found: &PlanarStiffness) -> [String; 7] {
+    let [a, b, c, d, e, f] = planar(found).map(|(_, value, places)| format!("{value:.places$}"));
+    [name.to_owned(), a, b, c, d, e, f]
 }
 
 /// Converts N/m, N/rad and N m/rad to N/mm, N and N mm.

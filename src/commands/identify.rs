@@ -1,6 +1,6 @@
 //! `optimize identify`: identifies the parameters of a cell from the robot's logs.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout;
@@ -20,8 +20,7 @@ use input::units::N_PER_MM;
 use insertion::evaluation::cell::Priors;
 use insertion::robot::{Drive, Robot};
 use report::identify::{self as shown, html};
-use serde::{Serialize, Serializer};
-use std::fmt;
+use serde_json::Value;
 use std::path::PathBuf;
 use study::write_file;
 
@@ -62,18 +61,24 @@ pub struct Request {
     pub seed: u64,
 }
 
-/// Identified cell, with the files that were written.
-pub struct CellOutput {
-    /// Identified parameters of the cell.
-    pub result: IdentificationResult,
-    written: Vec<PathBuf>,
-}
-
 impl command::Request for Request {
-    type Response = CellOutput;
+    type Response = Value;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<CellOutput, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
+        let result = self.identify(context)?;
+        let written = layout::wrote(self.out.iter().chain(&self.report));
+        let text = layout::wrapped(&shown::text(&result)) + &written;
+        Output::new(text, shown::json(&result)).drawn(html(&result), self.report.as_ref())
+    }
+}
+
+impl Request {
+    /// Identifies the cell and writes its file.
+    ///
+    /// # Errors
+    /// If an input cannot be used, the logs determine no parameter, or the run is cancelled.
+    pub fn identify(&self, context: &Context<'_>) -> Result<IdentificationResult, Failure> {
         let stop = context.stop;
         let _busy = context.busy("fitting the cell to the logs");
         let setup = self.setup.setup()?;
@@ -114,29 +119,7 @@ impl command::Request for Request {
             let text = toml::to_string(&result.cell).map_err(|error| Failure::Run(error.into()))?;
             write_file(path, &text)?;
         }
-        if let Some(path) = &self.report {
-            write_file(path, &html(&result))?;
-        }
-        Ok(CellOutput { result, written: self.out.iter().chain(&self.report).cloned().collect() })
-    }
-}
-
-impl Serialize for CellOutput {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        shown::json(&self.result).serialize(serializer)
-    }
-}
-
-impl command::Response for CellOutput {
-    fn picture(&self) -> Result<Option<String>, Failure> {
-        Ok(Some(html(&self.result)))
-    }
-}
-
-impl fmt::Display for CellOutput {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let text = layout::wrapped(&shown::text(&self.result));
-        write!(f, "{text}{}", layout::wrote(&self.written))
+        Ok(result)
     }
 }
 

@@ -8,7 +8,6 @@ use crate::setup::Setup;
 use crate::setup::finger::FingerRequest;
 use crate::setup::request::SetupRequest;
 use analysis::levers::{LeverAnalysis, Levers};
-use insertion::evaluation::template::Template;
 use insertion::space::Design;
 use insertion::surrogate::Prediction;
 use report::levers as output;
@@ -44,34 +43,33 @@ pub struct LeverReport {
 }
 
 impl command::Request for Request {
-    type Response = Output<LeverReport>;
+    type Response = LeverReport;
     const PROGRESS: bool = true;
 
     /// Measures the levers, and for comparison the softest and the stiffest infill of the space.
-    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<LeverReport>, Failure> {
         let _busy = context.busy("measuring the levers");
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
         let given = chosen.given.then_some(chosen.specimen.stiffness);
         let finger = (&chosen.design, given);
-        let levers = levers(&setup, setup.only_task()?, finger, None, context.stop)?;
+        let levers = levers(&setup, finger, None, context.stop)?;
         let (svg, text) = (output::svg(&levers)?, layout::wrapped(&output::text(&levers)));
         let value = LeverReport { sentence: levers.sentence(), levers };
-        Output::drawn((value, text), svg, self.svg.as_ref())
+        Output::new(text, value).drawn(svg, self.svg.as_ref())
     }
 }
 
-/// Measures the levers of a design on one of the setup's tasks. The stiffness is predicted unless
+/// Measures the levers of a design on the setup's task. The stiffness is predicted unless
 /// given; `infill` is the smallest and largest range over infills, mm, if known.
 pub(crate) fn levers(
     setup: &Setup,
-    template: &Template,
     (design, given): (&Design, Option<Prediction>),
     infill: Option<[f64; 2]>,
     stop: &AtomicBool,
 ) -> Result<Levers, Failure> {
-    let analysis =
-        LeverAnalysis { evaluator: &setup.evaluator, template, space: &setup.space, design, given };
+    let (evaluator, template) = (&setup.evaluator, setup.only_task()?);
+    let analysis = LeverAnalysis { evaluator, template, space: &setup.space, design, given };
     let levers = analysis.levers(infill, stop).map_err(Failure::input)?;
     not_stopped(stop)?;
     Ok(levers)

@@ -27,7 +27,7 @@ pub enum Format {
 }
 
 impl command::Request for Request {
-    type Response = Text;
+    type Response = String;
     const JSON: bool = false;
 
     fn run(&self, context: &Context<'_>) -> Result<Text, Failure> {
@@ -41,10 +41,7 @@ impl command::Request for Request {
                 String::from_utf8_lossy(&page).into_owned()
             }
             Format::Markdown => manual::reference(program),
-            Format::Json => {
-                let commands = serde_json::to_string(&manual::commands(program));
-                commands.map_err(|error| Failure::Run(error.into()))? + "\n"
-            }
+            Format::Json => serde_json::json!(manual::commands(program)).to_string() + "\n",
         };
         Ok(text.into())
     }

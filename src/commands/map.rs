@@ -52,10 +52,10 @@ pub struct Mapped {
 }
 
 impl command::Request for Request {
-    type Response = Output<Mapped>;
+    type Response = Mapped;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Mapped>, Failure> {
         let stop = context.stop;
         let _busy = context.busy("tracing the map");
         let setup = self.setup.setup()?;
@@ -66,7 +66,7 @@ impl command::Request for Request {
         let svg = report::map::svg(&map)?;
         let value = Mapped { chosen, map };
         let text = layout::wrapped(&value.text()) + &layout::wrote(&self.svg);
-        Output::drawn((value, text), svg, self.svg.as_ref())
+        Output::new(text, value).drawn(svg, self.svg.as_ref())
     }
 }
 

@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::progress::cost;
 use crate::setup::bench::{BenchRequest, CalibrationRequest, Prepared};
 use crate::setup::measured;
+use crate::setup::words::parse_at_least_0;
 use ask_tell::stream::stream;
 use calibration::next::{Advice, Fingers, advise};
 use input::shipped::Source;
@@ -46,18 +47,11 @@ pub struct Request {
     #[arg(long, value_enum, default_value = "space")]
     pub among: Among,
     /// Smallest expected gain of the chosen finger's range that is worth a print and its measurement, mm
-    #[arg(long, value_name = "MM", default_value_t = 0.1, value_parser = print_cost)]
+    #[arg(long, value_name = "MM", default_value_t = 0.1, value_parser = |text: &str| parse_at_least_0(text, "mm"))]
     pub print_cost_mm: f64,
     /// Options of the calibration.
     #[command(flatten)]
     pub calibration: CalibrationRequest,
-}
-
-fn print_cost(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(mm) if mm.is_finite() && mm >= 0.0 => Ok(mm),
-        _ => Err("must be a number of at least 0 (mm)".to_owned()),
-    }
 }
 
 /// Recommended fingers.
@@ -73,10 +67,10 @@ pub struct Advised {
 }
 
 impl command::Request for Request {
-    type Response = Output<Advised>;
+    type Response = Advised;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Advised>, Failure> {
         context.begin(self.calibration.simulations() as f64 * cost::SIMULATION);
         if self.bench.setup.tasks.len() > 1 {
             return Err(Failure::usage("give one --task"));
@@ -127,7 +121,7 @@ impl command::Request for Request {
             measurements_missing: missing,
             advice,
         };
-        Ok(Output { text: value.text(file, cost_mm), value, picture: None })
+        Ok(Output::new(value.text(file, cost_mm), value))
     }
 }
 
@@ -135,49 +129,48 @@ impl Advised {
     fn text(&self, measurements: &str, print_cost_mm: f64) -> String {
         let Advised { task, measured, measurements_missing, advice, .. } = self;
         let file = measurements_missing.then(|| format!(" ({measurements} does not exist)"));
-        let mut lines = vec![match advice.best_known_mm {
-            Some(best) => format!(
-                "{task}: {} measured, the best of them expected at {best:.1} mm",
-                input::counted(*measured, "finger")
-            ),
-            None => format!(
-                "{task}: nothing measured yet{}; by simulation alone",
-                file.unwrap_or_default()
-            ),
-        }];
+        let mut text = match advice.best_known_mm {
+            Some(best) => {
+                let measured = input::counted(*measured, "finger");
+                format!("{task}: {measured} measured, the best of them expected at {best:.1} mm\n")
+            }
+            None => {
+                let file = file.unwrap_or_default();
+                format!("{task}: nothing measured yet{file}; by simulation alone\n")
+            }
+        };
         if !self.not_measurable.is_empty() {
             let fingers = self.not_measurable.iter().map(design).collect::<Vec<_>>().join("; ");
-            lines.push(format!("printed, not measurable: {fingers}"));
+            text += &format!("printed, not measurable: {fingers}\n");
         }
         for (i, print) in advice.next.iter().enumerate() {
-            lines.push(format!("{}. {}", i + 1, design(&print.design)));
-            lines.push(format!(
-                "   expected {:.1} mm (80 %: {:.1} to {:.1}): {}",
-                print.expected_mm, print.low_mm, print.high_mm, print.reason
-            ));
+            text += &format!(
+                "{}. {}\n   expected {:.1} mm (80 %: {:.1} to {:.1}): {}\n",
+                i + 1,
+                design(&print.design),
+                print.expected_mm,
+                print.low_mm,
+                print.high_mm,
+                print.reason
+            );
             if !print.needs_print {
-                lines.push(
-                    "   no print: this finger was printed; set the other numbers and measure it"
-                        .to_owned(),
-                );
+                text +=
+                    "   no print: this finger was printed; set the other numbers and measure it\n";
             }
-            lines.push(format!(
-                "   expected improvement of the finger chosen afterwards: {:.2} mm",
-                print.expected_gain_mm
-            ));
+            let gain = print.expected_gain_mm;
+            text +=
+                &format!("   expected improvement of the finger chosen afterwards: {gain:.2} mm\n");
         }
         if advice.stop {
             let gain = format!("more than {print_cost_mm} mm");
-            lines
-                .push(format!("stop: no print is expected to improve the chosen finger by {gain}"));
+            text += &format!("stop: no print is expected to improve the chosen finger by {gain}\n");
         }
         if let Some(choice) = advice.choice.as_ref().filter(|_| advice.stop || *measured > 0) {
             let known = if choice.measured { "measured" } else { "not measured" };
             let (finger, mm) = (design(&choice.design), choice.expected_mm);
-            lines.push(format!(
-                "without a further print choose {finger}: expected {mm:.1} mm, {known}"
-            ));
+            text +=
+                &format!("without a further print choose {finger}: expected {mm:.1} mm, {known}\n");
         }
-        lines.join("\n") + "\n"
+        text
     }
 }

@@ -24,14 +24,14 @@ pub struct Written {
 }
 
 impl command::Request for Request {
-    type Response = Output<Written>;
+    type Response = Written;
 
-    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Written>, Failure> {
         let record = rewrite(&self.dir)?;
         let warnings = record.remarks();
         warnings.iter().for_each(|warning| context.note(&format!("warning: {warning}")));
         let (page, evaluations) = (self.dir.join(PAGE), record.evaluations.len());
         let text = format!("wrote the report of {evaluations} evaluations: {}\n", page.display());
-        Ok(Output { value: Written { page, evaluations, warnings }, text, picture: None })
+        Ok(Output::new(text, Written { page, evaluations, warnings }))
     }
 }

@@ -1,12 +1,13 @@
 //! `optimize resume`: continues a study.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::setup::Setup;
 use crate::setup::run::RunRequest;
 use crate::studies::open::OpenStudy;
-use crate::studies::output::{self, StudyOutput};
+use crate::studies::output;
+use serde_json::Value;
 use std::path::PathBuf;
 use study::Study;
 
@@ -25,10 +26,10 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    type Response = StudyOutput;
+    type Response = Value;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<StudyOutput, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
         output::run(self.open()?, context, self.verbose)
     }
 }

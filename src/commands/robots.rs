@@ -5,24 +5,18 @@ use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout::{lines, wrapped};
 use crate::setup::robots::{CellRobot, robots};
-use serde::Serialize;
+use serde_json::{Value, json};
 
 /// List the shipped robots with the cells that they represent, and an example of a robot file
 #[derive(Debug, clap::Args)]
 #[command(display_order = 50, after_help = "Example: optimize robots --json")]
 pub struct Request {}
 
-/// Shipped robots, and an example of a robot file.
-#[derive(Serialize)]
-pub struct ShippedRobots {
-    robots: Vec<CellRobot>,
-    own_file: &'static str,
-}
-
 impl command::Request for Request {
-    type Response = Output<ShippedRobots>;
+    /// Shipped robots, and an example of a robot file.
+    type Response = Value;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output<Value>, Failure> {
         let (robots, own_file) = (robots()?, include_str!("robot.toml"));
         let list: String = robots.iter().map(text).collect();
         let text = format!(
@@ -32,7 +26,7 @@ impl command::Request for Request {
              damping_nms_per_rad / stiffness_nm_per_rad, see robots/ur5e_position.toml.\n",
             wrapped(&list),
         );
-        Ok(Output { value: ShippedRobots { robots, own_file }, text, picture: None })
+        Ok(Output::new(text, json!({"robots": robots, "own_file": own_file})))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
-use crate::failure::{Failure, wide};
+use crate::failure::Failure;
 use crate::setup::request::SetupRequest;
 use crate::setup::words::WordParser;
 use analysis::sensitivity::{evaluate, inputs};
@@ -15,7 +15,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-const SAMPLES: RangeInclusive<u32> = 4..=10_000;
+const SAMPLES: RangeInclusive<i64> = 4..=10_000;
 
 /// Rank the inputs by their share of the variance: design, task, cell
 #[derive(Debug, Clone, clap::Args)]
@@ -35,7 +35,7 @@ pub struct Request {
     #[arg(long, value_name = "NAME", default_value = "typical")]
     pub uncertainty: String,
     /// Rows of the sample; the number of evaluations is this times (inputs + 2)
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(wide(&SAMPLES)))]
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(SAMPLES))]
     pub samples: u32,
     /// Seed of the sample
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -47,15 +47,15 @@ pub struct Request {
 
 impl command::Request for Request {
     /// Shares of the objective's variance.
-    type Response = Output<SensitivityResult>;
+    type Response = SensitivityResult;
     const PROGRESS: bool = true;
 
     /// Simulates the sample and ranks the inputs.
-    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<SensitivityResult>, Failure> {
         let _busy = context.busy("simulating the sample");
         let found = self.found(context.stop)?;
-        let (text, svg) = (shown::text(&found), shown::svg(&found)?);
-        Output::drawn((found, text), svg, self.svg.as_ref())
+        let svg = shown::svg(&found)?;
+        Output::new(shown::text(&found), found).drawn(svg, self.svg.as_ref())
     }
 }
 

@@ -1,19 +1,16 @@
 //! `optimize stiffness`: shows the stiffness model and its goodness of fit.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
-use crate::setup::files::{DEFAULT_FINGER, printed_finger, stiffness_data, surrogate};
+use crate::setup::files::{DEFAULT_FINGER, stiffness_data, surrogate};
 use crate::setup::finger::InfillRequest;
+use crate::setup::printed::finger_file;
 use input::Check;
-use insertion::surrogate::{Model, Prediction};
 use parameters::numbers::{self, DENSITY, DIRECTION};
 use report::stiffness as shown;
-use serde::{Serialize, Serializer};
-use std::fmt;
+use serde_json::{Value, json};
 use std::path::PathBuf;
-use std::sync::Arc;
-use study::write_file;
 
 /// Show the stiffness model and its leave-one-out errors
 #[derive(Debug, Clone, clap::Args)]
@@ -38,16 +35,11 @@ pub struct Request {
     pub infill: InfillRequest,
 }
 
-/// Fitted model of the stiffness, with its prediction if an infill is given.
-pub struct FittedModel {
-    model: Arc<Model>,
-    predicted: Option<Prediction>,
-}
-
 impl command::Request for Request {
-    type Response = FittedModel;
+    /// The prediction if an infill is given, else the fitted model.
+    type Response = Value;
 
-    fn run(&self, _context: &Context<'_>) -> Result<FittedModel, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
         let given = self.infill != InfillRequest::default();
         let infill = given.then(|| self.infill.required()).transpose()?;
         if let Some([density, direction]) = infill {
@@ -55,34 +47,16 @@ impl command::Request for Request {
             numbers::check(check, DENSITY, density).map_err(Failure::input)?;
             numbers::check(check, DIRECTION, direction).map_err(Failure::input)?;
         }
-        let finger = printed_finger(&self.finger)?;
+        let finger = finger_file(&self.finger)?.finger;
         let model = surrogate(&stiffness_data(self.stiffness_data.as_deref(), &finger)?, &finger)?;
         let predict = |[density, direction]: [f64; 2]| model.predict(density, direction);
         let predicted = infill.map(predict).transpose().map_err(Failure::input)?;
-        if let Some(path) = &self.svg {
-            write_file(path, &shown::svg(&model)?)?;
+        let value = predicted.map_or_else(|| shown::json(&model), |predicted| json!(predicted));
+        let output = Output::new(shown::table(&model), value);
+        // Drawing a model that computes fingers from their ribs takes seconds.
+        match self.svg.is_some() || !context.is_terminal() {
+            true => output.drawn(shown::svg(&model)?, self.svg.as_ref()),
+            false => Ok(output),
         }
-        Ok(FittedModel { model, predicted })
-    }
-}
-
-impl Serialize for FittedModel {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match &self.predicted {
-            Some(predicted) => predicted.serialize(serializer),
-            None => shown::json(&self.model).serialize(serializer),
-        }
-    }
-}
-
-impl command::Response for FittedModel {
-    fn picture(&self) -> Result<Option<String>, Failure> {
-        Ok(Some(shown::svg(&self.model)?))
-    }
-}
-
-impl fmt::Display for FittedModel {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&shown::table(&self.model))
     }
 }

@@ -1,6 +1,6 @@
 //! `optimize --task T`: starts or continues a study.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::{Failure, within};
 use crate::setup::bench::DEFAULT_PRIORS;
@@ -11,7 +11,7 @@ use crate::setup::words::WordParser;
 use crate::setup::{Setup, measured};
 use crate::studies::on_bench;
 use crate::studies::open::OpenStudy;
-use crate::studies::output::{self, StudyOutput};
+use crate::studies::output;
 use ask_tell::OptimizerKind;
 use input::shipped::PRIORS;
 use insertion::evaluation::INDIFFERENCE_MM;
@@ -19,6 +19,7 @@ use insertion::evaluation::cell::Priors;
 use insertion::evaluation::objective::{
     Aggregate, AggregateKind, Bound, Constraint, Measure, Objectives,
 };
+use serde_json::Value;
 use std::ffi::OsStr;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -118,10 +119,10 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    type Response = StudyOutput;
+    type Response = Value;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<StudyOutput, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
         output::run(self.open(None)?, context, self.verbose)
     }
 }

@@ -7,79 +7,57 @@ use crate::setup::task::TaskFile;
 use connector::seat::clearance;
 use input::shipped::{COMMERCIAL, SPACES, Shipped, Source, TASKS, UNCERTAINTIES};
 use input::units::MM;
-use serde::Serialize;
-use std::fmt;
+use serde_json::{Value, json};
 
 /// List tasks, spaces and uncertainties
 #[derive(Debug, clap::Args)]
 #[command(display_order = 51, after_help = "Example: optimize tasks --json")]
 pub struct Request {}
 
-/// Shipped files by kind.
-#[derive(Serialize)]
-pub struct ShippedFiles {
-    tasks: Vec<TaskEntry>,
-    spaces: Vec<FileEntry>,
-    uncertainties: Vec<FileEntry>,
-}
-
-#[derive(Serialize)]
-struct FileEntry {
-    name: &'static str,
-    description: String,
-}
-
-/// Task with its clearance where the plug seats.
-#[derive(Serialize)]
-struct TaskEntry {
-    #[serde(flatten)]
-    file: FileEntry,
-    clearance_x_mm: f64,
-    clearance_y_mm: f64,
-}
+/// JSON and text of a file.
+type Entry = (Value, String);
 
 impl command::Request for Request {
-    type Response = Output<ShippedFiles>;
+    /// Shipped files by kind.
+    type Response = Value;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
-        let tasks = TASKS.iter().chain(COMMERCIAL).map(entry).collect::<Result<Vec<_>, _>>()?;
-        let [spaces, uncertainties] = [SPACES, UNCERTAINTIES].map(file_entries);
-        let value = ShippedFiles { tasks, spaces: spaces?, uncertainties: uncertainties? };
-        let text = value.to_string();
-        Ok(Output { value, text, picture: None })
+    fn run(&self, _context: &Context<'_>) -> Result<Output<Value>, Failure> {
+        let (tasks, task_lines): (Vec<Value>, String) =
+            TASKS.iter().chain(COMMERCIAL).map(task).collect::<Result<_, Failure>>()?;
+        let (spaces, space_lines): (Vec<Value>, String) =
+            SPACES.iter().map(entry).collect::<Result<_, Failure>>()?;
+        let (uncertainties, uncertainty_lines): (Vec<Value>, String) =
+            UNCERTAINTIES.iter().map(entry).collect::<Result<_, Failure>>()?;
+        let text = format!(
+            "tasks, with their clearance in x and y\n{task_lines}spaces\n{space_lines}\
+             uncertainties\n{uncertainty_lines}"
+        );
+        let value = json!({"tasks": tasks, "spaces": spaces, "uncertainties": uncertainties});
+        Ok(Output::new(text, value))
     }
 }
 
-/// Reads the descriptions of files.
-fn file_entries(files: &[Shipped]) -> Result<Vec<FileEntry>, Failure> {
-    let read = |file: &Shipped| {
-        let fields: toml::Table = input::read(file.text, file.file).map_err(Failure::input)?;
-        let description = fields.get("description").and_then(toml::Value::as_str);
-        Ok(FileEntry { name: file.name, description: description.unwrap_or_default().to_owned() })
-    };
-    files.iter().map(read).collect()
+/// Reads the description of a file.
+fn entry(Shipped { name, file, text, .. }: &Shipped) -> Result<Entry, Failure> {
+    let fields: toml::Table = input::read(text, file).map_err(Failure::input)?;
+    let description = fields.get("description").and_then(toml::Value::as_str).unwrap_or_default();
+    let line = format!("  {name:<10} {description}\n");
+    Ok((json!({"name": name, "description": description}), line))
 }
 
-/// Reads the description of a task and computes its clearance.
-fn entry(file: &Shipped) -> Result<TaskEntry, Failure> {
-    let source = Source { file: file.file.to_owned(), text: file.text.to_owned() };
+/// Reads the description of a task and computes its clearance where the plug seats.
+fn task(Shipped { name, file, text, .. }: &Shipped) -> Result<Entry, Failure> {
+    let source = Source { file: (*file).to_owned(), text: (*text).to_owned() };
     let task = TaskFile::parse(source)?.task;
     // Two decimals, the accuracy of the seat.
-    let rounded_mm = |length: f64| (length / MM * 100.0).round() / 100.0;
-    let [clearance_x_mm, clearance_y_mm] = clearance(&task).map(rounded_mm);
-    let file = FileEntry { name: file.name, description: task.description };
-    Ok(TaskEntry { file, clearance_x_mm, clearance_y_mm })
-}
-
-impl fmt::Display for ShippedFiles {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let line = |of: &FileEntry| format!("  {:<10} {}\n", of.name, of.description);
-        writeln!(f, "tasks, with their clearance in x and y")?;
-        for TaskEntry { file, clearance_x_mm, clearance_y_mm } in &self.tasks {
-            let FileEntry { name, description } = file;
-            writeln!(f, "  {name:<10} {clearance_x_mm:.2}, {clearance_y_mm:.2} mm  {description}")?;
-        }
-        let lines = |files: &[FileEntry]| files.iter().map(line).collect::<String>();
-        write!(f, "spaces\n{}uncertainties\n{}", lines(&self.spaces), lines(&self.uncertainties))
-    }
+    let [x, y] = clearance(&task).map(|length| (length / MM * 100.0).round() / 100.0);
+    let description = task.description;
+    let line = format!("  {name:<10} {x:.2}, {y:.2} mm  {description}\n");
+    let json = json!({
+        "name": name,
+        "description": description,
+        "clearance_x_mm": x,
+        "clearance_y_mm": y,
+    });
+    Ok((json, line))
 }

@@ -9,16 +9,18 @@ use crate::setup::film::FilmRequest;
 use crate::setup::finger::{ChosenFinger, FingerRequest};
 use crate::setup::repeat::RepeatRequest;
 use crate::setup::request::SetupRequest;
+use crate::setup::words::{parse_at_least_0, parse_number};
 use calibration::identify::curves::STEP_S;
 use calibration::identify::log::of_samples;
 use input::units::MM;
 use insertion::evaluation::{OffsetStep, grid_mm};
 use insertion::outcome::Outcome;
-use insertion::trial::{Course, Grasp, PhaseEnd, Probe, Sample, Trial, picture};
+use insertion::trial::{Course, Grasp, Probe, Sample, Trial, picture};
 use report::answer::lines;
 use report::answer::words::number;
 use report::text_table;
 use serde::{Serialize, Serializer};
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use study::write_file;
@@ -27,19 +29,9 @@ use study::write_file;
 const LARGEST_OFFSET_MM: f64 = 1000.0;
 
 fn offset(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(mm) if mm.abs() <= LARGEST_OFFSET_MM => Ok(mm),
-        _ => Err(format!(
-            "must be a number between -{LARGEST_OFFSET_MM} and {LARGEST_OFFSET_MM} (mm)"
-        )),
-    }
-}
-
-fn sampling(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(seconds) if seconds.is_finite() && seconds >= 0.0 => Ok(seconds),
-        _ => Err("must be a number of at least 0 (s)".to_owned()),
-    }
+    let problem =
+        format!("must be a number between -{LARGEST_OFFSET_MM} and {LARGEST_OFFSET_MM} (mm)");
+    parse_number(text, |mm| mm.abs() <= LARGEST_OFFSET_MM, &problem)
 }
 
 /// Simulate one insertion
@@ -63,7 +55,7 @@ pub struct Request {
     #[command(flatten)]
     pub repeat: Option<RepeatRequest>,
     /// Simulated time between two samples of the time series in the JSON, s
-    #[arg(long, value_name = "S", hide = true, value_parser = sampling)]
+    #[arg(long, value_name = "S", hide = true, value_parser = |text: &str| parse_at_least_0(text, "s"))]
     pub every_s: Option<f64>,
     /// Recordings.
     #[command(flatten)]
@@ -90,28 +82,24 @@ pub struct Done {
     /// Its outcome.
     #[serde(flatten, serialize_with = "whole")]
     pub trial: Trial,
-    /// Shift of a taught start relative to that of the task, grid steps.
-    #[serde(
-        rename = "taught_start_mm",
-        serialize_with = "taught_mm",
-        skip_serializing_if = "Option::is_none"
-    )]
-    pub taught: Option<OffsetStep>,
+    /// Shift of a taught start relative to that of the task, mm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub taught_start_mm: Option<f64>,
     /// Number of repeats with each outcome, with `--repeat`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub repeats: Option<BTreeMap<String, usize>>,
     /// Time series from the start of the search, with `--every-s`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub series: Option<Series>,
+    pub series: Option<Value>,
     /// Page that plays it, with `--record`.
     #[serde(rename = "film", skip_serializing_if = "Option::is_none")]
     pub page: Option<String>,
 }
 
 impl command::Request for Request {
-    type Response = Output<Done>;
+    type Response = Done;
 
-    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Done>, Failure> {
         let (stop, offset_mm) = (context.stop, self.offset_mm);
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
@@ -157,92 +145,57 @@ impl command::Request for Request {
             counts
         });
         let written = layout::wrote(self.svg.iter().chain(&self.log).chain(self.film.files()));
-        let series = self.every_s.map(|_| Series::of(&samples));
-        let value = Done { chosen, offset_mm, trial, taught, repeats, series, page };
-        Ok(Output { text: value.text() + &written, value, picture: None })
+        let series = self.every_s.map(|_| series(&samples));
+        let taught_start_mm = taught.map(grid_mm);
+        let value = Done { chosen, offset_mm, trial, taught_start_mm, repeats, series, page };
+        Ok(Output::new(value.text(taught) + &written, value))
     }
 }
 
 impl Done {
-    fn text(&self) -> String {
+    fn text(&self, taught: Option<OffsetStep>) -> String {
         // `repeats       18 inserted, 2 failed: jammed`.
         let repeats = self.repeats.as_ref().map_or(String::new(), |counts| {
             let counts = counts.iter().map(|(outcome, count)| format!("{count} {outcome}"));
             format!("repeats       {}\n", counts.collect::<Vec<_>>().join(", "))
         });
-        let start = layout::lines(lines::taught(self.taught));
+        let start = layout::lines(lines::taught(taught));
         format!("{}{start}{}{repeats}", self.chosen.text(), text(&self.trial))
     }
 }
 
-/// Time series of a trial from the start of the search, a value for each sample.
-#[derive(Debug, Clone, Default, Serialize)]
-pub struct Series {
-    /// Simulated time since the trial began, s.
-    pub time_s: Vec<f64>,
-    /// Index of the phase.
-    pub phase: Vec<u32>,
-    /// Position of the TCP, mm.
-    pub tcp_mm: Vec<[f64; 3]>,
-    /// Tip of the plug, mm.
-    pub tip_mm: Vec<[f64; 3]>,
-    /// Angle between the plug's axis and z, degrees.
-    pub tilt_deg: Vec<f64>,
-    /// Force of the socket on the plug, N.
-    pub force_n: Vec<[f64; 3]>,
-    /// Slip of the part in the grasp, mm.
-    pub slip_mm: Vec<f64>,
+/// Returns the time series of a trial from the start of the search, a value for each sample.
+fn series(samples: &[Sample]) -> Value {
+    let each = |value: fn(&Sample) -> Value| samples.iter().map(value).collect::<Value>();
+    json!({
+        "time_s": each(|sample| json!(sample.time_s)),
+        "phase": each(|sample| json!(sample.phase)),
+        "tcp_mm": each(|sample| json!(sample.tcp_mm)),
+        "tip_mm": each(|sample| json!(sample.tip_mm)),
+        "tilt_deg": each(|sample| json!(sample.tilt_deg)),
+        "force_n": each(|sample| json!(sample.force_n)),
+        "slip_mm": each(|sample| json!(sample.slip_mm)),
+    })
 }
 
-impl Series {
-    fn of(samples: &[Sample]) -> Self {
-        Series {
-            time_s: samples.iter().map(|sample| sample.time_s).collect(),
-            phase: samples.iter().map(|sample| sample.phase).collect(),
-            tcp_mm: samples.iter().map(|sample| sample.tcp_mm).collect(),
-            tip_mm: samples.iter().map(|sample| sample.tip_mm).collect(),
-            tilt_deg: samples.iter().map(|sample| sample.tilt_deg).collect(),
-            force_n: samples.iter().map(|sample| sample.force_n).collect(),
-            slip_mm: samples.iter().map(|sample| sample.slip_mm).collect(),
-        }
-    }
-}
-
-/// Fields of `--json` about the outcome of a trial.
-#[derive(Serialize)]
-pub struct OutcomeFields<'a> {
-    outcome: &'a str,
-    failure: Option<u8>,
-    depth_mm: f64,
-    tilt_deg: f64,
-    peak_force_n: f64,
-    slip_mm: f64,
-}
-
-impl<'a> From<&'a Trial> for OutcomeFields<'a> {
-    fn from(trial: &'a Trial) -> Self {
-        let Trial { outcome, depth_mm, tilt_deg, peak_force_n, slip_mm, .. } = *trial;
-        let (failure, outcome) = (outcome.failure(), outcome.word());
-        OutcomeFields { outcome, failure, depth_mm, tilt_deg, peak_force_n, slip_mm }
-    }
+/// Returns the outcome of a trial as JSON.
+pub(crate) fn outcome_json(trial: &Trial) -> Value {
+    json!({
+        "outcome": trial.outcome.word(),
+        "failure": trial.outcome.failure(),
+        "depth_mm": trial.depth_mm,
+        "tilt_deg": trial.tilt_deg,
+        "peak_force_n": trial.peak_force_n,
+        "slip_mm": trial.slip_mm,
+    })
 }
 
 fn whole<S: Serializer>(trial: &Trial, serializer: S) -> Result<S::Ok, S::Error> {
-    #[derive(Serialize)]
-    struct Whole<'a> {
-        #[serde(flatten)]
-        ended: OutcomeFields<'a>,
-        simulated_s: f64,
-        retried_at_half_step: bool,
-        phases: &'a [PhaseEnd],
-    }
-    let (ended, phases) = (trial.into(), trial.phases.as_slice());
-    let Trial { simulated_s, retried: retried_at_half_step, .. } = *trial;
-    Whole { ended, simulated_s, retried_at_half_step, phases }.serialize(serializer)
-}
-
-fn taught_mm<S: Serializer>(taught: &Option<OffsetStep>, serializer: S) -> Result<S::Ok, S::Error> {
-    taught.map(grid_mm).serialize(serializer)
+    let mut json = outcome_json(trial);
+    json["simulated_s"] = json!(trial.simulated_s);
+    json["retried_at_half_step"] = json!(trial.retried);
+    json["phases"] = json!(trial.phases);
+    json.serialize(serializer)
 }
 
 fn text(trial: &Trial) -> String {

@@ -83,7 +83,7 @@ impl BenchRequest {
 impl CalibrationRequest {
     /// Returns the simulations per task.
     pub fn simulations(&self) -> usize {
-        self.effort.simulations()
+        usize::from(self.effort.completed(None).simulations)
     }
 
     /// Simulates the tasks and reads their measurements; `more` are fingers to predict in addition to those of the

@@ -1,30 +1,68 @@
 //! Bodies of plug and socket in the files that a user names.
 
-use super::assembly::split;
-use super::step;
+use super::mated::unit;
 use crate::context::Context;
 use crate::failure::Failure;
+use crate::python::Format;
+use connector::body::{extent, width};
+use connector::mating::plugs;
 use connector::mesh::axes::{Unit, value};
-use connector::mesh::{Body, Files, Triangle, is_step, pick, read};
-use std::path::Path;
+use connector::mesh::{Body, Files, Triangle, is_step, pick, read, separate};
+use input::units::MM;
+use std::path::{Path, PathBuf};
 
 /// Largest mesh file, bytes.
 const LARGEST_FILE: u64 = 200 << 20;
+/// Largest number of bodies that a message lists.
+const MAX_LISTED: usize = 12;
 
-/// Requested files and bodies of a plug and its socket.
-pub struct PartsRequest<'a> {
-    /// File of the plug, or of both.
-    pub plug: &'a Path,
-    /// File of the socket.
-    pub socket: &'a Path,
-    /// Whether one file contains both in their mated pose.
-    pub assembled: bool,
-    /// Bodies of the plug.
-    pub plug_body: &'a [String],
-    /// Bodies of the socket.
-    pub socket_body: &'a [String],
-    /// Unit of the files.
+/// STEP file, converted to bodies in OBJ, mm.
+const STEP: Format = Format {
+    name: "a STEP file",
+    extra: "step",
+    reader: "import warnings
+    from finger_opt import _step
+    warnings.formatwarning = lambda message, *rest: f'warning: {message}\\n'
+    sys.stdout.write(_step.obj(_step.read(sys.argv[1], 0.01)))",
+    otherwise: "or export STL",
+};
+
+/// Files and bodies of a plug and its socket.
+#[derive(Debug, Clone, clap::Args)]
+pub struct PartsRequest {
+    /// Mesh of plug and socket in their mated pose; the plug is the part that can be withdrawn
+    #[arg(conflicts_with_all = ["plug", "socket"])]
+    pub assembly: Option<PathBuf>,
+    /// Mesh of the plug, or of both
+    #[arg(long, value_name = "P.stl", required_unless_present = "assembly")]
+    pub plug: Option<PathBuf>,
+    /// Mesh of the socket [default: the rest of the plug's file without --plug-body]
+    #[arg(long, value_name = "S.stl")]
+    pub socket: Option<PathBuf>,
+    /// Body of the file that belongs to the plug: `o` or `g` of an OBJ, `solid` of a text STL, or the number of
+    /// a shell, from 1; may be repeated [default: all, or the rest without --socket-body]
+    #[arg(long, value_name = "NAME")]
+    pub plug_body: Vec<String>,
+    /// Body of the socket's file that belongs to the socket; may be repeated
+    #[arg(long, value_name = "NAME")]
+    pub socket_body: Vec<String>,
+    /// Unit of both files [default: the one that makes plug and clearance plausible]
+    #[arg(long, value_enum)]
     pub unit: Option<Unit>,
+}
+
+impl PartsRequest {
+    /// Returns the file of the plug.
+    pub fn plug(&self) -> &Path {
+        // One of the two is required.
+        let given = self.assembly.as_ref().or(self.plug.as_ref());
+        given.map_or(Path::new(""), PathBuf::as_path)
+    }
+
+    /// Returns the file of the socket.
+    pub fn socket(&self) -> &Path {
+        self.socket.as_ref().map_or(self.plug(), PathBuf::as_path)
+    }
 }
 
 /// Meshes of a plug and its socket.
@@ -46,10 +84,10 @@ pub fn parts(
     request: &PartsRequest,
     context: &Context<'_>,
 ) -> Result<Parts, Failure> {
-    let (plug, plug_step) = bodies(request.plug, files[0], context)?;
-    let both = request.socket == request.plug;
+    let (plug, plug_step) = bodies(request.plug(), files[0], context)?;
+    let both = request.socket() == request.plug();
     let (socket, socket_step) =
-        if both { (plug.clone(), plug_step) } else { bodies(request.socket, files[1], context)? };
+        if both { (plug.clone(), plug_step) } else { bodies(request.socket(), files[1], context)? };
     let unit = if plug_step || socket_step { Some(Unit::Mm) } else { request.unit };
     if let Some(other) = request.unit.filter(|given| Some(*given) != unit) {
         let problem =
@@ -61,14 +99,14 @@ pub fn parts(
         let picked = (!names.is_empty()).then(|| pick(of, names, file));
         picked.transpose().map_err(Failure::input)
     };
-    let plug_body = pick(&plug, request.plug_body, files[0])?;
-    let socket_body = pick(&socket, request.socket_body, files[1])?;
+    let plug_body = pick(&plug, &request.plug_body, files[0])?;
+    let socket_body = pick(&socket, &request.socket_body, files[1])?;
     let all = |bodies: Vec<Body>| bodies.into_iter().flat_map(|body| body.triangles).collect();
     let triangles = match (plug_body, socket_body) {
         (Some([plug, _]), Some([socket, _])) => [plug, socket],
         (Some([plug, rest]), None) => [plug, if both { rest } else { all(socket) }],
         (None, Some([socket, rest])) => [if both { rest } else { all(plug) }, socket],
-        (None, None) if request.assembled => {
+        (None, None) if request.assembly.is_some() => {
             let (parts, names) = split(files[0], plug, unit)?;
             finding = Some(("plug's bodies", format!("{names}; --plug-body names others")));
             parts
@@ -93,7 +131,65 @@ fn bodies(path: &Path, file: &str, context: &Context<'_>) -> Result<(Vec<Body>, 
     let opened = std::fs::File::open(path).map_err(unreadable)?;
     let bytes = input::files::read_up_to(opened, LARGEST_FILE).map_err(unreadable)?;
     if is_step(&bytes, &path.display().to_string()) {
-        return Ok((step::bodies(path, file, context)?, true));
+        return Ok((step_bodies(path, file, context)?, true));
     }
     Ok((read(&bytes, file).map_err(Failure::input)?, false))
+}
+
+/// Reads the bodies of a STEP file, mm, meshed with a tolerance of 0.01 mm, by the extra `step` of the Python package.
+fn step_bodies(path: &Path, file: &str, context: &Context<'_>) -> Result<Vec<Body>, Failure> {
+    let (found, warnings) = STEP.read(path, file).map_err(Failure::input)?;
+    warnings.iter().for_each(|warning| context.note(warning));
+    read(&found, &format!("{file}.obj")).map_err(Failure::input)
+}
+
+/// Returns the plug, which can be withdrawn, and the socket of an assembly, and the names of the plug's bodies.
+///
+/// # Errors
+/// If no body can be withdrawn from the others, or if several can.
+fn split(
+    file: &str,
+    bodies: Vec<Body>,
+    given: Option<Unit>,
+) -> Result<([Vec<Triangle>; 2], String), Failure> {
+    let bodies = separate(bodies);
+    let whole: Vec<Triangle> = bodies.iter().flat_map(|body| body.triangles.clone()).collect();
+    let (unit, _) = unit([file, file], [&whole, &whole], given)?;
+    let metres = unit.metres();
+    let scaled = |body: &Body| body.triangles.iter().map(|t| t.map(|p| p * metres)).collect();
+    let found = plugs(&bodies.iter().map(scaled).collect::<Vec<Vec<Triangle>>>());
+    let names = |of: &[usize]| of.iter().map(|i| bodies[*i].name.clone()).collect::<Vec<_>>();
+    let problem = match found.as_deref() {
+        Ok([plug]) => {
+            let picked = pick(&bodies, &names(plug), file).map_err(Failure::input)?;
+            return Ok((picked, quoted(&names(plug))));
+        }
+        Ok(several) => {
+            let sets: Vec<_> = several.iter().map(|of| quoted(&names(of))).collect();
+            format!("several bodies can be withdrawn: {}", sets.join("; or "))
+        }
+        Err(error) => format!("{error}; it has {}", listed(&bodies, metres)),
+    };
+    Err(Failure::in_file(file, format!("{problem}; name those of the plug with --plug-body")))
+}
+
+/// Formats names of bodies.
+fn quoted(names: &[String]) -> String {
+    let shown: Vec<_> = names.iter().take(MAX_LISTED).map(|name| format!("`{name}`")).collect();
+    shown.join(", ") + &more(names.len())
+}
+
+/// Formats names and sizes of bodies.
+fn listed(bodies: &[Body], metres: f64) -> String {
+    let size = |body: &Body| {
+        let side = |axis| width(extent(body.triangles.iter().flatten(), axis)) * metres / MM;
+        format!("`{}` ({:.1} x {:.1} x {:.1} mm)", body.name, side(0), side(1), side(2))
+    };
+    let shown: Vec<_> = bodies.iter().take(MAX_LISTED).map(size).collect();
+    shown.join(", ") + &more(bodies.len())
+}
+
+fn more(count: usize) -> String {
+    let more = count.saturating_sub(MAX_LISTED);
+    if more > 0 { format!(" and {more} more") } else { String::new() }
 }

@@ -19,7 +19,8 @@ pub const DEFAULT_FINGER: &str = "finray9";
 pub(crate) struct Fingers {
     /// Text of the file, if fingers are computed.
     pub source: Option<Source>,
-    file: FingerFile,
+    /// The file; its finger is the one whose stiffness was measured.
+    pub file: FingerFile,
 }
 
 impl Fingers {
@@ -28,11 +29,6 @@ impl Fingers {
         let Source { file, text } = source.clone().map_or_else(shipped, Ok)?;
         let file = FingerFile::parse(&text, &file).map_err(Failure::input)?;
         Ok(Fingers { source, file })
-    }
-
-    /// Returns the finger whose stiffness was measured.
-    pub fn measured_finger(&self) -> &PrintedFinger {
-        &self.file.finger
     }
 
     /// Returns the source from which the fingers of designs are made.
@@ -77,16 +73,16 @@ pub fn find(kind: &'static str, shipped: &[Shipped], name: &str) -> Result<Sourc
     shipped::resolve(kind, shipped, name).map_err(Failure::input)
 }
 
+/// Checks that a file to be written does not exist yet.
+pub(crate) fn check_is_new(out: &Path) -> Result<(), Failure> {
+    let problem = || format!("{} exists; name another file with --out", out.display());
+    if out.exists() { Err(Failure::usage(problem())) } else { Ok(()) }
+}
+
 /// Reads the robot of that name, or of the file at that path.
 pub fn robot(name: &str) -> Result<Robot, Failure> {
     let source = find("robot", ROBOTS, name)?;
     Robot::parse(&source.text, &source.file).map_err(Failure::input)
-}
-
-/// Reads the finger of that name, or of the file at that path.
-pub fn printed_finger(name: &str) -> Result<PrintedFinger, Failure> {
-    let source = find("finger", FINGERS, name)?;
-    PrintedFinger::parse(&source.text, &source.file).map_err(Failure::input)
 }
 
 /// Stiffness model with the data and the finger of its fit.

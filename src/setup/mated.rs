@@ -10,12 +10,14 @@ use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
 use input::units::MM;
 use insertion::task::Task;
 use nalgebra::{Point3, Vector3};
-use serde::Serialize;
+use serde_json::{Value, json};
 use std::path::Path;
 use study::write_file;
 
 /// Largest number of overlaps that are listed.
 const MAX_SHOWN: usize = 4;
+/// Names of the bodies of an [`Interference`].
+const BODIES: [&str; 2] = ["plug", "socket"];
 
 /// Options of the task of a mated pair.
 pub struct MateOptions<'a> {
@@ -57,30 +59,17 @@ pub struct MatedTask {
     pub findings: Vec<(&'static str, String)>,
 }
 
-/// Fields of `--json` about the parts left out of a body.
-#[derive(Serialize)]
-pub struct LeftOut {
-    body: &'static str,
-    cut_back: bool,
-    parts: usize,
-    depth_mm: f64,
-    from_mm: [f64; 3],
-    to_mm: [f64; 3],
-}
-
-impl From<&Interference> for LeftOut {
-    fn from(of: &Interference) -> Self {
-        let [from_mm, to_mm] = of.bounds.map(|p| [p.x, p.y, p.z].map(|v| v / MM));
-        let body = ["plug", "socket"][of.body];
-        LeftOut {
-            body,
-            cut_back: of.cut_back,
-            parts: of.parts,
-            depth_mm: of.depth / MM,
-            from_mm,
-            to_mm,
-        }
-    }
+/// Returns the parts left out of a body as JSON.
+pub fn left_out_json(of: &Interference) -> Value {
+    let [from_mm, to_mm] = of.bounds.map(|p| [p.x, p.y, p.z].map(|v| v / MM));
+    json!({
+        "body": BODIES[of.body],
+        "cut_back": of.cut_back,
+        "parts": of.parts,
+        "depth_mm": of.depth / MM,
+        "from_mm": from_mm,
+        "to_mm": to_mm,
+    })
 }
 
 /// Returns the task of a plug and a socket, whose mated pose is found from their shapes.
@@ -95,10 +84,8 @@ pub fn mated(
 ) -> Result<MatedTask, Failure> {
     let (unit, why) = unit(files, triangles, options.unit)?;
     let mut findings: Vec<(&str, String)> = why.map(|why| ("unit", why)).into_iter().collect();
-    let scaled = |of: usize| -> Vec<Triangle> {
-        triangles[of].iter().map(|t| t.map(|p| p * unit.metres())).collect()
-    };
-    let drawn = [scaled(0), scaled(1)];
+    let drawn: [Vec<Triangle>; 2] =
+        triangles.map(|of| of.iter().map(|t| t.map(|p| p * unit.metres())).collect());
     let (plug, plug_inward) = oriented(files[0], triangles[0], unit, context);
     let (socket, socket_inward) = oriented(files[1], triangles[1], unit, context);
     if !options.assembled {
@@ -107,7 +94,7 @@ pub fn mated(
     let mate = mate(files, [&plug, &socket], options, context, &mut findings)?;
     let out = mate.out.into_inner();
     let across = mate.across.map(|way| way.into_inner());
-    let chosen = |way: &&Vector3<f64>| options.jaws.is_none_or(|jaws| axis(jaws) == way.iamax());
+    let chosen = |way: &&Vector3<f64>| options.jaws.is_none_or(|jaws| jaws == jaws_of(way));
     let jaws: Vec<Vector3<f64>> = across.iter().filter(chosen).copied().collect();
     if jaws.is_empty() {
         let [a, b] = across.map(|way| value(jaws_of(&way)));
@@ -230,18 +217,17 @@ fn described(
         let (apart, reason) = (faces.apart / MM, faces.reason);
         findings.push(("not held", format!("larger faces {apart:.1} mm apart: {reason}")));
     }
-    let mut left_out: Vec<LeftOut> = made.interference.iter().map(LeftOut::from).collect();
-    left_out.sort_by(|a, b| b.depth_mm.total_cmp(&a.depth_mm));
+    let mut left_out: Vec<&Interference> = made.interference.iter().collect();
+    left_out.sort_by(|a, b| (b.depth / MM).total_cmp(&(a.depth / MM)));
     let more = left_out.split_off(left_out.len().min(MAX_SHOWN));
     for left in left_out {
-        let round = |p: [f64; 3]| p.map(|v| (v * 100.0).round() / 100.0);
+        let rounded = |p: Point3<f64>| [p.x, p.y, p.z].map(|v| (v / MM * 100.0).round() / 100.0);
+        let [from, to] = left.bounds.map(rounded);
         let why = format!(
-            "{} parts of the {} overlap by up to {:.3} mm, from {:?} to {:?} mm: {}",
+            "{} parts of the {} overlap by up to {:.3} mm, from {from:?} to {to:?} mm: {}",
             left.parts,
-            left.body,
-            left.depth_mm,
-            round(left.from_mm),
-            round(left.to_mm),
+            BODIES[left.body],
+            left.depth / MM,
             match left.cut_back {
                 true => format!("a press fit, cut back to a gap of {} mm", GAP / MM),
                 false => "left out".to_owned(),
@@ -348,14 +334,6 @@ fn oriented(
         triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
     }
     (triangles, inward)
-}
-
-fn axis(jaws: Jaws) -> usize {
-    match jaws {
-        Jaws::X => 0,
-        Jaws::Y => 1,
-        Jaws::Z => 2,
-    }
 }
 
 fn jaws_of(way: &Vector3<f64>) -> Jaws {

@@ -1,6 +1,5 @@
 //! Setup for the evaluation of designs, and the options from which commands create it.
 
-pub mod assembly;
 pub mod bag;
 pub mod bench;
 pub mod bodies;
@@ -15,7 +14,6 @@ pub mod repeat;
 pub mod request;
 pub mod robots;
 pub mod run;
-pub mod step;
 pub mod task;
 pub mod tune;
 pub mod words;
@@ -73,27 +71,27 @@ impl Setup {
     pub(crate) fn from_inputs(inputs: &Inputs, engine: &str) -> Result<Self, Failure> {
         let engine = EngineKind::from_name(engine)
             .ok_or_else(|| bad_config(format!("unknown engine `{engine}`")))?;
-        let roles = (1..).map(task_role).take_while(|role| inputs.contains_key(role));
-        let tasks = roles.map(|role| input(inputs, &role)).collect::<Result<Vec<_>, _>>()?;
+        let task = |number| input(inputs, &task_role(number)).ok();
+        let tasks: Vec<Source> = (1..).map_while(task).collect();
         let [space, robot, stiffness] =
             [SPACE, ROBOT, STIFFNESS_DATA].map(|role| input(inputs, role));
         let space = space?;
         let parsed = Space::parse(&space.text, &space.file).map_err(Failure::input)?;
-        let fingers = Fingers::parse(finger_input(inputs)?)?;
+        // Missing unless fingers are computed.
+        let fingers = Fingers::parse(input(inputs, FINGER).ok())?;
         let others = [&robot?, &stiffness?];
         let mut setup = Setup::new(&tasks, (&space, parsed), others, fingers, engine)?;
-        if inputs.contains_key(CELL) {
-            let source = input(inputs, CELL)?;
+        if let Ok(source) = input(inputs, CELL) {
             let found = cell(&source)?;
             setup = setup.with_cell(source, found)?;
         }
-        if inputs.contains_key(UNCERTAINTY) {
-            setup = setup.with_uncertainty(input(inputs, UNCERTAINTY)?)?;
+        if let Ok(source) = input(inputs, UNCERTAINTY) {
+            setup = setup.with_uncertainty(source)?;
         }
         let [measurements, priors] = BENCH_ROLES;
-        match inputs.contains_key(measurements) {
-            true => setup.with_measurements(input(inputs, measurements)?, input(inputs, priors)?),
-            false => Ok(setup),
+        match input(inputs, measurements) {
+            Ok(lines) => setup.with_measurements(lines, input(inputs, priors)?),
+            Err(_) => Ok(setup),
         }
     }
 
@@ -117,7 +115,7 @@ impl Setup {
         let finger = fingers.source.iter().map(|source| (FINGER.to_owned(), source));
         let sources = roles.chain(others).chain(finger);
         let inputs = sources.map(|(role, source)| (role, source.text.clone())).collect();
-        let surrogate = surrogate(stiffness_source, fingers.measured_finger())?;
+        let surrogate = surrogate(stiffness_source, &fingers.file.finger)?;
         let finger_source = fingers.finger_source();
         let evaluator =
             Evaluator { surrogate, fingers: finger_source, templates, robot, engine, cell: None };
@@ -252,12 +250,10 @@ fn check_compatible(evaluator: &Evaluator, space: &Space, file: &str) -> Result<
 /// Checks that no task is given twice.
 fn check_distinct(templates: &[Template]) -> Result<(), Failure> {
     let names: Vec<&str> = templates.iter().map(|template| &*template.task.name).collect();
-    match names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
-        None => Ok(()),
-        Some((_, twice)) => {
-            Err(Failure::usage(format!("two tasks are called `{twice}`; give each task once")))
-        }
-    }
+    let twice = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name));
+    twice.map_or(Ok(()), |(_, twice)| {
+        Err(Failure::usage(format!("two tasks are called `{twice}`; give each task once")))
+    })
 }
 
 /// Parses the file of a cell; it must contain a robot.
@@ -285,13 +281,8 @@ pub fn input(inputs: &Inputs, role: &str) -> Result<Source, Failure> {
     Ok(Source { file: format!("inputs/{role}"), text })
 }
 
-/// Returns the finger file in a study's folder, if its fingers are computed.
-fn finger_input(inputs: &Inputs) -> Result<Option<Source>, Failure> {
-    inputs.contains_key(FINGER).then(|| input(inputs, FINGER)).transpose()
-}
-
 /// Returns the stiffness model of the inputs in a study's folder.
 pub(crate) fn surrogate_of(inputs: &Inputs) -> Result<Arc<Model>, Failure> {
-    let fingers = Fingers::parse(finger_input(inputs)?)?;
-    surrogate(&input(inputs, STIFFNESS_DATA)?, fingers.measured_finger())
+    let fingers = Fingers::parse(input(inputs, FINGER).ok())?;
+    surrogate(&input(inputs, STIFFNESS_DATA)?, &fingers.file.finger)
 }

@@ -3,6 +3,7 @@
 use super::Setup;
 use super::files::{DEFAULT_FINGER, Fingers, find, stiffness_data};
 use crate::failure::Failure;
+use connector::mesh::axes::value;
 use input::files::{LARGEST_INPUT, read_text};
 use input::shipped::{COMMERCIAL, FINGERS, ROBOTS, SPACES, Source, TASKS, resolve};
 use insertion::evaluation::cell::Priors;
@@ -154,7 +155,7 @@ impl SetupRequest {
         let robot = self.robot(priors.and_then(Priors::robot_text), cell.as_ref())?;
         let parsed = Space::parse(&space.text, &space.file).map_err(Failure::input)?;
         let fingers = Fingers::parse(self.finger_model.file(Some(&parsed))?)?;
-        let stiffness = stiffness_data(self.stiffness_data.as_deref(), fingers.measured_finger())?;
+        let stiffness = stiffness_data(self.stiffness_data.as_deref(), &fingers.file.finger)?;
         let setup =
             Setup::new(&tasks, (&space, parsed), [&robot, &stiffness], fingers, self.engine)?;
         match cell {
@@ -228,10 +229,6 @@ fn cell(path: &str) -> Result<(Source, Priors), Failure> {
 fn with_start_rule(task: Source, rule: StartRule) -> Source {
     let Ok(mut table) = task.text.parse::<toml::Table>() else { return task };
     let Some(toml::Value::Table(strategy)) = table.get_mut("strategy") else { return task };
-    let word = match rule {
-        StartRule::Given => "given",
-        StartRule::Taught => "taught",
-    };
-    strategy.insert("start".to_owned(), word.into());
+    strategy.insert("start".to_owned(), value(rule).into());
     Source { text: table.to_string(), ..task }
 }

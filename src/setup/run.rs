@@ -2,7 +2,6 @@
 
 use super::Setup;
 use crate::failure::Failure;
-use crate::failure::wide;
 use calibration::bench::Settings;
 use input::shipped::nearest;
 use rayon::ThreadPool;
@@ -12,10 +11,10 @@ use std::sync::atomic::AtomicBool;
 use study::{AnalysisSettings, BenchEffort, Cache};
 
 const CACHE: &str = "results/.cache";
-const THREADS: RangeInclusive<u16> = 1..=1024;
+const THREADS: RangeInclusive<i64> = 1..=1024;
 /// Accepted numbers of simulations per task for an emulator.
-const SIMULATIONS: RangeInclusive<u16> = 16..=4096;
-const SAMPLES: RangeInclusive<u16> = 20..=20_000;
+const SIMULATIONS: RangeInclusive<i64> = 16..=4096;
+const SAMPLES: RangeInclusive<i64> = 20..=20_000;
 /// Default effort of a bench prediction.
 const EFFORT: BenchEffort = BenchEffort { simulations: 200, samples: 300 };
 /// Sweeps before the first sample, and between two samples.
@@ -47,19 +46,14 @@ impl CacheRequest {
 pub struct EffortRequest {
     /// Simulations per task for the emulator of a bench prediction; one in eight measures its error
     /// [default: 200, or as in the study]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(wide(&SIMULATIONS)))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(SIMULATIONS))]
     pub simulations: Option<u16>,
     /// Samples of the posterior of a bench prediction [default: 300, or as in the study]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(wide(&SAMPLES)))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(SAMPLES))]
     pub samples: Option<u16>,
 }
 
 impl EffortRequest {
-    /// Returns the given or default number of simulations per task, for a command without a study.
-    pub(crate) fn simulations(self) -> usize {
-        usize::from(self.simulations.unwrap_or(EFFORT.simulations))
-    }
-
     /// Returns the effort; values not given are those of the study, or else the defaults.
     pub(crate) fn completed(self, of_study: Option<BenchEffort>) -> BenchEffort {
         let other = of_study.unwrap_or(EFFORT);
@@ -79,7 +73,7 @@ pub(crate) fn settings(effort: BenchEffort, seed: u64, stop: &AtomicBool) -> Set
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct RunRequest {
     /// Threads [default: one per processor]; changes no result
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(wide(&THREADS)))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(THREADS))]
     pub threads: Option<u16>,
     /// Cache of evaluations.
     #[command(flatten)]

@@ -3,7 +3,7 @@
 use super::files::{find, robot};
 use super::request::TaskSource;
 use super::tune::{self, tune_until_success};
-use crate::commands::trial::OutcomeFields;
+use crate::commands::trial::outcome_json;
 use crate::context::not_stopped;
 use crate::failure::Failure;
 use connector::check::{Problem, problems};
@@ -21,8 +21,7 @@ use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
 use insertion::trial::{Grasp, Recording, Trial};
 use report::answer::words::mating_force;
-use serde::{Serialize, Serializer};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 
 /// A task file that was read.
@@ -118,9 +117,8 @@ impl TaskCheck {
         engine: EngineKind,
         stop: &AtomicBool,
     ) -> Result<Option<Tuned>, Failure> {
-        let fails = |(_, trial, _): &(Finger, Trial, String)| trial.outcome != Outcome::Inserted;
         match (&self.task, &self.nominal) {
-            (Some(task), Some(nominal)) if fails(nominal) => {
+            (Some(task), Some((_, trial, _))) if trial.outcome != Outcome::Inserted => {
                 tune_until_success(task, (robot_name, engine), Stage::Search, stop).map(Some)
             }
             _ => Ok(None),
@@ -165,22 +163,20 @@ fn medium(task: &Task) -> Result<(Finger, Finger), Failure> {
     Ok((finger, finger.with_model(&task.finger, 0.0)))
 }
 
-impl Serialize for TaskCheck {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+impl TaskCheck {
+    /// Returns the problems and the nominal start as JSON.
+    pub fn json(&self) -> Value {
         let nominal = self.nominal.as_ref().map(|(finger, trial, explanation)| {
-            let mut json = json!(OutcomeFields::from(trial));
+            let mut json = outcome_json(trial);
             json["compliance_n_per_mm"] = json!(finger.compliance / N_PER_MM);
             json["assembly_n_per_mm"] = json!(finger.assembly / N_PER_MM);
             json["explanation"] = json!(explanation);
             json
         });
         let problems = &self.problems;
-        let valid = problems.is_empty();
-        json!({"valid": valid, "problems": problems, "nominal": nominal}).serialize(serializer)
+        json!({"valid": problems.is_empty(), "problems": problems, "nominal": nominal})
     }
-}
 
-impl TaskCheck {
     /// Returns a line for each problem and one for the nominal start.
     pub fn text(&self) -> String {
         let mut text = String::new();
@@ -207,38 +203,26 @@ impl TaskCheck {
         text
     }
 
-    /// Checks that there are no problems and that the nominal start inserts.
-    ///
-    /// # Errors
-    /// Otherwise, with the number of problems.
-    pub fn verdict(&self) -> Result<(), Failure> {
+    /// Returns the error if there are problems or the nominal start does not insert, with the number of problems.
+    pub fn failure(&self) -> Option<Failure> {
         let file = &self.source.file;
         let outcome = self.nominal.as_ref().map(|(_, trial, _)| trial.outcome);
-        if outcome == Some(Outcome::Inserted) {
-            return Ok(());
-        }
-        Err(Failure::usage(match self.problems.len() {
+        let failed = || match self.problems.len() {
             0 => format!("{file}: the nominal start does not insert"),
             1 => format!("{file}: 1 problem"),
             count => format!("{file}: {count} problems"),
-        }))
+        };
+        (outcome != Some(Outcome::Inserted)).then(|| Failure::usage(failed()))
     }
 
-    /// Checks that the nominal start of a new task inserts.
-    ///
-    /// # Errors
-    /// If it does not.
-    pub fn check_new(&self, tuned: Option<&Tuned>) -> Result<(), Failure> {
-        match (self.verdict(), tuned) {
-            (Ok(()), _) => Ok(()),
-            (Err(_), Some(tuned)) => {
-                let file = &self.source.file;
-                let tried = tune::tried(tuned);
-                Err(Failure::running(format!(
-                    "{file}: does not insert; tried: {tried}; `optimize task tune {file}` tries more"
-                )))
-            }
-            (Err(problems), None) => Err(Failure::running(problems.to_string())),
-        }
+    /// Returns the error if the nominal start of a new task does not insert.
+    pub fn failure_of_new(&self, tuned: Option<&Tuned>) -> Option<Failure> {
+        let (failure, file) = (self.failure()?, &self.source.file);
+        Some(Failure::running(tuned.map_or(failure.to_string(), |tuned| {
+            let tried = tune::tried(tuned);
+            format!(
+                "{file}: does not insert; tried: {tried}; `optimize task tune {file}` tries more"
+            )
+        })))
     }
 }

@@ -12,7 +12,7 @@ use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
-use serde::Serialize;
+use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 
 /// Returns the tuner of a task.
@@ -65,31 +65,21 @@ pub fn tune_until_success(
     Ok(tuned)
 }
 
-/// Tried strategy: stage, change, and ranges of a soft, a medium and a stiff finger.
-#[derive(Serialize)]
-pub struct Tried<'a> {
-    stage: Stage,
-    what: &'a str,
-    least_range_mm: Option<f64>,
-    range_mm: Vec<f64>,
-    turned_least_range_mm: Option<f64>,
+/// Returns a tried strategy as JSON: stage, change, and ranges of a soft, a medium and a stiff finger.
+pub fn step_json(Step { stage, change, tried, turned_mm }: &Step) -> Value {
+    json!({
+        "stage": stage,
+        "what": change,
+        "least_range_mm": tried.inserts().then_some(tried.score),
+        "range_mm": tried.windows.iter().map(Window::range_mm).collect::<Vec<_>>(),
+        "turned_least_range_mm": turned_mm,
+    })
 }
 
-impl<'a> From<&'a Step> for Tried<'a> {
-    fn from(Step { stage, change, tried, turned_mm }: &'a Step) -> Self {
-        Tried {
-            stage: *stage,
-            what: change,
-            least_range_mm: tried.inserts().then_some(tried.score),
-            range_mm: tried.windows.iter().map(Window::range_mm).collect(),
-            turned_least_range_mm: *turned_mm,
-        }
-    }
-}
-
-/// Returns the chosen strategy; `None` if none inserts.
-pub fn chosen(tuned: &Tuned) -> Option<Tried<'_>> {
-    tuned.inserts().then(|| tuned.best().into())
+/// Returns the chosen strategy as JSON; null if none inserts.
+pub fn chosen(tuned: Option<&Tuned>) -> Value {
+    let tuned = tuned.filter(|tuned| tuned.inserts());
+    tuned.map_or(Value::Null, |tuned| step_json(tuned.best()))
 }
 
 /// Returns a line about the chosen strategy.

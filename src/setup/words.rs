@@ -1,4 +1,4 @@
-//! Options whose values are words of a list.
+//! Options whose values are words of a list, or numbers in a range.
 
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Arg, Command, Error};
@@ -41,4 +41,26 @@ impl<T: FromStr<Err: Display> + Clone + Send + Sync + 'static> TypedValueParser 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
         Some(Box::new(self.words.iter().map(|word| PossibleValue::new(*word))))
     }
+}
+
+/// Parses a number that is accepted; `problem` is the error for others.
+pub(crate) fn parse_number(
+    text: &str,
+    accepted: impl Fn(f64) -> bool,
+    problem: &str,
+) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number| accepted(*number));
+    number.ok_or_else(|| problem.to_owned())
+}
+
+/// Parses a finite number of at least 0 in this unit.
+pub(crate) fn parse_at_least_0(text: &str, unit: &str) -> Result<f64, String> {
+    let problem = format!("must be a number of at least 0 ({unit})");
+    parse_number(text, |number| number.is_finite() && number >= 0.0, &problem)
+}
+
+/// Parses two numbers separated by a comma.
+pub(crate) fn parse_pair(text: &str) -> Option<(f64, f64)> {
+    let (first, second) = text.split_once(',')?;
+    first.trim().parse().ok().zip(second.trim().parse().ok())
 }

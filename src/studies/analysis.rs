@@ -104,7 +104,7 @@ impl Ended {
         self.run.pool()?.install(|| {
             if levers_missing {
                 let span = answer.spread_mm;
-                let levers = levers(&setup, setup.only_task()?, (design, None), span, stop)?;
+                let levers = levers(&setup, (design, None), span, stop)?;
                 subject.write(dir, LEVERS, &levers)?;
                 found.levers = Some(levers);
             }

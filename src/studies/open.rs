@@ -75,8 +75,7 @@ impl OpenStudy {
     /// If the nominal start cannot be simulated.
     pub fn warn(&self, context: &Context<'_>) -> Result<(), Failure> {
         if self.new_measurements > 0 {
-            let plural = if self.new_measurements == 1 { "" } else { "s" };
-            context.note(&format!("{} new measurement{plural}", self.new_measurements));
+            context.note(&input::counted(self.new_measurements, "new measurement"));
         }
         let record = self.study.record();
         let warn = |text: &str| context.note(&format!("warning: {text}"));

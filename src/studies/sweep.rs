@@ -64,7 +64,7 @@ impl Sweep {
                 chosen,
                 evaluation,
                 bands: None,
-                by_ribs: None,
+                computed: None,
                 wall_s,
                 measured: Vec::new(),
                 limit_n,

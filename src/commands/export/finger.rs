@@ -7,6 +7,7 @@ use crate::setup::film::extension;
 use crate::setup::printed::PrintRequest;
 use crate::studies::study_name;
 use clap::ValueEnum;
+use connector::mesh::axes::value;
 use finray::export::prism::{Prism, PrismError};
 use finray::export::sheet::SheetData;
 use finray::export::{self, profile, sheet, slicer};
@@ -14,6 +15,7 @@ use finray::geometry::Geometry;
 use finray::mechanics;
 use serde::Serialize;
 use std::collections::BTreeSet;
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use study::write_file;
 
@@ -77,38 +79,35 @@ pub struct Written {
 }
 
 impl command::Request for Request {
-    type Response = Output<Written>;
+    type Response = Written;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output<Written>, Failure> {
         let geometry = self.finger.geometry()?;
         let (out, title) = (&self.out, export::title(&geometry));
-        let format = self.format()?;
         let mut beside = Vec::new();
-        match format {
+        let failure = |error: &dyn Display| Failure::running(format!("{}: {error}", out.display()));
+        match self.format()? {
             Format::Stl => {
                 write_file(out, &closed(Prism::finger(&geometry), &geometry)?.stl(&title))?
             }
             Format::ThreeMf => {
-                let bytes = closed(Prism::finger(&geometry), &geometry)?
-                    .three_mf(&title)
-                    .map_err(|error| Failure::running(format!("{}: {error}", out.display())))?;
-                write_file(out, &bytes)?;
+                let bytes = closed(Prism::finger(&geometry), &geometry)?.three_mf(&title);
+                write_file(out, &bytes.map_err(|error| failure(&error))?)?;
             }
-            Format::PrusaslicerProject | Format::OrcaslicerProject => {
-                let project = match format {
-                    Format::OrcaslicerProject => slicer::orcaslicer_project(&geometry),
-                    _ => slicer::prusaslicer_project(&geometry),
-                };
-                let failure = |error| Failure::running(format!("{}: {error}", out.display()));
-                write_file(out, &project.map_err(failure)?)?;
+            Format::PrusaslicerProject => {
+                let project = slicer::prusaslicer_project(&geometry);
+                write_file(out, &project.map_err(|error| failure(&error))?)?;
+            }
+            Format::OrcaslicerProject => {
+                let project = slicer::orcaslicer_project(&geometry);
+                write_file(out, &project.map_err(|error| failure(&error))?)?;
             }
             Format::Svg => write_file(out, &profile::svg(&geometry, &title))?,
             Format::Dxf => write_file(out, &profile::dxf(&geometry, &title))?,
             Format::Sheet => write_file(out, &draw_sheet(&self.finger, &geometry, out)?)?,
-            Format::Cura | Format::Prusaslicer => {
-                let cura = format == Format::Cura;
-                let text = if cura { slicer::cura } else { slicer::prusaslicer };
-                beside = settings(out, &geometry, &text(&geometry))?;
+            Format::Cura => beside = settings(out, &geometry, &slicer::cura(&geometry))?,
+            Format::Prusaslicer => {
+                beside = settings(out, &geometry, &slicer::prusaslicer(&geometry))?;
             }
         }
         let text = match &beside[..] {
@@ -121,7 +120,7 @@ impl command::Request for Request {
             ),
             _ => format!("wrote {title}: {}\n", out.display()),
         };
-        Ok(Output { value: Written { out: out.clone(), title, beside }, text, picture: None })
+        Ok(Output::new(text, Written { out: out.clone(), title, beside }))
     }
 }
 
@@ -135,9 +134,7 @@ impl Request {
             (Some(format), Some(_)) if !fits(&&format) => {
                 let accepted = format.extensions().iter().map(|name| format!(".{name}"));
                 let accepted = accepted.collect::<Vec<_>>().join(" or ");
-                let name = format.to_possible_value();
-                let name = name.as_ref().map_or("", |value| value.get_name());
-                let out = self.out.display();
+                let (name, out) = (value(format), self.out.display());
                 Err(Failure::usage(format!(
                     "--format {name} and --out {out} contradict each other: the file must end in {accepted}"
                 )))

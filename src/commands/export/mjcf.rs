@@ -42,19 +42,9 @@ pub struct ExportedScene {
 }
 
 impl command::Request for Request {
-    type Response = Output<ExportedScene>;
+    type Response = ExportedScene;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
-        let (task, scene) = self.scene()?;
-        write_file(&self.out, &scene)?;
-        let text = format!("wrote the scene of {task} to {} for MuJoCo\n", self.out.display());
-        Ok(Output { value: ExportedScene { out: self.out.clone(), task }, text, picture: None })
-    }
-}
-
-impl Request {
-    /// Returns the name of the task, and the scene as MJCF.
-    fn scene(&self) -> Result<(String, String), Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output<ExportedScene>, Failure> {
         let setup = self.setup.setup()?;
         let Specimen { task, finger, .. } = self.finger.choose(&setup)?.specimen;
         let robot = &setup.evaluator.robot;
@@ -64,8 +54,11 @@ impl Request {
             Some(_) => "give finger_plug_torsion_mm in mm",
             None => "choose --robot servo or --robot rigid",
         };
-        let text = mjcf::write(&scene, &task.name, &MjcfSettings::default())
+        let scene = mjcf::write(&scene, &task.name, &MjcfSettings::default())
             .map_err(|error| Failure::usage(format!("{error}; {remedy}")))?;
-        Ok((task.name, text))
+        write_file(&self.out, &scene)?;
+        let (out, task) = (self.out.clone(), task.name);
+        let text = format!("wrote the scene of {task} to {} for MuJoCo\n", out.display());
+        Ok(Output::new(text, ExportedScene { out, task }))
     }
 }

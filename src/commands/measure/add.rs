@@ -10,7 +10,7 @@ use calibration::experiments::{
 };
 use input::files::{LARGEST_INPUT, LockedFile};
 use input::shipped::{COMMERCIAL, MEASUREMENTS, TASKS};
-use serde::Serialize;
+use serde_json::{Value, json};
 use std::io::{self, BufRead};
 use std::path::Path;
 
@@ -86,17 +86,11 @@ fn setting(text: &str) -> Result<(String, String), String> {
     }
 }
 
-/// File with the added line, and its number of lines.
-#[derive(Serialize)]
-pub struct Added {
-    file: String,
-    lines: usize,
-}
-
 impl command::Request for Request {
-    type Response = Output<Added>;
+    /// File with the added line, and its number of lines.
+    type Response = Value;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output<Value>, Failure> {
         let (file, mut cells) = (&self.file, self.cells());
         if MEASUREMENTS.iter().any(|shipped| shipped.name == file) {
             let problem = format!("`{file}` is shipped; give the path of your own file");
@@ -107,7 +101,7 @@ impl command::Request for Request {
         }
         let lines = add(file, cells, self.dry_run)?.len();
         let text = format!("{file}: {}\n", input::counted(lines, "line"));
-        Ok(Output { value: Added { file: file.clone(), lines }, text, picture: None })
+        Ok(Output::new(text, json!({"file": file, "lines": lines})))
     }
 }
 

@@ -5,8 +5,8 @@ use crate::context::Context;
 use crate::failure::Failure;
 use crate::setup::measured;
 use crate::setup::task::read_task;
-use calibration::experiments::Experiment;
 use serde::Serialize;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
 /// Check a measurement file: implausible units, windows without the start, duplicate lines, unknown tasks
@@ -24,17 +24,6 @@ pub struct Request {
     pub rows: bool,
 }
 
-/// Contents of a checked file.
-#[derive(Serialize)]
-pub struct Checked {
-    file: String,
-    lines: usize,
-    tasks: Vec<TaskLines>,
-    /// Lines by the columns of the file; null where a column is empty.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    rows: Option<Vec<Experiment>>,
-}
-
 /// Numbers of lines of one task.
 #[derive(Debug, Default, Serialize)]
 struct TaskLines {
@@ -48,9 +37,10 @@ struct TaskLines {
 }
 
 impl command::Request for Request {
-    type Response = Output<Checked>;
+    /// Contents of the checked file.
+    type Response = Value;
 
-    fn run(&self, _context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output<Value>, Failure> {
         let own = self.task.iter().map(|name| Ok(read_task(name)?.task.name));
         let own = own.collect::<Result<Vec<_>, Failure>>()?;
         let own: Vec<&str> = own.iter().map(String::as_str).collect();
@@ -76,10 +66,14 @@ impl command::Request for Request {
                 input::counted(*bounds, "lower bound")
             )
         };
-        let (file, lines) = (self.file.clone(), found.len());
+        let (file, lines) = (&self.file, found.len());
         let text = tasks.iter().map(line).collect::<String>()
             + &format!("{file}: {}, no problems found\n", input::counted(lines, "line"));
-        let rows = self.rows.then_some(found);
-        Ok(Output { value: Checked { file, lines, tasks, rows }, text, picture: None })
+        let mut value = json!({"file": file, "lines": lines, "tasks": tasks});
+        if self.rows {
+            // By the columns of the file; null where a column is empty.
+            value["rows"] = json!(found);
+        }
+        Ok(Output::new(text, value))
     }
 }

@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use crate::setup::finger::{FingerRequest, InfillRequest};
 use crate::setup::request::{SetupRequest, TaskSource};
 use crate::setup::task::read_task;
+use crate::setup::words::parse_pair;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::outcome::Outcome;
 use insertion::trial::picture;
@@ -48,10 +49,7 @@ pub struct Request {
 }
 
 fn infill(text: &str) -> Result<(f64, f64), String> {
-    match text.split_once(',').map(|(a, b)| (a.trim().parse(), b.trim().parse())) {
-        Some((Ok(density), Ok(direction))) => Ok((density, direction)),
-        _ => Err("must be PERCENT,DEG, for example 10,0".to_owned()),
-    }
+    parse_pair(text).ok_or_else(|| "must be PERCENT,DEG, for example 10,0".to_owned())
 }
 
 /// Sheet that was written.
@@ -61,10 +59,10 @@ pub struct Written {
 }
 
 impl command::Request for Request {
-    type Response = Output<Written>;
+    type Response = Written;
 
     /// Simulates insertions of the fingers and writes the sheet.
-    fn run(&self, context: &Context<'_>) -> Result<Self::Response, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Written>, Failure> {
         let task = read_task(&self.task)?.task;
         let shifts = (1..=FARTHEST_MM).flat_map(|mm| [f64::from(mm), -f64::from(mm)]);
         let outward = shifts.filter_map(|shift| Some((self.fingers.first()?, shift)));
@@ -77,7 +75,7 @@ impl command::Request for Request {
         pictures.dedup_by_key(|picture| picture.outcome);
         write_file(&self.out, &sheet::page(&task, &self.task, &self.fingers, &pictures))?;
         let text = format!("wrote {}\n", self.out.display());
-        Ok(Output { value: Written { out: self.out.clone() }, text, picture: None })
+        Ok(Output::new(text, Written { out: self.out.clone() }))
     }
 }
 

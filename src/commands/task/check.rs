@@ -1,18 +1,16 @@
 //! `optimize task check`: checks a task file and its nominal start.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout;
 use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
 use crate::setup::task::TaskCheck;
-use crate::setup::tune::{Tried, brief, chosen, tried};
+use crate::setup::tune::{brief, chosen, tried};
 use connector::picture;
-use connector::tune::Tuned;
 use insertion::trial::engine::EngineKind;
-use serde::{Serialize, Serializer};
+use serde_json::Value;
 use std::convert::Infallible;
-use std::fmt;
 use std::path::PathBuf;
 use study::write_file;
 
@@ -39,56 +37,27 @@ pub struct Request {
     pub engine: EngineKind,
 }
 
-/// Problems of a task, and a strategy that repairs a nominal start that fails.
-#[derive(Serialize)]
-pub struct Checked {
-    #[serde(flatten)]
-    checked: TaskCheck,
-    #[serde(rename = "mended_by", serialize_with = "mended_by")]
-    mended: Option<Tuned>,
-    #[serde(skip)]
-    written: Option<PathBuf>,
-}
-
-fn mended_by<S: Serializer>(mended: &Option<Tuned>, serializer: S) -> Result<S::Ok, S::Error> {
-    let chosen: Option<Tried<'_>> = mended.as_ref().and_then(chosen);
-    chosen.serialize(serializer)
-}
-
 impl command::Request for Request {
-    type Response = Checked;
+    /// Problems of a task, and a strategy that repairs a nominal start that fails.
+    type Response = Value;
 
-    fn run(&self, context: &Context<'_>) -> Result<Checked, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
         let checked = TaskCheck::of(self.file.read()?, &self.robot, self.engine, context.stop)?;
-        let written = self.svg.as_ref().filter(|_| checked.task.is_some()).cloned();
-        if let (Some(file), Some(task)) = (&written, &checked.task) {
-            write_file(file, &picture::svg(task))?;
-        }
+        let drawing = checked.task.as_ref().map(picture::svg);
+        let written = self.svg.as_ref().zip(drawing.as_ref());
+        written.map_or(Ok(()), |(file, drawing)| write_file(file, drawing))?;
         let mended = checked.tune(&self.robot, self.engine, context.stop)?;
-        Ok(Checked { checked, mended, written })
-    }
-}
-
-impl command::Response for Checked {
-    fn picture(&self) -> Result<Option<String>, Failure> {
-        Ok(self.checked.task.as_ref().map(picture::svg))
-    }
-
-    fn verdict(self) -> Result<(), Failure> {
-        self.checked.verdict()
-    }
-}
-
-impl fmt::Display for Checked {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let file = &self.checked.source.file;
-        let remedy = self.mended.as_ref().map_or(String::new(), |tuned| match tuned.inserts() {
+        let file = &checked.source.file;
+        let remedy = mended.as_ref().map_or(String::new(), |tuned| match tuned.inserts() {
             true => {
                 format!("{}next          optimize task tune {file}\n", brief("mended by", tuned))
             }
             false => format!("mended by     none of the strategies tried: {}\n", tried(tuned)),
         });
-        let text = self.checked.text() + &remedy + &layout::wrote(&self.written);
-        f.write_str(&layout::wrapped(&text))
+        let written = layout::wrote(written.map(|(file, _)| file));
+        let text = layout::wrapped(&(checked.text() + &remedy + &written));
+        let mut value = checked.json();
+        value["mended_by"] = chosen(mended.as_ref());
+        Ok(Output { picture: drawing, failure: checked.failure(), ..Output::new(text, value) })
     }
 }

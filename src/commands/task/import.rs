@@ -1,30 +1,31 @@
 //! `optimize task import`: creates a task from meshes of plug and socket.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
 use crate::failure::{Failure, within};
 use crate::layout::wrapped;
 use crate::setup::bodies::{Parts, PartsRequest, parts};
-use crate::setup::mated::{LeftOut, MateOptions, MatedTask, mated};
+use crate::setup::files::check_is_new;
+use crate::setup::mated::{MateOptions, MatedTask, left_out_json, mated};
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
-use crate::setup::tune::{Tried, brief, chosen, tune_new};
+use crate::setup::tune::{brief, chosen, tune_new};
 use connector::body::width;
 use connector::draft::{DENSITY, Size};
-use connector::mesh::axes::{Along, Jaws, Unit, value};
+use connector::mesh::axes::{Along, Jaws, value};
+use connector::mesh::mated::PairTask;
 use connector::tune::Tuned;
 use connector::write::{self, Notes};
 use input::shipped::Source;
 use input::units::MM;
 use insertion::task::parts_file::{PartsFile, joined, sha256};
 use insertion::trial::engine::EngineKind;
-use serde::{Serialize, Serializer};
-use std::fmt;
+use serde_json::{Value, json};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use study::write_file;
 
-const RESOLUTIONS: [u32; 2] = [8, 1000];
+const RESOLUTIONS: RangeInclusive<i64> = 8..=1000;
 /// Default of --resolution.
 const RESOLUTION: u32 = 64;
 /// Largest number of parts that are written into the task file itself.
@@ -47,25 +48,9 @@ const DEPTHS_MM: RangeInclusive<f64> = 0.4..=300.0;
     after_help = "Example: optimize task import --plug plug.stl --socket socket.stl --out mine.toml"
 )]
 pub struct Request {
-    /// Mesh of plug and socket in their mated pose; the plug is the part that can be withdrawn
-    #[arg(conflicts_with_all = ["plug", "socket"])]
-    pub assembly: Option<PathBuf>,
-    /// Mesh of the plug, or of both
-    #[arg(long, value_name = "P.stl", required_unless_present = "assembly")]
-    pub plug: Option<PathBuf>,
-    /// Mesh of the socket [default: the rest of the plug's file without --plug-body]
-    #[arg(long, value_name = "S.stl")]
-    pub socket: Option<PathBuf>,
-    /// Body of the file that belongs to the plug: `o` or `g` of an OBJ, `solid` of a text STL, or the number of
-    /// a shell, from 1; may be repeated [default: all, or the rest without --socket-body]
-    #[arg(long, value_name = "NAME")]
-    pub plug_body: Vec<String>,
-    /// Body of the socket's file that belongs to the socket; may be repeated
-    #[arg(long, value_name = "NAME")]
-    pub socket_body: Vec<String>,
-    /// Unit of both files [default: the one that makes plug and clearance plausible]
-    #[arg(long, value_enum)]
-    pub unit: Option<Unit>,
+    /// Files and bodies of plug and socket.
+    #[command(flatten)]
+    pub parts: PartsRequest,
     /// Direction of insertion in the socket's file [default: the one in which most walls of the two engage]
     #[arg(long, value_name = "AXIS", value_enum, allow_hyphen_values = true)]
     pub insert_along: Option<Along>,
@@ -78,7 +63,7 @@ pub struct Request {
     pub like: Option<String>,
     /// Without effect, since the parts are exact within 0.02 mm
     #[arg(long, hide = true, value_name = "N", default_value_t = RESOLUTION,
-          value_parser = clap::value_parser!(u32).range(i64::from(RESOLUTIONS[0])..=i64::from(RESOLUTIONS[1])))]
+          value_parser = clap::value_parser!(u32).range(RESOLUTIONS))]
     pub resolution: u32,
     /// Handle on a plug that has no faces to grip, width between the jaws x height x length in mm
     /// [default: 10x12x20 where one is needed]
@@ -98,50 +83,40 @@ pub struct Request {
     pub names: Vec<String>,
 }
 
-/// Imported and written task.
-pub struct ImportedTask {
-    mated: MatedTask,
-    /// Names of plug and socket.
-    files: [String; 2],
-    /// Strategies that were tried; none if the file has problems.
-    tuned: Option<Tuned>,
-    /// Check of the written file, with its nominal start.
-    checked: TaskCheck,
-    out: PathBuf,
-}
-
 impl command::Request for Request {
-    type Response = ImportedTask;
+    /// The parts of the imported task, the strategies that were tried, and the check of its file.
+    type Response = Value;
 
-    fn run(&self, context: &Context<'_>) -> Result<ImportedTask, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
         let stop = context.stop;
         let out = &self.out();
         within("--depth-mm", self.depth_mm, &DEPTHS_MM)?;
-        if out.exists() {
-            let file = out.display();
-            return Err(Failure::usage(format!("{file} exists; name another file with --out")));
-        }
+        check_is_new(out)?;
         let mut mated = self.mated_task(context)?;
         not_stopped(stop)?;
         let (task, tuned) = tune_new(mated.made.task, self.engine, stop)?;
         mated.made.task = task;
         let written = self.write(out, &mated)?;
         let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine, stop)?;
-        Ok(ImportedTask { mated, files: self.names(), tuned, checked, out: out.clone() })
+        let tuned = tuned.as_ref();
+        let text = text(&self.names(), &mated, tuned, &checked);
+        let failure = checked.failure_of_new(tuned);
+        Ok(Output { failure, ..Output::new(text, json(&mated, tuned, &checked)) })
     }
 }
 
 impl Request {
     /// Returns the names of plug and socket in messages.
     fn names(&self) -> [String; 2] {
-        let paths = || [self.plug(), self.socket()].map(|path| path.display().to_string());
+        let paths =
+            || [self.parts.plug(), self.parts.socket()].map(|path| path.display().to_string());
         <[String; 2]>::try_from(self.names.clone()).unwrap_or_else(|_| paths())
     }
 
     /// Returns the file to write.
     fn out(&self) -> PathBuf {
         self.out.clone().unwrap_or_else(|| {
-            let stem = self.plug().file_stem().unwrap_or_default();
+            let stem = self.parts.plug().file_stem().unwrap_or_default();
             PathBuf::from(stem).with_extension("toml")
         })
     }
@@ -170,21 +145,13 @@ impl Request {
     fn mated_task(&self, context: &Context<'_>) -> Result<MatedTask, Failure> {
         let like = self.like.as_deref().map(read_task).transpose()?;
         let files = self.names();
-        let request = PartsRequest {
-            plug: self.plug(),
-            socket: self.socket(),
-            assembled: self.assembly.is_some(),
-            plug_body: &self.plug_body,
-            socket_body: &self.socket_body,
-            unit: self.unit,
-        };
         let Parts { triangles: [plug, socket], unit, finding } =
-            parts([&files[0], &files[1]], &request, context)?;
+            parts([&files[0], &files[1]], &self.parts, context)?;
         not_stopped(context.stop)?;
         let options = MateOptions {
             name: &self.name(),
             unit,
-            assembled: self.assembly.is_some(),
+            assembled: self.parts.assembly.is_some(),
             along: self.insert_along,
             jaws: self.jaws,
             like: like.as_ref().map(|like| &like.task),
@@ -200,17 +167,6 @@ impl Request {
 
     fn name(&self) -> String {
         self.out().file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
-    }
-
-    /// Returns the file of the plug.
-    fn plug(&self) -> &Path {
-        // One of the two is required.
-        let given = self.assembly.as_ref().or(self.plug.as_ref());
-        given.map_or(Path::new(""), PathBuf::as_path)
-    }
-
-    fn socket(&self) -> &Path {
-        self.socket.as_ref().map_or(self.plug(), PathBuf::as_path)
     }
 
     fn notes(&self, MatedTask { made, unit, along, jaws, .. }: &MatedTask) -> Notes {
@@ -237,95 +193,64 @@ fn description(files: &[String; 2]) -> String {
     }
 }
 
-#[derive(Serialize)]
-struct Fields<'a> {
-    parts: usize,
-    plug_parts: usize,
-    socket_parts: usize,
-    unit: String,
-    insert_along: String,
-    jaws: String,
-    found: Vec<String>,
-    clearance_mm: f64,
-    clearance_x_mm: f64,
-    clearance_y_mm: f64,
-    body_mm: [f64; 3],
-    plug_was_inward: bool,
-    socket_was_inward: bool,
-    left_out: Vec<LeftOut>,
-    out: String,
-    tuned: Option<Tried<'a>>,
-    check: &'a TaskCheck,
+/// Returns an imported task as JSON: its parts, the strategies that were tried, and the check of its file.
+fn json(mated: &MatedTask, tuned: Option<&Tuned>, checked: &TaskCheck) -> Value {
+    let task = &mated.made.task;
+    let [plug_parts, socket_parts] = [task.plug.parts.len(), task.socket.len()];
+    let [clearance_x_mm, clearance_y_mm] = mated.play.map(|play| play / MM);
+    let found = mated.findings.iter().map(|(what, why)| format!("{what} {why}"));
+    let left_out = mated.made.interference.iter().map(left_out_json);
+    json!({
+        "parts": plug_parts + socket_parts,
+        "plug_parts": plug_parts,
+        "socket_parts": socket_parts,
+        "unit": value(mated.unit),
+        "insert_along": value(mated.along),
+        "jaws": value(mated.jaws),
+        "found": found.collect::<Vec<_>>(),
+        "clearance_mm": clearance_x_mm.min(clearance_y_mm),
+        "clearance_x_mm": clearance_x_mm,
+        "clearance_y_mm": clearance_y_mm,
+        "body_mm": body_mm(&mated.made),
+        "plug_was_inward": mated.inward[0],
+        "socket_was_inward": mated.inward[1],
+        "left_out": left_out.collect::<Vec<_>>(),
+        "out": checked.source.file,
+        "tuned": chosen(tuned),
+        "check": checked.json(),
+    })
 }
 
-impl ImportedTask {
-    fn fields(&self) -> Fields<'_> {
-        let ImportedTask { mated, tuned, checked, out, .. } = self;
-        let task = &mated.made.task;
-        let [plug_parts, socket_parts] = [task.plug.parts.len(), task.socket.len()];
-        let [clearance_x_mm, clearance_y_mm] = mated.play.map(|play| play / MM);
-        Fields {
-            parts: plug_parts + socket_parts,
-            plug_parts,
-            socket_parts,
-            unit: value(mated.unit),
-            insert_along: value(mated.along),
-            jaws: value(mated.jaws),
-            found: mated.findings.iter().map(|(what, why)| format!("{what} {why}")).collect(),
-            clearance_mm: clearance_x_mm.min(clearance_y_mm),
-            clearance_x_mm,
-            clearance_y_mm,
-            body_mm: self.body_mm(),
-            plug_was_inward: mated.inward[0],
-            socket_was_inward: mated.inward[1],
-            left_out: mated.made.interference.iter().map(LeftOut::from).collect(),
-            out: out.display().to_string(),
-            tuned: tuned.as_ref().and_then(chosen),
-            check: checked,
+/// Returns the body that the fingers hold: width between the jaws, height in x, length above the seated socket.
+fn body_mm(made: &PairTask) -> [f64; 3] {
+    let grip = &made.task.grip;
+    [width(grip.faces_y), made.held, grip.shoulder_z + made.mated_z()].map(|side| side / MM)
+}
+
+fn text(
+    [plug, socket]: &[String; 2],
+    mated: &MatedTask,
+    tuned: Option<&Tuned>,
+    checked: &TaskCheck,
+) -> String {
+    let (task, out) = (&mated.made.task, &checked.source.file);
+    let [plug_parts, socket_parts] = [task.plug.parts.len(), task.socket.len()];
+    let [clearance_x_mm, clearance_y_mm] = mated.play.map(|play| play / MM);
+    let [wide, high, long] = body_mm(&mated.made);
+    let mut text = format!(
+        "written       {out}\nplug          {plug}, {plug_parts} convex parts: held by the fingers\n\
+         socket        {socket}, {socket_parts} convex parts: fixed\n\
+         clearance     {clearance_y_mm:.2} mm in y, {clearance_x_mm:.2} in x; body {wide:.1} x {high:.1} x {long:.1} mm\n"
+    );
+    for (what, why) in &mated.findings {
+        text.push_str(&format!("{what:<14}{why}\n"));
+    }
+    for (name, inward) in ["plug", "socket"].into_iter().zip(mated.inward) {
+        if inward {
+            text.push_str(&format!("normals       of the {name} pointed inward; reversed\n"));
         }
     }
-
-    /// Returns the body that the fingers hold: width between the jaws, height in x, length above the seated socket.
-    fn body_mm(&self) -> [f64; 3] {
-        let made = &self.mated.made;
-        let grip = &made.task.grip;
-        [width(grip.faces_y), made.held, grip.shoulder_z + made.mated_z()].map(|side| side / MM)
-    }
-}
-
-impl Serialize for ImportedTask {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.fields().serialize(serializer)
-    }
-}
-
-impl command::Response for ImportedTask {
-    fn verdict(self) -> Result<(), Failure> {
-        self.checked.check_new(self.tuned.as_ref())
-    }
-}
-
-impl fmt::Display for ImportedTask {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let ImportedTask { mated, files: [plug, socket], tuned, checked, .. } = self;
-        let Fields { out, plug_parts, socket_parts, clearance_x_mm, clearance_y_mm, .. } =
-            self.fields();
-        let [wide, high, long] = self.body_mm();
-        let mut text = format!(
-            "written       {out}\nplug          {plug}, {plug_parts} convex parts: held by the fingers\n\
-             socket        {socket}, {socket_parts} convex parts: fixed\n\
-             clearance     {clearance_y_mm:.2} mm in y, {clearance_x_mm:.2} in x; body {wide:.1} x {high:.1} x {long:.1} mm\n"
-        );
-        for (what, why) in &mated.findings {
-            text.push_str(&format!("{what:<14}{why}\n"));
-        }
-        for (name, inward) in ["plug", "socket"].into_iter().zip(mated.inward) {
-            if inward {
-                text.push_str(&format!("normals       of the {name} pointed inward; reversed\n"));
-            }
-        }
-        text.extend(tuned.iter().map(|tuned| brief("strategy", tuned)));
-        text += &format!("{}next          optimize task tune {out}\n", checked.text());
-        f.write_str(&wrapped(&text))
-    }
+    text.extend(tuned.map(|tuned| brief("strategy", tuned)));
+    text += &format!("{}next          optimize task tune {out}\n", checked.text());
+    wrapped(&text)
 }

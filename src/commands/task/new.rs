@@ -1,9 +1,10 @@
 //! `optimize task new`: creates a task file.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout::wrapped;
+use crate::setup::files::check_is_new;
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
@@ -15,8 +16,7 @@ use input::shipped::Source;
 use input::units::MM;
 use insertion::trial::engine::EngineKind;
 use parameters::numbers;
-use serde::{Serialize, Serializer};
-use std::fmt;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use study::write_file;
@@ -80,17 +80,11 @@ pub struct Request {
     pub engine: EngineKind,
 }
 
-/// Written task, with its strategy and its check.
-pub struct Written {
-    name: String,
-    checked: TaskCheck,
-    tuned: Option<Tuned>,
-}
-
 impl command::Request for Request {
-    type Response = Written;
+    /// The written file, with its strategy and its check.
+    type Response = Value;
 
-    fn run(&self, context: &Context<'_>) -> Result<Written, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
         let like = self.like.as_deref().map(read_task).transpose()?;
         let (text, tuned) = match (&like, tip(self)) {
             (Some(like), None) => (copy(&self.name, like), None),
@@ -100,45 +94,19 @@ impl command::Request for Request {
         let file = out.display().to_string();
         // Checks the name and that the file can be read.
         let written = TaskFile::parse(Source { file: file.clone(), text })?;
-        if out.exists() {
-            return Err(Failure::usage(format!("{file} exists; name another file with --out")));
-        }
+        check_is_new(&out)?;
         write_file(&out, &written.source.text)?;
         let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine, context.stop)?;
-        Ok(Written { name: self.name.clone(), checked, tuned })
-    }
-}
-
-impl Serialize for Written {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Fields<'a> {
-            out: &'a str,
-            tuned: Option<crate::setup::tune::Tried<'a>>,
-            check: &'a TaskCheck,
-        }
-        let Written { checked, tuned, .. } = self;
-        let tuned = tuned.as_ref().and_then(chosen);
-        Fields { out: &checked.source.file, tuned, check: checked }.serialize(serializer)
-    }
-}
-
-impl command::Response for Written {
-    fn verdict(self) -> Result<(), Failure> {
-        self.checked.check_new(self.tuned.as_ref())
-    }
-}
-
-impl fmt::Display for Written {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Written { name, checked, tuned } = self;
-        let file = &checked.source.file;
-        let strategy = tuned.iter().map(|tuned| brief("strategy", tuned)).collect::<String>();
+        let tuned = tuned.as_ref();
+        let strategy = tuned.map_or(String::new(), |tuned| brief("strategy", tuned));
         let text = format!(
-            "written       {file}\n{strategy}{}next          optimize task tune {file} --svg {name}.svg\n",
-            checked.text()
+            "written       {file}\n{strategy}{}next          optimize task tune {file} --svg {}.svg\n",
+            checked.text(),
+            self.name
         );
-        f.write_str(&wrapped(&text))
+        let value = json!({"out": file, "tuned": chosen(tuned), "check": checked.json()});
+        let failure = checked.failure_of_new(tuned);
+        Ok(Output { failure, ..Output::new(wrapped(&text), value) })
     }
 }
 

@@ -1,16 +1,17 @@
 //! `optimize task tune`: finds a strategy that inserts a connector.
 
-use crate::command;
+use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout::{lines, wrapped};
 use crate::progress::Part;
-use crate::setup::files::robot;
+use crate::setup::files::{check_is_new, robot};
 use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
 use crate::setup::task::TaskFile;
-use crate::setup::tune::{Tried, outcome, ranges, tried, tuner, turned_text};
+use crate::setup::tune::{outcome, ranges, step_json, tried, tuner, turned_text};
+use crate::setup::words::parse_number;
 use connector::check::problems;
-use connector::tune::{Effort, MOST_WINDOWS, Robustness, Stage, Step, Stopped, Tuned, Tuner, tune};
+use connector::tune::{Effort, MOST_WINDOWS, Stage, Step, Tuned, Tuner, tune};
 use connector::{picture, rewrite};
 use input::Place;
 use input::shipped::Source;
@@ -22,8 +23,7 @@ use insertion::task::parts_file::without_parts;
 use insertion::task::{Limits, Strategy, Task};
 use insertion::trial::Conditions;
 use insertion::trial::engine::EngineKind;
-use serde::{Serialize, Serializer};
-use std::fmt;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use study::write_file;
@@ -66,45 +66,36 @@ pub struct Request {
 }
 
 /// Windows of the fingers on the tuned task.
-pub struct TunedWindows {
+struct TunedWindows {
     /// The windows.
-    pub windows: Vec<Window>,
+    windows: Vec<Window>,
     /// Largest force of the insertions, N.
-    pub force_n: f64,
+    force_n: f64,
 }
 
 /// Parses a finite number above 0.
 fn positive(text: &str) -> Result<f64, String> {
-    let value = text.parse().unwrap_or(f64::NAN);
-    let accepted = value > 0.0 && f64::is_finite(value);
-    if accepted { Ok(value) } else { Err("give a number above 0".to_owned()) }
+    parse_number(text, |value| value > 0.0 && value.is_finite(), "give a number above 0")
 }
 
 /// Result of tuning a task.
-pub struct TunedTask {
-    /// Task file, as given on the command line.
-    file: String,
-    /// The task before tuning.
-    pub task: Task,
+struct TunedTask<'a> {
+    /// The task before tuning, with fingers and limits.
+    tuner: Tuner<'a>,
     /// All strategies that were tried.
-    pub tuned: Tuned,
-    /// The soft, the medium and the stiff finger.
-    pub fingers: [Finger; 3],
-    /// Three others, between them, with which the chosen strategy is checked.
-    pub others: [Finger; 3],
-    /// Limits of force and speed.
-    pub limits: Limits,
+    tuned: Tuned,
     /// Windows of the fingers on the tuned task; `None` if no strategy inserts.
-    pub after: Option<TunedWindows>,
+    after: Option<TunedWindows>,
     /// The file that was written, if one was.
-    pub written: Option<PathBuf>,
+    written: Option<&'a Path>,
 }
 
 impl command::Request for Request {
-    type Response = TunedTask;
+    /// The strategies that were tried, with the windows of the fingers before and after.
+    type Response = Value;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<TunedTask, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
         let stop = context.stop;
         context.cancel_on_interrupt()?;
         context.begin(MOST_WINDOWS as f64);
@@ -127,27 +118,19 @@ impl command::Request for Request {
         if context.check().is_err() {
             return Err(self.interrupted(&file, &tuned, target)?);
         }
-        let Tuner { fingers, others, limits, .. } = tuner;
-        let mut done = TunedTask {
-            file: self.file.clone(),
-            task: file.task.clone(),
-            tuned,
-            fingers,
-            others,
-            limits,
-            after: None,
-            written: None,
-        };
-        if done.tuned.inserts() {
-            done.after = match self.write(&file, &done, &robot, (target, stop)) {
+        let (mut after, mut written) = (None, None);
+        if tuned.inserts() {
+            after = match self.write(&file, &tuned, &robot, (target, stop)) {
                 Err(Failure::Interrupted(_)) => {
-                    return Err(self.interrupted(&file, &done.tuned, target)?);
+                    return Err(self.interrupted(&file, &tuned, target)?);
                 }
                 found => Some(found?),
             };
-            done.written = target.filter(|_| !self.dry_run).map(Path::to_path_buf);
+            written = target.filter(|_| !self.dry_run);
         }
-        Ok(done)
+        let done = TunedTask { tuner, tuned, after, written };
+        let output = Output::new(wrapped(&text(&done)), json(&done));
+        Ok(Output { failure: failure(&self.file, &done), ..output })
     }
 }
 
@@ -169,11 +152,7 @@ impl Request {
     /// Returns the file to write; a shipped task cannot be overwritten.
     fn target(&self) -> Result<Option<&Path>, Failure> {
         match &self.out {
-            Some(out) if out.exists() => {
-                let out = out.display();
-                Err(Failure::usage(format!("{out} exists; name another file with --out")))
-            }
-            Some(out) => Ok(Some(out)),
+            Some(out) => check_is_new(out).map(|()| Some(out.as_path())),
             None if Path::new(&self.file).is_file() => Ok(Some(Path::new(&self.file))),
             None if self.dry_run => Ok(None),
             None => Err(Failure::usage(format!(
@@ -187,11 +166,11 @@ impl Request {
     fn write(
         &self,
         file: &TaskFile,
-        done: &TunedTask,
+        tuned: &Tuned,
         robot: &Robot,
         (target, stop): (Option<&Path>, &AtomicBool),
     ) -> Result<TunedWindows, Failure> {
-        let after = rewritten(file, &done.tuned)?;
+        let after = rewritten(file, tuned)?;
         let tuner = self.tuner(&after.task, robot, stop)?;
         let found = tuner.windows(&after.task.strategy, &tuner.fingers, Conditions::NOMINAL);
         not_stopped(stop)?;
@@ -250,42 +229,29 @@ fn rewritten(file: &TaskFile, tuned: &Tuned) -> Result<TaskFile, Failure> {
     TaskFile::parse(Source { file: source.file.clone(), text })
 }
 
-/// Strategy with the windows of the fingers, as in the output of `--json`.
-#[derive(Serialize)]
-struct StrategyWindows<'a> {
-    start_mm: [f64; 3],
-    tilt_deg: f64,
-    push_speed_mm_per_s: f64,
-    largest_force_n: f64,
-    fingers: Vec<FingerWindow<'a>>,
-}
-
-#[derive(Serialize)]
-struct FingerWindow<'a> {
-    compliance_n_per_mm: f64,
-    assembly_n_per_mm: f64,
-    nominal: &'a str,
-    window_mm: [f64; 2],
-    range_mm: f64,
-}
-
-impl<'a> StrategyWindows<'a> {
-    fn new(strategy: &Strategy, windows: &[Window], force_n: f64, fingers: &[Finger]) -> Self {
-        let result = |(finger, window): (&Finger, &Window)| FingerWindow {
-            compliance_n_per_mm: finger.compliance / N_PER_MM,
-            assembly_n_per_mm: finger.assembly / N_PER_MM,
-            nominal: window.nominal.word(),
-            window_mm: [window.negative_mm(), window.positive_mm()],
-            range_mm: window.range_mm(),
-        };
-        StrategyWindows {
-            start_mm: strategy.start.map(|at| (at / MM * 1e4).round() / 1e4),
-            tilt_deg: (strategy.tilt / DEG * 100.0).round() / 100.0,
-            push_speed_mm_per_s: push_speed_mm_per_s(strategy),
-            largest_force_n: force_n,
-            fingers: fingers.iter().zip(windows).map(result).collect(),
-        }
-    }
+/// Returns a strategy with the windows of the fingers as JSON.
+fn strategy_json(
+    strategy: &Strategy,
+    windows: &[Window],
+    force_n: f64,
+    fingers: &[Finger],
+) -> Value {
+    let result = |(finger, window): (&Finger, &Window)| {
+        json!({
+            "compliance_n_per_mm": finger.compliance / N_PER_MM,
+            "assembly_n_per_mm": finger.assembly / N_PER_MM,
+            "nominal": window.nominal.word(),
+            "window_mm": [window.negative_mm(), window.positive_mm()],
+            "range_mm": window.range_mm(),
+        })
+    };
+    json!({
+        "start_mm": strategy.start.map(|at| (at / MM * 1e4).round() / 1e4),
+        "tilt_deg": (strategy.tilt / DEG * 100.0).round() / 100.0,
+        "push_speed_mm_per_s": push_speed_mm_per_s(strategy),
+        "largest_force_n": force_n,
+        "fingers": fingers.iter().zip(windows).map(result).collect::<Vec<_>>(),
+    })
 }
 
 /// Returns the speed of the last phase, mm/s.
@@ -293,81 +259,44 @@ fn push_speed_mm_per_s(strategy: &Strategy) -> f64 {
     strategy.phases.last().map_or(0.0, |push| (push.speed / MM * 10.0).round() / 10.0)
 }
 
-impl Serialize for TunedTask {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct By<'a> {
-            stage: Stage,
-            what: &'a str,
-        }
-        #[derive(Serialize)]
-        struct LimitsOutput {
-            force_n: Option<f64>,
-            speed_mm_per_s: Option<f64>,
-        }
-        #[derive(Serialize)]
-        struct Fields<'a> {
-            schema_version: u32,
-            task: &'a str,
-            inserts: bool,
-            limits: LimitsOutput,
-            windows: usize,
-            before: StrategyWindows<'a>,
-            after: Option<StrategyWindows<'a>>,
-            by: By<'a>,
-            steps: Vec<Tried<'a>>,
-            kept: &'a [Robustness],
-            nearest: Option<Stopped>,
-            out: Option<String>,
-        }
-        let TunedTask { task, tuned, fingers, limits, after, written, .. } = self;
-        let speed_mm_per_s = limits.speed.map(|speed| speed / MM);
-        let limits = LimitsOutput { force_n: limits.force, speed_mm_per_s };
-        let best = tuned.best();
-        let state = |after: &TunedWindows| {
-            StrategyWindows::new(&best.tried.strategy, &after.windows, after.force_n, fingers)
-        };
-        let first = &tuned.steps[0].tried;
-        let fields = Fields {
-            schema_version: 1,
-            task: &task.name,
-            inserts: after.is_some(),
-            limits,
-            windows: tuned.windows,
-            before: StrategyWindows::new(&task.strategy, &first.windows, first.force_n, fingers),
-            after: after.as_ref().map(state),
-            by: By { stage: best.stage, what: &best.change },
-            steps: tuned.steps.iter().map(Tried::from).collect(),
-            kept: &tuned.robustness,
-            nearest: tuned.nearest(task),
-            out: written.as_ref().map(|path| path.display().to_string()),
-        };
-        fields.serialize(serializer)
-    }
+fn json(TunedTask { tuner, tuned, after, written }: &TunedTask<'_>) -> Value {
+    let Tuner { task, fingers, limits, .. } = tuner;
+    let (best, first) = (tuned.best(), &tuned.steps[0].tried);
+    let state = |after: &TunedWindows| {
+        strategy_json(&best.tried.strategy, &after.windows, after.force_n, fingers)
+    };
+    json!({
+        "schema_version": 1,
+        "task": task.name,
+        "inserts": after.is_some(),
+        "limits": {
+            "force_n": limits.force,
+            "speed_mm_per_s": limits.speed.map(|speed| speed / MM),
+        },
+        "windows": tuned.windows,
+        "before": strategy_json(&task.strategy, &first.windows, first.force_n, fingers),
+        "after": after.as_ref().map(state),
+        "by": {"stage": best.stage, "what": best.change},
+        "steps": tuned.steps.iter().map(step_json).collect::<Vec<_>>(),
+        "kept": tuned.robustness,
+        "nearest": tuned.nearest(task),
+        "out": written.map(|path| path.display().to_string()),
+    })
 }
 
-impl command::Response for TunedTask {
-    fn verdict(self) -> Result<(), Failure> {
-        if self.after.is_some() {
-            return Ok(());
-        }
-        let within = self.tuned.least_force_n().zip(self.limits.force);
-        let within = within.map_or(String::new(), |(least, limit)| {
-            format!(" with at most {limit:.0} N (at least {least:.0} N; see --max-force-n)")
-        });
-        let (file, tried) = (&self.file, tried(&self.tuned));
-        Err(Failure::running(format!("{file}: no strategy inserts{within}; tried: {tried}")))
-    }
+/// Returns the error if no strategy inserts.
+fn failure(file: &str, TunedTask { tuner, tuned, after, .. }: &TunedTask<'_>) -> Option<Failure> {
+    let within = tuned.least_force_n().zip(tuner.limits.force);
+    let within = within.map_or(String::new(), |(least, limit)| {
+        format!(" with at most {limit:.0} N (at least {least:.0} N; see --max-force-n)")
+    });
+    let problem = format!("{file}: no strategy inserts{within}; tried: {}", tried(tuned));
+    after.is_none().then(|| Failure::running(problem))
 }
 
-impl fmt::Display for TunedTask {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&wrapped(&text(self)))
-    }
-}
-
-fn text(done: &TunedTask) -> String {
-    let TunedTask { task, tuned, fingers, others, after, written, .. } = done;
+fn text(done: &TunedTask<'_>) -> String {
+    let TunedTask { tuner, tuned, after, written } = done;
+    let Tuner { task, fingers, others, .. } = tuner;
     let line = |name: &str, text: String| (name.to_owned(), text);
     let mut all = vec![
         line("task", task.name.clone()),
@@ -404,18 +333,17 @@ fn text(done: &TunedTask) -> String {
                 }
             }));
             let name = if tuned.best == 0 { "unchanged" } else { "written" };
-            let wrote = written.as_ref();
-            all.extend(wrote.map(|path| line(name, path.display().to_string())));
+            all.extend(written.map(|path| line(name, path.display().to_string())));
         }
     }
     all.push(line("windows", format!("{} measured", tuned.windows)));
-    let next = written.as_ref();
-    all.extend(next.map(|path| line("next", format!("optimize --task {}", path.display()))));
+    all.extend(written.map(|path| line("next", format!("optimize --task {}", path.display()))));
     lines(all)
 }
 
 /// Returns speed and largest force of the push, before and after tuning, as text.
-fn push_text(TunedTask { task, tuned, limits, .. }: &TunedTask, after_n: f64) -> String {
+fn push_text(TunedTask { tuner, tuned, .. }: &TunedTask<'_>, after_n: f64) -> String {
+    let Tuner { task, limits, .. } = tuner;
     let [old, new] = [&task.strategy, &tuned.best().tried.strategy].map(push_speed_mm_per_s);
     let before = match tuned.steps[0].tried.force_n {
         0.0 => "none".to_owned(),

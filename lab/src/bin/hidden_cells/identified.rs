@@ -3,7 +3,6 @@
 use super::cell::{FingerWindows, HIDDEN, HiddenCell, window};
 use super::logs::LOGGED;
 use ask_tell::statistics::{mean, spearman};
-use finger_opt::command::Request as _;
 use finger_opt::commands::identify;
 use finger_opt::context::Context;
 use finger_opt::failure::Failure;
@@ -38,7 +37,7 @@ pub fn line(
         priors: "bench".to_owned(),
         ..identify::Request::default()
     };
-    let found = request.run(&Context::silent(&NEVER))?.result.cell;
+    let found = request.identify(&Context::silent(&NEVER))?.cell;
     let robot = found.robot("cell").map_err(Failure::input)?;
     let values: Vec<_> = found.of(task).map(|parameter| (parameter, parameter.middle())).collect();
 

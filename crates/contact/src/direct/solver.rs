@@ -118,7 +118,7 @@ pub(super) struct Solver {
     /// Matrix of the reduced system, row by row.
     pub system: Vec<Six>,
     /// Right-hand side.
-    pub rhs: Vec<Six>,
+    pub rhs: Vec<Vector6>,
     /// Solution; on entry, the initial guess.
     pub velocities: Vec<Six>,
     hessian: Vec<Six>,
@@ -133,7 +133,7 @@ impl Solver {
         let square = vec![[0.0; 6]; 6 * bodies * bodies];
         Solver {
             system: square.clone(),
-            rhs: zeros.clone(),
+            rhs: vec![Vector6::zeros(); bodies],
             velocities: zeros.clone(),
             hessian: square,
             gradient: zeros.clone(),
@@ -186,15 +186,13 @@ impl Solver {
     fn update_velocities(&self, contacts: &mut [Contact]) {
         for contact in contacts {
             contact.velocity = contact.relative(&self.velocities) + contact.drift;
-            contact.change = Vector4::zeros();
         }
     }
 
     /// Computes the gradient; returns its largest component, N s.
     fn update_gradient(&mut self, contacts: &mut [Contact]) -> f64 {
         dense::multiply(&self.system, &self.velocities, &mut self.gradient);
-        let rhs = self.rhs.as_flattened();
-        for (g, r) in self.gradient.as_flattened_mut().iter_mut().zip(rhs) {
+        for (g, r) in self.gradient.as_flattened_mut().iter_mut().zip(self.rhs.iter().flatten()) {
             *g -= r;
         }
         for contact in contacts {

@@ -125,9 +125,8 @@ impl Prism {
         let edges: BTreeSet<[u32; 2]> = below.iter().flat_map(sides).collect();
         let rim = edges.iter().filter(|[a, b]| !edges.contains(&[*b, *a]));
         triangles.extend(rim.flat_map(|&[a, b]| [[a, b, b + 1], [a, b + 1, a + 1]]));
-        let prism = Prism { corners, triangles };
+        let prism = Prism { corners, triangles }.closed()?;
         let area = polygon::area(outer) + holes.iter().map(|hole| polygon::area(hole)).sum::<f64>();
-        let prism = prism.closed()?;
         let (found, expected) = (prism.volume(), area * depth);
         if (found - expected).abs() > VOLUME_TOLERANCE * expected {
             let problem =

@@ -42,8 +42,6 @@ pub(super) struct DirectWorld {
     /// Number of coming steps that will be divided.
     pub divided: usize,
     contacts: Vec<Contact>,
-    /// Whether contacts have patches.
-    patched: bool,
     /// Contact patches by their numbers ([`Touch::geoms`]).
     patches: BTreeMap<usize, Patch>,
 }
@@ -62,7 +60,6 @@ impl DirectWorld {
             axial_friction: scene.axial_friction.clone(),
             pairs: scene.contacts.clone(),
             forces: vec![ContactForce::default(); scene.contacts.len()],
-            patched: scene.first_patch().is_some(),
             patches: BTreeMap::new(),
             detector,
             system: Blocks::new(size, eliminated),
@@ -117,9 +114,6 @@ impl DirectWorld {
 
     /// Adds the missing patches with the loads of their contacts, or with equal loads before the contacts are set.
     fn add_patches(&mut self) {
-        if !self.patched {
-            return;
-        }
         let mut from = 0;
         for touches in self.touches.chunk_by(|a, b| a.geoms == b.geoms) {
             let Touch { geoms, pair, normal, friction, .. } = touches[0];

@@ -136,9 +136,8 @@ impl Detector {
         }
         let mut from = 0;
         let list = |pair: (usize, &ContactPair)| {
-            let [first, (second, _)] =
-                [pair.1.first, pair.1.second].map(|body| bodies[body.0].clone());
-            let list = NearList::new(pair, from, first, second, &solids);
+            let ends = [pair.1.first, pair.1.second].map(|body| bodies[body.0].clone());
+            let list = NearList::new(pair, from, ends, &solids);
             from += list.pairs();
             list
         };

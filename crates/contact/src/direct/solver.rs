@@ -36,14 +36,14 @@ pub(super) fn lever(arm: &Vector3<f64>, patch: &Vector3<f64>) -> Matrix4x3<f64> 
     lever
 }
 
-/// Returns the lever of a contact point whose friction acts at an offset `aside`, m: its linear velocity then
-/// includes that of the offset point due to rotation about the normal.
+/// Returns the lever of a contact point without patch radius whose friction acts at an offset `aside`, m: its linear
+/// velocity then includes that of the offset point due to rotation about the normal.
 pub(super) fn offset_lever(
-    lever: &Matrix4x3<f64>,
+    arm: &Vector3<f64>,
     aside: &Vector3<f64>,
     normal: &Vector3<f64>,
 ) -> Matrix4x3<f64> {
-    let mut moved = *lever;
+    let mut moved = lever(arm, &Vector3::zeros());
     let mut linear = moved.fixed_view_mut::<3, 3>(0, 0);
     linear += normal.cross(aside) * normal.transpose();
     moved

@@ -94,8 +94,7 @@ impl DirectWorld {
                 Torsion::Patch => {
                     let offset = |p: &Patch| p.offset(&ends[0].pose, &touch.point, &touch.normal);
                     let offset = self.patches.get(&touch.geoms).map_or(Vector3::zeros(), offset);
-                    let at_point = arm.map(|arm| lever(&arm, &Vector3::zeros()));
-                    at_point.map(|lever| offset_lever(&lever, &offset, &touch.normal))
+                    arm.map(|arm| offset_lever(&arm, &offset, &touch.normal))
                 }
             };
             let mut drift = Vector4::zeros();

@@ -131,11 +131,28 @@ impl World for RapierWorld {
 
     fn contact(&self, first: BodyId, second: BodyId) -> ContactForce {
         let ends = (self.bodies[first.0], self.bodies[second.0]);
+        let (world, parameters) = (&self.world, &self.world.integration_parameters);
         let mut sum = ContactForce::default();
-        for &collider in self.world.bodies[ends.1].colliders() {
-            for pair in self.world.narrow_phase.contact_pairs_with(collider) {
-                add_pair(&mut sum, pair, ends, &self.world.integration_parameters);
-            }
+        let colliders = world.bodies[ends.1].colliders().iter();
+        let pairs = colliders.flat_map(|&collider| world.narrow_phase.contact_pairs_with(collider));
+        for manifold in pairs.flat_map(|pair| pair.solver_manifolds()) {
+            // The manifold's normal points from its first body to its second.
+            let bodies = manifold.data.rigid_body1.zip(manifold.data.rigid_body2);
+            let Some(sign) = bodies.and_then(|bodies| sign(ends, bodies)) else { continue };
+            // A point that is not active keeps the impulse of the last step in which it was.
+            let active = || {
+                let solved = manifold.data.solver_contacts.iter();
+                solved.map(|contact| &manifold.points[contact.contact_indices()[0] as usize].data)
+            };
+            let pressed = active().map(|point| point.impulse).sum::<f64>() / parameters.dt / LENGTH;
+            sum.net += Vector3::from(manifold.data.normal) * (sign * pressed);
+            sum.normal_sum += pressed;
+            // `Simplified` friction is one force for the whole manifold, repeated at each active point:
+            // the impulse of the last substep alone, in the world's axes, on the first body.
+            let Some(point) = active().next() else { continue };
+            let rubbed = Vector3::from(point.warmstart_tangent_world);
+            let substep = parameters.dt / parameters.num_solver_iterations as f64;
+            sum.net -= rubbed * (sign / substep / LENGTH);
         }
         sum.net += self.axial_friction(first, second).unwrap_or_default();
         sum
@@ -157,34 +174,6 @@ impl World for RapierWorld {
         let (bodies, joints) = (self.bodies.clone(), self.joints.clone());
         let (frictions, axial_friction) = (self.frictions.clone(), self.axial_friction.clone());
         Box::new(RapierWorld { world, bodies, joints, frictions, axial_friction })
-    }
-}
-
-/// Adds the forces of one pair of colliders if it is between the two bodies.
-fn add_pair(
-    sum: &mut ContactForce,
-    pair: &rp::ContactPair,
-    ends: (rp::RigidBodyHandle, rp::RigidBodyHandle),
-    parameters: &rp::IntegrationParameters,
-) {
-    for manifold in pair.solver_manifolds() {
-        // The manifold's normal points from its first body to its second.
-        let bodies = manifold.data.rigid_body1.zip(manifold.data.rigid_body2);
-        let Some(sign) = bodies.and_then(|bodies| sign(ends, bodies)) else { continue };
-        // A point that is not active keeps the impulse of the last step in which it was.
-        let active = || {
-            let solved = manifold.data.solver_contacts.iter();
-            solved.map(|contact| &manifold.points[contact.contact_indices()[0] as usize].data)
-        };
-        let pressed = active().map(|point| point.impulse).sum::<f64>() / parameters.dt / LENGTH;
-        sum.net += Vector3::from(manifold.data.normal) * (sign * pressed);
-        sum.normal_sum += pressed;
-        // `Simplified` friction is one force for the whole manifold, repeated at each active point:
-        // the impulse of the last substep alone, in the world's axes, on the first body.
-        let Some(point) = active().next() else { continue };
-        let rubbed = Vector3::from(point.warmstart_tangent_world);
-        let substep = parameters.dt / parameters.num_solver_iterations as f64;
-        sum.net -= rubbed * (sign / substep / LENGTH);
     }
 }
 

@@ -68,8 +68,7 @@ impl NearList {
     pub fn new(
         (number, bodies): (usize, &ContactPair),
         from: usize,
-        (first, tree): (Range<usize>, Arc<Bvh>),
-        second: Range<usize>,
+        [(first, tree), (second, _)]: [(Range<usize>, Arc<Bvh>); 2],
         solids: &[Solid],
     ) -> Self {
         let far = |solid: &Solid| solid.frame.translation.vector.norm() + solid.half.norm();

@@ -5,7 +5,7 @@
 // A panic is a bug; invalid input must produce an error with a message.
 #![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
-use crate::scene::{Body, BodyId, Joint, JointId, Motion, Pose, Scene, Spring, Springs};
+use crate::scene::{BodyId, JointId, Motion, Pose, Scene, Spring, Springs};
 use nalgebra::{Point3, Vector3};
 
 pub mod direct;
@@ -75,15 +75,13 @@ pub enum Unsupported {
 /// Returns the parts of a scene that only `direct` can simulate, each with the feature that the other engines lack:
 /// springs that couple axes, friction of a contact patch, mass that depends on the direction.
 fn unsupported_parts(scene: &Scene) -> impl DoubleEndedIterator<Item = (&str, &'static str)> {
-    let coupled = |joint: &&Joint| matches!(joint.springs, Springs::Coupled { .. });
-    let mechanism = |body: &&Body| matches!(body.motion, Motion::Mechanism(_));
-    let joint = scene.joints.iter().find(coupled).map(|joint| joint.name.as_str());
-    let patch = scene.first_patch().map(|pair| scene.bodies[pair.first.0].name.as_str());
-    let body = scene.bodies.iter().find(mechanism).map(|body| body.name.as_str());
+    let coupled = scene.joints.iter().find(|j| matches!(j.springs, Springs::Coupled { .. }));
+    let pressed = scene.first_patch().map(|pair| &scene.bodies[pair.first.0]);
+    let mechanism = scene.bodies.iter().find(|body| matches!(body.motion, Motion::Mechanism(_)));
     let parts = [
-        joint.map(|name| (name, "springs that couple the axes of a joint")),
-        patch.map(|name| (name, "torsional friction of a pressed patch")),
-        body.map(|name| (name, "mass that depends on the direction")),
+        coupled.map(|joint| (&*joint.name, "springs that couple the axes of a joint")),
+        pressed.map(|body| (&*body.name, "torsional friction of a pressed patch")),
+        mechanism.map(|body| (&*body.name, "mass that depends on the direction")),
     ];
     parts.into_iter().flatten()
 }

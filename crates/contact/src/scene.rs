@@ -116,7 +116,7 @@ impl Friction {
 }
 
 /// Returns 1 for the bodies of the pair, -1 for them in reverse order, `None` for others.
-fn sign(pair: (BodyId, BodyId), bodies: (BodyId, BodyId)) -> Option<f64> {
+pub(crate) fn sign<T: Copy + PartialEq>(pair: (T, T), bodies: (T, T)) -> Option<f64> {
     match bodies {
         ends if ends == pair => Some(1.0),
         (second, first) if (first, second) == pair => Some(-1.0),
@@ -244,11 +244,6 @@ pub struct AxialFriction {
 }
 
 impl AxialFriction {
-    /// Returns 1 for parent and child, -1 for them in reverse order, `None` for other bodies.
-    pub fn sign(&self, first: BodyId, second: BodyId) -> Option<f64> {
-        sign((self.parent, self.child), (first, second))
-    }
-
     /// Returns the largest force at these poses of parent and child, N: linear between the depths, 0 above the
     /// first, and the last one below the last.
     pub fn limit(&self, parent: &Pose, child: &Pose) -> f64 {
@@ -257,14 +252,10 @@ impl AxialFriction {
             |axis: usize| (self.region[axis][0]..=self.region[axis][1]).contains(&at[axis]);
         let depth = -at.z;
         let below = self.force.partition_point(|[from, _]| *from <= depth);
-        match (below.checked_sub(1).map(|i| self.force[i]), self.force.get(below)) {
-            _ if !(inside(0) && inside(1)) => 0.0,
-            (None, _) => 0.0,
-            (Some([_, last]), None) => last,
-            (Some([from, low]), Some([to, high])) => {
-                low + (high - low) * (depth - from) / (to - from)
-            }
-        }
+        let above = below.checked_sub(1).filter(|_| inside(0) && inside(1));
+        let Some([from, low]) = above.map(|i| self.force[i]) else { return 0.0 };
+        let Some([to, high]) = self.force.get(below) else { return low };
+        low + (high - low) * (depth - from) / (to - from)
     }
 }
 
@@ -308,18 +299,15 @@ impl Scene {
 
     /// Returns the pairs of geoms that may touch, in the order of the contacts.
     pub fn geom_pairs(&self) -> Vec<GeomPair> {
-        let mut from = vec![0];
-        from.extend(self.bodies.iter().scan(0, |next, body| {
-            *next += body.geoms.len();
-            Some(*next)
-        }));
+        let numbered = |body: BodyId| {
+            let before: usize = self.bodies[..body.0].iter().map(|body| body.geoms.len()).sum();
+            (before..).zip(&self.bodies[body.0].geoms)
+        };
         let mut found = Vec::new();
         for (bodies, pair) in self.contacts.iter().enumerate() {
-            let (a, b) = (pair.first.0, pair.second.0);
-            for (i, first) in self.bodies[a].geoms.iter().enumerate() {
-                for (j, second) in self.bodies[b].geoms.iter().enumerate() {
-                    let friction = pair.friction.of_geoms([first.friction, second.friction]);
-                    let (first, second) = (from[a] + i, from[b] + j);
+            for (first, own) in numbered(pair.first) {
+                for (second, other) in numbered(pair.second) {
+                    let friction = pair.friction.of_geoms([own.friction, other.friction]);
                     found.push(GeomPair { bodies, first, second, friction });
                 }
             }
@@ -410,9 +398,7 @@ mod tests {
             let found = at(x_mm * 1e-3, -depth_mm * 1e-3);
             assert!((found - expected).abs() < 1e-9, "{x_mm} {depth_mm}: {found}");
         }
-        assert_eq!(
-            [friction.sign(parent, child), friction.sign(child, parent)],
-            [Some(1.0), Some(-1.0)]
-        );
+        let signs = [(parent, child), (child, parent)].map(|ends| sign((parent, child), ends));
+        assert_eq!(signs, [Some(1.0), Some(-1.0)]);
     }
 }

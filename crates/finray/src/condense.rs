@@ -8,14 +8,11 @@
 //! The order of all sums depends on the mesh alone.
 
 use super::frontal::Frontal;
-use super::halving::halve;
+use super::halving::{LEAF, halve};
 use super::mesh::{Mesh, MeshError};
 use crate::outline::Outline;
 use nalgebra::{DMatrix, DVector, Point2};
 use std::ops::Range;
-
-/// Largest number of elements that are assembled together.
-const LEAF: usize = 8;
 
 /// Elasticity of the triangles of a mesh.
 pub trait Element {
@@ -63,7 +60,7 @@ pub fn condense<E: Element>(
     roles: &[Role],
     remember: bool,
 ) -> Result<Condensed, MeshError> {
-    let (order, cuts) = halve(mesh, LEAF);
+    let (order, cuts) = halve(mesh);
     let mut work = Condensation {
         mesh,
         element,

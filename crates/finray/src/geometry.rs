@@ -38,9 +38,9 @@ impl Geometry {
         let lines = RibLines::new(finger, design);
         let check = Check { file: &finger.file };
         check_outline(check, &finger.outline)?;
-        check_ribs(check, finger, design, lines.pitch)?;
+        check_ribs(check, finger, design)?;
         if let Some(holes) = &finger.holes {
-            holes.check(check, &finger.outline, finger.line_width)?;
+            holes.check(check, finger)?;
         }
         let outer = without_repeats(&ring(&finger.outline, 0.0, finger.outline.length), 1e-9);
         let ribbed = finger.outline.length - finger.outline.solid;
@@ -139,13 +139,9 @@ fn check_outline(check: Check<'_>, outline: &Outline) -> Checked {
     below(check, "notch.roof_mm", roof, outline.roof_length(), "that is the length of the roof")
 }
 
-/// Checks that ribs at this pitch, m, can be printed and leave room between them.
-fn check_ribs(
-    check: Check<'_>,
-    finger: &PrintedFinger,
-    design: &InfillDesign,
-    pitch: f64,
-) -> Checked {
+/// Checks that the ribs can be printed and leave room between them.
+fn check_ribs(check: Check<'_>, finger: &PrintedFinger, design: &InfillDesign) -> Checked {
+    let pitch = RibLines::new(finger, design).pitch;
     let PrintedFinger { ribs, line_width, smallest_gap, skin, .. } = finger;
     let InfillDesign { density_percent, direction_deg, phase_mm } = *design;
     let (key, fits) = ("infill_density_percent", density_percent > 0.0 && density_percent < 100.0);

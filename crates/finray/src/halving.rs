@@ -3,14 +3,16 @@
 use super::mesh::Mesh;
 use nalgebra::Point2;
 
-/// Halves a mesh recursively into parts of at most `leaf` triangles. Returns an order of the triangles in which each
+/// Largest number of triangles of a part that is not halved.
+pub(super) const LEAF: usize = 8;
+
+/// Halves a mesh recursively into parts of at most [`LEAF`] triangles. Returns an order of the triangles in which each
 /// part is contiguous, and the number of triangles before each cut, in pre-order: the cut of the whole, the cuts of
 /// its first part, the cuts of its second part.
-pub(super) fn halve(mesh: &Mesh, leaf: usize) -> (Vec<u32>, Vec<usize>) {
+pub(super) fn halve(mesh: &Mesh) -> (Vec<u32>, Vec<usize>) {
     let centre = |t| mesh.corners(t).iter().fold(Point2::origin(), |sum, p| sum + p.coords / 3.0);
     let centres: Vec<_> = (0..mesh.triangles.len()).map(centre).collect();
     let mut halving = Halving {
-        leaf,
         corners: mesh.triangles.iter().map(|&[a, b, c, ..]| [a, b, c]).collect(),
         ranks: DIRECTIONS.map(|direction| ranks(&centres, direction)),
         centres,
@@ -36,7 +38,6 @@ fn ranks(centres: &[Point2<f64>], [x, y]: [f64; 2]) -> Vec<u32> {
 
 /// Recursive halving of the triangles, so that the parts share few nodes.
 struct Halving {
-    leaf: usize,
     corners: Vec<[u32; 3]>,
     centres: Vec<Point2<f64>>,
     /// Ranks of the triangles along each direction.
@@ -59,7 +60,7 @@ type Cut = (usize, usize);
 
 impl Halving {
     fn sort(&mut self, order: &mut [u32]) {
-        if order.len() <= self.leaf {
+        if order.len() <= LEAF {
             order.sort_unstable();
             return;
         }

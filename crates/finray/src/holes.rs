@@ -3,6 +3,7 @@
 
 use super::polygon::Ring;
 use crate::outline::Outline;
+use crate::printed::{PrintedFinger, length};
 use input::units::{MM, mm};
 use input::{Check, InputError};
 use nalgebra::Point2;
@@ -133,13 +134,9 @@ impl Holes {
         3 - self.axis as usize - self.row as usize
     }
 
-    /// Checks that the holes fit into an outline that is printed with lines of a width, m.
-    pub(super) fn check(
-        &self,
-        check: Check<'_>,
-        outline: &Outline,
-        line_width: f64,
-    ) -> Result<(), InputError> {
+    /// Checks that the holes fit into a finger.
+    pub(super) fn check(&self, check: Check<'_>, finger: &PrintedFinger) -> Result<(), InputError> {
+        let PrintedFinger { outline, line_width, .. } = finger;
         if self.row == self.axis {
             let [one, other] = self.axis.across().map(Direction::word);
             let problem = format!("is the axis of the holes; it must be \"{one}\" or \"{other}\"");
@@ -213,12 +210,9 @@ struct RawBlock {
 }
 
 impl RawHoles {
-    /// Checks each number by itself; `length` checks a length.
-    pub fn checked(
-        self,
-        check: Check<'_>,
-        length: impl Fn(&'static str, f64) -> Result<f64, InputError>,
-    ) -> Result<Holes, InputError> {
+    /// Checks each number by itself.
+    pub fn checked(self, check: Check<'_>) -> Result<Holes, InputError> {
+        let length = |key, value| length(check, key, value);
         let RawHoles { axis, row, count, .. } = self;
         let (fits, must) = ((1..=MOST).contains(&count), format!("be from 1 to {MOST}"));
         check.require("holes.count", f64::from(count), fits, &must)?;

@@ -23,8 +23,6 @@ pub(super) const NARROWEST_VOID: f64 = 0.05 * MM;
 pub struct RibLines {
     /// Unit vector across the ribs.
     pub across: Vector2<f64>,
-    /// Distance of the first rib from the origin of the ribs in the finger file, m.
-    pub phase: f64,
     /// Distance of the first centre line from the finger's origin, m.
     pub first: f64,
     /// Distance between centre lines, m.
@@ -39,7 +37,7 @@ impl RibLines {
         let phase = design.phase_mm.map_or(finger.ribs.phase, |mm| mm * MM);
         let first = across.dot(&finger.ribs.origin.coords) + phase;
         let pitch = finger.ribs.line_spacing / (design.density_percent * PERCENT);
-        RibLines { across, phase, first, pitch }
+        RibLines { across, first, pitch }
     }
 
     /// Returns the distance of a centre line from the origin, m.

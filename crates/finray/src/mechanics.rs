@@ -46,19 +46,18 @@ pub struct FingerStiffness {
 /// If the profile cannot be meshed or is not connected to its base, or its stiffness is implausible
 /// for a finger, for example because a length or the modulus is given in a wrong unit.
 pub fn compute(geometry: &Geometry) -> Result<FingerStiffness, FingerError> {
-    let [pad, pad_and_roof] = planar(geometry, SIZE)?;
-    Ok(FingerStiffness { pad, pad_and_roof, cross: cross(geometry, CROSS_SIZE)? })
+    let [pad, pad_and_roof] = planar(geometry)?;
+    Ok(FingerStiffness { pad, pad_and_roof, cross: cross(geometry)? })
 }
 
-/// Returns the stiffness in the plane with the part touching the pad only, and with it touching pad and
-/// roof; `size` is the side length of the triangles, m.
+/// Returns the stiffness in the plane with the part touching the pad only, and with it touching pad and roof.
 ///
 /// # Errors
 /// See [`compute`].
-pub fn planar(geometry: &Geometry, size: f64) -> Result<[PlanarStiffness; 2], FingerError> {
+pub fn planar(geometry: &Geometry) -> Result<[PlanarStiffness; 2], FingerError> {
     let fails = |problem| FingerError::mesh(geometry, problem);
     let element = PlaneStress(Slab::of(&geometry.finger));
-    let held = rigid_stiffness(geometry, &element, size, [RigidFace::Pad, RigidFace::PadAndRoof])
+    let held = rigid_stiffness(geometry, &element, SIZE, [RigidFace::Pad, RigidFace::PadAndRoof])
         .map_err(fails)?;
     let stiffness =
         |matrix| PlanarStiffness::new(matrix).ok_or_else(|| fails(MeshError::NotPositiveDefinite));
@@ -75,14 +74,15 @@ pub fn planar(geometry: &Geometry, size: f64) -> Result<[PlanarStiffness; 2], Fi
     Ok([pad, stiffness(held[1])?])
 }
 
-/// Returns the stiffness across the plane; `size` is the side length of the triangles, m.
+/// Returns the stiffness across the plane.
 ///
 /// # Errors
 /// If the profile cannot be meshed or is not connected to its base.
-pub fn cross(geometry: &Geometry, size: f64) -> Result<CrossStiffness, FingerError> {
+pub fn cross(geometry: &Geometry) -> Result<CrossStiffness, FingerError> {
     let fails = |problem| FingerError::mesh(geometry, problem);
     let element = MindlinPlate(Slab::of(&geometry.finger));
-    let [held] = rigid_stiffness(geometry, &element, size, [RigidFace::Pad]).map_err(fails)?;
+    let [held] =
+        rigid_stiffness(geometry, &element, CROSS_SIZE, [RigidFace::Pad]).map_err(fails)?;
     CrossStiffness::new(held).ok_or_else(|| fails(MeshError::NotPositiveDefinite))
 }
 
@@ -102,7 +102,7 @@ pub fn over_phases(
     let at = |share: f64| {
         let phase = finger.ribs.phase + share * pitch;
         let phase_mm = (share > 0.0).then_some(phase / MM);
-        planar(&Geometry::new(finger, &InfillDesign { phase_mm, ..design })?, SIZE)
+        planar(&Geometry::new(finger, &InfillDesign { phase_mm, ..design })?)
     };
     // Collected in the order of the phases, so that the first of several errors is returned.
     let found: Vec<_> = (0..PHASES).into_par_iter().map(|i| at(i as f64 / PHASES as f64)).collect();

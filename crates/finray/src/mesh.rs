@@ -85,9 +85,8 @@ impl Mesh {
             ConstrainedDelaunayTriangulation::<Site<f64>>::try_bulk_load_cdt(sites, edges, |_| {
                 crossing = true
             });
-        let Some(mut cdt) = cdt.ok().filter(|cdt| !crossing && cdt.num_vertices() == count) else {
-            return Err(MeshError::Crossing);
-        };
+        let whole = cdt.ok().filter(|cdt| !crossing && cdt.num_vertices() == count);
+        let mut cdt = whole.ok_or(MeshError::Crossing)?;
         let refined = cdt.refine(parameters.exclude_outer_faces(true));
         if !refined.refinement_complete {
             return Err(MeshError::TooFine);
@@ -118,13 +117,12 @@ impl Mesh {
                     mesh.nodes.len() as u32 - 1
                 })
             };
-            let corners = face.map(|(corner, _, place)| node(corner, place));
-            let sides = [0, 1, 2].map(|i| {
+            let [a, b, c] = face.map(|(corner, _, place)| node(corner, place));
+            let [ab, bc, ca] = [0, 1, 2].map(|i| {
                 let (next, after) = (face[i], face[(i + 1) % 3]);
                 node(next.1, nalgebra::center(&next.2, &after.2))
             });
-            let [a, b, c] = corners;
-            mesh.triangles.push([a, b, c, sides[0], sides[1], sides[2]]);
+            mesh.triangles.push([a, b, c, ab, bc, ca]);
         }
         mesh
     }

@@ -105,13 +105,11 @@ impl MeshedFinger {
         let mixed = stiffness.view((3, 0), (free, 3)).into_owned();
         let among = stiffness.view((3, 3), (free, free)).into_owned();
         let response = -among.cholesky().ok_or(MeshError::Disconnected)?.solve(&mixed);
-        let condensed = own + mixed.transpose() * &response;
+        let stiffness = own + mixed.transpose() * &response;
+        let stiffness = stiffness.fixed_view::<3, 3>(0, 0).into_owned();
         let displacements = displacements.columns(0, 3).into_owned()
             + displacements.columns(3, free).into_owned() * response;
-        Ok(RigidMotion {
-            stiffness: condensed.fixed_view::<3, 3>(0, 0).into_owned(),
-            displacements,
-        })
+        Ok(RigidMotion { stiffness, displacements })
     }
 }
 

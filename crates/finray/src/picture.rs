@@ -95,11 +95,8 @@ impl BentFinger {
     }
 }
 
-/// Returns the largest of 1, 2, 5, 10, ... that is not above a number; 0 unless it is finite and above 0.
+/// Returns the largest of 1, 2, 5, 10, ... that is not above a positive number.
 fn round_down(value: f64) -> f64 {
-    if !(value.is_finite() && value > 0.0) {
-        return 0.0;
-    }
     let decade = libm::pow(10.0, libm::log10(value).floor());
     [5.0, 2.0, 1.0].map(|step| step * decade).into_iter().find(|&n| n <= value).unwrap_or(decade)
 }

@@ -97,12 +97,10 @@ impl HalfPlane {
         let mut rings = Vec::new();
         for first in 0..chains.len() {
             let mut ring = Ring::new();
-            let mut at = Some(first);
-            while let Some(i) = at {
-                at = next[i].take();
-                if at.is_some() {
-                    ring.extend_from_slice(&chains[i]);
-                }
+            let mut at = first;
+            while let Some(to) = next[at].take() {
+                ring.extend_from_slice(&chains[at]);
+                at = to;
             }
             if ring.len() > 2 {
                 rings.push(ring);

@@ -159,7 +159,7 @@ impl PrintedFinger {
             },
             material: checked_material(check, material)?,
             tilt: angle(check, "mount.tilt_deg", mount.tilt_deg)?,
-            holes: raw.holes.map(|holes| holes.checked(check, length)).transpose()?,
+            holes: raw.holes.map(|holes| holes.checked(check)).transpose()?,
             line_width: length("print.line_width_mm", print.line_width_mm)?,
             smallest_gap: length("print.smallest_gap_mm", print.smallest_gap_mm)?,
             name: raw.name,
@@ -177,7 +177,8 @@ const MODULI_GPA: std::ops::RangeInclusive<f64> = 1e-4..=500.0;
 /// Largest angle, degrees; above it there is no notch.
 const STEEPEST_DEG: f64 = 60.0;
 
-fn length(check: Check<'_>, key: &str, value: f64) -> Result<f64, InputError> {
+/// Checks a length, mm; returns it in m.
+pub(super) fn length(check: Check<'_>, key: &str, value: f64) -> Result<f64, InputError> {
     let fits = check.positive(key, value)? <= LONGEST_MM;
     let must = format!("be at most {LONGEST_MM} (millimetres)");
     Ok(check.require(key, value, fits, &must)? * MM)

@@ -9,58 +9,37 @@ use nalgebra::{Cholesky, Const, Matrix6, SVector};
 /// Velocity (linear of the centre of mass, angular) or impulse, world axes.
 pub(super) type Vector6 = SVector<f64, 6>;
 
-/// Index of a block that is always zero.
-const NONE: usize = usize::MAX;
-
-/// Symmetric matrix of 6x6 blocks with a fixed pattern, as its lower half.
+/// Symmetric matrix of 6x6 blocks, as its lower half.
 #[derive(Clone)]
 pub(super) struct Blocks {
     /// Number of bodies.
     size: usize,
     /// Number of eliminated bodies, which come first.
     pub eliminated: usize,
-    /// Index in `blocks` of each block (row >= column).
-    index: Vec<usize>,
-    blocks: Vec<Matrix6<f64>>,
+    /// Blocks, row by row (row >= column); `None` if zero.
+    blocks: Vec<Option<Matrix6<f64>>>,
     factors: Vec<Cholesky<f64, Const<6>>>,
 }
 
 impl Blocks {
-    /// Creates a zero matrix with the blocks of the pairs and the fill-in of the elimination.
-    pub fn new(size: usize, eliminated: usize, pairs: &[(usize, usize)]) -> Self {
-        let mut present = vec![false; size * size];
-        for (a, b) in (0..size).map(|i| (i, i)).chain(pairs.iter().copied()) {
-            present[a.max(b) * size + a.min(b)] = true;
-        }
-        for k in 0..eliminated {
-            for i in k + 1..size {
-                for j in k + 1..=i {
-                    if present[i * size + k] && present[j * size + k] {
-                        present[i * size + j] = true;
-                    }
-                }
-            }
-        }
-        let mut places = 0..;
-        let mut place = |there: bool| if there { places.next() } else { None };
-        let index: Vec<_> = present.into_iter().map(|there| place(there).unwrap_or(NONE)).collect();
-        let blocks = vec![Matrix6::zeros(); places.start];
-        Blocks { size, eliminated, index, blocks, factors: Vec::with_capacity(eliminated) }
+    /// Creates a zero matrix.
+    pub fn new(size: usize, eliminated: usize) -> Self {
+        let factors = Vec::with_capacity(eliminated);
+        Blocks { size, eliminated, blocks: vec![None; size * size], factors }
     }
 
     /// Sets every block to zero.
     pub fn clear(&mut self) {
-        self.blocks.fill(Matrix6::zeros());
+        self.blocks.fill(None);
     }
 
     /// Adds to the block of a row and a column, `row >= column`.
     pub fn add(&mut self, row: usize, column: usize, block: &Matrix6<f64>) {
-        let at = self.index[row * self.size + column];
-        self.blocks[at] += block;
+        *self.blocks[row * self.size + column].get_or_insert_with(Matrix6::zeros) += block;
     }
 
     fn get(&self, row: usize, column: usize) -> Option<&Matrix6<f64>> {
-        self.blocks.get(self.index[row * self.size + column])
+        self.blocks[row * self.size + column].as_ref()
     }
 
     /// Eliminates the first bodies; returns `None` if the matrix is not positive definite (or not finite).
@@ -71,22 +50,16 @@ impl Blocks {
             let lower = factor.l();
             self.factors.push(factor);
             for i in k + 1..self.size {
-                let at = self.index[i * self.size + k];
-                if at == NONE {
-                    continue;
-                }
+                let Some(block) = self.get(i, k) else { continue };
                 // L_ik = A_ik L_kk^-T
-                let mut side = self.blocks[at].transpose();
+                let mut side = block.transpose();
                 lower.solve_lower_triangular_mut(&mut side);
-                self.blocks[at] = side.transpose();
+                let block = side.transpose();
+                self.blocks[i * self.size + k] = Some(block);
                 for j in k + 1..=i {
-                    let other = self.index[j * self.size + k];
-                    if other == NONE {
-                        continue;
-                    }
-                    let product = self.blocks[at] * self.blocks[other].transpose();
-                    let to = self.index[i * self.size + j];
-                    self.blocks[to] -= product;
+                    let Some(other) = self.get(j, k) else { continue };
+                    let product = block * other.transpose();
+                    *self.blocks[i * self.size + j].get_or_insert_with(Matrix6::zeros) -= product;
                 }
             }
         }

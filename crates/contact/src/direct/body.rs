@@ -4,24 +4,16 @@ use super::blocks::Vector6;
 use crate::scene::{Body, Inertia, Motion, Pose};
 use nalgebra::{Matrix3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
 
-/// Motion of a body in the solver.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Kind {
-    /// No velocity.
-    Fixed,
-    /// Velocity that reaches this pose at the end of the step.
-    Driven(Pose),
-    /// Velocity from the solver; the index is the place of the body in the system.
-    Dynamic(usize),
-}
-
 /// Body in motion.
 #[derive(Debug, Clone)]
 pub(super) struct MovingBody {
-    pub kind: Kind,
+    pub motion: Motion,
+    /// Place in the system if the solver determines the velocity.
+    pub place: Option<usize>,
     /// Body frame in the world.
     pub pose: Pose,
-    motion: Motion,
+    /// Pose at the end of the step if the body is driven.
+    pub target: Pose,
     /// Zero for a body that does not move freely and for a mechanism.
     inertia: Inertia,
     /// Centre of mass in the world, m; the body frame's origin if it has no mass.
@@ -37,18 +29,17 @@ pub(super) struct MovingBody {
 }
 
 impl MovingBody {
-    /// Creates a body at rest; `place` is its place in the system if it is dynamic.
-    pub fn new(body: &Body, place: usize) -> Self {
-        let (kind, inertia) = match body.motion {
-            Motion::Fixed => (Kind::Fixed, Inertia::default()),
-            Motion::Driven => (Kind::Driven(body.pose), Inertia::default()),
-            Motion::Free(inertia) | Motion::Carried(inertia) => (Kind::Dynamic(place), inertia),
-            Motion::Mechanism(_) => (Kind::Dynamic(place), Inertia::default()),
+    /// Creates a body at rest; `place` is its place in the system if the solver determines its velocity.
+    pub fn new(body: &Body, place: Option<usize>) -> Self {
+        let inertia = match body.motion {
+            Motion::Free(inertia) | Motion::Carried(inertia) => inertia,
+            Motion::Fixed | Motion::Driven | Motion::Mechanism(_) => Inertia::default(),
         };
         let mut made = MovingBody {
-            kind,
-            pose: body.pose,
             motion: body.motion,
+            place,
+            pose: body.pose,
+            target: body.pose,
             inertia,
             centre: Point3::origin(),
             velocity: Vector6::zeros(),
@@ -57,11 +48,6 @@ impl MovingBody {
         };
         made.refresh();
         made
-    }
-
-    /// Returns the place in the system of a dynamic body.
-    pub fn place(&self) -> Option<usize> {
-        if let Kind::Dynamic(place) = self.kind { Some(place) } else { None }
     }
 
     /// Moves a fixed body to a pose.
@@ -97,19 +83,19 @@ impl MovingBody {
 
     /// Sets the velocity of a driven body so that it reaches its target.
     pub fn steer(&mut self, step: f64) {
-        let Kind::Driven(target) = self.kind else { return };
-        let moved = target.translation.vector - self.pose.translation.vector;
-        let turned = (target.rotation * self.pose.rotation.inverse()).scaled_axis();
+        let Motion::Driven = self.motion else { return };
+        let moved = self.target.translation.vector - self.pose.translation.vector;
+        let turned = (self.target.rotation * self.pose.rotation.inverse()).scaled_axis();
         self.velocity.fixed_rows_mut::<3>(0).copy_from(&(moved / step));
         self.velocity.fixed_rows_mut::<3>(3).copy_from(&(turned / step));
     }
 
     /// Moves the body by its velocity; the rotation is the exponential of the angular velocity.
     pub fn advance(&mut self, step: f64) {
-        match self.kind {
-            Kind::Fixed => return,
-            Kind::Driven(target) => self.pose = target,
-            Kind::Dynamic(_) => {
+        match self.motion {
+            Motion::Fixed => return,
+            Motion::Driven => self.pose = self.target,
+            Motion::Free(_) | Motion::Carried(_) | Motion::Mechanism(_) => {
                 let angular = self.velocity.fixed_rows::<3>(3).into_owned();
                 self.momentum = self.mass() * self.velocity;
                 let centre = self.centre + self.velocity.fixed_rows::<3>(0) * step;

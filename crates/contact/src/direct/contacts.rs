@@ -8,7 +8,7 @@ mod patches;
 mod tests;
 
 use super::body::MovingBody;
-use crate::scene::{Friction, Geom, GeomPair, Pose, Scene, Shape};
+use crate::scene::{ContactPair, Friction, Geom, GeomPair, Pose, Scene, Shape};
 use crate::shapes;
 use nalgebra::{Matrix3, Point3, Vector3};
 use near::{NearList, tree};
@@ -135,10 +135,9 @@ impl Detector {
             solids[i].neighbours = near.into_iter().map(neighbour).collect();
         }
         let mut from = 0;
-        let list = |(number, pair): (usize, &crate::scene::ContactPair)| {
-            let [(first, tree), (second, _)] =
-                [pair.first, pair.second].map(|body| bodies[body.0].clone());
-            let list = NearList::new(number, pair.friction, from, (first, tree), second, &solids);
+        let list = |pair: (usize, &ContactPair)| {
+            let ends = [pair.1.first, pair.1.second].map(|body| bodies[body.0].clone());
+            let list = NearList::new(pair, from, ends, &solids);
             from += list.pairs();
             list
         };
@@ -151,7 +150,8 @@ impl Detector {
     pub fn detect(&mut self, bodies: &[MovingBody], step_s: f64, found: &mut Vec<Touch>) {
         found.clear();
         for list in &mut self.lists {
-            let [first, second] = list.bodies.map(|body| bodies[body].pose);
+            let [first, second] =
+                [list.bodies.first, list.bodies.second].map(|body| bodies[body.0].pose);
             let (relative, many) = (first.inv_mul(&second), list.pairs() > MANY_PAIRS);
             list.renew(&relative, &self.solids, self.prediction);
             let prediction = match many {

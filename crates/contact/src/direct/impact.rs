@@ -5,7 +5,7 @@
 //! edges windows do not depend on that; on round rims the plug then turns instead of sliding, and the
 //! ends of windows move by up to 1.2 mm (`docs/notes/simulation.md`, "Round edges").
 
-use super::body::{Kind, MovingBody};
+use super::body::MovingBody;
 use super::world::DirectWorld;
 use crate::ContactForce;
 use crate::scene::Pose;
@@ -49,7 +49,9 @@ impl DirectWorld {
     /// Takes a step in parts; the forces are the means over them.
     pub(super) fn divided_step(&mut self) -> Option<()> {
         let whole = self.settings.step_s;
-        let paths: Vec<Option<[Pose; 2]>> = self.bodies.iter().map(start_and_target).collect();
+        // Only driven bodies follow their paths.
+        let path = |body: &MovingBody| [body.pose, body.target];
+        let paths: Vec<[Pose; 2]> = self.bodies.iter().map(path).collect();
         let mut forces = vec![ContactForce::default(); self.forces.len()];
         self.settings.step_s = whole / PARTS as f64;
         let done = (1..=PARTS).try_for_each(|part| {
@@ -57,12 +59,9 @@ impl DirectWorld {
                 let step = self.settings.step_s;
                 self.detector.detect(&self.bodies, step, &mut self.touches);
             }
-            for (body, path) in self.bodies.iter_mut().zip(&paths) {
-                if let Some([from, to]) = path {
-                    let share = part as f64 / PARTS as f64;
-                    let pose = from.try_lerp_slerp(to, share, f64::EPSILON).unwrap_or(*to);
-                    body.kind = Kind::Driven(pose);
-                }
+            let share = part as f64 / PARTS as f64;
+            for (body, [from, to]) in self.bodies.iter_mut().zip(&paths) {
+                body.target = from.try_lerp_slerp(to, share, f64::EPSILON).unwrap_or(*to);
             }
             self.try_step()?;
             for (sum, force) in forces.iter_mut().zip(&self.forces) {
@@ -75,9 +74,4 @@ impl DirectWorld {
         self.forces = forces;
         done
     }
-}
-
-/// Returns the pose of a driven body and its target.
-fn start_and_target(body: &MovingBody) -> Option<[Pose; 2]> {
-    if let Kind::Driven(to) = body.kind { Some([body.pose, to]) } else { None }
 }

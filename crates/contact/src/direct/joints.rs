@@ -9,8 +9,8 @@
 //! again until the servos found at their limits are those assumed for the solution.
 
 use super::blocks::{Blocks, Vector6};
-use super::body::{Kind, MovingBody};
-use crate::scene::{AxialFriction, Joint, Pose, Spring, Springs};
+use super::body::MovingBody;
+use crate::scene::{AxialFriction, Joint, Motion, Pose, Spring, Springs};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 
 /// Axis of a joint along which [`AxialFriction`] acts.
@@ -168,11 +168,11 @@ impl SpringJoint {
         // The impulse due to the known velocity of a driven end belongs on the right-hand side.
         let [parent, child] = [self.joint.parent, self.joint.child].map(|end| &bodies[end.0]);
         for (end, jacobian) in [(parent, &self.by_parent), (child, &self.by_child)] {
-            if let Kind::Driven(_) = end.kind {
+            if end.motion == Motion::Driven {
                 push -= damping.impulse(&(jacobian * end.velocity));
             }
         }
-        let (parent, child) = (parent.place(), child.place());
+        let (parent, child) = (parent.place, child.place);
         for (place, jacobian) in [(parent, &self.by_parent), (child, &self.by_child)] {
             let Some(place) = place else { continue };
             system.add(place, place, &jacobian.tr_mul(&damping.times(jacobian)));

@@ -36,14 +36,14 @@ pub(super) fn lever(arm: &Vector3<f64>, patch: &Vector3<f64>) -> Matrix4x3<f64> 
     lever
 }
 
-/// Returns the lever of a contact point whose friction acts at an offset `aside`, m: its linear velocity then
-/// includes that of the offset point due to rotation about the normal.
+/// Returns the lever of a contact point without patch radius whose friction acts at an offset `aside`, m: its linear
+/// velocity then includes that of the offset point due to rotation about the normal.
 pub(super) fn offset_lever(
-    lever: &Matrix4x3<f64>,
+    arm: &Vector3<f64>,
     aside: &Vector3<f64>,
     normal: &Vector3<f64>,
 ) -> Matrix4x3<f64> {
-    let mut moved = *lever;
+    let mut moved = lever(arm, &Vector3::zeros());
     let mut linear = moved.fixed_view_mut::<3, 3>(0, 0);
     linear += normal.cross(aside) * normal.transpose();
     moved
@@ -118,7 +118,7 @@ pub(super) struct Solver {
     /// Matrix of the reduced system, row by row.
     pub system: Vec<Six>,
     /// Right-hand side.
-    pub rhs: Vec<Six>,
+    pub rhs: Vec<Vector6>,
     /// Solution; on entry, the initial guess.
     pub velocities: Vec<Six>,
     hessian: Vec<Six>,
@@ -133,7 +133,7 @@ impl Solver {
         let square = vec![[0.0; 6]; 6 * bodies * bodies];
         Solver {
             system: square.clone(),
-            rhs: zeros.clone(),
+            rhs: vec![Vector6::zeros(); bodies],
             velocities: zeros.clone(),
             hessian: square,
             gradient: zeros.clone(),
@@ -186,15 +186,13 @@ impl Solver {
     fn update_velocities(&self, contacts: &mut [Contact]) {
         for contact in contacts {
             contact.velocity = contact.relative(&self.velocities) + contact.drift;
-            contact.change = Vector4::zeros();
         }
     }
 
     /// Computes the gradient; returns its largest component, N s.
     fn update_gradient(&mut self, contacts: &mut [Contact]) -> f64 {
         dense::multiply(&self.system, &self.velocities, &mut self.gradient);
-        let rhs = self.rhs.as_flattened();
-        for (g, r) in self.gradient.as_flattened_mut().iter_mut().zip(rhs) {
+        for (g, r) in self.gradient.as_flattened_mut().iter_mut().zip(self.rhs.iter().flatten()) {
             *g -= r;
         }
         for contact in contacts {

@@ -2,17 +2,18 @@
 
 use super::Direct;
 use super::blocks::{Blocks, Vector6};
-use super::body::{Kind, MovingBody};
+use super::body::MovingBody;
 use super::cone::Cone;
 use super::contacts::{Detector, Touch};
 use super::joints::SpringJoint;
 use super::patch::Patch;
 use super::solver::{Contact, Solver, lever, offset_lever, point_velocity};
 use crate::scene::{
-    AxialFriction, BodyId, ContactPair, Joint, JointId, Motion, Pose, Scene, Spring, Torsion,
+    AxialFriction, BodyId, ContactPair, JointId, Motion, Pose, Scene, Spring, Torsion,
 };
 use crate::{ContactForce, ContactPoint, Diverged, World};
 use nalgebra::{Vector3, Vector4};
+use std::collections::BTreeMap;
 
 /// Largest number of solutions of a step, to find the servos that are at their limits.
 const TRIES: usize = 5;
@@ -41,10 +42,8 @@ pub(super) struct DirectWorld {
     /// Number of coming steps that will be divided.
     pub divided: usize,
     contacts: Vec<Contact>,
-    /// Whether contacts have patches.
-    patched: bool,
-    /// Contact patches, each with its number ([`Touch::geoms`]).
-    patches: Vec<(usize, Patch)>,
+    /// Contact patches by their numbers ([`Touch::geoms`]).
+    patches: BTreeMap<usize, Patch>,
 }
 
 impl DirectWorld {
@@ -52,10 +51,7 @@ impl DirectWorld {
         let (places, eliminated, size) = places(scene);
         let moving = scene.bodies.iter().zip(places).map(|(body, at)| MovingBody::new(body, at));
         let bodies: Vec<MovingBody> = moving.collect();
-        let place = |body: BodyId| bodies[body.0].place();
-        let ends = |joint: &Joint| Some((place(joint.parent)?, place(joint.child)?));
         let detector = Detector::new(scene, settings.prediction);
-        let coupled: Vec<_> = scene.joints.iter().filter_map(ends).collect();
         let friction = scene.axial_friction.as_ref().map(SpringJoint::free);
         DirectWorld {
             settings: *settings,
@@ -64,10 +60,9 @@ impl DirectWorld {
             axial_friction: scene.axial_friction.clone(),
             pairs: scene.contacts.clone(),
             forces: vec![ContactForce::default(); scene.contacts.len()],
-            patched: scene.first_patch().is_some(),
-            patches: Vec::new(),
+            patches: BTreeMap::new(),
             detector,
-            system: Blocks::new(size, eliminated, &coupled),
+            system: Blocks::new(size, eliminated),
             values: vec![Vector6::zeros(); size],
             pushes: vec![Vector6::zeros(); scene.bodies.len()],
             solver: Solver::new(size - eliminated),
@@ -91,21 +86,20 @@ impl DirectWorld {
         for touch in &self.touches {
             let pair = &self.pairs[touch.pair];
             let ends = [&self.bodies[pair.first.0], &self.bodies[pair.second.0]];
-            let place = ends.map(|body| body.place().map(|place| place - self.system.eliminated));
+            let place = ends.map(|body| body.place.map(|place| place - self.system.eliminated));
             let arm = ends.map(|body| touch.point - body.centre);
             let cone = Cone { mu: touch.friction.coefficient, normal, tangent };
             let lever = match touch.friction.torsion {
                 Torsion::Radius(radius) => arm.map(|arm| lever(&arm, &(touch.normal * radius))),
                 Torsion::Patch => {
                     let offset = |p: &Patch| p.offset(&ends[0].pose, &touch.point, &touch.normal);
-                    let offset = self.patch(touch.geoms).map_or(Vector3::zeros(), offset);
-                    let at_point = arm.map(|arm| lever(&arm, &Vector3::zeros()));
-                    at_point.map(|lever| offset_lever(&lever, &offset, &touch.normal))
+                    let offset = self.patches.get(&touch.geoms).map_or(Vector3::zeros(), offset);
+                    arm.map(|arm| offset_lever(&arm, &offset, &touch.normal))
                 }
             };
             let mut drift = Vector4::zeros();
             for (body, lever, sign) in [(ends[0], &lever[0], -1.0), (ends[1], &lever[1], 1.0)] {
-                if let Kind::Driven(_) = body.kind {
+                if body.motion == Motion::Driven {
                     drift += point_velocity(lever, body.velocity.as_ref()) * sign;
                 }
             }
@@ -117,24 +111,17 @@ impl DirectWorld {
         }
     }
 
-    fn patch(&self, geoms: usize) -> Option<&Patch> {
-        self.patches.iter().find(|(at, _)| *at == geoms).map(|(_, patch)| patch)
-    }
-
     /// Adds the missing patches with the loads of their contacts, or with equal loads before the contacts are set.
     fn add_patches(&mut self) {
-        if !self.patched {
-            return;
-        }
         let mut from = 0;
         for touches in self.touches.chunk_by(|a, b| a.geoms == b.geoms) {
             let Touch { geoms, pair, normal, friction, .. } = touches[0];
             let load = |i: usize| self.contacts.get(i).map_or(0.0, |c| c.impulse.dot(&c.normal));
-            if friction.torsion == Torsion::Patch && self.patch(geoms).is_none() {
+            if friction.torsion == Torsion::Patch && !self.patches.contains_key(&geoms) {
                 let frame = self.bodies[self.pairs[pair].first.0].pose.inverse();
                 let loaded = |(i, touch): (usize, &Touch)| (frame * touch.point, load(from + i));
                 let points: Vec<_> = touches.iter().enumerate().map(loaded).collect();
-                self.patches.push((geoms, Patch::new(&points, &(frame * normal))));
+                self.patches.insert(geoms, Patch::new(&points, &(frame * normal)));
             }
             from += touches.len();
         }
@@ -145,7 +132,7 @@ impl DirectWorld {
         let step = self.settings.step_s;
         self.system.clear();
         for (body, push) in self.bodies.iter().zip(&self.pushes) {
-            if let Some(place) = body.place() {
+            if let Some(place) = body.place {
                 self.system.add(place, place, &body.mass());
                 self.values[place] = body.momentum_after(&self.gravity, step) + push * step;
             }
@@ -157,9 +144,7 @@ impl DirectWorld {
         self.system.reduce(&mut self.values);
         self.system.remainder(&mut self.solver.system);
         let free = &mut self.values[self.system.eliminated..];
-        for (rhs, value) in self.solver.rhs.iter_mut().zip(&*free) {
-            *rhs = (*value).into();
-        }
+        self.solver.rhs.copy_from_slice(free);
         self.solver.solve(&mut self.contacts, step)?;
         for (value, velocity) in free.iter_mut().zip(&self.solver.velocities) {
             *value = (*velocity).into();
@@ -179,7 +164,7 @@ impl DirectWorld {
         let (Some(along), Some(joint)) = (&self.axial_friction, self.joints.last()) else { return };
         let net = joint.friction(&self.bodies);
         for (pair, force) in self.pairs.iter().zip(&mut self.forces) {
-            force.net += net * along.sign(pair.first, pair.second).unwrap_or(0.0);
+            force.net += net * pair.sign(along.parent, along.child).unwrap_or(0.0);
         }
     }
 
@@ -197,7 +182,7 @@ impl DirectWorld {
         let step = self.settings.step_s;
         for body in &mut self.bodies {
             body.steer(step);
-            let free = body.place().and_then(|place| place.checked_sub(self.system.eliminated));
+            let free = body.place.and_then(|place| place.checked_sub(self.system.eliminated));
             if let Some(free) = free {
                 self.solver.velocities[free] = body.velocity.into();
             }
@@ -210,7 +195,7 @@ impl DirectWorld {
         for _ in 0..TRIES {
             self.solve()?;
             for body in &mut self.bodies {
-                if let Some(place) = body.place() {
+                if let Some(place) = body.place {
                     body.velocity = self.values[place];
                 }
             }
@@ -230,9 +215,9 @@ impl DirectWorld {
     }
 }
 
-/// Returns the place of each dynamic body in the system, the number of bodies that are eliminated, and the number of
+/// Returns the place of each dynamic body in the system (`None` for other bodies), the number of bodies that are eliminated, and the number of
 /// dynamic bodies. Bodies without contacts come first, in the order of their number of joints: little fill-in.
-fn places(scene: &Scene) -> (Vec<usize>, usize, usize) {
+fn places(scene: &Scene) -> (Vec<Option<usize>>, usize, usize) {
     let dynamic = |i: &usize| !matches!(scene.bodies[*i].motion, Motion::Fixed | Motion::Driven);
     let touching = |i: &usize| scene.contacts.iter().any(|pair| pair.contains(BodyId(*i)));
     let joints =
@@ -240,9 +225,9 @@ fn places(scene: &Scene) -> (Vec<usize>, usize, usize) {
     let mut order: Vec<usize> = (0..scene.bodies.len()).filter(dynamic).collect();
     order.sort_by_key(|i| (touching(i), joints(i)));
     let eliminated = order.iter().filter(|i| !touching(i)).count();
-    let mut places = vec![0; scene.bodies.len()];
+    let mut places = vec![None; scene.bodies.len()];
     for (place, &body) in order.iter().enumerate() {
-        places[body] = place;
+        places[body] = Some(place);
     }
     (places, eliminated, order.len())
 }
@@ -267,9 +252,7 @@ impl World for DirectWorld {
     }
 
     fn drive(&mut self, body: BodyId, pose: Pose) {
-        if let Kind::Driven(target) = &mut self.bodies[body.0].kind {
-            *target = pose;
-        }
+        self.bodies[body.0].target = pose;
     }
 
     fn place(&mut self, body: BodyId, pose: Pose) {

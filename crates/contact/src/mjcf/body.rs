@@ -175,10 +175,8 @@ fn mesh_points(shape: &Shape) -> Option<Vec<Point3<f64>>> {
 
 /// Returns the contact margin of a shape, m: the radius if its mesh is only the core, otherwise 0.
 pub(super) fn margin(shape: &Shape) -> f64 {
-    match shape {
-        Shape::RoundBox { radius, .. } if mesh_points(shape).is_some() => *radius,
-        _ => 0.0,
-    }
+    let Shape::RoundBox { radius, .. } = shape else { return 0.0 };
+    if mesh_points(shape).is_some() { *radius } else { 0.0 }
 }
 
 /// Returns the `asset` element with the meshes of hulls and cores.

@@ -104,7 +104,7 @@ fn on_free_body(
     let [above, below] = [joint.parent, joint.child].map(|body| scene.bodies[body.0].pose);
     let at = below * child.centre;
     let frame = above * joint.in_parent;
-    // Columns: linear velocity at the child's centre of mass, and angular, of each free axis.
+    // Columns: linear velocity at the child's centre of mass, and angular, of the parent, then of each free axis.
     let free = (0..6).filter(|&i| axes[i].is_some());
     let column = |i: usize| {
         let axis = frame.rotation * Vector3::ith(i % 3, 1.0);
@@ -113,12 +113,9 @@ fn on_free_body(
             if i < 3 { [axis, Vector3::zeros()] } else { [axis.cross(&arm), axis] };
         Vector6::new(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
     };
-    let columns: Vec<Vector6<f64>> = free.map(column).collect();
-    let n = 6 + columns.len();
-    let rates = DMatrix::from_fn(6, n, |row, i| match i {
-        0..6 => f64::from(u8::from(row == i)),
-        _ => columns[i - 6][row],
-    });
+    let moved = (0..6).map(|i| Vector6::ith(i, 1.0));
+    let columns: Vec<Vector6<f64>> = moved.chain(free.map(column)).collect();
+    let rates = DMatrix::from_fn(6, columns.len(), |row, i| columns[i][row]);
     let mut mass = rates.transpose() * mass_matrix(&below, child, &at) * &rates;
     let own = mass_matrix(&above, parent, &at);
     mass.view_mut((0, 0), (6, 6)).zip_apply(&own, |sum, more| *sum += more);

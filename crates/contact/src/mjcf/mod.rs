@@ -113,10 +113,7 @@ pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<Strin
     let g = scene.gravity;
     // A diverged state must remain visible and not be reset.
     let flags = Element::new("flag").with("autoreset", "disable");
-    let flags = match settings.multiccd {
-        true => flags,
-        false => flags.with("multiccd", "disable"),
-    };
+    let flags = if settings.multiccd { flags } else { flags.with("multiccd", "disable") };
     let option = Element::new("option")
         .with("timestep", settings.step_s)
         .numbers("gravity", [g.x, g.y, g.z])
@@ -141,10 +138,8 @@ pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<Strin
         contact::pairs(scene, settings),
         actuators(scene),
     ]);
-    let model = match &scene.axial_friction {
-        Some(along) => model.with_children(tendon(along, settings.step_s)),
-        None => model,
-    };
+    let tendon = |along| tendon(along, settings.step_s);
+    let model = model.with_children(scene.axial_friction.iter().flat_map(tendon));
     let units = "<!-- Lengths in m, masses in kg, forces in N, angles in rad. -->\n";
     Ok(units.to_owned() + &model.text(0))
 }

@@ -131,7 +131,7 @@ impl MujocoWorld {
         }
         let net = axis * net.dot(&axis);
         for (pair, force) in self.pairs.iter().zip(&mut self.forces) {
-            force.net += net * along.sign(pair.first, pair.second).unwrap_or(0.0);
+            force.net += net * pair.sign(along.parent, along.child).unwrap_or(0.0);
         }
     }
 

@@ -3,7 +3,7 @@
 use super::Rapier;
 use crate::direct::Direct;
 use crate::scene::{
-    AxialFriction, Body, BodyId, Joint, JointId, Motion, Pose, Scene, Spring, Springs,
+    AxialFriction, Body, BodyId, Joint, JointId, Motion, Pose, Scene, Spring, Springs, sign,
 };
 use crate::{ContactForce, Diverged, World, shapes};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -46,11 +46,11 @@ impl RapierWorld {
         world.integration_parameters = parameters(settings);
         let insert = |(body, group)| insert_body(&mut world, body, group);
         let bodies: Vec<_> = scene.bodies.iter().zip(groups(scene)).map(insert).collect();
-        let mut insert = |joint: &Joint| {
-            let (parent, child) = (bodies[joint.parent.0], bodies[joint.child.0]);
-            world.impulse_joints.insert(parent, child, generic_joint(joint), true)
+        let mut insert = |parent: BodyId, child: BodyId, joint: rp::GenericJoint| {
+            world.impulse_joints.insert(bodies[parent.0], bodies[child.0], joint, true)
         };
-        let joints = scene.joints.iter().map(&mut insert).collect();
+        let joint = |joint: &Joint| insert(joint.parent, joint.child, generic_joint(joint));
+        let joints = scene.joints.iter().map(joint).collect();
         let frictions = scene.geom_pairs().into_iter().flat_map(|pair| {
             let coefficient = pair.friction.coefficient;
             [[pair.first, pair.second], [pair.second, pair.first]].map(|ends| (ends, coefficient))
@@ -58,8 +58,7 @@ impl RapierWorld {
         let frictions = Arc::new(Frictions(frictions.collect()));
         let axial_friction = scene.axial_friction.clone().map(|along| {
             let free = rp::GenericJoint::new(rp::JointAxesMask::empty());
-            let (parent, child) = (bodies[along.parent.0], bodies[along.child.0]);
-            let joint = world.impulse_joints.insert(parent, child, free, true);
+            let joint = insert(along.parent, along.child, free);
             (along, joint)
         });
         RapierWorld { world, bodies, joints, frictions, axial_friction }
@@ -78,7 +77,7 @@ impl RapierWorld {
     /// Returns the friction along an axis over the last substep on the second of two bodies, N.
     fn axial_friction(&self, first: BodyId, second: BodyId) -> Option<Vector3<f64>> {
         let (along, joint) = self.axial_friction.as_ref()?;
-        let sign = along.sign(first, second)?;
+        let sign = sign((along.parent, along.child), (first, second))?;
         let motor = &self.world.impulse_joints.get(*joint)?.data.motors[2];
         let parameters = &self.world.integration_parameters;
         let substep = parameters.dt / parameters.num_solver_iterations as f64;
@@ -132,11 +131,28 @@ impl World for RapierWorld {
 
     fn contact(&self, first: BodyId, second: BodyId) -> ContactForce {
         let ends = (self.bodies[first.0], self.bodies[second.0]);
+        let (world, parameters) = (&self.world, &self.world.integration_parameters);
         let mut sum = ContactForce::default();
-        for &collider in self.world.bodies[ends.1].colliders() {
-            for pair in self.world.narrow_phase.contact_pairs_with(collider) {
-                add_pair(&mut sum, pair, ends, &self.world.integration_parameters);
-            }
+        let colliders = world.bodies[ends.1].colliders().iter();
+        let pairs = colliders.flat_map(|&collider| world.narrow_phase.contact_pairs_with(collider));
+        for manifold in pairs.flat_map(|pair| pair.solver_manifolds()) {
+            // The manifold's normal points from its first body to its second.
+            let bodies = manifold.data.rigid_body1.zip(manifold.data.rigid_body2);
+            let Some(sign) = bodies.and_then(|bodies| sign(ends, bodies)) else { continue };
+            // A point that is not active keeps the impulse of the last step in which it was.
+            let active = || {
+                let solved = manifold.data.solver_contacts.iter();
+                solved.map(|contact| &manifold.points[contact.contact_indices()[0] as usize].data)
+            };
+            let pressed = active().map(|point| point.impulse).sum::<f64>() / parameters.dt / LENGTH;
+            sum.net += Vector3::from(manifold.data.normal) * (sign * pressed);
+            sum.normal_sum += pressed;
+            // `Simplified` friction is one force for the whole manifold, repeated at each active point:
+            // the impulse of the last substep alone, in the world's axes, on the first body.
+            let Some(point) = active().next() else { continue };
+            let rubbed = Vector3::from(point.warmstart_tangent_world);
+            let substep = parameters.dt / parameters.num_solver_iterations as f64;
+            sum.net -= rubbed * (sign / substep / LENGTH);
         }
         sum.net += self.axial_friction(first, second).unwrap_or_default();
         sum
@@ -158,37 +174,6 @@ impl World for RapierWorld {
         let (bodies, joints) = (self.bodies.clone(), self.joints.clone());
         let (frictions, axial_friction) = (self.frictions.clone(), self.axial_friction.clone());
         Box::new(RapierWorld { world, bodies, joints, frictions, axial_friction })
-    }
-}
-
-/// Adds the forces of one pair of colliders if it is between the two bodies.
-fn add_pair(
-    sum: &mut ContactForce,
-    pair: &rp::ContactPair,
-    (first, second): (rp::RigidBodyHandle, rp::RigidBodyHandle),
-    parameters: &rp::IntegrationParameters,
-) {
-    for manifold in pair.solver_manifolds() {
-        let sign = match (manifold.data.rigid_body1, manifold.data.rigid_body2) {
-            // The manifold's normal points from its first body to its second.
-            (Some(a), Some(b)) if (a, b) == (first, second) => 1.0,
-            (Some(a), Some(b)) if (a, b) == (second, first) => -1.0,
-            _ => continue,
-        };
-        // A point that is not active keeps the impulse of the last step in which it was.
-        let active = || {
-            let solved = manifold.data.solver_contacts.iter();
-            solved.map(|contact| &manifold.points[contact.contact_indices()[0] as usize].data)
-        };
-        let pressed = active().map(|point| point.impulse).sum::<f64>() / parameters.dt / LENGTH;
-        sum.net += Vector3::from(manifold.data.normal) * (sign * pressed);
-        sum.normal_sum += pressed;
-        // `Simplified` friction is one force for the whole manifold, repeated at each active point:
-        // the impulse of the last substep alone, in the world's axes, on the first body.
-        let Some(point) = active().next() else { continue };
-        let rubbed = Vector3::from(point.warmstart_tangent_world);
-        let substep = parameters.dt / parameters.num_solver_iterations as f64;
-        sum.net -= rubbed * (sign / substep / LENGTH);
     }
 }
 

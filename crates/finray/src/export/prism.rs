@@ -48,10 +48,8 @@ impl Prism {
     /// # Errors
     /// If the surface is not closed, or its volume differs from area times depth.
     pub fn finger(geometry: &Geometry) -> Result<Self, PrismError> {
-        let mut rings = rings(geometry);
-        let voids = rings.split_off(1);
-        let outer = rings.pop().unwrap_or_default();
-        Prism::new(&outer, &voids, geometry.finger.outline.depth / MM)?.with_block(geometry)
+        let rings = rings(geometry);
+        Prism::new(&rings[0], &rings[1..], geometry.finger.outline.depth / MM)?.with_block(geometry)
     }
 
     /// Returns the checked surface of the finger without openings, for slicers that fill it with their own infill.
@@ -59,9 +57,9 @@ impl Prism {
     /// # Errors
     /// See [`Prism::finger`].
     pub fn outline(geometry: &Geometry) -> Result<Self, PrismError> {
-        let mut rings = rings(geometry);
-        let holes = rings.split_off(1 + geometry.voids.len());
-        Prism::new(&rings[0], &holes, geometry.finger.outline.depth / MM)?.with_block(geometry)
+        let rings = rings(geometry);
+        let holes = &rings[1 + geometry.voids.len()..];
+        Prism::new(&rings[0], holes, geometry.finger.outline.depth / MM)?.with_block(geometry)
     }
 
     /// Returns the surface of the solid base, where a slicer's infill has to be full.
@@ -125,9 +123,8 @@ impl Prism {
         let edges: BTreeSet<[u32; 2]> = below.iter().flat_map(sides).collect();
         let rim = edges.iter().filter(|[a, b]| !edges.contains(&[*b, *a]));
         triangles.extend(rim.flat_map(|&[a, b]| [[a, b, b + 1], [a, b + 1, a + 1]]));
-        let prism = Prism { corners, triangles };
+        let prism = Prism { corners, triangles }.closed()?;
         let area = polygon::area(outer) + holes.iter().map(|hole| polygon::area(hole)).sum::<f64>();
-        let prism = prism.closed()?;
         let (found, expected) = (prism.volume(), area * depth);
         if (found - expected).abs() > VOLUME_TOLERANCE * expected {
             let problem =

@@ -59,10 +59,8 @@ pub fn svg(geometry: &Geometry, data: &SheetData) -> String {
     let mut drawing = Drawing::default();
     drawing.white_background();
     drawing.text(Point2::new(15.0, 17.0), &title(geometry), Font::new(7.0));
-    let about = format!(
-        "{}. Both fingers of a gripper are this part: print two.",
-        geometry.finger.description
-    );
+    let about = &geometry.finger.description;
+    let about = format!("{about}. Both fingers of a gripper are this part: print two.");
     drawing.text(Point2::new(15.0, 24.0), &about, Font::new(3.6));
     drawing.text(Point2::new(282.0, 24.0), data.origin, Font::new(3.6).end());
     let lengths = format!("lengths in mm, drawn {drawn}");

@@ -107,7 +107,7 @@ fn the_plate_is_as_stiff_as_the_solid_and_turns_like_a_cantilever() {
         let solid = Solid(Slab::of(&geometry.finger));
         let [solid] = rigid_stiffness(&geometry, &solid, CROSS_SIZE, [RigidFace::Pad]).unwrap();
         let solid = CrossStiffness::new(solid).unwrap();
-        let plate = cross(&geometry, CROSS_SIZE).unwrap();
+        let plate = cross(&geometry).unwrap();
         for (plate, solid) in [
             (plate.in_depth, solid.in_depth),
             (plate.about_y, solid.about_y),

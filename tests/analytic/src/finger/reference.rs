@@ -5,7 +5,7 @@ use super::finray9;
 use crate::{CheckRow, Tolerance};
 use finray::geometry::Geometry;
 use finray::infill::InfillDesign;
-use finray::mechanics::{SIZE, planar};
+use finray::mechanics::planar;
 use finray::stiffness::PlanarStiffness;
 use input::units::{MM, N_PER_MM};
 
@@ -49,7 +49,7 @@ fn stiffness(row: &Row) -> Option<[PlanarStiffness; 2]> {
     finger.outline.roof = HELD_ROOF;
     let [density_percent, direction_deg, phase] = row.0;
     let design = InfillDesign { density_percent, direction_deg, phase_mm: Some(phase) };
-    planar(&Geometry::new(&finger, &design).ok()?, SIZE).ok()
+    planar(&Geometry::new(&finger, &design).ok()?).ok()
 }
 
 fn quantities() -> Vec<Quantity> {

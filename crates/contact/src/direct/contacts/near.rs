@@ -3,7 +3,7 @@
 
 use super::super::body::MovingBody;
 use super::{Candidate, Solid, has_stayed};
-use crate::scene::{Friction, GeomPair, Pose};
+use crate::scene::{ContactPair, GeomPair, Pose};
 use nalgebra::Vector3;
 use parry::bounding_volume::{Aabb, BoundingVolume};
 use parry::partitioning::{Bvh, BvhBuildStrategy};
@@ -30,8 +30,7 @@ pub(super) struct NearPair {
 /// Pairs of shapes of two bodies.
 #[derive(Clone)]
 pub(super) struct NearList {
-    /// Indices of the bodies.
-    pub bodies: [usize; 2],
+    pub bodies: ContactPair,
     /// Pairs that may touch.
     pub near: Vec<NearPair>,
     /// Closest of the near pairs, the only ones tested in a step if there are many.
@@ -42,7 +41,6 @@ pub(super) struct NearList {
     pub candidates: BTreeMap<usize, Candidate>,
     /// Number of the pair of bodies in the scene.
     number: usize,
-    friction: Friction,
     /// Number of the first pair of shapes.
     from: usize,
     first: Range<usize>,
@@ -68,15 +66,12 @@ pub(super) fn tree(solids: &[Solid]) -> Bvh {
 impl NearList {
     /// Creates the list of the pair of bodies with this number in the scene; its first pair of shapes is number `from`.
     pub fn new(
-        number: usize,
-        friction: Friction,
+        (number, bodies): (usize, &ContactPair),
         from: usize,
-        (first, tree): (Range<usize>, Arc<Bvh>),
-        second: Range<usize>,
+        [(first, tree), (second, _)]: [(Range<usize>, Arc<Bvh>); 2],
         solids: &[Solid],
     ) -> Self {
         let far = |solid: &Solid| solid.frame.translation.vector.norm() + solid.half.norm();
-        let bodies = [&first, &second].map(|range| solids.get(range.start).map_or(0, |s| s.body));
         NearList {
             reach: solids[second.clone()].iter().map(far).fold(0.0, f64::max),
             near: Vec::new(),
@@ -86,9 +81,8 @@ impl NearList {
             made_at: None,
             chosen_at: None,
             chosen_for: 0.0,
-            bodies,
+            bodies: *bodies,
             number,
-            friction,
             from,
             first,
             second,
@@ -103,7 +97,7 @@ impl NearList {
 
     /// Returns an upper bound of the speed of any point of the second body relative to the first, m/s.
     pub fn speed(&self, bodies: &[MovingBody]) -> f64 {
-        let [first, second] = self.bodies.map(|body| &bodies[body]);
+        let [first, second] = [self.bodies.first, self.bodies.second].map(|body| &bodies[body.0]);
         let own = first.velocity - second.velocity;
         let (linear, angular) = (own.fixed_rows::<3>(0).norm(), own.fixed_rows::<3>(3).norm());
         let apart = (first.centre - second.centre).norm();
@@ -138,7 +132,7 @@ impl NearList {
         for &NearPair { number, solids: [first, second] } in &self.near {
             self.candidates.entry(number).or_insert_with(|| {
                 let own = [first, second].map(|solid| solids[solid].friction);
-                let friction = self.friction.of_geoms(own);
+                let friction = self.bodies.friction.of_geoms(own);
                 Candidate::new(GeomPair { bodies: self.number, first, second, friction })
             });
         }

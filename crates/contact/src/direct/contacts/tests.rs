@@ -13,7 +13,7 @@ fn cubes(pose: Pose) -> (Detector, Vec<MovingBody>) {
         scene.body(Body { name: String::new(), motion: Motion::Fixed, pose, geoms: vec![geom] });
     }
     scene.contact(BodyId(0), BodyId(1), Friction::hard(0.3));
-    let bodies = scene.bodies.iter().map(|body| MovingBody::new(body, 0)).collect();
+    let bodies = scene.bodies.iter().map(|body| MovingBody::new(body, None)).collect();
     (Detector::new(&scene, 0.2e-3), bodies)
 }
 
@@ -129,7 +129,7 @@ fn touches_of_tiles(count: i32, poses: &[Pose]) -> (Vec<Gaps>, usize) {
         scene.body(Body { name, motion: Motion::Fixed, pose, geoms });
     }
     scene.contact(BodyId(0), BodyId(1), Friction::hard(0.3));
-    let mut bodies: Vec<_> = scene.bodies.iter().map(|body| MovingBody::new(body, 0)).collect();
+    let mut bodies: Vec<_> = scene.bodies.iter().map(|body| MovingBody::new(body, None)).collect();
     let mut detector = Detector::new(&scene, 0.2e-3);
     let mut touched = Vec::new();
     for pose in poses {

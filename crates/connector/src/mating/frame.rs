@@ -27,13 +27,6 @@ pub struct Parts {
     pub socket: Part,
 }
 
-impl Parts {
-    /// Rotates both parts to their own axes.
-    pub fn new(plug: &[Triangle], socket: &[Triangle]) -> Result<Self, MatingError> {
-        Ok(Parts { plug: Part::new(plug, "plug")?, socket: Part::new(socket, "socket")? })
-    }
-}
-
 impl Part {
     /// Rotates a part to its own axes.
     pub fn new(triangles: &[Triangle], name: &'static str) -> Result<Self, MatingError> {

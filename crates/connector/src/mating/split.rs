@@ -193,9 +193,8 @@ impl AxisMaps {
     fn withdrawals_at(&self, interference: f64) -> Vec<Withdrawal> {
         let count = self.upper.len();
         let cells = (interference / self.step).ceil() as usize;
-        let upper: Vec<_> = self.upper.iter().map(|map| map.eroded([cells / 2; 2])).collect();
-        let lower: Vec<_> =
-            self.lower.iter().map(|map| map.eroded([cells - cells / 2; 2])).collect();
+        let upper: Vec<_> = self.upper.iter().map(|map| map.eroded(cells / 2)).collect();
+        let lower: Vec<_> = self.lower.iter().map(|map| map.eroded(cells - cells / 2)).collect();
         let meets =
             |i: usize, j: usize| f64::from(rest(&upper[i], &lower[j], [0; 2], NOWHERE)) > TOLERANCE;
         // For each body, those that block it from above.

@@ -2,9 +2,8 @@
 
 use super::mesh::mated::ASIDE;
 use super::pins::Pins;
-use super::plan::{self, PlanError};
+use super::plan;
 use input::units::MM;
-use input::{Place, Placed};
 use insertion::finger::Pad;
 use insertion::task::finger::FingerModel;
 use insertion::task::{
@@ -109,46 +108,6 @@ pub struct Dimensions {
     pub body: Option<Size>,
 }
 
-/// Error of a draft.
-#[derive(Debug, thiserror::Error, PartialEq)]
-pub enum DraftError {
-    /// Clearance that is not less than the plug's smallest side; both in mm.
-    #[error("--clearance: is {0} mm; it must be less than the smallest side of the plug, {1} mm")]
-    TooLoose(f64, f64),
-    /// Pitch that leaves no material between the holes, and the side of a hole; both in mm.
-    #[error("--pitch-mm: is {0} mm; it must be more than a hole, {1:.2} mm")]
-    NarrowPitch(f64, f64),
-    /// Body that does not cover all pins: width and height of the body and of the pins, mm.
-    #[error("--body: is {0} x {1} mm; it must cover all pins, {2:.2} x {3:.2} mm")]
-    NarrowBody(f64, f64, f64, f64),
-    /// Key as wide as the plug or wider; both in mm.
-    #[error("--key: is {0} mm wide; it must be narrower than the plug, {1} mm")]
-    WideKey(f64, f64),
-    /// Plug or body too short for the pads: its option, its length and the smallest accepted length, mm.
-    #[error(
-        "{0}: is {1} mm long; the pads are {height} mm high and must stay outside of the socket, so \
-         at least {2:.1} mm are needed",
-        height = Pad::PUBLISHED.height / MM
-    )]
-    TooShort(&'static str, f64, f64),
-    /// No strategy can be derived.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-}
-
-impl Placed for DraftError {
-    fn place(&self) -> Place {
-        match self {
-            DraftError::TooLoose(..) => Place::option("--clearance"),
-            DraftError::NarrowBody(..) => Place::option("--body"),
-            DraftError::NarrowPitch(..) => Place::option("--pitch-mm"),
-            DraftError::WideKey(..) => Place::option("--key"),
-            DraftError::TooShort(option, ..) => Place::option(option),
-            DraftError::Plan(_) => Place::default(),
-        }
-    }
-}
-
 /// Creates a task without shapes; friction, grasp force and fingers are those of the shipped tasks, or of `like`.
 pub fn blank(name: &str, like: Option<&Task>) -> Task {
     let finger_torsion = PadTorsion::Points(30.0 * MM);
@@ -175,26 +134,35 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
 /// Creates a task with these dimensions; everything else is taken from `like`.
 ///
 /// # Errors
-/// If a dimension does not fit the others or the pads, or no strategy can be derived.
-pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task, DraftError> {
+/// If a dimension does not fit the others or the pads, or no strategy can be derived; the text begins with the option
+/// of the dimension, if there is one.
+pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task, String> {
     let (plug, body) = (size.plug, size.body);
     let thickness = size.pins.map_or(plug.width.min(plug.height), |pins| pins.side);
+    let [width, height, clearance] = [plug.width, plug.height, size.clearance].map(|v| v / MM);
     if size.clearance >= thickness {
-        return Err(DraftError::TooLoose(size.clearance / MM, thickness / MM));
+        return Err(format!(
+            "--clearance: is {clearance} mm; it must be less than the smallest side of the plug, {} mm",
+            thickness / MM
+        ));
     }
     if let Some(Pins { pitch, side, .. }) = size.pins
         && side + size.clearance >= pitch
     {
-        return Err(DraftError::NarrowPitch(pitch / MM, (side + size.clearance) / MM));
+        let [pitch, hole] = [pitch, side + size.clearance].map(|v| v / MM);
+        return Err(format!(
+            "--pitch-mm: is {pitch} mm; it must be more than a hole, {hole:.2} mm"
+        ));
     }
     if let (Some(_), Some(body)) = (size.pins, body)
         && (body.width < plug.width || body.height < plug.height)
     {
-        let [width, height] = [body.width, body.height].map(|v| v / MM);
-        return Err(DraftError::NarrowBody(width, height, plug.width / MM, plug.height / MM));
+        let [wide, high] = [body.width, body.height].map(|v| v / MM);
+        return Err(format!(
+            "--body: is {wide} x {high} mm; it must cover all pins, {width:.2} x {height:.2} mm"
+        ));
     }
     let mut task = blank(name, like);
-    let [width, height, clearance] = [plug.width, plug.height, size.clearance].map(|v| v / MM);
     let (shape, mut parts) = match (size.pins, size.round) {
         (Some(pins), _) => {
             let [rows, columns] = pins.count;
@@ -210,7 +178,10 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     task.description = format!("{shape}, {clearance} mm clearance");
     if let Some([wide, high]) = size.key {
         if wide + size.clearance >= plug.width {
-            return Err(DraftError::WideKey(wide / MM, width));
+            let wide = wide / MM;
+            return Err(format!(
+                "--key: is {wide} mm wide; it must be narrower than the plug, {width} mm"
+            ));
         }
         let radius = plug.width / 2.0;
         // The key starts within the cylinder, and overlaps it by no more than parts may.
@@ -233,7 +204,13 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
         None => ("--plug", pads / (1.0 - INSERTED_SHARE)),
     };
     if held.length < least {
-        return Err(DraftError::TooShort(option, held.length / MM, least / MM));
+        return Err(format!(
+            "{option}: is {} mm long; the pads are {} mm high and must stay outside of the socket, so \
+             at least {:.1} mm are needed",
+            held.length / MM,
+            Pad::PUBLISHED.height / MM,
+            least / MM
+        ));
     }
     (task.opening, task.socket) = housing(size, floor);
     if let Some(leg) = size.chamfer {
@@ -245,7 +222,7 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
         task.success.mated = Some(Mated { tip: [0.0, 0.0, -plug.length], lateral });
         return Ok(plan::mated(&task));
     }
-    Ok(plan::complete(&task)?)
+    plan::complete(&task)
 }
 
 fn upright(name: &str, size: Size, from: f64) -> Part {
@@ -404,7 +381,7 @@ mod tests {
         };
         assert!(draft(2.3 * MM).is_ok());
         for clearance in [2.4 * MM, 10.0 * MM, f64::INFINITY] {
-            let error = draft(clearance).unwrap_err().to_string();
+            let error = draft(clearance).unwrap_err();
             assert!(error.contains("less than the smallest side of the plug, 2.4 mm"), "{error}");
         }
         for size in ["8x2.4x1e308", "8x0.1x25", "nanx2x25", "-8x2x25"] {

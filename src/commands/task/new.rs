@@ -150,7 +150,7 @@ fn drafted(
 ) -> Result<(String, Option<Tuned>), Failure> {
     let (size, example) = dimensions(request)?;
     let task =
-        draft::draft(&request.name, &size, like.map(|like| &like.task)).map_err(Failure::input)?;
+        draft::draft(&request.name, &size, like.map(|like| &like.task)).map_err(Failure::usage)?;
     let body = size.body.map_or(String::new(), |body| format!(" --body {}", text(&body)));
     let tip = match (size.pins, size.round) {
         (Some(Pins { count: [rows, columns], pitch, side, length }), _) => {

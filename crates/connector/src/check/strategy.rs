@@ -1,9 +1,8 @@
 //! Checks of the commanded moves: free approach, search over the opening, deep enough push.
 
-use super::{Case, Problem, interval, mm};
+use super::{Problem, TaskBodies, interval, mm};
 use crate::body::{Overlap, span};
 use crate::seat::{self, Waypoint, section};
-use contact::scene::Pose;
 use input::units::MM;
 use insertion::task::{Ending, Phase, Stage};
 use nalgebra::Vector3;
@@ -17,7 +16,7 @@ const AIR: f64 = 1.0 * MM;
 /// Recommended distance of the commanded end of the push beyond the success depth, m.
 const PRESS: f64 = 4.0 * MM;
 
-pub(super) fn problems(case: &Case) -> Vec<Problem> {
+pub(super) fn problems(case: &TaskBodies) -> Vec<Problem> {
     let way = seat::waypoints(case.task, &case.plug);
     let mut found: Vec<Problem> = case.task.strategy.phases.iter().filter_map(upward).collect();
     found.extend(collisions(case, &way));
@@ -54,11 +53,11 @@ fn upward(phase: &Phase) -> Option<Problem> {
 }
 
 /// Checks for collisions at the start and on the approach.
-fn collisions(case: &Case, way: &[Waypoint]) -> Option<Problem> {
+fn collisions(case: &TaskBodies, way: &[Waypoint]) -> Option<Problem> {
     let collision = |tcp: Vector3<f64>| {
         let pose = seat::plug_pose(case.task, tcp);
         let Overlap { depth, parts: [plug, socket], .. } =
-            case.plug.overlap(&pose, &case.socket, &Pose::identity())?;
+            case.plug.overlap(&pose, &case.socket)?;
         let names = [&case.plug.parts[plug].name, &case.socket.parts[socket].name];
         (depth > ROUNDING).then_some((depth, names))
     };
@@ -100,7 +99,7 @@ fn short_touch(point: &Waypoint) -> Option<Problem> {
 }
 
 /// Checks that the moves reach the success depth.
-fn too_shallow(case: &Case, way: &[Waypoint]) -> Option<Problem> {
+fn too_shallow(case: &TaskBodies, way: &[Waypoint]) -> Option<Problem> {
     // Depth of the tip of an upright plug at the end of the path.
     let depth = way.last().map_or(0.0, |last| case.task.grip.tcp_z - last.tcp.z);
     let missing = case.task.success.depth - depth;
@@ -115,7 +114,7 @@ fn too_shallow(case: &Case, way: &[Waypoint]) -> Option<Problem> {
 }
 
 /// Checks that the search passes over the opening.
-fn missed_opening(case: &Case, way: &[Waypoint]) -> Option<Problem> {
+fn missed_opening(case: &TaskBodies, way: &[Waypoint]) -> Option<Problem> {
     let [bottom, _] = case.plug.extent(2);
     let tip = section(&case.plug, bottom + AIR);
     let first = way.iter().position(|point| point.stage != Stage::Approach).unwrap_or(0);

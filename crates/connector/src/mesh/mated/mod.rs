@@ -147,18 +147,19 @@ pub fn task(pair: &Pair, request: &Request) -> PairTask {
         let grasp = grip::handle(&placed.plug, size, pair.engaged + high(&placed));
         (placed, grasp)
     });
-    let (mut plug, mut socket, deviation) = skins(&placed, pair.engaged);
+    let (mut parts, deviation) = skins(&placed, pair.engaged);
     let tight = placed.play.iter().any(|play| *play < LEAST_PLAY);
-    let interference = overlap::cut(&mut plug, &mut socket, pair.engaged, tight);
+    let interference = overlap::cut(&mut parts, pair.engaged, tight);
     let drawn = [&placed.drawn[0][..], &placed.drawn[1]];
-    let bodies =
-        gaps::Bodies { drawn, parts: [&plug, &socket], depth: pair.engaged, play: placed.play };
+    let ([plug, socket], play) = (&parts, placed.play);
+    let bodies = gaps::Bodies { drawn, parts: [plug, socket], depth: pair.engaged, play };
     let difference =
         if deviation.is_some() { None } else { gaps::difference(&bodies, &interference) };
     let mated = Pose::translation(0.0, 0.0, -pair.engaged);
     let place = deviation.map(|(_, off)| (mated, off.place));
     let place = place.or(difference.map(|off| (off.pose, off.place)));
-    let closeup = place.map(|(pose, place)| closeup::svg(drawn, bodies.parts, &pose, place));
+    let closeup = place.map(|(pose, place)| closeup::svg(&bodies, &pose, place));
+    let [mut plug, socket] = parts;
     plug.push(grasp.part.clone());
     let mut task = draft::blank(request.name, request.like);
     task.plug.mass = draft::DENSITY * volume(&placed.plug).max(geometry::volume(&grasp.part.solid));
@@ -180,7 +181,7 @@ pub fn task(pair: &Pair, request: &Request) -> PairTask {
 }
 
 /// Returns the parts of plug and socket that the other body can touch, and their worst deviation from the drawing.
-fn skins(placed: &AlignedPair, depth: f64) -> (Vec<Part>, Vec<Part>, Option<(usize, Deviation)>) {
+fn skins(placed: &AlignedPair, depth: f64) -> ([Vec<Part>; 2], Option<(usize, Deviation)>) {
     let mated: Vec<Triangle> =
         placed.plug.iter().map(|t| t.map(|p| p - Vector3::z() * depth)).collect();
     let reach = Reach::new(&mated, &placed.socket, placed.play[0].max(placed.play[1]));
@@ -190,7 +191,7 @@ fn skins(placed: &AlignedPair, depth: f64) -> (Vec<Part>, Vec<Part>, Option<(usi
     );
     let worst = off.map(|off| (0, off)).or(its.map(|off| (1, off)));
     let up = |part: Part| Part { solid: raised(part.solid, depth), ..part };
-    (plug.into_iter().map(up).collect(), socket, worst)
+    ([plug.into_iter().map(up).collect(), socket], worst)
 }
 
 /// Returns the parts for the faces that can be touched, and their worst deviation from the drawing.

@@ -42,6 +42,9 @@ const FILM: f64 = 0.9999;
 /// Number of corners of a cut hull at and above which those inside it are dropped.
 const MANY: usize = 32;
 
+/// Plane of a face that meets a polygon at less than a right angle: index of the flat face, a point, and the normal.
+type SharpFace = (usize, Point3<f64>, Vector3<f64>);
+
 /// Returns convex solids whose outer surface is that of the triangles, m, for which `reached` is true; a slab that
 /// `fitted` rejects is made thinner.
 pub fn skin(
@@ -136,15 +139,9 @@ impl<'a> FaceIndex<'a> {
         found
     }
 
-    /// Returns the planes of the faces that meet a polygon at less than a right angle: index of the flat face, a point,
-    /// and the normal.
-    fn sharp(
-        &self,
-        flat: &[usize],
-        polygon: &[usize],
-        normal: &Vector3<f64>,
-    ) -> Vec<(usize, Point3<f64>, Vector3<f64>)> {
-        let mut found: Vec<(usize, Point3<f64>, Vector3<f64>)> = Vec::new();
+    /// Returns the planes of the faces that meet a polygon at less than a right angle.
+    fn sharp(&self, flat: &[usize], polygon: &[usize], normal: &Vector3<f64>) -> Vec<SharpFace> {
+        let mut found: Vec<SharpFace> = Vec::new();
         for &face in flat {
             for i in 0..3 {
                 let ends = [self.facets.faces[face][i], self.facets.faces[face][(i + 1) % 3]];
@@ -175,7 +172,7 @@ impl<'a> FaceIndex<'a> {
         &self,
         corners: &[Point3<f64>],
         normal: &Vector3<f64>,
-        sharp: &[(usize, Point3<f64>, Vector3<f64>)],
+        sharp: &[SharpFace],
     ) -> f64 {
         let count = corners.len();
         let side = |i: usize| {
@@ -222,11 +219,7 @@ fn halves(corners: &[Point3<f64>]) -> Option<[Vec<Point3<f64>>; 2]> {
 }
 
 /// Extrudes a polygon into the material, below the planes of faces at sharp edges.
-fn extruded(
-    corners: &[Point3<f64>],
-    deeper: &Vector3<f64>,
-    sharp: &[(usize, Point3<f64>, Vector3<f64>)],
-) -> Option<Solid> {
+fn extruded(corners: &[Point3<f64>], deeper: &Vector3<f64>, sharp: &[SharpFace]) -> Option<Solid> {
     let mut points = corners.to_vec();
     points.extend(corners.iter().map(|p| p - deeper));
     for (_, origin, side) in sharp {
@@ -243,13 +236,12 @@ pub fn cut_below(solid: &Solid, origin: &Point3<f64>, normal: &Vector3<f64>) -> 
 /// Returns the hull of points rounded to the grid of files; `None` if it is too thin.
 pub fn snapped_hull(points: &[Point3<f64>]) -> Option<Solid> {
     let points: Vec<_> = points.iter().map(|p| Point3::from(p.coords.map(snap))).collect();
+    // The size along each axis and the volume must be large enough for files.
+    let is_thick = |solid: &Solid| {
+        (0..3).all(|axis| width(extent(solid.corners(), axis)) >= LEAST_SIZE)
+            && volume(solid) >= LEAST_VOLUME
+    };
     solid_of(&points).filter(is_thick)
-}
-
-/// Returns whether the size of a solid along each axis and its volume are large enough for files.
-fn is_thick(solid: &Solid) -> bool {
-    (0..3).all(|axis| width(extent(solid.corners(), axis)) >= LEAST_SIZE)
-        && volume(solid) >= LEAST_VOLUME
 }
 
 /// Returns the bounding box of points in millimetres, the magnitude that parry's tolerances are made for.

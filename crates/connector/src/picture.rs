@@ -38,13 +38,8 @@ pub fn svg(task: &Task) -> String {
     stacked(&[("", task)])
 }
 
-/// Draws the task before and after a change of its strategy, one below the other.
-pub fn before_and_after(before: &Task, after: &Task) -> String {
-    stacked(&[("before: ", before), ("after: ", after)])
-}
-
 /// Draws tasks one below the other, each with a prefix of its description.
-fn stacked(tasks: &[(&str, &Task)]) -> String {
+pub fn stacked(tasks: &[(&str, &Task)]) -> String {
     let mut drawing = Drawing::default();
     drawing.white_background();
     for (row, (prefix, task)) in tasks.iter().enumerate() {

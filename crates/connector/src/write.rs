@@ -1,5 +1,6 @@
 //! Commented TOML file of a task.
 
+use super::draft::DENSITY;
 use super::hold;
 use input::units::{DEG, GRAM, MM};
 use insertion::task::parts_file::PartsFile;
@@ -13,7 +14,6 @@ use nalgebra::{Point3, Vector3};
 #[derive(Debug, Clone, Default)]
 pub struct Notes {
     pub head: Vec<String>,
-    pub mass: String,
     /// Separate file of the parts, if there is one.
     pub parts: Option<PartsFile>,
     /// Whether overlapping parts, such as contact springs, were left out.
@@ -49,12 +49,11 @@ pub fn task(task: &Task, notes: &Notes) -> String {
          # Frame: origin in the middle of the opening, on the socket's top; z out of the socket; y the\n\
          # direction in which the jaws close and the start is shifted. Lengths in mm.\n\n\
          name = {name}\ndescription = {description}\n{turn}\n\
-         [plug]\n# {}\nmass_g = {}\n\n{plug}\
+         [plug]\n# Assumed: {DENSITY} kg/m3. Weigh yours.\nmass_g = {}\n\n{plug}\
          [socket]\n# From, to of the opening on the top, between the walls below.\n\
          opening_x_mm = {x}\nopening_y_mm = {y}\n\n{socket}{}{}\
          [success]\n# Judged at rest after the push: tip this deep below the top, axis this upright.\n\
          depth_mm = {}\ntilt_deg = {}\n",
-        notes.mass,
         round(task.plug.mass / GRAM, 100.0),
         grip(task),
         strategy(task),

@@ -7,7 +7,7 @@ use crate::layout::wrapped;
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
-use connector::draft::{self, DENSITY, Dimensions, Hole, Size};
+use connector::draft::{self, Dimensions, Hole, Size};
 use connector::pins::Pins;
 use connector::tune::Tuned;
 use connector::write::{self, Notes};
@@ -179,9 +179,8 @@ fn drafted(
     if example {
         head.push("No dimensions were given: these are of a USB-C plug.".to_owned());
     }
-    let mass = format!("Assumed: {DENSITY} kg/m3. Weigh yours.");
     let (task, tuned) = tune_new(task, request.engine, stop)?;
-    Ok((write::task(&task, &Notes { head, mass, ..Notes::default() }), tuned))
+    Ok((write::task(&task, &Notes { head, ..Notes::default() }), tuned))
 }
 
 /// Returns the pins of the plug.

@@ -75,9 +75,7 @@ impl HeightMap {
         });
         let heights = vec![envelope.empty(); count[0] * count[1]];
         let mut map = HeightMap { envelope, step, first, count, heights };
-        if !map.heights.is_empty() {
-            triangles.iter().for_each(|triangle| map.rasterize(triangle));
-        }
+        triangles.iter().for_each(|triangle| map.rasterize(triangle));
         map
     }
 
@@ -180,10 +178,7 @@ impl HeightMap {
         map.count[axis] += by;
         map.heights = vec![-NOWHERE; map.count[0] * map.count[1]];
         let (nx, shift) = (map.count[0], if axis == 0 { by } else { by * map.count[0] });
-        if self.count[0] == 0 {
-            return map;
-        }
-        for (row, heights) in self.heights.chunks(self.count[0]).enumerate() {
+        for (row, heights) in self.heights.chunks(self.count[0].max(1)).enumerate() {
             for start in [row * nx, row * nx + shift] {
                 let cells = map.heights[start..].iter_mut().zip(heights);
                 cells.for_each(|(cell, height)| *cell = cell.max(*height));

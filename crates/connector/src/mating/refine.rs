@@ -281,7 +281,7 @@ impl Fine {
 
     /// Returns the cells that both parts fill at a pose.
     pub fn overlap(&self, pose: &Pose) -> Vec<[i32; 2]> {
-        overlap(&self.upper, &self.tight, self.cells(pose), pose.z as f32 + LEVEL)
+        overlap([&self.upper, &self.tight], self.cells(pose), pose.z as f32 + LEVEL)
     }
 
     /// Returns the width of the region that both parts fill at a pose, m.

@@ -26,7 +26,6 @@ const AT_ONCE: usize = 24;
 const MOST_SEATS: usize = 300;
 
 /// Seat found on the coarse maps.
-#[derive(Debug, Clone, Copy)]
 pub struct CoarseSeat {
     /// Index of the direction out of the socket in [`rotations_to_z`].
     pub out: usize,

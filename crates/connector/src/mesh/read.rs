@@ -8,6 +8,7 @@ use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::Path;
+use std::str::SplitWhitespace;
 
 /// Corners of a triangle, in the unit of the file.
 pub type Triangle = [Point3<f64>; 3];
@@ -87,10 +88,7 @@ fn binary(bytes: &[u8]) -> Option<Vec<Triangle>> {
 }
 
 /// Parses the three coordinates on a line.
-fn coordinates<'a>(
-    mut words: impl Iterator<Item = &'a str>,
-    line: usize,
-) -> Result<Point3<f64>, String> {
+fn coordinates(mut words: SplitWhitespace, line: usize) -> Result<Point3<f64>, String> {
     let mut next = || words.next().and_then(|word| word.parse::<f64>().ok());
     match (next(), next(), next()) {
         (Some(x), Some(y), Some(z)) => Ok(Point3::new(x, y, z)),
@@ -167,11 +165,8 @@ fn polygon(corners: &[Point3<f64>]) -> Vec<Triangle> {
 /// # Errors
 /// If the file lacks one of them; the text lists the available ones.
 pub fn pick(bodies: &[Body], names: &[String], file: &str) -> Result<[Vec<Triangle>; 2], Fault> {
-    let named = |name: &String| bodies.iter().position(|body| body.name == *name);
-    let of: Vec<Body> = match names.iter().all(|name| named(name).is_some()) {
-        true => bodies.to_vec(),
-        false => shells(bodies),
-    };
+    let named = |name: &String| bodies.iter().any(|body| body.name == *name);
+    let of = if names.iter().all(named) { bodies.to_vec() } else { shells(bodies) };
     let mut picked = [Vec::new(), Vec::new()];
     if let Some(name) = names.iter().find(|name| of.iter().all(|body| body.name != **name)) {
         let known: Vec<_> = bodies.iter().map(|body| format!("`{}`", body.name)).collect();

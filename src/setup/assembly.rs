@@ -5,7 +5,7 @@ use crate::setup::mated::unit;
 use connector::body::{extent, width};
 use connector::mating::plugs;
 use connector::mesh::axes::Unit;
-use connector::mesh::{Body, Triangle, pick, separate};
+use connector::mesh::{Body, Triangle, pick, shells};
 use input::units::MM;
 
 /// Largest number of bodies that a message lists.
@@ -19,7 +19,7 @@ pub type Split = ([Vec<Triangle>; 2], String);
 /// # Errors
 /// If no body can be withdrawn from the others, or if several can.
 pub fn split(file: &str, bodies: Vec<Body>, given: Option<Unit>) -> Result<Split, Failure> {
-    let bodies = separate(bodies);
+    let bodies = if bodies.len() > 1 { bodies } else { shells(&bodies) };
     let whole: Vec<Triangle> = bodies.iter().flat_map(|body| body.triangles.clone()).collect();
     let (unit, _) = unit([file, file], [&whole, &whole], given)?;
     let metres = unit.metres();

@@ -1,14 +1,13 @@
 //! Task from a few dimensions: plug, clearance and the body that the fingers hold.
 
-use super::mesh::mated::ASIDE;
 use super::pins::Pins;
 use super::plan;
 use input::units::MM;
 use insertion::finger::Pad;
 use insertion::task::finger::FingerModel;
 use insertion::task::{
-    Friction, Grip, Hold, Limits, Mated, PadTorsion, Part, Plug, Solid, StartRule, Strategy,
-    Success, Task, geometry,
+    Friction, Grip, Hold, Limits, PadTorsion, Part, Plug, Solid, StartRule, Strategy, Success,
+    Task, geometry,
 };
 use nalgebra::Vector3;
 use parameters::numbers;
@@ -113,7 +112,6 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
     let finger_torsion = PadTorsion::Points(30.0 * MM);
     let friction = Friction { finger_plug: 1.0, finger_torsion, plug_socket: 0.2 };
     let (force, hold) = like.map_or((5.0, Hold::Always), |task| (task.grip.force, task.grip.hold));
-    let slip_limit = Pad::PUBLISHED.height / 2.0;
     Task {
         name: name.to_owned(),
         description: String::new(),
@@ -121,7 +119,7 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
         plug: Plug::default(),
         socket: Vec::new(),
         opening: [[0.0; 2]; 2],
-        grip: Grip { force, hold, slip_limit, ..Grip::default() },
+        grip: Grip { force, hold, ..Grip::default() },
         friction: like.map_or(friction, |task| task.friction),
         finger: like.map_or(FingerModel::default(), |task| task.finger),
         strategy: Strategy { tilt: 0.0, start: [0.0; 3], rule: StartRule::Given, phases: vec![] },
@@ -218,9 +216,7 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     }
     if size.pins.is_some() {
         // A pin in the hole of its neighbour is not a success.
-        let lateral = libm::hypot(size.clearance, size.clearance) / 2.0 + ASIDE;
-        task.success.mated = Some(Mated { tip: [0.0, 0.0, -plug.length], lateral });
-        return Ok(plan::mated(&task));
+        return Ok(plan::mated(task, plug.length, [size.clearance; 2]));
     }
     plan::complete(&task)
 }

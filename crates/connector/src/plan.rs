@@ -50,6 +50,8 @@ const MISSING: (f64, f64) = (0.2 * MM, 0.02);
 const WITHIN: f64 = 0.9;
 /// Smallest depth at which a plug counts as entered, m.
 const LEAST_DEPTH: f64 = 1.0 * MM;
+/// Allowance for the lateral place of a mated plug beyond its play, m.
+const ASIDE: f64 = 0.1 * MM;
 /// Distance below the top at which the opening of a mated plug is measured, m.
 pub(crate) const BELOW_TOP: f64 = 0.1 * MM;
 
@@ -75,10 +77,12 @@ pub fn complete(task: &Task) -> Result<Task, String> {
     Ok(planned(&bodies, &seat))
 }
 
-/// Returns the task with grasp point, strategy and success derived from shapes, opening, shoulder, faces and mated
-/// pose.
-pub fn mated(task: &Task) -> Task {
-    let bodies = TaskBodies::new(task);
+/// Returns the task with grasp point, strategy and success derived from shapes, opening, shoulder, faces and the mated
+/// pose, at a depth on the axis, m, with a play in x and in y, m.
+pub fn mated(mut task: Task, depth: f64, play: [f64; 2]) -> Task {
+    let lateral = libm::hypot(play[0], play[1]) / 2.0 + ASIDE;
+    task.success.mated = Some(Mated { tip: [0.0, 0.0, -depth], lateral });
+    let bodies = TaskBodies::new(&task);
     planned(&bodies, &bodies.deepest())
 }
 
@@ -271,6 +275,10 @@ impl Moves {
         });
         let search = other.strategy.phases.iter().filter(|phase| phase.stage == Stage::Search);
         let down = search.skip(1).map(|phase| -phase.displacement[2]).sum();
+        let seat = bodies.deepest().depth;
+        let beyond = way.last().map_or(0.0, |last| other.grip.tcp_z - last.tcp.z - seat);
+        // A key that need not reach the floor may be commanded to less than its seat.
+        let beyond = beyond.max(PUSH[0]);
         Moves {
             x: touch,
             edge_y,
@@ -278,16 +286,8 @@ impl Moves {
             across: [back - touch, front - back, aside - front],
             down,
             side: edge_y - y.next_back().unwrap_or(edge_y),
-            push: Self::push(&bodies, way.last()),
+            push: [beyond, other.strategy.phases.last().map_or(PUSH[1], |phase| phase.speed)],
         }
-    }
-
-    /// Returns the command of a task's push beyond the seat, m, and its speed, m/s.
-    fn push(bodies: &TaskBodies, last: Option<&seat::Waypoint>) -> [f64; 2] {
-        let (task, seat) = (bodies.task, bodies.deepest().depth);
-        // A key that need not reach the floor may be commanded to less than its seat.
-        let beyond = last.map_or(0.0, |last| task.grip.tcp_z - last.tcp.z - seat).max(PUSH[0]);
-        [beyond, task.strategy.phases.last().map_or(PUSH[1], |phase| phase.speed)]
     }
 
     /// Returns the moves of a round tip, whose lowest point is set down near the wall at -y.

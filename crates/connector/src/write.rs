@@ -5,7 +5,7 @@ use super::hold;
 use input::units::{DEG, GRAM, MM};
 use insertion::task::parts_file::PartsFile;
 use insertion::task::{
-    Ending, Hold, Limits, Mated, PadTorsion, Part, Phase, Solid, Stage, StartRule, Task,
+    Ending, Limits, Mated, PadTorsion, Part, Phase, Solid, StartRule, Strategy, Task,
     TouchDetection,
 };
 use nalgebra::{Point3, Vector3};
@@ -28,7 +28,7 @@ pub fn parts_file(task: &Task) -> String {
 /// Returns the text of a task file.
 pub fn task(task: &Task, notes: &Notes) -> String {
     let head: String = notes.head.iter().map(|line| format!("# {line}\n")).collect();
-    let [name, description] = [&task.name, &task.description].map(|value| text(value));
+    let [name, description] = [&task.name, &task.description].map(text);
     let turn = match task.turn {
         0.0 => String::new(),
         turn => format!("turn_in_base_deg = {}\n", round(turn / DEG, 100.0)),
@@ -56,7 +56,7 @@ pub fn task(task: &Task, notes: &Notes) -> String {
          depth_mm = {}\ntilt_deg = {}\n",
         round(task.plug.mass / GRAM, 100.0),
         grip(task),
-        strategy(task),
+        strategy(&task.strategy),
         mm(task.success.depth),
         round(task.success.tilt / DEG, 100.0)
     );
@@ -139,11 +139,7 @@ fn grip(task: &Task) -> String {
     let (grip, friction) = (&task.grip, &task.friction);
     let [low, high] = hold::pad_z(grip.shoulder_z).map(mm);
     let [tcp, shoulder, slip] = [grip.tcp_z, grip.shoulder_z, grip.slip_limit].map(mm);
-    let faces = pair(grip.faces_y);
-    let hold = match grip.hold {
-        Hold::Always => "always",
-        Hold::Assembly => "assembly",
-    };
+    let (faces, hold) = (pair(grip.faces_y), text(grip.hold));
     let torsion = match friction.finger_torsion {
         PadTorsion::Points(moment) => mm(moment),
         PadTorsion::Patch => "\"patch\"".to_owned(),
@@ -151,7 +147,7 @@ fn grip(task: &Task) -> String {
     format!(
         "[grip]\n# The roofs of the fingertips rest on shoulder_z; their pads then reach from {low} to {high} mm\n\
          # and press the faces. tcp_z is the height of the grasp point. All counted from the tip.\n\
-         tcp_z_mm = {tcp}\nshoulder_z_mm = {shoulder}\nfaces_y_mm = {faces}\nforce_n = {:?}\nhold = \"{hold}\"\n\
+         tcp_z_mm = {tcp}\nshoulder_z_mm = {shoulder}\nfaces_y_mm = {faces}\nforce_n = {:?}\nhold = {hold}\n\
          # Beyond this slip the plug counts as lost.\nslip_limit_mm = {slip}\n\n\
          [friction]\nfinger_plug = {:?}\nfinger_plug_torsion_mm = {torsion}\nplug_socket = {:?}\n\n",
         grip.force, friction.finger_plug, friction.plug_socket,
@@ -159,8 +155,7 @@ fn grip(task: &Task) -> String {
 }
 
 /// Returns the `[strategy]` section of a task file.
-pub fn strategy(task: &Task) -> String {
-    let strategy = &task.strategy;
+pub fn strategy(strategy: &Strategy) -> String {
     let rule = match strategy.rule {
         StartRule::Taught => "start = \"taught\"\n",
         StartRule::Given => "",
@@ -176,11 +171,6 @@ pub fn strategy(task: &Task) -> String {
 }
 
 fn phase(phase: &Phase) -> String {
-    let stage = match phase.stage {
-        Stage::Approach => "approach",
-        Stage::Search => "search",
-        Stage::Assembly => "assembly",
-    };
     let (motion, key, value) = match phase.ending {
         Ending::Tolerance(within) => ("tolerance", "tolerance_mm", mm(within)),
         Ending::Duration(rest) => ("duration", "settle_s", round(rest, 1e4)),
@@ -193,9 +183,10 @@ fn phase(phase: &Phase) -> String {
         _ => String::new(),
     };
     format!(
-        "[[strategy.phase]]\nname = {}\nstage = \"{stage}\"\nmove_mm = {}\nspeed_mm_per_s = {}\n\
+        "[[strategy.phase]]\nname = {}\nstage = {}\nmove_mm = {}\nspeed_mm_per_s = {}\n\
          motion = \"{motion}\"\n{key} = {value}\n{detection}\n",
         text(&phase.name),
+        text(phase.stage),
         list(phase.displacement.iter().map(|&v| mm(v))),
         mm(phase.speed),
     )
@@ -220,8 +211,9 @@ fn list(items: impl Iterator<Item = String>) -> String {
     format!("[{}]", items.collect::<Vec<_>>().join(", "))
 }
 
-fn text(value: &str) -> String {
-    toml::Value::String(value.to_owned()).to_string()
+/// Returns a TOML string: a text, or the name of a variant.
+fn text(value: impl serde::Serialize) -> String {
+    toml::Value::try_from(value).map_or(String::new(), |value| value.to_string())
 }
 
 #[cfg(test)]

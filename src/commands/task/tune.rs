@@ -240,9 +240,8 @@ impl Request {
 
 /// Returns the task file with the recommended strategy.
 fn rewritten(file: &TaskFile, tuned: &Tuned) -> Result<TaskFile, Failure> {
-    let TaskFile { source, task } = file;
-    let strategy = &tuned.best().tried.strategy;
-    let text = rewrite::with_strategy(&source.text, task, strategy).map_err(Failure::input)?;
+    let (source, strategy) = (&file.source, &tuned.best().tried.strategy);
+    let text = rewrite::with_strategy(&source.text, strategy).map_err(Failure::input)?;
     TaskFile::parse(Source { file: source.file.clone(), text })
 }
 

@@ -9,6 +9,7 @@ use super::search::LEAST;
 use super::{MAX_PLAYS, MatingError};
 use crate::body::{span, width};
 use crate::mesh::Triangle;
+use crate::mesh::skin::{bounding_box, cut};
 use input::units::MM;
 use nalgebra::{Point3, Vector3};
 use parry::bounding_volume::{Aabb, BoundingVolume};
@@ -90,9 +91,7 @@ pub fn plugs(bodies: &[Vec<Triangle>]) -> Result<Vec<Vec<usize>>, MatingError> {
 
 /// Returns the contact areas of each pair of bodies that touch, by the axis of their normals, m2.
 fn contacts(bodies: &[Vec<Triangle>]) -> BTreeMap<[usize; 2], [f64; 3]> {
-    let around = |points: &[Point3<f64>]| {
-        Aabb::from_points(points.iter().map(|p| (p.coords / MM).into())).loosened(TOUCHING / MM)
-    };
+    let around = |points: &[Point3<f64>]| bounding_box(points, TOUCHING / MM);
     let boxes = |body: &Vec<Triangle>| body.iter().map(|t| around(t)).collect::<Vec<_>>();
     let boxes: Vec<Vec<Aabb>> = bodies.iter().map(boxes).collect();
     let whole: Vec<Aabb> = bodies.iter().map(|body| around(body.as_flattened())).collect();
@@ -129,7 +128,7 @@ fn common(face: &Triangle, other: &Triangle) -> (usize, f64) {
     let mut piece = face.to_vec();
     for i in 0..3 {
         let outward = (other[(i + 1) % 3] - other[i]).cross(&m);
-        piece = crate::mesh::skin::cut(piece, &other[i], &outward);
+        piece = cut(piece, &other[i], &outward);
     }
     let fan = (1..piece.len().max(2) - 1)
         .map(|i| (piece[i] - piece[0]).cross(&(piece[i + 1] - piece[0])).norm() / 2.0);

@@ -183,14 +183,9 @@ pub fn pick(bodies: &[Body], names: &[String], file: &str) -> Result<[Vec<Triang
     Ok(picked)
 }
 
-/// Returns the bodies of a file, or the shells of its only body.
-pub fn separate(bodies: Vec<Body>) -> Vec<Body> {
-    if bodies.len() > 1 { bodies } else { shells(&bodies) }
-}
-
 /// Returns the shells (connected components: triangles that share corners) in the order of the file, named by their
 /// number from 1.
-fn shells(bodies: &[Body]) -> Vec<Body> {
+pub fn shells(bodies: &[Body]) -> Vec<Body> {
     let triangles: Vec<_> = bodies.iter().flat_map(|body| body.triangles.iter().copied()).collect();
     let mut at: BTreeMap<[u64; 3], usize> = BTreeMap::new();
     let mut parent: Vec<usize> = (0..triangles.len()).collect();

@@ -130,9 +130,7 @@ impl Faces {
         counts: impl Fn(&Point3<f64>) -> bool,
     ) -> Option<(f64, Point3<f64>)> {
         let pose = Pose::from_parts((pose.translation.vector / MM).into(), pose.rotation);
-        let triangle = |[a, b, c]: &Triangle| {
-            shape::Triangle::new(a.coords.into(), b.coords.into(), c.coords.into())
-        };
+        let triangle = |face: &Triangle| shape::Triangle::from(face.map(|p| p.coords.into()));
         let here = contact::shapes::pose(&Pose::identity(), 1.0);
         let mut least: Option<(f64, Point3<f64>)> = None;
         for face in &self.faces {

@@ -15,7 +15,7 @@ use crate::{draft, plan};
 use contact::scene::Pose;
 pub use grip::{Grasp, Rejected};
 use input::units::MM;
-use insertion::task::{Mated, Part, Solid, Success, Task, geometry};
+use insertion::task::{Part, Solid, Task, geometry};
 use nalgebra::{Matrix3, Point3, Vector3};
 pub use overlap::{GAP, Interference};
 use reach::Reach;
@@ -26,8 +26,6 @@ pub use verify::{Deviation, TOLERANCE};
 pub const HANDLE: [f64; 3] = [12.0 * MM, 10.0 * MM, 20.0 * MM];
 /// Height of the tip whose middle is the plug's axis, m.
 const TIP: f64 = 1.0 * MM;
-/// Allowance for the lateral place of a mated plug beyond its play, m.
-pub(crate) const ASIDE: f64 = 0.1 * MM;
 /// Smallest play assumed between plug and opening, m.
 const LEAST_PLAY: f64 = 0.02 * MM;
 
@@ -166,11 +164,8 @@ pub fn task(pair: &Pair, request: &Request) -> PairTask {
     (task.plug.parts, task.socket) = (plug, socket);
     let play = placed.play.map(|play| play.max(LEAST_PLAY));
     task.opening = opening(&placed.plug, pair.engaged, play);
-    let lateral = libm::hypot(play[0], play[1]) / 2.0 + ASIDE;
-    let mated = Mated { tip: [0.0, 0.0, -pair.engaged], lateral };
-    task.success = Success { mated: Some(mated), ..Success::default() };
     (task.grip.shoulder_z, task.grip.faces_y) = (grasp.shoulder, grasp.faces);
-    let mut task = plan::mated(&task);
+    let mut task = plan::mated(task, pair.engaged, play);
     let like = request.like.map(|like| plan::Family::Like(Box::new(like.clone())));
     if let Some(strategy) = like.and_then(|family| family.strategy_for(&task)) {
         task.strategy = strategy;

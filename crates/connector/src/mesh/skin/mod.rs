@@ -39,6 +39,8 @@ const CONVEX: f64 = 2e-3 * MM;
 const MOST_CORNERS: usize = 400;
 /// Largest cosine between opposite faces that are cut at their common edge; above it, they are the two sides of a film.
 const FILM: f64 = 0.9999;
+/// Margin of the bounding boxes in which faces are searched for, mm.
+const AROUND_MM: f64 = 1e-3;
 /// Number of corners of a cut hull at and above which those inside it are dropped.
 const MANY: usize = 32;
 
@@ -106,8 +108,9 @@ struct FaceIndex<'a> {
 
 impl<'a> FaceIndex<'a> {
     fn new(facets: &'a Facets, flat_of: &'a [usize]) -> Self {
-        let boxes: Vec<_> =
-            (0..facets.faces.len()).map(|face| bounding_box(&facets.corners(face))).collect();
+        let boxes: Vec<_> = (0..facets.faces.len())
+            .map(|face| bounding_box(&facets.corners(face), AROUND_MM))
+            .collect();
         FaceIndex { facets, flat_of, tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) }
     }
 
@@ -187,7 +190,7 @@ impl<'a> FaceIndex<'a> {
         planes.push((corners[0] - normal * BEHIND, *normal));
         planes.push((corners[0] - normal * (2.0 * THICK), -normal));
         let back: Vec<_> = corners.iter().map(|p| p - normal * (2.0 * THICK)).collect();
-        let boxed = bounding_box(&corners.iter().chain(&back).copied().collect::<Vec<_>>());
+        let boxed = bounding_box(&[corners, &back].concat(), AROUND_MM);
         let mut least = 2.0 * THICK;
         for face in self.tree.intersect_aabb(&boxed) {
             let face = face as usize;
@@ -244,10 +247,11 @@ pub fn snapped_hull(points: &[Point3<f64>]) -> Option<Solid> {
     solid_of(&points).filter(is_thick)
 }
 
-/// Returns the bounding box of points in millimetres, the magnitude that parry's tolerances are made for.
-fn bounding_box(points: &[Point3<f64>]) -> Aabb {
+/// Returns the bounding box of points, with a margin, in millimetres, the magnitude that parry's tolerances are made
+/// for.
+pub fn bounding_box(points: &[Point3<f64>], margin_mm: f64) -> Aabb {
     let points = points.iter().map(|p| (p.coords / MM).into());
-    Aabb::from_points(points).loosened(1e-3)
+    Aabb::from_points(points).loosened(margin_mm)
 }
 
 /// Returns the polygon below a plane.

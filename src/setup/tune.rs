@@ -9,7 +9,6 @@ use connector::check::problems;
 use connector::tune::{Effort, Stage, Step, Tuned, Tuner, YAW_DEG, tune};
 use insertion::evaluation::Window;
 use insertion::outcome::Outcome;
-use insertion::robot::Robot;
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
 use serde::Serialize;

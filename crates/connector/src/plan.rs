@@ -311,9 +311,8 @@ fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat, play: f64) {
     let upright = libm::atan(play / seat.depth) / DEG + UPRIGHT_DEG;
     let tilt = upright.ceil().max(LEAST_UPRIGHT_DEG) * DEG;
     // Of a tilted plug, the outer end of the stopping part comes down first.
-    let half = seat
-        .stopped_by
-        .map_or(0.0, |[part, _]| width(extent(plug.parts[part].solid.corners(), 1)) / 2.0);
+    let wide = |[part, _]: [usize; 2]| width(extent(plug.parts[part].solid.corners(), 1));
+    let half = seat.stopped_by.map_or(0.0, wide) / 2.0;
     let (length, share) = MISSING;
     let depth = seat.depth * (1.0 - share) - half * libm::sin(tilt) - length;
     let depth = (depth.max(seat.depth / 2.0) / (0.1 * MM)).floor() * 0.1 * MM;

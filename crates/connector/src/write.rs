@@ -156,10 +156,7 @@ fn grip(task: &Task) -> String {
 
 /// Returns the `[strategy]` section of a task file.
 pub fn strategy(strategy: &Strategy) -> String {
-    let rule = match strategy.rule {
-        StartRule::Taught => "start = \"taught\"\n",
-        StartRule::Given => "",
-    };
+    let rule = if strategy.rule == StartRule::Taught { "start = \"taught\"\n" } else { "" };
     let phases: String = strategy.phases.iter().map(phase).collect();
     format!(
         "[strategy]\n# Tilted about x: the tip's edge at -y is the lowest.\ntilt_deg = {}\n\

@@ -135,7 +135,7 @@ const OTHER_UNIT: f64 = 8.0;
 
 pub(super) fn lengths(case: &TaskBodies) -> Vec<Problem> {
     let (task, grip) = (case.task, &case.task.grip);
-    let mut found: Vec<Problem> = [
+    let keys = [
         ("plug.part", width(case.plug.extent(2)), [8.0, 300.0]),
         ("socket.opening_x_mm", width(task.opening[0]), [0.5, 300.0]),
         ("socket.opening_y_mm", width(task.opening[1]), [0.5, 300.0]),
@@ -145,10 +145,9 @@ pub(super) fn lengths(case: &TaskBodies) -> Vec<Problem> {
         ("grip.slip_limit_mm", grip.slip_limit, [0.2, 30.0]),
         ("strategy.start_mm", Vector3::from(task.strategy.start).norm(), [3.0, 500.0]),
         ("success.depth_mm", task.success.depth, [0.5, 150.0]),
-    ]
-    .into_iter()
-    .filter_map(|(key, length, range_mm)| problem(key, length, range_mm))
-    .collect();
+    ];
+    let of_key = |(key, length, range_mm)| problem(key, length, range_mm);
+    let mut found: Vec<Problem> = keys.into_iter().filter_map(of_key).collect();
     // Slabs of a drawn surface may be of any size.
     let bodies = [("plug", &task.plug.parts), ("socket", &task.socket)];
     for (body, parts) in bodies.into_iter().filter(|_| task.success.mated.is_none()) {

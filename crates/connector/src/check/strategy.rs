@@ -42,13 +42,11 @@ fn upward(phase: &Phase) -> Option<Problem> {
     }
     let motion = if touch { "a touch" } else { "the push" };
     let direction = if z > 0.0 { "goes up" } else { "does not go down" };
+    let (z, down) = (mm(z), mm(-z.abs().max(MM)));
     Some(Problem::new(
         key(&phase.name),
-        format!("z is {} mm: {motion} {direction}", mm(z)),
-        format!(
-            "z points out of the socket: give a negative number, as in {}",
-            mm(-z.abs().max(MM))
-        ),
+        format!("z is {z} mm: {motion} {direction}"),
+        format!("z points out of the socket: give a negative number, as in {down}"),
     ))
 }
 
@@ -124,13 +122,10 @@ fn missed_opening(case: &TaskBodies, way: &[Waypoint]) -> Option<Problem> {
     let [left, right] = span(search.iter().map(|point| point.tcp.x));
     let fits = [x[0] - tip[0][0], x[1] - tip[0][1]];
     if right < fits[0].min(fits[1]) || left > fits[0].max(fits[1]) {
-        let at = interval([left, right]);
+        let [at, open] = [[left, right], fits].map(interval);
         return Some(Problem::new(
             "strategy.start_mm",
-            format!(
-                "in x the plug is commanded to {at} mm, but the opening is reached at {}",
-                interval(fits)
-            ),
+            format!("in x the plug is commanded to {at} mm, but the opening is reached at {open}"),
             format!("x = {} mm, or longer moves along x", mm((fits[0] + fits[1]) / 2.0)),
         ));
     }

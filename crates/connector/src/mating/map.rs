@@ -19,10 +19,7 @@ pub enum Envelope {
 impl Envelope {
     /// Returns the height of a column without material.
     pub fn empty(self) -> f32 {
-        match self {
-            Envelope::Upper => -NOWHERE,
-            Envelope::Lower => NOWHERE,
-        }
+        if self == Envelope::Upper { -NOWHERE } else { NOWHERE }
     }
 
     fn outer(self, a: f32, b: f32) -> f32 {

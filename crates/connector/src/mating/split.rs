@@ -225,11 +225,8 @@ impl AxisMaps {
                 let all: f64 = (0..count).map(own).sum();
                 set.iter().map(|j| own(*j)).sum::<f64>() / all.max(f64::MIN_POSITIVE)
             };
-            let mut near: Vec<(f64, usize)> = (0..count)
-                .filter(|i| !set.contains(i))
-                .map(|i| (share(&i), i))
-                .filter(|(share, _)| *share > 0.0)
-                .collect();
+            let others = (0..count).filter(|i| !set.contains(i)).map(|i| (share(&i), i));
+            let mut near: Vec<(f64, usize)> = others.filter(|(share, _)| *share > 0.0).collect();
             near.sort_by(|a, b| b.0.total_cmp(&a.0));
             let next = near.into_iter().take(MOST_TRIED).filter_map(|(_, i)| {
                 let mut more = set.clone();

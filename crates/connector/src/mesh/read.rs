@@ -76,12 +76,10 @@ fn binary(bytes: &[u8]) -> Option<Vec<Triangle>> {
     if count.checked_mul(RECORD)? != records.len() {
         return None;
     }
-    let number = |bytes: &[u8]| {
-        bytes.try_into().map_or(f64::NAN, |four| f64::from(f32::from_le_bytes(four)))
-    };
+    let number = |bytes: &[u8; 4]| f64::from(f32::from_le_bytes(*bytes));
     let triangle = |record: &[u8]| {
         // The first three numbers are the normal, which also follows from the order of the corners.
-        let values: Vec<f64> = record[12..48].chunks_exact(4).map(number).collect();
+        let values: Vec<f64> = record[12..48].as_chunks().0.iter().map(number).collect();
         std::array::from_fn(|i| Point3::new(values[3 * i], values[3 * i + 1], values[3 * i + 2]))
     };
     Some(records.chunks_exact(RECORD).map(triangle).collect())
@@ -170,11 +168,8 @@ pub fn pick(bodies: &[Body], names: &[String], file: &str) -> Result<[Vec<Triang
     let mut picked = [Vec::new(), Vec::new()];
     if let Some(name) = names.iter().find(|name| of.iter().all(|body| body.name != **name)) {
         let known: Vec<_> = bodies.iter().map(|body| format!("`{}`", body.name)).collect();
-        let problem = format!(
-            "has no body `{name}`; available: {}, and shells 1 to {}",
-            known.join(", "),
-            of.len()
-        );
+        let (known, last) = (known.join(", "), of.len());
+        let problem = format!("has no body `{name}`; available: {known}, and shells 1 to {last}");
         return Err(Place::file(file).fault(problem));
     }
     for body in of {

@@ -7,7 +7,7 @@ pub use tuner::{Candidate, ENOUGH_MM, MeasuredWindow, Tuner};
 
 use crate::body::ConvexBody;
 use crate::plan::{Family, has_core};
-use ask_tell::{Grid, Observation, OptimizerKind};
+use ask_tell::{Grid, GridPoint, Observation, OptimizerKind};
 use input::InputError;
 use input::units::{DEG, MM};
 use insertion::evaluation::INDIFFERENCE_MM;
@@ -219,23 +219,17 @@ impl Tuned {
             if points.is_empty() {
                 break;
             }
-            let tried: Vec<_> = points
-                .par_iter()
-                .map(|point| {
-                    let (strategy, change) =
-                        variables::strategy_at(&task, &free, &grid.unit(point));
-                    (change, tuner.taught(&strategy).ok())
-                })
-                .collect();
+            let taught = |point: &GridPoint| {
+                let (strategy, change) = variables::strategy_at(&task, &free, &grid.unit(point));
+                (change, tuner.taught(&strategy).ok())
+            };
+            let tried: Vec<_> = points.par_iter().map(taught).collect();
             if tuner.stopped() {
                 break;
             }
-            let score = |tried: &Option<Candidate>| tried.as_ref().map(|tried| tried.score);
-            let told: Vec<_> = points
-                .into_iter()
-                .zip(&tried)
-                .map(|(point, (_, tried))| Observation::new(point, score(tried)))
-                .collect();
+            let scores = tried.iter().map(|(_, tried)| tried.as_ref().map(|tried| tried.score));
+            let told = points.into_iter().zip(scores);
+            let told: Vec<_> = told.map(|(point, score)| Observation::new(point, score)).collect();
             optimizer.tell(&told);
             let tried = tried.into_iter().filter_map(|(change, tried)| Some((change, tried?)));
             self.add(Stage::Search, tried.collect(), effort);

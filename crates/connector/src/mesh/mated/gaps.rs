@@ -162,7 +162,7 @@ impl Faces {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::mated::{Pair, Request, task};
+    use crate::mesh::mated::{Pair, task};
     use insertion::task::{Solid, geometry};
 
     /// Returns the faces of boxes with these smallest and largest corners, mm.
@@ -209,8 +209,7 @@ mod tests {
             engaged: 5.0 * MM,
             play,
         };
-        let request = Request { name: "tube", like: None, handle: None };
-        let made = task(&pair, &request);
+        let made = task(&pair, "tube", None, None);
         assert_eq!((made.difference, made.closeup), (None, None));
         let raised: Vec<Triangle> =
             plug.iter().map(|face| face.map(|p| p + Vector3::z() * 5.0 * MM)).collect();
@@ -225,7 +224,7 @@ mod tests {
         assert_eq!(difference(&bodies, &[]), None);
         // A wall that is 0.05 mm off, and one that is not there.
         let moved: Vec<Triangle> = socket.iter().map(|face| face.map(|p| p * 1.025)).collect();
-        let wrong = task(&Pair { drawn: [&plug, &moved], ..pair }, &request);
+        let wrong = task(&Pair { drawn: [&plug, &moved], ..pair }, "tube", None, None);
         let off = wrong.difference.unwrap();
         assert!((off.gaps[0] - off.gaps[1]).abs() > 0.03 * MM, "{off:?}");
         assert!(wrong.closeup.is_some_and(|svg| svg.starts_with("<svg")));

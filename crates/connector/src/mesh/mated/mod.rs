@@ -47,16 +47,6 @@ pub struct Pair<'a> {
     pub play: [(Vector3<f64>, f64); 2],
 }
 
-/// Settings of the task.
-pub struct Request<'a> {
-    /// Name of the task.
-    pub name: &'a str,
-    /// Task from which all keys but the shapes are taken.
-    pub like: Option<&'a Task>,
-    /// Size of a handle (x, between the jaws, length), m, in place of the plug's own faces.
-    pub handle: Option<[f64; 3]>,
-}
-
 /// Task derived from a pair.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PairTask {
@@ -124,8 +114,9 @@ impl AlignedPair {
     }
 }
 
-/// Returns the task of a pair in its mated pose.
-pub fn task(pair: &Pair, request: &Request) -> PairTask {
+/// Returns the task of a pair in its mated pose, with this name; all keys but the shapes are taken from `like`, and the
+/// plug has a handle of a size (x, between the jaws, length), m, in place of its own faces, if one is given.
+pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>) -> PairTask {
     // Rounded to the grid of files, so that corners stay on it.
     let pair = &Pair { engaged: snap(pair.engaged), ..*pair };
     let first = pair.jaws.first().copied().unwrap_or_else(Vector3::y);
@@ -137,11 +128,11 @@ pub fn task(pair: &Pair, request: &Request) -> PairTask {
         rejected = rejected.or(larger);
         Some((placed, grasp?))
     };
-    let own = if request.handle.is_some() { None } else { pair.jaws.iter().find_map(held) };
+    let own = if size.is_some() { None } else { pair.jaws.iter().find_map(held) };
     let handle = own.is_none();
     let (placed, grasp) = own.unwrap_or_else(|| {
         let placed = AlignedPair::new(pair, first);
-        let size = request.handle.unwrap_or(HANDLE);
+        let size = size.unwrap_or(HANDLE);
         let grasp = grip::handle(&placed.plug, size, pair.engaged + high(&placed));
         (placed, grasp)
     });
@@ -159,14 +150,14 @@ pub fn task(pair: &Pair, request: &Request) -> PairTask {
     let closeup = place.map(|(pose, place)| closeup::svg(&bodies, &pose, place));
     let [mut plug, socket] = parts;
     plug.push(grasp.part.clone());
-    let mut task = draft::blank(request.name, request.like);
+    let mut task = draft::blank(name, like);
     task.plug.mass = draft::DENSITY * volume(&placed.plug).max(geometry::volume(&grasp.part.solid));
     (task.plug.parts, task.socket) = (plug, socket);
     let play = placed.play.map(|play| play.max(LEAST_PLAY));
     task.opening = opening(&placed.plug, pair.engaged, play);
     (task.grip.shoulder_z, task.grip.faces_y) = (grasp.shoulder, grasp.faces);
     let mut task = plan::mated(task, pair.engaged, play);
-    let like = request.like.map(|like| plan::Family::Like(Box::new(like.clone())));
+    let like = like.map(|like| plan::Family::Like(Box::new(like.clone())));
     if let Some(strategy) = like.and_then(|family| family.strategy_for(&task)) {
         task.strategy = strategy;
     }
@@ -209,11 +200,9 @@ fn checked_skin(
 }
 
 fn raised(solid: Solid, by: f64) -> Solid {
+    let up = Vector3::z() * by;
     match solid {
-        Solid::Box { min, max } => {
-            let up = Vector3::z() * by;
-            Solid::Box { min: min + up, max: max + up }
-        }
+        Solid::Box { min, max } => Solid::Box { min: min + up, max: max + up },
         Solid::Prism { axis: 2, outline, span } => {
             Solid::Prism { axis: 2, outline, span: span.map(|z| z + by) }
         }
@@ -221,9 +210,7 @@ fn raised(solid: Solid, by: f64) -> Solid {
             let outline = outline.into_iter().map(|[a, z]| [a, z + by]).collect();
             Solid::Prism { axis, outline, span }
         }
-        other => Solid::Hull {
-            points: other.corners().into_iter().map(|p| p + Vector3::z() * by).collect(),
-        },
+        other => Solid::Hull { points: other.corners().into_iter().map(|p| p + up).collect() },
     }
 }
 

@@ -55,9 +55,8 @@ pub fn skin(
     fitted: impl Fn(Solid) -> Option<Solid>,
 ) -> Vec<Solid> {
     let facets = Facets::new(triangles);
-    let reached: Vec<bool> = (0..facets.faces.len())
-        .map(|face| reached(&facets.corners(face), &facets.normals[face]))
-        .collect();
+    let reached = |face: usize| reached(&facets.corners(face), &facets.normals[face]);
+    let reached: Vec<bool> = (0..facets.faces.len()).map(reached).collect();
     let mut whole = vec![false; facets.faces.len()];
     let mut solids = Vec::new();
     for shell in facets.shells() {
@@ -108,9 +107,8 @@ struct FaceIndex<'a> {
 
 impl<'a> FaceIndex<'a> {
     fn new(facets: &'a Facets, flat_of: &'a [usize]) -> Self {
-        let boxes: Vec<_> = (0..facets.faces.len())
-            .map(|face| bounding_box(&facets.corners(face), AROUND_MM))
-            .collect();
+        let boxed = |face: usize| bounding_box(&facets.corners(face), AROUND_MM);
+        let boxes: Vec<_> = (0..facets.faces.len()).map(boxed).collect();
         FaceIndex { facets, flat_of, tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) }
     }
 

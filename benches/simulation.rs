@@ -1,7 +1,7 @@
 //! Time of what is simulated: `cargo bench --bench simulation`.
 
 use connector::mating::mates;
-use connector::mesh::mated::{self, Pair, Request};
+use connector::mesh::mated::{self, Pair};
 use contact::direct::Direct;
 use contact::scene::{Body, Friction, Geom, Inertia, Motion, Pose, Scene, Shape};
 use contact::{Engine, World};
@@ -241,7 +241,7 @@ fn shell() -> Task {
         engaged: 6.2 * MM,
         play: [0, 1].map(|axis| (Vector3::ith(axis, 1.0), 0.1 * MM)),
     };
-    let made = mated::task(&pair, &Request { name: "shell", like: None, handle: None });
+    let made = mated::task(&pair, "shell", None, None);
     assert_eq!(made.difference, None);
     made.task
 }

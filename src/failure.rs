@@ -2,7 +2,6 @@
 
 use calibration::experiments::Problems;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use connector::draft::DraftError;
 use finray::FingerError;
 use input::shipped::ShippedError;
 use input::{Fault, InputError, Place, Placed};
@@ -43,7 +42,7 @@ fn place<E: Placed + Error + 'static>(error: &(dyn Error + 'static)) -> Option<P
 }
 
 /// Functions that return the place of an error, one for each type of error that has one.
-const PLACED: [fn(&(dyn Error + 'static)) -> Option<Place>; 10] = [
+const PLACED: [fn(&(dyn Error + 'static)) -> Option<Place>; 9] = [
     place::<Usage>,
     place::<Fault>,
     place::<InputError>,
@@ -52,7 +51,6 @@ const PLACED: [fn(&(dyn Error + 'static)) -> Option<Place>; 10] = [
     place::<SurrogateError>,
     place::<FingerError>,
     place::<DesignError>,
-    place::<DraftError>,
     place::<StudyError>,
 ];
 

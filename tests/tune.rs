@@ -1,9 +1,8 @@
 //! A start and a strategy by which a connector inserts, as a user looks for them.
 
 use crate::common::{Studies, optimize};
-use connector::tune::{Effort, Stage, tune};
+use connector::tune::{Effort, Stage, Tuner, tune};
 use finger_opt::setup::files::robot;
-use finger_opt::setup::tune::tuner;
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
 use serde_json::Value;
@@ -76,7 +75,7 @@ fn where_nothing_inserts_it_is_said_with_what_stopped_the_plug() {
 fn an_interrupt_leaves_what_was_tried_until_then() {
     let task = Task::parse(&off(), "own.toml").unwrap();
     let (robot, stop) = (robot("servo").unwrap(), AtomicBool::new(false));
-    let tuner = tuner(&task, &robot, EngineKind::Direct, &stop).unwrap();
+    let tuner = Tuner::new(&task, &robot, EngineKind::Direct, &stop);
     let quiet = |_: &str, _, _, _| ();
     let effort = |last, progress| Effort { last, until_enough: false, seed: 0, progress };
     let whole = tune(&tuner, &effort(Stage::Families, &quiet)).unwrap();

@@ -7,7 +7,7 @@ use crate::python::Format;
 use connector::body::{extent, width};
 use connector::mating::plugs;
 use connector::mesh::axes::{Unit, value};
-use connector::mesh::{Body, Files, Triangle, is_step, pick, read, separate};
+use connector::mesh::{Body, Files, Triangle, is_step, pick, read, shells};
 use input::units::MM;
 use std::path::{Path, PathBuf};
 
@@ -152,7 +152,7 @@ fn split(
     bodies: Vec<Body>,
     given: Option<Unit>,
 ) -> Result<([Vec<Triangle>; 2], String), Failure> {
-    let bodies = separate(bodies);
+    let bodies = if bodies.len() > 1 { bodies } else { shells(&bodies) };
     let whole: Vec<Triangle> = bodies.iter().flat_map(|body| body.triangles.clone()).collect();
     let (unit, _) = unit([file, file], [&whole, &whole], given)?;
     let metres = unit.metres();

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use connector::body::{extent, width};
 use connector::mating::{Mate, MatingResult, assembled, mates};
 use connector::mesh::axes::{Along, Jaws, Unit, value};
-use connector::mesh::mated::{GAP, HANDLE, Interference, Pair, PairTask, Request, TOLERANCE, task};
+use connector::mesh::mated::{GAP, HANDLE, Interference, Pair, PairTask, TOLERANCE, task};
 use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
 use input::units::MM;
 use insertion::task::Task;
@@ -117,8 +117,7 @@ pub fn mated(
         engaged: depth,
         play: [0, 1].map(|i| (across[i], mate.play_m[i])),
     };
-    let made =
-        task(&pair, &Request { name: options.name, like: options.like, handle: options.handle });
+    let made = task(&pair, options.name, options.like, options.handle);
     check_drawing(files, &made, options.closeup)?;
     let long = width(extent(raised.iter().flatten(), out.iamax()));
     findings.extend(described(&mate, long, &made, options));

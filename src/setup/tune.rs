@@ -9,25 +9,10 @@ use connector::check::problems;
 use connector::tune::{Effort, Stage, Step, Tuned, Tuner, YAW_DEG, tune};
 use insertion::evaluation::Window;
 use insertion::outcome::Outcome;
-use insertion::robot::Robot;
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
-
-/// Returns the tuner of a task.
-///
-/// # Errors
-/// If no measured fingers are shipped.
-pub fn tuner<'a>(
-    task: &'a Task,
-    robot: &'a Robot,
-    engine: EngineKind,
-    stop: &'a AtomicBool,
-) -> Result<Tuner<'a>, Failure> {
-    Tuner::new(task, robot, engine, stop)
-        .ok_or_else(|| Failure::running("no measured fingers are shipped"))
-}
 
 /// Tunes a new task: teaches its start and, if that is not enough, tries the strategies of the families. A task with
 /// problems is not tuned.
@@ -60,7 +45,7 @@ pub fn tune_until_success(
 ) -> Result<Tuned, Failure> {
     let robot = robot(robot_name)?;
     let effort = Effort { last, until_enough: true, seed: 0, progress: &|_, _, _, _| () };
-    let tuned = tune(&tuner(task, &robot, engine, stop)?, &effort).map_err(Failure::input)?;
+    let tuned = tune(&Tuner::new(task, &robot, engine, stop), &effort).map_err(Failure::input)?;
     not_stopped(stop)?;
     Ok(tuned)
 }

@@ -70,24 +70,22 @@ impl<'a> ConvexBody<'a> {
         ConvexBody { latch, ..ConvexBody::new(&plug.parts) }
     }
 
-    /// Returns the deepest overlap with another body; overlaps of the latch are ignored.
-    pub fn overlap(&self, own: &Pose, other: &ConvexBody, at: &Pose) -> Option<Overlap> {
+    /// Returns the deepest overlap, at a pose in the frame of another body, with that body; overlaps of the latch are
+    /// ignored.
+    pub fn overlap(&self, own: &Pose, other: &ConvexBody) -> Option<Overlap> {
         let stiff = |overlap: &Overlap| !self.latch.contains(&overlap.parts[0]);
-        let overlaps = self.overlaps(own, other, at).filter(stiff);
+        let overlaps = self.overlaps(own, other).filter(stiff);
         overlaps.max_by(|a, b| a.depth.total_cmp(&b.depth))
     }
 
-    /// Returns all overlaps with another body, in the order of the parts.
-    pub fn overlaps<'b>(
-        &'b self,
-        own: &'b Pose,
-        other: &'b ConvexBody,
-        at: &'b Pose,
-    ) -> impl Iterator<Item = Overlap> + 'b {
-        self.pairs_within(0.0, own, other, at).filter_map(|parts| {
+    /// Returns all overlaps, at a pose in the frame of another body, with that body, in the order of the parts.
+    pub fn overlaps(&self, own: &Pose, other: &ConvexBody) -> impl Iterator<Item = Overlap> {
+        self.pairs_within(0.0, own, other).into_iter().filter_map(move |parts| {
             let [first, second] = [&self.shapes[parts[0]], &other.shapes[parts[1]]];
-            let (depth, normal) = first.penetration(own, second, at)?;
-            Some(Overlap { depth, normal, parts })
+            let apart = (own * first.centre - second.centre).norm() > first.radius + second.radius;
+            let contact = if apart { None } else { first.contact(own, second, 0.0) }?;
+            let (depth, normal) = (-contact.dist * MM, Vector3::from(contact.normal1));
+            (contact.dist < 0.0).then_some(Overlap { depth, normal, parts })
         })
     }
 
@@ -100,34 +98,25 @@ impl<'a> ConvexBody<'a> {
         wide: f64,
         counts: impl Fn(&Point3<f64>) -> bool,
     ) -> Option<(f64, Point3<f64>)> {
-        let pairs = self.pairs_within(wide, own, other, &Pose::identity());
         let gap = |[i, j]: [usize; 2]| {
-            let [a, b] = [&self.shapes[i], &other.shapes[j]];
-            let [here, there] = [own * a.pose, b.pose].map(|at| shapes::pose(&at, MILLIMETRES));
-            let found = query::contact(&here, &*a.shape, &there, &*b.shape, wide * MILLIMETRES);
-            let found = found.ok().flatten()?;
+            let found = self.shapes[i].contact(own, &other.shapes[j], wide * MILLIMETRES)?;
             let place = Point3::from(Vector3::from(found.point1) * MM);
             counts(&place).then_some((found.dist.max(0.0) * MM, place))
         };
-        pairs.filter_map(gap).min_by(|a, b| a.0.total_cmp(&b.0))
+        let gaps = self.pairs_within(wide, own, other).into_iter().filter_map(gap);
+        gaps.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Returns the pairs of parts whose boxes are within a distance, m, of one another, in order.
-    fn pairs_within<'b>(
-        &'b self,
-        distance: f64,
-        own: &Pose,
-        other: &'b ConvexBody,
-        at: &Pose,
-    ) -> impl Iterator<Item = [usize; 2]> + 'b {
-        let relative = at.inv_mul(own);
-        (0..self.shapes.len()).flat_map(move |i| {
-            let boxed = self.shapes[i].boxed(&relative).loosened(distance * MILLIMETRES);
-            let near = other.tree.intersect_aabb(&boxed).map(|j| j as usize);
-            let mut near: Vec<usize> = near.collect();
-            near.sort_unstable();
-            near.into_iter().map(move |j| [i, j])
-        })
+    fn pairs_within(&self, distance: f64, own: &Pose, other: &ConvexBody) -> Vec<[usize; 2]> {
+        let near = |(i, shape): (usize, &PlacedShape)| {
+            let boxed = shape.boxed(own).loosened(distance * MILLIMETRES);
+            let near = other.tree.intersect_aabb(&boxed).map(|j| [i, j as usize]);
+            near.collect::<Vec<_>>()
+        };
+        let mut pairs: Vec<_> = self.shapes.iter().enumerate().flat_map(near).collect();
+        pairs.sort_unstable();
+        pairs
     }
 
     /// Returns the gap between two parts of this body, m; 0 if they touch.
@@ -187,17 +176,10 @@ impl PlacedShape {
         part.transform_by(&shapes::pose(at, MILLIMETRES))
     }
 
-    /// Returns the penetration depth of two parts, m, and its normal, for poses of their bodies.
-    fn penetration(&self, own: &Pose, other: &Self, at: &Pose) -> Option<(f64, Vector3<f64>)> {
-        let apart = (own * self.centre - at * other.centre).norm() > self.radius + other.radius;
-        if apart {
-            return None;
-        }
-        let here = shapes::pose(&(own * self.pose), MILLIMETRES);
-        let there = shapes::pose(&(at * other.pose), MILLIMETRES);
-        let contact = query::contact(&here, &*self.shape, &there, &*other.shape, 0.0);
-        let contact = contact.ok().flatten()?;
-        (contact.dist < 0.0).then(|| (-contact.dist * MM, Vector3::from(contact.normal1)))
+    /// Returns the contact, at a pose in the frame of another body, with a part of that body within a distance; in mm.
+    fn contact(&self, own: &Pose, other: &Self, within: f64) -> Option<query::Contact> {
+        let [here, there] = [own * self.pose, other.pose].map(|at| shapes::pose(&at, MILLIMETRES));
+        query::contact(&here, &*self.shape, &there, &*other.shape, within).ok().flatten()
     }
 }
 

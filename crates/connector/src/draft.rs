@@ -1,15 +1,13 @@
 //! Task from a few dimensions: plug, clearance and the body that the fingers hold.
 
-use super::mesh::mated::ASIDE;
 use super::pins::Pins;
-use super::plan::{self, PlanError};
+use super::plan;
 use input::units::MM;
-use input::{Place, Placed};
 use insertion::finger::Pad;
 use insertion::task::finger::FingerModel;
 use insertion::task::{
-    Friction, Grip, Hold, Limits, Mated, PadTorsion, Part, Plug, Solid, StartRule, Strategy,
-    Success, Task, geometry,
+    Friction, Grip, Hold, Limits, PadTorsion, Part, Plug, Solid, StartRule, Strategy, Success,
+    Task, geometry,
 };
 use nalgebra::Vector3;
 use parameters::numbers;
@@ -109,52 +107,11 @@ pub struct Dimensions {
     pub body: Option<Size>,
 }
 
-/// Error of a draft.
-#[derive(Debug, thiserror::Error, PartialEq)]
-pub enum DraftError {
-    /// Clearance that is not less than the plug's smallest side; both in mm.
-    #[error("--clearance: is {0} mm; it must be less than the smallest side of the plug, {1} mm")]
-    TooLoose(f64, f64),
-    /// Pitch that leaves no material between the holes, and the side of a hole; both in mm.
-    #[error("--pitch-mm: is {0} mm; it must be more than a hole, {1:.2} mm")]
-    NarrowPitch(f64, f64),
-    /// Body that does not cover all pins: width and height of the body and of the pins, mm.
-    #[error("--body: is {0} x {1} mm; it must cover all pins, {2:.2} x {3:.2} mm")]
-    NarrowBody(f64, f64, f64, f64),
-    /// Key as wide as the plug or wider; both in mm.
-    #[error("--key: is {0} mm wide; it must be narrower than the plug, {1} mm")]
-    WideKey(f64, f64),
-    /// Plug or body too short for the pads: its option, its length and the smallest accepted length, mm.
-    #[error(
-        "{0}: is {1} mm long; the pads are {height} mm high and must stay outside of the socket, so \
-         at least {2:.1} mm are needed",
-        height = Pad::PUBLISHED.height / MM
-    )]
-    TooShort(&'static str, f64, f64),
-    /// No strategy can be derived.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-}
-
-impl Placed for DraftError {
-    fn place(&self) -> Place {
-        match self {
-            DraftError::TooLoose(..) => Place::option("--clearance"),
-            DraftError::NarrowBody(..) => Place::option("--body"),
-            DraftError::NarrowPitch(..) => Place::option("--pitch-mm"),
-            DraftError::WideKey(..) => Place::option("--key"),
-            DraftError::TooShort(option, ..) => Place::option(option),
-            DraftError::Plan(_) => Place::default(),
-        }
-    }
-}
-
 /// Creates a task without shapes; friction, grasp force and fingers are those of the shipped tasks, or of `like`.
 pub fn blank(name: &str, like: Option<&Task>) -> Task {
     let finger_torsion = PadTorsion::Points(30.0 * MM);
     let friction = Friction { finger_plug: 1.0, finger_torsion, plug_socket: 0.2 };
     let (force, hold) = like.map_or((5.0, Hold::Always), |task| (task.grip.force, task.grip.hold));
-    let slip_limit = Pad::PUBLISHED.height / 2.0;
     Task {
         name: name.to_owned(),
         description: String::new(),
@@ -162,7 +119,7 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
         plug: Plug::default(),
         socket: Vec::new(),
         opening: [[0.0; 2]; 2],
-        grip: Grip { force, hold, slip_limit, ..Grip::default() },
+        grip: Grip { force, hold, ..Grip::default() },
         friction: like.map_or(friction, |task| task.friction),
         finger: like.map_or(FingerModel::default(), |task| task.finger),
         strategy: Strategy { tilt: 0.0, start: [0.0; 3], rule: StartRule::Given, phases: vec![] },
@@ -175,26 +132,35 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
 /// Creates a task with these dimensions; everything else is taken from `like`.
 ///
 /// # Errors
-/// If a dimension does not fit the others or the pads, or no strategy can be derived.
-pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task, DraftError> {
+/// If a dimension does not fit the others or the pads, or no strategy can be derived; the text begins with the option
+/// of the dimension, if there is one.
+pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task, String> {
     let (plug, body) = (size.plug, size.body);
     let thickness = size.pins.map_or(plug.width.min(plug.height), |pins| pins.side);
+    let [width, height, clearance] = [plug.width, plug.height, size.clearance].map(|v| v / MM);
     if size.clearance >= thickness {
-        return Err(DraftError::TooLoose(size.clearance / MM, thickness / MM));
+        return Err(format!(
+            "--clearance: is {clearance} mm; it must be less than the smallest side of the plug, {} mm",
+            thickness / MM
+        ));
     }
     if let Some(Pins { pitch, side, .. }) = size.pins
         && side + size.clearance >= pitch
     {
-        return Err(DraftError::NarrowPitch(pitch / MM, (side + size.clearance) / MM));
+        let [pitch, hole] = [pitch, side + size.clearance].map(|v| v / MM);
+        return Err(format!(
+            "--pitch-mm: is {pitch} mm; it must be more than a hole, {hole:.2} mm"
+        ));
     }
     if let (Some(_), Some(body)) = (size.pins, body)
         && (body.width < plug.width || body.height < plug.height)
     {
-        let [width, height] = [body.width, body.height].map(|v| v / MM);
-        return Err(DraftError::NarrowBody(width, height, plug.width / MM, plug.height / MM));
+        let [wide, high] = [body.width, body.height].map(|v| v / MM);
+        return Err(format!(
+            "--body: is {wide} x {high} mm; it must cover all pins, {width:.2} x {height:.2} mm"
+        ));
     }
     let mut task = blank(name, like);
-    let [width, height, clearance] = [plug.width, plug.height, size.clearance].map(|v| v / MM);
     let (shape, mut parts) = match (size.pins, size.round) {
         (Some(pins), _) => {
             let [rows, columns] = pins.count;
@@ -210,7 +176,10 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     task.description = format!("{shape}, {clearance} mm clearance");
     if let Some([wide, high]) = size.key {
         if wide + size.clearance >= plug.width {
-            return Err(DraftError::WideKey(wide / MM, width));
+            let wide = wide / MM;
+            return Err(format!(
+                "--key: is {wide} mm wide; it must be narrower than the plug, {width} mm"
+            ));
         }
         let radius = plug.width / 2.0;
         // The key starts within the cylinder, and overlaps it by no more than parts may.
@@ -233,7 +202,13 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
         None => ("--plug", pads / (1.0 - INSERTED_SHARE)),
     };
     if held.length < least {
-        return Err(DraftError::TooShort(option, held.length / MM, least / MM));
+        return Err(format!(
+            "{option}: is {} mm long; the pads are {} mm high and must stay outside of the socket, so \
+             at least {:.1} mm are needed",
+            held.length / MM,
+            Pad::PUBLISHED.height / MM,
+            least / MM
+        ));
     }
     (task.opening, task.socket) = housing(size, floor);
     if let Some(leg) = size.chamfer {
@@ -241,11 +216,9 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     }
     if size.pins.is_some() {
         // A pin in the hole of its neighbour is not a success.
-        let lateral = libm::hypot(size.clearance, size.clearance) / 2.0 + ASIDE;
-        task.success.mated = Some(Mated { tip: [0.0, 0.0, -plug.length], lateral });
-        return Ok(plan::mated(&task));
+        return Ok(plan::mated(task, plug.length, [size.clearance; 2]));
     }
-    Ok(plan::complete(&task)?)
+    plan::complete(&task)
 }
 
 fn upright(name: &str, size: Size, from: f64) -> Part {
@@ -404,7 +377,7 @@ mod tests {
         };
         assert!(draft(2.3 * MM).is_ok());
         for clearance in [2.4 * MM, 10.0 * MM, f64::INFINITY] {
-            let error = draft(clearance).unwrap_err().to_string();
+            let error = draft(clearance).unwrap_err();
             assert!(error.contains("less than the smallest side of the plug, 2.4 mm"), "{error}");
         }
         for size in ["8x2.4x1e308", "8x0.1x25", "nanx2x25", "-8x2x25"] {

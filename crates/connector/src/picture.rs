@@ -1,7 +1,7 @@
 //! SVG of a task: plug at the start and seated, socket, fingertips, search path, clearances.
 
-use super::body::{ConvexBody, extent, span, width};
-use super::seat::{self, Seat, SeatSearch, Waypoint, section};
+use super::body::{extent, span, width};
+use super::seat::{self, Seat, TaskBodies, Waypoint, section};
 use contact::scene::{Geom, Pose};
 use drawing::{Drawing, Font, Style, View};
 use input::units::MM;
@@ -38,13 +38,8 @@ pub fn svg(task: &Task) -> String {
     stacked(&[("", task)])
 }
 
-/// Draws the task before and after a change of its strategy, one below the other.
-pub fn before_and_after(before: &Task, after: &Task) -> String {
-    stacked(&[("before: ", before), ("after: ", after)])
-}
-
 /// Draws tasks one below the other, each with a prefix of its description.
-fn stacked(tasks: &[(&str, &Task)]) -> String {
+pub fn stacked(tasks: &[(&str, &Task)]) -> String {
     let mut drawing = Drawing::default();
     drawing.white_background();
     for (row, (prefix, task)) in tasks.iter().enumerate() {
@@ -94,10 +89,10 @@ impl Frame {
 
 impl<'a> Picture<'a> {
     fn new(task: &'a Task) -> Self {
-        let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
-        let waypoints = seat::waypoints(task, &plug);
-        let seat = SeatSearch::new(task, &plug, &socket).deepest();
-        let tip = section(&plug, task.success.depth.min(seat.depth));
+        let bodies = TaskBodies::new(task);
+        let waypoints = seat::waypoints(task, &bodies.plug);
+        let seat = bodies.deepest();
+        let tip = section(&bodies.plug, task.success.depth.min(seat.depth));
         let start = seat::plug_pose(task, waypoints[0].tcp);
         Picture { task, waypoints, start, seat, tip }
     }

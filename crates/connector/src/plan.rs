@@ -8,7 +8,7 @@
 
 use super::body::{ConvexBody, extent, width};
 use super::hold::pad_contacts;
-use super::seat::{self, Seat, SeatSearch, section};
+use super::seat::{self, Seat, TaskBodies, section};
 use input::shipped::TASKS;
 use input::units::{DEG, MM};
 use insertion::finger::Pad;
@@ -50,42 +50,44 @@ const MISSING: (f64, f64) = (0.2 * MM, 0.02);
 const WITHIN: f64 = 0.9;
 /// Smallest depth at which a plug counts as entered, m.
 const LEAST_DEPTH: f64 = 1.0 * MM;
+/// Allowance for the lateral place of a mated plug beyond its play, m.
+const ASIDE: f64 = 0.1 * MM;
 /// Distance below the top at which the opening of a mated plug is measured, m.
 pub(crate) const BELOW_TOP: f64 = 0.1 * MM;
 
-#[derive(Debug, thiserror::Error, PartialEq)]
-pub enum PlanError {
-    /// The plug does not enter: depth, mm, and the parts of plug and socket that meet there.
-    #[error(
-        "the plug does not go into the socket: upright it stops {0:.2} mm below the top, \
-         where `{1}` meets `{2}`; make the opening wider or the plug smaller"
-    )]
-    NoEntry(f64, String, String),
-    #[error("the plug falls through its socket: give the socket a floor, or the plug a shoulder")]
-    NoFloor,
-}
-
 /// Returns the task with grasp point, strategy and success derived from shapes, opening, shoulder and faces.
-pub fn complete(task: &Task) -> Result<Task, PlanError> {
-    let (plug, socket) = (ConvexBody::new(&task.plug.parts), ConvexBody::new(&task.socket));
-    let seat = SeatSearch::new(task, &plug, &socket).deepest();
-    let Some([by, on]) = seat.stopped_by else { return Err(PlanError::NoFloor) };
+///
+/// # Errors
+/// If the plug does not enter, or falls through the socket.
+pub fn complete(task: &Task) -> Result<Task, String> {
+    let bodies = TaskBodies::new(task);
+    let seat = bodies.deepest();
+    let no_floor =
+        "the plug falls through its socket: give the socket a floor, or the plug a shoulder";
+    let [by, on] = seat.stopped_by.ok_or(no_floor)?;
     if seat.depth < LEAST_DEPTH {
-        let (by, on) = (plug.parts[by].name.clone(), socket.parts[on].name.clone());
-        return Err(PlanError::NoEntry(seat.depth / MM, by, on));
+        return Err(format!(
+            "the plug does not go into the socket: upright it stops {:.2} mm below the top, \
+             where `{}` meets `{}`; make the opening wider or the plug smaller",
+            seat.depth / MM,
+            task.plug.parts[by].name,
+            task.socket[on].name
+        ));
     }
-    Ok(planned(task.clone(), &plug, &socket, &seat))
+    Ok(planned(&bodies, &seat))
 }
 
-/// Returns the task with grasp point, strategy and success derived from shapes, opening, shoulder, faces and mated
-/// pose.
-pub fn mated(task: &Task) -> Task {
-    let (plug, socket) = (ConvexBody::new(&task.plug.parts), ConvexBody::new(&task.socket));
-    let seat = SeatSearch::new(task, &plug, &socket).deepest();
-    planned(task.clone(), &plug, &socket, &seat)
+/// Returns the task with grasp point, strategy and success derived from shapes, opening, shoulder, faces and the mated
+/// pose, at a depth on the axis, m, with a play in x and in y, m.
+pub fn mated(mut task: Task, depth: f64, play: [f64; 2]) -> Task {
+    let lateral = libm::hypot(play[0], play[1]) / 2.0 + ASIDE;
+    task.success.mated = Some(Mated { tip: [0.0, 0.0, -depth], lateral });
+    let bodies = TaskBodies::new(&task);
+    planned(&bodies, &bodies.deepest())
 }
 
-fn planned(mut task: Task, plug: &ConvexBody, socket: &ConvexBody, seat: &Seat) -> Task {
+fn planned(bodies: &TaskBodies, seat: &Seat) -> Task {
+    let (mut task, plug) = (bodies.task.clone(), &bodies.plug);
     let pads = pad_contacts(plug, task.grip.shoulder_z, Some(task.grip.faces_y));
     let cover = pads.cover[0].min(pads.cover[1]);
     task.grip.tcp_z = round_mm(task.grip.shoulder_z - BELOW_SHOULDER.min(0.8 * cover));
@@ -93,7 +95,7 @@ fn planned(mut task: Task, plug: &ConvexBody, socket: &ConvexBody, seat: &Seat) 
     let play = match task.success.mated {
         // The opening is the plug with its play, whatever springs were left out.
         Some(_) => width(task.opening[1]) - width(section(plug, seat.depth - BELOW_TOP)[1]),
-        None => SeatSearch::new(&task, plug, socket).play(WITHIN * seat.depth, seat.at, 1),
+        None => bodies.play(WITHIN * seat.depth, seat.at, 1),
     };
     success(&mut task, plug, seat, play);
     let height = |part: &&Part| extent(part.solid.corners(), 2)[0];
@@ -174,9 +176,9 @@ impl Family {
 
     /// Returns the family's strategy for the shapes of a task; `None` if its plug does not go in.
     pub fn strategy_for(&self, task: &Task) -> Option<Strategy> {
-        let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
-        let seat = SeatSearch::new(task, &plug, &socket).deepest();
-        (seat.depth >= LEAST_DEPTH).then(|| self.strategy(task, &plug, seat.depth))
+        let bodies = TaskBodies::new(task);
+        let seat = bodies.deepest().depth;
+        (seat >= LEAST_DEPTH).then(|| self.strategy(task, &bodies.plug, seat))
     }
 
     /// Returns the strategy for a plug that is stopped at this depth, m.
@@ -253,12 +255,12 @@ impl Moves {
 
     /// Returns the moves of another task, with its places of the tip [`mapped`] from its opening to this one.
     fn like(task: &Task, tip: [[f64; 2]; 2], other: &Task) -> Self {
-        let plug = ConvexBody::plug(&other.plug);
-        let way = seat::waypoints(other, &plug);
+        let bodies = TaskBodies::new(other);
+        let way = seat::waypoints(other, &bodies.plug);
         let free = |task: &Task, tip: [[f64; 2]; 2]| {
             [task.opening[0][0] - tip[0][0], task.opening[0][1] - tip[0][1]]
         };
-        let (from, to) = (free(other, self::tip(&plug)), free(task, tip));
+        let (from, to) = (free(other, self::tip(&bodies.plug)), free(task, tip));
         let search = way.iter().filter(|point| point.stage == Stage::Search);
         let mut x = search.clone().map(|point| mapped(point.tcp.x, from, to));
         let mut y = search.map(|point| mapped(point.edge.y, other.opening[1], task.opening[1]));
@@ -273,6 +275,10 @@ impl Moves {
         });
         let search = other.strategy.phases.iter().filter(|phase| phase.stage == Stage::Search);
         let down = search.skip(1).map(|phase| -phase.displacement[2]).sum();
+        let seat = bodies.deepest().depth;
+        let beyond = way.last().map_or(0.0, |last| other.grip.tcp_z - last.tcp.z - seat);
+        // A key that need not reach the floor may be commanded to less than its seat.
+        let beyond = beyond.max(PUSH[0]);
         Moves {
             x: touch,
             edge_y,
@@ -280,16 +286,8 @@ impl Moves {
             across: [back - touch, front - back, aside - front],
             down,
             side: edge_y - y.next_back().unwrap_or(edge_y),
-            push: Self::push(other, &plug, way.last()),
+            push: [beyond, other.strategy.phases.last().map_or(PUSH[1], |phase| phase.speed)],
         }
-    }
-
-    /// Returns the command of a task's push beyond the seat, m, and its speed, m/s.
-    fn push(task: &Task, plug: &ConvexBody, last: Option<&seat::Waypoint>) -> [f64; 2] {
-        let seat = SeatSearch::new(task, plug, &ConvexBody::new(&task.socket)).deepest().depth;
-        // A key that need not reach the floor may be commanded to less than its seat.
-        let beyond = last.map_or(0.0, |last| task.grip.tcp_z - last.tcp.z - seat).max(PUSH[0]);
-        [beyond, task.strategy.phases.last().map_or(PUSH[1], |phase| phase.speed)]
     }
 
     /// Returns the moves of a round tip, whose lowest point is set down near the wall at -y.
@@ -313,9 +311,8 @@ fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat, play: f64) {
     let upright = libm::atan(play / seat.depth) / DEG + UPRIGHT_DEG;
     let tilt = upright.ceil().max(LEAST_UPRIGHT_DEG) * DEG;
     // Of a tilted plug, the outer end of the stopping part comes down first.
-    let half = seat
-        .stopped_by
-        .map_or(0.0, |[part, _]| width(extent(plug.parts[part].solid.corners(), 1)) / 2.0);
+    let wide = |[part, _]: [usize; 2]| width(extent(plug.parts[part].solid.corners(), 1));
+    let half = seat.stopped_by.map_or(0.0, wide) / 2.0;
     let (length, share) = MISSING;
     let depth = seat.depth * (1.0 - share) - half * libm::sin(tilt) - length;
     let depth = (depth.max(seat.depth / 2.0) / (0.1 * MM)).floor() * 0.1 * MM;

@@ -1,7 +1,7 @@
 //! Replacement of the strategy in the text of a task file: comments are kept, old values are noted beside the new ones.
 
 use super::write;
-use insertion::task::{Strategy, Task};
+use insertion::task::Strategy;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TomlError, Value};
 
 /// Mark with which editors on Windows begin a file.
@@ -11,10 +11,9 @@ const BYTE_ORDER_MARK: char = '\u{feff}';
 ///
 /// # Errors
 /// If the text is not TOML.
-pub fn with_strategy(text: &str, task: &Task, after: &Strategy) -> Result<String, TomlError> {
+pub fn with_strategy(text: &str, after: &Strategy) -> Result<String, TomlError> {
     let mut file: DocumentMut = text.parse()?;
-    let changed = Task { strategy: after.clone(), ..task.clone() };
-    let new: DocumentMut = write::strategy(&changed).parse()?;
+    let new: DocumentMut = write::strategy(after).parse()?;
     // Inline tables are expanded, since they cannot contain comments.
     if let Ok(table) = std::mem::take(&mut file["strategy"]).into_table() {
         file["strategy"] = Item::Table(table);
@@ -132,6 +131,7 @@ mod tests {
     use super::*;
     use crate::plan::Family;
     use input::shipped::TASKS;
+    use insertion::task::Task;
 
     #[test]
     fn a_changed_file_has_the_new_strategy_the_old_values_and_all_comments() {
@@ -139,7 +139,7 @@ mod tests {
             let task = Task::parse(file.text, file.file).unwrap();
             for family in Family::all() {
                 let after = family.strategy_for(&task).unwrap();
-                let written = with_strategy(file.text, &task, &after).unwrap();
+                let written = with_strategy(file.text, &after).unwrap();
                 let read = Task::parse(&written, "written").unwrap().strategy;
                 assert!((read.tilt - after.tilt).abs() < 1e-6);
                 for (read, after) in read.phases.iter().zip(&after.phases) {
@@ -151,13 +151,13 @@ mod tests {
                     assert!(written.contains(comment.trim()), "{}: {comment}", file.name);
                 }
             }
-            let unchanged = with_strategy(file.text, &task, &task.strategy).unwrap();
+            let unchanged = with_strategy(file.text, &task.strategy).unwrap();
             assert_eq!(unchanged, file.text, "{}", file.name);
             let windows = format!("{BYTE_ORDER_MARK}{}", file.text.replace('\n', "\r\n"));
-            assert_eq!(with_strategy(&windows, &task, &task.strategy).unwrap(), windows);
+            assert_eq!(with_strategy(&windows, &task.strategy).unwrap(), windows);
             let peg = Family::Peg.strategy_for(&task).unwrap();
-            let plain = with_strategy(file.text, &task, &peg).unwrap();
-            let written = with_strategy(&windows, &task, &peg).unwrap();
+            let plain = with_strategy(file.text, &peg).unwrap();
+            let written = with_strategy(&windows, &peg).unwrap();
             assert_eq!(written, format!("{BYTE_ORDER_MARK}{}", plain.replace('\n', "\r\n")));
             assert!(Task::parse(&written, "written").is_ok());
         }
@@ -171,7 +171,7 @@ mod tests {
         let text = format!("strategy = {strategy}\n{fields}");
         let task = Task::parse(&text, "own").unwrap();
         let after = Family::Peg.strategy_for(&task).unwrap();
-        let written = with_strategy(&text, &task, &after).unwrap();
+        let written = with_strategy(&text, &after).unwrap();
         let read = Task::parse(&written, "written").unwrap();
         assert!((read.strategy.tilt - after.tilt).abs() < 1e-6, "{written}");
         let off = read.strategy.phases.iter().zip(&after.phases).map(|(read, after)| {
@@ -187,7 +187,7 @@ mod tests {
         let text = text.replacen("tilt_deg = 5.0", "start = \"taught\"\ntilt_deg = 5.0 # mine", 1);
         let task = Task::parse(&text, "own").unwrap();
         let after = Family::Peg.strategy_for(&task).unwrap();
-        let written = with_strategy(&text, &task, &after).unwrap();
+        let written = with_strategy(&text, &after).unwrap();
         let read = Task::parse(&written, "written").unwrap();
         assert_eq!(read.strategy.phases.len(), 6);
         assert_eq!(read.strategy.rule, insertion::task::StartRule::Given);

@@ -23,10 +23,9 @@ const REFINEMENTS: i32 = 4;
 
 /// Returns the clearance in x and in y of the upright plug where it seats, m.
 pub fn clearance(task: &Task) -> [f64; 2] {
-    let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
-    let seating = SeatSearch::new(task, &plug, &socket);
-    let seat = seating.deepest();
-    [0, 1].map(|axis| seating.play(task.success.depth.min(seat.depth), seat.at, axis))
+    let bodies = TaskBodies::new(task);
+    let seat = bodies.deepest();
+    [0, 1].map(|axis| bodies.play(task.success.depth.min(seat.depth), seat.at, axis))
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -39,19 +38,23 @@ pub struct Seat {
     pub stopped_by: Option<[usize; 2]>,
 }
 
-/// Search for the seat of an upright plug.
-pub struct SeatSearch<'a> {
-    task: &'a Task,
-    plug: &'a ConvexBody<'a>,
-    socket: &'a ConvexBody<'a>,
+/// Task with its two bodies.
+pub struct TaskBodies<'a> {
+    /// The task.
+    pub task: &'a Task,
+    /// Plug with its latch.
+    pub plug: ConvexBody<'a>,
+    /// Socket.
+    pub socket: ConvexBody<'a>,
 }
 
-impl<'a> SeatSearch<'a> {
-    pub fn new(task: &'a Task, plug: &'a ConvexBody, socket: &'a ConvexBody) -> Self {
-        SeatSearch { task, plug, socket }
+impl<'a> TaskBodies<'a> {
+    pub fn new(task: &'a Task) -> Self {
+        let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
+        TaskBodies { task, plug, socket }
     }
 
-    /// Returns the deepest pose on the way down, or the mated pose.
+    /// Returns the deepest pose of the upright plug on the way down, or the mated pose.
     pub fn deepest(&self) -> Seat {
         if let Some(Mated { tip: [x, y, z], .. }) = self.task.success.mated {
             return Seat { depth: -z, at: [x, y], stopped_by: None };
@@ -118,7 +121,7 @@ impl<'a> SeatSearch<'a> {
             return Ok(at);
         }
         // Range of the plug's axis in which all of the plug below the top is inside the opening.
-        let section = section(self.plug, depth);
+        let section = section(&self.plug, depth);
         let range = [0, 1].map(|axis| {
             let ([low, high], [from, to]) = (self.task.opening[axis], section[axis]);
             [low - from, high - to]
@@ -146,7 +149,7 @@ impl<'a> SeatSearch<'a> {
 
     fn overlap(&self, depth: f64, [x, y]: [f64; 2]) -> (f64, [usize; 2]) {
         let pose = Pose::translation(x, y, -depth);
-        let found = self.plug.overlap(&pose, self.socket, &Pose::identity());
+        let found = self.plug.overlap(&pose, &self.socket);
         found.map_or((0.0, [0, 0]), |found| (found.depth, found.parts))
     }
 }
@@ -220,11 +223,6 @@ mod tests {
         Task::parse(&file.text.replace(from, to), file.file).unwrap()
     }
 
-    fn deepest(task: &Task) -> Seat {
-        let (plug, socket) = (ConvexBody::plug(&task.plug), ConvexBody::new(&task.socket));
-        SeatSearch::new(task, &plug, &socket).deepest()
-    }
-
     /// usb: shoulder on the housing; ket12: floor; rj45: floor and guide blocks at one depth.
     #[test]
     fn shipped_plugs_end_where_their_drawings_say() {
@@ -234,7 +232,7 @@ mod tests {
             ("rj45", 12.0, ["", ""]),
         ] {
             let task = changed(name, "", "");
-            let seat = deepest(&task);
+            let seat = TaskBodies::new(&task).deepest();
             let [plug, socket] = seat.stopped_by.unwrap();
             let names = [&task.plug.parts[plug].name, &task.socket[socket].name];
             assert!((seat.depth / MM - depth_mm).abs() < 0.04, "{name}: {seat:?}");

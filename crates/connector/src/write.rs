@@ -1,10 +1,11 @@
 //! Commented TOML file of a task.
 
+use super::draft::DENSITY;
 use super::hold;
 use input::units::{DEG, GRAM, MM};
 use insertion::task::parts_file::PartsFile;
 use insertion::task::{
-    Ending, Hold, Limits, Mated, PadTorsion, Part, Phase, Solid, Stage, StartRule, Task,
+    Ending, Limits, Mated, PadTorsion, Part, Phase, Solid, StartRule, Strategy, Task,
     TouchDetection,
 };
 use nalgebra::{Point3, Vector3};
@@ -13,7 +14,6 @@ use nalgebra::{Point3, Vector3};
 #[derive(Debug, Clone, Default)]
 pub struct Notes {
     pub head: Vec<String>,
-    pub mass: String,
     /// Separate file of the parts, if there is one.
     pub parts: Option<PartsFile>,
     /// Whether overlapping parts, such as contact springs, were left out.
@@ -28,7 +28,7 @@ pub fn parts_file(task: &Task) -> String {
 /// Returns the text of a task file.
 pub fn task(task: &Task, notes: &Notes) -> String {
     let head: String = notes.head.iter().map(|line| format!("# {line}\n")).collect();
-    let [name, description] = [&task.name, &task.description].map(|value| text(value));
+    let [name, description] = [&task.name, &task.description].map(text);
     let turn = match task.turn {
         0.0 => String::new(),
         turn => format!("turn_in_base_deg = {}\n", round(turn / DEG, 100.0)),
@@ -49,15 +49,14 @@ pub fn task(task: &Task, notes: &Notes) -> String {
          # Frame: origin in the middle of the opening, on the socket's top; z out of the socket; y the\n\
          # direction in which the jaws close and the start is shifted. Lengths in mm.\n\n\
          name = {name}\ndescription = {description}\n{turn}\n\
-         [plug]\n# {}\nmass_g = {}\n\n{plug}\
+         [plug]\n# Assumed: {DENSITY} kg/m3. Weigh yours.\nmass_g = {}\n\n{plug}\
          [socket]\n# From, to of the opening on the top, between the walls below.\n\
          opening_x_mm = {x}\nopening_y_mm = {y}\n\n{socket}{}{}\
          [success]\n# Judged at rest after the push: tip this deep below the top, axis this upright.\n\
          depth_mm = {}\ntilt_deg = {}\n",
-        notes.mass,
         round(task.plug.mass / GRAM, 100.0),
         grip(task),
-        strategy(task),
+        strategy(&task.strategy),
         mm(task.success.depth),
         round(task.success.tilt / DEG, 100.0)
     );
@@ -140,11 +139,7 @@ fn grip(task: &Task) -> String {
     let (grip, friction) = (&task.grip, &task.friction);
     let [low, high] = hold::pad_z(grip.shoulder_z).map(mm);
     let [tcp, shoulder, slip] = [grip.tcp_z, grip.shoulder_z, grip.slip_limit].map(mm);
-    let faces = pair(grip.faces_y);
-    let hold = match grip.hold {
-        Hold::Always => "always",
-        Hold::Assembly => "assembly",
-    };
+    let (faces, hold) = (pair(grip.faces_y), text(grip.hold));
     let torsion = match friction.finger_torsion {
         PadTorsion::Points(moment) => mm(moment),
         PadTorsion::Patch => "\"patch\"".to_owned(),
@@ -152,7 +147,7 @@ fn grip(task: &Task) -> String {
     format!(
         "[grip]\n# The roofs of the fingertips rest on shoulder_z; their pads then reach from {low} to {high} mm\n\
          # and press the faces. tcp_z is the height of the grasp point. All counted from the tip.\n\
-         tcp_z_mm = {tcp}\nshoulder_z_mm = {shoulder}\nfaces_y_mm = {faces}\nforce_n = {:?}\nhold = \"{hold}\"\n\
+         tcp_z_mm = {tcp}\nshoulder_z_mm = {shoulder}\nfaces_y_mm = {faces}\nforce_n = {:?}\nhold = {hold}\n\
          # Beyond this slip the plug counts as lost.\nslip_limit_mm = {slip}\n\n\
          [friction]\nfinger_plug = {:?}\nfinger_plug_torsion_mm = {torsion}\nplug_socket = {:?}\n\n",
         grip.force, friction.finger_plug, friction.plug_socket,
@@ -160,12 +155,8 @@ fn grip(task: &Task) -> String {
 }
 
 /// Returns the `[strategy]` section of a task file.
-pub fn strategy(task: &Task) -> String {
-    let strategy = &task.strategy;
-    let rule = match strategy.rule {
-        StartRule::Taught => "start = \"taught\"\n",
-        StartRule::Given => "",
-    };
+pub fn strategy(strategy: &Strategy) -> String {
+    let rule = if strategy.rule == StartRule::Taught { "start = \"taught\"\n" } else { "" };
     let phases: String = strategy.phases.iter().map(phase).collect();
     format!(
         "[strategy]\n# Tilted about x: the tip's edge at -y is the lowest.\ntilt_deg = {}\n\
@@ -177,11 +168,6 @@ pub fn strategy(task: &Task) -> String {
 }
 
 fn phase(phase: &Phase) -> String {
-    let stage = match phase.stage {
-        Stage::Approach => "approach",
-        Stage::Search => "search",
-        Stage::Assembly => "assembly",
-    };
     let (motion, key, value) = match phase.ending {
         Ending::Tolerance(within) => ("tolerance", "tolerance_mm", mm(within)),
         Ending::Duration(rest) => ("duration", "settle_s", round(rest, 1e4)),
@@ -194,9 +180,10 @@ fn phase(phase: &Phase) -> String {
         _ => String::new(),
     };
     format!(
-        "[[strategy.phase]]\nname = {}\nstage = \"{stage}\"\nmove_mm = {}\nspeed_mm_per_s = {}\n\
+        "[[strategy.phase]]\nname = {}\nstage = {}\nmove_mm = {}\nspeed_mm_per_s = {}\n\
          motion = \"{motion}\"\n{key} = {value}\n{detection}\n",
         text(&phase.name),
+        text(phase.stage),
         list(phase.displacement.iter().map(|&v| mm(v))),
         mm(phase.speed),
     )
@@ -221,8 +208,9 @@ fn list(items: impl Iterator<Item = String>) -> String {
     format!("[{}]", items.collect::<Vec<_>>().join(", "))
 }
 
-fn text(value: &str) -> String {
-    toml::Value::String(value.to_owned()).to_string()
+/// Returns a TOML string: a text, or the name of a variant.
+fn text(value: impl serde::Serialize) -> String {
+    toml::Value::try_from(value).map_or(String::new(), |value| value.to_string())
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
 use connector::body::width;
-use connector::draft::{DENSITY, Size};
+use connector::draft::Size;
 use connector::mesh::axes::{Along, Jaws, value};
 use connector::mesh::mated::PairTask;
 use connector::tune::Tuned;
@@ -171,13 +171,12 @@ impl Request {
 
     fn notes(&self, MatedTask { made, unit, along, jaws, .. }: &MatedTask) -> Notes {
         let [plug, socket] = self.names();
-        let mass = format!("Assumed: {DENSITY} kg/m3. Weigh yours.");
         let [unit, along, jaws] = [value(*unit), value(*along), value(*jaws)];
         let head = format!(
             "Imported from {plug} and {socket}, in {unit}, inserted along {along}, jaws along {jaws}."
         );
         let head = vec![head.replace(['\n', '\r'], " ")];
-        Notes { head, mass, parts: None, left_out: made.interference.iter().any(|of| !of.cut_back) }
+        Notes { head, parts: None, left_out: made.interference.iter().any(|of| !of.cut_back) }
     }
 }
 

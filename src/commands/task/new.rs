@@ -8,7 +8,7 @@ use crate::setup::files::check_is_new;
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
-use connector::draft::{self, DENSITY, Dimensions, Hole, Size};
+use connector::draft::{self, Dimensions, Hole, Size};
 use connector::pins::Pins;
 use connector::tune::Tuned;
 use connector::write::{self, Notes};
@@ -118,7 +118,7 @@ fn drafted(
 ) -> Result<(String, Option<Tuned>), Failure> {
     let (size, example) = dimensions(request)?;
     let task =
-        draft::draft(&request.name, &size, like.map(|like| &like.task)).map_err(Failure::input)?;
+        draft::draft(&request.name, &size, like.map(|like| &like.task)).map_err(Failure::usage)?;
     let body = size.body.map_or(String::new(), |body| format!(" --body {}", text(&body)));
     let tip = match (size.pins, size.round) {
         (Some(Pins { count: [rows, columns], pitch, side, length }), _) => {
@@ -147,9 +147,8 @@ fn drafted(
     if example {
         head.push("No dimensions were given: these are of a USB-C plug.".to_owned());
     }
-    let mass = format!("Assumed: {DENSITY} kg/m3. Weigh yours.");
     let (task, tuned) = tune_new(task, request.engine, stop)?;
-    Ok((write::task(&task, &Notes { head, mass, ..Notes::default() }), tuned))
+    Ok((write::task(&task, &Notes { head, ..Notes::default() }), tuned))
 }
 
 /// Returns the pins of the plug.

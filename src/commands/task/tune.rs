@@ -8,7 +8,7 @@ use crate::progress::Part;
 use crate::setup::files::{check_is_new, robot};
 use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
 use crate::setup::task::TaskFile;
-use crate::setup::tune::{outcome, ranges, step_json, tried, tuner, turned_text};
+use crate::setup::tune::{outcome, ranges, step_json, tried, turned_text};
 use crate::setup::words::parse_number;
 use connector::check::problems;
 use connector::tune::{Effort, MOST_WINDOWS, Stage, Step, Tuned, Tuner, tune};
@@ -108,7 +108,7 @@ impl command::Request for Request {
             return Err(Failure::task(Place::file(file).key(key).fault(problem)));
         }
         let robot = robot(&self.robot)?;
-        let tuner = self.tuner(&file.task, &robot, stop)?;
+        let tuner = self.tuner(&file.task, &robot, stop);
         let report = |what: &str, cost: usize, done, of| {
             context.part(&Part { what: what.to_owned(), done, of, cost: cost as f64 });
         };
@@ -136,17 +136,12 @@ impl command::Request for Request {
 
 impl Request {
     /// Returns the tuner of a task, with the limits given on the command line.
-    fn tuner<'a>(
-        &self,
-        task: &'a Task,
-        robot: &'a Robot,
-        stop: &'a AtomicBool,
-    ) -> Result<Tuner<'a>, Failure> {
-        let mut tuner = tuner(task, robot, self.engine, stop)?;
+    fn tuner<'a>(&self, task: &'a Task, robot: &'a Robot, stop: &'a AtomicBool) -> Tuner<'a> {
+        let mut tuner = Tuner::new(task, robot, self.engine, stop);
         let given =
             Limits { force: self.max_force_n, speed: self.max_speed_mm_per_s.map(|v| v * MM) };
         tuner.limits = given.or(tuner.limits);
-        Ok(tuner)
+        tuner
     }
 
     /// Returns the file to write; a shipped task cannot be overwritten.
@@ -171,7 +166,7 @@ impl Request {
         (target, stop): (Option<&Path>, &AtomicBool),
     ) -> Result<TunedWindows, Failure> {
         let after = rewritten(file, tuned)?;
-        let tuner = self.tuner(&after.task, robot, stop)?;
+        let tuner = self.tuner(&after.task, robot, stop);
         let found = tuner.windows(&after.task.strategy, &tuner.fingers, Conditions::NOMINAL);
         not_stopped(stop)?;
         let found = found.map_err(Failure::input)?;
@@ -189,7 +184,8 @@ impl Request {
         target: Option<&Path>,
     ) -> Result<(), Failure> {
         if let Some(svg) = &self.svg {
-            write_file(svg, &picture::before_and_after(&file.task, &after.task))?;
+            let tasks = [("before: ", &file.task), ("after: ", &after.task)];
+            write_file(svg, &picture::stacked(&tasks))?;
         }
         if let (Some(target), false) = (target, self.dry_run) {
             // In the same folder the file refers to its parts file; elsewhere it contains the parts.
@@ -223,9 +219,8 @@ impl Request {
 
 /// Returns the task file with the recommended strategy.
 fn rewritten(file: &TaskFile, tuned: &Tuned) -> Result<TaskFile, Failure> {
-    let TaskFile { source, task } = file;
-    let strategy = &tuned.best().tried.strategy;
-    let text = rewrite::with_strategy(&source.text, task, strategy).map_err(Failure::input)?;
+    let (source, strategy) = (&file.source, &tuned.best().tried.strategy);
+    let text = rewrite::with_strategy(&source.text, strategy).map_err(Failure::input)?;
     TaskFile::parse(Source { file: source.file.clone(), text })
 }
 

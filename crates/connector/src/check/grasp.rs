@@ -1,6 +1,6 @@
 //! Checks of the grasp: pads, roofs, and the faces between the pads.
 
-use super::{Case, Problem, interval, mm};
+use super::{Problem, TaskBodies, interval, mm};
 use crate::hold::{PadContacts, SEAM, default_grasp, pad_contacts};
 use input::units::MM;
 
@@ -8,7 +8,7 @@ use input::units::MM;
 const LEAST_COVER: f64 = 1.0 * MM;
 
 /// Checks the grasp: pads, roofs and TCP.
-pub(super) fn problems(case: &Case) -> Vec<Problem> {
+pub(super) fn problems(case: &TaskBodies) -> Vec<Problem> {
     let grip = &case.task.grip;
     let pads = pad_contacts(&case.plug, grip.shoulder_z, Some(grip.faces_y));
     let mut found: Vec<_> = faces(case, &pads).or_else(|| cover(case, &pads)).into_iter().collect();
@@ -35,7 +35,7 @@ pub(super) fn problems(case: &Case) -> Vec<Problem> {
 }
 
 /// Checks that the stated faces are those of the plug between the pads.
-fn faces(case: &Case, pads: &PadContacts) -> Option<Problem> {
+fn faces(case: &TaskBodies, pads: &PadContacts) -> Option<Problem> {
     let stated = case.task.grip.faces_y;
     let [low, high] = pads.pad_z.map(mm);
     let Some(real) = pads.faces else {
@@ -70,7 +70,7 @@ fn faces(case: &Case, pads: &PadContacts) -> Option<Problem> {
 }
 
 /// Checks that the pads cover enough of the plug, also at the slip limit.
-fn cover(case: &Case, pads: &PadContacts) -> Option<Problem> {
+fn cover(case: &TaskBodies, pads: &PadContacts) -> Option<Problem> {
     let grip = &case.task.grip;
     let cover = pads.cover[0].min(pads.cover[1]);
     let [low, high] = pads.pad_z.map(mm);
@@ -92,7 +92,7 @@ fn cover(case: &Case, pads: &PadContacts) -> Option<Problem> {
 }
 
 /// Checks that the roofs rest on the plug, so that they can push it in.
-fn roof(case: &Case, pads: &PadContacts) -> Option<Problem> {
+fn roof(case: &TaskBodies, pads: &PadContacts) -> Option<Problem> {
     let shoulder = case.task.grip.shoulder_z;
     let wrong = |top: &Option<f64>| top.is_none_or(|z| (z - shoulder).abs() > SEAM);
     let top = pads.under_roof.iter().find(|top| wrong(top))?;
@@ -111,7 +111,7 @@ fn roof(case: &Case, pads: &PadContacts) -> Option<Problem> {
 }
 
 /// Returns a grasp that would hold the plug, as advice.
-fn remedy(case: &Case) -> String {
+fn remedy(case: &TaskBodies) -> String {
     match default_grasp(&case.plug, LEAST_COVER) {
         Some((shoulder, faces)) => {
             let ([shoulder, tcp], faces) =

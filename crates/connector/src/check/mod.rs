@@ -7,8 +7,7 @@ mod strategy;
 
 pub use parts::FACES_MM;
 
-use super::body::ConvexBody;
-use super::seat::SeatSearch;
+use super::seat::TaskBodies;
 use input::InputError;
 use input::units::MM;
 use insertion::task::{Solid, Task};
@@ -46,17 +45,9 @@ impl From<&InputError> for Problem {
     }
 }
 
-/// Task under check, with its two bodies.
-struct Case<'a> {
-    task: &'a Task,
-    plug: ConvexBody<'a>,
-    socket: ConvexBody<'a>,
-}
-
 /// Returns the faults of a task, causes before consequences.
 pub fn problems(task: &Task) -> Vec<Problem> {
-    let case =
-        Case { task, plug: ConvexBody::plug(&task.plug), socket: ConvexBody::new(&task.socket) };
+    let case = TaskBodies::new(task);
     // With a wrong unit, all other checks would fail too.
     let mut found = parts::lengths(&case);
     if !found.is_empty() {
@@ -66,8 +57,7 @@ pub fn problems(task: &Task) -> Vec<Problem> {
     if task.success.mated.is_none() {
         found.extend(parts::problems(&case));
         found.extend(socket::walls(&case));
-        let seat = SeatSearch::new(task, &case.plug, &case.socket).deepest();
-        found.extend(socket::depth(&case, &seat));
+        found.extend(socket::depth(&case, &case.deepest()));
     }
     found.extend(parts::mass(&case));
     found.extend(grasp::problems(&case));

@@ -1,6 +1,6 @@
 //! Checks of the parts of plug and socket: thickness, overlaps, gaps, latch, mass, and units of lengths.
 
-use super::{Case, Problem, field, mm, part_key};
+use super::{Problem, TaskBodies, field, mm, part_key};
 use crate::body::{ConvexBody, Overlap, extent, longest_side, width};
 use crate::hold::SEAM;
 use crate::seat::section;
@@ -18,7 +18,7 @@ const DENSITIES: [f64; 2] = [100.0, 20e3];
 /// Densities of plastic and steel, kg/m3.
 const USUAL: [f64; 2] = [1000.0, 7850.0];
 
-pub(super) fn problems(case: &Case) -> Vec<Problem> {
+pub(super) fn problems(case: &TaskBodies) -> Vec<Problem> {
     let mut found = Vec::new();
     for (name, body) in [("plug", &case.plug), ("socket", &case.socket)] {
         found.extend(body.parts.iter().filter_map(|part| thin(name, part)));
@@ -42,7 +42,7 @@ fn thin(body: &str, part: &Part) -> Option<Problem> {
 
 fn overlaps(name: &str, body: &ConvexBody) -> Vec<Problem> {
     let here = Pose::identity();
-    let own = body.overlaps(&here, body, &here).filter(|found| found.parts[0] < found.parts[1]);
+    let own = body.overlaps(&here, body).filter(|found| found.parts[0] < found.parts[1]);
     let deep = own.filter(|found| found.depth > OVERLAP);
     deep.map(|Overlap { depth, parts, .. }| {
         let [i, j] = parts.map(|i| &body.parts[i]);
@@ -57,7 +57,7 @@ fn overlaps(name: &str, body: &ConvexBody) -> Vec<Problem> {
 }
 
 /// Checks that the flexure of a latch connects a fixed part of the plug to a moving one.
-fn flexure(case: &Case) -> Vec<Problem> {
+fn flexure(case: &TaskBodies) -> Vec<Problem> {
     let Some(latch) = &case.task.plug.latch else { return Vec::new() };
     let [root, end] = &latch.flexure;
     let ends =
@@ -105,7 +105,7 @@ fn gaps(plug: &ConvexBody) -> Option<Problem> {
     loose.and_then(problem)
 }
 
-pub(super) fn mass(case: &Case) -> Option<Problem> {
+pub(super) fn mass(case: &TaskBodies) -> Option<Problem> {
     let mass = case.task.plug.mass;
     let volume: f64 = case.plug.parts.iter().map(|part| geometry::volume(&part.solid)).sum();
     let density = mass / volume;
@@ -133,9 +133,9 @@ const UNITS: [(&str, f64); 4] =
 /// Size ratio of plug and opening beyond which one of them must be in another unit.
 const OTHER_UNIT: f64 = 8.0;
 
-pub(super) fn lengths(case: &Case) -> Vec<Problem> {
+pub(super) fn lengths(case: &TaskBodies) -> Vec<Problem> {
     let (task, grip) = (case.task, &case.task.grip);
-    let mut found: Vec<Problem> = [
+    let keys = [
         ("plug.part", width(case.plug.extent(2)), [8.0, 300.0]),
         ("socket.opening_x_mm", width(task.opening[0]), [0.5, 300.0]),
         ("socket.opening_y_mm", width(task.opening[1]), [0.5, 300.0]),
@@ -145,10 +145,9 @@ pub(super) fn lengths(case: &Case) -> Vec<Problem> {
         ("grip.slip_limit_mm", grip.slip_limit, [0.2, 30.0]),
         ("strategy.start_mm", Vector3::from(task.strategy.start).norm(), [3.0, 500.0]),
         ("success.depth_mm", task.success.depth, [0.5, 150.0]),
-    ]
-    .into_iter()
-    .filter_map(|(key, length, range_mm)| problem(key, length, range_mm))
-    .collect();
+    ];
+    let of_key = |(key, length, range_mm)| problem(key, length, range_mm);
+    let mut found: Vec<Problem> = keys.into_iter().filter_map(of_key).collect();
     // Slabs of a drawn surface may be of any size.
     let bodies = [("plug", &task.plug.parts), ("socket", &task.socket)];
     for (body, parts) in bodies.into_iter().filter(|_| task.success.mated.is_none()) {
@@ -196,7 +195,7 @@ fn problem(key: &str, length: f64, [low, high]: [f64; 2]) -> Option<Problem> {
 }
 
 /// Checks that plug and opening are in the same unit.
-fn other_unit(case: &Case) -> Option<Problem> {
+fn other_unit(case: &TaskBodies) -> Option<Problem> {
     let section = section(&case.plug, case.task.success.depth);
     let [x, y] = [0, 1].map(|axis| width(section[axis]) / width(case.task.opening[axis]));
     let (ratio, size) = match (x.min(y) > OTHER_UNIT, x.max(y) < 1.0 / OTHER_UNIT) {

@@ -1,6 +1,6 @@
 //! Opening, walls and depth of insertion.
 
-use super::{Case, Problem, field, interval, mm, part_key};
+use super::{Problem, TaskBodies, field, interval, mm, part_key};
 use crate::body::{clipped, extent, width};
 use crate::seat::{Seat, section};
 use input::units::MM;
@@ -20,7 +20,7 @@ const STEP: f64 = 0.0025 * MM;
 const COMPRESSION: f64 = 0.02 * MM;
 
 /// Checks the sides of the opening and the height of the socket.
-pub(super) fn walls(case: &Case) -> Vec<Problem> {
+pub(super) fn walls(case: &TaskBodies) -> Vec<Problem> {
     let [_, top] = case.socket.extent(2);
     if top < -TOLERANCE {
         return vec![Problem::new(
@@ -35,7 +35,7 @@ pub(super) fn walls(case: &Case) -> Vec<Problem> {
 
 /// Checks one side of the opening: the socket must be solid just outside the middle of the side, and the wall must
 /// begin at the stated edge somewhere along the side. The correct value is measured at the middle.
-fn side(case: &Case, axis: usize, end: usize) -> Option<Problem> {
+fn side(case: &TaskBodies, axis: usize, end: usize) -> Option<Problem> {
     let opening = case.task.opening;
     let stated = opening[axis][end];
     let outward = [-1.0, 1.0][end];
@@ -87,7 +87,7 @@ fn side(case: &Case, axis: usize, end: usize) -> Option<Problem> {
 }
 
 /// Checks that the plug can reach the success depth.
-pub(super) fn depth(case: &Case, seat: &Seat) -> Vec<Problem> {
+pub(super) fn depth(case: &TaskBodies, seat: &Seat) -> Vec<Problem> {
     let success = case.task.success.depth;
     if success <= seat.depth + COMPRESSION {
         return Vec::new();
@@ -109,7 +109,7 @@ pub(super) fn depth(case: &Case, seat: &Seat) -> Vec<Problem> {
 }
 
 /// Checks that the plug is not wider than the opening over the depth that it must enter.
-fn too_wide(case: &Case, seat: &Seat, axis: usize) -> Option<Problem> {
+fn too_wide(case: &TaskBodies, seat: &Seat, axis: usize) -> Option<Problem> {
     // A shoulder that rests on the housing is not meant to go in.
     let depth = case.task.success.depth.min(seat.depth + BELOW);
     let (plug, opening) = (section(&case.plug, depth)[axis], case.task.opening[axis]);

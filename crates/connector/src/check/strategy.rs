@@ -1,9 +1,8 @@
 //! Checks of the commanded moves: free approach, search over the opening, deep enough push.
 
-use super::{Case, Problem, interval, mm};
+use super::{Problem, TaskBodies, interval, mm};
 use crate::body::{Overlap, span};
 use crate::seat::{self, Waypoint, section};
-use contact::scene::Pose;
 use input::units::MM;
 use insertion::task::{Ending, Phase, Stage};
 use nalgebra::Vector3;
@@ -17,7 +16,7 @@ const AIR: f64 = 1.0 * MM;
 /// Recommended distance of the commanded end of the push beyond the success depth, m.
 const PRESS: f64 = 4.0 * MM;
 
-pub(super) fn problems(case: &Case) -> Vec<Problem> {
+pub(super) fn problems(case: &TaskBodies) -> Vec<Problem> {
     let way = seat::waypoints(case.task, &case.plug);
     let mut found: Vec<Problem> = case.task.strategy.phases.iter().filter_map(upward).collect();
     found.extend(collisions(case, &way));
@@ -43,22 +42,20 @@ fn upward(phase: &Phase) -> Option<Problem> {
     }
     let motion = if touch { "a touch" } else { "the push" };
     let direction = if z > 0.0 { "goes up" } else { "does not go down" };
+    let (z, down) = (mm(z), mm(-z.abs().max(MM)));
     Some(Problem::new(
         key(&phase.name),
-        format!("z is {} mm: {motion} {direction}", mm(z)),
-        format!(
-            "z points out of the socket: give a negative number, as in {}",
-            mm(-z.abs().max(MM))
-        ),
+        format!("z is {z} mm: {motion} {direction}"),
+        format!("z points out of the socket: give a negative number, as in {down}"),
     ))
 }
 
 /// Checks for collisions at the start and on the approach.
-fn collisions(case: &Case, way: &[Waypoint]) -> Option<Problem> {
+fn collisions(case: &TaskBodies, way: &[Waypoint]) -> Option<Problem> {
     let collision = |tcp: Vector3<f64>| {
         let pose = seat::plug_pose(case.task, tcp);
         let Overlap { depth, parts: [plug, socket], .. } =
-            case.plug.overlap(&pose, &case.socket, &Pose::identity())?;
+            case.plug.overlap(&pose, &case.socket)?;
         let names = [&case.plug.parts[plug].name, &case.socket.parts[socket].name];
         (depth > ROUNDING).then_some((depth, names))
     };
@@ -100,7 +97,7 @@ fn short_touch(point: &Waypoint) -> Option<Problem> {
 }
 
 /// Checks that the moves reach the success depth.
-fn too_shallow(case: &Case, way: &[Waypoint]) -> Option<Problem> {
+fn too_shallow(case: &TaskBodies, way: &[Waypoint]) -> Option<Problem> {
     // Depth of the tip of an upright plug at the end of the path.
     let depth = way.last().map_or(0.0, |last| case.task.grip.tcp_z - last.tcp.z);
     let missing = case.task.success.depth - depth;
@@ -115,7 +112,7 @@ fn too_shallow(case: &Case, way: &[Waypoint]) -> Option<Problem> {
 }
 
 /// Checks that the search passes over the opening.
-fn missed_opening(case: &Case, way: &[Waypoint]) -> Option<Problem> {
+fn missed_opening(case: &TaskBodies, way: &[Waypoint]) -> Option<Problem> {
     let [bottom, _] = case.plug.extent(2);
     let tip = section(&case.plug, bottom + AIR);
     let first = way.iter().position(|point| point.stage != Stage::Approach).unwrap_or(0);
@@ -125,13 +122,10 @@ fn missed_opening(case: &Case, way: &[Waypoint]) -> Option<Problem> {
     let [left, right] = span(search.iter().map(|point| point.tcp.x));
     let fits = [x[0] - tip[0][0], x[1] - tip[0][1]];
     if right < fits[0].min(fits[1]) || left > fits[0].max(fits[1]) {
-        let at = interval([left, right]);
+        let [at, open] = [[left, right], fits].map(interval);
         return Some(Problem::new(
             "strategy.start_mm",
-            format!(
-                "in x the plug is commanded to {at} mm, but the opening is reached at {}",
-                interval(fits)
-            ),
+            format!("in x the plug is commanded to {at} mm, but the opening is reached at {open}"),
             format!("x = {} mm, or longer moves along x", mm((fits[0] + fits[1]) / 2.0)),
         ));
     }

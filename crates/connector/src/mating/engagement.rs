@@ -17,7 +17,6 @@ pub fn score(walls: &WallAreas) -> f64 {
 pub const SIDES: [[i32; 2]; 4] = [[1, 0], [-1, 0], [0, 1], [0, -1]];
 
 /// Vertical strip of a side wall of the plug, one cell wide.
-#[derive(Debug, Clone, Copy)]
 struct Strip {
     /// Cell whose side it is.
     cell: [i32; 2],
@@ -27,7 +26,6 @@ struct Strip {
 }
 
 /// Side walls of a plug.
-#[derive(Debug, Clone)]
 pub struct PlugWalls {
     strips: Vec<Strip>,
     step: [f64; 2],
@@ -64,7 +62,7 @@ impl PlugWalls {
     ) -> [f64; 2] {
         let walls = score(&self.facing(socket, shift, z));
         let heights =
-            rests(socket.map, plug, shift).map(|(_, rest)| f64::from((rest - z).max(0.0)));
+            rests([socket.map, plug], shift).map(|(_, rest)| f64::from((rest - z).max(0.0)));
         let volume = heights.sum::<f64>() * plug.step[0] * plug.step[1];
         [walls, volume / OVERLAP_PER_AREA]
     }
@@ -119,16 +117,14 @@ impl<'a> SocketWalls<'a> {
     }
 }
 
-/// Returns the cells in which the socket and the plug, shifted and at height `z`, overlap.
-pub fn overlap(socket: &HeightMap, plug: &HeightMap, shift: [i32; 2], z: f32) -> Vec<[i32; 2]> {
-    rests(socket, plug, shift).filter(|(_, rest)| *rest > z).map(|(cell, _)| cell).collect()
+/// Returns the cells in which the maps of socket and plug, the latter shifted and at height `z`, overlap.
+pub fn overlap(maps: [&HeightMap; 2], shift: [i32; 2], z: f32) -> Vec<[i32; 2]> {
+    rests(maps, shift).filter(|(_, rest)| *rest > z).map(|(cell, _)| cell).collect()
 }
 
-/// Returns each cell of a shifted plug with the height at which it would rest on the socket.
-fn rests<'a>(
-    socket: &'a HeightMap,
-    plug: &'a HeightMap,
-    shift: [i32; 2],
-) -> impl Iterator<Item = ([i32; 2], f32)> + 'a {
+/// Returns each cell of the plug, whose map is the second and shifted, with the height at which it would rest on the
+/// socket.
+fn rests(maps: [&HeightMap; 2], shift: [i32; 2]) -> impl Iterator<Item = ([i32; 2], f32)> {
+    let [socket, plug] = maps;
     plug.cells().map(move |[x, y]| ([x, y], socket.at(x + shift[0], y + shift[1]) - plug.at(x, y)))
 }

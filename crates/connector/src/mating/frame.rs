@@ -27,13 +27,6 @@ pub struct Parts {
     pub socket: Part,
 }
 
-impl Parts {
-    /// Rotates both parts to their own axes.
-    pub fn new(plug: &[Triangle], socket: &[Triangle]) -> Result<Self, MatingError> {
-        Ok(Parts { plug: Part::new(plug, "plug")?, socket: Part::new(socket, "socket")? })
-    }
-}
-
 impl Part {
     /// Rotates a part to its own axes.
     pub fn new(triangles: &[Triangle], name: &'static str) -> Result<Self, MatingError> {
@@ -69,13 +62,12 @@ fn upright(z: Vector3<f64>, x: Vector3<f64>) -> Rotation3<f64> {
 
 /// Returns the directions of the normals, of either sense, with their areas, the largest first.
 fn directions(triangles: &[Triangle]) -> Vec<(Vector3<f64>, f64)> {
-    let mut normals: Vec<(Vector3<f64>, f64)> = Vec::new();
-    for [a, b, c] in triangles {
+    let normal = |[a, b, c]: &Triangle| {
         let normal = (b - a).cross(&(c - a));
-        if let Some((unit, length)) = Unit::try_new_and_get(normal, f64::MIN_POSITIVE) {
-            normals.push((unit.into_inner(), length / 2.0));
-        }
-    }
+        let (unit, length) = Unit::try_new_and_get(normal, f64::MIN_POSITIVE)?;
+        Some((unit.into_inner(), length / 2.0))
+    };
+    let mut normals: Vec<(Vector3<f64>, f64)> = triangles.iter().filter_map(normal).collect();
     normals.sort_by(|a, b| b.1.total_cmp(&a.1));
     let mut found: Vec<(Vector3<f64>, f64)> = Vec::new();
     for (normal, area) in normals {

@@ -19,10 +19,7 @@ pub enum Envelope {
 impl Envelope {
     /// Returns the height of a column without material.
     pub fn empty(self) -> f32 {
-        match self {
-            Envelope::Upper => -NOWHERE,
-            Envelope::Lower => NOWHERE,
-        }
+        if self == Envelope::Upper { -NOWHERE } else { NOWHERE }
     }
 
     fn outer(self, a: f32, b: f32) -> f32 {
@@ -75,9 +72,7 @@ impl HeightMap {
         });
         let heights = vec![envelope.empty(); count[0] * count[1]];
         let mut map = HeightMap { envelope, step, first, count, heights };
-        if !map.heights.is_empty() {
-            triangles.iter().for_each(|triangle| map.rasterize(triangle));
-        }
+        triangles.iter().for_each(|triangle| map.rasterize(triangle));
         map
     }
 
@@ -146,18 +141,18 @@ impl HeightMap {
     }
 
     /// Returns the map eroded by a radius: the innermost height within it of each cell.
-    pub fn eroded(&self, radius: [usize; 2]) -> HeightMap {
-        self.filtered(radius, radius, Envelope::inner)
+    pub fn eroded(&self, radius: usize) -> HeightMap {
+        self.inner(radius, radius)
     }
 
     /// Returns the map dilated by a radius: the outermost height within it of each cell.
-    pub fn dilated(&self, radius: [usize; 2]) -> HeightMap {
-        self.filtered(radius, radius, Envelope::outer)
+    pub fn dilated(&self, radius: usize) -> HeightMap {
+        self.filtered(radius, radius, |a, b| self.envelope.outer(a, b))
     }
 
     /// Returns the innermost height of each cell, the `before` cells before it and the `after` cells after it.
     pub fn inner(&self, before: usize, after: usize) -> HeightMap {
-        self.filtered([before; 2], [after; 2], Envelope::inner)
+        self.filtered(before, after, |a, b| self.envelope.inner(a, b))
     }
 
     /// Returns the largest height of the cells at offsets from `low` to `high` from each cell along an axis.
@@ -180,10 +175,7 @@ impl HeightMap {
         map.count[axis] += by;
         map.heights = vec![-NOWHERE; map.count[0] * map.count[1]];
         let (nx, shift) = (map.count[0], if axis == 0 { by } else { by * map.count[0] });
-        if self.count[0] == 0 {
-            return map;
-        }
-        for (row, heights) in self.heights.chunks(self.count[0]).enumerate() {
+        for (row, heights) in self.heights.chunks(self.count[0].max(1)).enumerate() {
             for start in [row * nx, row * nx + shift] {
                 let cells = map.heights[start..].iter_mut().zip(heights);
                 cells.for_each(|(cell, height)| *cell = cell.max(*height));
@@ -193,40 +185,35 @@ impl HeightMap {
     }
 
     /// Applies a filter along x, then along y, over the cells `before` and `after` each cell.
-    fn filtered(
-        &self,
-        before: [usize; 2],
-        after: [usize; 2],
-        take: impl Fn(Envelope, f32, f32) -> f32,
-    ) -> HeightMap {
+    fn filtered(&self, before: usize, after: usize, take: impl Fn(f32, f32) -> f32) -> HeightMap {
         let [nx, ny] = self.count;
         let mut map = self.clone();
-        if nx == 0 || ny == 0 || (before == [0; 2] && after == [0; 2]) {
+        if nx == 0 || ny == 0 || (before, after) == (0, 0) {
             return map;
         }
-        let (envelope, empty) = (self.envelope, self.envelope.empty());
+        let empty = self.envelope.empty();
         let along = |row: &mut [f32]| {
             let old = row.to_vec();
-            for by in -(before[0] as isize)..=after[0] as isize {
+            for by in -(before as isize)..=after as isize {
                 // Cells whose neighbour `by` cells after them is in the row.
                 let from = usize::try_from(-by).unwrap_or(0).min(nx);
                 let to = usize::try_from(nx as isize - by).unwrap_or(0).clamp(from, nx);
                 let near = &old[from.saturating_add_signed(by).min(nx)..];
-                row[..from].iter_mut().for_each(|a| *a = take(envelope, *a, empty));
-                row[from..to].iter_mut().zip(near).for_each(|(a, b)| *a = take(envelope, *a, *b));
-                row[to..].iter_mut().for_each(|a| *a = take(envelope, *a, empty));
+                row[..from].iter_mut().for_each(|a| *a = take(*a, empty));
+                row[from..to].iter_mut().zip(near).for_each(|(a, b)| *a = take(*a, *b));
+                row[to..].iter_mut().for_each(|a| *a = take(*a, empty));
             }
         };
         map.heights.chunks_mut(nx).for_each(along);
         let old = map.heights.clone();
         for (j, row) in map.heights.chunks_mut(nx).enumerate() {
-            for at in j as isize - before[1] as isize..=(j + after[1]) as isize {
+            for at in j as isize - before as isize..=(j + after) as isize {
                 match usize::try_from(at).ok().filter(|at| *at < ny) {
                     Some(at) => {
                         let other = &old[at * nx..(at + 1) * nx];
-                        row.iter_mut().zip(other).for_each(|(a, b)| *a = take(envelope, *a, *b));
+                        row.iter_mut().zip(other).for_each(|(a, b)| *a = take(*a, *b));
                     }
-                    None => row.iter_mut().for_each(|a| *a = take(envelope, *a, empty)),
+                    None => row.iter_mut().for_each(|a| *a = take(*a, empty)),
                 }
             }
         }

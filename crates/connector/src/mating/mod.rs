@@ -21,6 +21,7 @@ mod tests;
 use crate::body::{span, width};
 use crate::mesh::Triangle;
 pub use assembled::assembled;
+use frame::{Part, Parts};
 use input::units::MM;
 use nalgebra::{Isometry3, Unit, Vector3};
 pub use split::plugs;
@@ -109,13 +110,12 @@ pub fn mates(
     socket: &[Triangle],
     stop: &AtomicBool,
 ) -> Result<MatingResult, MatingError> {
-    let parts = frame::Parts::new(plug, socket)?;
+    let parts = Parts { plug: Part::new(plug, "plug")?, socket: Part::new(socket, "socket")? };
     let mut shallow = None;
     for effort in search::EFFORTS {
         let scene = search::Scene::new(&parts, effort);
         let pairs = symmetry::pairs(&scene);
-        let representatives: Vec<_> = pairs.iter().map(|(pair, _)| *pair).collect();
-        let seats = search::seats(&scene, &representatives, stop)?;
+        let seats = search::seats(&scene, &pairs, stop)?;
         // The tightest fit is preferred: a looser one is used only if there is none, or if the plug is only caught on
         // an edge.
         for (max_play, seats) in MAX_PLAYS.into_iter().zip(seats) {

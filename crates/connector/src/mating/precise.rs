@@ -32,7 +32,11 @@ struct PlayMeasurement<'a> {
 }
 
 impl PlayMeasurement<'_> {
-    fn maps(&self, step: [f64; 2]) -> [HeightMap; 2] {
+    /// Returns the maps of socket and plug, of cells that are fine along an axis.
+    fn maps(&self, axis: usize) -> [HeightMap; 2] {
+        let area: f64 = self.window.iter().map(|[low, high]| high - low).product();
+        let mut step = [(area / MOST_CELLS / CELL).max(2.0 * CELL); 2];
+        step[axis] = CELL;
         let by = Vector3::new(self.shift[0], self.shift[1], 0.0);
         let plug: Vec<Triangle> = self.plug.iter().map(|corners| corners.map(|p| p + by)).collect();
         let mut maps = [(self.socket, Envelope::Upper), (&plug, Envelope::Lower)]
@@ -56,18 +60,9 @@ impl PlayMeasurement<'_> {
         }
     }
 
-    /// Returns the sides of the cells, m; fine along one axis.
-    fn cells(&self, axis: usize) -> [f64; 2] {
-        let area: f64 = self.window.iter().map(|[low, high]| high - low).product();
-        let other = (area / MOST_CELLS / CELL).max(2.0 * CELL);
-        let mut cells = [other; 2];
-        cells[axis] = CELL;
-        cells
-    }
-
     /// Centres the plug along an axis and returns its play, m.
     fn centre(&mut self, axis: usize, height: f64, max_play: f64) -> f64 {
-        let [upper, lower] = self.maps(self.cells(axis));
+        let [upper, lower] = self.maps(axis);
         let free = |offset: i32| {
             let mut shift = [0; 2];
             shift[axis] = offset;
@@ -86,7 +81,7 @@ impl PlayMeasurement<'_> {
 
     /// Returns the height at which the plug rests, m.
     fn rest(&self) -> f64 {
-        let [upper, lower] = self.maps(self.cells(0));
+        let [upper, lower] = self.maps(0);
         f64::from(rest(&upper, &lower, [0; 2], f32::MAX))
     }
 }

@@ -74,12 +74,7 @@ fn seated(z: f32, socket: [f64; 2], plug: [f64; 2]) -> (f64, bool) {
 }
 
 /// Returns the shifts near a shift with the lowest resting height, and that height.
-fn lowest(
-    socket: &HeightMap,
-    plug: &HeightMap,
-    about: [i32; 2],
-    radius: i32,
-) -> (Vec<[i32; 2]>, f32) {
+fn lowest([socket, plug]: [&HeightMap; 2], about: [i32; 2], radius: i32) -> (Vec<[i32; 2]>, f32) {
     let mut low = NOWHERE;
     let mut rests = Vec::new();
     let mut shifts: Vec<_> =
@@ -124,8 +119,7 @@ pub fn refined(
     stop: &AtomicBool,
 ) -> Result<Vec<Pose>, MatingError> {
     check_cancelled(stop)?;
-    let rough = Rough::new(scene, max_play);
-    let mut poses: Vec<Pose> = seats.par_iter().filter_map(|seat| rough.pose(seat)).collect();
+    let mut poses = estimated(scene, seats, max_play);
     poses.sort_by(|a, b| b.walls.total_cmp(&a.walls));
     let mut kept: Vec<Pose> = Vec::new();
     for pose in poses {
@@ -146,51 +140,37 @@ pub fn settled_areas(scene: &Scene, pose: Pose, max_play: f64) -> (Pose, f64) {
     let fine = Fine::new(scene, &pose, max_play);
     let [socket, plug] = fine.heights;
     let at = fine.cells(&pose);
-    let [walls, penalty] = fine.areas(&fine.faces(), at, pose.z as f32 + LEVEL);
+    let [walls, penalty] = fine.sides.areas(&fine.faces(), &fine.tight, at, pose.z as f32 + LEVEL);
     let lowest = f64::from(rest(&fine.upper, &fine.tight, at, NOWHERE));
     let through = seated(lowest.min(pose.z) as f32, socket, plug).1;
     let outside = pose.z + (plug[0] + plug[1] - socket[0] - socket[1]) / 2.0;
     (fine.with_depth(Pose { walls, penalty, through, ..pose }), outside)
 }
 
-/// Maps for a first estimate of the pose in a seat.
-struct Rough<'a> {
-    scene: &'a Scene,
-    upper: Vec<[HeightMap; 3]>,
-    lower: Vec<[HeightMap; 3]>,
-    sides: Vec<PlugWalls>,
-    faces: Vec<SocketWalls<'a>>,
-}
-
-impl<'a> Rough<'a> {
-    fn new(scene: &'a Scene, max_play: f64) -> Self {
-        let radii = [0.0, 0.1 * MM, 0.2 * MM].map(|r| ((r / scene.step).round() as usize).max(1));
-        let eroded = |maps: &Vec<HeightMap>| -> Vec<[HeightMap; 3]> {
-            maps.par_iter().map(|map| radii.map(|r| map.eroded([r; 2]))).collect()
-        };
-        let sides = scene.lower.par_iter().map(PlugWalls::new).collect();
-        let limits = [REACH * max_play, scene.step];
-        let faces = scene.upper.par_iter().map(|map| SocketWalls::new(map, limits)).collect();
-        Rough { scene, upper: eroded(&scene.upper), lower: eroded(&scene.lower), sides, faces }
-    }
-
-    fn pose(&self, seat: &CoarseSeat) -> Option<Pose> {
-        let step = self.scene.step;
-        let (socket, plug) = (&self.scene.sockets[seat.out], &self.scene.plugs[seat.turn]);
-        let (faces, sides) = (&self.faces[seat.out], &self.sides[seat.turn]);
-        let [socket, plug] = [socket, plug].map(|part| bounds(part)[2]);
-        let (upper, lower) = (&self.upper[seat.out], &self.lower[seat.turn]);
-        let poses = upper.iter().zip(lower).map(|(s, p)| {
-            let (shifts, z) = lowest(s, p, seat.shift, FINE as i32 / 2 + 1);
+/// Returns a first estimate of the pose in each seat.
+fn estimated(scene: &Scene, seats: &[CoarseSeat], max_play: f64) -> Vec<Pose> {
+    let step = scene.step;
+    let radii = [0.0, 0.1 * MM, 0.2 * MM].map(|r| ((r / step).round() as usize).max(1));
+    let eroded = |maps: &[HeightMap]| -> Vec<[HeightMap; 3]> {
+        maps.par_iter().map(|map| radii.map(|r| map.eroded(r))).collect()
+    };
+    let (upper, lower) = (eroded(&scene.upper), eroded(&scene.lower));
+    let sides: Vec<_> = scene.lower.par_iter().map(PlugWalls::new).collect();
+    let limits = [REACH * max_play, step];
+    let faces: Vec<_> = scene.upper.par_iter().map(|map| SocketWalls::new(map, limits)).collect();
+    let estimate = |&CoarseSeat { out, turn, shift, depth }: &CoarseSeat| {
+        let [socket, plug] = [&scene.sockets[out], &scene.plugs[turn]].map(|part| bounds(part)[2]);
+        let poses = upper[out].iter().zip(&lower[turn]).map(|(s, p)| {
+            let (shifts, z) = lowest([s, p], shift, FINE as i32 / 2 + 1);
             let cells = middle(&shifts);
             let (z, through) = seated(z, socket, plug);
-            let [walls, penalty] = sides.areas(faces, &lower[0], cells, z as f32);
+            let [walls, penalty] = sides[turn].areas(&faces[out], &lower[turn][0], cells, z as f32);
             let shift = cells.map(|cell| f64::from(cell) * step);
-            let CoarseSeat { out, turn, depth, .. } = *seat;
             Pose { out, turn, shift, z, through, walls, penalty, depth }
         });
         poses.max_by(|a, b| a.walls.total_cmp(&b.walls))
-    }
+    };
+    seats.par_iter().filter_map(estimate).collect()
 }
 
 /// Maps of fine cells about a pose.
@@ -222,14 +202,10 @@ impl Fine {
         let back = [0, 1].map(|a| window[a].map(|v| v - pose.shift[a]));
         let upper = HeightMap::new(socket, Envelope::Upper, [step; 2], Some(window));
         let lower = HeightMap::new(plug, Envelope::Lower, [step; 2], Some(back));
-        let tight = lower.eroded([(TOLERANCE / step).ceil() as usize; 2]);
+        let tight = lower.eroded((TOLERANCE / step).ceil() as usize);
         let radius = (1.5 * scene.step / step).ceil() as i32 + 1;
         let (sides, heights) = (PlugWalls::new(&lower), [sz, pz]);
         Fine { step, upper, lower, tight, sides, heights, window, radius, max_play }
-    }
-
-    fn areas(&self, faces: &SocketWalls, shift: [i32; 2], z: f32) -> [f64; 2] {
-        self.sides.areas(faces, &self.tight, shift, z)
     }
 
     fn faces(&self) -> SocketWalls<'_> {
@@ -251,11 +227,11 @@ impl Fine {
             if last.replace(cells) == Some(cells) {
                 continue;
             }
-            let s = self.upper.eroded([cells / 2; 2]);
-            let p = self.lower.eroded([cells - cells / 2; 2]);
+            let s = self.upper.eroded(cells / 2);
+            let p = self.lower.eroded(cells - cells / 2);
             let Some((shift, z)) = self.settled([&s, &p], &faces, about) else { continue };
             let (z, through) = seated(z, self.heights[0], self.heights[1]);
-            let [walls, penalty] = self.areas(&faces, shift, z as f32);
+            let [walls, penalty] = self.sides.areas(&faces, &self.tight, shift, z as f32);
             let at = shift.map(|v| f64::from(v) * self.step);
             let next = Pose { shift: at, z, through, walls, penalty, ..*pose };
             if best.as_ref().is_none_or(|best| next.value() > best.value()) {
@@ -272,7 +248,7 @@ impl Fine {
         let overlap = self.interference(&pose);
         let side = ((self.max_play + 2.0 * overlap) / self.step).ceil() as i32;
         let free = (overlap / self.step).ceil() as usize;
-        let (s, p) = (self.upper.eroded([free / 2; 2]), self.tight.eroded([free - free / 2; 2]));
+        let (s, p) = (self.upper.eroded(free / 2), self.tight.eroded(free - free / 2));
         let depth = lift(&s, &p, shift, pose.z, side);
         Pose { depth, ..pose }
     }
@@ -280,13 +256,13 @@ impl Fine {
     /// Returns the lowest shift near a shift that has the most facing walls, and its height.
     fn settled(
         &self,
-        [socket, plug]: [&HeightMap; 2],
+        maps: [&HeightMap; 2],
         faces: &SocketWalls,
         mut about: [i32; 2],
     ) -> Option<([i32; 2], f32)> {
         let mut found = None;
         for _ in 0..MOST_MOVES {
-            let (level, z) = lowest(socket, plug, about, self.radius);
+            let (level, z) = lowest(maps, about, self.radius);
             let (seat, _) = seated(z, self.heights[0], self.heights[1]);
             let engaged = |shift: &[i32; 2]| score(&self.sides.facing(faces, *shift, seat as f32));
             let scores: Vec<_> = level.iter().map(engaged).collect();
@@ -305,7 +281,7 @@ impl Fine {
 
     /// Returns the cells that both parts fill at a pose.
     pub fn overlap(&self, pose: &Pose) -> Vec<[i32; 2]> {
-        overlap(&self.upper, &self.tight, self.cells(pose), pose.z as f32 + LEVEL)
+        overlap([&self.upper, &self.tight], self.cells(pose), pose.z as f32 + LEVEL)
     }
 
     /// Returns the width of the region that both parts fill at a pose, m.

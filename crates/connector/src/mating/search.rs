@@ -26,7 +26,6 @@ const AT_ONCE: usize = 24;
 const MOST_SEATS: usize = 300;
 
 /// Seat found on the coarse maps.
-#[derive(Debug, Clone, Copy)]
 pub struct CoarseSeat {
     /// Index of the direction out of the socket in [`rotations_to_z`].
     pub out: usize,
@@ -81,38 +80,30 @@ fn cell(sockets: &[Vec<Triangle>], plugs: &[Vec<Triangle>], effort: f64) -> f64 
 }
 
 /// Coarse maps of a part: the outermost height of each cell, and the innermost height of blocks of two by two cells.
-struct Coarse {
-    outer: HeightMap,
-    inner: HeightMap,
+type Coarse = [HeightMap; 2];
+
+fn coarse(fine: &HeightMap, erosion: usize) -> Coarse {
+    let [outer, inner] = fine.eroded(erosion).coarser(FINE);
+    let [before, after] = if fine.envelope == Envelope::Upper { [0, 1] } else { [1, 0] };
+    [outer, inner.inner(before, after)]
 }
 
-impl Coarse {
-    fn new(fine: &HeightMap, erosion: usize) -> Self {
-        let [outer, inner] = fine.eroded([erosion; 2]).coarser(FINE);
-        let inner = match fine.envelope {
-            Envelope::Upper => inner.inner(0, 1),
-            Envelope::Lower => inner.inner(1, 0),
-        };
-        Coarse { outer, inner }
-    }
-}
-
-/// Finds the seats for pairs of a direction out of the socket and a rotation of the plug, at each limit of play.
+/// Finds the seats for pairs of a direction out of the socket and a rotation of the plug, each with the number of
+/// equivalent ones, at each limit of play.
 pub fn seats(
     scene: &Scene,
-    pairs: &[[usize; 2]],
+    pairs: &[([usize; 2], usize)],
     stop: &AtomicBool,
 ) -> Result<[Vec<CoarseSeat>; MAX_PLAYS.len()], MatingError> {
     let mut seats = [const { Vec::new() }; MAX_PLAYS.len()];
     for interference in [0.0, INTERFERENCE] {
         let erosion = (interference / 2.0 / scene.step).round() as usize;
-        let coarse = |fine: &Vec<HeightMap>| -> Vec<Coarse> {
-            fine.par_iter().map(|map| Coarse::new(map, erosion)).collect()
-        };
-        let (sockets, plugs) = (coarse(&scene.upper), coarse(&scene.lower));
+        let [sockets, plugs] = [&scene.upper, &scene.lower].map(|maps| -> Vec<Coarse> {
+            maps.par_iter().map(|map| coarse(map, erosion)).collect()
+        });
         for chunk in pairs.chunks(AT_ONCE) {
             check_cancelled(stop)?;
-            let of = |pair: &[usize; 2]| {
+            let of = |(pair, _): &([usize; 2], usize)| {
                 let [out, turn] = *pair;
                 let passed = bounds(&scene.sockets[out])[2][0] - bounds(&scene.plugs[turn])[2][1];
                 let rests = rests(&sockets[out], &plugs[turn], passed as f32);
@@ -129,11 +120,10 @@ pub fn seats(
 
 /// Returns a lower bound of the resting height for each shift of the plug, m; at the height `passed`, m, the plug has
 /// gone through the socket.
-fn rests(socket: &Coarse, plug: &Coarse, passed: f32) -> HeightMap {
+fn rests([s, s_inner]: &Coarse, [p, p_inner]: &Coarse, passed: f32) -> HeightMap {
     let extremes = |map: &HeightMap, take: fn(f32, f32) -> f32| {
         map.heights.iter().copied().fold(map.envelope.empty(), take)
     };
-    let (s, p) = (&socket.outer, &plug.outer);
     let highest = extremes(s, f32::max) - extremes(p, f32::min);
     let range = [passed, highest - LEAST as f32];
     let first = [0, 1].map(|a| s.first[a] - p.first[a] - p.count[a] as i32);
@@ -141,8 +131,8 @@ fn rests(socket: &Coarse, plug: &Coarse, passed: f32) -> HeightMap {
     let mut map =
         HeightMap { envelope: Envelope::Upper, step: s.step, first, count, heights: Vec::new() };
     let height = |shift: [i32; 2]| {
-        let z = rest(s, &plug.inner, shift, range[1]);
-        let z = if z < range[1] { z.max(rest(&socket.inner, p, shift, range[1])) } else { z };
+        let z = rest(s, p_inner, shift, range[1]);
+        let z = if z < range[1] { z.max(rest(s_inner, p, shift, range[1])) } else { z };
         z.clamp(range[0], range[1])
     };
     map.heights = map.cells().map(height).collect();

@@ -9,6 +9,7 @@ use super::search::LEAST;
 use super::{MAX_PLAYS, MatingError};
 use crate::body::{span, width};
 use crate::mesh::Triangle;
+use crate::mesh::skin::{bounding_box, cut};
 use input::units::MM;
 use nalgebra::{Point3, Vector3};
 use parry::bounding_volume::{Aabb, BoundingVolume};
@@ -90,9 +91,7 @@ pub fn plugs(bodies: &[Vec<Triangle>]) -> Result<Vec<Vec<usize>>, MatingError> {
 
 /// Returns the contact areas of each pair of bodies that touch, by the axis of their normals, m2.
 fn contacts(bodies: &[Vec<Triangle>]) -> BTreeMap<[usize; 2], [f64; 3]> {
-    let around = |points: &[Point3<f64>]| {
-        Aabb::from_points(points.iter().map(|p| (p.coords / MM).into())).loosened(TOUCHING / MM)
-    };
+    let around = |points: &[Point3<f64>]| bounding_box(points, TOUCHING / MM);
     let boxes = |body: &Vec<Triangle>| body.iter().map(|t| around(t)).collect::<Vec<_>>();
     let boxes: Vec<Vec<Aabb>> = bodies.iter().map(boxes).collect();
     let whole: Vec<Aabb> = bodies.iter().map(|body| around(body.as_flattened())).collect();
@@ -129,7 +128,7 @@ fn common(face: &Triangle, other: &Triangle) -> (usize, f64) {
     let mut piece = face.to_vec();
     for i in 0..3 {
         let outward = (other[(i + 1) % 3] - other[i]).cross(&m);
-        piece = crate::mesh::skin::cut(piece, &other[i], &outward);
+        piece = cut(piece, &other[i], &outward);
     }
     let fan = (1..piece.len().max(2) - 1)
         .map(|i| (piece[i] - piece[0]).cross(&(piece[i + 1] - piece[0])).norm() / 2.0);
@@ -193,9 +192,8 @@ impl AxisMaps {
     fn withdrawals_at(&self, interference: f64) -> Vec<Withdrawal> {
         let count = self.upper.len();
         let cells = (interference / self.step).ceil() as usize;
-        let upper: Vec<_> = self.upper.iter().map(|map| map.eroded([cells / 2; 2])).collect();
-        let lower: Vec<_> =
-            self.lower.iter().map(|map| map.eroded([cells - cells / 2; 2])).collect();
+        let upper: Vec<_> = self.upper.iter().map(|map| map.eroded(cells / 2)).collect();
+        let lower: Vec<_> = self.lower.iter().map(|map| map.eroded(cells - cells / 2)).collect();
         let meets =
             |i: usize, j: usize| f64::from(rest(&upper[i], &lower[j], [0; 2], NOWHERE)) > TOLERANCE;
         // For each body, those that block it from above.
@@ -227,11 +225,8 @@ impl AxisMaps {
                 let all: f64 = (0..count).map(own).sum();
                 set.iter().map(|j| own(*j)).sum::<f64>() / all.max(f64::MIN_POSITIVE)
             };
-            let mut near: Vec<(f64, usize)> = (0..count)
-                .filter(|i| !set.contains(i))
-                .map(|i| (share(&i), i))
-                .filter(|(share, _)| *share > 0.0)
-                .collect();
+            let others = (0..count).filter(|i| !set.contains(i)).map(|i| (share(&i), i));
+            let mut near: Vec<(f64, usize)> = others.filter(|(share, _)| *share > 0.0).collect();
             near.sort_by(|a, b| b.0.total_cmp(&a.0));
             let next = near.into_iter().take(MOST_TRIED).filter_map(|(_, i)| {
                 let mut more = set.clone();

@@ -1,7 +1,7 @@
 //! Rotations of the parts that are equivalent by their symmetry.
 
 use super::frame::{rotations_to_z, turned, turns};
-use super::map::{Envelope, HeightMap, bounds};
+use super::map::{Envelope, HeightMap, bounds, maps};
 use super::search::Scene;
 use crate::mesh::Triangle;
 use input::units::MM;
@@ -18,11 +18,11 @@ const RARE: usize = 1000;
 pub fn pairs(scene: &Scene) -> Vec<([usize; 2], usize)> {
     let (turns, count) = (turns(), turns().len());
     let step = 2.0 * scene.step;
-    let plugs = maps(&scene.plugs, Envelope::Lower, step);
-    let sockets: Vec<_> = turns
-        .iter()
-        .map(|turn| turned(&scene.sockets[0], &(turn * rotations_to_z()[0].inverse())))
-        .collect();
+    let plugs: Vec<_> = scene.plugs.iter().map(|plug| centred(plug)).collect();
+    let plugs = maps(&plugs, Envelope::Lower, step);
+    let sockets =
+        turns.iter().map(|turn| turned(&scene.sockets[0], &(turn * rotations_to_z()[0].inverse())));
+    let sockets: Vec<_> = sockets.map(|socket| centred(&socket)).collect();
     let sockets = maps(&sockets, Envelope::Upper, step);
     let number = |turn: Rotation3<f64>| {
         turns.iter().position(|other| (other.matrix() - turn.matrix()).amax() < MM).unwrap_or(0)
@@ -47,20 +47,17 @@ pub fn pairs(scene: &Scene) -> Vec<([usize; 2], usize)> {
     first.map(|i| ([i / count, i % count], size(i))).collect()
 }
 
-fn maps(parts: &[Vec<Triangle>], envelope: Envelope, step: f64) -> Vec<HeightMap> {
-    let centred = |part: &Vec<Triangle>| {
-        let [x, y, z] = bounds(part);
-        let by = Vector3::new((x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0, z[0]);
-        let moved: Vec<Triangle> = part.iter().map(|corners| corners.map(|p| p - by)).collect();
-        HeightMap::new(&moved, envelope, [step; 2], None)
-    };
-    parts.par_iter().map(centred).collect()
+/// Returns a part centred in x and y, with its lowest point at z = 0.
+fn centred(part: &[Triangle]) -> Vec<Triangle> {
+    let [x, y, z] = bounds(part);
+    let by = Vector3::new((x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0, z[0]);
+    part.iter().map(|corners| corners.map(|p| p - by)).collect()
 }
 
 /// Returns the pairs of maps that are equal, in both orders.
 fn equal_pairs(maps: &[HeightMap]) -> Vec<(usize, usize)> {
     let ranges: Vec<[HeightMap; 2]> =
-        maps.par_iter().map(|map| [map.eroded([1; 2]), map.dilated([1; 2])]).collect();
+        maps.par_iter().map(|map| [map.eroded(1), map.dilated(1)]).collect();
     let within = |a: &HeightMap, [inner, outer]: &[HeightMap; 2]| {
         let differs = |[x, y]: &[i32; 2]| {
             let (z, one, two) = (a.at(*x, *y), inner.at(*x, *y), outer.at(*x, *y));

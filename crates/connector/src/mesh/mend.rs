@@ -30,9 +30,7 @@ pub fn mend(points: &[Point3<f64>], faces: &mut Vec<[usize; 3]>) -> bool {
             _ => kept.push(corner),
         }
     }
-    for face in faces.iter_mut() {
-        *face = face.map(|corner| joined.get(&corner).copied().unwrap_or(corner));
-    }
+    faces.iter_mut().for_each(|face| *face = face.map(|at| *joined.get(&at).unwrap_or(&at)));
     let solid = |[a, b, c]: &[usize; 3]| a != b && b != c && c != a;
     faces.retain(solid);
     for _ in 0..ROUNDS {

@@ -9,7 +9,7 @@ pub mod skin;
 mod solid;
 mod surface;
 
-pub use read::{Body, Triangle, is_step, pick, read, separate};
+pub use read::{Body, Triangle, is_step, pick, read, shells};
 pub use reduce::{TOLERANCE, reduced};
 pub use surface::{SIZES, Surface};
 

@@ -8,6 +8,7 @@ use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::Path;
+use std::str::SplitWhitespace;
 
 /// Corners of a triangle, in the unit of the file.
 pub type Triangle = [Point3<f64>; 3];
@@ -75,22 +76,17 @@ fn binary(bytes: &[u8]) -> Option<Vec<Triangle>> {
     if count.checked_mul(RECORD)? != records.len() {
         return None;
     }
-    let number = |bytes: &[u8]| {
-        bytes.try_into().map_or(f64::NAN, |four| f64::from(f32::from_le_bytes(four)))
-    };
+    let number = |bytes: &[u8; 4]| f64::from(f32::from_le_bytes(*bytes));
     let triangle = |record: &[u8]| {
         // The first three numbers are the normal, which also follows from the order of the corners.
-        let values: Vec<f64> = record[12..48].chunks_exact(4).map(number).collect();
+        let values: Vec<f64> = record[12..48].as_chunks().0.iter().map(number).collect();
         std::array::from_fn(|i| Point3::new(values[3 * i], values[3 * i + 1], values[3 * i + 2]))
     };
     Some(records.chunks_exact(RECORD).map(triangle).collect())
 }
 
 /// Parses the three coordinates on a line.
-fn coordinates<'a>(
-    mut words: impl Iterator<Item = &'a str>,
-    line: usize,
-) -> Result<Point3<f64>, String> {
+fn coordinates(mut words: SplitWhitespace, line: usize) -> Result<Point3<f64>, String> {
     let mut next = || words.next().and_then(|word| word.parse::<f64>().ok());
     match (next(), next(), next()) {
         (Some(x), Some(y), Some(z)) => Ok(Point3::new(x, y, z)),
@@ -167,19 +163,13 @@ fn polygon(corners: &[Point3<f64>]) -> Vec<Triangle> {
 /// # Errors
 /// If the file lacks one of them; the text lists the available ones.
 pub fn pick(bodies: &[Body], names: &[String], file: &str) -> Result<[Vec<Triangle>; 2], Fault> {
-    let named = |name: &String| bodies.iter().position(|body| body.name == *name);
-    let of: Vec<Body> = match names.iter().all(|name| named(name).is_some()) {
-        true => bodies.to_vec(),
-        false => shells(bodies),
-    };
+    let named = |name: &String| bodies.iter().any(|body| body.name == *name);
+    let of = if names.iter().all(named) { bodies.to_vec() } else { shells(bodies) };
     let mut picked = [Vec::new(), Vec::new()];
     if let Some(name) = names.iter().find(|name| of.iter().all(|body| body.name != **name)) {
         let known: Vec<_> = bodies.iter().map(|body| format!("`{}`", body.name)).collect();
-        let problem = format!(
-            "has no body `{name}`; available: {}, and shells 1 to {}",
-            known.join(", "),
-            of.len()
-        );
+        let (known, last) = (known.join(", "), of.len());
+        let problem = format!("has no body `{name}`; available: {known}, and shells 1 to {last}");
         return Err(Place::file(file).fault(problem));
     }
     for body in of {
@@ -188,14 +178,9 @@ pub fn pick(bodies: &[Body], names: &[String], file: &str) -> Result<[Vec<Triang
     Ok(picked)
 }
 
-/// Returns the bodies of a file, or the shells of its only body.
-pub fn separate(bodies: Vec<Body>) -> Vec<Body> {
-    if bodies.len() > 1 { bodies } else { shells(&bodies) }
-}
-
 /// Returns the shells (connected components: triangles that share corners) in the order of the file, named by their
 /// number from 1.
-fn shells(bodies: &[Body]) -> Vec<Body> {
+pub fn shells(bodies: &[Body]) -> Vec<Body> {
     let triangles: Vec<_> = bodies.iter().flat_map(|body| body.triangles.iter().copied()).collect();
     let mut at: BTreeMap<[u64; 3], usize> = BTreeMap::new();
     let mut parent: Vec<usize> = (0..triangles.len()).collect();

@@ -81,7 +81,7 @@ impl Decimation {
         let place = self.points[from];
         let change = |&to: &usize| {
             let change = self.change(from, to, &near)?;
-            let distance = Facet::distance(&change.new, &place);
+            let distance = Facet::distance(&change[1], &place);
             (self.error[from] + distance <= TOLERANCE).then_some((distance, to, change))
         };
         let mut changes: Vec<_> = near.iter().filter_map(change).collect();
@@ -105,7 +105,7 @@ impl Decimation {
         if near.iter().filter(|&&other| other != to && self.share_edge(other, to)).count() != 2 {
             return None;
         }
-        let mut change = Change { old: Vec::new(), new: Vec::new() };
+        let [mut before, mut after]: Change = Default::default();
         for &face in &self.about[from] {
             let corners = self.faces[face];
             let old = Facet::new(corners.map(|corner| self.points[corner]), self.points[from]);
@@ -115,24 +115,24 @@ impl Decimation {
                 if new.normal.dot(&old.normal) < LEAST_COSINE {
                     return None;
                 }
-                change.new.push(new);
+                after.push(new);
             }
-            change.old.push(old);
+            before.push(old);
         }
-        Some(change)
+        Some([before, after])
     }
 
     /// Returns the error of a collapse: the largest distance between the old and the new faces, m; `None` beyond the
     /// [`TOLERANCE`].
-    fn cost(&self, from: usize, to: usize, mut change: Change) -> Option<f64> {
+    fn cost(&self, from: usize, to: usize, [mut before, after]: Change) -> Option<f64> {
         let within = |distance: f64| (self.error[from] + distance <= TOLERANCE).then_some(distance);
         // The removed corner alone is not enough: it can be near a new face where another one fills a hollow.
-        let gone = within(Facet::farthest(&change.old, &change.new))?;
+        let gone = within(Facet::farthest(&before, &after))?;
         let about = self.about[to].iter().map(|&face| self.faces[face]);
         let facet =
             |face: [usize; 3]| Facet::new(face.map(|corner| self.points[corner]), self.points[to]);
-        change.old.extend(about.map(facet));
-        let come = within(Facet::farthest(&change.new, &change.old))?;
+        before.extend(about.map(facet));
+        let come = within(Facet::farthest(&after, &before))?;
         Some(self.error[from] + gone.max(come))
     }
 
@@ -166,10 +166,7 @@ impl Decimation {
 }
 
 /// Faces about a corner before and after its removal.
-struct Change {
-    old: Vec<Facet>,
-    new: Vec<Facet>,
-}
+type Change = [Vec<Facet>; 2];
 
 /// Triangle with its unit normal, and samples: its centroid and the midpoint of the edge that starts at a corner.
 struct Facet {

@@ -20,10 +20,8 @@ pub fn solid_of(points: &[Point3<f64>]) -> Option<Solid> {
         let at_end = |v: f64, i: usize| (v - min[i]).abs() < NEAR || (v - max[i]).abs() < NEAR;
         at_end(p[0], a) && at_end(p[1], b)
     };
-    Some(match outline.len() == 4 && outline.iter().all(on_corner) {
-        true => Solid::Box { min, max },
-        false => Solid::Prism { axis, outline, span },
-    })
+    let is_box = outline.len() == 4 && outline.iter().all(on_corner);
+    Some(if is_box { Solid::Box { min, max } } else { Solid::Prism { axis, outline, span } })
 }
 
 /// Returns the outline and the span of a prism along an axis; `None` if the hull of the corners is not such a prism.

@@ -7,7 +7,7 @@ pub use tuner::{Candidate, ENOUGH_MM, MeasuredWindow, Tuner};
 
 use crate::body::ConvexBody;
 use crate::plan::{Family, has_core};
-use ask_tell::{Grid, Observation, OptimizerKind};
+use ask_tell::{Grid, GridPoint, Observation, OptimizerKind};
 use input::InputError;
 use input::units::{DEG, MM};
 use insertion::evaluation::INDIFFERENCE_MM;
@@ -107,10 +107,11 @@ pub struct Effort<'a> {
 pub fn tune(tuner: &Tuner, effort: &Effort) -> Result<Tuned, DesignError> {
     let mut tuned = Tuned { steps: Vec::new(), best: 0, robustness: Vec::new(), windows: 0 };
     let given = tuner.given(&tuner.task.strategy)?;
-    tuned.add(Stage::AsItIs, [("as it is".to_owned(), given)], effort);
+    tuned.add(Stage::AsItIs, vec![("as it is".to_owned(), given)], effort);
     for stage in [Stage::Start, Stage::Families, Stage::Search] {
         let can_end = stage > Stage::Start && effort.until_enough;
-        let enough = can_end && tuned.best().tried.is_enough();
+        let best = &tuned.best().tried;
+        let enough = can_end && best.inserts() && best.side_mm() >= ENOUGH_MM;
         if stage > effort.last || enough || tuner.stopped() {
             break;
         }
@@ -147,12 +148,7 @@ impl Tuned {
 
     /// Adds strategies that were tried. A strategy of a later stage becomes the best one if its score is larger by
     /// [`INDIFFERENCE_MM`]; within a stage, or if the best one fails, any improvement is enough.
-    fn add(
-        &mut self,
-        stage: Stage,
-        tried: impl IntoIterator<Item = (String, Candidate)>,
-        effort: &Effort,
-    ) {
+    fn add(&mut self, stage: Stage, tried: Vec<(String, Candidate)>, effort: &Effort) {
         for (change, last) in tried {
             self.windows += last.cost;
             let best = self.steps.get(self.best).map_or(last.score, |best| best.tried.score);
@@ -203,9 +199,9 @@ impl Tuned {
             Some(tuner.with_slower_push(family.name(), tried))
         };
         let families: Vec<_> = Family::all().collect();
-        let tried: Vec<_> = families.par_iter().filter_map(tried).collect();
+        let tried: Vec<_> = families.par_iter().filter_map(tried).flatten_iter().collect();
         if !tuner.stopped() {
-            self.add(Stage::Families, tried.into_iter().flatten(), effort);
+            self.add(Stage::Families, tried, effort);
         }
     }
 
@@ -223,26 +219,20 @@ impl Tuned {
             if points.is_empty() {
                 break;
             }
-            let tried: Vec<_> = points
-                .par_iter()
-                .map(|point| {
-                    let (strategy, change) =
-                        variables::strategy_at(&task, &free, &grid.unit(point));
-                    (change, tuner.taught(&strategy).ok())
-                })
-                .collect();
+            let taught = |point: &GridPoint| {
+                let (strategy, change) = variables::strategy_at(&task, &free, &grid.unit(point));
+                (change, tuner.taught(&strategy).ok())
+            };
+            let tried: Vec<_> = points.par_iter().map(taught).collect();
             if tuner.stopped() {
                 break;
             }
-            let score = |tried: &Option<Candidate>| tried.as_ref().map(|tried| tried.score);
-            let told: Vec<_> = points
-                .into_iter()
-                .zip(&tried)
-                .map(|(point, (_, tried))| Observation::new(point, score(tried)))
-                .collect();
+            let scores = tried.iter().map(|(_, tried)| tried.as_ref().map(|tried| tried.score));
+            let told = points.into_iter().zip(scores);
+            let told: Vec<_> = told.map(|(point, score)| Observation::new(point, score)).collect();
             optimizer.tell(&told);
             let tried = tried.into_iter().filter_map(|(change, tried)| Some((change, tried?)));
-            self.add(Stage::Search, tried, effort);
+            self.add(Stage::Search, tried.collect(), effort);
         }
         Ok(())
     }

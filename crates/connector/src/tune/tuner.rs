@@ -67,32 +67,28 @@ pub struct Candidate {
 }
 
 /// Returns the measured fingers at six places between the softest and the stiffest.
-pub fn fingers() -> Option<[Finger; 6]> {
+pub fn fingers() -> [Finger; 6] {
     let mut designs = designs();
     designs.sort_by(|a, b| a.compliance.total_cmp(&b.compliance));
-    let last = designs.len().checked_sub(1)?;
+    // A shipped file has designs.
+    let last = designs.len() - 1;
     let at = |tenths: usize| {
         let design = &designs[last * tenths / 10];
         Finger::new(design.compliance, design.assembly)
     };
-    Some([0, 5, 10, 2, 4, 8].map(at))
+    [0, 5, 10, 2, 4, 8].map(at)
 }
 
 impl<'a> Tuner<'a> {
     /// Creates the tuner of a task with its limits of force and speed, and with the robot's stop force unless the
-    /// task limits the force; `None` if no measured fingers are shipped.
-    pub fn new(
-        task: &'a Task,
-        robot: &'a Robot,
-        engine: EngineKind,
-        stop: &'a AtomicBool,
-    ) -> Option<Self> {
+    /// task limits the force.
+    pub fn new(task: &'a Task, robot: &'a Robot, engine: EngineKind, stop: &'a AtomicBool) -> Self {
         let [soft, medium, stiff, others @ ..] =
-            fingers()?.map(|finger| finger.with_model(&task.finger, 0.0));
+            fingers().map(|finger| finger.with_model(&task.finger, 0.0));
         let fingers = [soft, medium, stiff];
         let force = task.limits.force.or(Some(robot.stop_force));
         let limits = Limits { force, ..task.limits };
-        Some(Tuner { task, robot, engine, fingers, others, limits, stop })
+        Tuner { task, robot, engine, fingers, others, limits, stop }
     }
 
     /// Returns whether tuning was stopped; the last result is then invalid.
@@ -195,10 +191,5 @@ impl Candidate {
     pub fn side_mm(&self) -> f64 {
         let side = |window: &Window| window.positive_mm().min(-window.negative_mm());
         self.windows.get(1).map_or(0.0, side)
-    }
-
-    /// Returns whether all three fingers insert, and the medium one from far enough to either side.
-    pub fn is_enough(&self) -> bool {
-        self.inserts() && self.side_mm() >= ENOUGH_MM
     }
 }

@@ -126,7 +126,7 @@ impl Grip {
 
 /// Phases in which the jaws keep their position, as with a non-backdrivable gear; otherwise they press
 /// with the grasp force and yield.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Hold {
     /// From the grasp on.
@@ -198,7 +198,7 @@ pub enum StartRule {
 }
 
 /// Stage of the trial to which a phase belongs; decides the failure class.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Stage {
     /// Motion through the air without contact.

@@ -1,5 +1,6 @@
 //! Picture of a point at which convex parts and drawn shape differ.
 
+use super::gaps::Bodies;
 use crate::mesh::Triangle;
 use crate::picture::VIEWS;
 use contact::scene::Pose;
@@ -19,12 +20,7 @@ const PARTS: [Style; 2] =
 
 /// Draws sections through a point in the task frame: the drawn faces and the convex parts of the plug, at its pose, and
 /// of the socket.
-pub fn svg(
-    drawn: [&[Triangle]; 2],
-    parts: [&[Part]; 2],
-    pose: &Pose,
-    place: Point3<f64>,
-) -> String {
+pub fn svg(bodies: &Bodies, pose: &Pose, place: Point3<f64>) -> String {
     let mut drawing = Drawing::default();
     drawing.white_background();
     let [x, y, z] = [place.x, place.y, place.z].map(|v| v / MM);
@@ -54,8 +50,8 @@ pub fn svg(
                 }
             };
             for body in [0, 1] {
-                lines(drawn[body], body, DRAWN[body]);
-                parts[body].iter().for_each(|part| lines(&faces(part), body, PARTS[body]));
+                lines(bodies.drawn[body], body, DRAWN[body]);
+                bodies.parts[body].iter().for_each(|part| lines(&faces(part), body, PARTS[body]));
             }
             drawing.disc(Point2::new(INSIDE / 2.0, INSIDE / 2.0), 4.0, Style::line("#a01818", 1.5));
         });

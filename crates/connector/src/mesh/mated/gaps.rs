@@ -130,9 +130,7 @@ impl Faces {
         counts: impl Fn(&Point3<f64>) -> bool,
     ) -> Option<(f64, Point3<f64>)> {
         let pose = Pose::from_parts((pose.translation.vector / MM).into(), pose.rotation);
-        let triangle = |[a, b, c]: &Triangle| {
-            shape::Triangle::new(a.coords.into(), b.coords.into(), c.coords.into())
-        };
+        let triangle = |face: &Triangle| shape::Triangle::from(face.map(|p| p.coords.into()));
         let here = contact::shapes::pose(&Pose::identity(), 1.0);
         let mut least: Option<(f64, Point3<f64>)> = None;
         for face in &self.faces {
@@ -164,7 +162,7 @@ impl Faces {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::mated::{Pair, Request, task};
+    use crate::mesh::mated::{Pair, task};
     use insertion::task::{Solid, geometry};
 
     /// Returns the faces of boxes with these smallest and largest corners, mm.
@@ -211,8 +209,7 @@ mod tests {
             engaged: 5.0 * MM,
             play,
         };
-        let request = Request { name: "tube", like: None, handle: None };
-        let made = task(&pair, &request);
+        let made = task(&pair, "tube", None, None);
         assert_eq!((made.difference, made.closeup), (None, None));
         let raised: Vec<Triangle> =
             plug.iter().map(|face| face.map(|p| p + Vector3::z() * 5.0 * MM)).collect();
@@ -227,7 +224,7 @@ mod tests {
         assert_eq!(difference(&bodies, &[]), None);
         // A wall that is 0.05 mm off, and one that is not there.
         let moved: Vec<Triangle> = socket.iter().map(|face| face.map(|p| p * 1.025)).collect();
-        let wrong = task(&Pair { drawn: [&plug, &moved], ..pair }, &request);
+        let wrong = task(&Pair { drawn: [&plug, &moved], ..pair }, "tube", None, None);
         let off = wrong.difference.unwrap();
         assert!((off.gaps[0] - off.gaps[1]).abs() > 0.03 * MM, "{off:?}");
         assert!(wrong.closeup.is_some_and(|svg| svg.starts_with("<svg")));

@@ -15,7 +15,7 @@ use crate::{draft, plan};
 use contact::scene::Pose;
 pub use grip::{Grasp, Rejected};
 use input::units::MM;
-use insertion::task::{Mated, Part, Solid, Success, Task, geometry};
+use insertion::task::{Part, Solid, Task, geometry};
 use nalgebra::{Matrix3, Point3, Vector3};
 pub use overlap::{GAP, Interference};
 use reach::Reach;
@@ -26,8 +26,6 @@ pub use verify::{Deviation, TOLERANCE};
 pub const HANDLE: [f64; 3] = [12.0 * MM, 10.0 * MM, 20.0 * MM];
 /// Height of the tip whose middle is the plug's axis, m.
 const TIP: f64 = 1.0 * MM;
-/// Allowance for the lateral place of a mated plug beyond its play, m.
-pub(crate) const ASIDE: f64 = 0.1 * MM;
 /// Smallest play assumed between plug and opening, m.
 const LEAST_PLAY: f64 = 0.02 * MM;
 
@@ -47,16 +45,6 @@ pub struct Pair<'a> {
     pub engaged: f64,
     /// Play along two directions across, m.
     pub play: [(Vector3<f64>, f64); 2],
-}
-
-/// Settings of the task.
-pub struct Request<'a> {
-    /// Name of the task.
-    pub name: &'a str,
-    /// Task from which all keys but the shapes are taken.
-    pub like: Option<&'a Task>,
-    /// Size of a handle (x, between the jaws, length), m, in place of the plug's own faces.
-    pub handle: Option<[f64; 3]>,
 }
 
 /// Task derived from a pair.
@@ -126,8 +114,9 @@ impl AlignedPair {
     }
 }
 
-/// Returns the task of a pair in its mated pose.
-pub fn task(pair: &Pair, request: &Request) -> PairTask {
+/// Returns the task of a pair in its mated pose, with this name; all keys but the shapes are taken from `like`, and the
+/// plug has a handle of a size (x, between the jaws, length), m, in place of its own faces, if one is given.
+pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>) -> PairTask {
     // Rounded to the grid of files, so that corners stay on it.
     let pair = &Pair { engaged: snap(pair.engaged), ..*pair };
     let first = pair.jaws.first().copied().unwrap_or_else(Vector3::y);
@@ -139,38 +128,36 @@ pub fn task(pair: &Pair, request: &Request) -> PairTask {
         rejected = rejected.or(larger);
         Some((placed, grasp?))
     };
-    let own = if request.handle.is_some() { None } else { pair.jaws.iter().find_map(held) };
+    let own = if size.is_some() { None } else { pair.jaws.iter().find_map(held) };
     let handle = own.is_none();
     let (placed, grasp) = own.unwrap_or_else(|| {
         let placed = AlignedPair::new(pair, first);
-        let size = request.handle.unwrap_or(HANDLE);
+        let size = size.unwrap_or(HANDLE);
         let grasp = grip::handle(&placed.plug, size, pair.engaged + high(&placed));
         (placed, grasp)
     });
-    let (mut plug, mut socket, deviation) = skins(&placed, pair.engaged);
+    let (mut parts, deviation) = skins(&placed, pair.engaged);
     let tight = placed.play.iter().any(|play| *play < LEAST_PLAY);
-    let interference = overlap::cut(&mut plug, &mut socket, pair.engaged, tight);
+    let interference = overlap::cut(&mut parts, pair.engaged, tight);
     let drawn = [&placed.drawn[0][..], &placed.drawn[1]];
-    let bodies =
-        gaps::Bodies { drawn, parts: [&plug, &socket], depth: pair.engaged, play: placed.play };
+    let ([plug, socket], play) = (&parts, placed.play);
+    let bodies = gaps::Bodies { drawn, parts: [plug, socket], depth: pair.engaged, play };
     let difference =
         if deviation.is_some() { None } else { gaps::difference(&bodies, &interference) };
     let mated = Pose::translation(0.0, 0.0, -pair.engaged);
     let place = deviation.map(|(_, off)| (mated, off.place));
     let place = place.or(difference.map(|off| (off.pose, off.place)));
-    let closeup = place.map(|(pose, place)| closeup::svg(drawn, bodies.parts, &pose, place));
+    let closeup = place.map(|(pose, place)| closeup::svg(&bodies, &pose, place));
+    let [mut plug, socket] = parts;
     plug.push(grasp.part.clone());
-    let mut task = draft::blank(request.name, request.like);
+    let mut task = draft::blank(name, like);
     task.plug.mass = draft::DENSITY * volume(&placed.plug).max(geometry::volume(&grasp.part.solid));
     (task.plug.parts, task.socket) = (plug, socket);
     let play = placed.play.map(|play| play.max(LEAST_PLAY));
     task.opening = opening(&placed.plug, pair.engaged, play);
-    let lateral = libm::hypot(play[0], play[1]) / 2.0 + ASIDE;
-    let mated = Mated { tip: [0.0, 0.0, -pair.engaged], lateral };
-    task.success = Success { mated: Some(mated), ..Success::default() };
     (task.grip.shoulder_z, task.grip.faces_y) = (grasp.shoulder, grasp.faces);
-    let mut task = plan::mated(&task);
-    let like = request.like.map(|like| plan::Family::Like(Box::new(like.clone())));
+    let mut task = plan::mated(task, pair.engaged, play);
+    let like = like.map(|like| plan::Family::Like(Box::new(like.clone())));
     if let Some(strategy) = like.and_then(|family| family.strategy_for(&task)) {
         task.strategy = strategy;
     }
@@ -180,7 +167,7 @@ pub fn task(pair: &Pair, request: &Request) -> PairTask {
 }
 
 /// Returns the parts of plug and socket that the other body can touch, and their worst deviation from the drawing.
-fn skins(placed: &AlignedPair, depth: f64) -> (Vec<Part>, Vec<Part>, Option<(usize, Deviation)>) {
+fn skins(placed: &AlignedPair, depth: f64) -> ([Vec<Part>; 2], Option<(usize, Deviation)>) {
     let mated: Vec<Triangle> =
         placed.plug.iter().map(|t| t.map(|p| p - Vector3::z() * depth)).collect();
     let reach = Reach::new(&mated, &placed.socket, placed.play[0].max(placed.play[1]));
@@ -190,7 +177,7 @@ fn skins(placed: &AlignedPair, depth: f64) -> (Vec<Part>, Vec<Part>, Option<(usi
     );
     let worst = off.map(|off| (0, off)).or(its.map(|off| (1, off)));
     let up = |part: Part| Part { solid: raised(part.solid, depth), ..part };
-    (plug.into_iter().map(up).collect(), socket, worst)
+    ([plug.into_iter().map(up).collect(), socket], worst)
 }
 
 /// Returns the parts for the faces that can be touched, and their worst deviation from the drawing.
@@ -213,11 +200,9 @@ fn checked_skin(
 }
 
 fn raised(solid: Solid, by: f64) -> Solid {
+    let up = Vector3::z() * by;
     match solid {
-        Solid::Box { min, max } => {
-            let up = Vector3::z() * by;
-            Solid::Box { min: min + up, max: max + up }
-        }
+        Solid::Box { min, max } => Solid::Box { min: min + up, max: max + up },
         Solid::Prism { axis: 2, outline, span } => {
             Solid::Prism { axis: 2, outline, span: span.map(|z| z + by) }
         }
@@ -225,9 +210,7 @@ fn raised(solid: Solid, by: f64) -> Solid {
             let outline = outline.into_iter().map(|[a, z]| [a, z + by]).collect();
             Solid::Prism { axis, outline, span }
         }
-        other => Solid::Hull {
-            points: other.corners().into_iter().map(|p| p + Vector3::z() * by).collect(),
-        },
+        other => Solid::Hull { points: other.corners().into_iter().map(|p| p + up).collect() },
     }
 }
 

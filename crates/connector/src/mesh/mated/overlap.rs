@@ -52,39 +52,29 @@ impl Interference {
     }
 }
 
-/// Removes the interference on the way of the plug to its mated pose, `depth` below the top, m: of two parts that
-/// overlap deeply the smaller one is left out, and faces that overlap sideways by no more than a press fit are cut
-/// back, as are those of a `tight` fit, which is drawn without play.
-pub fn cut(
-    plug: &mut Vec<Part>,
-    socket: &mut Vec<Part>,
-    depth: f64,
-    tight: bool,
-) -> Vec<Interference> {
-    let mut gone = leave_out(plug, socket, depth, FIT);
-    gone.extend(cut_back(plug, socket, depth, tight));
-    gone.extend(leave_out(plug, socket, depth, ROUNDING));
+/// Removes the interference of plug and socket on the way to the mated pose, `depth` below the top, m: of two parts
+/// that overlap deeply the smaller one is left out, and faces that overlap sideways by no more than a press fit are
+/// cut back, as are those of a `tight` fit, which is drawn without play.
+pub fn cut(bodies: &mut [Vec<Part>; 2], depth: f64, tight: bool) -> Vec<Interference> {
+    let mut gone = leave_out(bodies, depth, FIT);
+    gone.extend(cut_back(bodies, depth, tight));
+    gone.extend(leave_out(bodies, depth, ROUNDING));
     gone
 }
 
 /// Leaves out the smaller of two parts that overlap by more than `least`, m.
-fn leave_out(
-    plug: &mut Vec<Part>,
-    socket: &mut Vec<Part>,
-    depth: f64,
-    least: f64,
-) -> Vec<Interference> {
-    let volumes = [&*plug, &*socket].map(|parts| -> Vec<f64> {
+fn leave_out(bodies: &mut [Vec<Part>; 2], depth: f64, least: f64) -> Vec<Interference> {
+    let volumes = bodies.each_ref().map(|parts| -> Vec<f64> {
         parts.iter().map(|part| geometry::volume(&part.solid)).collect()
     });
-    let mut out = [vec![0.0_f64; plug.len()], vec![0.0_f64; socket.len()]];
-    for Overlap { depth, parts: [i, j], .. } in overlaps([plug, socket], depth, least, [0.0; 2]) {
+    let mut out = bodies.each_ref().map(|parts| vec![0.0_f64; parts.len()]);
+    for Overlap { depth, parts: [i, j], .. } in overlaps(bodies, depth, least, [0.0; 2]) {
         let body = usize::from(volumes[0][i] > volumes[1][j]);
         let part = [i, j][body];
         out[body][part] = out[body][part].max(depth);
     }
     let mut gone = Vec::new();
-    for (body, parts) in [plug, socket].into_iter().enumerate() {
+    for (body, parts) in bodies.iter_mut().enumerate() {
         let all = std::mem::take(parts).into_iter().zip(&out[body]);
         let (left, kept): (Vec<_>, Vec<_>) = all.partition(|(_, depth)| **depth > 0.0);
         *parts = kept.into_iter().map(|(part, _)| part).collect();
@@ -97,19 +87,14 @@ fn leave_out(
 /// Cuts faces that touch the other body sideways back to the gap of a press fit, if any overlap is more than facets
 /// explain. Of two parts the smaller one is cut, so that a rib does not move a wall; a part of which nothing is left is
 /// dropped.
-fn cut_back(
-    plug: &mut Vec<Part>,
-    socket: &mut Vec<Part>,
-    depth: f64,
-    tight: bool,
-) -> Vec<Interference> {
+fn cut_back(bodies: &mut [Vec<Part>; 2], depth: f64, tight: bool) -> Vec<Interference> {
     let (room, aside) = match tight {
         true => (GAP, &[[GAP, 0.0], [-GAP, 0.0], [0.0, GAP], [0.0, -GAP]][..]),
         false => (0.0, &[[0.0; 2]][..]),
     };
-    let touching = aside.iter().flat_map(|&aside| overlaps([plug, socket], depth, LEAST, aside));
+    let touching = aside.iter().flat_map(|&aside| overlaps(bodies, depth, LEAST, aside));
     let pairs: BTreeSet<[usize; 2]> = touching.map(|touch| touch.parts).collect();
-    let mut left = [&*plug, &*socket].map(|parts| -> Vec<Option<Solid>> {
+    let mut left = bodies.each_ref().map(|parts| -> Vec<Option<Solid>> {
         parts.iter().map(|part| Some(part.solid.clone())).collect()
     });
     // Deepest overlap of each part that was cut, m.
@@ -133,7 +118,7 @@ fn cut_back(
         return Vec::new();
     }
     let mut gone = Vec::new();
-    for (body, parts) in [plug, socket].into_iter().enumerate() {
+    for (body, parts) in bodies.iter_mut().enumerate() {
         let cut = cut[body].iter().map(|(&i, &deep)| (deep, parts[i].solid.clone()));
         gone.extend(grouped(cut.collect(), body, true, depth));
         let rest = std::mem::take(parts).into_iter().zip(std::mem::take(&mut left[body]));
@@ -204,15 +189,15 @@ fn grouped(parts: Vec<(f64, Solid)>, body: usize, cut_back: bool, depth: f64) ->
 
 /// Returns the overlaps deeper than `least`, m, on the way down, except those at the stop; the plug is shifted by x and
 /// y, m.
-fn overlaps(parts: [&[Part]; 2], depth: f64, least: f64, [x, y]: [f64; 2]) -> Vec<Overlap> {
-    let [plug, socket] = parts.map(ConvexBody::new);
+fn overlaps(bodies: &[Vec<Part>; 2], depth: f64, least: f64, [x, y]: [f64; 2]) -> Vec<Overlap> {
+    let [plug, socket] = bodies.each_ref().map(|parts| ConvexBody::new(parts));
     let steps = (depth / STEP).ceil() as usize;
     let at = |i: usize| {
         let above = i as f64 * STEP;
         let pose = Pose::translation(x, y, above - depth);
         let counts =
             |touch: &Overlap| touch.depth > least && (above > STOP || touch.normal.z.abs() < ALONG);
-        plug.overlaps(&pose, &socket, &Pose::identity()).filter(counts).collect::<Vec<_>>()
+        plug.overlaps(&pose, &socket).filter(counts).collect::<Vec<_>>()
     };
     (0..=steps).into_par_iter().map(at).collect::<Vec<_>>().concat()
 }
@@ -243,22 +228,21 @@ mod tests {
 
     #[test]
     fn a_press_fit_keeps_its_walls_and_a_spring_is_left_out() {
-        let mut plug = vec![part([-0.32, -0.32, 0.0], [0.32, 0.32, 6.0])];
-        let mut socket = hole();
+        let mut bodies = [vec![part([-0.32, -0.32, 0.0], [0.32, 0.32, 6.0])], hole()];
         let spring = part([-0.1, 0.1, -2.0], [0.1, 0.5, -1.5]);
-        socket.push(spring);
-        let gone = cut(&mut plug, &mut socket, 4.0 * MM, false);
-        assert_eq!((plug.len(), socket.len()), (1, 6));
+        bodies[1].push(spring);
+        let gone = cut(&mut bodies, 4.0 * MM, false);
+        assert_eq!(bodies.each_ref().map(Vec::len), [1, 6]);
         let sum = |cut_back| {
             let parts = gone.iter().filter(|of| of.body == 1 && of.cut_back == cut_back);
             parts.map(|of| of.parts).sum::<usize>()
         };
         assert_eq!((sum(true), sum(false)), (5, 1), "{gone:?}");
         // Room to either side, the slope's lower edge included, and none beyond it.
-        let [pin, hole] = [&plug, &socket].map(|parts| ConvexBody::new(parts));
+        let [pin, hole] = bodies.each_ref().map(|parts| ConvexBody::new(parts));
         let deep = |x: f64, y: f64| {
             let at = Pose::translation(x * MM, y * MM, -3.99 * MM);
-            pin.overlap(&at, &hole, &Pose::identity()).map_or(0.0, |found| found.depth)
+            pin.overlap(&at, &hole).map_or(0.0, |found| found.depth)
         };
         for [x, y] in [[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]] {
             let near = 0.024;
@@ -271,10 +255,10 @@ mod tests {
     #[test]
     fn a_crush_rib_moves_no_wall() {
         let rib = part([0.25, -0.05, 0.0], [0.36, 0.05, 5.0]);
-        let mut plug = vec![part([-0.25, -0.25, 0.0], [0.25, 0.25, 6.0]), rib];
-        let (mut socket, before) = (hole(), hole());
-        let gone = cut(&mut plug, &mut socket, 4.0 * MM, false);
-        assert_eq!((socket, gone.len()), (before, 1), "{gone:?}");
+        let mut bodies = [vec![part([-0.25, -0.25, 0.0], [0.25, 0.25, 6.0]), rib], hole()];
+        let gone = cut(&mut bodies, 4.0 * MM, false);
+        let [plug, socket] = bodies;
+        assert_eq!((socket, gone.len()), (hole(), 1), "{gone:?}");
         let [_, high] = extent(plug[1].solid.corners(), 0);
         assert!((high - 0.275 * MM).abs() < 1e-9, "{high}");
     }
@@ -282,23 +266,21 @@ mod tests {
     /// A pin that fills its hole, without an overlap: room to every side.
     #[test]
     fn a_fit_without_play_gets_room() {
-        let mut plug = vec![part([-0.3, -0.3, 0.0], [0.3, 0.3, 6.0])];
-        let mut socket = hole();
-        let gone = cut(&mut plug, &mut socket, 4.0 * MM, true);
+        let mut bodies = [vec![part([-0.3, -0.3, 0.0], [0.3, 0.3, 6.0])], hole()];
+        let gone = cut(&mut bodies, 4.0 * MM, true);
         assert!(gone.iter().all(|of| of.cut_back && of.depth < 1e-9), "{gone:?}");
-        let [pin, hole] = [&plug, &socket].map(|parts| ConvexBody::new(parts));
+        let [pin, hole] = bodies.each_ref().map(|parts| ConvexBody::new(parts));
         for [x, y] in [[-0.024, 0.0], [0.024, 0.0], [0.0, -0.024], [0.0, 0.024]] {
             let at = Pose::translation(x * MM, y * MM, -3.99 * MM);
-            assert_eq!(pin.overlap(&at, &hole, &Pose::identity()), None, "{x} {y}");
+            assert_eq!(pin.overlap(&at, &hole), None, "{x} {y}");
         }
     }
 
     /// Two faces that touch, and a pin that rests on a floor, stay as drawn.
     #[test]
     fn a_sliding_fit_stays_as_drawn() {
-        let mut plug = vec![part([-0.3, -0.3, 0.0], [0.305, 0.3, 6.0])];
-        let (mut socket, before) = (hole(), hole());
-        assert_eq!(cut(&mut plug, &mut socket, 4.0 * MM, false), []);
-        assert_eq!(socket, before);
+        let mut bodies = [vec![part([-0.3, -0.3, 0.0], [0.305, 0.3, 6.0])], hole()];
+        assert_eq!(cut(&mut bodies, 4.0 * MM, false), []);
+        assert_eq!(bodies[1], hole());
     }
 }

@@ -39,8 +39,13 @@ const CONVEX: f64 = 2e-3 * MM;
 const MOST_CORNERS: usize = 400;
 /// Largest cosine between opposite faces that are cut at their common edge; above it, they are the two sides of a film.
 const FILM: f64 = 0.9999;
+/// Margin of the bounding boxes in which faces are searched for, mm.
+const AROUND_MM: f64 = 1e-3;
 /// Number of corners of a cut hull at and above which those inside it are dropped.
 const MANY: usize = 32;
+
+/// Plane of a face that meets a polygon at less than a right angle: index of the flat face, a point, and the normal.
+type SharpFace = (usize, Point3<f64>, Vector3<f64>);
 
 /// Returns convex solids whose outer surface is that of the triangles, m, for which `reached` is true; a slab that
 /// `fitted` rejects is made thinner.
@@ -50,9 +55,8 @@ pub fn skin(
     fitted: impl Fn(Solid) -> Option<Solid>,
 ) -> Vec<Solid> {
     let facets = Facets::new(triangles);
-    let reached: Vec<bool> = (0..facets.faces.len())
-        .map(|face| reached(&facets.corners(face), &facets.normals[face]))
-        .collect();
+    let reached = |face: usize| reached(&facets.corners(face), &facets.normals[face]);
+    let reached: Vec<bool> = (0..facets.faces.len()).map(reached).collect();
     let mut whole = vec![false; facets.faces.len()];
     let mut solids = Vec::new();
     for shell in facets.shells() {
@@ -103,8 +107,8 @@ struct FaceIndex<'a> {
 
 impl<'a> FaceIndex<'a> {
     fn new(facets: &'a Facets, flat_of: &'a [usize]) -> Self {
-        let boxes: Vec<_> =
-            (0..facets.faces.len()).map(|face| bounding_box(&facets.corners(face))).collect();
+        let boxed = |face: usize| bounding_box(&facets.corners(face), AROUND_MM);
+        let boxes: Vec<_> = (0..facets.faces.len()).map(boxed).collect();
         FaceIndex { facets, flat_of, tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) }
     }
 
@@ -136,15 +140,9 @@ impl<'a> FaceIndex<'a> {
         found
     }
 
-    /// Returns the planes of the faces that meet a polygon at less than a right angle: index of the flat face, a point,
-    /// and the normal.
-    fn sharp(
-        &self,
-        flat: &[usize],
-        polygon: &[usize],
-        normal: &Vector3<f64>,
-    ) -> Vec<(usize, Point3<f64>, Vector3<f64>)> {
-        let mut found: Vec<(usize, Point3<f64>, Vector3<f64>)> = Vec::new();
+    /// Returns the planes of the faces that meet a polygon at less than a right angle.
+    fn sharp(&self, flat: &[usize], polygon: &[usize], normal: &Vector3<f64>) -> Vec<SharpFace> {
+        let mut found: Vec<SharpFace> = Vec::new();
         for &face in flat {
             for i in 0..3 {
                 let ends = [self.facets.faces[face][i], self.facets.faces[face][(i + 1) % 3]];
@@ -175,7 +173,7 @@ impl<'a> FaceIndex<'a> {
         &self,
         corners: &[Point3<f64>],
         normal: &Vector3<f64>,
-        sharp: &[(usize, Point3<f64>, Vector3<f64>)],
+        sharp: &[SharpFace],
     ) -> f64 {
         let count = corners.len();
         let side = |i: usize| {
@@ -190,7 +188,7 @@ impl<'a> FaceIndex<'a> {
         planes.push((corners[0] - normal * BEHIND, *normal));
         planes.push((corners[0] - normal * (2.0 * THICK), -normal));
         let back: Vec<_> = corners.iter().map(|p| p - normal * (2.0 * THICK)).collect();
-        let boxed = bounding_box(&corners.iter().chain(&back).copied().collect::<Vec<_>>());
+        let boxed = bounding_box(&[corners, &back].concat(), AROUND_MM);
         let mut least = 2.0 * THICK;
         for face in self.tree.intersect_aabb(&boxed) {
             let face = face as usize;
@@ -222,11 +220,7 @@ fn halves(corners: &[Point3<f64>]) -> Option<[Vec<Point3<f64>>; 2]> {
 }
 
 /// Extrudes a polygon into the material, below the planes of faces at sharp edges.
-fn extruded(
-    corners: &[Point3<f64>],
-    deeper: &Vector3<f64>,
-    sharp: &[(usize, Point3<f64>, Vector3<f64>)],
-) -> Option<Solid> {
+fn extruded(corners: &[Point3<f64>], deeper: &Vector3<f64>, sharp: &[SharpFace]) -> Option<Solid> {
     let mut points = corners.to_vec();
     points.extend(corners.iter().map(|p| p - deeper));
     for (_, origin, side) in sharp {
@@ -243,19 +237,19 @@ pub fn cut_below(solid: &Solid, origin: &Point3<f64>, normal: &Vector3<f64>) -> 
 /// Returns the hull of points rounded to the grid of files; `None` if it is too thin.
 pub fn snapped_hull(points: &[Point3<f64>]) -> Option<Solid> {
     let points: Vec<_> = points.iter().map(|p| Point3::from(p.coords.map(snap))).collect();
+    // The size along each axis and the volume must be large enough for files.
+    let is_thick = |solid: &Solid| {
+        (0..3).all(|axis| width(extent(solid.corners(), axis)) >= LEAST_SIZE)
+            && volume(solid) >= LEAST_VOLUME
+    };
     solid_of(&points).filter(is_thick)
 }
 
-/// Returns whether the size of a solid along each axis and its volume are large enough for files.
-fn is_thick(solid: &Solid) -> bool {
-    (0..3).all(|axis| width(extent(solid.corners(), axis)) >= LEAST_SIZE)
-        && volume(solid) >= LEAST_VOLUME
-}
-
-/// Returns the bounding box of points in millimetres, the magnitude that parry's tolerances are made for.
-fn bounding_box(points: &[Point3<f64>]) -> Aabb {
+/// Returns the bounding box of points, with a margin, in millimetres, the magnitude that parry's tolerances are made
+/// for.
+pub fn bounding_box(points: &[Point3<f64>], margin_mm: f64) -> Aabb {
     let points = points.iter().map(|p| (p.coords / MM).into());
-    Aabb::from_points(points).loosened(1e-3)
+    Aabb::from_points(points).loosened(margin_mm)
 }
 
 /// Returns the polygon below a plane.

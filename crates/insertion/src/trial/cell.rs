@@ -143,14 +143,13 @@ fn servo_flange(servo: &Servo) -> (Motion, Springs) {
         centre: Point3::origin(),
         moments: Vector3::repeat(servo.inertia),
     };
-    let critical = |k: f64, m: f64| 2.0 * servo.damping_ratio * (k * m).sqrt();
     let axis = |i: usize| {
         let (k, m) = if i < 3 {
             (servo.stiffness[i], servo.mass)
         } else {
             (servo.rotational_stiffness[i - 3], servo.inertia)
         };
-        Some(Spring::new(k, critical(k, m)))
+        Some(Spring::new(k, 2.0 * servo.damping_ratio * (k * m).sqrt()))
     };
     (Motion::Carried(inertia), Springs::Axes(std::array::from_fn(axis)))
 }

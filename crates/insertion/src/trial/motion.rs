@@ -38,8 +38,7 @@ pub struct Move {
 impl Move {
     /// Returns a move at a mean speed, m/s.
     pub fn new(from: Tcp, to: Tcp, speed: f64) -> Self {
-        let duration = ((to.position - from.position).norm() / speed).max(SHORTEST_MOVE_S);
-        Move { from, to, duration }
+        Move::with_duration(from, to, (to.position - from.position).norm() / speed)
     }
 
     /// Returns a move with a duration, s.

@@ -61,11 +61,10 @@ pub(super) fn fit(measured: &Samples, degree: u8, link: Link, penalties: &[f64])
 fn fit_with_penalty(measured: &Samples, degree: u8, link: Link, penalty: f64) -> Option<Ridge> {
     let rows: Vec<Vec<f64>> = infills(measured).map(|infill| terms(infill, degree)).collect();
     let (n, count) = (rows.len(), rows.first()?.len());
-    let scales: Vec<Standardizer> = (0..count)
-        .map(|j| Standardizer::of(&rows.iter().map(|row| row[j]).collect::<Vec<_>>(), 0))
-        .collect();
+    let of_column = |j: usize| Standardizer::of(rows.iter().map(move |row| row[j]), 0);
+    let scales: Vec<Standardizer> = (0..count).map(of_column).collect();
     let raw: Vec<f64> = measured.targets().iter().map(|&k| link.forward(k)).collect();
-    let target = Standardizer::of(&raw, 0);
+    let target = Standardizer::of(raw.iter().copied(), 0);
     let x = DMatrix::from_fn(n, count, |i, j| scales[j].apply(rows[i][j]));
     let y: Array1<f64> = raw.iter().map(|&g| target.apply(g)).collect();
     let design = x.clone().insert_column(0, 1.0);

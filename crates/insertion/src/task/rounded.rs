@@ -5,7 +5,7 @@
 //! Arcs that meet at a corner are mitred like intersecting cylinders; three arcs of equal radius form part
 //! of a ball.
 
-use super::edges::{Cut, Edge, Face, HalfSpace, SAME, corners, half_spaces, same};
+use super::edges::{Cut, Edge, Face, SAME, corners, half_spaces, same};
 use super::geometry;
 use contact::scene::Shape;
 use nalgebra::{Point3, Vector3};
@@ -97,11 +97,8 @@ impl Rounded {
             return None;
         }
         found.push(geometry::centred(&points));
-        found.extend(
-            self.rounded_corners()
-                .filter(|end| self.ball(end).is_none())
-                .filter_map(|end| self.corner_hull(&end)),
-        );
+        let unequal = self.rounded_corners().filter(|end| self.ball(end).is_none());
+        found.extend(unequal.filter_map(|end| self.corner_hull(&end)));
         Some(found)
     }
 
@@ -178,16 +175,12 @@ impl Rounded {
             };
             let reach = own.max(width([*end, one])).max(width([*end, other]));
             let from_low = if end.high { self.size[end.axis] - reach } else { reach };
-            bounds.push(far_side(*end, from_low));
+            // The side of the face `end`.
+            let inward = -end.outward();
+            bounds.push((inward, inward[end.axis] * from_low));
         }
         Some(geometry::centred(&corners(&bounds))).filter(|(shape, _)| shape.corners().len() > 3)
     }
-}
-
-/// Returns the half-space of a plane at `at` across the axis of the face `end`, on the side of this face.
-fn far_side(end: Face, at: f64) -> HalfSpace {
-    let inward = -end.outward();
-    (inward, inward[end.axis] * at)
 }
 
 #[cfg(test)]

@@ -197,10 +197,9 @@ impl Goals {
     /// better, interpolated within the grid step. `None` if there is no score.
     pub fn interpolated(&self, tasks: &[&Evaluation]) -> Option<Vec<f64>> {
         let of = |&measure: &Measure| {
-            let values: Option<Vec<f64>> = tasks
-                .iter()
-                .map(|task| Some(measure.value(task)? + grid_correction(measure, task)))
-                .collect();
+            let value =
+                |task: &&Evaluation| Some(measure.value(task)? + grid_correction(measure, task));
+            let values: Option<Vec<f64>> = tasks.iter().map(value).collect();
             Some(measure.sense() * self.aggregate.of(measure.sense(), &values?))
         };
         self.objectives.measures().iter().map(of).collect()

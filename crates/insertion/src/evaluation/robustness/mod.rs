@@ -48,8 +48,7 @@ impl Plan {
             race: None,
             cells: uncertainty.cell.as_ref().map(|cell| {
                 let rate = if success { rate.trials } else { 0 };
-                let range = if robust { range.samples } else { 0 };
-                let count = rate.max(range);
+                let count = if robust { rate.max(range.samples) } else { rate };
                 (cell.clone(), parameters::draws(&cell.parameters, seed, count))
             }),
         }

@@ -30,11 +30,6 @@ impl Race {
         order.sort_by_cached_key(|draw| place(draw).unwrap_or(usize::MAX));
         order
     }
-
-    /// Returns whether the bar is out of reach even if all remaining draws insert.
-    pub fn is_out_of_reach(&self, success: &SuccessRate) -> bool {
-        success.max_rate().is_some_and(|rate| rate < self.bar_share)
-    }
 }
 
 /// Evaluates the draws in the order of the race and counts their outcomes until the bar is out of reach. Draws
@@ -52,7 +47,8 @@ pub fn run(
         let ended: Vec<Outcome> = draws.par_iter().map(|&draw| outcome(draw)).collect();
         for (&draw, outcome) in draws.iter().zip(ended) {
             success.count(draw, outcome);
-            if race.is_some_and(|race| race.is_out_of_reach(&success)) {
+            // Out of reach even if all remaining draws insert.
+            if race.zip(success.max_rate()).is_some_and(|(race, rate)| rate < race.bar_share) {
                 break 'race;
             }
         }

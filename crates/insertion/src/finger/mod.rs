@@ -163,11 +163,8 @@ const GYRATION: f64 = 20.0 * MM;
 /// negligible inertia, but a centre of mass far from the joint would couple the springs in the engine and slow its
 /// convergence. `side` as in [`Pad::geoms`].
 pub fn inertia(finger: &Finger, side: f64) -> Inertia {
-    Inertia {
-        mass: finger.mass,
-        centre: finger.centre(side),
-        moments: Vector3::repeat(finger.mass * GYRATION * GYRATION),
-    }
+    let moments = Vector3::repeat(finger.mass * GYRATION * GYRATION);
+    Inertia { mass: finger.mass, centre: finger.centre(side), moments }
 }
 
 #[cfg(test)]

@@ -192,11 +192,9 @@ fn choose(data: &AxisData, kinds: &[ModelKind]) -> Result<(Chosen, Vec<Loo>), Su
         ModelKind::ComputedScale => true,
         _ => row.standardised_rms.is_finite(),
     };
-    let best = loo
-        .iter_mut()
-        .filter(eligible)
-        .min_by(|a, b| a.mean_absolute_percent.total_cmp(&b.mean_absolute_percent))
-        .ok_or(unfittable.clone())?;
+    let eligible = loo.iter_mut().filter(eligible);
+    let best = eligible.min_by(|a, b| a.mean_absolute_percent.total_cmp(&b.mean_absolute_percent));
+    let best = best.ok_or(unfittable.clone())?;
     best.chosen = true;
     // An overconfident model is widened until the left-out errors fit; none is narrowed.
     let widen = best.standardised_rms.max(1.0);
@@ -222,11 +220,8 @@ impl Model {
             let Estimate { mean, sd } = fitted.predict(infill);
             Ok::<_, FingerError>(Estimate { mean: mean * unit, sd: sd * widen * unit })
         };
-        Ok(Prediction {
-            compliance: along(Axis::Compliance)?,
-            assembly: along(Axis::Assembly)?,
-            hull_distance: self.hull.distance(infill),
-        })
+        let (compliance, assembly) = (along(Axis::Compliance)?, along(Axis::Assembly)?);
+        Ok(Prediction { compliance, assembly, hull_distance: self.hull.distance(infill) })
     }
 
     /// Returns the number of measured designs as text.

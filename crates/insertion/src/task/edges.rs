@@ -106,7 +106,8 @@ pub fn cut(
     }
 }
 
-/// Returns the half-spaces of a box with cut edges; `chords` returns the number of chords of an arc.
+/// Returns the half-spaces of a box with cut edges. One plane replaces a chamfered edge, and one for each chord a round
+/// edge; `chords` returns the number of chords.
 pub(super) fn half_spaces(
     min: &Vector3<f64>,
     max: &Vector3<f64>,
@@ -116,11 +117,24 @@ pub(super) fn half_spaces(
     let faces = (0..3).flat_map(|axis| [false, true].map(|high| Face { axis, high }));
     let corner = |face: Face| if face.high { max } else { min };
     let mut spaces: Vec<_> = faces.map(|face| half_space(corner(face), face.outward())).collect();
-    for (edge, cut) in edges {
-        let [first, second] = *edge;
+    for &(edge, cut) in edges {
+        let [first, second] = edge;
         let mut at = *corner(first);
         at[second.axis] = corner(second)[second.axis];
-        add_flats(&mut spaces, [first.outward(), second.outward()], &at, *cut, chords(edge));
+        let [a, b] = edge.map(Face::outward);
+        match cut {
+            Cut::Chamfer(leg) => spaces.push(half_space(&(at - a * leg), (a + b).normalize())),
+            Cut::Radius(radius) => {
+                let (centre, chords) = (at - (a + b) * radius, chords(&edge));
+                let step = FRAC_PI_2 / chords as f64;
+                for i in 0..chords {
+                    let turn = (i as f64 + 0.5) * step;
+                    let normal = a * libm::cos(turn) + b * libm::sin(turn);
+                    let point = centre + normal * (radius * libm::cos(step / 2.0));
+                    spaces.push(half_space(&point, normal));
+                }
+            }
+        }
     }
     spaces
 }
@@ -144,30 +158,6 @@ fn fit(size: &Vector3<f64>, edges: &[(Edge, Cut)]) -> bool {
         reach([face, side]) + reach([face, across]) <= size[side.axis] + SAME
     };
     edges.iter().all(|([a, b], _)| room(*a, *b) && room(*b, *a))
-}
-
-/// Adds the planes that replace an edge, given the outward normals of its faces: one for a chamfer, one
-/// for each chord of an arc.
-fn add_flats(
-    spaces: &mut Vec<HalfSpace>,
-    [a, b]: [Vector3<f64>; 2],
-    edge: &Vector3<f64>,
-    cut: Cut,
-    chords: usize,
-) {
-    match cut {
-        Cut::Chamfer(leg) => spaces.push(half_space(&(edge - a * leg), (a + b).normalize())),
-        Cut::Radius(radius) => {
-            let centre = edge - (a + b) * radius;
-            let step = FRAC_PI_2 / chords as f64;
-            for i in 0..chords {
-                let turn = (i as f64 + 0.5) * step;
-                let normal = a * libm::cos(turn) + b * libm::sin(turn);
-                let point = centre + normal * (radius * libm::cos(step / 2.0));
-                spaces.push(half_space(&point, normal));
-            }
-        }
-    }
 }
 
 /// Returns the corners of the intersection of all half-spaces.

@@ -138,11 +138,8 @@ fn add_brake(scene: &mut Scene, arm: &ReducedArm, flange: BodyId, tcp: Pose) {
 }
 
 fn servo_flange(servo: &Servo) -> (Motion, Springs) {
-    let inertia = Inertia {
-        mass: servo.mass,
-        centre: Point3::origin(),
-        moments: Vector3::repeat(servo.inertia),
-    };
+    let moments = Vector3::repeat(servo.inertia);
+    let inertia = Inertia { mass: servo.mass, centre: Point3::origin(), moments };
     let axis = |i: usize| {
         let (k, m) = if i < 3 {
             (servo.stiffness[i], servo.mass)

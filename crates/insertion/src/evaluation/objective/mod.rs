@@ -129,11 +129,8 @@ pub struct Score {
 impl Goals {
     /// Returns a single objective without constraints.
     pub fn of(measure: Measure) -> Self {
-        Goals {
-            objectives: Objectives::of(measure),
-            constraints: Vec::new(),
-            aggregate: Aggregate::Min,
-        }
+        let objectives = Objectives::of(measure);
+        Goals { objectives, constraints: Vec::new(), aggregate: Aggregate::Min }
     }
 
     /// Returns whether a measure is an objective or is constrained.

@@ -103,12 +103,9 @@ fn robust_range(drawn: &[Insertion], settings: &RobustSettings) -> RobustRange {
     let found: Vec<Evaluation> = drawn.par_iter().map(window).collect();
     let valid = found.iter().filter(|draw| draw.window.nominal != Outcome::Diverged);
     let ranges_mm: Vec<f64> = valid.map(|draw| draw.window.range_mm()).collect();
-    let mut robust = RobustRange {
-        diverged: (found.len() - ranges_mm.len()) as u32,
-        ranges_mm,
-        value_mm: None,
-        trials: found.iter().map(|draw| draw.trials).sum(),
-    };
+    let diverged = (found.len() - ranges_mm.len()) as u32;
+    let trials = found.iter().map(|draw| draw.trials).sum();
+    let mut robust = RobustRange { ranges_mm, diverged, trials, value_mm: None };
     robust.value_mm = statistic(&robust, settings.statistic);
     robust
 }

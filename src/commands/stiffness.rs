@@ -54,7 +54,7 @@ impl command::Request for Request {
         }
         let finger = printed_finger(&self.finger)?;
         let model = surrogate(&stiffness_data(self.stiffness_data.as_deref(), &finger)?, &finger)?;
-        let predict = |[density, direction]: [f64; 2]| model.predict(density, direction);
+        let predict = |infill| model.predict(infill);
         let predicted = infill.map(predict).transpose().map_err(Failure::input)?;
         if let Some(path) = &self.svg {
             write_file(path, &shown::svg(&model)?)?;

@@ -138,7 +138,7 @@ impl LeverAnalysis<'_> {
         let mut all = Vec::new();
         for density in values(DENSITY_KEY) {
             for direction in values(DIRECTION_KEY) {
-                let stiffness = evaluator.surrogate.predict(density, direction)?.compliance.mean;
+                let stiffness = evaluator.surrogate.predict([density, direction])?.compliance.mean;
                 all.push((stiffness, density, direction));
             }
         }

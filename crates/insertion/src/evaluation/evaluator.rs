@@ -110,7 +110,7 @@ impl Evaluator {
     /// Returns the predicted stiffness of a design with an infill.
     pub fn predict(&self, design: &Design) -> Result<Prediction, DesignError> {
         let value = |key| design.get(key).unwrap_or(f64::NAN);
-        let infill = self.surrogate.predict(value(DENSITY_KEY), value(DIRECTION_KEY))?;
+        let infill = self.surrogate.predict([DENSITY_KEY, DIRECTION_KEY].map(value))?;
         match &self.fingers {
             FingerSource::Paper => Ok(infill),
             FingerSource::Computed(fingers) => {

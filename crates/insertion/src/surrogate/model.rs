@@ -203,17 +203,11 @@ fn choose(data: &AxisData, kinds: &[ModelKind]) -> Result<(Chosen, Vec<Loo>), Su
 }
 
 impl Model {
-    /// Returns the stiffness of one finger, N/m, for any density (percent; below 1 counts as 1) and direction
-    /// (degrees). The standard deviation is that of a finger yet to be printed: model error and scatter together.
+    /// Returns the stiffness of one finger, N/m, for any infill (a density below 1 percent counts as 1). The standard deviation is that of a finger yet to be printed: model error and scatter together.
     ///
     /// # Errors
     /// If the model uses the computed stiffness and the finger cannot be computed.
-    pub fn predict(
-        &self,
-        density_percent: f64,
-        direction_deg: f64,
-    ) -> Result<Prediction, FingerError> {
-        let infill = [density_percent, direction_deg];
+    pub fn predict(&self, infill: Infill) -> Result<Prediction, FingerError> {
         let along = |axis| {
             let Chosen { fitted, widen } = &self.chosen[axis as usize];
             let unit = if self.ratios { self.computed.stiffness(axis, infill)? } else { 1.0 };

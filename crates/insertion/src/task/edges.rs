@@ -88,18 +88,14 @@ const TOO_THIN: &str = "do not fit: the part is too thin or too small; leave its
 ///
 /// # Errors
 /// If the cuts overlap, or the box is too thin or too small.
-pub fn cut(
-    min: &Vector3<f64>,
-    max: &Vector3<f64>,
-    edges: &[(Edge, Cut)],
-) -> Result<Solid, &'static str> {
+pub fn cut([min, max]: [&Vector3<f64>; 2], edges: &[(Edge, Cut)]) -> Result<Solid, &'static str> {
     if !fit(&(max - min), edges) {
         return Err(TOO_LARGE);
     }
     if edges.iter().any(|(_, cut)| matches!(cut, Cut::Radius(_))) {
-        return Rounded::new(min, max, edges).map(Solid::Rounded).ok_or(TOO_THIN);
+        return Rounded::new([min, max], edges).map(Solid::Rounded).ok_or(TOO_THIN);
     }
-    let corners = corners(&half_spaces(min, max, edges, |_| 1));
+    let corners = corners(&half_spaces([min, max], edges, |_| 1));
     match geometry::hull(&corners) {
         Some((points, _)) if points.len() == corners.len() => Ok(Solid::Hull { points }),
         _ => Err(TOO_THIN),
@@ -109,8 +105,7 @@ pub fn cut(
 /// Returns the half-spaces of a box with cut edges. One plane replaces a chamfered edge, and one for each chord a round
 /// edge; `chords` returns the number of chords.
 pub(super) fn half_spaces(
-    min: &Vector3<f64>,
-    max: &Vector3<f64>,
+    [min, max]: [&Vector3<f64>; 2],
     edges: &[(Edge, Cut)],
     chords: impl Fn(&Edge) -> usize,
 ) -> Vec<HalfSpace> {
@@ -143,7 +138,7 @@ impl Solid {
     /// Returns a box with a chamfer along the edges with a name; `None` if the chamfer does not fit.
     pub fn chamfered(min: &Vector3<f64>, max: &Vector3<f64>, at: &str, leg: f64) -> Option<Self> {
         let edges: Vec<_> = named(at)?.into_iter().map(|edge| (edge, Cut::Chamfer(leg))).collect();
-        cut(min, max, &edges).ok()
+        cut([min, max], &edges).ok()
     }
 }
 
@@ -250,7 +245,7 @@ fn cut_edges(
     let size = size.min(MAX_SHARE * (max - min).min());
     let cuts: Vec<_> = edges.into_iter().map(|edge| (edge, cut_by(size))).collect();
     if !cuts.is_empty()
-        && let Ok(solid) = cut(min, max, &cuts)
+        && let Ok(solid) = cut([min, max], &cuts)
     {
         part.solid = solid;
     }
@@ -266,7 +261,7 @@ mod tests {
 
     fn left(text: &str, cut: Cut) -> Result<Solid, &'static str> {
         let edges: Vec<_> = named(text).unwrap().into_iter().map(|edge| (edge, cut)).collect();
-        super::cut(&Vector3::zeros(), &(Vector3::from(SIZE) * MM), &edges)
+        super::cut([&Vector3::zeros(), &(Vector3::from(SIZE) * MM)], &edges)
     }
 
     fn missing(text: &str, cut: Cut) -> f64 {
@@ -314,7 +309,7 @@ mod tests {
                 let chamfer = |edge| (edge, Cut::Chamfer(thick / 3.0 * MM));
                 let edges: Vec<_> =
                     named("-z").map(radius).chain(named("+z").map(chamfer)).collect();
-                match super::cut(&Vector3::zeros(), &max, &edges) {
+                match super::cut([&Vector3::zeros(), &max], &edges) {
                     Ok(solid) => {
                         whole += 1;
                         let share = volume(&solid) / max.product();

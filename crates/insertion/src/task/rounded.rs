@@ -31,11 +31,7 @@ pub struct Rounded {
 
 impl Rounded {
     /// Creates the box; `None` if the cuts are too fine for a hull.
-    pub(super) fn new(
-        min: &Vector3<f64>,
-        max: &Vector3<f64>,
-        edges: &[(Edge, Cut)],
-    ) -> Option<Self> {
+    pub(super) fn new([min, max]: [&Vector3<f64>; 2], edges: &[(Edge, Cut)]) -> Option<Self> {
         let size = max - min;
         let (pieces, inside) = (Vec::new(), Vec::new());
         let mut made = Rounded { min: *min, size, edges: edges.to_vec(), pieces, inside };
@@ -91,7 +87,7 @@ impl Rounded {
     fn decompose(&self) -> Option<Vec<(Shape, Vector3<f64>)>> {
         let mut found: Vec<_> =
             self.edges.iter().filter_map(|(edge, cut)| self.core(edge, *cut)).collect();
-        let flats = corners(&half_spaces(&Vector3::zeros(), &self.size, &self.edges, |_| 1));
+        let flats = corners(&half_spaces([&Vector3::zeros(), &self.size], &self.edges, |_| 1));
         let (points, _) = geometry::hull(&flats)?;
         if points.len() != flats.len() {
             return None;
@@ -165,7 +161,7 @@ impl Rounded {
             }
             _ => 1,
         };
-        let mut bounds = half_spaces(&Vector3::zeros(), &self.size, &self.edges, chords);
+        let mut bounds = half_spaces([&Vector3::zeros(), &self.size], &self.edges, chords);
         for (i, end) in faces.iter().enumerate() {
             let [one, other] = [faces[(i + 1) % 3], faces[(i + 2) % 3]];
             let width = |edge: Edge| self.cut(edge).map_or(0.0, Cut::size);
@@ -201,7 +197,7 @@ mod tests {
             .flat_map(|(at, cut)| named(at).unwrap().into_iter().map(|edge| (edge, *cut)))
             .collect();
         let min = Vector3::new(1.0, -2.0, 3.0) * MM;
-        match cut(&min, &(min + Vector3::from(SIZE)), &edges) {
+        match cut([&min, &(min + Vector3::from(SIZE))], &edges) {
             Ok(Solid::Rounded(rounded)) => rounded,
             other => panic!("{other:?}"),
         }

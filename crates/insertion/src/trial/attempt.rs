@@ -417,12 +417,9 @@ impl<'a> Attempt<'a> {
         if matches!(end, Err(Stop::Diverged | Stop::Interrupted)) {
             return Outcome::Diverged;
         }
-        classify(FinalState {
-            seated,
-            gripped: self.monitor.gripped(),
-            lost_in: (end == Err(Stop::Lost)).then_some(self.stage),
-            entered: self.monitor.entered && !self.placement().astray(&self.task),
-        })
+        let lost_in = (end == Err(Stop::Lost)).then_some(self.stage);
+        let entered = self.monitor.entered && !self.placement().astray(&self.task);
+        classify(FinalState { seated, gripped: self.monitor.gripped(), lost_in, entered })
     }
 
     /// Returns the result of the trial after this end, its samples and its frames.

@@ -34,29 +34,31 @@ impl Measure {
         Measure::Slip,
     ];
 
+    /// Returns name, unit, unit in keys, and number of decimals.
+    fn row(self) -> (&'static str, &'static str, &'static str, usize) {
+        match self {
+            Measure::Range => ("range", "mm", "mm", 1),
+            Measure::CentredRange => ("centred-range", "mm", "mm", 1),
+            Measure::SuccessRate => ("success-rate", "", "share", 3),
+            Measure::RobustRange => ("robust-range", "mm", "mm", 2),
+            Measure::PeakForce => ("peak-force", "N", "n", 1),
+            Measure::Slip => ("slip", "mm", "mm", 2),
+        }
+    }
+
     /// Returns the name on the command line and in study files.
     pub fn name(self) -> &'static str {
-        let names =
-            ["range", "centred-range", "success-rate", "robust-range", "peak-force", "slip"];
-        names[self as usize]
+        self.row().0
     }
 
     /// Returns the unit for text and axes; empty for a share.
     pub fn unit(self) -> &'static str {
-        match self {
-            Measure::SuccessRate => "",
-            Measure::PeakForce => "N",
-            _ => "mm",
-        }
+        self.row().1
     }
 
     /// Returns the unit as the suffix of a key: `mm`, `n` or `share`.
     pub fn key(self) -> &'static str {
-        match self {
-            Measure::SuccessRate => "share",
-            Measure::PeakForce => "n",
-            _ => "mm",
-        }
+        self.row().2
     }
 
     /// Returns 1 to maximize, -1 to minimize.
@@ -109,12 +111,8 @@ impl Measure {
 
     /// Returns a value with its unit.
     pub fn show(self, value: f64) -> String {
-        match self {
-            Measure::Range | Measure::CentredRange => format!("{value:.1} mm"),
-            Measure::RobustRange | Measure::Slip => format!("{value:.2} mm"),
-            Measure::SuccessRate => format!("{value:.3}"),
-            Measure::PeakForce => format!("{value:.1} N"),
-        }
+        let (_, unit, _, decimals) = self.row();
+        format!("{value:.decimals$} {unit}").trim_end().to_owned()
     }
 
     /// Returns name and unit, for an axis or a heading: `peak-force (N)`.

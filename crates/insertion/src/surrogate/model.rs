@@ -159,7 +159,6 @@ struct Chosen {
 /// cannot be computed.
 pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model, SurrogateError> {
     check_all(measurements)?;
-    let infills: Vec<Infill> = measurements.iter().map(Measurement::infill).collect();
     let (ratios, kinds) = match measurements.len() {
         MIN_MEASURED.. => (false, &ModelKind::MEASURED[..]),
         MIN_FOR_PROCESS.. => (true, &[ModelKind::ComputedScale, ModelKind::ComputedProcess][..]),
@@ -177,7 +176,7 @@ pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model
     let (assembly, mut loo) = choose(Axis::Assembly)?;
     let (compliance, rest) = choose(Axis::Compliance)?;
     loo.extend(rest);
-    let hull = Hull::new(&infills);
+    let hull = Hull::new(&measurements.iter().map(Measurement::infill).collect::<Vec<_>>());
     let measurements = measurements.to_vec();
     Ok(Model { measurements, hull, chosen: [assembly, compliance], loo, computed, ratios })
 }

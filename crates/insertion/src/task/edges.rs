@@ -40,24 +40,29 @@ pub type Edge = [Face; 2];
 
 /// Returns the edges with a name: the four of a face ("-z"), or the one between two ("+x-z"); `None` if invalid.
 pub fn named(text: &str) -> Option<Vec<Edge>> {
-    let face = |text: &str| {
-        let axis = ["x", "y", "z"].iter().position(|name| text.get(1..) == Some(name))?;
-        let high = ['-', '+'].iter().position(|&sign| text.starts_with(sign))? == 1;
-        Some(Face { axis, high })
-    };
+    let face = |text: &str| faces().find(|face| face.name() == text);
     let first = face(text.get(..2)?)?;
     if text.len() > 2 {
         let second = face(text.get(2..)?)?;
         return (first.axis != second.axis).then_some(vec![[first, second]]);
     }
-    let others = (0..3).filter(|&axis| axis != first.axis);
-    let sides = others.flat_map(|axis| [false, true].map(|high| Face { axis, high }));
+    let sides = faces().filter(|side| side.axis != first.axis);
     Some(sides.map(|side| [first, side]).collect())
 }
 
+/// Returns the six faces of a box.
+fn faces() -> impl Iterator<Item = Face> {
+    (0..3).flat_map(|axis| [false, true].map(|high| Face { axis, high }))
+}
+
 /// Returns whether two edges are the same, in either order of their faces.
-pub fn same(a: &Edge, b: &Edge) -> bool {
+fn same(a: &Edge, b: &Edge) -> bool {
     a == b || *a == [b[1], b[0]]
+}
+
+/// Returns the cut of an edge.
+pub fn cut_at(edges: &[(Edge, Cut)], edge: Edge) -> Option<Cut> {
+    edges.iter().find(|(other, _)| same(other, &edge)).map(|(_, cut)| *cut)
 }
 
 /// All points with `normal . p <= distance`: normal and distance.
@@ -109,9 +114,8 @@ pub(super) fn half_spaces(
     edges: &[(Edge, Cut)],
     chords: impl Fn(&Edge) -> usize,
 ) -> Vec<HalfSpace> {
-    let faces = (0..3).flat_map(|axis| [false, true].map(|high| Face { axis, high }));
     let corner = |face: Face| if face.high { max } else { min };
-    let mut spaces: Vec<_> = faces.map(|face| half_space(corner(face), face.outward())).collect();
+    let mut spaces: Vec<_> = faces().map(|face| half_space(corner(face), face.outward())).collect();
     for &(edge, cut) in edges {
         let [first, second] = edge;
         let mut at = *corner(first);
@@ -144,10 +148,7 @@ impl Solid {
 
 /// Returns whether the cuts at opposite edges of each face fit on it.
 fn fit(size: &Vector3<f64>, edges: &[(Edge, Cut)]) -> bool {
-    let reach = |edge: Edge| {
-        let cut = edges.iter().find(|(other, _)| same(other, &edge));
-        cut.map_or(0.0, |(_, cut)| cut.size())
-    };
+    let reach = |edge: Edge| cut_at(edges, edge).map_or(0.0, Cut::size);
     let room = |face: Face, side: Face| {
         let across = Face { high: !side.high, ..side };
         reach([face, side]) + reach([face, across]) <= size[side.axis] + SAME

@@ -160,7 +160,7 @@ fn with_cut_edges(
             _ => return check.fail(key, "give either chamfer_mm or radius_mm"),
         };
         for edge in found {
-            if cuts.iter().any(|(other, _)| edges::same(other, &edge)) {
+            if edges::cut_at(&cuts, edge).is_some() {
                 return check.fail(key, format!("at = {at:?} repeats an edge"));
             }
             cuts.push((edge, cut));

@@ -5,7 +5,7 @@
 //! Arcs that meet at a corner are mitred like intersecting cylinders; three arcs of equal radius form part
 //! of a ball.
 
-use super::edges::{Cut, Edge, Face, SAME, corners, half_spaces, same};
+use super::edges::{Cut, Edge, Face, SAME, corners, cut_at, half_spaces};
 use super::geometry;
 use contact::scene::Shape;
 use nalgebra::{Point3, Vector3};
@@ -98,11 +98,6 @@ impl Rounded {
         Some(found)
     }
 
-    /// Returns the cut of an edge.
-    fn cut(&self, edge: Edge) -> Option<Cut> {
-        self.edges.iter().find(|(other, _)| same(other, &edge)).map(|(_, cut)| *cut)
-    }
-
     /// Returns the core along a round edge, shortened so that its ends do not protrude.
     fn core(&self, edge: &Edge, cut: Cut) -> Option<(Shape, Vector3<f64>)> {
         let Cut::Radius(radius) = cut else { return None };
@@ -123,7 +118,7 @@ impl Rounded {
 
     /// Returns the smallest distance from a face at which a ball with the radius of a round edge fits, m.
     fn trim(&self, edge: &Edge, radius: f64, end: Face) -> f64 {
-        let beside = |side: &Face| match self.cut([end, *side]) {
+        let beside = |side: &Face| match cut_at(&self.edges, [end, *side]) {
             Some(Cut::Chamfer(leg)) => leg + (SQRT_2 - 1.0) * radius,
             Some(Cut::Radius(other)) => other,
             None => 0.0,
@@ -135,7 +130,7 @@ impl Rounded {
     fn rounded_corners(&self) -> impl Iterator<Item = [Face; 3]> {
         let corner = |i: usize| [0, 1, 2].map(|axis| Face { axis, high: i >> axis & 1 == 1 });
         let round = |[a, b, c]: &[Face; 3]| {
-            let cuts = [[*a, *b], [*b, *c], [*c, *a]].map(|edge| self.cut(edge));
+            let cuts = [[*a, *b], [*b, *c], [*c, *a]].map(|edge| cut_at(&self.edges, edge));
             cuts.iter().any(|cut| matches!(cut, Some(Cut::Radius(_))))
         };
         (0..8).map(corner).filter(round)
@@ -143,9 +138,9 @@ impl Rounded {
 
     /// Returns the ball of a corner at which three edges of equal radius meet.
     fn ball(&self, [a, b, c]: &[Face; 3]) -> Option<(Shape, Vector3<f64>)> {
-        let Some(Cut::Radius(radius)) = self.cut([*a, *b]) else { return None };
-        let all =
-            [[*b, *c], [*c, *a]].iter().all(|&edge| self.cut(edge) == Some(Cut::Radius(radius)));
+        let first = cut_at(&self.edges, [*a, *b]);
+        let Some(Cut::Radius(radius)) = first else { return None };
+        let all = [[*b, *c], [*c, *a]].iter().all(|&edge| cut_at(&self.edges, edge) == first);
         let at = |face: &Face| if face.high { self.size[face.axis] - radius } else { radius };
         let shape = Shape::RoundBox { core: Vector3::zeros(), radius };
         all.then(|| (shape, Vector3::new(at(a), at(b), at(c))))
@@ -154,7 +149,7 @@ impl Rounded {
     /// Returns the hull of a corner, which the cores of its edges do not reach.
     fn corner_hull(&self, faces: &[Face; 3]) -> Option<(Shape, Vector3<f64>)> {
         let near = |edge: &Edge| edge.iter().all(|face| faces.contains(face));
-        let chords = |edge: &Edge| match self.cut(*edge) {
+        let chords = |edge: &Edge| match cut_at(&self.edges, *edge) {
             Some(Cut::Radius(radius)) if near(edge) => {
                 let step = 2.0 * libm::acos(1.0 - (SAG / radius).min(0.25));
                 (FRAC_PI_2 / step).ceil() as usize
@@ -164,8 +159,8 @@ impl Rounded {
         let mut bounds = half_spaces([&Vector3::zeros(), &self.size], &self.edges, chords);
         for (i, end) in faces.iter().enumerate() {
             let [one, other] = [faces[(i + 1) % 3], faces[(i + 2) % 3]];
-            let width = |edge: Edge| self.cut(edge).map_or(0.0, Cut::size);
-            let own = match self.cut([one, other]) {
+            let width = |edge: Edge| cut_at(&self.edges, edge).map_or(0.0, Cut::size);
+            let own = match cut_at(&self.edges, [one, other]) {
                 Some(Cut::Radius(radius)) => self.trim(&[one, other], radius, *end),
                 _ => 0.0,
             };

@@ -140,15 +140,10 @@ fn add_brake(scene: &mut Scene, arm: &ReducedArm, flange: BodyId, tcp: Pose) {
 fn servo_flange(servo: &Servo) -> (Motion, Springs) {
     let moments = Vector3::repeat(servo.inertia);
     let inertia = Inertia { mass: servo.mass, centre: Point3::origin(), moments };
-    let axis = |i: usize| {
-        let (k, m) = if i < 3 {
-            (servo.stiffness[i], servo.mass)
-        } else {
-            (servo.rotational_stiffness[i - 3], servo.inertia)
-        };
-        Some(Spring::new(k, 2.0 * servo.damping_ratio * (k * m).sqrt()))
-    };
-    (Motion::Carried(inertia), Springs::Axes(std::array::from_fn(axis)))
+    let spring = |k: f64, m: f64| Some(Spring::new(k, 2.0 * servo.damping_ratio * (k * m).sqrt()));
+    let [x, y, z] = servo.stiffness.map(|k| spring(k, servo.mass));
+    let [rx, ry, rz] = servo.rotational_stiffness.map(|k| spring(k, servo.inertia));
+    (Motion::Carried(inertia), Springs::Axes([x, y, z, rx, ry, rz]))
 }
 
 fn pad_friction(task: &Task) -> Friction {

@@ -177,21 +177,13 @@ impl Goals {
         let differing = a.iter().zip(&b).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne());
         differing.unwrap_or(Ordering::Equal)
     }
-}
 
-impl Score {
-    /// Returns whether all constraints are satisfied.
-    pub fn feasible(&self) -> bool {
-        self.violations.iter().all(|&violation| violation <= 0.0)
-    }
-}
-
-// Windows are measured on a grid of 0.1 mm, so many designs have equal ranges, and all whose nominal start fails
-// have none. Optimizers therefore get values interpolated within the last grid step; those of the study stay
-// on the grid.
-impl Goals {
     /// Returns the values for an optimizer: those of [`score`](Goals::score) with the sign for which larger is
     /// better, interpolated within the grid step. `None` if there is no score.
+    ///
+    /// Windows are measured on a grid of 0.1 mm, so many designs have equal ranges, and all whose nominal start fails
+    /// have none. Optimizers therefore get values interpolated within the last grid step; those of the study stay
+    /// on the grid.
     pub fn interpolated(&self, tasks: &[&Evaluation]) -> Option<Vec<f64>> {
         let of = |&measure: &Measure| {
             let value =
@@ -200,6 +192,13 @@ impl Goals {
             Some(measure.sense() * self.aggregate.of(measure.sense(), &values?))
         };
         self.objectives.measures().iter().map(of).collect()
+    }
+}
+
+impl Score {
+    /// Returns whether all constraints are satisfied.
+    pub fn feasible(&self) -> bool {
+        self.violations.iter().all(|&violation| violation <= 0.0)
     }
 }
 

@@ -3,7 +3,6 @@
 //! Frames: the world is the task frame. The flange frame is the TCP. The plug
 //! stands upright at its pick-up pose, vertically above the start of the search.
 
-use crate::arm::ReducedArm;
 use crate::finger::{self, Finger};
 use crate::robot::{Flange, MountedRobot, Servo};
 use crate::task::{Latch, PadTorsion, Part, Task, geometry};
@@ -122,19 +121,16 @@ pub fn add_flange(scene: &mut Scene, model: &Flange, tcp: Pose) -> (BodyId, Body
     };
     let flange = scene.body(body("flange", motion, tcp, Vec::new()));
     scene.joint(joint("servo", [command, flange], [Pose::identity(); 2], springs));
-    if let Flange::Arm(arm) = model {
-        add_brake(scene, arm, flange, tcp);
+    if let Flange::Arm(arm) = model
+        && let Some(damper) = arm.brake()
+    {
+        // The damper acts along the axes of the tilted TCP.
+        let base = scene.body(body("base", Motion::Fixed, tcp, Vec::new()));
+        let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), arm.tilt);
+        let frames = [Pose::from_parts(Translation3::identity(), tilt), Pose::identity()];
+        scene.joint(joint("brake", [base, flange], frames, damper));
     }
     (command, flange)
-}
-
-/// Adds the damper between flange and world of an arm without velocity feed-forward, along the axes of the tilted TCP.
-fn add_brake(scene: &mut Scene, arm: &ReducedArm, flange: BodyId, tcp: Pose) {
-    let Some(damper) = arm.brake() else { return };
-    let base = scene.body(body("base", Motion::Fixed, tcp, Vec::new()));
-    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), arm.tilt);
-    let frames = [Pose::from_parts(Translation3::identity(), tilt), Pose::identity()];
-    scene.joint(joint("brake", [base, flange], frames, damper));
 }
 
 fn servo_flange(servo: &Servo) -> (Motion, Springs) {

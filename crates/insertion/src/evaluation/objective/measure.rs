@@ -85,28 +85,21 @@ impl Measure {
     /// the nominal start fails, the range is 0 and there is neither force nor slip. A diverged trial ends a window like
     /// a failed one. The success rate of a lost race is its upper bound.
     pub fn value(self, evaluation: &Evaluation) -> Option<f64> {
-        let value = match self {
-            Measure::SuccessRate => evaluation.success.as_ref()?.max_rate(),
-            Measure::RobustRange => evaluation.robust.as_ref()?.value_mm,
-            _ => self.of_window(evaluation),
-        };
-        value.filter(|value| value.is_finite())
-    }
-
-    /// Returns the value of a measure of the window search.
-    fn of_window(self, evaluation: &Evaluation) -> Option<f64> {
         let window = &evaluation.window;
-        match (window.nominal, self) {
+        let value = match (window.nominal, self) {
+            (_, Measure::SuccessRate) => evaluation.success.as_ref()?.max_rate(),
+            (_, Measure::RobustRange) => evaluation.robust.as_ref()?.value_mm,
             (Outcome::Diverged, _) => None,
             (Outcome::Inserted, Measure::CentredRange) => {
                 Some(2.0 * window.positive_mm().min(-window.negative_mm()))
             }
             (Outcome::Inserted, Measure::PeakForce) => Some(evaluation.peak_force_n),
             (Outcome::Inserted, Measure::Slip) => Some(evaluation.slip_mm),
-            (Outcome::Inserted, _) => Some(window.range_mm()),
+            (Outcome::Inserted, Measure::Range) => Some(window.range_mm()),
             (Outcome::Failed(_), Measure::PeakForce | Measure::Slip) => None,
-            (Outcome::Failed(_), _) => Some(0.0),
-        }
+            (Outcome::Failed(_), Measure::Range | Measure::CentredRange) => Some(0.0),
+        };
+        value.filter(|value| value.is_finite())
     }
 
     /// Returns a value with its unit.

@@ -64,10 +64,7 @@ impl Rounded {
     /// Returns the cuts: name of the edge, key and size, m, of the cut.
     pub fn cuts(&self) -> impl Iterator<Item = (String, &'static str, f64)> {
         self.edges.iter().map(|([first, second], cut)| {
-            let key = match cut {
-                Cut::Chamfer(_) => "chamfer_mm",
-                Cut::Radius(_) => "radius_mm",
-            };
+            let key = if matches!(cut, Cut::Chamfer(_)) { "chamfer_mm" } else { "radius_mm" };
             (format!("{}{}", first.name(), second.name()), key, cut.size())
         })
     }

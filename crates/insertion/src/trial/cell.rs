@@ -11,7 +11,7 @@ use contact::scene::{
     Shape, Spring, Springs, Torsion,
 };
 use input::units::MM;
-use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
 
 /// Height of the pick-up pose above the start pose, m.
 const PICK_UP_HEIGHT: f64 = 10.0 * MM;
@@ -122,9 +122,10 @@ pub fn add_flange(scene: &mut Scene, model: &Flange, tcp: Pose) -> (BodyId, Body
     let flange = scene.body(body("flange", motion, tcp, Vec::new()));
     scene.joint(joint("servo", [command, flange], [Pose::identity(); 2], springs));
     if let Flange::Arm(arm) = model
-        && let Some(damper) = arm.brake()
+        && !arm.feed_forward
     {
-        // The damper acts along the axes of the tilted TCP.
+        // Without velocity feed-forward the damper is between flange and world, along the axes of the tilted TCP.
+        let damper = Springs::Coupled { stiffness: Matrix6::zeros(), damping: arm.damping };
         let base = scene.body(body("base", Motion::Fixed, tcp, Vec::new()));
         let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), arm.tilt);
         let frames = [Pose::from_parts(Translation3::identity(), tilt), Pose::identity()];

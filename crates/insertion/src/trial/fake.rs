@@ -63,14 +63,11 @@ impl Grasped for (FakeRig, Grasp<'_>) {
             std::thread::sleep(delay);
         }
         let offset_mm = whole_nanometres(offset / MM);
-        let outcome = if stopped {
-            Outcome::Diverged
-        } else if offset_mm < low {
-            Outcome::Failed(FailureClass::Jammed)
-        } else if offset_mm > high {
-            Outcome::Failed(FailureClass::PlugMissed)
-        } else {
-            Outcome::Inserted
+        let outcome = match offset_mm {
+            _ if stopped => Outcome::Diverged,
+            below if below < low => Outcome::Failed(FailureClass::Jammed),
+            above if above > high => Outcome::Failed(FailureClass::PlugMissed),
+            _ => Outcome::Inserted,
         };
         // Distance in mm to the nearer end.
         let margin = (offset_mm - low).min(high - offset_mm).clamp(-1.0, 1.0);

@@ -46,10 +46,8 @@ impl<'a> Repeats<'a> {
     pub fn outcomes(&self, offset: f64) -> Vec<Outcome> {
         let trial = |(grasped, shift): &(Box<dyn Grasped + 'a>, f64)| {
             // Checked here, since even a cancelled trial copies its world first.
-            match self.stop.load(Ordering::Relaxed) {
-                true => Outcome::Diverged,
-                false => grasped.trial(offset + shift).outcome,
-            }
+            let stopped = self.stop.load(Ordering::Relaxed);
+            if stopped { Outcome::Diverged } else { grasped.trial(offset + shift).outcome }
         };
         self.runs.par_iter().map(trial).collect()
     }

@@ -269,7 +269,7 @@ fn a_robust_range_is_smaller_than_the_range() {
     let plan = Plan::new(&typical, 0, false, true);
     let measured = stiffness::parse(STIFFNESS[0].text, "measured").unwrap();
     let printed = PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
-    let predicted = surrogate::fit(&measured, &printed).unwrap().predict(20.0, 10.0).unwrap();
+    let predicted = surrogate::fit(&measured, &printed).unwrap().predict([20.0, 10.0]).unwrap();
     let finger = Finger::new(predicted.compliance.mean, predicted.assembly.mean);
     let (rig, grasp) = (direct("ket12"), Grasp::of(&finger));
     let found = robustness::evaluate(&rig, grasp, &predicted, Search::Strides, &plan, &[]);

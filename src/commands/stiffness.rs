@@ -49,7 +49,7 @@ impl command::Request for Request {
         }
         let finger = finger_file(&self.finger)?.finger;
         let model = surrogate(&stiffness_data(self.stiffness_data.as_deref(), &finger)?, &finger)?;
-        let predict = |[density, direction]: [f64; 2]| model.predict(density, direction);
+        let predict = |infill| model.predict(infill);
         let predicted = infill.map(predict).transpose().map_err(Failure::input)?;
         let value = predicted.map_or_else(|| shown::json(&model), |predicted| json!(predicted));
         let output = Output::new(shown::table(&model), value);

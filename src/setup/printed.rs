@@ -96,7 +96,7 @@ pub(crate) fn predicted_stiffness(
         return Ok(None);
     };
     let model = surrogate(&stiffness_data(None, finger)?, finger)?;
-    Ok(model.predict(density, direction).ok())
+    Ok(model.predict([density, direction]).ok())
 }
 
 /// Returns the recommended design of a study, its finger file, and its stiffness, if the design was evaluated.

@@ -53,10 +53,8 @@ impl From<FailureClass> for u8 {
 impl TryFrom<u8> for FailureClass {
     type Error = String;
     fn try_from(number: u8) -> Result<Self, String> {
-        Self::ALL
-            .into_iter()
-            .find(|class| class.number() == number)
-            .ok_or_else(|| format!("failure class {number} is not one of 1, 2, 3, 4"))
+        let class = Self::ALL.into_iter().find(|class| class.number() == number);
+        class.ok_or_else(|| format!("failure class {number} is not one of 1, 2, 3, 4"))
     }
 }
 

@@ -66,6 +66,23 @@ pub struct MountedRobot {
 }
 
 impl Robot {
+    /// Reads and checks a robot; `file` is named in errors.
+    ///
+    /// # Errors
+    /// If the text is not a robot file, or a value is out of range.
+    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
+        let document = Document::parse(text, file)?;
+        let Header { kind, name, description, stop_force } = document.read()?;
+        numbers::check_file("robot", &document.read()?, file)?;
+        let own = document.without(&HEADER);
+        let drive = match kind {
+            Kind::Rigid => own.read().map(|Rigid {}| Drive::Ideal)?,
+            Kind::Servo => Drive::Servo(own.read()?),
+            Kind::Arm => Drive::Arm(Box::new(own.read::<RawArm>()?.arm(Check { file })?)),
+        };
+        Ok(Robot { name, description, drive, stop_force })
+    }
+
     /// Returns the robot at the start of a task whose frame is turned by `turn` about the
     /// base's z, with the TCP tilted by `tilt` about the task's x, rad.
     ///
@@ -104,10 +121,7 @@ impl MountedRobot {
     }
 
     fn arm(&self) -> Option<&ReducedArm> {
-        match &self.flange {
-            Flange::Arm(arm) => Some(arm),
-            Flange::Ideal | Flange::Servo(_) => None,
-        }
+        if let Flange::Arm(arm) = &self.flange { Some(arm) } else { None }
     }
 }
 
@@ -139,24 +153,6 @@ const HEADER: [&str; 4] = ["kind", "name", "description", "stop_force_n"];
 #[serde(deny_unknown_fields)]
 struct Rigid {}
 
-impl Robot {
-    /// Reads and checks a robot; `file` is named in errors.
-    ///
-    /// # Errors
-    /// If the text is not a robot file, or a value is out of range.
-    pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        let document = Document::parse(text, file)?;
-        let Header { kind, name, description, stop_force } = document.read()?;
-        numbers::check_file("robot", &document.read()?, file)?;
-        let own = document.without(&HEADER);
-        let drive = match kind {
-            Kind::Rigid => own.read().map(|Rigid {}| Drive::Ideal)?,
-            Kind::Servo => Drive::Servo(own.read()?),
-            Kind::Arm => Drive::Arm(Box::new(own.read::<RawArm>()?.arm(Check { file })?)),
-        };
-        Ok(Robot { name, description, drive, stop_force })
-    }
-}
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -71,14 +71,6 @@ impl Measurement {
     pub(crate) fn infill(&self) -> Infill {
         [self.density_percent, self.direction_deg]
     }
-
-    /// Returns the first column with a value out of bounds, and its problem.
-    fn problem(&self) -> Option<(&'static str, String)> {
-        let springs = [self.assembly, self.compliance].map(|stiffness| stiffness / N_PER_MM);
-        let values = self.infill().into_iter().chain(springs);
-        let mut columns = HEADER[1..].iter().zip(values);
-        columns.find_map(|(name, value)| Some((*name, numbers::problem(name, value)?)))
-    }
 }
 
 /// Error of measured stiffnesses.
@@ -233,8 +225,9 @@ fn measurement(record: &csv::StringRecord) -> Result<Measurement, (&'static str,
 
 /// Checks one measurement by itself and against those before it.
 fn check(new: &Measurement, before: &[Measurement]) -> Result<(), (&'static str, String)> {
-    if let Some(problem) = new.problem() {
-        return Err(problem);
+    let springs = [new.assembly, new.compliance].map(|stiffness| stiffness / N_PER_MM);
+    for (name, value) in HEADER[1..].iter().zip(new.infill().into_iter().chain(springs)) {
+        numbers::problem(name, value).map_or(Ok(()), |problem| Err((*name, problem)))?;
     }
     for old in before {
         if old.design == new.design {

@@ -118,7 +118,7 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> DrawR
     let of = |m: &Measurement| swapped((m.density_percent, m.direction_deg));
     let predict = |x: f64, curve: f64| {
         let (density, direction) = swapped((x, curve));
-        let Estimate { mean, sd } = model.predict(density, direction)?.axis(axis);
+        let Estimate { mean, sd } = model.predict([density, direction])?.axis(axis);
         Ok::<_, PlotError>((x, Estimate { mean: mean / N_PER_MM, sd: sd / N_PER_MM }))
     };
     let name = |curve: f64| {

@@ -56,13 +56,13 @@ fn study() -> StudyRecord {
 
 /// An evaluation by the closed-form rig.
 fn walked(index: u64, infill: [f64; 2]) -> Recorded {
-    let stiffness = model().predict(infill[0], infill[1]).unwrap();
+    let stiffness = model().predict(infill).unwrap();
     let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
     recorded(index, infill, evaluate(&FakeRig::default(), &finger, Search::Walk))
 }
 
 fn recorded(index: u64, infill: [f64; 2], evaluation: Evaluation) -> Recorded {
-    let stiffness = model().predict(infill[0], infill[1]).unwrap();
+    let stiffness = model().predict(infill).unwrap();
     let score = Goals::of(Measure::Range).score(&[&evaluation]);
     let design = Design::infill(infill[0], infill[1]);
     let (tasks, timing) = (vec![evaluation], Timing::default());

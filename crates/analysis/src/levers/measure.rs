@@ -132,7 +132,7 @@ impl LeverAnalysis<'_> {
         let mut all = Vec::new();
         for density in values(DENSITY_KEY) {
             for direction in values(DIRECTION_KEY) {
-                let stiffness = evaluator.surrogate.predict(density, direction)?.compliance.mean;
+                let stiffness = evaluator.surrogate.predict([density, direction])?.compliance.mean;
                 let design = design.with(DENSITY_KEY, density).with(DIRECTION_KEY, direction);
                 all.push((stiffness, design));
             }

@@ -4,9 +4,7 @@
 use super::{Angles, Arm, ArmError, JOINTS};
 use contact::scene::Pose;
 use input::units::{DEG, MM};
-use nalgebra::{
-    Isometry3, Matrix3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3, Vector6,
-};
+use nalgebra::{Matrix3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3, Vector6};
 
 /// Damping `l` far from the target, m; it bounds the steps near singular poses.
 const DAMPING: f64 = 0.02;
@@ -36,7 +34,7 @@ impl Arm {
             frame *= joint.frame;
             axes[i] = frame.rotation * joint.axis.into_inner();
             let rotation = UnitQuaternion::from_axis_angle(&joint.axis, angles[i]);
-            frame *= Isometry3::from_parts(Translation3::identity(), rotation);
+            frame *= Pose::from_parts(Translation3::identity(), rotation);
             links[i] = frame;
         }
         Posture { links, axes, tcp: frame * self.tool }

@@ -97,12 +97,6 @@ impl ReducedArm {
         Springs::Coupled { stiffness: self.stiffness, damping }
     }
 
-    /// Returns the damper between the flange and the world; `None` with velocity feed-forward.
-    pub fn brake(&self) -> Option<Springs> {
-        let brake = Springs::Coupled { stiffness: Matrix6::zeros(), damping: self.damping };
-        (!self.feed_forward).then_some(brake)
-    }
-
     /// Returns whether a force at the TCP (task axes, N) exceeds the torque limit of a joint.
     pub fn overloaded(&self, force: &Vector3<f64>) -> bool {
         let torques = self.torques * force;

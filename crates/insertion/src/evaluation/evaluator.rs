@@ -110,7 +110,7 @@ impl Evaluator {
     /// Returns the predicted stiffness of a design with an infill.
     pub fn predict(&self, design: &Design) -> Result<Prediction, DesignError> {
         let value = |key| design.get(key).unwrap_or(f64::NAN);
-        let infill = self.surrogate.predict(value(DENSITY_KEY), value(DIRECTION_KEY))?;
+        let infill = self.surrogate.predict([DENSITY_KEY, DIRECTION_KEY].map(value))?;
         match &self.fingers {
             FingerSource::Paper => Ok(infill),
             FingerSource::Computed(fingers) => {
@@ -173,26 +173,11 @@ impl Evaluator {
     /// Returns the rig of a specimen at its taught start, with `step_factor` times the time step.
     pub fn rig(
         &self,
-        specimen: &Specimen,
-        taught: Option<OffsetStep>,
-        step_factor: f64,
-    ) -> Result<Box<dyn Rig>, RigError> {
-        self.rig_of(specimen, &self.robot, taught, step_factor)
-    }
-
-    /// Returns the rig of a specimen on the given robot.
-    fn rig_of(
-        &self,
         Specimen { task, finger, .. }: &Specimen,
-        robot: &Robot,
         taught: Option<OffsetStep>,
         step_factor: f64,
     ) -> Result<Box<dyn Rig>, RigError> {
-        let rig = self.engine.rig(task, robot, finger, step_factor)?;
-        Ok(match taught {
-            None | Some(0) => rig,
-            Some(shift) => Box::new(Shifted { rig, shift }),
-        })
+        Ok(shifted(self.engine.rig(task, &self.robot, finger, step_factor)?, taught))
     }
 
     /// Measures a specimen according to a plan. The result is invalid once `stop` is set.
@@ -208,7 +193,8 @@ impl Evaluator {
         let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
         let draw = |(cell, values): (&Priors, &Vec<f64>)| -> Result<Drawn, DesignError> {
             let (drawn, robot) = self.in_cell(specimen, cell, values)?;
-            Ok((self.rig_of(&drawn, &robot, taught, 1.0)?, drawn.finger))
+            let rig = self.engine.rig(&drawn.task, &robot, &drawn.finger, 1.0)?;
+            Ok((shifted(rig, taught), drawn.finger))
         };
         let draws = plan.cells.iter().flat_map(|(cell, all)| all.iter().map(move |v| (cell, v)));
         let cells: Vec<Drawn> = draws.map(draw).collect::<Result<_, _>>()?;
@@ -263,5 +249,13 @@ impl Evaluator {
         let on = |template| measure(&self.specimen(template, design, stiffness)?);
         let tasks = self.templates.iter().map(on).collect::<Result<_, DesignError>>()?;
         Ok(Evaluations { stiffness, tasks, cached: Vec::new() })
+    }
+}
+
+/// Returns a rig with its start at the taught start.
+fn shifted(rig: Box<dyn Rig>, taught: Option<OffsetStep>) -> Box<dyn Rig> {
+    match taught {
+        None | Some(0) => rig,
+        Some(shift) => Box::new(Shifted { rig, shift }),
     }
 }

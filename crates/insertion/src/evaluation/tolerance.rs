@@ -22,16 +22,6 @@ pub enum Search {
     Strides,
 }
 
-impl Search {
-    /// Returns the distance between the first offsets tried, in grid steps.
-    fn stride(self) -> OffsetStep {
-        match self {
-            Search::Strides => 5,
-            Search::Walk => 1,
-        }
-    }
-}
-
 /// Measures the window of one finger and counts the results of all trials of the search.
 ///
 /// The start is shifted outward on the 0.1 mm grid in both directions until
@@ -46,7 +36,9 @@ pub fn evaluate_grasp(rig: &dyn Rig, grasp: Grasp, search: Search) -> Evaluation
     let nominal = [grasped.trial(0.0)];
     let Trial { outcome, margin, .. } = nominal[0];
     let ((negative, below), (positive, above)) = if outcome == Outcome::Inserted {
-        let end = |sign| find_end(&*grasped, margin, sign, search.stride());
+        // Distance between the first offsets tried, in grid steps.
+        let stride = if search == Search::Walk { 1 } else { 5 };
+        let end = |sign| find_end(&*grasped, margin, sign, stride);
         rayon::join(|| end(-1), || end(1))
     } else {
         let end = End { step: 0, failure: Some(outcome), share: margin };

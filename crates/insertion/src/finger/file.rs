@@ -28,11 +28,8 @@ pub fn is_shape(key: &str) -> bool {
 /// Numbers that the design does not set are NaN, which is invalid in a finger.
 pub fn infill(design: &Design, phase_mm: Option<f64>) -> infill::InfillDesign {
     let value = |key| design.get(key).unwrap_or(f64::NAN);
-    infill::InfillDesign {
-        density_percent: value(DENSITY_KEY),
-        direction_deg: value(DIRECTION_KEY),
-        phase_mm,
-    }
+    let [density_percent, direction_deg] = [DENSITY_KEY, DIRECTION_KEY].map(value);
+    infill::InfillDesign { density_percent, direction_deg, phase_mm }
 }
 
 impl FingerFile {

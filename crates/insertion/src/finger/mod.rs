@@ -82,6 +82,32 @@ impl Finger {
         let rcc = model.rcc.map_or(Rcc::PUBLISHED_DISTANCE, |rcc| rcc.at(direction_deg));
         Finger { rcc, coupling: model.coupling, ..self }
     }
+
+    /// Returns the six springs about the RCC: translations x, y, z, rotations x, y, z.
+    pub fn springs(&self) -> [Spring; 6] {
+        let translation = |k: f64| Spring::new(k, self.damping);
+        let rotation = |k: f64| Spring::new(k, self.rotational_damping);
+        let [x, y, z] = [self.depth, self.compliance, self.assembly].map(translation);
+        let [rx, ry, rz] = self.rotation.map(rotation);
+        [x, y, z, rx, ry, rz]
+    }
+
+    /// Returns the position of the RCC in the finger frame, m; `side` as in [`Pad::geoms`].
+    pub fn centre(&self, side: f64) -> Point3<f64> {
+        Point3::new(0.0, -side * self.ahead, -self.rcc)
+    }
+
+    /// Returns the springs between finger and jaw at the RCC; `side` as in [`Pad::geoms`].
+    pub fn jaw_springs(&self, side: f64) -> Springs {
+        let springs = self.springs();
+        match &self.coupling {
+            None => Springs::Axes(springs.map(Some)),
+            Some(coupling) => Springs::Coupled {
+                stiffness: coupling.stiffness(springs.map(|spring| spring.stiffness), side),
+                damping: Matrix6::from_diagonal(&springs.map(|spring| spring.damping).into()),
+            },
+        }
+    }
 }
 
 /// Notch of a finger: a vertical pad that presses the part, and a roof above the pad that rests on the part's shoulder
@@ -130,34 +156,6 @@ const ROOF_THICKNESS: f64 = 3.0 * MM;
 /// Gap between roof and shoulder at the grasp, m; the first push on the part closes it.
 pub const ROOF_GAP: f64 = 0.05 * MM;
 
-impl Finger {
-    /// Returns the six springs about the RCC: translations x, y, z, rotations x, y, z.
-    pub fn springs(&self) -> [Spring; 6] {
-        let translation = |k: f64| Spring::new(k, self.damping);
-        let rotation = |k: f64| Spring::new(k, self.rotational_damping);
-        let [x, y, z] = [self.depth, self.compliance, self.assembly].map(translation);
-        let [rx, ry, rz] = self.rotation.map(rotation);
-        [x, y, z, rx, ry, rz]
-    }
-
-    /// Returns the position of the RCC in the finger frame, m; `side` as in [`Pad::geoms`].
-    pub fn centre(&self, side: f64) -> Point3<f64> {
-        Point3::new(0.0, -side * self.ahead, -self.rcc)
-    }
-
-    /// Returns the springs between finger and jaw at the RCC; `side` as in [`Pad::geoms`].
-    pub fn jaw_springs(&self, side: f64) -> Springs {
-        let springs = self.springs();
-        match &self.coupling {
-            None => Springs::Axes(springs.map(Some)),
-            Some(coupling) => Springs::Coupled {
-                stiffness: coupling.stiffness(springs.map(|spring| spring.stiffness), side),
-                damping: Matrix6::from_diagonal(&springs.map(|spring| spring.damping).into()),
-            },
-        }
-    }
-}
-
 /// Radius of gyration of a finger about its centre of mass, m: that of a rod of 70 mm.
 const GYRATION: f64 = 20.0 * MM;
 
@@ -165,11 +163,8 @@ const GYRATION: f64 = 20.0 * MM;
 /// negligible inertia, but a centre of mass far from the joint would couple the springs in the engine and slow its
 /// convergence. `side` as in [`Pad::geoms`].
 pub fn inertia(finger: &Finger, side: f64) -> Inertia {
-    Inertia {
-        mass: finger.mass,
-        centre: finger.centre(side),
-        moments: Vector3::repeat(finger.mass * GYRATION * GYRATION),
-    }
+    let moments = Vector3::repeat(finger.mass * GYRATION * GYRATION);
+    Inertia { mass: finger.mass, centre: finger.centre(side), moments }
 }
 
 #[cfg(test)]

@@ -91,9 +91,22 @@ impl FingerSource {
                 Ok(Finger { rcc: rcc.unwrap_or(finger.rcc), ..finger })
             }
             FingerSource::Computed(fingers) => {
+                if task.finger.coupling.is_some() {
+                    return Err(FingerError::Coupled { task: task.name.clone() });
+                }
                 let rcc = rcc.or(task.finger.rcc.map(|rcc| rcc.at(direction)));
                 let overrides = Overrides { rcc, tilting: design.get(TILTING_KEY) };
-                fingers.finger(at_pad, design, task, overrides)
+                let computed = fingers.stiffness(design)?;
+                // Pad and roof are glued to the part: `docs/notes/finger.md`.
+                let mut plane = computed.pad_and_roof;
+                if design.0.keys().any(|key| is_shape(key)) {
+                    // No such finger was measured: the measured stiffness of another shape must not make its centre
+                    // impossible.
+                    let [compliance, assembly] = [at_pad.compliance.mean, at_pad.assembly.mean];
+                    plane = plane.corrected(compliance, assembly).unwrap_or(plane);
+                }
+                let (printed, across) = (&fingers.file.with(design)?, computed.cross.matrix);
+                computed::finger(printed, plane, across, task.grip.shoulder(), at_pad, overrides)
             }
         }
     }
@@ -120,26 +133,5 @@ impl ComputedFingers {
     /// If the finger cannot be printed.
     pub fn stiffness(&self, design: &Design) -> Result<FingerStiffness, FingerError> {
         self.cache.stiffness(&self.file.with(design)?, &infill(design, None))
-    }
-
-    fn finger(
-        &self,
-        at_pad: &Prediction,
-        design: &Design,
-        task: &Task,
-        overrides: Overrides,
-    ) -> Result<Finger, FingerError> {
-        if task.finger.coupling.is_some() {
-            return Err(FingerError::Coupled { task: task.name.clone() });
-        }
-        let computed = self.stiffness(design)?;
-        // Pad and roof are glued to the part: `docs/notes/finger.md`.
-        let mut plane = computed.pad_and_roof;
-        if design.0.keys().any(|key| is_shape(key)) {
-            // No such finger was measured: the measured stiffness of another shape must not make its centre impossible.
-            plane = plane.corrected(at_pad.compliance.mean, at_pad.assembly.mean).unwrap_or(plane);
-        }
-        let (printed, across) = (&self.file.with(design)?, computed.cross.matrix);
-        computed::finger(printed, plane, across, task.grip.shoulder(), at_pad, overrides)
     }
 }

@@ -111,9 +111,9 @@ impl<const P: usize> PhysicalProcess<P> {
             infills(measured).map(|infill| inputs(infill, candidate.exponent)).collect();
         let values: Vec<f64> = measured.targets().iter().map(|&k| link.forward(k)).collect();
         let n = Some(values.len()).filter(|&n| n > P)?;
-        let of_column =
-            |i: usize| Standardizer::of(&rows.iter().map(|row| row[i]).collect::<Vec<_>>(), 1);
-        let (scales, target) = (std::array::from_fn(of_column), Standardizer::of(&values, 1));
+        let of_column = |i: usize| Standardizer::of(rows.iter().map(move |row| row[i]), 1);
+        let target = Standardizer::of(values.iter().copied(), 1);
+        let scales = std::array::from_fn(of_column);
         let (terms, points): (Vec<[f64; P]>, Vec<ScaledInfill>) =
             rows.iter().map(|&row| scaled(row, &scales, candidate.theta)).unzip();
         let noise = |i, j| if i == j { candidate.nugget } else { 0.0 };

@@ -173,7 +173,7 @@ struct Standardizer {
 
 impl Standardizer {
     /// Computes shift and scale of values; the variance is the sum of squares divided by the count minus `ddof`.
-    pub fn of(values: &[f64], ddof: usize) -> Self {
+    pub fn of(values: impl Iterator<Item = f64> + Clone, ddof: usize) -> Self {
         let Moments { count, mean, squares } = Moments::of(values);
         let variance = squares / (count - ddof as f64);
         Standardizer { mean, sd: if variance > 0.0 { variance.sqrt() } else { 1.0 } }

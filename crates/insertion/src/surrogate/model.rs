@@ -159,7 +159,6 @@ struct Chosen {
 /// cannot be computed.
 pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model, SurrogateError> {
     check_all(measurements)?;
-    let infills: Vec<Infill> = measurements.iter().map(Measurement::infill).collect();
     let (ratios, kinds) = match measurements.len() {
         MIN_MEASURED.. => (false, &ModelKind::MEASURED[..]),
         MIN_FOR_PROCESS.. => (true, &[ModelKind::ComputedScale, ModelKind::ComputedProcess][..]),
@@ -177,7 +176,7 @@ pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model
     let (assembly, mut loo) = choose(Axis::Assembly)?;
     let (compliance, rest) = choose(Axis::Compliance)?;
     loo.extend(rest);
-    let hull = Hull::new(&infills);
+    let hull = Hull::new(&measurements.iter().map(Measurement::infill).collect::<Vec<_>>());
     let measurements = measurements.to_vec();
     Ok(Model { measurements, hull, chosen: [assembly, compliance], loo, computed, ratios })
 }
@@ -192,11 +191,9 @@ fn choose(data: &AxisData, kinds: &[ModelKind]) -> Result<(Chosen, Vec<Loo>), Su
         ModelKind::ComputedScale => true,
         _ => row.standardised_rms.is_finite(),
     };
-    let best = loo
-        .iter_mut()
-        .filter(eligible)
-        .min_by(|a, b| a.mean_absolute_percent.total_cmp(&b.mean_absolute_percent))
-        .ok_or(unfittable.clone())?;
+    let eligible = loo.iter_mut().filter(eligible);
+    let best = eligible.min_by(|a, b| a.mean_absolute_percent.total_cmp(&b.mean_absolute_percent));
+    let best = best.ok_or(unfittable.clone())?;
     best.chosen = true;
     // An overconfident model is widened until the left-out errors fit; none is narrowed.
     let widen = best.standardised_rms.max(1.0);
@@ -205,28 +202,19 @@ fn choose(data: &AxisData, kinds: &[ModelKind]) -> Result<(Chosen, Vec<Loo>), Su
 }
 
 impl Model {
-    /// Returns the stiffness of one finger, N/m, for any density (percent; below 1 counts as 1) and direction
-    /// (degrees). The standard deviation is that of a finger yet to be printed: model error and scatter together.
+    /// Returns the stiffness of one finger, N/m, for any infill (a density below 1 percent counts as 1). The standard deviation is that of a finger yet to be printed: model error and scatter together.
     ///
     /// # Errors
     /// If the model uses the computed stiffness and the finger cannot be computed.
-    pub fn predict(
-        &self,
-        density_percent: f64,
-        direction_deg: f64,
-    ) -> Result<Prediction, FingerError> {
-        let infill = [density_percent, direction_deg];
+    pub fn predict(&self, infill: Infill) -> Result<Prediction, FingerError> {
         let along = |axis| {
             let Chosen { fitted, widen } = &self.chosen[axis as usize];
             let unit = if self.ratios { self.computed.stiffness(axis, infill)? } else { 1.0 };
             let Estimate { mean, sd } = fitted.predict(infill);
             Ok::<_, FingerError>(Estimate { mean: mean * unit, sd: sd * widen * unit })
         };
-        Ok(Prediction {
-            compliance: along(Axis::Compliance)?,
-            assembly: along(Axis::Assembly)?,
-            hull_distance: self.hull.distance(infill),
-        })
+        let (compliance, assembly) = (along(Axis::Compliance)?, along(Axis::Assembly)?);
+        Ok(Prediction { compliance, assembly, hull_distance: self.hull.distance(infill) })
     }
 
     /// Returns the number of measured designs as text.

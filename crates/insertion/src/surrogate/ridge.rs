@@ -61,12 +61,11 @@ pub(super) fn fit(measured: &Samples, degree: u8, link: Link, penalties: &[f64])
 fn fit_with_penalty(measured: &Samples, degree: u8, link: Link, penalty: f64) -> Option<Ridge> {
     let rows: Vec<Vec<f64>> = infills(measured).map(|infill| terms(infill, degree)).collect();
     let (n, count) = (rows.len(), rows.first()?.len());
-    let scales: Vec<Standardizer> = (0..count)
-        .map(|j| Standardizer::of(&rows.iter().map(|row| row[j]).collect::<Vec<_>>(), 0))
-        .collect();
+    let of_column = |j: usize| Standardizer::of(rows.iter().map(move |row| row[j]), 0);
+    let terms: Vec<Standardizer> = (0..count).map(of_column).collect();
     let raw: Vec<f64> = measured.targets().iter().map(|&k| link.forward(k)).collect();
-    let target = Standardizer::of(&raw, 0);
-    let x = DMatrix::from_fn(n, count, |i, j| scales[j].apply(rows[i][j]));
+    let target = Standardizer::of(raw.iter().copied(), 0);
+    let x = DMatrix::from_fn(n, count, |i, j| terms[j].apply(rows[i][j]));
     let y: Array1<f64> = raw.iter().map(|&g| target.apply(g)).collect();
     let design = x.clone().insert_column(0, 1.0);
     // `None` if the designs do not distinguish the terms.
@@ -86,30 +85,15 @@ fn fit_with_penalty(measured: &Samples, degree: u8, link: Link, penalty: f64) ->
     let residual_sd = (residual.dot(&residual) / degrees_of_freedom).sqrt();
     let along_axes = DVector::from_iterator(count, net.hyperplane().iter().copied());
     let coefficients = (axes * along_axes).data.into();
-    Some(Ridge {
-        link,
-        degree,
-        terms: scales,
-        target,
-        coefficients,
-        residual_sd,
-        inverse_gram,
-        penalty,
-    })
+    Some(Ridge { link, degree, terms, target, coefficients, residual_sd, inverse_gram, penalty })
 }
 
 impl Fitted for Ridge {
     fn predict(&self, infill: Infill) -> Estimate {
-        let scaled: Vec<f64> = terms(infill, self.degree)
-            .iter()
-            .zip(&self.terms)
-            .map(|(&term, standard)| standard.apply(term))
-            .collect();
+        let terms = terms(infill, self.degree).into_iter().zip(&self.terms);
+        let scaled: Vec<f64> = terms.map(|(term, standard)| standard.apply(term)).collect();
         let g: f64 = scaled.iter().zip(&self.coefficients).map(|(x, b)| x * b).sum();
-        let row = DVector::from_iterator(
-            scaled.len() + 1,
-            std::iter::once(1.0).chain(scaled.iter().copied()),
-        );
+        let row = DVector::from_vec(scaled).insert_row(0, 1.0);
         let leverage = row.dot(&(&self.inverse_gram * &row));
         let (mean, slope) = self.link.backward(self.target.mean + self.target.sd * g);
         let link_sd = self.target.sd * self.residual_sd * (1.0 + leverage).sqrt();

@@ -56,7 +56,7 @@ fn predictions_agree_with_another_library() {
         ([30.0, 0.0], [7.4973440e+04, 7.5715896e+02, 2.7586693e+03, 4.3252251e+02]),
         ([30.0, 40.0], [3.5008539e+04, 3.6577085e+02, 3.9575983e+03, 8.9717550e+02]),
     ] {
-        let found = model.predict(infill[0], infill[1]).unwrap();
+        let found = model.predict(infill).unwrap();
         let (z, y) = (found.assembly, found.compliance);
         for (found, expected) in [z.mean, z.sd, y.mean, y.sd].iter().zip(expected) {
             assert!((found / expected - 1.0).abs() < 1e-6, "{infill:?}: {found} {expected}");
@@ -80,7 +80,7 @@ fn stiffness_is_positive_everywhere_and_follows_the_physics() {
     let model = model();
     for density in (5..=60).map(f64::from) {
         for direction in (0..=60).map(f64::from) {
-            let found = model.predict(density, direction).unwrap();
+            let found = model.predict([density, direction]).unwrap();
             for axis in Axis::ALL {
                 let Estimate { mean, sd } = found.axis(axis);
                 assert!(mean > 0.0 && mean.is_finite() && sd > 0.0 && sd.is_finite());
@@ -90,14 +90,14 @@ fn stiffness_is_positive_everywhere_and_follows_the_physics() {
     // Inside the data: denser is stiffer; turning the ribs softens z, stiffens y.
     for density in (10..=30).map(f64::from) {
         for direction in (0..=40).map(f64::from) {
-            let here = model.predict(density, direction).unwrap();
+            let here = model.predict([density, direction]).unwrap();
             if density < 30.0 {
-                let denser = model.predict(density + 1.0, direction).unwrap();
+                let denser = model.predict([density + 1.0, direction]).unwrap();
                 assert!(denser.assembly.mean > here.assembly.mean, "{density} {direction}");
                 assert!(denser.compliance.mean > here.compliance.mean, "{density} {direction}");
             }
             if direction < 40.0 {
-                let turned = model.predict(density, direction + 1.0).unwrap();
+                let turned = model.predict([density, direction + 1.0]).unwrap();
                 assert!(turned.assembly.mean < here.assembly.mean, "{density} {direction}");
                 assert!(turned.compliance.mean >= here.compliance.mean, "{density} {direction}");
             }
@@ -109,13 +109,13 @@ fn stiffness_is_positive_everywhere_and_follows_the_physics() {
 fn the_hull_is_that_of_the_measured_designs() {
     let model = model();
     for inside in [[10.0, 10.0], [15.0, 30.0], [20.0, 40.0], [30.0, 0.0], [22.0, 17.0]] {
-        assert!(model.predict(inside[0], inside[1]).unwrap().inside_hull(), "{inside:?}");
+        assert!(model.predict(inside).unwrap().inside_hull(), "{inside:?}");
     }
-    let outside = model.predict(40.0, 20.0).unwrap();
+    let outside = model.predict([40.0, 20.0]).unwrap();
     assert!((outside.hull_distance - 0.5).abs() < 1e-12);
-    assert!(!model.predict(10.0, 40.0).unwrap().inside_hull());
+    assert!(!model.predict([10.0, 40.0]).unwrap().inside_hull());
     // Farther away predictions are less certain.
-    let [near, far] = [20.0, 60.0].map(|at| model.predict(at, at).unwrap().assembly);
+    let [near, far] = [20.0, 60.0].map(|at| model.predict([at, at]).unwrap().assembly);
     assert!(far.sd / far.mean > near.sd / near.mean);
 }
 
@@ -127,7 +127,7 @@ fn the_fit_is_bit_identical_for_every_thread_count() {
         let mut bits: Vec<u64> = Vec::new();
         for (density, direction) in [(10.0, 0.0), (17.0, 23.0), (50.0, 55.0)] {
             for axis in Axis::ALL {
-                let found = model.predict(density, direction).unwrap().axis(axis);
+                let found = model.predict([density, direction]).unwrap().axis(axis);
                 bits.extend([found.mean.to_bits(), found.sd.to_bits()]);
             }
         }
@@ -195,7 +195,7 @@ fn exact_or_one_dimensional_data_give_a_model_or_an_error_but_no_panic() {
     };
     for data in [line(&|i| (10.0 + i, 0.0)), line(&|i| (20.0, 5.0 * i)), line(&|i| (10.0 + i, i))] {
         if let Ok(model) = fit(&data, &finray9()) {
-            let found = model.predict(20.0, 20.0).unwrap().assembly;
+            let found = model.predict([20.0, 20.0]).unwrap().assembly;
             assert!(found.mean > 0.0 && found.sd > 0.0, "{found:?}");
         }
     }
@@ -213,7 +213,7 @@ fn one_finger_of_another_material_determines_the_scale() {
     let all = [soft(1, 20.0, 20.0), soft(2, 30.0, 40.0), soft(3, 10.0, 0.0)];
     let spread = |count: usize| {
         let model = fit(&all[..count], &finray9()).unwrap();
-        let found = model.predict(10.0, 0.0).unwrap();
+        let found = model.predict([10.0, 0.0]).unwrap();
         for axis in Axis::ALL {
             let ratio = found.axis(axis).mean / all[2].stiffness(axis);
             assert!((ratio - 1.0).abs() < 1e-9, "{axis:?} from {count}: {ratio}");
@@ -229,7 +229,7 @@ fn one_finger_of_another_material_determines_the_scale() {
 #[test]
 fn a_density_that_cannot_be_printed_is_named() {
     let model = fit(&shipped()[..1], &finray9()).unwrap();
-    let error = model.predict(99.0, 0.0).unwrap_err().to_string();
+    let error = model.predict([99.0, 0.0]).unwrap_err().to_string();
     assert!(error.contains("finray9.toml") && error.contains("density"), "{error}");
 }
 

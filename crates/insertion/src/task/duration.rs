@@ -46,12 +46,8 @@ impl Strategy {
         }
         let longest = self.phases.iter().max_by(|a, b| seconds(a).total_cmp(&seconds(b)));
         let longest = longest.map_or(String::new(), |phase| {
-            let speed_mm_per_s = phase.speed / MM;
-            format!(
-                ", of which \"{}\" takes {:.1} s at {speed_mm_per_s:.3} mm/s",
-                phase.name,
-                seconds(phase)
-            )
+            let (name, longest, speed) = (&phase.name, seconds(phase), phase.speed / MM);
+            format!(", of which \"{name}\" takes {longest:.1} s at {speed:.3} mm/s")
         });
         Err(format!("a trial takes {total:.1} s{longest}; at most {LONGEST_TRIAL_S} s is accepted"))
     }

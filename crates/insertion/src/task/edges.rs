@@ -40,24 +40,29 @@ pub type Edge = [Face; 2];
 
 /// Returns the edges with a name: the four of a face ("-z"), or the one between two ("+x-z"); `None` if invalid.
 pub fn named(text: &str) -> Option<Vec<Edge>> {
-    let face = |text: &str| {
-        let axis = ["x", "y", "z"].iter().position(|name| text.get(1..) == Some(name))?;
-        let high = ['-', '+'].iter().position(|&sign| text.starts_with(sign))? == 1;
-        Some(Face { axis, high })
-    };
+    let face = |text: &str| faces().find(|face| face.name() == text);
     let first = face(text.get(..2)?)?;
     if text.len() > 2 {
         let second = face(text.get(2..)?)?;
         return (first.axis != second.axis).then_some(vec![[first, second]]);
     }
-    let others = (0..3).filter(|&axis| axis != first.axis);
-    let sides = others.flat_map(|axis| [false, true].map(|high| Face { axis, high }));
+    let sides = faces().filter(|side| side.axis != first.axis);
     Some(sides.map(|side| [first, side]).collect())
 }
 
+/// Returns the six faces of a box.
+fn faces() -> impl Iterator<Item = Face> {
+    (0..3).flat_map(|axis| [false, true].map(|high| Face { axis, high }))
+}
+
 /// Returns whether two edges are the same, in either order of their faces.
-pub fn same(a: &Edge, b: &Edge) -> bool {
+fn same(a: &Edge, b: &Edge) -> bool {
     a == b || *a == [b[1], b[0]]
+}
+
+/// Returns the cut of an edge.
+pub fn cut_at(edges: &[(Edge, Cut)], edge: Edge) -> Option<Cut> {
+    edges.iter().find(|(other, _)| same(other, &edge)).map(|(_, cut)| *cut)
 }
 
 /// All points with `normal . p <= distance`: normal and distance.
@@ -88,39 +93,47 @@ const TOO_THIN: &str = "do not fit: the part is too thin or too small; leave its
 ///
 /// # Errors
 /// If the cuts overlap, or the box is too thin or too small.
-pub fn cut(
-    min: &Vector3<f64>,
-    max: &Vector3<f64>,
-    edges: &[(Edge, Cut)],
-) -> Result<Solid, &'static str> {
+pub fn cut([min, max]: [&Vector3<f64>; 2], edges: &[(Edge, Cut)]) -> Result<Solid, &'static str> {
     if !fit(&(max - min), edges) {
         return Err(TOO_LARGE);
     }
     if edges.iter().any(|(_, cut)| matches!(cut, Cut::Radius(_))) {
-        return Rounded::new(min, max, edges).map(Solid::Rounded).ok_or(TOO_THIN);
+        return Rounded::new([min, max], edges).map(Solid::Rounded).ok_or(TOO_THIN);
     }
-    let corners = corners(&half_spaces(min, max, edges, |_| 1));
+    let corners = corners(&half_spaces([min, max], edges, |_| 1));
     match geometry::hull(&corners) {
         Some((points, _)) if points.len() == corners.len() => Ok(Solid::Hull { points }),
         _ => Err(TOO_THIN),
     }
 }
 
-/// Returns the half-spaces of a box with cut edges; `chords` returns the number of chords of an arc.
+/// Returns the half-spaces of a box with cut edges. One plane replaces a chamfered edge, and one for each chord a round
+/// edge; `chords` returns the number of chords.
 pub(super) fn half_spaces(
-    min: &Vector3<f64>,
-    max: &Vector3<f64>,
+    [min, max]: [&Vector3<f64>; 2],
     edges: &[(Edge, Cut)],
     chords: impl Fn(&Edge) -> usize,
 ) -> Vec<HalfSpace> {
-    let faces = (0..3).flat_map(|axis| [false, true].map(|high| Face { axis, high }));
     let corner = |face: Face| if face.high { max } else { min };
-    let mut spaces: Vec<_> = faces.map(|face| half_space(corner(face), face.outward())).collect();
-    for (edge, cut) in edges {
-        let [first, second] = *edge;
+    let mut spaces: Vec<_> = faces().map(|face| half_space(corner(face), face.outward())).collect();
+    for &(edge, cut) in edges {
+        let [first, second] = edge;
         let mut at = *corner(first);
         at[second.axis] = corner(second)[second.axis];
-        add_flats(&mut spaces, [first.outward(), second.outward()], &at, *cut, chords(edge));
+        let [a, b] = edge.map(Face::outward);
+        match cut {
+            Cut::Chamfer(leg) => spaces.push(half_space(&(at - a * leg), (a + b).normalize())),
+            Cut::Radius(radius) => {
+                let (centre, chords) = (at - (a + b) * radius, chords(&edge));
+                let step = FRAC_PI_2 / chords as f64;
+                for i in 0..chords {
+                    let turn = (i as f64 + 0.5) * step;
+                    let normal = a * libm::cos(turn) + b * libm::sin(turn);
+                    let point = centre + normal * (radius * libm::cos(step / 2.0));
+                    spaces.push(half_space(&point, normal));
+                }
+            }
+        }
     }
     spaces
 }
@@ -129,45 +142,18 @@ impl Solid {
     /// Returns a box with a chamfer along the edges with a name; `None` if the chamfer does not fit.
     pub fn chamfered(min: &Vector3<f64>, max: &Vector3<f64>, at: &str, leg: f64) -> Option<Self> {
         let edges: Vec<_> = named(at)?.into_iter().map(|edge| (edge, Cut::Chamfer(leg))).collect();
-        cut(min, max, &edges).ok()
+        cut([min, max], &edges).ok()
     }
 }
 
 /// Returns whether the cuts at opposite edges of each face fit on it.
 fn fit(size: &Vector3<f64>, edges: &[(Edge, Cut)]) -> bool {
-    let reach = |edge: Edge| {
-        let cut = edges.iter().find(|(other, _)| same(other, &edge));
-        cut.map_or(0.0, |(_, cut)| cut.size())
-    };
+    let reach = |edge: Edge| cut_at(edges, edge).map_or(0.0, Cut::size);
     let room = |face: Face, side: Face| {
         let across = Face { high: !side.high, ..side };
         reach([face, side]) + reach([face, across]) <= size[side.axis] + SAME
     };
     edges.iter().all(|([a, b], _)| room(*a, *b) && room(*b, *a))
-}
-
-/// Adds the planes that replace an edge, given the outward normals of its faces: one for a chamfer, one
-/// for each chord of an arc.
-fn add_flats(
-    spaces: &mut Vec<HalfSpace>,
-    [a, b]: [Vector3<f64>; 2],
-    edge: &Vector3<f64>,
-    cut: Cut,
-    chords: usize,
-) {
-    match cut {
-        Cut::Chamfer(leg) => spaces.push(half_space(&(edge - a * leg), (a + b).normalize())),
-        Cut::Radius(radius) => {
-            let centre = edge - (a + b) * radius;
-            let step = FRAC_PI_2 / chords as f64;
-            for i in 0..chords {
-                let turn = (i as f64 + 0.5) * step;
-                let normal = a * libm::cos(turn) + b * libm::sin(turn);
-                let point = centre + normal * (radius * libm::cos(step / 2.0));
-                spaces.push(half_space(&point, normal));
-            }
-        }
-    }
 }
 
 /// Returns the corners of the intersection of all half-spaces.
@@ -260,7 +246,7 @@ fn cut_edges(
     let size = size.min(MAX_SHARE * (max - min).min());
     let cuts: Vec<_> = edges.into_iter().map(|edge| (edge, cut_by(size))).collect();
     if !cuts.is_empty()
-        && let Ok(solid) = cut(min, max, &cuts)
+        && let Ok(solid) = cut([min, max], &cuts)
     {
         part.solid = solid;
     }
@@ -276,7 +262,7 @@ mod tests {
 
     fn left(text: &str, cut: Cut) -> Result<Solid, &'static str> {
         let edges: Vec<_> = named(text).unwrap().into_iter().map(|edge| (edge, cut)).collect();
-        super::cut(&Vector3::zeros(), &(Vector3::from(SIZE) * MM), &edges)
+        super::cut([&Vector3::zeros(), &(Vector3::from(SIZE) * MM)], &edges)
     }
 
     fn missing(text: &str, cut: Cut) -> f64 {
@@ -324,7 +310,7 @@ mod tests {
                 let chamfer = |edge| (edge, Cut::Chamfer(thick / 3.0 * MM));
                 let edges: Vec<_> =
                     named("-z").map(radius).chain(named("+z").map(chamfer)).collect();
-                match super::cut(&Vector3::zeros(), &max, &edges) {
+                match super::cut([&Vector3::zeros(), &max], &edges) {
                     Ok(solid) => {
                         whole += 1;
                         let share = volume(&solid) / max.product();

@@ -71,10 +71,8 @@ impl Coupling {
     pub fn of(stiffness: &Matrix6<f64>) -> Option<Self> {
         stiffness.cholesky()?;
         let scale = |i: usize, j: usize| (stiffness[(i, i)] * stiffness[(j, j)]).sqrt();
-        Some(Coupling(Matrix6::from_fn(|i, j| match i == j {
-            true => 1.0,
-            false => stiffness[(i, j)] / scale(i, j),
-        })))
+        let coefficient = |i: usize, j: usize| stiffness[(i, j)] / scale(i, j);
+        Some(Coupling(Matrix6::from_fn(|i, j| if i == j { 1.0 } else { coefficient(i, j) })))
     }
 
     /// Returns the stiffness matrix of these springs; the finger at +y (`side` +1) is turned by 180° about z.

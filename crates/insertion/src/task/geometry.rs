@@ -82,12 +82,8 @@ impl Part {
     }
 
     fn placed(&self, (shape, origin): (Shape, Vector3<f64>)) -> Geom {
-        Geom {
-            name: self.name.clone(),
-            shape,
-            pose: Pose::from_parts(Translation3::from(origin), nalgebra::one()),
-            friction: self.friction,
-        }
+        let pose = Pose::from_parts(Translation3::from(origin), nalgebra::one());
+        Geom { name: self.name.clone(), shape, pose, friction: self.friction }
     }
 }
 

@@ -58,21 +58,20 @@ fn stiffness(length: f64, width: f64, thickness: f64, modulus: f64) -> f64 {
 
 /// Checks a latch and replaces its flexure by a hinge.
 pub fn check_latch(check: Check<'_>, raw: &RawLatch, parts: &[Part]) -> Result<Latch, InputError> {
+    let fail = |problem: String| check.fail("plug.latch.parts", problem);
     let mut found = Vec::new();
     for name in &raw.parts {
         let named = |part: &Part| part.name == *name;
         match parts.iter().position(named) {
-            None => {
-                return check.fail("plug.latch.parts", format!("the plug has no part {name:?}"));
-            }
+            None => return fail(format!("the plug has no part {name:?}")),
             Some(i) if found.contains(&i) || parts[i + 1..].iter().any(named) => {
-                return check.fail("plug.latch.parts", format!("{name:?} is given twice"));
+                return fail(format!("{name:?} is given twice"));
             }
             Some(i) => found.push(i),
         }
     }
     if found.is_empty() || found.len() == parts.len() {
-        return check.fail("plug.latch.parts", "must be some of the plug's parts, not all");
+        return fail("must be some of the plug's parts, not all".to_owned());
     }
     found.sort_unstable();
     let [root, end] = [raw.root, raw.end].map(Vector3::from);

@@ -28,10 +28,9 @@ pub struct RawMatingForce {
 pub fn mating_force(check: Check<'_>, raw: RawMatingForce) -> Result<MatingForce, InputError> {
     let RawMatingForce { depth, force } = raw;
     if depth.is_empty() || depth.len() != force.len() {
+        let (values, depths) = (force.len(), depth.len());
         let problem = format!(
-            "has {} values for {} depths; there must be one for each, and at least one",
-            force.len(),
-            depth.len()
+            "has {values} values for {depths} depths; there must be one for each, and at least one"
         );
         return check.fail("mating_force.force_n", problem);
     }

@@ -177,12 +177,10 @@ fn check_torsion(check: Check<'_>, friction: &Friction) -> Result<(), InputError
     if torsion <= most {
         return Ok(());
     }
+    let [torsion, friction, most] = [torsion, friction.finger_plug, most].map(shown);
     let problem = format!(
-        "is {}; with a friction of {} it must be at most {}: the contact patch then has a radius of \
-         {LARGEST_PATCH_MM} mm",
-        shown(torsion),
-        shown(friction.finger_plug),
-        shown(most)
+        "is {torsion}; with a friction of {friction} it must be at most {most}: the contact patch then has \
+         a radius of {LARGEST_PATCH_MM} mm"
     );
     check.fail("friction.finger_plug_torsion_mm", problem)
 }

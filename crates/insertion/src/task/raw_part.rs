@@ -76,37 +76,37 @@ pub fn parts(check: Check<'_>, key: &str, parts: Vec<RawPart>) -> Result<Vec<Par
 }
 
 fn part(check: Check<'_>, key: &str, part: RawPart) -> Result<Part, InputError> {
-    let (RawPart::Box { name, .. }
-    | RawPart::Cylinder { name, .. }
-    | RawPart::Prism { name, .. }
-    | RawPart::Hull { name, .. }) = &part;
-    let name = name.clone();
+    let (RawPart::Box { name, friction, .. }
+    | RawPart::Cylinder { name, friction, .. }
+    | RawPart::Prism { name, friction, .. }
+    | RawPart::Hull { name, friction, .. }) = &part;
+    let (name, friction) = (name.clone(), *friction);
     let at = |field: &str| format!("{key} \"{name}\" {field}");
-    let (solid, friction) = match part {
-        RawPart::Box { x, y, z, edges, friction, .. } => {
+    let solid = match part {
+        RawPart::Box { x, y, z, edges, .. } => {
             for (field, range) in [("x_mm", x), ("y_mm", y), ("z_mm", z)] {
                 interval(check, &at(field), range)?;
             }
             let corners = [0, 1].map(|end| Vector3::new(x[end], y[end], z[end]));
-            (with_cut_edges(check, &at("edges"), corners, &edges)?, friction)
+            with_cut_edges(check, &at("edges"), corners, &edges)?
         }
-        RawPart::Cylinder { centre, diameter, z, friction, .. } => {
+        RawPart::Cylinder { centre, diameter, z, .. } => {
             let z = interval(check, &at("z_mm"), z)?;
-            (Solid::Cylinder { centre, radius: diameter / 2.0, z }, friction)
+            Solid::Cylinder { centre, radius: diameter / 2.0, z }
         }
-        RawPart::Prism { axis, outline, span, friction, .. } => {
+        RawPart::Prism { axis, outline, span, .. } => {
             check_outline(check, &at("outline_mm"), &outline)?;
             let span = interval(check, &at("span_mm"), span)?;
-            (Solid::Prism { axis: axis as usize, outline, span }, friction)
+            Solid::Prism { axis: axis as usize, outline, span }
         }
-        RawPart::Hull { points, friction, .. } => {
+        RawPart::Hull { points, .. } => {
             let points: Vec<_> = points.into_iter().map(Point3::from).collect();
             // Only the corners of the hull remain.
             let Some((points, _)) = geometry::hull(&points) else {
                 let problem = "lie in a plane; a hull needs at least four points that do not";
                 return check.fail(&at("points_mm"), problem);
             };
-            (Solid::Hull { points }, friction)
+            Solid::Hull { points }
         }
     };
     Ok(Part { name, solid, friction })
@@ -160,7 +160,7 @@ fn with_cut_edges(
             _ => return check.fail(key, "give either chamfer_mm or radius_mm"),
         };
         for edge in found {
-            if cuts.iter().any(|(other, _)| edges::same(other, &edge)) {
+            if edges::cut_at(&cuts, edge).is_some() {
                 return check.fail(key, format!("at = {at:?} repeats an edge"));
             }
             cuts.push((edge, cut));
@@ -169,5 +169,5 @@ fn with_cut_edges(
     if cuts.is_empty() {
         return Ok(Solid::Box { min, max });
     }
-    edges::cut(&min, &max, &cuts).or_else(|problem| check.fail(key, problem))
+    edges::cut([&min, &max], &cuts).or_else(|problem| check.fail(key, problem))
 }

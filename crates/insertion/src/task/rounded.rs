@@ -5,7 +5,7 @@
 //! Arcs that meet at a corner are mitred like intersecting cylinders; three arcs of equal radius form part
 //! of a ball.
 
-use super::edges::{Cut, Edge, Face, HalfSpace, SAME, corners, half_spaces, same};
+use super::edges::{Cut, Edge, Face, SAME, corners, cut_at, half_spaces};
 use super::geometry;
 use contact::scene::Shape;
 use nalgebra::{Point3, Vector3};
@@ -31,11 +31,7 @@ pub struct Rounded {
 
 impl Rounded {
     /// Creates the box; `None` if the cuts are too fine for a hull.
-    pub(super) fn new(
-        min: &Vector3<f64>,
-        max: &Vector3<f64>,
-        edges: &[(Edge, Cut)],
-    ) -> Option<Self> {
+    pub(super) fn new([min, max]: [&Vector3<f64>; 2], edges: &[(Edge, Cut)]) -> Option<Self> {
         let size = max - min;
         let (pieces, inside) = (Vec::new(), Vec::new());
         let mut made = Rounded { min: *min, size, edges: edges.to_vec(), pieces, inside };
@@ -68,10 +64,7 @@ impl Rounded {
     /// Returns the cuts: name of the edge, key and size, m, of the cut.
     pub fn cuts(&self) -> impl Iterator<Item = (String, &'static str, f64)> {
         self.edges.iter().map(|([first, second], cut)| {
-            let key = match cut {
-                Cut::Chamfer(_) => "chamfer_mm",
-                Cut::Radius(_) => "radius_mm",
-            };
+            let key = if matches!(cut, Cut::Chamfer(_)) { "chamfer_mm" } else { "radius_mm" };
             (format!("{}{}", first.name(), second.name()), key, cut.size())
         })
     }
@@ -91,23 +84,15 @@ impl Rounded {
     fn decompose(&self) -> Option<Vec<(Shape, Vector3<f64>)>> {
         let mut found: Vec<_> =
             self.edges.iter().filter_map(|(edge, cut)| self.core(edge, *cut)).collect();
-        let flats = corners(&half_spaces(&Vector3::zeros(), &self.size, &self.edges, |_| 1));
+        let flats = corners(&half_spaces([&Vector3::zeros(), &self.size], &self.edges, |_| 1));
         let (points, _) = geometry::hull(&flats)?;
         if points.len() != flats.len() {
             return None;
         }
         found.push(geometry::centred(&points));
-        found.extend(
-            self.rounded_corners()
-                .filter(|end| self.ball(end).is_none())
-                .filter_map(|end| self.corner_hull(&end)),
-        );
+        let unequal = self.rounded_corners().filter(|end| self.ball(end).is_none());
+        found.extend(unequal.filter_map(|end| self.corner_hull(&end)));
         Some(found)
-    }
-
-    /// Returns the cut of an edge.
-    fn cut(&self, edge: Edge) -> Option<Cut> {
-        self.edges.iter().find(|(other, _)| same(other, &edge)).map(|(_, cut)| *cut)
     }
 
     /// Returns the core along a round edge, shortened so that its ends do not protrude.
@@ -130,7 +115,7 @@ impl Rounded {
 
     /// Returns the smallest distance from a face at which a ball with the radius of a round edge fits, m.
     fn trim(&self, edge: &Edge, radius: f64, end: Face) -> f64 {
-        let beside = |side: &Face| match self.cut([end, *side]) {
+        let beside = |side: &Face| match cut_at(&self.edges, [end, *side]) {
             Some(Cut::Chamfer(leg)) => leg + (SQRT_2 - 1.0) * radius,
             Some(Cut::Radius(other)) => other,
             None => 0.0,
@@ -142,7 +127,7 @@ impl Rounded {
     fn rounded_corners(&self) -> impl Iterator<Item = [Face; 3]> {
         let corner = |i: usize| [0, 1, 2].map(|axis| Face { axis, high: i >> axis & 1 == 1 });
         let round = |[a, b, c]: &[Face; 3]| {
-            let cuts = [[*a, *b], [*b, *c], [*c, *a]].map(|edge| self.cut(edge));
+            let cuts = [[*a, *b], [*b, *c], [*c, *a]].map(|edge| cut_at(&self.edges, edge));
             cuts.iter().any(|cut| matches!(cut, Some(Cut::Radius(_))))
         };
         (0..8).map(corner).filter(round)
@@ -150,9 +135,9 @@ impl Rounded {
 
     /// Returns the ball of a corner at which three edges of equal radius meet.
     fn ball(&self, [a, b, c]: &[Face; 3]) -> Option<(Shape, Vector3<f64>)> {
-        let Some(Cut::Radius(radius)) = self.cut([*a, *b]) else { return None };
-        let all =
-            [[*b, *c], [*c, *a]].iter().all(|&edge| self.cut(edge) == Some(Cut::Radius(radius)));
+        let first = cut_at(&self.edges, [*a, *b]);
+        let Some(Cut::Radius(radius)) = first else { return None };
+        let all = [[*b, *c], [*c, *a]].iter().all(|&edge| cut_at(&self.edges, edge) == first);
         let at = |face: &Face| if face.high { self.size[face.axis] - radius } else { radius };
         let shape = Shape::RoundBox { core: Vector3::zeros(), radius };
         all.then(|| (shape, Vector3::new(at(a), at(b), at(c))))
@@ -161,33 +146,29 @@ impl Rounded {
     /// Returns the hull of a corner, which the cores of its edges do not reach.
     fn corner_hull(&self, faces: &[Face; 3]) -> Option<(Shape, Vector3<f64>)> {
         let near = |edge: &Edge| edge.iter().all(|face| faces.contains(face));
-        let chords = |edge: &Edge| match self.cut(*edge) {
+        let chords = |edge: &Edge| match cut_at(&self.edges, *edge) {
             Some(Cut::Radius(radius)) if near(edge) => {
                 let step = 2.0 * libm::acos(1.0 - (SAG / radius).min(0.25));
                 (FRAC_PI_2 / step).ceil() as usize
             }
             _ => 1,
         };
-        let mut bounds = half_spaces(&Vector3::zeros(), &self.size, &self.edges, chords);
+        let mut bounds = half_spaces([&Vector3::zeros(), &self.size], &self.edges, chords);
         for (i, end) in faces.iter().enumerate() {
             let [one, other] = [faces[(i + 1) % 3], faces[(i + 2) % 3]];
-            let width = |edge: Edge| self.cut(edge).map_or(0.0, Cut::size);
-            let own = match self.cut([one, other]) {
+            let width = |edge: Edge| cut_at(&self.edges, edge).map_or(0.0, Cut::size);
+            let own = match cut_at(&self.edges, [one, other]) {
                 Some(Cut::Radius(radius)) => self.trim(&[one, other], radius, *end),
                 _ => 0.0,
             };
             let reach = own.max(width([*end, one])).max(width([*end, other]));
             let from_low = if end.high { self.size[end.axis] - reach } else { reach };
-            bounds.push(far_side(*end, from_low));
+            // The side of the face `end`.
+            let inward = -end.outward();
+            bounds.push((inward, inward[end.axis] * from_low));
         }
         Some(geometry::centred(&corners(&bounds))).filter(|(shape, _)| shape.corners().len() > 3)
     }
-}
-
-/// Returns the half-space of a plane at `at` across the axis of the face `end`, on the side of this face.
-fn far_side(end: Face, at: f64) -> HalfSpace {
-    let inward = -end.outward();
-    (inward, inward[end.axis] * at)
 }
 
 #[cfg(test)]
@@ -208,7 +189,7 @@ mod tests {
             .flat_map(|(at, cut)| named(at).unwrap().into_iter().map(|edge| (edge, *cut)))
             .collect();
         let min = Vector3::new(1.0, -2.0, 3.0) * MM;
-        match cut(&min, &(min + Vector3::from(SIZE)), &edges) {
+        match cut([&min, &(min + Vector3::from(SIZE))], &edges) {
             Ok(Solid::Rounded(rounded)) => rounded,
             other => panic!("{other:?}"),
         }

@@ -12,7 +12,7 @@ use crate::robot::MountedRobot;
 use crate::task::duration::{CARRY_S, GRASP_S, TOLERANCE_TIMEOUT_S};
 use crate::task::{Ending, Hold, Phase, Stage, Task, TouchDetection};
 use contact::scene::{BodyId, Pose};
-use contact::{ContactForce, ContactPoint, Diverged, World};
+use contact::{ContactForce, ContactPoint, Diverged, Engine, World};
 use input::units::{DEG, MM};
 use nalgebra::{Point3, Vector3};
 use std::sync::Arc;
@@ -40,12 +40,6 @@ pub(super) enum Stop {
     Interrupted,
 }
 
-impl From<Diverged> for Stop {
-    fn from(_: Diverged) -> Self {
-        Stop::Diverged
-    }
-}
-
 /// State of an attempt; a clone continues bit for bit as the original does.
 #[derive(Clone)]
 pub(super) struct Attempt<'a> {
@@ -71,17 +65,21 @@ pub(super) struct Attempt<'a> {
 }
 
 impl<'a> Attempt<'a> {
+    /// Creates an attempt right before its grasp.
     pub fn new(
-        robot: Arc<MountedRobot>,
-        task: Arc<Task>,
-        cell: WorkCell,
-        world: Box<dyn World>,
-        Grasp { conditions, stop, .. }: Grasp<'a>,
+        robot: &Arc<MountedRobot>,
+        task: &Task,
+        engine: &dyn Engine,
+        Grasp { finger, conditions, stop }: Grasp<'a>,
     ) -> Self {
+        let task = Arc::new(conditions.task(task));
+        let mut cell = cell::build(&task, robot, &finger);
+        conditions.displace(&mut cell);
+        let world = engine.world(&cell.scene);
         let pose = world.pose(cell.command);
         let edge = LeadingEdge::new(&task);
         Attempt {
-            robot,
+            robot: Arc::clone(robot),
             stop,
             task,
             cell,
@@ -115,12 +113,10 @@ impl<'a> Attempt<'a> {
 
     /// Grasps the part, carries it to the start and runs the phases of the approach.
     pub fn prepare(&mut self) -> Result<(), Stop> {
-        let task = Arc::clone(&self.task);
         self.grasp()?;
-        let position = Vector3::from(task.strategy.start);
-        self.carry(Tcp { position, tilt: task.strategy.tilt })?;
-        let mut phases = task.strategy.phases.iter().filter(|phase| phase.stage == Stage::Approach);
-        phases.try_for_each(|phase| self.run_phase(phase))
+        let position = Vector3::from(self.task.strategy.start);
+        self.carry(Tcp { position, tilt: self.task.strategy.tilt })?;
+        self.run_phases(|stage| stage == Stage::Approach)
     }
 
     /// Grasps the part.
@@ -155,10 +151,10 @@ impl<'a> Attempt<'a> {
         Ok(())
     }
 
-    /// Runs the phases of search and assembly.
-    pub fn search_and_assemble(&mut self) -> Result<(), Stop> {
+    /// Runs the phases of the stages that `selects` accepts.
+    pub fn run_phases(&mut self, selects: impl Fn(Stage) -> bool) -> Result<(), Stop> {
         let task = Arc::clone(&self.task);
-        let mut phases = task.strategy.phases.iter().filter(|phase| phase.stage != Stage::Approach);
+        let mut phases = task.strategy.phases.iter().filter(|phase| selects(phase.stage));
         phases.try_for_each(|phase| self.run_phase(phase))
     }
 
@@ -277,7 +273,7 @@ impl<'a> Attempt<'a> {
             return Err(Stop::Interrupted);
         }
         self.world.drive(self.cell.command, self.target.pose());
-        self.world.step()?;
+        self.world.step().map_err(|Diverged| Stop::Diverged)?;
         let dt = self.world.step_s();
         self.time += dt;
         let contact = self.socket_force();
@@ -332,10 +328,8 @@ impl<'a> Attempt<'a> {
 
     /// Records a frame if the recorder is due for one.
     fn record(&mut self, dt: f64) {
-        if !self.recorder.as_mut().is_some_and(|recorder| recorder.is_due(dt)) {
-            return;
-        }
-        let frame = Frame {
+        let Some(mut taken) = self.recorder.take_if(|recorder| recorder.is_due(dt)) else { return };
+        taken.frames.push(Frame {
             time_s: self.time,
             stage: self.stage,
             poses: self.poses(),
@@ -344,10 +338,8 @@ impl<'a> Attempt<'a> {
             slip: if self.phases.is_empty() { 0.0 } else { self.slip() },
             contacts: self.touches(self.cell.socket).collect(),
             grips: self.cell.hands.into_iter().flat_map(|hand| self.touches(hand.finger)).collect(),
-        };
-        if let Some(recorder) = &mut self.recorder {
-            recorder.frames.push(frame);
-        }
+        });
+        self.recorder = Some(taken);
     }
 
     fn rest_time(&self) -> f64 {
@@ -425,12 +417,9 @@ impl<'a> Attempt<'a> {
         if matches!(end, Err(Stop::Diverged | Stop::Interrupted)) {
             return Outcome::Diverged;
         }
-        classify(FinalState {
-            seated,
-            gripped: self.monitor.gripped(),
-            lost_in: (end == Err(Stop::Lost)).then_some(self.stage),
-            entered: self.monitor.entered && !self.placement().astray(&self.task),
-        })
+        let lost_in = (end == Err(Stop::Lost)).then_some(self.stage);
+        let entered = self.monitor.entered && !self.placement().astray(&self.task);
+        classify(FinalState { seated, gripped: self.monitor.gripped(), lost_in, entered })
     }
 
     /// Returns the result of the trial after this end, its samples and its frames.

@@ -3,7 +3,6 @@
 //! Frames: the world is the task frame. The flange frame is the TCP. The plug
 //! stands upright at its pick-up pose, vertically above the start of the search.
 
-use crate::arm::ReducedArm;
 use crate::finger::{self, Finger};
 use crate::robot::{Flange, MountedRobot, Servo};
 use crate::task::{Latch, PadTorsion, Part, Task, geometry};
@@ -12,7 +11,7 @@ use contact::scene::{
     Shape, Spring, Springs, Torsion,
 };
 use input::units::MM;
-use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
 
 /// Height of the pick-up pose above the start pose, m.
 const PICK_UP_HEIGHT: f64 = 10.0 * MM;
@@ -122,37 +121,26 @@ pub fn add_flange(scene: &mut Scene, model: &Flange, tcp: Pose) -> (BodyId, Body
     };
     let flange = scene.body(body("flange", motion, tcp, Vec::new()));
     scene.joint(joint("servo", [command, flange], [Pose::identity(); 2], springs));
-    if let Flange::Arm(arm) = model {
-        add_brake(scene, arm, flange, tcp);
+    if let Flange::Arm(arm) = model
+        && !arm.feed_forward
+    {
+        // Without velocity feed-forward the damper is between flange and world, along the axes of the tilted TCP.
+        let damper = Springs::Coupled { stiffness: Matrix6::zeros(), damping: arm.damping };
+        let base = scene.body(body("base", Motion::Fixed, tcp, Vec::new()));
+        let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), arm.tilt);
+        let frames = [Pose::from_parts(Translation3::identity(), tilt), Pose::identity()];
+        scene.joint(joint("brake", [base, flange], frames, damper));
     }
     (command, flange)
 }
 
-/// Adds the damper between flange and world of an arm without velocity feed-forward, along the axes of the tilted TCP.
-fn add_brake(scene: &mut Scene, arm: &ReducedArm, flange: BodyId, tcp: Pose) {
-    let Some(damper) = arm.brake() else { return };
-    let base = scene.body(body("base", Motion::Fixed, tcp, Vec::new()));
-    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), arm.tilt);
-    let frames = [Pose::from_parts(Translation3::identity(), tilt), Pose::identity()];
-    scene.joint(joint("brake", [base, flange], frames, damper));
-}
-
 fn servo_flange(servo: &Servo) -> (Motion, Springs) {
-    let inertia = Inertia {
-        mass: servo.mass,
-        centre: Point3::origin(),
-        moments: Vector3::repeat(servo.inertia),
-    };
-    let critical = |k: f64, m: f64| 2.0 * servo.damping_ratio * (k * m).sqrt();
-    let axis = |i: usize| {
-        let (k, m) = if i < 3 {
-            (servo.stiffness[i], servo.mass)
-        } else {
-            (servo.rotational_stiffness[i - 3], servo.inertia)
-        };
-        Some(Spring::new(k, critical(k, m)))
-    };
-    (Motion::Carried(inertia), Springs::Axes(std::array::from_fn(axis)))
+    let moments = Vector3::repeat(servo.inertia);
+    let inertia = Inertia { mass: servo.mass, centre: Point3::origin(), moments };
+    let spring = |k: f64, m: f64| Some(Spring::new(k, 2.0 * servo.damping_ratio * (k * m).sqrt()));
+    let [x, y, z] = servo.stiffness.map(|k| spring(k, servo.mass));
+    let [rx, ry, rz] = servo.rotational_stiffness.map(|k| spring(k, servo.inertia));
+    (Motion::Carried(inertia), Springs::Axes([x, y, z, rx, ry, rz]))
 }
 
 fn pad_friction(task: &Task) -> Friction {

@@ -59,13 +59,10 @@ impl Conditions {
         let half = self.clearance / 2.0;
         for part in &mut task.socket {
             let [x, y] = nominal.opening.map(|[from, to]| (from + to) / 2.0);
-            let outward = |axis, middle| half * side(part, axis, middle);
-            let by = [outward(0, x), outward(1, y)];
+            let by = [(0, x), (1, y)].map(|(axis, middle)| half * side(part, axis, middle));
             part.solid.shift(by);
         }
-        for [from, to] in &mut task.opening {
-            (*from, *to) = (*from - half, *to + half);
-        }
+        task.opening = nominal.opening.map(|[from, to]| [from - half, to + half]);
         task
     }
 
@@ -83,12 +80,10 @@ impl Conditions {
 fn side(part: &Part, axis: usize, middle: f64) -> f64 {
     let corners = part.solid.corners();
     let along = || corners.iter().map(|corner| corner[axis]);
-    if along().all(|at| at >= middle) {
-        1.0
-    } else if along().all(|at| at <= middle) {
-        -1.0
-    } else {
-        0.0
+    match (along().all(|at| at >= middle), along().all(|at| at <= middle)) {
+        (true, _) => 1.0,
+        (_, true) => -1.0,
+        _ => 0.0,
     }
 }
 

@@ -32,7 +32,7 @@ impl FakeRig {
 
 impl Rig for FakeRig {
     fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
-        Box::new(FakeGrasp { delay: self.delay, grasp })
+        Box::new((*self, grasp))
     }
 }
 
@@ -54,27 +54,20 @@ fn whole_nanometres(mm: f64) -> f64 {
     (mm * 1e6).round() / 1e6
 }
 
-struct FakeGrasp<'a> {
-    delay: std::time::Duration,
-    grasp: Grasp<'a>,
-}
-
-impl Grasped for FakeGrasp<'_> {
+impl Grasped for (FakeRig, Grasp<'_>) {
     fn run(&self, offset: f64, _: Option<f64>, _: f64) -> (Trial, Vec<Sample>) {
-        let (low, high) = window_mm(&self.grasp.finger, &self.grasp.conditions);
-        let stopped = self.grasp.stop.load(Ordering::Relaxed);
+        let (FakeRig { delay }, grasp) = *self;
+        let (low, high) = window_mm(&grasp.finger, &grasp.conditions);
+        let stopped = grasp.stop.load(Ordering::Relaxed);
         if !stopped {
-            std::thread::sleep(self.delay);
+            std::thread::sleep(delay);
         }
         let offset_mm = whole_nanometres(offset / MM);
-        let outcome = if stopped {
-            Outcome::Diverged
-        } else if offset_mm < low {
-            Outcome::Failed(FailureClass::Jammed)
-        } else if offset_mm > high {
-            Outcome::Failed(FailureClass::PlugMissed)
-        } else {
-            Outcome::Inserted
+        let outcome = match offset_mm {
+            _ if stopped => Outcome::Diverged,
+            below if below < low => Outcome::Failed(FailureClass::Jammed),
+            above if above > high => Outcome::Failed(FailureClass::PlugMissed),
+            _ => Outcome::Inserted,
         };
         // Distance in mm to the nearer end.
         let margin = (offset_mm - low).min(high - offset_mm).clamp(-1.0, 1.0);
@@ -96,20 +89,16 @@ impl Grasped for FakeGrasp<'_> {
 /// Closed-form rig whose trials are altered by a function of grasp, offset (m) and trial.
 pub struct Altered<F>(pub F);
 
-struct AlteredGrasp<'a, F> {
-    alter: &'a F,
-    grasp: Grasp<'a>,
-}
-
 impl<F: Fn(&Grasp, f64, Trial) -> Trial + Send + Sync> Rig for Altered<F> {
     fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
-        Box::new(AlteredGrasp { alter: &self.0, grasp })
+        Box::new((self, grasp))
     }
 }
 
-impl<F: Fn(&Grasp, f64, Trial) -> Trial + Send + Sync> Grasped for AlteredGrasp<'_, F> {
+impl<F: Fn(&Grasp, f64, Trial) -> Trial + Send + Sync> Grasped for (&Altered<F>, Grasp<'_>) {
     fn run(&self, offset: f64, _: Option<f64>, _: f64) -> (Trial, Vec<Sample>) {
-        let trial = FakeRig::default().hold(self.grasp).trial(offset);
-        ((self.alter)(&self.grasp, offset, trial), Vec::new())
+        let (Altered(alter), grasp) = self;
+        let trial = FakeRig::default().hold(*grasp).trial(offset);
+        (alter(grasp, offset, trial), Vec::new())
     }
 }

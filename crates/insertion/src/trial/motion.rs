@@ -20,6 +20,14 @@ impl Tcp {
         Pose::from_parts(Translation3::from(self.position), rotation)
     }
 
+    /// Returns the target at a share of the way to another.
+    pub(super) fn towards(&self, to: &Tcp, share: f64) -> Tcp {
+        Tcp {
+            position: self.position + share * (to.position - self.position),
+            tilt: self.tilt + share * (to.tilt - self.tilt),
+        }
+    }
+
     /// Returns the target displaced by a vector, m.
     pub(super) fn moved(&self, by: Vector3<f64>) -> Tcp {
         Tcp { position: self.position + by, tilt: self.tilt }
@@ -38,8 +46,7 @@ pub struct Move {
 impl Move {
     /// Returns a move at a mean speed, m/s.
     pub fn new(from: Tcp, to: Tcp, speed: f64) -> Self {
-        let duration = ((to.position - from.position).norm() / speed).max(SHORTEST_MOVE_S);
-        Move { from, to, duration }
+        Move::with_duration(from, to, (to.position - from.position).norm() / speed)
     }
 
     /// Returns a move with a duration, s.
@@ -51,10 +58,7 @@ impl Move {
     pub fn at(&self, time: f64) -> Tcp {
         let t = (time / self.duration).clamp(0.0, 1.0);
         let s = t * t * t * (10.0 - 15.0 * t + 6.0 * t * t);
-        Tcp {
-            position: self.from.position + s * (self.to.position - self.from.position),
-            tilt: self.from.tilt + s * (self.to.tilt - self.from.tilt),
-        }
+        self.from.towards(&self.to, s)
     }
 }
 

@@ -58,7 +58,7 @@ impl Frame {
     }
 
     /// Transforms all poses, points and the force by a pose.
-    fn transform(&mut self, by: &Pose) {
+    pub(super) fn transform(&mut self, by: &Pose) {
         let poses = [&mut self.poses.plug].into_iter().chain(&mut self.poses.latch);
         for pose in poses.chain(&mut self.poses.fingers).chain(&mut self.jaws) {
             *pose = by * *pose;
@@ -105,11 +105,6 @@ impl Recorder {
         let every = ((INTERVAL / step_s).round() as usize).max(1);
         self.steps += 1;
         self.steps.is_multiple_of(every)
-    }
-
-    /// Transforms the frames recorded so far by a pose.
-    pub fn transform(&mut self, by: &Pose) {
-        self.frames.iter_mut().for_each(|frame| frame.transform(by));
     }
 }
 

@@ -67,19 +67,10 @@ impl EngineRig {
 
     /// Returns an attempt after grasp and approach.
     fn prepare<'a>(&self, engine: &dyn Engine, grasp: Grasp<'a>, recorded: bool) -> Prepared<'a> {
-        let mut attempt = self.attempt(engine, &self.task, grasp);
+        let mut attempt = Attempt::new(&self.robot, &self.task, engine, grasp);
         attempt.recorder = recorded.then(Recorder::default);
         let end = attempt.prepare();
         Prepared { attempt, end, descended: OnceLock::new() }
-    }
-
-    /// Returns an attempt right before its grasp.
-    fn attempt<'a>(&self, engine: &dyn Engine, task: &Task, grasp: Grasp<'a>) -> Attempt<'a> {
-        let task = Arc::new(grasp.conditions.task(task));
-        let mut cell = cell::build(&task, &self.robot, &grasp.finger);
-        grasp.conditions.displace(&mut cell);
-        let world = engine.world(&cell.scene);
-        Attempt::new(Arc::clone(&self.robot), task, cell, world, grasp)
     }
 
     fn grasp_with_retry<'a>(&'a self, grasp: Grasp<'a>, recorded: bool) -> GraspWithRetry<'a> {
@@ -111,14 +102,14 @@ impl Rig for EngineRig {
     }
 
     fn follow(&self, grasp: Grasp<'_>, course: Course<'_>, every_s: f64) -> Vec<Followed> {
-        let engine = &*self.engine;
+        let attempt = |task: &Task| Attempt::new(&self.robot, task, &*self.engine, grasp);
         let ended = |attempt: Attempt<'_>, end| {
             let (trial, samples, _) = attempt.result(end);
             (trial, samples)
         };
         match course {
             Course::Trajectories(trajectories) => {
-                let mut held = self.attempt(engine, &self.task, grasp);
+                let mut held = attempt(&self.task);
                 let grasped = held.grasp();
                 let each = trajectories.iter().map(|trajectory| {
                     let mut attempt = held.clone();
@@ -128,7 +119,7 @@ impl Rig for EngineRig {
                 each.collect()
             }
             Course::Probe(probe) => {
-                let mut attempt = self.attempt(engine, &on_plate(&self.task), grasp);
+                let mut attempt = attempt(&on_plate(&self.task));
                 let end = attempt.grasp().and_then(|()| attempt.probe(&probe, every_s));
                 vec![ended(attempt, end)]
             }
@@ -196,11 +187,10 @@ impl<'a> Prepared<'a> {
         // The sensor is zeroed once the robot is at rest.
         let end = self.end.and_then(|()| attempt.rest(rest_s));
         attempt.trace = every_s.map(Trace::new);
-        if let Some(recorder) = &mut attempt.recorder {
-            recorder.transform(&attempt.socket);
-        }
+        let frames = attempt.recorder.iter_mut().flat_map(|recorder| &mut recorder.frames);
+        frames.for_each(|frame| frame.transform(&attempt.socket));
         let end = end.and_then(|()| attempt.rest(rest_s));
-        let end = end.and_then(|()| attempt.search_and_assemble());
+        let end = end.and_then(|()| attempt.run_phases(|stage| stage != Stage::Approach));
         attempt.result(end)
     }
 }

@@ -94,11 +94,8 @@ impl Priors {
     pub fn remark(&self, task: &str) -> Option<String> {
         let names: Vec<_> = self.not_of(task).map(|row| &*row.path).collect();
         let own = self.task.as_ref().filter(|_| !names.is_empty())?;
-        let names = names.join(", ");
-        Some(format!(
-            "cell `{}` was identified on {own}; not applied to {task}: {names}",
-            self.name
-        ))
+        let (name, names) = (&self.name, names.join(", "));
+        Some(format!("cell `{name}` was identified on {own}; not applied to {task}: {names}"))
     }
 }
 

@@ -40,12 +40,11 @@ impl Aggregate {
         if count != tasks {
             return Err(format!("there are {count} weights for {tasks} tasks; give one for each"));
         }
-        match weights.iter().find(|weight| !(1e-6..=1e6).contains(*weight)) {
-            Some(bad) => {
-                Err(format!("weight {} is out of range; it must lie in 1e-6 .. 1e6", shown(*bad)))
-            }
-            None => Ok(Aggregate::Weighted(weights)),
+        if let Some(bad) = weights.iter().find(|weight| !(1e-6..=1e6).contains(*weight)) {
+            let bad = shown(*bad);
+            return Err(format!("weight {bad} is out of range; it must lie in 1e-6 .. 1e6"));
         }
+        Ok(Aggregate::Weighted(weights))
     }
 
     /// Returns the aggregate of the values of at least one task; `sense` is 1 to maximize, -1 to minimize.

@@ -34,29 +34,31 @@ impl Measure {
         Measure::Slip,
     ];
 
+    /// Returns name, unit, unit in keys, and number of decimals.
+    fn row(self) -> (&'static str, &'static str, &'static str, usize) {
+        match self {
+            Measure::Range => ("range", "mm", "mm", 1),
+            Measure::CentredRange => ("centred-range", "mm", "mm", 1),
+            Measure::SuccessRate => ("success-rate", "", "share", 3),
+            Measure::RobustRange => ("robust-range", "mm", "mm", 2),
+            Measure::PeakForce => ("peak-force", "N", "n", 1),
+            Measure::Slip => ("slip", "mm", "mm", 2),
+        }
+    }
+
     /// Returns the name on the command line and in study files.
     pub fn name(self) -> &'static str {
-        let names =
-            ["range", "centred-range", "success-rate", "robust-range", "peak-force", "slip"];
-        names[self as usize]
+        self.row().0
     }
 
     /// Returns the unit for text and axes; empty for a share.
     pub fn unit(self) -> &'static str {
-        match self {
-            Measure::SuccessRate => "",
-            Measure::PeakForce => "N",
-            _ => "mm",
-        }
+        self.row().1
     }
 
     /// Returns the unit as the suffix of a key: `mm`, `n` or `share`.
     pub fn key(self) -> &'static str {
-        match self {
-            Measure::SuccessRate => "share",
-            Measure::PeakForce => "n",
-            _ => "mm",
-        }
+        self.row().2
     }
 
     /// Returns 1 to maximize, -1 to minimize.
@@ -83,38 +85,27 @@ impl Measure {
     /// the nominal start fails, the range is 0 and there is neither force nor slip. A diverged trial ends a window like
     /// a failed one. The success rate of a lost race is its upper bound.
     pub fn value(self, evaluation: &Evaluation) -> Option<f64> {
-        let value = match self {
-            Measure::SuccessRate => evaluation.success.as_ref()?.max_rate(),
-            Measure::RobustRange => evaluation.robust.as_ref()?.value_mm,
-            _ => self.of_window(evaluation),
-        };
-        value.filter(|value| value.is_finite())
-    }
-
-    /// Returns the value of a measure of the window search.
-    fn of_window(self, evaluation: &Evaluation) -> Option<f64> {
         let window = &evaluation.window;
-        match (window.nominal, self) {
+        let value = match (window.nominal, self) {
+            (_, Measure::SuccessRate) => evaluation.success.as_ref()?.max_rate(),
+            (_, Measure::RobustRange) => evaluation.robust.as_ref()?.value_mm,
             (Outcome::Diverged, _) => None,
             (Outcome::Inserted, Measure::CentredRange) => {
                 Some(2.0 * window.positive_mm().min(-window.negative_mm()))
             }
             (Outcome::Inserted, Measure::PeakForce) => Some(evaluation.peak_force_n),
             (Outcome::Inserted, Measure::Slip) => Some(evaluation.slip_mm),
-            (Outcome::Inserted, _) => Some(window.range_mm()),
+            (Outcome::Inserted, Measure::Range) => Some(window.range_mm()),
             (Outcome::Failed(_), Measure::PeakForce | Measure::Slip) => None,
-            (Outcome::Failed(_), _) => Some(0.0),
-        }
+            (Outcome::Failed(_), Measure::Range | Measure::CentredRange) => Some(0.0),
+        };
+        value.filter(|value| value.is_finite())
     }
 
     /// Returns a value with its unit.
     pub fn show(self, value: f64) -> String {
-        match self {
-            Measure::Range | Measure::CentredRange => format!("{value:.1} mm"),
-            Measure::RobustRange | Measure::Slip => format!("{value:.2} mm"),
-            Measure::SuccessRate => format!("{value:.3}"),
-            Measure::PeakForce => format!("{value:.1} N"),
-        }
+        let (_, unit, _, decimals) = self.row();
+        format!("{value:.decimals$} {unit}").trim_end().to_owned()
     }
 
     /// Returns name and unit, for an axis or a heading: `peak-force (N)`.

@@ -129,11 +129,8 @@ pub struct Score {
 impl Goals {
     /// Returns a single objective without constraints.
     pub fn of(measure: Measure) -> Self {
-        Goals {
-            objectives: Objectives::of(measure),
-            constraints: Vec::new(),
-            aggregate: Aggregate::Min,
-        }
+        let objectives = Objectives::of(measure);
+        Goals { objectives, constraints: Vec::new(), aggregate: Aggregate::Min }
     }
 
     /// Returns whether a measure is an objective or is constrained.
@@ -180,30 +177,28 @@ impl Goals {
         let differing = a.iter().zip(&b).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne());
         differing.unwrap_or(Ordering::Equal)
     }
+
+    /// Returns the values for an optimizer: those of [`score`](Goals::score) with the sign for which larger is
+    /// better, interpolated within the grid step. `None` if there is no score.
+    ///
+    /// Windows are measured on a grid of 0.1 mm, so many designs have equal ranges, and all whose nominal start fails
+    /// have none. Optimizers therefore get values interpolated within the last grid step; those of the study stay
+    /// on the grid.
+    pub fn interpolated(&self, tasks: &[&Evaluation]) -> Option<Vec<f64>> {
+        let of = |&measure: &Measure| {
+            let value =
+                |task: &&Evaluation| Some(measure.value(task)? + grid_correction(measure, task));
+            let values: Option<Vec<f64>> = tasks.iter().map(value).collect();
+            Some(measure.sense() * self.aggregate.of(measure.sense(), &values?))
+        };
+        self.objectives.measures().iter().map(of).collect()
+    }
 }
 
 impl Score {
     /// Returns whether all constraints are satisfied.
     pub fn feasible(&self) -> bool {
         self.violations.iter().all(|&violation| violation <= 0.0)
-    }
-}
-
-// Windows are measured on a grid of 0.1 mm, so many designs have equal ranges, and all whose nominal start fails
-// have none. Optimizers therefore get values interpolated within the last grid step; those of the study stay
-// on the grid.
-impl Goals {
-    /// Returns the values for an optimizer: those of [`score`](Goals::score) with the sign for which larger is
-    /// better, interpolated within the grid step. `None` if there is no score.
-    pub fn interpolated(&self, tasks: &[&Evaluation]) -> Option<Vec<f64>> {
-        let of = |&measure: &Measure| {
-            let values: Option<Vec<f64>> = tasks
-                .iter()
-                .map(|task| Some(measure.value(task)? + grid_correction(measure, task)))
-                .collect();
-            Some(measure.sense() * self.aggregate.of(measure.sense(), &values?))
-        };
-        self.objectives.measures().iter().map(of).collect()
     }
 }
 

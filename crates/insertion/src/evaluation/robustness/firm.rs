@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub const REPEATS: u32 = 6;
 
 /// Outermost offsets at which all repeats insert, in grid steps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FirmWindow {
     /// Outermost step at the negative end.
     pub negative_steps: OffsetStep,
@@ -46,8 +46,7 @@ impl FirmResult {
 
     /// Returns the window, narrowed to the firm window.
     pub fn narrowed(&self, window: &Window) -> Window {
-        let firm = self.window.unwrap_or(FirmWindow { negative_steps: 0, positive_steps: 0 });
-        let FirmWindow { negative_steps, positive_steps } = firm;
+        let FirmWindow { negative_steps, positive_steps } = self.window.unwrap_or_default();
         Window { negative_steps, positive_steps, ..window.clone() }
     }
 }

@@ -48,8 +48,7 @@ impl Plan {
             race: None,
             cells: uncertainty.cell.as_ref().map(|cell| {
                 let rate = if success { rate.trials } else { 0 };
-                let range = if robust { range.samples } else { 0 };
-                let count = rate.max(range);
+                let count = if robust { rate.max(range.samples) } else { rate };
                 (cell.clone(), parameters::draws(&cell.parameters, seed, count))
             }),
         }
@@ -104,12 +103,9 @@ fn robust_range(drawn: &[Insertion], settings: &RobustSettings) -> RobustRange {
     let found: Vec<Evaluation> = drawn.par_iter().map(window).collect();
     let valid = found.iter().filter(|draw| draw.window.nominal != Outcome::Diverged);
     let ranges_mm: Vec<f64> = valid.map(|draw| draw.window.range_mm()).collect();
-    let mut robust = RobustRange {
-        diverged: (found.len() - ranges_mm.len()) as u32,
-        ranges_mm,
-        value_mm: None,
-        trials: found.iter().map(|draw| draw.trials).sum(),
-    };
+    let diverged = (found.len() - ranges_mm.len()) as u32;
+    let trials = found.iter().map(|draw| draw.trials).sum();
+    let mut robust = RobustRange { ranges_mm, diverged, trials, value_mm: None };
     robust.value_mm = statistic(&robust, settings.statistic);
     robust
 }

@@ -21,22 +21,6 @@ pub struct Race {
     pub first: Vec<u32>,
 }
 
-impl Race {
-    /// Returns the numbers of the draws in the order of the race.
-    pub fn order(&self, draws: u32) -> Vec<u32> {
-        let place = |draw: &u32| self.first.iter().rposition(|first| first == draw);
-        let mut order: Vec<u32> = (0..draws).collect();
-        // Stable: the others stay in their order.
-        order.sort_by_cached_key(|draw| place(draw).unwrap_or(usize::MAX));
-        order
-    }
-
-    /// Returns whether the bar is out of reach even if all remaining draws insert.
-    pub fn is_out_of_reach(&self, success: &SuccessRate) -> bool {
-        success.max_rate().is_some_and(|rate| rate < self.bar_share)
-    }
-}
-
 /// Evaluates the draws in the order of the race and counts their outcomes until the bar is out of reach. Draws
 /// beyond that point are not counted, so the result does not depend on the number of threads.
 pub fn run(
@@ -46,13 +30,19 @@ pub fn run(
     outcome: impl Fn(u32) -> Outcome + Sync,
 ) -> SuccessRate {
     let mut success = SuccessRate { confidence, skipped: draws, ..SuccessRate::default() };
-    let order = race.map_or((0..draws).collect(), |race| race.order(draws));
+    let mut order: Vec<u32> = (0..draws).collect();
+    if let Some(race) = race {
+        let place = |draw: &u32| race.first.iter().rposition(|first| first == draw);
+        // Stable: the others stay in their order.
+        order.sort_by_cached_key(|draw| place(draw).unwrap_or(usize::MAX));
+    }
     let at_a_time = race.map_or(order.len(), |_| rayon::current_num_threads());
     'race: for draws in order.chunks(at_a_time.max(1)) {
         let ended: Vec<Outcome> = draws.par_iter().map(|&draw| outcome(draw)).collect();
         for (&draw, outcome) in draws.iter().zip(ended) {
             success.count(draw, outcome);
-            if race.is_some_and(|race| race.is_out_of_reach(&success)) {
+            // Out of reach even if all remaining draws insert.
+            if race.zip(success.max_rate()).is_some_and(|(race, rate)| rate < race.bar_share) {
                 break 'race;
             }
         }

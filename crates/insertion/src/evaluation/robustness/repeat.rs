@@ -34,11 +34,8 @@ impl<'a> Repeats<'a> {
         let run = |index: u32| {
             let mut random = stream(seed, u64::from(index), PURPOSE);
             let mut around = |half_width: f64| half_width * random.random_range(-1.0..1.0);
-            let conditions = Conditions {
-                friction_finger: 1.0 + around(FRICTION_SHARE),
-                friction_socket: 1.0 + around(FRICTION_SHARE),
-                ..Conditions::NOMINAL
-            };
+            let [friction_finger, friction_socket] = [(); 2].map(|()| 1.0 + around(FRICTION_SHARE));
+            let conditions = Conditions { friction_finger, friction_socket, ..Conditions::NOMINAL };
             let rig = rigs[index as usize % rigs.len()];
             (rig.hold(Grasp { conditions, ..grasp }), around(START_SHIFT))
         };
@@ -49,10 +46,8 @@ impl<'a> Repeats<'a> {
     pub fn outcomes(&self, offset: f64) -> Vec<Outcome> {
         let trial = |(grasped, shift): &(Box<dyn Grasped + 'a>, f64)| {
             // Checked here, since even a cancelled trial copies its world first.
-            match self.stop.load(Ordering::Relaxed) {
-                true => Outcome::Diverged,
-                false => grasped.trial(offset + shift).outcome,
-            }
+            let stopped = self.stop.load(Ordering::Relaxed);
+            if stopped { Outcome::Diverged } else { grasped.trial(offset + shift).outcome }
         };
         self.runs.par_iter().map(trial).collect()
     }
@@ -96,12 +91,8 @@ impl<'a> Repeats<'a> {
         let tried = inside.flat_map(|(from, to)| (-from..=to).step_by(INSIDE_STRIDE as usize));
         let tried: Vec<OffsetStep> = tried.collect();
         let uncertain = |step: &&OffsetStep| self.inserted(**step) < self.runs.len();
-        Bands {
-            negative,
-            positive,
-            tried_inside: tried.len(),
-            uncertain_inside: tried.iter().filter(uncertain).map(|&step| grid_mm(step)).collect(),
-        }
+        let uncertain_inside = tried.iter().filter(uncertain).map(|&step| grid_mm(step)).collect();
+        Bands { negative, positive, tried_inside: tried.len(), uncertain_inside }
     }
 }
 

@@ -86,10 +86,8 @@ impl Template {
         fingers: &FingerSource,
         at_pad: &Prediction,
     ) -> Result<(Task, Finger), DesignError> {
-        let (of_finger, of_task): (Vec<_>, Vec<_>) = design
-            .0
-            .iter()
-            .map(|(key, &value)| (key.as_str(), value))
+        let values = design.0.iter().map(|(key, &value)| (key.as_str(), value));
+        let (of_finger, of_task): (Vec<_>, Vec<_>) = values
             .filter(|(key, _)| !is_infill(key) && !is_shape(key))
             .partition(|(key, _)| Path::new(*key).is_ok_and(|path| path.kind() == Kind::Finger));
         let shape = design.0.keys().find(|key| is_shape(key));

@@ -1,11 +1,11 @@
 //! Checks that every finger of a space can be printed and has springs, before the first one is simulated.
 
+use super::is_infill;
 use super::space::{each_corner, each_extreme};
-use super::{DesignError, is_infill};
 use crate::evaluation::evaluator::Evaluator;
 use crate::finger::file::{FingerFile, infill, is_shape};
 use crate::finger::model::{FingerSource, RCC_KEY, TILTING_KEY};
-use crate::space::{Design, Space, Variable};
+use crate::space::{Space, Variable};
 use finray::geometry::Geometry;
 use input::{Check, InputError};
 
@@ -42,16 +42,13 @@ pub fn check_springs(evaluator: &Evaluator, space: &Space, file: &str) -> Result
     };
     let tried = |p: &&Variable| sets(&p.key) || is_infill(&p.key);
     let all = (space.parameters.iter().filter(tried), usize::MAX);
-    let possible = |design: &Design| springs(evaluator, design);
-    each_corner(Check { file }, &first.key, all, "has no springs", possible)
-}
-
-fn springs(evaluator: &Evaluator, design: &Design) -> Result<(), DesignError> {
-    let stiffness = evaluator.predict(design)?;
-    for template in &evaluator.templates {
-        evaluator.fingers.make(&stiffness, design, &template.task)?;
-    }
-    Ok(())
+    each_corner(Check { file }, &first.key, all, "has no springs", |design| {
+        let stiffness = evaluator.predict(design)?;
+        for template in &evaluator.templates {
+            evaluator.fingers.make(&stiffness, design, &template.task)?;
+        }
+        Ok(())
+    })
 }
 
 #[cfg(test)]

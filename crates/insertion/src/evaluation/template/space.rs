@@ -38,17 +38,16 @@ pub(super) fn each_extreme<'a>(
 ) -> Result<(), InputError> {
     for variable in variables {
         for value in variable.extremes() {
-            match check_design(&Design::default().with(&variable.key, value)) {
-                Ok(()) => (),
+            let problem = match check_design(&Design::default().with(&variable.key, value)) {
+                Ok(()) => continue,
                 Err(DesignError::Value(InputError { key: Some(key), problem, .. }))
                     if variable.key == key =>
                 {
-                    return check.fail(&key, problem);
+                    problem
                 }
-                Err(error) => {
-                    return check.fail(&variable.key, format!("cannot be {value}: {error}"));
-                }
-            }
+                Err(error) => format!("cannot be {value}: {error}"),
+            };
+            return check.fail(&variable.key, problem);
         }
     }
     Ok(())

@@ -68,28 +68,25 @@ impl Draw {
     pub fn with<'a>(errors: impl IntoIterator<Item = (&'a str, f64)>) -> Self {
         let (conditions, stiffness) = (Conditions::NOMINAL, [0.0; 2]);
         let mut draw = Draw { offset: 0.0, conditions, stiffness, stiffness_sd_factor: 1.0 };
-        errors.into_iter().for_each(|(path, value)| draw.set(path, value));
-        draw
-    }
-
-    /// Sets the error with a path, in the unit of the path.
-    fn set(&mut self, path: &str, value: f64) {
-        let conditions = &mut self.conditions;
-        match path {
-            "cell.start_y_mm" => self.offset = value * MM,
-            START_ACROSS => conditions.start_across = value * MM,
-            START_TILT => conditions.start_tilt = value * DEG,
-            SOCKET_YAW => conditions.yaw = value * DEG,
-            "cell.friction_finger_percent" => conditions.friction_finger = 1.0 + value / 100.0,
-            "cell.friction_socket_percent" => conditions.friction_socket = 1.0 + value / 100.0,
-            "cell.clearance_mm" => conditions.clearance = value * MM,
-            "cell.grasp_across_mm" => conditions.grasp_across = value * MM,
-            GRASP_LOW => conditions.grasp_low = value * MM,
-            "cell.compliance_error_sd" => self.stiffness[0] = value,
-            "cell.assembly_error_sd" => self.stiffness[1] = value,
-            // A test checks that the paths above are those of the table of numbers.
-            _ => (),
+        for (path, value) in errors {
+            let conditions = &mut draw.conditions;
+            match path {
+                "cell.start_y_mm" => draw.offset = value * MM,
+                START_ACROSS => conditions.start_across = value * MM,
+                START_TILT => conditions.start_tilt = value * DEG,
+                SOCKET_YAW => conditions.yaw = value * DEG,
+                "cell.friction_finger_percent" => conditions.friction_finger = 1.0 + value / 100.0,
+                "cell.friction_socket_percent" => conditions.friction_socket = 1.0 + value / 100.0,
+                "cell.clearance_mm" => conditions.clearance = value * MM,
+                "cell.grasp_across_mm" => conditions.grasp_across = value * MM,
+                GRASP_LOW => conditions.grasp_low = value * MM,
+                "cell.compliance_error_sd" => draw.stiffness[0] = value,
+                "cell.assembly_error_sd" => draw.stiffness[1] = value,
+                // A test checks that the paths above are those of the table of numbers.
+                _ => (),
+            }
         }
+        draw
     }
 
     /// Returns the nominal grasp with the errors of this draw; `predicted` is the stiffness of its fingers.

@@ -230,17 +230,17 @@ impl Uncertainty {
 impl RawRobust {
     fn settings(&self, check: Check<'_>) -> Result<RobustSettings, InputError> {
         let statistic = match (self.statistic, self.sd_factor, self.tail) {
-            (RawStatistic::MeanMinusSd, Some(factor), None) => Statistic::MeanMinusSd(factor),
-            (RawStatistic::LowerTail, None, Some(share)) => Statistic::LowerTail(share),
+            (RawStatistic::MeanMinusSd, Some(factor), None) => Ok(Statistic::MeanMinusSd(factor)),
+            (RawStatistic::LowerTail, None, Some(share)) => Ok(Statistic::LowerTail(share)),
             (RawStatistic::MeanMinusSd, ..) => {
-                let problem = "\"mean-minus-sd\" requires sd_factor and excludes tail_percent";
-                return check.fail("robust_range.statistic", problem);
+                Err("\"mean-minus-sd\" requires sd_factor and excludes tail_percent")
             }
             (RawStatistic::LowerTail, ..) => {
-                let problem = "\"lower-tail\" requires tail_percent and excludes sd_factor";
-                return check.fail("robust_range.statistic", problem);
+                Err("\"lower-tail\" requires tail_percent and excludes sd_factor")
             }
         };
+        let statistic =
+            statistic.or_else(|problem| check.fail("robust_range.statistic", problem))?;
         Ok(RobustSettings { samples: self.samples, statistic, search: self.search })
     }
 }

@@ -37,12 +37,8 @@ impl Trajectory {
         if after == 0 || after == self.times.len() {
             return self.targets[after.saturating_sub(1)];
         }
-        let [from, to] = [&self.targets[after - 1], &self.targets[after]];
         let share = (time - self.times[after - 1]) / (self.times[after] - self.times[after - 1]);
-        Tcp {
-            position: from.position + share * (to.position - from.position),
-            tilt: from.tilt + share * (to.tilt - from.tilt),
-        }
+        self.targets[after - 1].towards(&self.targets[after], share)
     }
 
     /// Returns the time at which the push begins, s from the start: that of the last descent if it is long enough,

@@ -45,7 +45,8 @@ impl Model {
         }
         let values: Vec<f64> = y.iter().map(|y| (y - mean) / sd).collect();
         let floor = (NOISE / sd).powi(2);
-        let theta = fit(&x, &values, floor, None, FitEffort::for_observations(x.len()));
+        let effort = FitEffort::for_observations(x.len());
+        let theta = fit(&x, &values, floor, None, (effort, &|| false));
         Some(Model { gp: Gp::new(&x, &values, floor, &theta)?, mean, sd })
     }
 

@@ -1,7 +1,7 @@
 //! Measurements that confirm the best designs of a study; see `confirmed.rs`.
 
 use super::cached_evaluator::CachedEvaluator;
-use super::confirmed::{ConfirmationFile, ConfirmedDesign, WALK_FILE, Walk, with_windows};
+use super::confirmed::{ConfirmationFile, ConfirmedDesign, WALK_FILE, Walk, ranked};
 use super::error::StudyError;
 use super::folder::{Study, write_analysis};
 use super::provenance::Provenance;
@@ -111,12 +111,7 @@ impl Confirmer<'_> {
         loop {
             let known = |(index, found): (usize, &Recorded)| {
                 let row = log.get(found)?;
-                let rank = match &row.walked {
-                    None => rule.firm_rank(found, &row.firm),
-                    Some(walk) => {
-                        rule.firm_rank(&with_windows(&rule, found, &walk.tasks), &walk.firm)
-                    }
-                };
+                let (_, rank) = ranked(&rule, found, row);
                 let (value, is_final) = (rank.value().unwrap_or(0.0), row.walked.is_some());
                 Some(ask_tell::gp::Confirmed { index, value, is_final })
             };

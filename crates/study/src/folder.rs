@@ -364,18 +364,17 @@ pub fn read_config(dir: &Path) -> Result<StudyConfig, StudyError> {
 
 /// Reads the copies of the input files of the last segment and checks them against its provenance.
 fn read_inputs(dir: &Path, segments: &[Segment]) -> Result<Inputs, StudyError> {
-    let Some(segment) = segments.last() else { return Ok(Inputs::new()) };
-    let mut inputs = Inputs::new();
-    for (role, hash) in &segment.provenance.input_sha256 {
+    let read = |(role, hash): (&String, &String)| {
         let path = input_path(dir, segments.len(), role);
         let text = files::read_text(&path, LARGEST_INPUT).map_err(StudyError::io("read", &path))?;
         if sha256_hex(text.as_bytes()) != *hash {
             let problem = format!("was changed: its SHA-256 is not the {hash} of the study");
             return Err(StudyError::file(&path, problem));
         }
-        inputs.insert(role.clone(), text);
-    }
-    Ok(inputs)
+        Ok((role.clone(), text))
+    };
+    let copied = segments.last().map(|segment| &segment.provenance.input_sha256);
+    copied.into_iter().flatten().map(read).collect()
 }
 
 /// Writes copies of the input files of the segment with this number, counted from 1.

@@ -8,7 +8,7 @@ use crate::sobol::SobolSequence;
 use crate::stream::stream;
 use crate::{Grid, GridPoint};
 use rand::RngExt;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Grids up to this size are searched completely.
 const EXHAUSTIVE: u64 = 20_000;
@@ -161,7 +161,7 @@ impl SearchRegion<'_> {
         let (grid, seed, call) = (self.grid(), self.proposed.seed, self.proposed.len());
         let half = count / 2;
         let sobol = SobolSequence::new(grid.dimension(), seed, call, "gp candidates");
-        let mut points: Vec<GridPoint> = sobol.take(half).map(|u| grid.cell(&u)).collect();
+        let mut points: BTreeSet<GridPoint> = sobol.take(half).map(|u| grid.cell(&u)).collect();
         let mut random = stream(seed, call, "gp perturbations");
         for i in 0..if self.incumbents.is_empty() { 0 } else { half } {
             let mut unit = grid.unit(&self.incumbents[i % self.incumbents.len()]);
@@ -170,11 +170,9 @@ impl SearchRegion<'_> {
             for u in &mut unit {
                 *u += 0.7 * radius * random.sample::<f64, _>(StandardNormal);
             }
-            points.push(grid.snap(&unit));
+            points.insert(grid.snap(&unit));
         }
-        points.sort();
-        points.dedup();
-        points
+        points.into_iter().collect()
     }
 }
 

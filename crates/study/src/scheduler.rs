@@ -149,13 +149,10 @@ impl Scheduler {
             if !study.config.asynchronous && self.measuring.is_empty() {
                 self.tell_batch(study, optimizer);
             }
-            // Running measurements are written, too.
-            if self.settled && self.measuring.is_empty() {
-                self.ended = Some(Ending::Settled);
-                break;
-            }
             if self.settled {
-                return Ok(Next::Wait);
+                // Running measurements are written, too.
+                let written = self.measuring.is_empty();
+                return Ok(if written { Next::Ended(Ending::Settled) } else { Next::Wait });
             }
             let least = self.early_stopping.map(|[least, _]| least.max(self.checked + 1));
             if least.is_some_and(|least| self.told >= least) {

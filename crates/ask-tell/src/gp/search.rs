@@ -102,10 +102,9 @@ impl Search<'_> {
             let (value, gradient) = self.trained.acquisition_and_gradient(x)?;
             Some((-value, gradient.into_iter().map(|g| -g).collect()))
         };
-        let Some((top, _)) = minimise(negated, &self.region.grid().free_unit(from), limits) else {
-            return from.clone();
-        };
-        self.region.grid().folded(&top)
+        let grid = self.region.grid();
+        let top = minimise(negated, &grid.free_unit(from), limits);
+        top.map_or_else(|| from.clone(), |(top, _)| grid.folded(&top))
     }
 
     pub fn value(&self, point: &GridPoint, computed: &mut Acquisitions) -> f64 {

@@ -29,9 +29,12 @@ pub struct Confirmer<'a> {
     pub by_ribs: Option<Evaluator>,
     /// Threads of the simulations.
     pub pool: &'a ThreadPool,
-    /// Progress callback: confirmation step, design, and numbers of confirmed designs and of all.
-    pub done: Box<dyn Fn(ConfirmationStep, &Recorded, [usize; 2]) + Sync + 'a>,
+    /// Progress callback.
+    pub done: Box<OnConfirmed<'a>>,
 }
+
+/// Progress callback: confirmation step, design, and numbers of confirmed designs and of all.
+pub type OnConfirmed<'a> = dyn Fn(ConfirmationStep, &Recorded, [usize; 2]) + Sync + 'a;
 
 /// Kind of confirmation of a design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -43,7 +43,7 @@ impl<'a> Rule<'a> {
         Rule { goals: config.goals(), space: &config.space }
     }
 
-    /// Returns the rank of a design with its evaluation on each task, which may have other windows than the recorded one.
+    /// Returns the rank of a design with its evaluation on each task, whose windows may differ from the recorded ones.
     pub fn rank(&self, recorded: &Recorded, tasks: &[&Evaluation]) -> Rank {
         let of = |measure| self.goals.value(measure, tasks);
         let feasible = recorded.feasible().and_then(|_| self.goals.score(tasks));

@@ -37,7 +37,7 @@ impl command::Request for Request {
                 if !line.ends_with(b"\n") {
                     input.skip_until(b'\n').map_err(unreadable)?;
                 }
-                Err(Session::too_long())
+                Err(format!("the line is longer than {MAX_LINE_BYTES} bytes"))
             };
             let error = |error| Some(serde_json::json!({"error": error}).to_string());
             if let Some(answer) = answer.unwrap_or_else(error) {

@@ -66,10 +66,8 @@ impl Optimizer for Polished {
     }
 
     fn stop(&self) -> Option<StopReason> {
-        let exhausted = match &self.polish {
-            Some(polish) => polish.costs.proposed.stop(),
-            None => self.inner.stop(),
-        };
+        let of_polish = self.polish.as_ref().map(|polish| polish.costs.proposed.stop());
+        let exhausted = of_polish.unwrap_or_else(|| self.inner.stop());
         exhausted.or(self.converged.then_some(StopReason::Converged))
     }
 }

@@ -249,9 +249,7 @@ impl StudyConfig {
     pub fn differences(&self, requested: &StudyConfig) -> Option<String> {
         let may_rise = requested.polish == 0 && (requested.budget > self.budget || self.settles);
         let budget = if may_rise { requested.budget } else { self.budget };
-        let provenance = requested.provenance.clone();
-        let conclusion = requested.conclusion.clone();
-        let &StudyConfig { race, settles, .. } = requested;
+        let StudyConfig { provenance, conclusion, race, settles, .. } = requested.clone();
         let raised = StudyConfig { budget, provenance, conclusion, race, settles, ..self.clone() };
         differences(&raised, requested, ["the study", "now"])
     }

@@ -18,8 +18,8 @@ use super::folder::read_analysis;
 use super::provenance::Provenance;
 use super::record::{ByRibs, Recorded, Walked};
 use super::rule::{Rank, Rule};
+use insertion::evaluation::Evaluation;
 use insertion::evaluation::robustness::firm::FirmResult;
-use insertion::evaluation::{Evaluation, Window};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -78,18 +78,25 @@ impl Rule<'_> {
         let inserting = ranked.filter(|(_, rank)| rank.value().is_some_and(|value| value > 0.0));
         inserting.min_by(|(_, a), (_, b)| self.order(a, b)).map(|(recorded, _)| recorded)
     }
+}
 
-    /// Returns the rank of a design with its firm windows.
-    pub fn firm_rank(&self, recorded: &Recorded, firm: &[FirmResult]) -> Rank {
-        let windows = recorded.tasks.iter().zip(firm);
-        let windows: Vec<Window> =
-            windows.map(|(task, firm)| firm.narrowed(&task.window)).collect();
-        self.rank(recorded, &windows)
-    }
+/// Returns a confirmed design with the windows of its walk, if there was one, and its rank with its firm windows.
+pub(super) fn ranked(rule: &Rule, before: &Recorded, row: &ConfirmedDesign) -> (Recorded, Rank) {
+    let (recorded, firm) = match &row.walked {
+        None => (before.clone(), &row.firm),
+        Some(walk) => (with_windows(rule, before, &walk.tasks), &walk.firm),
+    };
+    let narrowed = |(task, firm): (&Evaluation, &FirmResult)| {
+        let window = firm.narrowed(&task.window);
+        Evaluation { window, ..task.clone() }
+    };
+    let tasks: Vec<Evaluation> = recorded.tasks.iter().zip(firm).map(narrowed).collect();
+    let rank = rule.rank(&recorded, &tasks.iter().collect::<Vec<_>>());
+    (recorded, rank)
 }
 
 /// Returns the evaluation with the windows of the walk; its results under drawn errors are unchanged.
-pub(super) fn with_windows(rule: &Rule, before: &Recorded, found: &[Evaluation]) -> Recorded {
+fn with_windows(rule: &Rule, before: &Recorded, found: &[Evaluation]) -> Recorded {
     let mut recorded = before.clone();
     for (task, walked) in recorded.tasks.iter_mut().zip(found) {
         let (success, robust) = (task.success.take(), task.robust.take());
@@ -117,16 +124,11 @@ pub(super) fn read(
     let (mut walked, mut firm_values) = (Vec::new(), BTreeMap::new());
     for row in file.map_or(Vec::new(), |file| file.designs) {
         let Some(before) = current.iter().find(|r| r.index == row.evaluation) else { continue };
-        let rank = match row.walked {
-            None => rule.firm_rank(before, &row.firm),
-            Some(Walk { tasks, firm, computed: by_ribs }) => {
-                let recorded = with_windows(rule, before, &tasks);
-                let rank = rule.firm_rank(&recorded, &firm);
-                walked.push((rank.clone(), Walked { recorded, firm, by_ribs }));
-                rank
-            }
-        };
+        let (recorded, rank) = ranked(rule, before, &row);
         firm_values.insert(row.evaluation, rank.value().unwrap_or(0.0));
+        if let Some(Walk { firm, computed: by_ribs, .. }) = row.walked {
+            walked.push((rank, Walked { recorded, firm, by_ribs }));
+        }
     }
     walked.sort_by(|(a, _), (b, _)| rule.order(a, b));
     (walked.into_iter().map(|(_, walked)| walked).collect(), firm_values)

@@ -1,7 +1,7 @@
 //! Measurements that confirm the best designs of a study; see `confirmed.rs`.
 
 use super::cached_evaluator::CachedEvaluator;
-use super::confirmed::{ConfirmationFile, ConfirmedDesign, WALK_FILE, Walk, with_windows};
+use super::confirmed::{ConfirmationFile, ConfirmedDesign, WALK_FILE, Walk, ranked};
 use super::error::StudyError;
 use super::folder::{Study, write_analysis};
 use super::provenance::Provenance;
@@ -111,12 +111,7 @@ impl Confirmer<'_> {
         loop {
             let known = |(index, found): (usize, &Recorded)| {
                 let row = log.get(found)?;
-                let rank = match &row.walked {
-                    None => rule.firm_rank(found, &row.firm),
-                    Some(walk) => {
-                        rule.firm_rank(&with_windows(&rule, found, &walk.tasks), &walk.firm)
-                    }
-                };
+                let (_, rank) = ranked(&rule, found, row);
                 let (value, is_final) = (rank.value().unwrap_or(0.0), row.walked.is_some());
                 Some(ask_tell::gp::Confirmed { index, value, is_final })
             };
@@ -133,11 +128,7 @@ impl Confirmer<'_> {
                 return Ok(Advice::Settled);
             }
             let chosen: Vec<&Recorded> = chosen.iter().map(|&at| &current[at]).collect();
-            let walking = chosen.iter().any(|found| log.get(found).is_some());
-            let phase = if walking { ConfirmationStep::Walked } else { ConfirmationStep::Repeated };
-            let confirm = |found: &Recorded| self.confirm_design(found, log, config.seed);
-            let results = self.in_parallel(phase, &chosen, confirm)?;
-            log.add(results)?;
+            log.add(self.confirm_designs(&chosen, log, config.seed)?)?;
             if self.stopped() {
                 return Ok(Advice::Search);
             }
@@ -170,21 +161,23 @@ impl Confirmer<'_> {
         Ok((!self.stopped()).then_some((row, true)))
     }
 
-    /// Calls `measure` for each design in parallel and returns its results other than `None`, in order.
-    fn in_parallel<T: Send>(
+    /// Confirms designs in parallel; returns the results as [`confirm_design`](Self::confirm_design), in order.
+    fn confirm_designs(
         &self,
-        phase: ConfirmationStep,
         designs: &[&Recorded],
-        measure: impl Fn(&Recorded) -> Result<Option<T>, StudyError> + Sync,
-    ) -> Result<Vec<T>, StudyError> {
+        log: &ConfirmationLog,
+        seed: u64,
+    ) -> Result<Vec<(ConfirmedDesign, bool)>, StudyError> {
+        let walking = designs.iter().any(|found| log.get(found).is_some());
+        let step = if walking { ConfirmationStep::Walked } else { ConfirmationStep::Repeated };
         let count = AtomicUsize::new(0);
-        let one = |recorded: &&Recorded| {
-            let result = measure(recorded)?;
+        let one = |found: &&Recorded| {
+            let result = self.confirm_design(found, log, seed)?;
             let done = count.fetch_add(1, Ordering::Relaxed) + 1;
-            (self.done)(phase, recorded, [done, designs.len()]);
+            (self.done)(step, found, [done, designs.len()]);
             Ok(result)
         };
-        let results: Result<Vec<Option<T>>, StudyError> =
+        let results: Result<Vec<_>, StudyError> =
             self.pool.install(|| designs.par_iter().map(one).collect());
         Ok(results?.into_iter().flatten().collect())
     }
@@ -200,12 +193,11 @@ impl Confirmer<'_> {
         let tasks = found
             .map_err(|source| StudyError::impossible(searched.index, &searched.design, source))?
             .tasks;
-        let mut walked = searched.clone();
+        let walked = Recorded { tasks: tasks.clone(), ..searched.clone() };
         let same = |(before, now): (&Evaluation, &Evaluation)| before.window == now.window;
         let windows = searched.tasks.iter().zip(&tasks).zip(&row.firm);
         let as_before: Vec<Option<FirmResult>> =
             windows.map(|(windows, firm)| same(windows).then_some(*firm)).collect();
-        walked.tasks.clone_from(&tasks);
         let firm = self.firm(&walked, &as_before, seed)?;
         let computed =
             self.by_ribs.as_ref().map(|evaluator| self.computed(evaluator, &searched.design));

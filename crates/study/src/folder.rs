@@ -15,6 +15,7 @@
 use super::config::{AnalysisSettings, StudyConfig};
 use super::confirmed;
 use super::error::StudyError;
+use super::header;
 use super::journal::{self, Contents, Journal};
 use super::limits::ForceLimits;
 use super::lock::{Lock, UNKNOWN_OWNER, lock};
@@ -148,7 +149,7 @@ impl Study {
             sync.map_err(StudyError::io("sync the folder", dir))?;
         }
         files::remove_abandoned(dir);
-        let Contents { evaluations, segments, foreign, .. } = contents;
+        let Contents { evaluations, segments, foreign } = contents;
         let dir = dir.to_owned();
         Ok(Study { config, evaluations, segments, foreign, journal, dir, _lock: lock })
     }
@@ -188,7 +189,7 @@ impl Study {
         let number = self.segments.len() + 1;
         write_inputs(&self.dir, number, inputs)?;
         let segment = Segment { first, provenance: now.clone() };
-        self.journal.begin_segment(number, &segment)?;
+        self.journal.write(header::encode_segment(number, &segment))?;
         self.segments.push(segment);
         Ok(())
     }
@@ -238,8 +239,9 @@ impl Study {
 
     /// Returns a copy of the study with its analyses.
     pub fn record(&self) -> StudyRecord {
-        let (segments, evaluations) = (self.segments.clone(), self.evaluations.clone());
-        StudyRecord::new(&self.dir, self.config.clone(), segments, evaluations, self.foreign)
+        let (evaluations, segments) = (self.evaluations.clone(), self.segments.clone());
+        let contents = Contents { evaluations, segments, foreign: self.foreign };
+        StudyRecord::new(&self.dir, self.config.clone(), contents)
     }
 }
 
@@ -251,17 +253,11 @@ impl StudyRecord {
     pub fn load(dir: &Path) -> Result<StudyRecord, StudyError> {
         let config = read_config(dir)?;
         let contents = journal::read(&dir.join(JOURNAL_FILE), &config)?;
-        let Contents { evaluations, segments, foreign, .. } = contents;
-        Ok(StudyRecord::new(dir, config, segments, evaluations, foreign))
+        Ok(StudyRecord::new(dir, config, contents))
     }
 
-    fn new(
-        dir: &Path,
-        config: StudyConfig,
-        segments: Vec<Segment>,
-        evaluations: Vec<Recorded>,
-        foreign: usize,
-    ) -> Self {
+    fn new(dir: &Path, config: StudyConfig, contents: Contents) -> Self {
+        let Contents { evaluations, segments, foreign } = contents;
         let inputs = read_inputs(dir, &segments).unwrap_or_default();
         let finger =
             inputs.get(FINGER).and_then(|text| FingerFile::parse(text, "inputs/finger").ok());
@@ -368,18 +364,17 @@ pub fn read_config(dir: &Path) -> Result<StudyConfig, StudyError> {
 
 /// Reads the copies of the input files of the last segment and checks them against its provenance.
 fn read_inputs(dir: &Path, segments: &[Segment]) -> Result<Inputs, StudyError> {
-    let Some(segment) = segments.last() else { return Ok(Inputs::new()) };
-    let mut inputs = Inputs::new();
-    for (role, hash) in &segment.provenance.input_sha256 {
+    let read = |(role, hash): (&String, &String)| {
         let path = input_path(dir, segments.len(), role);
         let text = files::read_text(&path, LARGEST_INPUT).map_err(StudyError::io("read", &path))?;
         if sha256_hex(text.as_bytes()) != *hash {
             let problem = format!("was changed: its SHA-256 is not the {hash} of the study");
             return Err(StudyError::file(&path, problem));
         }
-        inputs.insert(role.clone(), text);
-    }
-    Ok(inputs)
+        Ok((role.clone(), text))
+    };
+    let copied = segments.last().map(|segment| &segment.provenance.input_sha256);
+    copied.into_iter().flatten().map(read).collect()
 }
 
 /// Writes copies of the input files of the segment with this number, counted from 1.

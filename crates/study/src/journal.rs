@@ -11,7 +11,6 @@ use super::record::Recorded;
 use super::store::Store;
 use super::{header, line};
 use input::files::{self, LARGEST_JOURNAL};
-use insertion::space::Space;
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -34,8 +33,6 @@ pub struct Contents {
     pub segments: Vec<Segment>,
     /// Number of records that other programs wrote (notes of Optuna's dashboard); they are ignored.
     pub foreign: usize,
-    /// Length of the complete lines, bytes.
-    whole: usize,
 }
 
 impl Journal {
@@ -47,28 +44,15 @@ impl Journal {
         config: &StudyConfig,
     ) -> Result<(Journal, Contents), StudyError> {
         let bytes = store.read().map_err(StudyError::io("read", path))?;
-        let parsed = parse(&bytes, path, config)?;
-        if parsed.whole < bytes.len() {
-            store
-                .truncate(parsed.whole as u64)
-                .map_err(StudyError::io("cut the torn last line off", path))?;
+        let (contents, len) = parse(&bytes, path, config)?;
+        if len < bytes.len() as u64 {
+            store.truncate(len).map_err(StudyError::io("cut the torn last line off", path))?;
         }
-        let mut journal =
-            Journal { path: path.to_owned(), store, len: parsed.whole as u64, broken: false };
-        if parsed.whole == 0 {
+        let mut journal = Journal { path: path.to_owned(), store, len, broken: false };
+        if len == 0 {
             journal.write(header::encode(config))?;
         }
-        Ok((journal, parsed))
-    }
-
-    /// Appends an evaluation; it then survives a power failure.
-    pub fn append(&mut self, recorded: &Recorded, space: &Space) -> Result<(), StudyError> {
-        self.write(line::encode(recorded, space))
-    }
-
-    /// Begins the segment of this number, counted from 1.
-    pub(super) fn begin_segment(&mut self, n: usize, segment: &Segment) -> Result<(), StudyError> {
-        self.write(header::encode_segment(n, segment))
+        Ok((journal, contents))
     }
 
     /// Checks that the journal was not changed by another program.
@@ -78,7 +62,8 @@ impl Journal {
             .map_err(|problem| StudyError::JournalChanged { path: self.path.clone(), problem })
     }
 
-    fn write(&mut self, lines: serde_json::Result<String>) -> Result<(), StudyError> {
+    /// Appends encoded lines; they then survive a power failure.
+    pub fn write(&mut self, lines: serde_json::Result<String>) -> Result<(), StudyError> {
         let lines = lines.map_err(|error| self.failed(error.into()))?;
         if self.broken {
             return Err(self.failed(io::Error::other("an earlier write failed")));
@@ -106,25 +91,25 @@ pub fn read(path: &Path, config: &StudyConfig) -> Result<Contents, StudyError> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Vec::new(),
         read => read.map_err(StudyError::io("read", path))?,
     };
-    parse(&bytes, path, config)
+    Ok(parse(&bytes, path, config)?.0)
 }
 
-fn parse(bytes: &[u8], path: &Path, config: &StudyConfig) -> Result<Contents, StudyError> {
+/// Returns the contents and the length of the complete lines, bytes.
+fn parse(bytes: &[u8], path: &Path, config: &StudyConfig) -> Result<(Contents, u64), StudyError> {
     let foreign = |problem: String| {
         StudyError::file(path, format!("not the journal of this study: {problem}"))
     };
     let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
     let lines: Vec<&[u8]> = bytes[..whole].split_inclusive(|&byte| byte == b'\n').collect();
     let beginning = Segment { first: 0, provenance: config.provenance.clone() };
-    let mut contents =
-        Contents { evaluations: Vec::new(), segments: vec![beginning], foreign: 0, whole };
+    let mut contents = Contents { evaluations: Vec::new(), segments: vec![beginning], foreign: 0 };
     let [first, second, rest @ ..] = lines.as_slice() else {
         // The process was killed while it wrote the header; anything else must not be overwritten.
         let header = header::encode(config).map_err(|error| foreign(error.to_string()))?;
         let written = bytes.trim_ascii_end();
         let written = &written[..written.iter().take_while(|&&byte| byte != 0).count()];
         return if header.as_bytes().starts_with(written) {
-            Ok(Contents { whole: 0, ..contents })
+            Ok((contents, 0))
         } else {
             Err(foreign("it does not begin with this study's header".to_owned()))
         };
@@ -140,7 +125,7 @@ fn parse(bytes: &[u8], path: &Path, config: &StudyConfig) -> Result<Contents, St
             StudyError::file(path, format!("line {number}: {problem}; {remedy}"))
         })?;
     }
-    Ok(contents)
+    Ok((contents, whole as u64))
 }
 
 impl Contents {

@@ -11,7 +11,7 @@
 
 use super::error::LineError;
 use super::record::{Recorded, Timing};
-use super::seal::{is_sealed, seal, unseal};
+use super::seal::{CHECK_KEY, seal, unseal};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Score;
 use insertion::space::{Design, Space, Variable};
@@ -124,7 +124,7 @@ pub fn is_foreign(line: &str) -> bool {
         worker_id: String,
     }
     let record = || serde_json::from_str::<Record>(line).ok();
-    !is_sealed(line) && record().is_some_and(|record| record.worker_id != WORKER)
+    !line.contains(CHECK_KEY) && record().is_some_and(|record| record.worker_id != WORKER)
 }
 
 /// Returns a parameter as Optuna describes it: JSON text inside the JSON line.

@@ -1,7 +1,7 @@
 //! Lock of a study's folder, for one writing process.
 
 use super::error::StudyError;
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::{File, TryLockError};
 use std::io::{Read, Seek, Write};
 use std::path::Path;
 
@@ -25,9 +25,8 @@ impl Drop for Lock {
 /// If another process holds the lock, or its file cannot be written.
 pub(super) fn lock(dir: &Path) -> Result<Lock, StudyError> {
     let path = dir.join(LOCK_FILE);
-    let mut options = OpenOptions::new();
-    options.read(true).write(true).create(true).truncate(false);
-    let mut file = options.open(&path).map_err(StudyError::io("open", &path))?;
+    let file = File::options().read(true).write(true).create(true).truncate(false).open(&path);
+    let mut file = file.map_err(StudyError::io("open", &path))?;
     match file.try_lock() {
         Ok(()) => {}
         Err(TryLockError::WouldBlock) => {

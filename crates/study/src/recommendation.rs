@@ -76,11 +76,6 @@ impl StudyRecord {
         self.config.goals().value(measure, &recorded.tasks())
     }
 
-    /// Aggregates the values of a measure over the tasks.
-    pub fn aggregated(&self, measure: Measure, values: &[f64]) -> f64 {
-        self.config.goals().aggregate.of(measure.sense(), values)
-    }
-
     /// Returns the index of the first task on which no design inserts at the nominal start, and the design
     /// that is nearest to an insertion.
     pub fn unusable(&self) -> Option<(usize, &Recorded)> {

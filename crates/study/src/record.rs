@@ -158,10 +158,9 @@ impl Recorded {
 impl StudyRecord {
     /// Returns warnings about the journal.
     pub fn remarks(&self) -> Vec<String> {
-        let foreign = (self.foreign > 0).then(|| {
-            format!("records of other programs in the journal, ignored: {}", self.foreign)
-        });
-        foreign.into_iter().collect()
+        let foreign =
+            || format!("records of other programs in the journal, ignored: {}", self.foreign);
+        (self.foreign > 0).then(foreign).into_iter().collect()
     }
 
     /// Returns the evaluations of the current model: of the last segment, and of those directly before it with
@@ -250,13 +249,8 @@ pub fn best<'a>(
     goals: &Goals,
     evaluations: impl IntoIterator<Item = &'a Recorded>,
 ) -> Option<&'a Recorded> {
-    let mut best: Option<(&Recorded, &[f64])> = None;
-    for recorded in evaluations {
-        if let Some(values) = recorded.feasible().filter(|_| !recorded.raced())
-            && best.is_none_or(|(_, found)| goals.order(values, found).is_gt())
-        {
-            best = Some((recorded, values));
-        }
-    }
-    best.map(|(recorded, _)| recorded)
+    let finished = evaluations.into_iter().filter(|recorded| !recorded.raced());
+    let known = finished.filter_map(|recorded| Some((recorded, recorded.feasible()?)));
+    let better = known.reduce(|a, b| if goals.order(b.1, a.1).is_gt() { b } else { a });
+    better.map(|(recorded, _)| recorded)
 }

@@ -12,8 +12,8 @@
 use super::StudyConfig;
 use super::record::Recorded;
 use ask_tell::Observation;
+use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::{Goals, Measure};
-use insertion::evaluation::{Evaluation, Window};
 use insertion::space::{Design, Space, Variable};
 use std::cmp::Ordering;
 
@@ -43,16 +43,10 @@ impl<'a> Rule<'a> {
         Rule { goals: config.goals(), space: &config.space }
     }
 
-    /// Returns the rank of a design with other windows than the recorded ones, one for each task.
-    pub fn rank(&self, recorded: &Recorded, windows: &[Window]) -> Rank {
-        let in_window = |(task, window): (&Evaluation, &Window)| Evaluation {
-            window: window.clone(),
-            ..task.clone()
-        };
-        let tasks: Vec<Evaluation> = recorded.tasks.iter().zip(windows).map(in_window).collect();
-        let tasks: Vec<&Evaluation> = tasks.iter().collect();
-        let of = |measure| self.goals.value(measure, &tasks);
-        let feasible = recorded.feasible().and_then(|_| self.goals.score(&tasks));
+    /// Returns the rank of a design with its evaluation on each task, whose windows may differ from the recorded ones.
+    pub fn rank(&self, recorded: &Recorded, tasks: &[&Evaluation]) -> Rank {
+        let of = |measure| self.goals.value(measure, tasks);
+        let feasible = recorded.feasible().and_then(|_| self.goals.score(tasks));
         Rank {
             values: feasible.map(|score| score.values),
             centred_mm: of(Measure::CentredRange).unwrap_or(0.0),
@@ -65,8 +59,7 @@ impl<'a> Rule<'a> {
 
     /// Returns the rank of a design with its recorded windows.
     pub fn recorded_rank(&self, recorded: &Recorded) -> Rank {
-        let windows: Vec<Window> = recorded.tasks.iter().map(|task| task.window.clone()).collect();
-        self.rank(recorded, &windows)
+        self.rank(recorded, &recorded.tasks())
     }
 
     /// Returns an observation of the first objective for each design; designs that cannot be recommended have no value.
@@ -177,7 +170,8 @@ mod tests {
         let rule = Rule { goals, space: &space };
         let mut wide = recorded(0, 20.0, [-20, 20], 50.0);
         wide.score = rule.goals.score(&wide.tasks());
-        let firm = Window { negative_steps: -5, ..wide.tasks[0].window.clone() };
-        assert_eq!(rule.rank(&wide, &[firm]).value(), Some(2.5));
+        let mut firm = wide.tasks[0].clone();
+        firm.window.negative_steps = -5;
+        assert_eq!(rule.rank(&wide, &[&firm]).value(), Some(2.5));
     }
 }

@@ -89,15 +89,9 @@ impl Runner<'_> {
 
     /// Measures a design; returns `None` if the run was cancelled before the measurement was complete.
     fn measure(&self, proposal: Proposal) -> Result<Option<ProposalResult>, StudyError> {
-        if self.stopped() {
-            return Ok(None);
-        }
-        let measured = proposal.measure(self.evaluator);
+        let measured = (!self.stopped()).then(|| proposal.measure(self.evaluator));
         // The cancelled measurement may lack trials.
-        if self.stopped() {
-            return Ok(None);
-        }
-        measured.map(Some)
+        measured.filter(|_| !self.stopped()).transpose()
     }
 }
 

@@ -24,6 +24,7 @@
 
 use super::error::StudyError;
 use super::folder::Study;
+use super::line;
 use super::record::{Recorded, Timing, first_current};
 use ask_tell::GridPoint;
 use ask_tell::{Observation, Optimizer, StopReason};
@@ -99,6 +100,7 @@ pub struct ProposalResult {
 }
 
 /// Scheduler of a study: a state machine that is replayed from the journal.
+#[derive(Default)]
 pub struct Scheduler {
     batch: usize,
     /// Proposals whose results were not passed to `tell` yet, by number, each with the number of evaluations that were
@@ -112,40 +114,25 @@ pub struct Scheduler {
     measuring: BTreeMap<u64, Design>,
     /// Results that are written once all earlier ones have arrived, by index.
     waiting: BTreeMap<u64, Recorded>,
-    early_stopping: Option<EarlyStopping>,
-    ended: Option<Ending>,
-}
-
-/// Early stopping of a search without a budget.
-#[derive(Debug, Clone, Copy)]
-struct EarlyStopping {
-    /// Evaluations before the first check.
-    min_evaluations: usize,
-    /// Consecutive evaluations without an expected gain after which the search ends.
-    patience: usize,
+    /// Settings of early stopping (see [`StudyConfig::early_stopping`](super::StudyConfig::early_stopping)).
+    early_stopping: Option<[usize; 2]>,
     /// Consecutive evaluations without an expected gain so far.
     stagnant: usize,
-    /// Evaluations at the last check.
+    /// Evaluations at the last check of a gain.
     checked: usize,
+    /// Whether the search has stopped early.
     settled: bool,
+    ended: Option<Ending>,
 }
 
 impl Scheduler {
     /// Returns the scheduler of a study, to be used with a new optimizer.
     pub fn new(study: &Study) -> Self {
-        let settled = study.settled();
-        let early_stopping = study.config.early_stopping().map(|[min_evaluations, patience]| {
-            EarlyStopping { min_evaluations, patience, stagnant: 0, checked: 0, settled }
-        });
         Scheduler {
             batch: study.config.batch as usize,
-            open: BTreeMap::new(),
-            proposed: 0,
-            told: 0,
-            measuring: BTreeMap::new(),
-            waiting: BTreeMap::new(),
-            early_stopping,
-            ended: None,
+            early_stopping: study.config.early_stopping(),
+            settled: study.config.settles && study.settled(),
+            ..Scheduler::default()
         }
     }
 
@@ -162,19 +149,14 @@ impl Scheduler {
             if !study.config.asynchronous && self.measuring.is_empty() {
                 self.tell_batch(study, optimizer);
             }
-            match self.early_stopping {
+            if self.settled {
                 // Running measurements are written, too.
-                Some(EarlyStopping { settled: true, .. }) if self.measuring.is_empty() => {
-                    self.ended = Some(Ending::Settled);
-                    continue;
-                }
-                Some(EarlyStopping { settled: true, .. }) => return Ok(Next::Wait),
-                Some(EarlyStopping { min_evaluations, checked, .. })
-                    if self.told >= min_evaluations.max(checked + 1) =>
-                {
-                    return Ok(Next::CheckGain(self.told));
-                }
-                _ => {}
+                let written = self.measuring.is_empty();
+                return Ok(if written { Next::Ended(Ending::Settled) } else { Next::Wait });
+            }
+            let least = self.early_stopping.map(|[least, _]| least.max(self.checked + 1));
+            if least.is_some_and(|least| self.told >= least) {
+                return Ok(Next::CheckGain(self.told));
             }
             let proposals = match study.config.asynchronous {
                 true => self.next_arrivals(study, optimizer)?,
@@ -195,12 +177,11 @@ impl Scheduler {
 
     /// Records whether no gain was expected at the last [`CheckGain`](Next::CheckGain).
     pub fn record_stagnation(&mut self, stagnant: bool) {
-        let (told, batch) = (self.told, self.batch);
-        if let Some(stopping) = &mut self.early_stopping {
-            let more = (told - stopping.checked).min(batch);
-            stopping.stagnant = if stagnant { stopping.stagnant + more } else { 0 };
-            stopping.checked = told;
-            stopping.settled = stopping.stagnant >= stopping.patience;
+        if let Some([_, patience]) = self.early_stopping {
+            let more = (self.told - self.checked).min(self.batch);
+            self.stagnant = if stagnant { self.stagnant + more } else { 0 };
+            self.checked = self.told;
+            self.settled = self.stagnant >= patience;
         }
     }
 
@@ -228,7 +209,7 @@ impl Scheduler {
         let recorded = Recorded { index, proposal, design, score, stiffness, tasks, timing };
         self.waiting.insert(index, recorded);
         while let Some(recorded) = self.waiting.remove(&(study.evaluations.len() as u64)) {
-            study.journal.append(&recorded, &study.config.space)?;
+            study.journal.write(line::encode(&recorded, &study.config.space))?;
             progress(&recorded);
             study.evaluations.push(recorded);
         }
@@ -368,10 +349,8 @@ impl Study {
             let score = recorded.score.as_ref()?;
             Some((self.config.goals().interpolated(&recorded.tasks())?, score.violations.clone()))
         };
-        match values() {
-            None => Observation::new(point, None),
-            Some((values, violations)) => Observation { point, values, violations },
-        }
+        let (values, violations) = values().unwrap_or_default();
+        Observation { point, values, violations }
     }
 
     /// Returns the error for an evaluation of the journal whose design differs from the proposed one.

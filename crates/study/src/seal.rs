@@ -9,7 +9,8 @@ use super::record::Timing;
 pub use insertion::task::parts_file::sha256 as sha256_hex;
 use serde::Serialize;
 
-const CHECK_KEY: &str = ",\"check\":\"";
+/// Text before the checksum of a line.
+pub(super) const CHECK_KEY: &str = ",\"check\":\"";
 const TIME_KEY: &str = ",\"datetime_start\":";
 
 /// Removes the fields of a journal that differ between two runs of a study.
@@ -31,11 +32,6 @@ pub fn seal(
         None => "}".to_owned(),
     };
     Ok(format!("{line}{CHECK_KEY}{check}\"{rest}\n"))
-}
-
-/// Returns whether a line has a checksum, right or wrong.
-pub fn is_sealed(line: &str) -> bool {
-    line.contains(CHECK_KEY)
 }
 
 /// Returns the JSON objects before and after the checksum of a line.

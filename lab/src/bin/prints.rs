@@ -76,10 +76,8 @@ fn main() -> Result<(), Failure> {
         found.extend((benches[0]..=benches[1]).into_par_iter().map(one).collect::<Vec<_>>());
         eprintln!("{task}");
     }
-    write_file(
-        &out.join("benches.csv"),
-        &(HEADER.to_owned() + &found.iter().map(line).collect::<String>()),
-    )?;
+    let table = HEADER.to_owned() + &found.iter().map(line).collect::<String>();
+    write_file(&out.join("benches.csv"), &table)?;
     Ok(write_file(&out.join("summary.csv"), &summary(&found))?)
 }
 

@@ -37,25 +37,15 @@ pub(super) fn standardise(values: &[Option<f64>], noise_floor: f64) -> Option<St
         values.iter().map(|v| v.filter(|v| v.is_finite()).unwrap_or(worst) / unit).collect();
     let moments = Moments::of(&filled);
     let (mean, deviation) = (moments.mean, moments.deviation());
-    if deviation < 1e-13 {
-        return Some(Standardised {
-            values: vec![0.0; filled.len()],
-            noise_floor: 1e-6,
-            zero: -mean,
-            mean: mean * unit,
-            deviation: 0.0,
-            warp: None,
-        });
-    }
-    let floor = noise_floor / unit / deviation;
-    Some(Standardised {
-        values: filled.iter().map(|v| (v - mean) / deviation).collect(),
-        noise_floor: (floor * floor).clamp(1e-8, 1.0),
-        zero: -mean / deviation,
-        mean: mean * unit,
-        deviation: deviation * unit,
-        warp: None,
-    })
+    let (values, noise_floor, zero, deviation) = match deviation < 1e-13 {
+        true => (vec![0.0; filled.len()], 1e-6, -mean, 0.0),
+        false => {
+            let floor = noise_floor / unit / deviation;
+            let values = filled.iter().map(|v| (v - mean) / deviation).collect();
+            (values, (floor * floor).clamp(1e-8, 1.0), -mean / deviation, deviation * unit)
+        }
+    };
+    Some(Standardised { values, noise_floor, zero, mean: mean * unit, deviation, warp: None })
 }
 
 impl Standardised {

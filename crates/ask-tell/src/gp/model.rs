@@ -125,7 +125,8 @@ impl Gp {
         let mut solved = half;
         factor.l_dirty().ad_solve_lower_triangular_unchecked_mut(&mut solved);
         // The variance is signal - k' K^-1 k + residual^2 precision.
-        let ([residual], [to_mean]) = (constant.solved_residual(&k, &ONE), &constant.weights);
+        let [residual] = constant.solved(constant.residual(&k, &ONE));
+        let [to_mean] = &constant.weights;
         let by_k = -2.0 * (solved + residual * to_mean);
         let (mut mean_slope, mut variance_slope) = (Vec::new(), Vec::new());
         for ((column, x), inverse_length) in

@@ -5,6 +5,7 @@ use super::data::{Standardised, spread};
 use super::hyperparameters::Hyperparameters;
 use super::model::{Gp, ScaledPoints};
 use super::trained::{Goal, TrainedModels};
+use std::collections::BTreeSet;
 
 /// Number of neighbours for approximate predictions.
 pub(super) const APPROXIMATE_NEIGHBOURS: usize = 24;
@@ -45,7 +46,7 @@ impl Neighbours {
     }
 
     /// Returns models of the points with these indices.
-    pub fn models_of(&self, chosen: &[usize]) -> Option<TrainedModels> {
+    pub fn models_of(&self, chosen: &BTreeSet<usize>) -> Option<TrainedModels> {
         let x: Vec<Vec<f64>> = chosen.iter().map(|&i| self.x[i].clone()).collect();
         let model = |(data, theta): (&Standardised, &Hyperparameters)| {
             let y: Vec<f64> = chosen.iter().map(|&i| data.values[i]).collect();
@@ -74,13 +75,10 @@ impl Neighbours {
         self.scaled.inverse_length.iter().map(|i| 0.5 * far / i).collect()
     }
 
-    /// Returns the ascending indices of the points of the model at a location.
-    fn chosen(&self, location: &[f64], count: usize) -> Vec<usize> {
+    /// Returns the indices of the points of the model at a location.
+    fn chosen(&self, location: &[f64], count: usize) -> BTreeSet<usize> {
         let near = self.by_distance(location, count).into_iter().map(|(_, i)| i);
-        let mut chosen: Vec<usize> = near.chain(spread(self.x.len(), count / 3)).collect();
-        chosen.sort_unstable();
-        chosen.dedup();
-        chosen
+        near.chain(spread(self.x.len(), count / 3)).collect()
     }
 
     /// Returns the squared distances and indices of the nearest points, the farthest of them last.

@@ -8,7 +8,7 @@ use crate::sobol::SobolSequence;
 use crate::stream::stream;
 use crate::{Grid, GridPoint};
 use rand::RngExt;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Grids up to this size are searched completely.
 const EXHAUSTIVE: u64 = 20_000;
@@ -102,10 +102,9 @@ impl Search<'_> {
             let (value, gradient) = self.trained.acquisition_and_gradient(x)?;
             Some((-value, gradient.into_iter().map(|g| -g).collect()))
         };
-        let Some((top, _)) = minimise(negated, &self.region.grid().free_unit(from), limits) else {
-            return from.clone();
-        };
-        self.region.grid().folded(&top)
+        let grid = self.region.grid();
+        let top = minimise(negated, &grid.free_unit(from), limits);
+        top.map_or_else(|| from.clone(), |(top, _)| grid.folded(&top))
     }
 
     pub fn value(&self, point: &GridPoint, computed: &mut Acquisitions) -> f64 {
@@ -161,7 +160,7 @@ impl SearchRegion<'_> {
         let (grid, seed, call) = (self.grid(), self.proposed.seed, self.proposed.len());
         let half = count / 2;
         let sobol = SobolSequence::new(grid.dimension(), seed, call, "gp candidates");
-        let mut points: Vec<GridPoint> = sobol.take(half).map(|u| grid.cell(&u)).collect();
+        let mut points: BTreeSet<GridPoint> = sobol.take(half).map(|u| grid.cell(&u)).collect();
         let mut random = stream(seed, call, "gp perturbations");
         for i in 0..if self.incumbents.is_empty() { 0 } else { half } {
             let mut unit = grid.unit(&self.incumbents[i % self.incumbents.len()]);
@@ -170,11 +169,9 @@ impl SearchRegion<'_> {
             for u in &mut unit {
                 *u += 0.7 * radius * random.sample::<f64, _>(StandardNormal);
             }
-            points.push(grid.snap(&unit));
+            points.insert(grid.snap(&unit));
         }
-        points.sort();
-        points.dedup();
-        points
+        points.into_iter().collect()
     }
 }
 

@@ -73,12 +73,6 @@ pub struct StoppingCriterion<'a> {
     drop: Option<Drops>,
 }
 
-/// Model of the values of the search.
-struct SearchModel {
-    gp: Gp,
-    data: Standardised,
-}
-
 /// Gaussian process of the drops, with mean zero: none is expected far from the confirmed points.
 #[derive(Debug)]
 struct Drops {
@@ -107,8 +101,8 @@ impl<'a> StoppingCriterion<'a> {
         criterion
     }
 
-    /// Fits the model of the search; `None` if no observation has a value.
-    fn search_model(&self) -> Option<SearchModel> {
+    /// Fits the model of the values of the search, and returns it with these values; `None` if no observation has one.
+    fn search_model(&self) -> Option<(Gp, Standardised)> {
         let values: Vec<Option<f64>> = self.observations.iter().map(Observation::value).collect();
         let data = standardise(&values, DEFAULT_NOISE_FLOOR)?.warped();
         let x: Vec<Vec<f64>> =
@@ -116,8 +110,8 @@ impl<'a> StoppingCriterion<'a> {
         let fitted = spread(x.len(), MAX_FITTED).map(|i| (x[i].clone(), data.values[i]));
         let (points, values): (Vec<Vec<f64>>, Vec<f64>) = fitted.unzip();
         let effort = FitEffort::for_observations(values.len());
-        let theta = fit(&points, &values, data.noise_floor, None, effort);
-        Some(SearchModel { gp: Gp::new(&x, &data.values, data.noise_floor, &theta)?, data })
+        let theta = fit(&points, &values, data.noise_floor, None, (effort, &|| false));
+        Some((Gp::new(&x, &data.values, data.noise_floor, &theta)?, data))
     }
 
     /// Fits the model of the drops. Its prior standard deviation is their root mean square, but at
@@ -194,10 +188,9 @@ impl<'a> StoppingCriterion<'a> {
         let mut contenders: Vec<(f64, usize)> =
             (0..self.observations.len()).filter(|&at| !known(at)).filter_map(contender).collect();
         contenders.sort_by(|a, b| b.0.total_cmp(&a.0).then(rank[a.1].cmp(&rank[b.1])));
+        contenders.truncate(at_once);
         if !contenders.is_empty() {
-            return Advice::Confirm(
-                contenders.into_iter().take(at_once).map(|(_, at)| at).collect(),
-            );
+            return Advice::Confirm(contenders.into_iter().map(|(_, at)| at).collect());
         }
         let leaders = self.confirmed.iter().filter(|confirmed| confirmed.value >= best);
         // `rank` breaks ties.
@@ -250,8 +243,7 @@ impl<'a> StoppingCriterion<'a> {
 
     /// Returns whether the confirmed value at an unevaluated point exceeds `threshold` with at least
     /// [`MIN_PROBABILITY`].
-    fn may_exceed(&self, model: &SearchModel, x: &[f64], threshold: f64) -> bool {
-        let SearchModel { gp, data } = model;
+    fn may_exceed(&self, (gp, data): &(Gp, Standardised), x: &[f64], threshold: f64) -> bool {
         let above = |(mean, variance): (f64, f64), threshold: f64| {
             exp(normal_log_cdf((mean - data.convert(threshold)) / sqrt(variance)))
         };

@@ -9,6 +9,7 @@ use super::search::{Search, SearchRegion};
 use super::trained::{Front, Goal, TrainedModels};
 use crate::pareto::front;
 use crate::{GridPoint, Observation};
+use std::collections::BTreeSet;
 
 /// Number of incumbents, around which the acquisition is searched more closely.
 const INCUMBENTS: usize = 4;
@@ -90,7 +91,7 @@ impl Training {
         }
         let mut known = Neighbours::new(x, data, self.thetas.clone(), zeros);
         if whole {
-            let mut trained = known.models_of(&(0..n).collect::<Vec<_>>())?;
+            let mut trained = known.models_of(&(0..n).collect())?;
             let (x, objectives) = (&known.x, &trained.models[..trained.objectives()]);
             let margin = |i: usize| trained.acquisition(&x[i]);
             let leaders = |feasible| best_first(|i| objectives[0].mean(&x[i]), feasible);
@@ -150,13 +151,13 @@ impl Training {
         &self,
         x: &[Vec<f64>],
         data: &[Standardised],
-        subset: &[usize],
+        subset: &BTreeSet<usize>,
         effort: FitEffort,
     ) -> Vec<Hyperparameters> {
         let x: Vec<Vec<f64>> = subset.iter().map(|&i| x[i].clone()).collect();
         let of = |(i, data): (usize, &Standardised)| {
             let y: Vec<f64> = subset.iter().map(|&i| data.values[i]).collect();
-            fit(&x, &y, data.noise_floor, self.thetas.get(i), effort)
+            fit(&x, &y, data.noise_floor, self.thetas.get(i), (effort, &|| false))
         };
         data.iter().enumerate().map(of).collect()
     }
@@ -164,13 +165,10 @@ impl Training {
 
 /// Returns the indices of the values to which hyperparameters are fitted: the `MAX_FITTED / 2` largest ones, near
 /// which the search continues, and as many evenly selected from all.
-fn fitted_subset(values: &[f64]) -> Vec<usize> {
+fn fitted_subset(values: &[f64]) -> BTreeSet<usize> {
     let n = values.len();
     let leaders = best_first(|i| values[i], 0..n).into_iter().take(MAX_FITTED / 2);
-    let mut subset: Vec<usize> = spread(n, MAX_FITTED / 2).chain(leaders.map(|(_, i)| i)).collect();
-    subset.sort_unstable();
-    subset.dedup();
-    subset
+    spread(n, MAX_FITTED / 2).chain(leaders.map(|(_, i)| i)).collect()
 }
 
 /// Returns indices with their values, the largest value first.

@@ -48,11 +48,6 @@ impl<const P: usize> LinearMean<P> {
         self.solved(std::array::from_fn(|p| self.weights[p].dot(y)))
     }
 
-    /// Returns `A^-1 r` with `r = h - H K^-1 k`, for a point with terms `h` and covariances `k`.
-    pub fn solved_residual(&self, k: &DVector<f64>, h: &[f64; P]) -> [f64; P] {
-        self.solved(self.residual(k, h))
-    }
-
     /// Returns `r' A^-1 r`, the variance due to the unknown coefficients.
     pub fn variance(&self, k: &DVector<f64>, h: &[f64; P]) -> f64 {
         let half = self.solve_lower(self.residual(k, h));
@@ -65,8 +60,8 @@ impl<const P: usize> LinearMean<P> {
         self.pivots.iter().map(|d| libm::log(d.max(f64::MIN_POSITIVE))).sum()
     }
 
-    /// Returns `r = h - H K^-1 k`.
-    fn residual(&self, k: &DVector<f64>, h: &[f64; P]) -> [f64; P] {
+    /// Returns `r = h - H K^-1 k`, for a point with terms `h` and covariances `k`.
+    pub fn residual(&self, k: &DVector<f64>, h: &[f64; P]) -> [f64; P] {
         std::array::from_fn(|p| h[p] - k.dot(&self.weights[p]))
     }
 
@@ -81,7 +76,7 @@ impl<const P: usize> LinearMean<P> {
     }
 
     /// Returns `A^-1 b`.
-    fn solved(&self, b: [f64; P]) -> [f64; P] {
+    pub fn solved(&self, b: [f64; P]) -> [f64; P] {
         let half = self.solve_lower(b);
         let mut x: [f64; P] = std::array::from_fn(|i| quotient(half[i], self.pivots[i]));
         for i in (0..P).rev() {

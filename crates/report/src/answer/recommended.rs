@@ -79,7 +79,7 @@ impl<'a> Recommended<'a> {
 /// Returns the range of a confirmed design in which all repeats insert, aggregated over the tasks, mm.
 pub(super) fn firm_range_mm(record: &StudyRecord, walked: &Walked) -> f64 {
     let ranges: Vec<f64> = walked.firm.iter().map(FirmResult::range_mm).collect();
-    record.aggregated(Measure::Range, &ranges)
+    record.config.goals().aggregate.of(Measure::Range.sense(), &ranges)
 }
 
 /// Returns the intersection of windows, mm.

@@ -83,8 +83,6 @@ pub fn line(
 
 /// Returns the stiffness of a servo's flange along z, N/m.
 fn flange_stiffness(robot: &Robot) -> Option<f64> {
-    match &robot.drive {
-        Drive::Servo(servo) => Some(servo.stiffness[2]),
-        _ => None,
-    }
+    let Drive::Servo(servo) = &robot.drive else { return None };
+    Some(servo.stiffness[2])
 }

@@ -38,15 +38,6 @@ pub struct Reading {
     pub failure_positive: Option<FailureClass>,
 }
 
-impl From<&Window> for Reading {
-    /// Converts a window; a start that diverges has no range, one that fails a range of 0, and neither has ends.
-    fn from(window: &Window) -> Self {
-        let range_mm = (window.nominal != Outcome::Diverged).then(|| window.range_mm());
-        let [failure_negative, failure_positive] = failures(window);
-        Reading { range_mm, failure_negative, failure_positive }
-    }
-}
-
 #[derive(Debug, Clone, PartialEq)]
 pub struct DesignRow {
     pub design: Measurement,
@@ -80,7 +71,11 @@ impl TaskTable {
                     failure_positive: row.failure_positive,
                 })
             });
-            let readings = [Some(Reading::from(&window)), simulation, bench];
+            // A start that diverges has no range, one that fails a range of 0, and neither has ends.
+            let range_mm = (window.nominal != Outcome::Diverged).then(|| window.range_mm());
+            let [failure_negative, failure_positive] = failures(&window);
+            let ours = Reading { range_mm, failure_negative, failure_positive };
+            let readings = [Some(ours), simulation, bench];
             DesignRow { design, window, readings }
         };
         TaskTable { task: task.to_owned(), rows: windows.into_iter().map(row).collect() }

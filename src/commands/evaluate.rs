@@ -193,9 +193,12 @@ impl Evaluated {
         extents.map(line).chain(advice).collect()
     }
 
-    /// Returns a remark if the ranges by the two finger models differ by more than a factor of two.
+    /// Returns a remark if the ranges by the two finger models differ by more than a factor of two and none was measured.
     fn disagreement(&self) -> Option<&'static str> {
         let Some(ByRibs::Measured(tasks)) = &self.computed else { return None };
+        if !self.measured.is_empty() {
+            return None;
+        }
         let range_mm = self.evaluation.window.range_mm();
         let apart = |ribs: &Evaluation| {
             let other_mm = ribs.window.range_mm();

@@ -13,6 +13,8 @@ use study::{BenchEffort, BenchFinger, BenchPrediction, Provenance};
 /// Standard deviation of a coordinate below which, and magnitude of its mean above which, it counts as moved (prior: 1
 /// and 0).
 const MOVED: (f64, f64) = (0.75, 0.5);
+/// Mean deviation of the fingers left out above which predictions are not relied on, percent.
+const MISSED: f64 = 50.0;
 /// Correlation at which two parameters cannot be told apart.
 const CONFOUNDED: f64 = 0.5;
 
@@ -85,6 +87,12 @@ pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
     let scale = subject.emulator.mean_mm.max(1.0);
     if accuracy.fingers < 3 {
         lines.push("fewer than 3 measured fingers: the intervals rest on the priors".to_owned());
+    }
+    if let Some(percent) = accuracy.mean_deviation_percent.filter(|percent| *percent > MISSED) {
+        lines.push(format!(
+            "left out, the measured fingers are predicted {percent:.0} % off on average: measure more \
+             before you rely on a prediction"
+        ));
     }
     // By chance fewer than half of five or more fall inside in 1 case of 20.
     if accuracy.fingers >= 5 && 2 * accuracy.inside < accuracy.fingers {

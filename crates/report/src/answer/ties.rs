@@ -63,7 +63,12 @@ impl Spread<'_> {
 
 impl<'a> Ties<'a> {
     pub(super) fn of(record: &'a StudyRecord, index: u64, measured: &[MeasuredFinger]) -> Self {
-        let designs = record.equivalent_designs(index);
+        // A walk finds larger forces than the search.
+        let walked = |(found, loss): (&'a Recorded, f64)| {
+            let mut walked = record.walked.iter().map(|walked| &walked.recorded);
+            (walked.find(|walked| walked.index == found.index).unwrap_or(found), loss)
+        };
+        let designs: Vec<_> = record.equivalent_designs(index).into_iter().map(walked).collect();
         let force = |r: &Recorded| record.measure(r, Measure::PeakForce);
         let stiffness = |r: &Recorded| r.stiffness.compliance.mean / N_PER_MM;
         let tied = if designs.len() < 2 { &[] } else { &designs[..] };

@@ -16,6 +16,8 @@ const LEAST_HEIGHT: f64 = 3.0 * MM;
 const LEAST_WIDTH: f64 = 1.0 * MM;
 /// Smallest distance of pads and handle from the socket, m.
 const CLEAR: f64 = 0.5 * MM;
+/// Ratio of areas above which the faces across the second axis are held in place of those across the first.
+const MUCH_LARGER: f64 = 2.0;
 /// Smallest cosine between the normal of a face and y.
 const PARALLEL: f64 = 0.9998;
 /// Length of the plug that is inside the handle, m.
@@ -30,6 +32,8 @@ pub struct Grasp {
     pub faces: [f64; 2],
     /// Part between the pads.
     pub part: Part,
+    /// Area of either face that a pad touches, m2.
+    pub area: f64,
 }
 
 /// Upright face: its y, and its extent in x and z.
@@ -39,37 +43,49 @@ struct Face {
     z: [f64; 2],
 }
 
+impl Grasp {
+    /// Returns whether this grasp is preferred to one across the axis that comes first: whether its faces are much
+    /// larger, as those of a body compared with those of its cable boot.
+    pub fn replaces(&self, first: &Grasp) -> bool {
+        self.area > MUCH_LARGER * first.area
+    }
+}
+
 /// Pair of faces that the fingers cannot hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rejected {
     /// Distance between the faces, m.
     pub apart: f64,
+    /// Area of either face within the width of a pad, m2.
+    pub area: f64,
     /// Reason: `the pads would ...`.
     pub reason: &'static str,
 }
 
 /// Returns the grasp at the largest faces of the plug that keeps the pads above `free`, m, and the largest faces above
-/// `free` that the fingers cannot hold, if they are larger.
+/// `free` that the fingers cannot hold.
 pub fn own(plug: &[Triangle], free: f64) -> (Option<Grasp>, Option<Rejected>) {
     let [left, right] = [-1.0, 1.0].map(|sign| faces(plug, sign));
+    let (mut best, mut rejected): (Option<Grasp>, Option<Rejected>) = (None, None);
     // Of equal areas, the first is kept.
-    let (mut best, mut rejected) = ((0.0, None), (0.0, None));
     for (low, high) in left.iter().flat_map(|low| right.iter().map(move |high| (low, high))) {
         match grasp_at(plug, low, high, free) {
-            Ok((area, grasp)) if area > best.0 => best = (area, Some(grasp)),
+            Ok(grasp) if best.as_ref().is_none_or(|best| grasp.area > best.area) => {
+                best = Some(grasp);
+            }
             Ok(_) => {}
             Err(reason) => {
                 let z = [low.z[0].max(high.z[0]).max(free), low.z[1].min(high.z[1])];
                 let x = common(common(low.x, high.x), PAD_X);
                 let area = width(x).max(0.0) * width(z).max(0.0);
                 let apart = high.y - low.y;
-                if area > rejected.0 && apart > 0.0 {
-                    rejected = (area, Some(Rejected { apart, reason }));
+                if area > rejected.map_or(0.0, |other| other.area) && apart > 0.0 {
+                    rejected = Some(Rejected { apart, area, reason });
                 }
             }
         }
     }
-    (best.1, rejected.1.filter(|_| rejected.0 > best.0))
+    (best, rejected)
 }
 
 /// Returns the intersection of two intervals; its end is below its start if they do not overlap.
@@ -98,16 +114,11 @@ fn faces(plug: &[Triangle], sign: f64) -> Vec<Face> {
     found
 }
 
-/// Returns the area that the pads touch at two opposite faces, and the grasp.
+/// Returns the grasp at two opposite faces.
 ///
 /// # Errors
 /// The reason if the fingers cannot hold the plug there.
-fn grasp_at(
-    plug: &[Triangle],
-    low: &Face,
-    high: &Face,
-    free: f64,
-) -> Result<(f64, Grasp), &'static str> {
+fn grasp_at(plug: &[Triangle], low: &Face, high: &Face, free: f64) -> Result<Grasp, &'static str> {
     let (x, z) = (common(low.x, high.x), common(low.z, high.z));
     let faces = [low.y, high.y];
     if width(x) < LEAST_WIDTH {
@@ -147,7 +158,8 @@ fn grasp_at(
         return Err("other parts of the plug are in the way of the pads");
     }
     let part = block("grip", [x, faces, [held[0], shoulder]]);
-    Ok((width(held) * width(common(x, PAD_X)), Grasp { shoulder, faces, part }))
+    let area = width(held) * width(common(x, PAD_X));
+    Ok(Grasp { shoulder, faces, part, area })
 }
 
 /// Returns the grasp of a handle of a size (x, y, z), m, which is added to the top of the plug and stays above `free`,
@@ -159,7 +171,7 @@ pub fn handle(plug: &[Triangle], [x, y, z]: [f64; 3], free: f64) -> Grasp {
     let shoulder = (low + z).max(free + CLEAR + Pad::PUBLISHED.height);
     let faces = [-y / 2.0, y / 2.0];
     let part = block("handle", [[-x / 2.0, x / 2.0], faces, [low, shoulder]]);
-    Grasp { shoulder, faces, part }
+    Grasp { shoulder, faces, part, area: x.min(width(PAD_X)) * z.min(Pad::PUBLISHED.height) }
 }
 
 #[cfg(test)]
@@ -199,5 +211,15 @@ mod tests {
         assert_eq!(held(&[body, [7.0, 13.0, 20.0, 21.0]]), (None, Some((11.0, obstructed))));
         let wide = "they are too close or too far apart for a gripper";
         assert_eq!(held(&[[7.0, 200.0, 10.0, 26.0]]), (None, Some((200.0, wide))));
+    }
+
+    #[test]
+    fn a_body_is_held_rather_than_its_boot() {
+        let held = |blocks: &[[f64; 4]]| own(&stacked(blocks), 8.0 * MM).0.expect("a grasp");
+        let boot = held(&[[7.0, 14.0, 10.0, 28.0], [4.0, 6.0, 28.0, 38.0]]);
+        let body = held(&[[14.0, 7.0, 10.0, 28.0], [6.0, 4.0, 28.0, 38.0]]);
+        assert!((width(boot.faces) - 6.0 * MM).abs() < 1e-9);
+        assert!((width(body.faces) - 7.0 * MM).abs() < 1e-9);
+        assert!(body.replaces(&boot) && !boot.replaces(&body));
     }
 }

@@ -121,14 +121,22 @@ pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>
     let pair = &Pair { engaged: snap(pair.engaged), ..*pair };
     let first = pair.jaws.first().copied().unwrap_or_else(Vector3::y);
     let high = |placed: &AlignedPair| extent(placed.socket.iter().flatten(), 2)[1].max(0.0);
-    let mut rejected = None;
     let held = |jaws: &Vector3<f64>| {
         let placed = AlignedPair::new(pair, *jaws);
         let (grasp, larger) = grip::own(&placed.plug, pair.engaged + high(&placed));
-        rejected = rejected.or(larger);
-        Some((placed, grasp?))
+        (placed, grasp, larger)
     };
-    let own = if size.is_some() { None } else { pair.jaws.iter().find_map(held) };
+    let axes = if size.is_some() { &[] } else { pair.jaws };
+    let (mut own, mut refused): (Option<(AlignedPair, Grasp)>, Vec<Rejected>) = (None, Vec::new());
+    for (placed, grasp, larger) in axes.iter().map(held) {
+        refused.extend(larger);
+        let Some(grasp) = grasp else { continue };
+        if own.as_ref().is_none_or(|(_, first)| grasp.replaces(first)) {
+            own = Some((placed, grasp));
+        }
+    }
+    let area = own.as_ref().map_or(0.0, |(_, grasp)| grasp.area);
+    let rejected = refused.into_iter().find(|faces| faces.area > area);
     let handle = own.is_none();
     let (placed, grasp) = own.unwrap_or_else(|| {
         let placed = AlignedPair::new(pair, first);

@@ -26,10 +26,7 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    /// Studies side by side.
-    type Response = Comparison;
-
-    fn run(&self, _context: &Context<'_>) -> Result<Output<Comparison>, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         let load = |dir: &PathBuf| Ok((dir.display().to_string(), StudyRecord::load(dir)?));
         let studies = self.dirs.iter().map(load).collect::<Result<Vec<_>, Failure>>()?;
         let comparison = compare(&studies).map_err(Failure::usage)?;

@@ -8,7 +8,7 @@ use crate::project::{PROJECT_FILE, Project, Settings};
 use crate::setup::files::robot;
 use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE};
 use crate::setup::task::{read_space, read_task};
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// Print the settings of finger-opt.toml in this folder or above
 ///
@@ -19,10 +19,7 @@ use serde_json::{Value, json};
 pub struct Request {}
 
 impl command::Request for Request {
-    /// Path of the project file, and the values that it sets, by option.
-    type Response = Value;
-
-    fn run(&self, _context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         let found = Project::current()?;
         found.iter().try_for_each(check)?;
         let (file, settings) = found.map(|found| (found.file, found.settings)).unzip();

@@ -62,10 +62,9 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    type Response = Value;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let result = self.identify(context)?;
         let written = layout::wrote(self.out.iter().chain(&self.report));
         let text = layout::wrapped(&shown::text(&result)) + &written;

@@ -43,11 +43,10 @@ pub struct LeverReport {
 }
 
 impl command::Request for Request {
-    type Response = LeverReport;
     const PROGRESS: bool = true;
 
     /// Measures the levers, and for comparison the softest and the stiffest infill of the space.
-    fn run(&self, context: &Context<'_>) -> Result<Output<LeverReport>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let _busy = context.busy("measuring the levers");
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;

@@ -46,12 +46,10 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    /// Shares of the objective's variance.
-    type Response = SensitivityResult;
     const PROGRESS: bool = true;
 
     /// Simulates the sample and ranks the inputs.
-    fn run(&self, context: &Context<'_>) -> Result<Output<SensitivityResult>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let _busy = context.busy("simulating the sample");
         let found = self.found(context.stop)?;
         let svg = shown::svg(&found)?;

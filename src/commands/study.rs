@@ -19,7 +19,6 @@ use insertion::evaluation::cell::Priors;
 use insertion::evaluation::objective::{
     Aggregate, AggregateKind, Bound, Constraint, Measure, Objectives,
 };
-use serde_json::Value;
 use std::ffi::OsStr;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -119,10 +118,9 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    type Response = Value;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         output::run(self.open(None)?, context, self.verbose)
     }
 }

@@ -79,9 +79,7 @@ pub struct Written {
 }
 
 impl command::Request for Request {
-    type Response = Written;
-
-    fn run(&self, _context: &Context<'_>) -> Result<Output<Written>, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         let geometry = self.finger.geometry()?;
         let (out, title) = (&self.out, export::title(&geometry));
         let mut beside = Vec::new();

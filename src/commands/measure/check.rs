@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::setup::measured;
 use crate::setup::task::read_task;
 use serde::Serialize;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeMap;
 
 /// Check a measurement file: implausible units, windows without the start, duplicate lines, unknown tasks
@@ -37,10 +37,7 @@ struct TaskLines {
 }
 
 impl command::Request for Request {
-    /// Contents of the checked file.
-    type Response = Value;
-
-    fn run(&self, _context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         let own = self.task.iter().map(|name| Ok(read_task(name)?.task.name));
         let own = own.collect::<Result<Vec<_>, Failure>>()?;
         let own: Vec<&str> = own.iter().map(String::as_str).collect();

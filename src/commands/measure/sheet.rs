@@ -1,6 +1,6 @@
 //! `optimize measure sheet`: sheet for measuring windows by hand.
 
-use crate::command::{self, Output, Request as _};
+use crate::command::{self, Output};
 use crate::commands::trial;
 use crate::context::Context;
 use crate::failure::Failure;
@@ -59,10 +59,8 @@ pub struct Written {
 }
 
 impl command::Request for Request {
-    type Response = Written;
-
     /// Simulates insertions of the fingers and writes the sheet.
-    fn run(&self, context: &Context<'_>) -> Result<Output<Written>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let task = read_task(&self.task)?.task;
         let shifts = (1..=FARTHEST_MM).flat_map(|mm| [f64::from(mm), -f64::from(mm)]);
         let outward = shifts.filter_map(|shift| Some((self.fingers.first()?, shift)));
@@ -90,7 +88,7 @@ fn draw(
     let finger = FingerRequest { infill, set, ..FingerRequest::default() };
     let setup = SetupRequest { tasks, ..SetupRequest::default() };
     let trial = trial::Request { setup, finger, offset_mm, ..trial::Request::default() };
-    let done = trial.run(context)?.value;
+    let done = trial.done(context)?;
     let Specimen { task, finger, .. } = done.chosen.specimen;
     let svg = picture::final_state(&task, &finger.pad, &done.trial);
     Ok(Picture { outcome: done.trial.outcome, svg, task: task.name })

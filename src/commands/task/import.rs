@@ -4,9 +4,9 @@ use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
 use crate::failure::{Failure, within};
 use crate::layout::wrapped;
-use crate::setup::bodies::{Parts, PartsRequest, parts};
+use crate::setup::bodies::{PartsRequest, parts};
 use crate::setup::files::check_is_new;
-use crate::setup::mated::{MateOptions, MatedTask, left_out_json, mated};
+use crate::setup::mated::{MatedTask, left_out_json, mated};
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
@@ -84,10 +84,7 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    /// The parts of the imported task, the strategies that were tried, and the check of its file.
-    type Response = Value;
-
-    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let stop = context.stop;
         let out = &self.out();
         within("--depth-mm", self.depth_mm, &DEPTHS_MM)?;
@@ -114,7 +111,7 @@ impl Request {
     }
 
     /// Returns the file to write.
-    fn out(&self) -> PathBuf {
+    pub(crate) fn out(&self) -> PathBuf {
         self.out.clone().unwrap_or_else(|| {
             let stem = self.parts.plug().file_stem().unwrap_or_default();
             PathBuf::from(stem).with_extension("toml")
@@ -144,28 +141,17 @@ impl Request {
     /// Returns the task made of the shapes in their mated pose.
     fn mated_task(&self, context: &Context<'_>) -> Result<MatedTask, Failure> {
         let like = self.like.as_deref().map(read_task).transpose()?;
-        let files = self.names();
-        let Parts { triangles: [plug, socket], unit, finding } =
-            parts([&files[0], &files[1]], &self.parts, context)?;
+        let names = self.names();
+        let files = names.each_ref().map(String::as_str);
+        let parts = parts(files, &self.parts, context)?;
         not_stopped(context.stop)?;
-        let options = MateOptions {
-            name: &self.name(),
-            unit,
-            assembled: self.parts.assembly.is_some(),
-            along: self.insert_along,
-            jaws: self.jaws,
-            like: like.as_ref().map(|like| &like.task),
-            handle: self.body.map(|size| [size.height, size.width, size.length]),
-            depth: self.depth_mm.map(|depth| depth * MM),
-            closeup: &self.out().with_extension("place.svg"),
-        };
-        let mut task = mated([&files[0], &files[1]], [&plug, &socket], &options, context)?;
-        task.made.task.description = description(&files);
-        task.findings.extend(finding);
+        let mut task = mated(files, parts, self, like.as_ref().map(|like| &like.task), context)?;
+        task.made.task.description = description(&names);
         Ok(task)
     }
 
-    fn name(&self) -> String {
+    /// Returns the name of the task.
+    pub(crate) fn name(&self) -> String {
         self.out().file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
     }
 

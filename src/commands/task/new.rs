@@ -81,10 +81,7 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    /// The written file, with its strategy and its check.
-    type Response = Value;
-
-    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let like = self.like.as_deref().map(read_task).transpose()?;
         let (text, tuned) = match (&like, tip(self)) {
             (Some(like), None) => (copy(&self.name, like), None),

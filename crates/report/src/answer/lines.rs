@@ -6,7 +6,7 @@ use ask_tell::statistics::mean;
 use calibration::order::RankCorrelation;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::REPEATS;
-use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
+use insertion::evaluation::{Evaluation, grid_mm};
 use insertion::outcome::Outcome;
 use insertion::space::{Variable, label};
 use insertion::surrogate::Prediction;
@@ -370,8 +370,8 @@ fn tolerated(Evaluation { window, taught, .. }: &Evaluation) -> String {
     format!("{range} ({ends}{start})")
 }
 
-/// Returns the position of a taught start; `None` if it was not taught.
-pub fn taught(steps: Option<OffsetStep>) -> Option<Line> {
-    let mm = grid_mm(steps?);
+/// Returns the position of a taught start, mm; `None` if it was not taught.
+pub fn taught(mm: Option<f64>) -> Option<Line> {
+    let mm = mm?;
     Some(line("start", format!("taught: {mm:+.1} mm from that of the task file")))
 }

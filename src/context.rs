@@ -188,8 +188,5 @@ pub(crate) fn watch(handler: impl FnMut() + 'static + Send) -> Result<(), Failur
 /// # Errors
 /// If `stop` is set.
 pub fn not_stopped(stop: &AtomicBool) -> Result<(), Failure> {
-    match stop.load(Ordering::SeqCst) {
-        true => Err(Failure::Interrupted(None)),
-        false => Ok(()),
-    }
+    if stop.load(Ordering::SeqCst) { Err(Failure::Interrupted(None)) } else { Ok(()) }
 }

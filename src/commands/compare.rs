@@ -3,7 +3,7 @@
 use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
-use report::compare::{Comparison, compare, page, svg, text};
+use report::compare::{compare, page, svg, text};
 use std::path::PathBuf;
 use study::{StudyRecord, write_file};
 

@@ -24,7 +24,11 @@ impl command::Request for Request {
         found.iter().try_for_each(check)?;
         let (file, settings) = found.map(|found| (found.file, found.settings)).unzip();
         let settings = settings.unwrap_or_default();
-        let value = json!({"file": file, "settings": settings});
+        let mut set = json!(settings);
+        if let Some(set) = set.as_object_mut() {
+            set.retain(|_, value| !value.is_null());
+        }
+        let value = json!({"file": file, "settings": set});
         Ok(Output::new(text(file.as_deref(), settings), value))
     }
 }

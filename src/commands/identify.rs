@@ -20,7 +20,6 @@ use input::units::N_PER_MM;
 use insertion::evaluation::cell::Priors;
 use insertion::robot::{Drive, Robot};
 use report::identify::{self as shown, html};
-use serde_json::Value;
 use std::path::PathBuf;
 use study::write_file;
 

@@ -175,8 +175,7 @@ fn split(
 
 /// Formats names of bodies.
 fn quoted(names: &[String]) -> String {
-    let shown: Vec<_> = names.iter().take(MAX_LISTED).map(|name| format!("`{name}`")).collect();
-    shown.join(", ") + &more(names.len())
+    joined(names.iter().map(|name| format!("`{name}`")))
 }
 
 /// Formats names and sizes of bodies.
@@ -185,11 +184,12 @@ fn listed(bodies: &[Body], metres: f64) -> String {
         let side = |axis| width(extent(body.triangles.iter().flatten(), axis)) * metres / MM;
         format!("`{}` ({:.1} x {:.1} x {:.1} mm)", body.name, side(0), side(1), side(2))
     };
-    let shown: Vec<_> = bodies.iter().take(MAX_LISTED).map(size).collect();
-    shown.join(", ") + &more(bodies.len())
+    joined(bodies.iter().map(size))
 }
 
-fn more(count: usize) -> String {
-    let more = count.saturating_sub(MAX_LISTED);
-    if more > 0 { format!(" and {more} more") } else { String::new() }
+/// Joins the first items of a list by commas, with the number of the others.
+fn joined(items: impl ExactSizeIterator<Item = String>) -> String {
+    let more = items.len().saturating_sub(MAX_LISTED);
+    let shown = items.take(MAX_LISTED).collect::<Vec<_>>().join(", ");
+    if more > 0 { format!("{shown} and {more} more") } else { shown }
 }

@@ -4,6 +4,7 @@ use super::bodies::Parts;
 use crate::commands::task::import::Request;
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
+use clap::ValueEnum;
 use connector::body::{extent, width};
 use connector::mating::{Mate, MatingResult, assembled, mates};
 use connector::mesh::axes::{Along, Jaws, Unit, value};
@@ -326,10 +327,6 @@ fn jaws_of(way: &Vector3<f64>) -> Jaws {
 }
 
 fn along_of(way: &Vector3<f64>) -> Along {
-    let axes = [
-        [Along::PlusX, Along::MinusX],
-        [Along::PlusY, Along::MinusY],
-        [Along::PlusZ, Along::MinusZ],
-    ];
-    axes[way.iamax()][usize::from(way[way.iamax()] < 0.0)]
+    let axis = way.iamax();
+    Along::value_variants()[2 * axis + usize::from(way[axis] < 0.0)]
 }

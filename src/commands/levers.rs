@@ -7,11 +7,11 @@ use crate::layout;
 use crate::setup::Setup;
 use crate::setup::finger::FingerRequest;
 use crate::setup::request::SetupRequest;
+use crate::studies::summary::levers_json;
 use analysis::levers::{LeverAnalysis, Levers};
 use insertion::space::Design;
 use insertion::surrogate::Prediction;
 use report::levers as output;
-use serde::Serialize;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
@@ -33,15 +33,6 @@ pub struct Request {
     pub svg: Option<PathBuf>,
 }
 
-/// Sensitivities of the window of a finger, with a summary sentence.
-#[derive(Serialize)]
-pub struct LeverReport {
-    sentence: String,
-    /// The levers.
-    #[serde(flatten)]
-    pub levers: Levers,
-}
-
 impl command::Request for Request {
     const PROGRESS: bool = true;
 
@@ -54,8 +45,7 @@ impl command::Request for Request {
         let finger = (&chosen.design, given);
         let levers = levers(&setup, finger, None, context.stop)?;
         let (svg, text) = (output::svg(&levers)?, layout::wrapped(&output::text(&levers)));
-        let value = LeverReport { sentence: levers.sentence(), levers };
-        Output::new(text, value).drawn(svg, self.svg.as_ref())
+        Output::new(text, levers_json(&levers)).drawn(svg, self.svg.as_ref())
     }
 }
 

@@ -117,8 +117,7 @@ impl Request {
         let offset = offset_mm * MM;
         let taught = setup.evaluator.taught(specimen, stop).map_err(Failure::input)?;
         let rig = setup.evaluator.rig(specimen, taught, 1.0).map_err(Failure::input)?;
-        let filmed = self.film.record(&*rig, specimen, offset_mm, stop)?;
-        let (filmed, page) = filmed.map_or((None, None), |(filmed, page)| (Some(filmed), page));
+        let (filmed, page) = self.film.record(&*rig, specimen, offset_mm, stop)?;
         let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
         let (trial, samples) = match (self.every_s, filmed) {
             _ if self.probe => {

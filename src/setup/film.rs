@@ -25,16 +25,16 @@ pub struct FilmRequest {
 
 impl FilmRequest {
     /// Records the trial at this offset and writes the requested outputs; returns the recording, and the page if it
-    /// was requested. `None` if no output was requested.
+    /// was requested; `None` twice if no output was requested.
     pub(crate) fn record(
         &self,
         rig: &dyn Rig,
         specimen: &Specimen,
         offset_mm: f64,
         stop: &AtomicBool,
-    ) -> Result<Option<(Recording, Option<String>)>, Failure> {
+    ) -> Result<(Option<Recording>, Option<String>), Failure> {
         if self.record.is_none() && self.plot.is_none() && !self.page {
-            return Ok(None);
+            return Ok((None, None));
         }
         let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
         let recording = rig.record(grasp, offset_mm * input::units::MM).ok_or_else(|| {
@@ -55,7 +55,7 @@ impl FilmRequest {
             write_file(file, &replay::curve_svg(&film)?)?;
         }
         let page = self.page.then(page);
-        Ok(Some((recording, page)))
+        Ok((Some(recording), page))
     }
 
     /// Returns the files of the requested outputs.

@@ -12,7 +12,7 @@ use insertion::evaluation::evaluator::Specimen;
 use insertion::outcome::Outcome;
 use insertion::trial::picture;
 use report::sheet::{self, Picture};
-use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use study::write_file;
 
@@ -52,12 +52,6 @@ fn infill(text: &str) -> Result<(f64, f64), String> {
     parse_pair(text).ok_or_else(|| "must be PERCENT,DEG, for example 10,0".to_owned())
 }
 
-/// Sheet that was written.
-#[derive(Serialize)]
-pub struct Written {
-    out: PathBuf,
-}
-
 impl command::Request for Request {
     /// Simulates insertions of the fingers and writes the sheet.
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
@@ -73,7 +67,7 @@ impl command::Request for Request {
         pictures.dedup_by_key(|picture| picture.outcome);
         write_file(&self.out, &sheet::page(&task, &self.task, &self.fingers, &pictures))?;
         let text = format!("wrote {}\n", self.out.display());
-        Ok(Output::new(text, Written { out: self.out.clone() }))
+        Ok(Output::new(text, BTreeMap::from([("out", &self.out)])))
     }
 }
 

@@ -21,17 +21,11 @@ use input::units::MM;
 use insertion::task::parts_file::{PartsFile, joined, sha256};
 use insertion::trial::engine::EngineKind;
 use serde_json::{Value, json};
-use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use study::write_file;
 
-const RESOLUTIONS: RangeInclusive<i64> = 8..=1000;
-/// Default of --resolution.
-const RESOLUTION: u32 = 64;
 /// Largest number of parts that are written into the task file itself.
 const MAX_INLINE: usize = 30;
-/// Depths to be reached in a through hole, mm.
-const DEPTHS_MM: RangeInclusive<f64> = 0.4..=300.0;
 
 /// Create a task from meshes of a plug and its socket (STL, OBJ or STEP)
 ///
@@ -62,8 +56,8 @@ pub struct Request {
     #[arg(long, value_name = "T")]
     pub like: Option<String>,
     /// Without effect, since the parts are exact within 0.02 mm
-    #[arg(long, hide = true, value_name = "N", default_value_t = RESOLUTION,
-          value_parser = clap::value_parser!(u32).range(RESOLUTIONS))]
+    #[arg(long, hide = true, value_name = "N", default_value_t = 64,
+          value_parser = clap::value_parser!(u32).range(8..=1000))]
     pub resolution: u32,
     /// Handle on a plug that has no faces to grip, width between the jaws x height x length in mm
     /// [default: 10x12x20 where one is needed]
@@ -87,7 +81,7 @@ impl command::Request for Request {
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let stop = context.stop;
         let out = &self.out();
-        within("--depth-mm", self.depth_mm, &DEPTHS_MM)?;
+        within("--depth-mm", self.depth_mm, &(0.4..=300.0))?;
         check_is_new(out)?;
         let mut mated = self.mated_task(context)?;
         not_stopped(stop)?;

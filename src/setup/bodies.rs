@@ -124,23 +124,19 @@ pub fn parts(
     Ok(Parts { triangles, unit, finding })
 }
 
-/// Reads the bodies of a file; returns them, and whether the file is STEP, which is converted to mm.
+/// Reads the bodies of a file; returns them, and whether the file is STEP, which the extra `step` of the Python package
+/// converts to meshes in mm, within 0.01 mm.
 fn bodies(path: &Path, file: &str, context: &Context<'_>) -> Result<(Vec<Body>, bool), Failure> {
     let unreadable =
         |error: std::io::Error| Failure::in_file(file, format!("cannot read the mesh: {error}"));
     let opened = std::fs::File::open(path).map_err(unreadable)?;
     let bytes = input::files::read_up_to(opened, LARGEST_FILE).map_err(unreadable)?;
     if is_step(&bytes, &path.display().to_string()) {
-        return Ok((step_bodies(path, file, context)?, true));
+        let (found, warnings) = STEP.read(path, file).map_err(Failure::input)?;
+        warnings.iter().for_each(|warning| context.note(warning));
+        return Ok((read(&found, &format!("{file}.obj")).map_err(Failure::input)?, true));
     }
     Ok((read(&bytes, file).map_err(Failure::input)?, false))
-}
-
-/// Reads the bodies of a STEP file, mm, meshed with a tolerance of 0.01 mm, by the extra `step` of the Python package.
-fn step_bodies(path: &Path, file: &str, context: &Context<'_>) -> Result<Vec<Body>, Failure> {
-    let (found, warnings) = STEP.read(path, file).map_err(Failure::input)?;
-    warnings.iter().for_each(|warning| context.note(warning));
-    read(&found, &format!("{file}.obj")).map_err(Failure::input)
 }
 
 /// Returns the plug, which can be withdrawn, and the socket of an assembly, and the names of the plug's bodies.

@@ -41,8 +41,9 @@ impl FilmRequest {
             Failure::usage("--record and --plot need an engine that simulates: --engine direct")
         })?;
         not_stopped(stop)?;
-        let label = start_label(offset_mm);
-        let film = film(&label, specimen, &recording);
+        let label = &start_label(offset_mm);
+        let (task, pad) = (&specimen.task, &specimen.finger.pad);
+        let film = Film { label, task, pad, recording: &recording };
         let page = || replay::page(&format!("{}, {label}", specimen.task.name), &[film]);
         if let Some(file) = &self.record {
             let content = match &*extension(file) {
@@ -76,15 +77,6 @@ fn recordable(text: &str) -> Result<PathBuf, String> {
 /// Returns the extension of a file, in lower case.
 pub(crate) fn extension(file: &Path) -> String {
     file.extension().unwrap_or_default().to_string_lossy().to_lowercase()
-}
-
-/// Returns the film of a recorded trial.
-pub(crate) fn film<'a>(
-    label: &'a str,
-    specimen: &'a Specimen,
-    recording: &'a Recording,
-) -> Film<'a> {
-    Film { label, task: &specimen.task, pad: &specimen.finger.pad, recording }
 }
 
 /// Returns the label of a start.

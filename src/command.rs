@@ -57,7 +57,7 @@ impl Output {
     }
 }
 
-/// Result that consists of text alone.
+/// A result that consists of text alone.
 impl From<String> for Output {
     fn from(text: String) -> Self {
         Output::new(text.clone(), text)

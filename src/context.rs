@@ -108,9 +108,7 @@ impl<'a> Context<'a> {
 
     /// Ends the progress that is shown.
     pub fn end(&self) {
-        if let Some(terminal) = &self.terminal {
-            drop(terminal.progress().take());
-        }
+        drop(self.terminal.as_ref().map(|terminal| terminal.progress().take()));
     }
 
     /// Shows that a part is done, from any thread.

@@ -6,14 +6,13 @@ use crate::failure::Failure;
 use crate::terminal;
 use clap::{Arg, ArgAction, ArgMatches, Args};
 use serde::Serialize;
+use serde_json::Value;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use study::write_file;
 
 /// Input of a command: its fields are the options, its doc comments their help.
 pub trait Request: Args {
-    /// Result of the command, serialized for `--json` and Python.
-    type Response: Serialize;
     /// Whether the result can be printed as JSON.
     const JSON: bool = true;
     /// Whether the command shows its progress.
@@ -23,14 +22,14 @@ pub trait Request: Args {
     ///
     /// # Errors
     /// If an input cannot be used, a file cannot be written, or the run is cancelled.
-    fn run(&self, context: &Context<'_>) -> Result<Output<Self::Response>, Failure>;
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure>;
 }
 
 /// Result of a command with its text for a terminal.
-#[derive(Debug, Default)]
-pub struct Output<T> {
-    /// The result.
-    pub value: T,
+#[derive(Debug)]
+pub struct Output {
+    /// The result for `--json` and Python; an error if it contains a path that is not UTF-8.
+    pub value: Result<Value, Failure>,
     /// Its text.
     pub text: String,
     /// SVG or page that shows it, if there is one.
@@ -39,9 +38,12 @@ pub struct Output<T> {
     pub failure: Option<Failure>,
 }
 
-impl<T> Output<T> {
+impl Output {
     /// Returns a result with its text.
-    pub fn new(text: String, value: T) -> Self {
+    pub fn new(text: String, value: impl Serialize) -> Self {
+        // A value, so that the last of two flattened parts with the same key wins.
+        let value = serde_json::to_value(value);
+        let value = value.map_err(|error| Failure::running(error.to_string()));
         Output { value, text, picture: None, failure: None }
     }
 
@@ -55,10 +57,8 @@ impl<T> Output<T> {
     }
 }
 
-/// Result that consists of text alone.
-pub type Text = Output<String>;
-
-impl From<String> for Text {
+/// A result that consists of text alone.
+impl From<String> for Output {
     fn from(text: String) -> Self {
         Output::new(text.clone(), text)
     }
@@ -133,17 +133,11 @@ fn print<R: Request>(matches: &ArgMatches, program: Program) -> Result<(), Failu
     let context = Context::terminal(json, set(QUIET), program);
     let Output { value, text, failure, .. } = request.run(&context)?;
     drop(context);
-    terminal::print(&if json { to_json(&value)? + "\n" } else { text })?;
+    terminal::print(&if json { value?.to_string() + "\n" } else { text })?;
     failure.map_or(Ok(()), Err)
 }
 
 fn call<R: Request>(matches: &ArgMatches, context: &Context<'_>) -> Result<CallResult, Failure> {
     let Output { value, picture, .. } = request::<R>(matches)?.run(context)?;
-    Ok(CallResult { json: to_json(&value)?, picture })
-}
-
-fn to_json(response: &impl Serialize) -> Result<String, Failure> {
-    // Serialized to a value first, so that the last of two flattened parts with the same key wins.
-    let value = serde_json::to_value(response);
-    Ok(value.map_err(|error| Failure::running(error.to_string()))?.to_string())
+    Ok(CallResult { json: value?.to_string(), picture })
 }

@@ -108,9 +108,7 @@ impl<'a> Context<'a> {
 
     /// Ends the progress that is shown.
     pub fn end(&self) {
-        if let Some(terminal) = &self.terminal {
-            drop(terminal.progress().take());
-        }
+        drop(self.terminal.as_ref().map(|terminal| terminal.progress().take()));
     }
 
     /// Shows that a part is done, from any thread.
@@ -188,8 +186,5 @@ pub(crate) fn watch(handler: impl FnMut() + 'static + Send) -> Result<(), Failur
 /// # Errors
 /// If `stop` is set.
 pub fn not_stopped(stop: &AtomicBool) -> Result<(), Failure> {
-    match stop.load(Ordering::SeqCst) {
-        true => Err(Failure::Interrupted(None)),
-        false => Ok(()),
-    }
+    if stop.load(Ordering::SeqCst) { Err(Failure::Interrupted(None)) } else { Ok(()) }
 }

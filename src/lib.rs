@@ -8,7 +8,6 @@
 //! unit in their names (see [`input::units`]).
 //!
 //! ```
-//! use finger_opt::command::Request as _;
 //! use finger_opt::commands::evaluate;
 //! use finger_opt::context::Context;
 //! use finger_opt::failure::Failure;
@@ -20,7 +19,7 @@
 //! let finger = FingerRequest { infill: InfillRequest::of(20.0, 10.0), ..FingerRequest::default() };
 //! let request = evaluate::Request { setup, finger, ..evaluate::Request::default() };
 //! let stop = AtomicBool::new(false); // set by another thread, it ends the work
-//! let window = request.run(&Context::silent(&stop))?.value.evaluation.window;
+//! let window = request.evaluated(&Context::silent(&stop))?.evaluation.window;
 //! assert!(window.range_mm() > 2.0 && window.negative_mm() < 0.0 && window.positive_mm() > 0.0);
 //! # Ok::<(), Failure>(())
 //! ```

@@ -98,11 +98,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 
 fn run(words: &[OsString]) -> Result<ExitCode, Failure> {
     let (program, defaults) = with_project(program(), words)?;
-    let short = !words.iter().any(|word| word == "--help");
-    let program = match short {
-        true => program.clone().override_help(help::short(&program)),
-        false => program,
-    };
+    let long = words.iter().any(|word| word == "--help");
+    let program = if long { program } else { program.clone().override_help(help::short(&program)) };
     let matches = match program.try_get_matches_from(words) {
         Ok(matches) => matches,
         Err(usage) if usage.use_stderr() => {

@@ -19,22 +19,16 @@ const OF_STUDY: [&str; 2] = ["seed", "budget"];
 #[serde(deny_unknown_fields)]
 pub struct Settings {
     /// Task, or several separated by commas.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub task: Option<String>,
     /// Robot.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub robot: Option<String>,
     /// Identified cell.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub cell: Option<String>,
     /// Measurements from the bench.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub measurements: Option<String>,
     /// Search space.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub space: Option<String>,
     /// Threads.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub threads: Option<u16>,
 }
 

@@ -1,6 +1,6 @@
 //! Files are read once in a run.
 
-use finger_opt::command::{Request as _, parse};
+use finger_opt::command::parse;
 use finger_opt::commands::evaluate;
 use finger_opt::context::Context;
 use insertion::trial::NEVER;
@@ -17,8 +17,8 @@ fn each_input_file_is_parsed_once() {
         let words = words.into_iter().chain(["--density", "20", "--direction", "10"]);
         let request: evaluate::Request = parse(words.chain(more)).ok().unwrap();
         let before = input::parsed();
-        let found = request.run(&Context::silent(&NEVER)).ok().unwrap();
-        assert!(found.value.evaluation.window.range_mm() > 0.0);
+        let found = request.evaluated(&Context::silent(&NEVER)).ok().unwrap();
+        assert!(found.evaluation.window.range_mm() > 0.0);
         assert_eq!(input::parsed() - before, files.len() as u64, "{files:?}");
     }
 }

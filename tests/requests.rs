@@ -103,8 +103,8 @@ fn a_call_gives_what_the_request_does() {
     let set = vec![("task.strategy.tilt_deg".to_owned(), 8.0)];
     let finger = FingerRequest { set, ..middle() };
     let request = evaluate::Request { setup: usb(), finger, ..Default::default() };
-    let Ok(done) = request.run(&silent()) else { panic!("refused") };
-    assert_eq!(found["range_mm"], json!(done.value.evaluation.window.range_mm()));
+    let Ok(done) = request.evaluated(&silent()) else { panic!("refused") };
+    assert_eq!(found["range_mm"], json!(done.evaluation.window.range_mm()));
     assert_eq!(found["set"], json!({"task.strategy.tilt_deg": 8.0}));
     let same = call("evaluate", json!({"set": {"task.strategy.tilt_deg": 8.0}, "walk": false}));
     assert_eq!(same.ok().map(|same| same["range_mm"].clone()), Some(found["range_mm"].clone()));
@@ -133,7 +133,8 @@ fn levers_begin_at_the_taught_window_and_keep_to_what_can_be() {
         let set = set.iter().map(|&(key, value)| (key.to_owned(), value)).collect();
         let finger = FingerRequest { set, ..middle() };
         let request = levers::Request { setup: usb(), finger, svg: None };
-        request.run(&silent()).ok().unwrap().value.levers
+        let found = request.run(&silent()).ok().unwrap().value.ok().unwrap();
+        serde_json::from_value::<Levers>(found).unwrap()
     };
     let named = |found: &Levers, name: &str| {
         found.levers.iter().find(|lever| lever.name == name).unwrap().clone()
@@ -141,7 +142,7 @@ fn levers_begin_at_the_taught_window_and_keep_to_what_can_be() {
     let found = levers(&[]);
     let setup = SetupRequest { start: Some(StartRule::Taught), ..usb() };
     let evaluate = evaluate::Request { setup, finger: middle(), ..Default::default() };
-    let evaluation = evaluate.run(&silent()).ok().unwrap().value.evaluation;
+    let evaluation = evaluate.evaluated(&silent()).ok().unwrap().evaluation;
     assert_eq!(found.base.range_mm, evaluation.window.range_mm());
     assert_eq!(Some(found.base.taught_start_mm), evaluation.taught.map(grid_mm));
     assert!(found.windows <= 20 && found.levers.len() > 7, "{found:?}");
@@ -212,7 +213,7 @@ fn a_sweep_measures_what_evaluate_does_in_its_order_and_keeps_it() {
         let found = sweep.measure(&fingers, &NEVER).ok().unwrap();
         for (finger, found) in fingers.iter().zip(found) {
             let alone = evaluate::Request { finger: finger.clone(), ..windows.clone() };
-            assert_eq!(found.evaluation, alone.run(&silent()).ok().unwrap().value.evaluation);
+            assert_eq!(found.evaluation, alone.evaluated(&silent()).ok().unwrap().evaluation);
         }
     }
     assert_eq!(sweep.known(), 3);

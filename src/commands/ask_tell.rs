@@ -1,6 +1,6 @@
 //! `optimize ask-tell`: optimizers for any problem, over JSON lines.
 
-use crate::command::{self, Text};
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::terminal;
@@ -16,11 +16,10 @@ use std::io::{self, BufRead, Read};
 pub struct Request {}
 
 impl command::Request for Request {
-    type Response = String;
     const JSON: bool = false;
 
     /// Answers each line before the next is read, until the input ends.
-    fn run(&self, _context: &Context<'_>) -> Result<Text, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         let mut session = Session::default();
         let mut input = io::stdin().lock();
         let unreadable = |error| Failure::running(format!("cannot read the input: {error}"));
@@ -28,7 +27,7 @@ impl command::Request for Request {
             let mut line = Vec::new();
             let mut limited = (&mut input).take(MAX_LINE_BYTES + 1);
             if limited.read_until(b'\n', &mut line).map_err(unreadable)? == 0 {
-                return Ok(Text::default());
+                return Ok(String::new().into());
             }
             let answer = if line.len() as u64 <= MAX_LINE_BYTES {
                 // Invalid UTF-8 becomes U+FFFD, so that the session can answer with an error.

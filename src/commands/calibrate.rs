@@ -9,7 +9,6 @@ use crate::setup::measured;
 use calibration::bench::Settings;
 use calibration::calibrate::Calibration;
 use calibration::table;
-use serde_json::Value;
 use std::path::PathBuf;
 use study::write_file;
 
@@ -36,11 +35,9 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    /// Predictions for every finger of the tasks: [`table::json`].
-    type Response = Value;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let simulations = self.bench.setup.tasks.len().max(1) * self.calibration.simulations();
         context.begin(simulations as f64 * cost::SIMULATION);
         let source = measured::file(&self.bench.measurements)?;

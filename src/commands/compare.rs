@@ -3,7 +3,7 @@
 use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
-use report::compare::{Comparison, compare, page, svg, text};
+use report::compare::{compare, page, svg, text};
 use std::path::PathBuf;
 use study::{StudyRecord, write_file};
 
@@ -26,10 +26,7 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    /// Studies side by side.
-    type Response = Comparison;
-
-    fn run(&self, _context: &Context<'_>) -> Result<Output<Comparison>, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         let load = |dir: &PathBuf| Ok((dir.display().to_string(), StudyRecord::load(dir)?));
         let studies = self.dirs.iter().map(load).collect::<Result<Vec<_>, Failure>>()?;
         let comparison = compare(&studies).map_err(Failure::usage)?;

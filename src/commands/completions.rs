@@ -1,6 +1,6 @@
 //! `optimize completions`: completion scripts for shells.
 
-use crate::command::{self, Text};
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use clap_complete::Shell;
@@ -14,10 +14,9 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    type Response = String;
     const JSON: bool = false;
 
-    fn run(&self, context: &Context<'_>) -> Result<Text, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut context.program()?, "optimize", &mut script);
         Ok(String::from_utf8_lossy(&script).into_owned().into())

@@ -8,7 +8,7 @@ use crate::project::{PROJECT_FILE, Project, Settings};
 use crate::setup::files::robot;
 use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE};
 use crate::setup::task::{read_space, read_task};
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// Print the settings of finger-opt.toml in this folder or above
 ///
@@ -19,15 +19,16 @@ use serde_json::{Value, json};
 pub struct Request {}
 
 impl command::Request for Request {
-    /// Path of the project file, and the values that it sets, by option.
-    type Response = Value;
-
-    fn run(&self, _context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         let found = Project::current()?;
         found.iter().try_for_each(check)?;
         let (file, settings) = found.map(|found| (found.file, found.settings)).unzip();
         let settings = settings.unwrap_or_default();
-        let value = json!({"file": file, "settings": settings});
+        let mut set = json!(settings);
+        if let Some(set) = set.as_object_mut() {
+            set.retain(|_, value| !value.is_null());
+        }
+        let value = json!({"file": file, "settings": set});
         Ok(Output::new(text(file.as_deref(), settings), value))
     }
 }

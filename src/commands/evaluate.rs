@@ -9,10 +9,10 @@ use crate::setup::repeat::{RepeatRequest, bands_text, serialize_bands};
 use crate::setup::request::SetupRequest;
 use crate::setup::{Setup, measured};
 use calibration::experiments::Experiment;
-use insertion::evaluation::Evaluation;
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::robustness::repeat::Bands;
 use insertion::evaluation::tolerance::Search;
+use insertion::evaluation::{Evaluation, grid_mm};
 use insertion::outcome::Outcome;
 use report::answer::lines;
 use report::answer::words::{self, mm, number};
@@ -82,9 +82,18 @@ pub struct Evaluated {
 }
 
 impl command::Request for Request {
-    type Response = Evaluated;
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
+        let found = self.evaluated(context)?;
+        Ok(Output::new(found.text(), found))
+    }
+}
 
-    fn run(&self, context: &Context<'_>) -> Result<Output<Evaluated>, Failure> {
+impl Request {
+    /// Measures the finger.
+    ///
+    /// # Errors
+    /// If an input cannot be used, or the run is cancelled.
+    pub fn evaluated(&self, context: &Context<'_>) -> Result<Evaluated, Failure> {
         let stop = context.stop;
         let (setup, plan) = self.prepared()?;
         let chosen = self.finger.choose(&setup)?;
@@ -103,12 +112,9 @@ impl command::Request for Request {
         let bands = repeat.map(bands).transpose()?;
         let computed = self.by_ribs(&setup, &chosen, stop)?;
         let limit_n = limit_n(&setup, &chosen);
-        let value = Evaluated { chosen, evaluation, bands, computed, wall_s, measured, limit_n };
-        Ok(Output::new(value.text(), value))
+        Ok(Evaluated { chosen, evaluation, bands, computed, wall_s, measured, limit_n })
     }
-}
 
-impl Request {
     /// Returns the setup, and the plan of the measurements under drawn errors.
     pub(crate) fn prepared(&self) -> Result<(Setup, Plan), Failure> {
         let mut setup = self.setup.setup()?;
@@ -226,7 +232,7 @@ impl Evaluated {
         rest.push(("peak force".to_owned(), force));
         let mating = words::mating_force(chosen.specimen.task.largest_mating_force());
         rest.push(("mating force".to_owned(), mating));
-        rest.extend(lines::taught(evaluation.taught));
+        rest.extend(lines::taught(evaluation.taught.map(grid_mm)));
         rest.extend(lines::drawn(evaluation));
         rest.extend(self.computed.iter().flat_map(lines::by_ribs));
         rest.extend(self.disagreement().map(|remark| (String::new(), remark.to_owned())));

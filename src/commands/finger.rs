@@ -68,10 +68,7 @@ fn force(text: &str) -> Result<[f64; 2], String> {
 }
 
 impl command::Request for Request {
-    /// The finger with its computed stiffness, and the prediction of the stiffness model.
-    type Response = Value;
-
-    fn run(&self, _context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         if let Some((key, _)) = self.set.iter().find(|(key, _)| !is_shape(key)) {
             return Err(Failure::usage(format!(
                 "--set {key}: must be a number of the finger file, for example finger.skin.thickness_mm"

@@ -20,7 +20,6 @@ use input::units::N_PER_MM;
 use insertion::evaluation::cell::Priors;
 use insertion::robot::{Drive, Robot};
 use report::identify::{self as shown, html};
-use serde_json::Value;
 use std::path::PathBuf;
 use study::write_file;
 
@@ -62,10 +61,9 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    type Response = Value;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let result = self.identify(context)?;
         let written = layout::wrote(self.out.iter().chain(&self.report));
         let text = layout::wrapped(&shown::text(&result)) + &written;

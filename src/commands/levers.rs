@@ -7,11 +7,11 @@ use crate::layout;
 use crate::setup::Setup;
 use crate::setup::finger::FingerRequest;
 use crate::setup::request::SetupRequest;
+use crate::studies::summary::levers_json;
 use analysis::levers::{LeverAnalysis, Levers};
 use insertion::space::Design;
 use insertion::surrogate::Prediction;
 use report::levers as output;
-use serde::Serialize;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
@@ -33,21 +33,11 @@ pub struct Request {
     pub svg: Option<PathBuf>,
 }
 
-/// Sensitivities of the window of a finger, with a summary sentence.
-#[derive(Serialize)]
-pub struct LeverReport {
-    sentence: String,
-    /// The levers.
-    #[serde(flatten)]
-    pub levers: Levers,
-}
-
 impl command::Request for Request {
-    type Response = LeverReport;
     const PROGRESS: bool = true;
 
     /// Measures the levers, and for comparison the softest and the stiffest infill of the space.
-    fn run(&self, context: &Context<'_>) -> Result<Output<LeverReport>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let _busy = context.busy("measuring the levers");
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
@@ -55,8 +45,7 @@ impl command::Request for Request {
         let finger = (&chosen.design, given);
         let levers = levers(&setup, finger, None, context.stop)?;
         let (svg, text) = (output::svg(&levers)?, layout::wrapped(&output::text(&levers)));
-        let value = LeverReport { sentence: levers.sentence(), levers };
-        Output::new(text, value).drawn(svg, self.svg.as_ref())
+        Output::new(text, levers_json(&levers)).drawn(svg, self.svg.as_ref())
     }
 }
 

@@ -1,6 +1,6 @@
 //! `optimize man`: the manual page.
 
-use crate::command::{self, Text};
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::manual;
@@ -27,10 +27,9 @@ pub enum Format {
 }
 
 impl command::Request for Request {
-    type Response = String;
     const JSON: bool = false;
 
-    fn run(&self, context: &Context<'_>) -> Result<Text, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let program = context.program()?;
         let text = match self.format {
             Format::Man => {

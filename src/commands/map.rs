@@ -52,10 +52,9 @@ pub struct Mapped {
 }
 
 impl command::Request for Request {
-    type Response = Mapped;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Output<Mapped>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let stop = context.stop;
         let _busy = context.busy("tracing the map");
         let setup = self.setup.setup()?;

@@ -67,10 +67,9 @@ pub struct Advised {
 }
 
 impl command::Request for Request {
-    type Response = Advised;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Output<Advised>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         context.begin(self.calibration.simulations() as f64 * cost::SIMULATION);
         if self.bench.setup.tasks.len() > 1 {
             return Err(Failure::usage("give one --task"));

@@ -24,9 +24,7 @@ pub struct Written {
 }
 
 impl command::Request for Request {
-    type Response = Written;
-
-    fn run(&self, context: &Context<'_>) -> Result<Output<Written>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let record = rewrite(&self.dir)?;
         let warnings = record.remarks();
         warnings.iter().for_each(|warning| context.note(&format!("warning: {warning}")));

@@ -7,7 +7,6 @@ use crate::setup::Setup;
 use crate::setup::run::RunRequest;
 use crate::studies::open::OpenStudy;
 use crate::studies::output;
-use serde_json::Value;
 use std::path::PathBuf;
 use study::Study;
 
@@ -26,10 +25,9 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    type Response = Value;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         output::run(self.open()?, context, self.verbose)
     }
 }

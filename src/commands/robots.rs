@@ -5,7 +5,7 @@ use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout::{lines, wrapped};
 use crate::setup::robots::{CellRobot, robots};
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// List the shipped robots with the cells that they represent, and an example of a robot file
 #[derive(Debug, clap::Args)]
@@ -13,10 +13,7 @@ use serde_json::{Value, json};
 pub struct Request {}
 
 impl command::Request for Request {
-    /// Shipped robots, and an example of a robot file.
-    type Response = Value;
-
-    fn run(&self, _context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         let (robots, own_file) = (robots()?, include_str!("robot.toml"));
         let list: String = robots.iter().map(text).collect();
         let text = format!(

@@ -11,11 +11,8 @@ use insertion::evaluation::template::DesignError;
 use parameters::plan::saltelli::Sample;
 use rayon::prelude::*;
 use report::sensitivity::{self as shown, Factor, SensitivityResult};
-use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-const SAMPLES: RangeInclusive<i64> = 4..=10_000;
 
 /// Rank the inputs by their share of the variance: design, task, cell
 #[derive(Debug, Clone, clap::Args)]
@@ -35,7 +32,7 @@ pub struct Request {
     #[arg(long, value_name = "NAME", default_value = "typical")]
     pub uncertainty: String,
     /// Rows of the sample; the number of evaluations is this times (inputs + 2)
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(SAMPLES))]
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(4..=10_000))]
     pub samples: u32,
     /// Seed of the sample
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -46,12 +43,10 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    /// Shares of the objective's variance.
-    type Response = SensitivityResult;
     const PROGRESS: bool = true;
 
     /// Simulates the sample and ranks the inputs.
-    fn run(&self, context: &Context<'_>) -> Result<Output<SensitivityResult>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let _busy = context.busy("simulating the sample");
         let found = self.found(context.stop)?;
         let svg = shown::svg(&found)?;

@@ -9,7 +9,7 @@ use crate::setup::printed::finger_file;
 use input::Check;
 use parameters::numbers::{self, DENSITY, DIRECTION};
 use report::stiffness as shown;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Show the stiffness model and its leave-one-out errors
@@ -36,10 +36,7 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    /// The prediction if an infill is given, else the fitted model.
-    type Response = Value;
-
-    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let given = self.infill != InfillRequest::default();
         let infill = given.then(|| self.infill.required()).transpose()?;
         if let Some([density, direction]) = infill {

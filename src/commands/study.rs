@@ -19,20 +19,13 @@ use insertion::evaluation::cell::Priors;
 use insertion::evaluation::objective::{
     Aggregate, AggregateKind, Bound, Constraint, Measure, Objectives,
 };
-use serde_json::Value;
 use std::ffi::OsStr;
-use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use study::{
     Confirmation, INDIFFERENCES_MM, LARGEST_BATCH, LARGEST_BUDGET, Study, StudyConfig, has_begun,
     read_config, study_name,
 };
 
-/// Range of seeds, limited by the integers of TOML.
-const SEEDS: RangeInclusive<u64> = 0..=i64::MAX as u64;
-const BUDGETS: RangeInclusive<u64> = 1..=LARGEST_BUDGET;
-const POLISHES: RangeInclusive<u64> = 0..=LARGEST_BUDGET;
-const BATCHES: RangeInclusive<u64> = 1..=LARGEST_BATCH;
 const DEFAULT_BATCH: u64 = 4;
 /// Default budget of a study that cannot stop early.
 const DEFAULT_BUDGET: u64 = 200;
@@ -51,12 +44,12 @@ pub struct Request {
     pub setup: SetupRequest,
     /// Total number of evaluations; to continue, run the same command with a larger one [default: until no
     /// design is expected to gain 0.3 mm, at most 500; 200 for other optimizers and objectives]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(BUDGETS))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=LARGEST_BUDGET))]
     pub budget: Option<u64>,
     /// Up to N further evaluations by Nelder-Mead from the best design; the budget of such a study cannot be
     /// raised
     #[arg(long, value_name = "N", num_args = 0..=1, default_value_t = 0, default_missing_value = "20",
-          allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(POLISHES))]
+          allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=LARGEST_BUDGET))]
     pub polish: u64,
     /// Smallest relevant difference of ranges, mm: designs that lose less count as ties
     #[arg(long, value_name = "MM", default_value_t = INDIFFERENCE_MM, allow_negative_numbers = true)]
@@ -91,13 +84,14 @@ pub struct Request {
     #[arg(long, value_name = "W,W..", value_delimiter = ',', allow_negative_numbers = true)]
     pub weights: Vec<f64>,
     /// Seed; the same seed gives the same study
+    // Limited by the integers of TOML.
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0,
-          value_parser = clap::value_parser!(u64).range(SEEDS))]
+          value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
     pub seed: u64,
     /// Number of designs per batch; part of the study, unlike --threads [default: unchanged if the study
     /// continues; otherwise 4, or with --executor the number of its workers]
     #[arg(long, value_name = "N", allow_negative_numbers = true,
-          value_parser = clap::value_parser!(u64).range(BATCHES))]
+          value_parser = clap::value_parser!(u64).range(1..=LARGEST_BATCH))]
     pub batch: Option<u64>,
     /// Propose a new design after each result, so that no worker waits for the slowest of a batch; the
     /// journal then depends on the order of the results
@@ -119,10 +113,9 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    type Response = Value;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         output::run(self.open(None)?, context, self.verbose)
     }
 }

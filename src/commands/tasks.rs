@@ -18,10 +18,7 @@ pub struct Request {}
 type Entry = (Value, String);
 
 impl command::Request for Request {
-    /// Shipped files by kind.
-    type Response = Value;
-
-    fn run(&self, _context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         let (tasks, task_lines): (Vec<Value>, String) =
             TASKS.iter().chain(COMMERCIAL).map(task).collect::<Result<_, Failure>>()?;
         let (spaces, space_lines): (Vec<Value>, String) =

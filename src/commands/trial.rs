@@ -13,7 +13,7 @@ use crate::setup::words::{parse_at_least_0, parse_number};
 use calibration::identify::curves::STEP_S;
 use calibration::identify::log::of_samples;
 use input::units::MM;
-use insertion::evaluation::{OffsetStep, grid_mm};
+use insertion::evaluation::grid_mm;
 use insertion::outcome::Outcome;
 use insertion::trial::{Course, Grasp, Probe, Sample, Trial, picture};
 use report::answer::lines;
@@ -97,9 +97,19 @@ pub struct Done {
 }
 
 impl command::Request for Request {
-    type Response = Done;
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
+        let done = self.done(context)?;
+        let written = layout::wrote(self.svg.iter().chain(&self.log).chain(self.film.files()));
+        Ok(Output::new(done.text() + &written, done))
+    }
+}
 
-    fn run(&self, context: &Context<'_>) -> Result<Output<Done>, Failure> {
+impl Request {
+    /// Simulates the trial and writes its files.
+    ///
+    /// # Errors
+    /// If an input cannot be used, a file cannot be written, or the run is cancelled.
+    pub fn done(&self, context: &Context<'_>) -> Result<Done, Failure> {
         let (stop, offset_mm) = (context.stop, self.offset_mm);
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
@@ -107,8 +117,7 @@ impl command::Request for Request {
         let offset = offset_mm * MM;
         let taught = setup.evaluator.taught(specimen, stop).map_err(Failure::input)?;
         let rig = setup.evaluator.rig(specimen, taught, 1.0).map_err(Failure::input)?;
-        let filmed = self.film.record(&*rig, specimen, offset_mm, stop)?;
-        let (filmed, page) = filmed.map_or((None, None), |(filmed, page)| (Some(filmed), page));
+        let (filmed, page) = self.film.record(&*rig, specimen, offset_mm, stop)?;
         let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
         let (trial, samples) = match (self.every_s, filmed) {
             _ if self.probe => {
@@ -144,22 +153,20 @@ impl command::Request for Request {
             }
             counts
         });
-        let written = layout::wrote(self.svg.iter().chain(&self.log).chain(self.film.files()));
         let series = self.every_s.map(|_| series(&samples));
         let taught_start_mm = taught.map(grid_mm);
-        let value = Done { chosen, offset_mm, trial, taught_start_mm, repeats, series, page };
-        Ok(Output::new(value.text(taught) + &written, value))
+        Ok(Done { chosen, offset_mm, trial, taught_start_mm, repeats, series, page })
     }
 }
 
 impl Done {
-    fn text(&self, taught: Option<OffsetStep>) -> String {
+    fn text(&self) -> String {
         // `repeats       18 inserted, 2 failed: jammed`.
         let repeats = self.repeats.as_ref().map_or(String::new(), |counts| {
             let counts = counts.iter().map(|(outcome, count)| format!("{count} {outcome}"));
             format!("repeats       {}\n", counts.collect::<Vec<_>>().join(", "))
         });
-        let start = layout::lines(lines::taught(taught));
+        let start = layout::lines(lines::taught(self.taught_start_mm));
         format!("{}{start}{}{repeats}", self.chosen.text(), text(&self.trial))
     }
 }

@@ -124,23 +124,19 @@ pub fn parts(
     Ok(Parts { triangles, unit, finding })
 }
 
-/// Reads the bodies of a file; returns them, and whether the file is STEP, which is converted to mm.
+/// Reads the bodies of a file; returns them, and whether the file is STEP, which the extra `step` of the Python package
+/// converts to meshes in mm, within 0.01 mm.
 fn bodies(path: &Path, file: &str, context: &Context<'_>) -> Result<(Vec<Body>, bool), Failure> {
     let unreadable =
         |error: std::io::Error| Failure::in_file(file, format!("cannot read the mesh: {error}"));
     let opened = std::fs::File::open(path).map_err(unreadable)?;
     let bytes = input::files::read_up_to(opened, LARGEST_FILE).map_err(unreadable)?;
     if is_step(&bytes, &path.display().to_string()) {
-        return Ok((step_bodies(path, file, context)?, true));
+        let (found, warnings) = STEP.read(path, file).map_err(Failure::input)?;
+        warnings.iter().for_each(|warning| context.note(warning));
+        return Ok((read(&found, &format!("{file}.obj")).map_err(Failure::input)?, true));
     }
     Ok((read(&bytes, file).map_err(Failure::input)?, false))
-}
-
-/// Reads the bodies of a STEP file, mm, meshed with a tolerance of 0.01 mm, by the extra `step` of the Python package.
-fn step_bodies(path: &Path, file: &str, context: &Context<'_>) -> Result<Vec<Body>, Failure> {
-    let (found, warnings) = STEP.read(path, file).map_err(Failure::input)?;
-    warnings.iter().for_each(|warning| context.note(warning));
-    read(&found, &format!("{file}.obj")).map_err(Failure::input)
 }
 
 /// Returns the plug, which can be withdrawn, and the socket of an assembly, and the names of the plug's bodies.
@@ -175,8 +171,7 @@ fn split(
 
 /// Formats names of bodies.
 fn quoted(names: &[String]) -> String {
-    let shown: Vec<_> = names.iter().take(MAX_LISTED).map(|name| format!("`{name}`")).collect();
-    shown.join(", ") + &more(names.len())
+    joined(names.iter().map(|name| format!("`{name}`")))
 }
 
 /// Formats names and sizes of bodies.
@@ -185,11 +180,12 @@ fn listed(bodies: &[Body], metres: f64) -> String {
         let side = |axis| width(extent(body.triangles.iter().flatten(), axis)) * metres / MM;
         format!("`{}` ({:.1} x {:.1} x {:.1} mm)", body.name, side(0), side(1), side(2))
     };
-    let shown: Vec<_> = bodies.iter().take(MAX_LISTED).map(size).collect();
-    shown.join(", ") + &more(bodies.len())
+    joined(bodies.iter().map(size))
 }
 
-fn more(count: usize) -> String {
-    let more = count.saturating_sub(MAX_LISTED);
-    if more > 0 { format!(" and {more} more") } else { String::new() }
+/// Joins the first items of a list by commas, with the number of the others.
+fn joined(items: impl ExactSizeIterator<Item = String>) -> String {
+    let more = items.len().saturating_sub(MAX_LISTED);
+    let shown = items.take(MAX_LISTED).collect::<Vec<_>>().join(", ");
+    if more > 0 { format!("{shown} and {more} more") } else { shown }
 }

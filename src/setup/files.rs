@@ -33,10 +33,7 @@ impl Fingers {
 
     /// Returns the source from which the fingers of designs are made.
     pub fn finger_source(&self) -> FingerSource {
-        match self.source {
-            None => FingerSource::Paper,
-            Some(_) => self.computed(),
-        }
+        self.source.as_ref().map_or(FingerSource::Paper, |_| self.computed())
     }
 
     /// Returns fingers computed from the ribs of the file.

@@ -25,24 +25,25 @@ pub struct FilmRequest {
 
 impl FilmRequest {
     /// Records the trial at this offset and writes the requested outputs; returns the recording, and the page if it
-    /// was requested. `None` if no output was requested.
+    /// was requested; `None` twice if no output was requested.
     pub(crate) fn record(
         &self,
         rig: &dyn Rig,
         specimen: &Specimen,
         offset_mm: f64,
         stop: &AtomicBool,
-    ) -> Result<Option<(Recording, Option<String>)>, Failure> {
+    ) -> Result<(Option<Recording>, Option<String>), Failure> {
         if self.record.is_none() && self.plot.is_none() && !self.page {
-            return Ok(None);
+            return Ok((None, None));
         }
         let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
         let recording = rig.record(grasp, offset_mm * input::units::MM).ok_or_else(|| {
             Failure::usage("--record and --plot need an engine that simulates: --engine direct")
         })?;
         not_stopped(stop)?;
-        let label = start_label(offset_mm);
-        let film = film(&label, specimen, &recording);
+        let label = &start_label(offset_mm);
+        let (task, pad) = (&specimen.task, &specimen.finger.pad);
+        let film = Film { label, task, pad, recording: &recording };
         let page = || replay::page(&format!("{}, {label}", specimen.task.name), &[film]);
         if let Some(file) = &self.record {
             let content = match &*extension(file) {
@@ -55,7 +56,7 @@ impl FilmRequest {
             write_file(file, &replay::curve_svg(&film)?)?;
         }
         let page = self.page.then(page);
-        Ok(Some((recording, page)))
+        Ok((Some(recording), page))
     }
 
     /// Returns the files of the requested outputs.
@@ -76,15 +77,6 @@ fn recordable(text: &str) -> Result<PathBuf, String> {
 /// Returns the extension of a file, in lower case.
 pub(crate) fn extension(file: &Path) -> String {
     file.extension().unwrap_or_default().to_string_lossy().to_lowercase()
-}
-
-/// Returns the film of a recorded trial.
-pub(crate) fn film<'a>(
-    label: &'a str,
-    specimen: &'a Specimen,
-    recording: &'a Recording,
-) -> Film<'a> {
-    Film { label, task: &specimen.task, pad: &specimen.finger.pad, recording }
 }
 
 /// Returns the label of a start.

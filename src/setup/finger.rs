@@ -125,7 +125,7 @@ impl FingerRequest {
         }
         let set = self.settings(setup)?;
         design.0.extend(set.0.clone());
-        let stiffness = self.given_stiffness();
+        let stiffness = self.stiffness_compliance.zip(self.stiffness_assembly);
         let given = stiffness.is_some();
         let stiffness = match stiffness {
             Some(_) if evaluator.fingers.kind() == FingerModelKind::Computed => {
@@ -134,7 +134,9 @@ impl FingerRequest {
                      --finger-model computed takes --density and --direction only",
                 ));
             }
-            Some(given) => given,
+            Some((compliance, assembly)) => {
+                Prediction::exact(compliance * N_PER_MM, assembly * N_PER_MM)
+            }
             None => {
                 self.infill.required()?;
                 evaluator.predict(&design).map_err(Failure::input)?
@@ -150,12 +152,6 @@ impl FingerRequest {
             set,
             given,
         })
-    }
-
-    /// Returns the given stiffness.
-    fn given_stiffness(&self) -> Option<Prediction> {
-        let (compliance, assembly) = self.stiffness_compliance.zip(self.stiffness_assembly)?;
-        Some(Prediction::exact(compliance * N_PER_MM, assembly * N_PER_MM))
     }
 
     /// Returns the settings without the infill; keys of the space must lie within its bounds.

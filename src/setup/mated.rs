@@ -1,7 +1,10 @@
 //! Task of a plug and a socket whose files may use different frames, by their mated pose.
 
+use super::bodies::Parts;
+use crate::commands::task::import::Request;
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
+use clap::ValueEnum;
 use connector::body::{extent, width};
 use connector::mating::{Mate, MatingResult, assembled, mates};
 use connector::mesh::axes::{Along, Jaws, Unit, value};
@@ -18,28 +21,6 @@ use study::write_file;
 const MAX_SHOWN: usize = 4;
 /// Names of the bodies of an [`Interference`].
 const BODIES: [&str; 2] = ["plug", "socket"];
-
-/// Options of the task of a mated pair.
-pub struct MateOptions<'a> {
-    /// Name of the task.
-    pub name: &'a str,
-    /// Unit of the files.
-    pub unit: Option<Unit>,
-    /// Whether the files contain plug and socket in their mated pose.
-    pub assembled: bool,
-    /// Direction of insertion in the file of the socket.
-    pub along: Option<Along>,
-    /// Axis of that file along which the jaws close.
-    pub jaws: Option<Jaws>,
-    /// Task whose friction and grasp force are taken.
-    pub like: Option<&'a Task>,
-    /// Handle on the plug: size in x, between the jaws, length, m.
-    pub handle: Option<[f64; 3]>,
-    /// Depth to be reached in a through hole, m.
-    pub depth: Option<f64>,
-    /// File for a picture of the place where the convex parts deviate from the drawing.
-    pub closeup: &'a Path,
-}
 
 /// Task of a mated pair.
 pub struct MatedTask {
@@ -72,29 +53,32 @@ pub fn left_out_json(of: &Interference) -> Value {
     })
 }
 
-/// Returns the task of a plug and a socket, whose mated pose is found from their shapes.
+/// Returns the task of a plug and a socket, whose mated pose is found from their shapes; friction and grasp force are
+/// those of the task `like`, if there is one.
 ///
 /// # Errors
 /// If no unit fits, or if the plug fits into the socket in no pose.
 pub fn mated(
     files: Files,
-    triangles: [&[Triangle]; 2],
-    options: &MateOptions,
+    parts: Parts,
+    request: &Request,
+    like: Option<&Task>,
     context: &Context<'_>,
 ) -> Result<MatedTask, Failure> {
-    let (unit, why) = unit(files, triangles, options.unit)?;
+    let triangles = parts.triangles.each_ref().map(Vec::as_slice);
+    let (unit, why) = unit(files, triangles, parts.unit)?;
     let mut findings: Vec<(&str, String)> = why.map(|why| ("unit", why)).into_iter().collect();
     let drawn: [Vec<Triangle>; 2] =
         triangles.map(|of| of.iter().map(|t| t.map(|p| p * unit.metres())).collect());
     let (plug, plug_inward) = oriented(files[0], triangles[0], unit, context);
     let (socket, socket_inward) = oriented(files[1], triangles[1], unit, context);
-    if !options.assembled {
+    if request.parts.assembly.is_none() {
         context.note("looking for the mated pose");
     }
-    let mate = mate(files, [&plug, &socket], options, context, &mut findings)?;
+    let mate = mate(files, [&plug, &socket], request, context, &mut findings)?;
     let out = mate.out.into_inner();
     let across = mate.across.map(|way| way.into_inner());
-    let chosen = |way: &&Vector3<f64>| options.jaws.is_none_or(|jaws| jaws == jaws_of(way));
+    let chosen = |way: &&Vector3<f64>| request.jaws.is_none_or(|jaws| jaws == jaws_of(way));
     let jaws: Vec<Vector3<f64>> = across.iter().filter(chosen).copied().collect();
     if jaws.is_empty() {
         let [a, b] = across.map(|way| value(jaws_of(&way)));
@@ -102,7 +86,7 @@ pub fn mated(
             format!("--jaws: the plug goes in along {}; give {a} or {b}", value(along_of(&-out)));
         return Err(Failure::usage(problem));
     }
-    let depth = options.depth.unwrap_or(mate.engaged_m);
+    let depth = request.depth_mm.map_or(mate.engaged_m, |depth_mm| depth_mm * MM);
     let above = out * (mate.engaged_m - depth);
     let moved = |of: &[Triangle]| -> Vec<Triangle> {
         of.iter().map(|t| t.map(|p| mate.pose * p + above)).collect()
@@ -117,10 +101,13 @@ pub fn mated(
         engaged: depth,
         play: [0, 1].map(|i| (across[i], mate.play_m[i])),
     };
-    let made = task(&pair, options.name, options.like, options.handle);
-    check_drawing(files, &made, options.closeup)?;
+    // In x, between the jaws, length.
+    let handle = request.body.map(|size| [size.height, size.width, size.length]);
+    let made = task(&pair, &request.name(), like, handle);
+    check_drawing(files, &made, &request.out().with_extension("place.svg"))?;
     let long = width(extent(raised.iter().flatten(), out.iamax()));
-    findings.extend(described(&mate, long, &made, options));
+    findings.extend(described(&mate, [long, depth], &made, handle));
+    findings.extend(parts.finding);
     let play = [1, 0].map(|i| {
         let along = |way: &Vector3<f64>| (way.dot(&made.jaws).abs() > 0.7) == (i == 0);
         across.iter().position(along).map_or(0.0, |at| mate.play_m[at])
@@ -174,28 +161,28 @@ fn check_drawing(files: Files, made: &PairTask, closeup: &Path) -> Result<(), Fa
     Err(Failure::in_file(file, problem))
 }
 
-/// Returns findings about the mate of a plug of this length along the axis, m, and the grip.
+/// Returns findings about the mate of a plug of this length along the axis, with this depth to be reached, m, and the
+/// grip.
 fn described(
     mate: &Mate,
-    long: f64,
+    lengths: [f64; 2],
     made: &PairTask,
-    options: &MateOptions,
+    handle: Option<[f64; 3]>,
 ) -> Vec<(&'static str, String)> {
     let depth = mate.engaged_m / MM;
-    let long = long / MM;
+    let [long, needed] = lengths.map(|length| length / MM);
     let engaged = match depth <= long {
         true => format!("{depth:.1} mm of the plug's {long:.1} mm engage"),
         false => format!("the plug of {long:.1} mm goes {depth:.1} mm along a post"),
     };
     let mut findings = vec![("mate", engaged)];
     if mate.through {
-        let depth = options.depth.unwrap_or(mate.engaged_m) / MM;
         findings
-            .push(("through", format!("nothing stops the plug: {depth:.2} mm must be reached")));
+            .push(("through", format!("nothing stops the plug: {needed:.2} mm must be reached")));
     }
     if made.handle {
-        let [x, y, z] = options.handle.unwrap_or(HANDLE).map(|side| side / MM);
-        let why = match options.handle {
+        let [x, y, z] = handle.unwrap_or(HANDLE).map(|side| side / MM);
+        let why = match handle {
             Some(_) => "",
             None => "the pads find no two opposite faces below a top face for their roofs: ",
         };
@@ -212,7 +199,7 @@ fn described(
         );
         findings.push(("grip", text));
     }
-    if let (Some(faces), None) = (made.rejected, options.handle) {
+    if let (Some(faces), None) = (made.rejected, handle) {
         let (apart, reason) = (faces.apart / MM, faces.reason);
         findings.push(("not held", format!("larger faces {apart:.1} mm apart: {reason}")));
     }
@@ -246,11 +233,11 @@ fn described(
 fn mate(
     files: Files,
     [plug, socket]: [&[Triangle]; 2],
-    options: &MateOptions,
+    request: &Request,
     context: &Context<'_>,
     findings: &mut Vec<(&'static str, String)>,
 ) -> Result<Mate, Failure> {
-    let found = match options.assembled {
+    let found = match request.parts.assembly.is_some() {
         true => assembled(plug, socket).map(|mate| MatingResult { mates: vec![mate], copies: 1 }),
         false => mates(plug, socket, context.stop),
     };
@@ -261,7 +248,7 @@ fn mate(
     if copies > 1 {
         findings.push(("symmetry", format!("the first of {copies} equal poses is taken")));
     }
-    if let Some(along) = options.along {
+    if let Some(along) = request.insert_along {
         all.retain(|mate| along_of(&-mate.out.into_inner()) == along);
     }
     if let [_, _, ..] = all[..] {
@@ -273,7 +260,7 @@ fn mate(
         findings.push(("poses", format!("the first of these is taken: {list}")));
     }
     all.into_iter().next().ok_or_else(|| {
-        let along = options.along.map(value).unwrap_or_default();
+        let along = request.insert_along.map(value).unwrap_or_default();
         nowhere(format!("the plug does not go in along {along}"))
     })
 }
@@ -340,10 +327,6 @@ fn jaws_of(way: &Vector3<f64>) -> Jaws {
 }
 
 fn along_of(way: &Vector3<f64>) -> Along {
-    let axes = [
-        [Along::PlusX, Along::MinusX],
-        [Along::PlusY, Along::MinusY],
-        [Along::PlusZ, Along::MinusZ],
-    ];
-    axes[way.iamax()][usize::from(way[way.iamax()] < 0.0)]
+    let axis = way.iamax();
+    Along::value_variants()[2 * axis + usize::from(way[axis] < 0.0)]
 }

@@ -73,13 +73,11 @@ impl Setup {
             .ok_or_else(|| bad_config(format!("unknown engine `{engine}`")))?;
         let task = |number| input(inputs, &task_role(number)).ok();
         let tasks: Vec<Source> = (1..).map_while(task).collect();
-        let [space, robot, stiffness] =
-            [SPACE, ROBOT, STIFFNESS_DATA].map(|role| input(inputs, role));
-        let space = space?;
+        let space = input(inputs, SPACE)?;
         let parsed = Space::parse(&space.text, &space.file).map_err(Failure::input)?;
         // Missing unless fingers are computed.
         let fingers = Fingers::parse(input(inputs, FINGER).ok())?;
-        let others = [&robot?, &stiffness?];
+        let others = [&input(inputs, ROBOT)?, &input(inputs, STIFFNESS_DATA)?];
         let mut setup = Setup::new(&tasks, (&space, parsed), others, fingers, engine)?;
         if let Ok(source) = input(inputs, CELL) {
             let found = cell(&source)?;

@@ -9,17 +9,14 @@ use insertion::evaluation::robustness::repeat::{Band, Bands, Repeats};
 use insertion::trial::Grasp;
 use serde::{Serialize, Serializer};
 use serde_json::json;
-use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
-
-const REPEATS: RangeInclusive<i64> = 2..=10_000;
 
 /// Number and seed of repeats with small variations of friction, start and step.
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub struct RepeatRequest {
     /// Repeat N times with friction varied within 10 %, start within 0.02 mm, and half the step in every other one
     #[arg(id = "repeat", long = "repeat", value_name = "N", required = false,
-          value_parser = clap::value_parser!(u32).range(REPEATS))]
+          value_parser = clap::value_parser!(u32).range(2..=10_000))]
     pub count: u32,
     /// Seed of the repeats
     #[arg(

@@ -142,13 +142,7 @@ impl SetupRequest {
         if self.tasks.is_empty() {
             return Err(Failure::usage("give --task"));
         }
-        let task = |task: &TaskSource| {
-            let source = task.read()?;
-            Ok(match self.start {
-                Some(rule) => with_start_rule(source, rule),
-                None => source,
-            })
-        };
+        let task = |task: &TaskSource| Ok(with_start_rule(task.read()?, self.start));
         let tasks = self.tasks.iter().map(task).collect::<Result<Vec<_>, Failure>>()?;
         let space = find("space", SPACES, &self.space)?;
         let cell = self.cell.as_deref().map(cell).transpose()?;
@@ -225,8 +219,10 @@ fn cell(path: &str) -> Result<(Source, Priors), Failure> {
     Ok((source, cell))
 }
 
-/// Sets the rule for the nominal start in a task file. Passes invalid input through; the parser reports it.
-fn with_start_rule(task: Source, rule: StartRule) -> Source {
+/// Sets the rule for the nominal start in a task file, if one is given. Passes invalid input through; the parser reports
+/// it.
+fn with_start_rule(task: Source, rule: Option<StartRule>) -> Source {
+    let Some(rule) = rule else { return task };
     let Ok(mut table) = task.text.parse::<toml::Table>() else { return task };
     let Some(toml::Value::Table(strategy)) = table.get_mut("strategy") else { return task };
     strategy.insert("start".to_owned(), value(rule).into());

@@ -5,16 +5,11 @@ use crate::failure::Failure;
 use calibration::bench::Settings;
 use input::shipped::nearest;
 use rayon::ThreadPool;
-use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use study::{AnalysisSettings, BenchEffort, Cache};
 
 const CACHE: &str = "results/.cache";
-const THREADS: RangeInclusive<i64> = 1..=1024;
-/// Accepted numbers of simulations per task for an emulator.
-const SIMULATIONS: RangeInclusive<i64> = 16..=4096;
-const SAMPLES: RangeInclusive<i64> = 20..=20_000;
 /// Default effort of a bench prediction.
 const EFFORT: BenchEffort = BenchEffort { simulations: 200, samples: 300 };
 /// Sweeps before the first sample, and between two samples.
@@ -46,10 +41,10 @@ impl CacheRequest {
 pub struct EffortRequest {
     /// Simulations per task for the emulator of a bench prediction; one in eight measures its error
     /// [default: 200, or as in the study]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(SIMULATIONS))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(16..=4096))]
     pub simulations: Option<u16>,
     /// Samples of the posterior of a bench prediction [default: 300, or as in the study]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(SAMPLES))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(20..=20_000))]
     pub samples: Option<u16>,
 }
 
@@ -73,7 +68,7 @@ pub(crate) fn settings(effort: BenchEffort, seed: u64, stop: &AtomicBool) -> Set
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct RunRequest {
     /// Threads [default: one per processor]; changes no result
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(THREADS))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Cache of evaluations.
     #[command(flatten)]

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::setup::Setup;
-use crate::setup::film::{film, start_label};
+use crate::setup::film::start_label;
 use insertion::evaluation::template::Template;
 use insertion::evaluation::tolerance::offset;
 use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
@@ -11,7 +11,7 @@ use insertion::space::Design;
 use insertion::trial::{Grasp, picture};
 use rayon::ThreadPool;
 use report::answer::Answer;
-use report::replay::{self, ENDS, pair_file, poster_file};
+use report::replay::{self, ENDS, Film, pair_file, poster_file};
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -85,8 +85,10 @@ fn pair(
         pool.install(|| rayon::join(|| record(last), || record(last + outward)));
     let Some((inside, outside)) = inside.zip(outside) else { return Ok(None) };
     let labels = [last, last + outward].map(|step| start_label(grid_mm(step)));
-    let films = [film(&labels[0], specimen, &inside), film(&labels[1], specimen, &outside)];
+    let (task, pad) = (&specimen.task, &specimen.finger.pad);
+    let film = |label, recording| Film { label, task, pad, recording };
+    let films = [film(&*labels[0], &inside), film(&*labels[1], &outside)];
     let title = format!("{}: the {end} end of the window", specimen.task.name);
-    let poster = picture::final_state(&specimen.task, &specimen.finger.pad, &outside.trial);
+    let poster = picture::final_state(task, pad, &outside.trial);
     Ok(Some([replay::page(&title, &films), poster]))
 }

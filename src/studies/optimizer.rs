@@ -19,16 +19,13 @@ pub(crate) fn optimizer(
     let trials = setup.uncertainty.as_ref().map_or(1, |errors| errors.success.trials);
     let measures = config.objective.measures().iter();
     let floors: Vec<f64> = measures.map(|measure| measure.rounding(trials)).collect();
-    let search = ask_tell::build_for(kind, grid.clone(), config.seed, &floors);
+    let mut search = ask_tell::build_for(kind, grid.clone(), config.seed, &floors);
     let points: Vec<GridPoint> =
         task_point(setup).into_iter().chain(measured_points(setup)).collect();
-    let search = match points {
-        points if kind == OptimizerKind::Gp && !points.is_empty() => {
-            let before = setup.space.parameters.len() + 1;
-            Box::new(SeededOptimizer::new(search, before, points)) as Box<dyn Optimizer + Send>
-        }
-        _ => search,
-    };
+    if kind == OptimizerKind::Gp && !points.is_empty() {
+        let before = setup.space.parameters.len() + 1;
+        search = Box::new(SeededOptimizer::new(search, before, points));
+    }
     Ok(match config.polish {
         0 => search,
         polish => Box::new(Polished::new(search, grid, config.budget, polish)),

@@ -8,14 +8,13 @@ use crate::context::Context;
 use crate::failure::Failure;
 use report::PostAnalysis;
 use report::answer::Answer;
-use serde_json::Value;
 
 /// Runs the study to its end, shows its progress, and prints its answer before the analyses of the
 /// recommended finger.
 ///
 /// # Errors
 /// If a design cannot be simulated or a file cannot be written; if it is cancelled meanwhile.
-pub fn run(open: OpenStudy, context: &Context<'_>, all: bool) -> Result<Output<Value>, Failure> {
+pub fn run(open: OpenStudy, context: &Context<'_>, all: bool) -> Result<Output, Failure> {
     context.stop_on_interrupt(open.study.dir())?;
     open.warn(context)?;
     context.begin_study(&open.study);

@@ -2,6 +2,7 @@
 
 use super::open::Ended;
 use super::recommended::{advice, recommendation, values};
+use analysis::levers::Levers;
 use report::PostAnalysis;
 use report::answer::Answer;
 use serde_json::{Value, json};
@@ -27,11 +28,6 @@ pub fn summary(ended: &Ended, answer: &Answer, analyses: &PostAnalysis) -> Value
             "hypervolume": front.volume.hypervolume,
             "hypervolume_reference": values(&config.objective, reference),
         })
-    });
-    let levers = analyses.levers.as_ref().map(|levers| {
-        let mut json = json!({"sentence": levers.sentence()});
-        extend(&mut json, json!(levers));
-        json
     });
     let maps = analyses.maps.iter().map(|map| {
         json!({
@@ -76,12 +72,19 @@ pub fn summary(ended: &Ended, answer: &Answer, analyses: &PostAnalysis) -> Value
     extend(&mut json, front.unwrap_or_default());
     let rest = json!({
         "answer": advice(answer, &ended.dir),
-        "levers": levers,
+        "levers": analyses.levers.as_ref().map(levers_json),
         "maps": maps.collect::<Vec<_>>(),
         "robots": analyses.robots,
         "study": ended.dir,
     });
     extend(&mut json, rest);
+    json
+}
+
+/// Returns levers with their summary sentence.
+pub(crate) fn levers_json(levers: &Levers) -> Value {
+    let mut json = json!({"sentence": levers.sentence()});
+    extend(&mut json, json!(levers));
     json
 }
 

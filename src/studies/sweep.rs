@@ -60,15 +60,8 @@ impl Sweep {
                 evaluator.measure(&chosen.specimen, plan).map_err(Failure::input)?;
             let wall_s = clock.elapsed().as_secs_f64();
             let limit_n = limit_n(setup, &chosen);
-            Ok(Evaluated {
-                chosen,
-                evaluation,
-                bands: None,
-                computed: None,
-                wall_s,
-                measured: Vec::new(),
-                limit_n,
-            })
+            let (bands, computed, measured) = (None, None, Vec::new());
+            Ok(Evaluated { chosen, evaluation, bands, computed, wall_s, measured, limit_n })
         };
         let found: Vec<_> = self.pool.install(|| fingers.par_iter().map(one).collect());
         not_stopped(stop)?;

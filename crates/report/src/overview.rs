@@ -27,7 +27,8 @@ pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
                 (explained(&expectation(answer))) ". "
                 @if answer.verdict.finger().is_some() { span.trust { (answer.trust.label()) } }
             }
-            @if let Some((_, text)) = widest(answer) {
+            // With measurements the finger is chosen by predictions for the bench.
+            @if let Some((_, text)) = lines::widest(answer).filter(|_| answer.record.on_bench.is_none()) {
                 p.muted { "Widest in the search: " (explained(&text)) "." }
             }
             @for (_, text) in lines::caveats(answer) { p.warn { (text) } }
@@ -43,13 +44,6 @@ pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
         }
         div.next { h2 { "Next step: " (why) } pre { code { (command) } } }
     }
-}
-
-/// Returns the reason why the design of the widest window in the search is not recommended; `None` with bench
-/// predictions, by which the finger is then chosen.
-fn widest(answer: &Answer) -> Option<lines::Line> {
-    let found = answer.recommended.as_ref().filter(|_| answer.record.on_bench.is_none())?;
-    lines::widest(answer, found)
 }
 
 /// Colours of the drawing and the colours of the page that replace them.

@@ -167,7 +167,7 @@ fn the_widest_searched_design_is_named_beside_another_recommended_one() {
         let found = answer.recommended.as_mut().unwrap();
         found.design = study.evaluations.iter().find(|other| other.index != best.0).unwrap();
         answer.verdict = crate::answer::Verdict::NoneFeasible;
-        let line = crate::answer::lines::widest(&answer, answer.recommended.as_ref().unwrap());
+        let line = crate::answer::lines::widest(&answer);
         line.map(|(_, text)| text)
     };
     assert_eq!(widest(&study), None, "not repeated");

@@ -46,9 +46,8 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
     let head: Vec<&str> = head.into_iter().chain(any_measured.then_some("measured")).collect();
     Some(html! {
         p { (lines::tied(answer, found).1) "." }
-        @if let Some((name, text)) = lines::safe(found) { p { b { (name) } " " (text) "." } }
-        @for (name, text) in [("infill", lines::spread(answer)), ("edge", lines::edge(answer))] {
-            @if let Some(text) = text { p { b { (name) } " " (text) "." } }
+        @for (name, text) in lines::safe(found).into_iter().chain(lines::spread(answer)).chain(lines::edge(answer)) {
+            p { b { (name) } " " (text) "." }
         }
         @if designs.len() > 1 { (stacked(&head, designs.iter().map(row))) }
         @if found.designs.len() > LISTED { p.muted { (found.designs.len() - LISTED) " more in the explorer." } }

@@ -79,13 +79,14 @@ pub struct Written {
 }
 
 impl command::Request for Request {
-    type Response = Written;
-
-    fn run(&self, _context: &Context<'_>) -> Result<Output<Written>, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         let geometry = self.finger.geometry()?;
         let (out, title) = (&self.out, export::title(&geometry));
         let mut beside = Vec::new();
         let failure = |error: &dyn Display| Failure::running(format!("{}: {error}", out.display()));
+        let project = |bytes: Result<Vec<u8>, PrismError>| -> Result<(), Failure> {
+            Ok(write_file(out, &bytes.map_err(|error| failure(&error))?)?)
+        };
         match self.format()? {
             Format::Stl => {
                 write_file(out, &closed(Prism::finger(&geometry), &geometry)?.stl(&title))?
@@ -94,14 +95,8 @@ impl command::Request for Request {
                 let bytes = closed(Prism::finger(&geometry), &geometry)?.three_mf(&title);
                 write_file(out, &bytes.map_err(|error| failure(&error))?)?;
             }
-            Format::PrusaslicerProject => {
-                let project = slicer::prusaslicer_project(&geometry);
-                write_file(out, &project.map_err(|error| failure(&error))?)?;
-            }
-            Format::OrcaslicerProject => {
-                let project = slicer::orcaslicer_project(&geometry);
-                write_file(out, &project.map_err(|error| failure(&error))?)?;
-            }
+            Format::PrusaslicerProject => project(slicer::prusaslicer_project(&geometry))?,
+            Format::OrcaslicerProject => project(slicer::orcaslicer_project(&geometry))?,
             Format::Svg => write_file(out, &profile::svg(&geometry, &title))?,
             Format::Dxf => write_file(out, &profile::dxf(&geometry, &title))?,
             Format::Sheet => write_file(out, &draw_sheet(&self.finger, &geometry, out)?)?,

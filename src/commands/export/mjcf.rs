@@ -42,9 +42,7 @@ pub struct ExportedScene {
 }
 
 impl command::Request for Request {
-    type Response = ExportedScene;
-
-    fn run(&self, _context: &Context<'_>) -> Result<Output<ExportedScene>, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         let setup = self.setup.setup()?;
         let Specimen { task, finger, .. } = self.finger.choose(&setup)?.specimen;
         let robot = &setup.evaluator.robot;

@@ -10,7 +10,7 @@ use calibration::experiments::{
 };
 use input::files::{LARGEST_INPUT, LockedFile};
 use input::shipped::{COMMERCIAL, MEASUREMENTS, TASKS};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::io::{self, BufRead};
 use std::path::Path;
 
@@ -87,10 +87,7 @@ fn setting(text: &str) -> Result<(String, String), String> {
 }
 
 impl command::Request for Request {
-    /// File with the added line, and its number of lines.
-    type Response = Value;
-
-    fn run(&self, _context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         let (file, mut cells) = (&self.file, self.cells());
         if MEASUREMENTS.iter().any(|shipped| shipped.name == file) {
             let problem = format!("`{file}` is shipped; give the path of your own file");

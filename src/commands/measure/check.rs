@@ -5,9 +5,8 @@ use crate::context::Context;
 use crate::failure::Failure;
 use crate::setup::measured;
 use crate::setup::task::read_task;
-use serde::Serialize;
+use calibration::experiments::Experiment;
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
 
 /// Check a measurement file: implausible units, windows without the start, duplicate lines, unknown tasks
 #[derive(Debug, clap::Args)]
@@ -24,51 +23,40 @@ pub struct Request {
     pub rows: bool,
 }
 
-/// Numbers of lines of one task.
-#[derive(Debug, Default, Serialize)]
-struct TaskLines {
-    task: String,
-    lines: usize,
-    ranges: usize,
-    /// Number of lower bounds of a range.
-    bounds: usize,
-    /// Number of measured windows.
-    repeats: u32,
-}
-
 impl command::Request for Request {
-    /// Contents of the checked file.
-    type Response = Value;
-
-    fn run(&self, _context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         let own = self.task.iter().map(|name| Ok(read_task(name)?.task.name));
         let own = own.collect::<Result<Vec<_>, Failure>>()?;
         let own: Vec<&str> = own.iter().map(String::as_str).collect();
         let found = measured::read(&self.file, &own)?;
-        let mut tasks: BTreeMap<&str, TaskLines> = BTreeMap::new();
-        for line in &found {
-            let known = tasks.entry(&line.task).or_default();
-            known.task.clone_from(&line.task);
-            known.lines += 1;
-            known.repeats += line.repeats;
-            match line.extent() {
-                Some((_, false)) => known.ranges += 1,
-                Some((_, true)) => known.bounds += 1,
-                None => (),
-            }
-        }
-        let tasks: Vec<TaskLines> = tasks.into_values().collect();
-        let line = |TaskLines { task, lines, ranges, bounds, .. }: &TaskLines| {
-            let rest = lines - ranges - bounds;
-            format!(
+        let of_task = |of: &[Experiment]| {
+            let count = |least: Option<bool>| {
+                of.iter().filter(|line| line.extent().map(|(_, least)| least) == least).count()
+            };
+            let [ranges, bounds, rest] = [Some(false), Some(true), None].map(count);
+            let task = &of[0].task;
+            let text = format!(
                 "{task:<8} {}, {}, {rest:>3} not measurable\n",
-                input::counted(*ranges, "range"),
-                input::counted(*bounds, "lower bound")
-            )
+                input::counted(ranges, "range"),
+                input::counted(bounds, "lower bound")
+            );
+            let counts = json!({
+                "task": task,
+                "lines": of.len(),
+                "ranges": ranges,
+                // Lower bounds of a range.
+                "bounds": bounds,
+                // Measured windows.
+                "repeats": of.iter().map(|line| line.repeats).sum::<u32>(),
+            });
+            (counts, text)
         };
+        // The lines are sorted by task.
+        let tasks = found.chunk_by(|a, b| a.task == b.task).map(of_task);
+        let (tasks, text): (Vec<Value>, String) = tasks.unzip();
         let (file, lines) = (&self.file, found.len());
-        let text = tasks.iter().map(line).collect::<String>()
-            + &format!("{file}: {}, no problems found\n", input::counted(lines, "line"));
+        let text =
+            text + &format!("{file}: {}, no problems found\n", input::counted(lines, "line"));
         let mut value = json!({"file": file, "lines": lines, "tasks": tasks});
         if self.rows {
             // By the columns of the file; null where a column is empty.

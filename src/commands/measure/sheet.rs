@@ -1,6 +1,6 @@
 //! `optimize measure sheet`: sheet for measuring windows by hand.
 
-use crate::command::{self, Output, Request as _};
+use crate::command::{self, Output};
 use crate::commands::trial;
 use crate::context::Context;
 use crate::failure::Failure;
@@ -12,7 +12,7 @@ use insertion::evaluation::evaluator::Specimen;
 use insertion::outcome::Outcome;
 use insertion::trial::picture;
 use report::sheet::{self, Picture};
-use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use study::write_file;
 
@@ -52,17 +52,9 @@ fn infill(text: &str) -> Result<(f64, f64), String> {
     parse_pair(text).ok_or_else(|| "must be PERCENT,DEG, for example 10,0".to_owned())
 }
 
-/// Sheet that was written.
-#[derive(Serialize)]
-pub struct Written {
-    out: PathBuf,
-}
-
 impl command::Request for Request {
-    type Response = Written;
-
     /// Simulates insertions of the fingers and writes the sheet.
-    fn run(&self, context: &Context<'_>) -> Result<Output<Written>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let task = read_task(&self.task)?.task;
         let shifts = (1..=FARTHEST_MM).flat_map(|mm| [f64::from(mm), -f64::from(mm)]);
         let outward = shifts.filter_map(|shift| Some((self.fingers.first()?, shift)));
@@ -75,7 +67,7 @@ impl command::Request for Request {
         pictures.dedup_by_key(|picture| picture.outcome);
         write_file(&self.out, &sheet::page(&task, &self.task, &self.fingers, &pictures))?;
         let text = format!("wrote {}\n", self.out.display());
-        Ok(Output::new(text, Written { out: self.out.clone() }))
+        Ok(Output::new(text, BTreeMap::from([("out", &self.out)])))
     }
 }
 
@@ -90,7 +82,7 @@ fn draw(
     let finger = FingerRequest { infill, set, ..FingerRequest::default() };
     let setup = SetupRequest { tasks, ..SetupRequest::default() };
     let trial = trial::Request { setup, finger, offset_mm, ..trial::Request::default() };
-    let done = trial.run(context)?.value;
+    let done = trial.done(context)?;
     let Specimen { task, finger, .. } = done.chosen.specimen;
     let svg = picture::final_state(&task, &finger.pad, &done.trial);
     Ok(Picture { outcome: done.trial.outcome, svg, task: task.name })

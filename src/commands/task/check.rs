@@ -9,7 +9,6 @@ use crate::setup::task::TaskCheck;
 use crate::setup::tune::{brief, chosen, tried};
 use connector::picture;
 use insertion::trial::engine::EngineKind;
-use serde_json::Value;
 use std::convert::Infallible;
 use std::path::PathBuf;
 use study::write_file;
@@ -38,10 +37,7 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    /// Problems of a task, and a strategy that repairs a nominal start that fails.
-    type Response = Value;
-
-    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let checked = TaskCheck::of(self.file.read()?, &self.robot, self.engine, context.stop)?;
         let drawing = checked.task.as_ref().map(picture::svg);
         let written = self.svg.as_ref().zip(drawing.as_ref());

@@ -4,9 +4,9 @@ use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
 use crate::failure::{Failure, within};
 use crate::layout::wrapped;
-use crate::setup::bodies::{Parts, PartsRequest, parts};
+use crate::setup::bodies::{PartsRequest, parts};
 use crate::setup::files::check_is_new;
-use crate::setup::mated::{MateOptions, MatedTask, left_out_json, mated};
+use crate::setup::mated::{MatedTask, left_out_json, mated};
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
@@ -21,17 +21,11 @@ use input::units::MM;
 use insertion::task::parts_file::{PartsFile, joined, sha256};
 use insertion::trial::engine::EngineKind;
 use serde_json::{Value, json};
-use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use study::write_file;
 
-const RESOLUTIONS: RangeInclusive<i64> = 8..=1000;
-/// Default of --resolution.
-const RESOLUTION: u32 = 64;
 /// Largest number of parts that are written into the task file itself.
 const MAX_INLINE: usize = 30;
-/// Depths to be reached in a through hole, mm.
-const DEPTHS_MM: RangeInclusive<f64> = 0.4..=300.0;
 
 /// Create a task from meshes of a plug and its socket (STL, OBJ or STEP)
 ///
@@ -62,8 +56,8 @@ pub struct Request {
     #[arg(long, value_name = "T")]
     pub like: Option<String>,
     /// Without effect, since the parts are exact within 0.02 mm
-    #[arg(long, hide = true, value_name = "N", default_value_t = RESOLUTION,
-          value_parser = clap::value_parser!(u32).range(RESOLUTIONS))]
+    #[arg(long, hide = true, value_name = "N", default_value_t = 64,
+          value_parser = clap::value_parser!(u32).range(8..=1000))]
     pub resolution: u32,
     /// Handle on a plug that has no faces to grip, width between the jaws x height x length in mm
     /// [default: 10x12x20 where one is needed]
@@ -84,13 +78,10 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    /// The parts of the imported task, the strategies that were tried, and the check of its file.
-    type Response = Value;
-
-    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let stop = context.stop;
         let out = &self.out();
-        within("--depth-mm", self.depth_mm, &DEPTHS_MM)?;
+        within("--depth-mm", self.depth_mm, &(0.4..=300.0))?;
         check_is_new(out)?;
         let mut mated = self.mated_task(context)?;
         not_stopped(stop)?;
@@ -114,7 +105,7 @@ impl Request {
     }
 
     /// Returns the file to write.
-    fn out(&self) -> PathBuf {
+    pub(crate) fn out(&self) -> PathBuf {
         self.out.clone().unwrap_or_else(|| {
             let stem = self.parts.plug().file_stem().unwrap_or_default();
             PathBuf::from(stem).with_extension("toml")
@@ -144,28 +135,17 @@ impl Request {
     /// Returns the task made of the shapes in their mated pose.
     fn mated_task(&self, context: &Context<'_>) -> Result<MatedTask, Failure> {
         let like = self.like.as_deref().map(read_task).transpose()?;
-        let files = self.names();
-        let Parts { triangles: [plug, socket], unit, finding } =
-            parts([&files[0], &files[1]], &self.parts, context)?;
+        let names = self.names();
+        let files = names.each_ref().map(String::as_str);
+        let parts = parts(files, &self.parts, context)?;
         not_stopped(context.stop)?;
-        let options = MateOptions {
-            name: &self.name(),
-            unit,
-            assembled: self.parts.assembly.is_some(),
-            along: self.insert_along,
-            jaws: self.jaws,
-            like: like.as_ref().map(|like| &like.task),
-            handle: self.body.map(|size| [size.height, size.width, size.length]),
-            depth: self.depth_mm.map(|depth| depth * MM),
-            closeup: &self.out().with_extension("place.svg"),
-        };
-        let mut task = mated([&files[0], &files[1]], [&plug, &socket], &options, context)?;
-        task.made.task.description = description(&files);
-        task.findings.extend(finding);
+        let mut task = mated(files, parts, self, like.as_ref().map(|like| &like.task), context)?;
+        task.made.task.description = description(&names);
         Ok(task)
     }
 
-    fn name(&self) -> String {
+    /// Returns the name of the task.
+    pub(crate) fn name(&self) -> String {
         self.out().file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
     }
 

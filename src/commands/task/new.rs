@@ -16,13 +16,13 @@ use input::shipped::Source;
 use input::units::MM;
 use insertion::trial::engine::EngineKind;
 use parameters::numbers;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use study::write_file;
 
 /// Default dimensions: a USB-C plug.
-const EXAMPLE: [&str; 3] = ["8.25x2.4x6.65", "0.1", "12x6.5x20"];
+const EXAMPLE: (&str, f64, &str) = ("8.25x2.4x6.65", 0.1, "12x6.5x20");
 
 /// Create a commented task file from a few dimensions, or from another task
 ///
@@ -57,13 +57,15 @@ pub struct Request {
     #[arg(long, value_name = "MM", requires = "pins", value_parser = Pins::length_mm)]
     pub pin_length_mm: Option<f64>,
     /// Clearance, mm: opening minus plug in x and y, both sides together
-    #[arg(long, value_name = "C", requires = "tip", value_parser = clearance)]
+    #[arg(long, value_name = "C", requires = "tip",
+          value_parser = |text: &str| parse_mm(text, "connector.clearance_mm", 0.1))]
     pub clearance: Option<f64>,
     /// Key of a cylindrical plug, on its side across the jaws (+x): width x height beyond the cylinder, mm
     #[arg(long, value_name = "WxH", requires = "round", conflicts_with = "plug", value_parser = draft::key)]
     pub key: Option<[f64; 2]>,
     /// Chamfer of 45 degrees at the opening of a plug with flat sides, mm
-    #[arg(long, value_name = "MM", requires = "plug", conflicts_with = "round", value_parser = chamfer)]
+    #[arg(long, value_name = "MM", requires = "plug", conflicts_with = "round",
+          value_parser = |text: &str| parse_mm(text, "task.socket.part.x.edges.0.chamfer_mm", 0.3))]
     pub chamfer_mm: Option<f64>,
     /// Body that the fingers hold, above the plug: width x height x length, mm [default: the plug itself; for
     /// pins their block, 20 mm long]
@@ -81,10 +83,7 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    /// The written file, with its strategy and its check.
-    type Response = Value;
-
-    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let like = self.like.as_deref().map(read_task).transpose()?;
         let (text, tuned) = match (&like, tip(self)) {
             (Some(like), None) => (copy(&self.name, like), None),
@@ -173,11 +172,10 @@ fn dimensions(request: &Request) -> Result<(Dimensions, bool), Failure> {
         let (key, chamfer) = (request.key, request.chamfer_mm.map(|mm| mm * MM));
         return Ok((Dimensions { plug, pins, round, clearance, key, chamfer, body }, false));
     }
-    let [plug, clearance, body] = EXAMPLE;
+    let (plug, clearance_mm, body) = EXAMPLE;
     let parse = |text: &str| text.parse::<Size>().map_err(Failure::usage);
-    let clearance = self::clearance(clearance).map_err(Failure::usage)?;
     let (plug, body) = (parse(plug)?, Some(parse(body)?));
-    let (clearance, key, chamfer) = (clearance * MM, None, None);
+    let (clearance, key, chamfer) = (clearance_mm * MM, None, None);
     Ok((Dimensions { plug, pins: None, round: false, clearance, key, chamfer, body }, true))
 }
 
@@ -208,13 +206,8 @@ fn copy(name: &str, TaskFile { source, task }: &TaskFile) -> String {
     lines.collect::<Vec<_>>().join("\n") + "\n"
 }
 
-fn clearance(text: &str) -> Result<f64, String> {
-    let mm = text.parse::<f64>().map_err(|_| "give a number of mm, as in 0.1".to_owned())?;
-    numbers::problem("connector.clearance_mm", mm).map_or(Ok(mm), |problem| Err(problem + " mm"))
-}
-
-fn chamfer(text: &str) -> Result<f64, String> {
-    let mm = text.parse::<f64>().map_err(|_| "give a number of mm, as in 0.3".to_owned())?;
-    let problem = numbers::problem("task.socket.part.x.edges.0.chamfer_mm", mm);
-    problem.map_or(Ok(mm), |problem| Err(problem + " mm"))
+/// Parses a length, mm, within the bounds of the number `key`; `example` is for the error.
+fn parse_mm(text: &str, key: &str, example: f64) -> Result<f64, String> {
+    let mm = text.parse::<f64>().map_err(|_| format!("give a number of mm, as in {example}"))?;
+    numbers::problem(key, mm).map_or(Ok(mm), |problem| Err(problem + " mm"))
 }

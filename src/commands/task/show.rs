@@ -1,6 +1,6 @@
 //! `optimize task show`: prints a task file, or shows its parts in three dimensions.
 
-use crate::command::{self, Text};
+use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout::wrote;
@@ -27,10 +27,9 @@ pub struct Request {
 }
 
 impl command::Request for Request {
-    type Response = String;
     const JSON: bool = false;
 
-    fn run(&self, context: &Context<'_>) -> Result<Text, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let source = TaskSource::Named(self.name.clone()).read()?;
         let Some(file) = &self.html else { return Ok(source.text.into()) };
         let TaskFile { task, .. } = TaskFile::parse(source)?;

@@ -11,7 +11,7 @@ use crate::setup::task::TaskFile;
 use crate::setup::tune::{outcome, ranges, step_json, tried, turned_text};
 use crate::setup::words::parse_number;
 use connector::check::problems;
-use connector::tune::{Effort, MOST_WINDOWS, Stage, Step, Tuned, Tuner, tune};
+use connector::tune::{Candidate, Effort, MOST_WINDOWS, Stage, Step, Tuned, Tuner, tune};
 use connector::{picture, rewrite};
 use input::Place;
 use input::shipped::Source;
@@ -21,7 +21,6 @@ use insertion::finger::Finger;
 use insertion::robot::Robot;
 use insertion::task::parts_file::without_parts;
 use insertion::task::{Limits, Strategy, Task};
-use insertion::trial::Conditions;
 use insertion::trial::engine::EngineKind;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -65,14 +64,6 @@ pub struct Request {
     pub svg: Option<PathBuf>,
 }
 
-/// Windows of the fingers on the tuned task.
-struct TunedWindows {
-    /// The windows.
-    windows: Vec<Window>,
-    /// Largest force of the insertions, N.
-    force_n: f64,
-}
-
 /// Parses a finite number above 0.
 fn positive(text: &str) -> Result<f64, String> {
     parse_number(text, |value| value > 0.0 && value.is_finite(), "give a number above 0")
@@ -85,17 +76,15 @@ struct TunedTask<'a> {
     /// All strategies that were tried.
     tuned: Tuned,
     /// Windows of the fingers on the tuned task; `None` if no strategy inserts.
-    after: Option<TunedWindows>,
+    after: Option<Candidate>,
     /// The file that was written, if one was.
     written: Option<&'a Path>,
 }
 
 impl command::Request for Request {
-    /// The strategies that were tried, with the windows of the fingers before and after.
-    type Response = Value;
     const PROGRESS: bool = true;
 
-    fn run(&self, context: &Context<'_>) -> Result<Output<Value>, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let stop = context.stop;
         context.cancel_on_interrupt()?;
         context.begin(MOST_WINDOWS as f64);
@@ -164,16 +153,13 @@ impl Request {
         tuned: &Tuned,
         robot: &Robot,
         (target, stop): (Option<&Path>, &AtomicBool),
-    ) -> Result<TunedWindows, Failure> {
+    ) -> Result<Candidate, Failure> {
         let after = rewritten(file, tuned)?;
-        let tuner = self.tuner(&after.task, robot, stop);
-        let found = tuner.windows(&after.task.strategy, &tuner.fingers, Conditions::NOMINAL);
+        let found = self.tuner(&after.task, robot, stop).given(&after.task.strategy);
         not_stopped(stop)?;
         let found = found.map_err(Failure::input)?;
-        let force_n = found.iter().map(|found| found.force_n).fold(0.0, f64::max);
-        let windows = found.into_iter().map(|found| found.window).collect();
         self.save(file, &after, target)?;
-        Ok(TunedWindows { windows, force_n })
+        Ok(found)
     }
 
     /// Writes the drawing and, unless it is a dry run, the task.
@@ -224,13 +210,8 @@ fn rewritten(file: &TaskFile, tuned: &Tuned) -> Result<TaskFile, Failure> {
     TaskFile::parse(Source { file: source.file.clone(), text })
 }
 
-/// Returns a strategy with the windows of the fingers as JSON.
-fn strategy_json(
-    strategy: &Strategy,
-    windows: &[Window],
-    force_n: f64,
-    fingers: &[Finger],
-) -> Value {
+/// Returns a strategy with the windows of the fingers, measured when it was tried, as JSON.
+fn strategy_json(strategy: &Strategy, tried: &Candidate, fingers: &[Finger]) -> Value {
     let result = |(finger, window): (&Finger, &Window)| {
         json!({
             "compliance_n_per_mm": finger.compliance / N_PER_MM,
@@ -244,8 +225,8 @@ fn strategy_json(
         "start_mm": strategy.start.map(|at| (at / MM * 1e4).round() / 1e4),
         "tilt_deg": (strategy.tilt / DEG * 100.0).round() / 100.0,
         "push_speed_mm_per_s": push_speed_mm_per_s(strategy),
-        "largest_force_n": force_n,
-        "fingers": fingers.iter().zip(windows).map(result).collect::<Vec<_>>(),
+        "largest_force_n": tried.force_n,
+        "fingers": fingers.iter().zip(&tried.windows).map(result).collect::<Vec<_>>(),
     })
 }
 
@@ -257,9 +238,7 @@ fn push_speed_mm_per_s(strategy: &Strategy) -> f64 {
 fn json(TunedTask { tuner, tuned, after, written }: &TunedTask<'_>) -> Value {
     let Tuner { task, fingers, limits, .. } = tuner;
     let (best, first) = (tuned.best(), &tuned.steps[0].tried);
-    let state = |after: &TunedWindows| {
-        strategy_json(&best.tried.strategy, &after.windows, after.force_n, fingers)
-    };
+    let state = |after: &Candidate| strategy_json(&best.tried.strategy, after, fingers);
     json!({
         "schema_version": 1,
         "task": task.name,
@@ -269,7 +248,7 @@ fn json(TunedTask { tuner, tuned, after, written }: &TunedTask<'_>) -> Value {
             "speed_mm_per_s": limits.speed.map(|speed| speed / MM),
         },
         "windows": tuned.windows,
-        "before": strategy_json(&task.strategy, &first.windows, first.force_n, fingers),
+        "before": strategy_json(&task.strategy, first, fingers),
         "after": after.as_ref().map(state),
         "by": {"stage": best.stage, "what": best.change},
         "steps": tuned.steps.iter().map(step_json).collect::<Vec<_>>(),

@@ -6,7 +6,7 @@ use ask_tell::statistics::mean;
 use calibration::order::RankCorrelation;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::REPEATS;
-use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
+use insertion::evaluation::{Evaluation, grid_mm};
 use insertion::outcome::Outcome;
 use insertion::space::{Variable, label};
 use insertion::surrogate::Prediction;
@@ -27,8 +27,8 @@ pub fn brief(answer: &Answer) -> Vec<Line> {
     lines.extend(caveats(answer));
     if let Some(found) = simulated_finger(answer) {
         lines.extend(simulated(answer, found));
-        lines.extend(spread(answer).map(|text| line("infill", text)));
-        lines.extend(edge(answer).map(|text| line("edge", text)));
+        lines.extend(spread(answer));
+        lines.extend(edge(answer));
     }
     lines.extend(answer.front.iter().flat_map(|front| members(record, front)));
     lines.push(line("search", searched(answer)));
@@ -65,13 +65,14 @@ pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
     let limits = limits.map(|text| line("constraint", text));
     let tied = found.ties.iter().map(|ties| tied(answer, ties));
     let safe = found.ties.iter().filter_map(safe);
-    let why = widest(answer, found);
+    let why = widest(answer);
     found.tasks.iter().flat_map(of_task).chain(limits).chain(why).chain(tied).chain(safe).collect()
 }
 
 /// Returns the best design of the search with its value in the repeats, if it was repeated and another design is
 /// recommended.
-pub fn widest(answer: &Answer, found: &Recommended) -> Option<Line> {
+pub fn widest(answer: &Answer) -> Option<Line> {
+    let found = answer.recommended.as_ref()?;
     let (measure, _) = found.objective.filter(|(measure, _)| measure.unit() == "mm")?;
     let named =
         [Some(found.design), answer.design_to_print()].map(|named| named.map(|named| named.index));
@@ -179,19 +180,19 @@ pub fn safe(ties: &Ties) -> Option<Line> {
 }
 
 /// Returns the interval of the range over the designs that insert, and the number of the others.
-pub fn spread(answer: &Answer) -> Option<String> {
+pub fn spread(answer: &Answer) -> Option<Line> {
     let (spread, of) = (interval(answer.spread_mm?), answer.designs);
     let failing = answer.record.current().iter().filter(|design| !design.inserts_on_all()).count();
     let others = match failing {
         0 => format!(" over {of} designs"),
         _ => format!("; {failing} of {of} designs fail at the start"),
     };
-    Some(format!("changes the range from {spread}{others}"))
+    Some(line("infill", format!("changes the range from {spread}{others}")))
 }
 
 /// Returns the parameters of the finger to print that have the least or the largest value of the space; `None` if there
 /// are none, or if any finger will do.
-pub fn edge(answer: &Answer) -> Option<String> {
+pub fn edge(answer: &Answer) -> Option<Line> {
     let matters = !matches!(answer.verdict, Verdict::Any { .. });
     let design = answer.design_to_print().filter(|_| matters)?;
     let at = |parameter: &Variable| {
@@ -203,7 +204,7 @@ pub fn edge(answer: &Answer) -> Option<String> {
     };
     let free = answer.record.config.space.parameters.iter().filter(|p| p.low != p.high);
     let found: Vec<String> = free.filter_map(at).collect();
-    (!found.is_empty()).then(|| format!("{} of the space searched", found.join(", ")))
+    (!found.is_empty()).then(|| line("edge", format!("{} of the space searched", found.join(", "))))
 }
 
 /// Returns the details of the recommendation by simulation that [`brief`] omits.
@@ -370,8 +371,8 @@ fn tolerated(Evaluation { window, taught, .. }: &Evaluation) -> String {
     format!("{range} ({ends}{start})")
 }
 
-/// Returns the position of a taught start; `None` if it was not taught.
-pub fn taught(steps: Option<OffsetStep>) -> Option<Line> {
-    let mm = grid_mm(steps?);
+/// Returns the position of a taught start, mm; `None` if it was not taught.
+pub fn taught(mm: Option<f64>) -> Option<Line> {
+    let mm = mm?;
     Some(line("start", format!("taught: {mm:+.1} mm from that of the task file")))
 }

@@ -81,7 +81,8 @@ fn add_sensor_errors(log: &mut Log, cell: u64, number: u64) {
     let mut normal =
         |sd: f64| Vector3::from_fn(|_, _| sd * random.sample::<f64, _>(StandardNormal));
     let (bias, drift) = (normal(BIAS_N), normal(DRIFT_N));
-    let positions: Vec<Vector3<f64>> = log.samples.iter().map(|sample| sample.position).collect();
+    let positions: Vec<Vector3<f64>> =
+        log.samples.iter().map(|sample| sample.tcp.position).collect();
     let accelerations = rates(&rates(&positions));
     let last = (positions.len() - 1) as f64;
     for (i, LogSample { force, .. }) in log.samples.iter_mut().enumerate() {

@@ -80,16 +80,24 @@ impl Rule<'_> {
     }
 
     /// Returns the rank of a design with its firm windows.
-    pub fn firm_rank(&self, recorded: &Recorded, firm: &[FirmResult]) -> Rank {
+    fn firm_rank(&self, recorded: &Recorded, firm: &[FirmResult]) -> Rank {
         let windows = recorded.tasks.iter().zip(firm);
         let windows: Vec<Window> =
             windows.map(|(task, firm)| firm.narrowed(&task.window)).collect();
         self.rank(recorded, &windows)
     }
+
+    /// Returns the rank of a confirmed design by its firm windows and, if it was walked, its evaluation with the
+    /// windows of the walk.
+    pub fn confirmed(&self, before: &Recorded, row: &ConfirmedDesign) -> (Rank, Option<Recorded>) {
+        let Some(walk) = &row.walked else { return (self.firm_rank(before, &row.firm), None) };
+        let recorded = with_windows(self, before, &walk.tasks);
+        (self.firm_rank(&recorded, &walk.firm), Some(recorded))
+    }
 }
 
 /// Returns the evaluation with the windows of the walk; its results under drawn errors are unchanged.
-pub(super) fn with_windows(rule: &Rule, before: &Recorded, found: &[Evaluation]) -> Recorded {
+fn with_windows(rule: &Rule, before: &Recorded, found: &[Evaluation]) -> Recorded {
     let mut recorded = before.clone();
     for (task, walked) in recorded.tasks.iter_mut().zip(found) {
         let (success, robust) = (task.success.take(), task.robust.take());
@@ -117,16 +125,11 @@ pub(super) fn read(
     let (mut walked, mut firm_values) = (Vec::new(), BTreeMap::new());
     for row in file.map_or(Vec::new(), |file| file.designs) {
         let Some(before) = current.iter().find(|r| r.index == row.evaluation) else { continue };
-        let rank = match row.walked {
-            None => rule.firm_rank(before, &row.firm),
-            Some(Walk { tasks, firm, computed: by_ribs }) => {
-                let recorded = with_windows(rule, before, &tasks);
-                let rank = rule.firm_rank(&recorded, &firm);
-                walked.push((rank.clone(), Walked { recorded, firm, by_ribs }));
-                rank
-            }
-        };
+        let (rank, recorded) = rule.confirmed(before, &row);
         firm_values.insert(row.evaluation, rank.value().unwrap_or(0.0));
+        if let Some((recorded, Walk { firm, computed: by_ribs, .. })) = recorded.zip(row.walked) {
+            walked.push((rank, Walked { recorded, firm, by_ribs }));
+        }
     }
     walked.sort_by(|(a, _), (b, _)| rule.order(a, b));
     (walked.into_iter().map(|(_, walked)| walked).collect(), firm_values)

@@ -1,7 +1,7 @@
 //! Measurements that confirm the best designs of a study; see `confirmed.rs`.
 
 use super::cached_evaluator::CachedEvaluator;
-use super::confirmed::{ConfirmationFile, ConfirmedDesign, WALK_FILE, Walk, with_windows};
+use super::confirmed::{ConfirmationFile, ConfirmedDesign, WALK_FILE, Walk};
 use super::error::StudyError;
 use super::folder::{Study, write_analysis};
 use super::provenance::Provenance;
@@ -111,13 +111,8 @@ impl Confirmer<'_> {
         loop {
             let known = |(index, found): (usize, &Recorded)| {
                 let row = log.get(found)?;
-                let rank = match &row.walked {
-                    None => rule.firm_rank(found, &row.firm),
-                    Some(walk) => {
-                        rule.firm_rank(&with_windows(&rule, found, &walk.tasks), &walk.firm)
-                    }
-                };
-                let (value, is_final) = (rank.value().unwrap_or(0.0), row.walked.is_some());
+                let (rank, walked) = rule.confirmed(found, row);
+                let (value, is_final) = (rank.value().unwrap_or(0.0), walked.is_some());
                 Some(ask_tell::gp::Confirmed { index, value, is_final })
             };
             let confirmed: Vec<_> = current.iter().enumerate().filter_map(known).collect();

@@ -4,7 +4,7 @@ use ask_tell::statistics::median;
 use finray::FingerError;
 use input::shipped::STIFFNESS;
 use input::units::N_PER_MM;
-use input::{Fault, Place, Placed, UNCLOSED, unclosed_quote};
+use input::{InputError, Place, Placed, UNCLOSED, unclosed_quote};
 use parameters::numbers;
 
 /// Direction of a finger's stiffness.
@@ -68,7 +68,8 @@ impl Measurement {
         }
     }
 
-    pub(crate) fn infill(&self) -> Infill {
+    /// Returns density and direction of the infill.
+    pub fn infill(&self) -> Infill {
         [self.density_percent, self.direction_deg]
     }
 }
@@ -78,7 +79,7 @@ impl Measurement {
 pub enum SurrogateError {
     /// Invalid CSV, a header other than [`HEADER`], an invalid value, or a column in another unit.
     #[error(transparent)]
-    Fault(#[from] Fault),
+    Fault(#[from] InputError),
     /// No measured design.
     #[error("no measured design; give at least one")]
     Empty,

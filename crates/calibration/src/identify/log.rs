@@ -1,7 +1,7 @@
 //! The log of one attempt: commanded and measured TCP, and the force on the tool.
 
 use input::units::{DEG, MM};
-use input::{Fault, Place};
+use input::{InputError, Place};
 use insertion::outcome::Outcome;
 use insertion::space::Design;
 use insertion::trial::{Sample, Tcp};
@@ -64,7 +64,7 @@ impl Log {
     ///
     /// # Errors
     /// If there are too few or too many, a number is not finite, or time does not increase.
-    pub fn new(file: &str, samples: Vec<LogSample>) -> Result<Self, Fault> {
+    pub fn new(file: &str, samples: Vec<LogSample>) -> Result<Self, InputError> {
         let whole = |problem: String| Err(Place::file(file).fault(problem));
         if !(FEWEST..=MOST).contains(&samples.len()) {
             let count = samples.len();
@@ -130,7 +130,7 @@ impl LogSample {
 ///
 /// # Errors
 /// If the attempt was too short; see [`Log::new`].
-pub fn of_samples(file: &str, samples: &[Sample]) -> Result<Log, Fault> {
+pub fn of_samples(file: &str, samples: &[Sample]) -> Result<Log, InputError> {
     let start = samples.first().map_or(0.0, |sample| sample.time_s);
     let converted = |(i, sample): (usize, &Sample)| {
         let tilt = sample.tcp_tilt_deg * DEG;

@@ -6,7 +6,7 @@ use crate::experiments::line::LARGEST_FORCE_N;
 use ask_tell::statistics::median;
 use input::files;
 use input::units::{DEG, MM};
-use input::{Fault, Place, shown};
+use input::{InputError, Place, shown};
 use insertion::trial::Tcp;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -25,7 +25,7 @@ const SLOWEST_S: f64 = 0.5;
 ///
 /// # Errors
 /// If it cannot be read, or is longer than [`LARGEST_LOG`].
-pub fn text(path: &Path) -> Result<String, Fault> {
+pub fn text(path: &Path) -> Result<String, InputError> {
     let cannot =
         |error| Place::file(path.display().to_string()).fault(format!("cannot be read: {error}"));
     files::read_text(path, LARGEST_LOG).map_err(cannot)
@@ -37,7 +37,7 @@ pub fn text(path: &Path) -> Result<String, Fault> {
 /// # Errors
 /// If the header is unknown, a cell is invalid or looks like a value in another unit, or [`Log::new`] rejects the
 /// samples.
-pub fn parse(text: &str, file: &str, frame: Option<&Frame>) -> Result<Log, Fault> {
+pub fn parse(text: &str, file: &str, frame: Option<&Frame>) -> Result<Log, InputError> {
     let whole = |problem: String| Place::file(file).fault(problem);
     let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate();
     let ignored = |line: &str| line.trim().is_empty() || line.trim_start().starts_with('#');

@@ -42,9 +42,7 @@ pub fn write(
         let Specimen { task, finger: held, .. } = specimen;
         let rig = engine.rig(&task, &robot, &held, 1.0).map_err(Failure::input)?;
         let grasp = Grasp::of(&held);
-        let known = |one: &&FingerWindows| {
-            [one.finger.density_percent, one.finger.direction_deg] == [density, direction]
-        };
+        let known = |one: &&FingerWindows| one.finger.infill() == [density, direction];
         let [start, negative, positive] =
             windows.iter().find(known).map_or([0.0; 3], FingerWindows::starts_mm);
         let offsets = [None, Some(start), Some(negative + 0.2), Some(positive + 0.2)];

@@ -1,7 +1,7 @@
 //! Messages of a session.
 
 use super::parameter::Parameter;
-use crate::{OptimizerKind, StopReason};
+use crate::OptimizerKind;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -94,29 +94,13 @@ pub(super) struct PointResult {
     pub value: Option<f64>,
 }
 
-/// Point proposed in the answer to `ask`.
-#[derive(Serialize)]
-pub(super) struct NewPoint {
-    pub id: usize,
-    pub values: Map<String, Value>,
-}
-
 /// Best result so far.
-#[derive(Clone, Serialize)]
+#[derive(Serialize)]
 pub(super) struct Best {
     /// `None` for a point that was not proposed.
     pub id: Option<usize>,
     pub values: Map<String, Value>,
     pub value: f64,
-}
-
-/// Answer to `tell`.
-#[derive(Serialize)]
-pub(super) struct Summary {
-    /// Number of results in the message.
-    pub told: usize,
-    pub best: Option<Best>,
-    pub stop: Option<StopReason>,
 }
 
 #[derive(Deserialize)]

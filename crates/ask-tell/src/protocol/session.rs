@@ -1,11 +1,8 @@
 //! Ask-and-tell session with one optimizer.
 
-use super::message::{
-    Best, Direction, Line, MAX_LINE_BYTES, NewPoint, PointResult, Problem, Summary, check_count,
-};
+use super::message::{Best, Direction, Line, MAX_LINE_BYTES, PointResult, Problem, check_count};
 use super::parameter::Parameter;
 use crate::{Grid, GridPoint, Observation, Optimizer, build};
-use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -61,7 +58,7 @@ impl Session {
                     .to_owned());
             }
             (Line::Ask(n), Some(search)) => json!({"asked": search.ask(n)?}),
-            (Line::Tell(results), Some(search)) => json!(search.tell(results)?),
+            (Line::Tell(results), Some(search)) => search.tell(results)?,
         };
         Ok(Some(answer.to_string()))
     }
@@ -90,7 +87,7 @@ impl Search {
         })
     }
 
-    fn ask(&mut self, n: usize) -> Result<impl Serialize, String> {
+    fn ask(&mut self, n: usize) -> Result<Value, String> {
         check_count("ask", n, self.parameters.len())?;
         if n > 0 && self.asked == self.proposals.len() {
             self.check_complete()?;
@@ -99,8 +96,8 @@ impl Search {
         }
         let end = self.proposals.len().min(self.asked + n);
         let ids = std::mem::replace(&mut self.asked, end)..end;
-        let asked = |id: usize| NewPoint { id, values: self.values(&self.proposals[id].point) };
-        Ok(ids.map(asked).collect::<Vec<_>>())
+        let asked = |id: usize| json!({"id": id, "values": self.values(&self.proposals[id].point)});
+        Ok(ids.map(asked).collect())
     }
 
     fn check_complete(&self) -> Result<(), String> {
@@ -117,7 +114,7 @@ impl Search {
         }
     }
 
-    fn tell(&mut self, results: Vec<PointResult>) -> Result<Summary, String> {
+    fn tell(&mut self, results: Vec<PointResult>) -> Result<Value, String> {
         let told = results.len();
         let (mut points, mut checked) = (BTreeSet::new(), Vec::new());
         for PointResult { id, values, value } in results {
@@ -139,7 +136,7 @@ impl Search {
                 }
             }
         }
-        Ok(Summary { told, stop: self.learn(), best: self.best.clone() })
+        Ok(json!({"told": told, "best": self.best, "stop": self.learn()}))
     }
 
     /// Passes the results to the optimizer once the batch is complete. Returns the stop reason if

@@ -4,7 +4,7 @@
 
 use super::simulation::Simulation;
 use ask_tell::SobolSequence;
-use ask_tell::gp::{FitEffort, Gp, fit_until};
+use ask_tell::gp::{FitEffort, Gp, fit};
 use ask_tell::process::distance2;
 use ask_tell::statistics::Moments;
 use insertion::evaluation::template::DesignError;
@@ -106,7 +106,7 @@ impl Emulator {
         let y: Vec<f64> = fitted.iter().map(|point| (point.range_mm - mean_mm) / sd_mm).collect();
         let floor = (ROUNDING_MM / sd_mm).powi(2);
         let effort = FitEffort { evaluations: EVALUATIONS, restarts: true };
-        let process = Gp::new(&x, &y, floor, &fit_until(&x, &y, floor, None, (effort, stopped)))?;
+        let process = Gp::new(&x, &y, floor, &fit(&x, &y, floor, None, (effort, stopped)))?;
         let mut emulator = Emulator {
             process,
             mean_mm,

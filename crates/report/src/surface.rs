@@ -35,7 +35,8 @@ pub(super) fn model(record: &StudyRecord) -> Option<impl Fn(&[f64]) -> (f64, f64
     }
     let values: Vec<f64> = y.iter().map(|y| (y - mean) / sd).collect();
     let floor = (NOISE / sd).powi(2);
-    let theta = fit(&x, &values, floor, None, FitEffort::for_observations(x.len()));
+    let effort = FitEffort::for_observations(x.len());
+    let theta = fit(&x, &values, floor, None, (effort, &|| false));
     let gp = Gp::new(&x, &values, floor, &theta)?;
     Some(move |x: &[f64]| {
         let (scaled, variance) = gp.predict(x);

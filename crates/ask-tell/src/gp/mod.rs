@@ -25,7 +25,7 @@ mod stopping;
 mod trained;
 mod training;
 mod warp;
-pub use fit::{FitEffort, fit, fit_until};
+pub use fit::{FitEffort, fit};
 pub use hyperparameters::Hyperparameters;
 pub use model::Gp;
 pub use optimizer::DEFAULT_NOISE_FLOOR;

@@ -116,7 +116,7 @@ impl<'a> StoppingCriterion<'a> {
         let fitted = spread(x.len(), MAX_FITTED).map(|i| (x[i].clone(), data.values[i]));
         let (points, values): (Vec<Vec<f64>>, Vec<f64>) = fitted.unzip();
         let effort = FitEffort::for_observations(values.len());
-        let theta = fit(&points, &values, data.noise_floor, None, effort);
+        let theta = fit(&points, &values, data.noise_floor, None, (effort, &|| false));
         Some(SearchModel { gp: Gp::new(&x, &data.values, data.noise_floor, &theta)?, data })
     }
 

@@ -156,7 +156,7 @@ impl Training {
         let x: Vec<Vec<f64>> = subset.iter().map(|&i| x[i].clone()).collect();
         let of = |(i, data): (usize, &Standardised)| {
             let y: Vec<f64> = subset.iter().map(|&i| data.values[i]).collect();
-            fit(&x, &y, data.noise_floor, self.thetas.get(i), effort)
+            fit(&x, &y, data.noise_floor, self.thetas.get(i), (effort, &|| false))
         };
         data.iter().enumerate().map(of).collect()
     }

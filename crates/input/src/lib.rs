@@ -140,9 +140,12 @@ pub fn bad_text(table: &toml::Table) -> Option<(String, &'static str)> {
     })
 }
 
-/// Returns the first line of a CSV text, counted from 1, with an unclosed quoted cell, which would include the
-/// lines below. Lines that begin with `#` are comments.
-pub fn unclosed_quote(text: &str) -> Option<usize> {
+/// Checks that each line of a CSV text closes its quoted cells; an unclosed one would include the lines below. Lines
+/// that begin with `#` are comments; `file` is named in the error.
+///
+/// # Errors
+/// The first line with an unclosed cell.
+pub fn check_quotes(text: &str, file: &str) -> Result<(), InputError> {
     let runs_over = |line: &str| {
         // A quotation mark opens a cell only at its beginning; twice, it stands for itself.
         let (mut quoted, mut opens) = (false, true);
@@ -155,11 +158,12 @@ pub fn unclosed_quote(text: &str) -> Option<usize> {
         }
         quoted
     };
-    text.lines().position(|line| !line.starts_with('#') && runs_over(line)).map(|at| at + 1)
+    let unclosed = text.lines().position(|line| !line.starts_with('#') && runs_over(line));
+    unclosed.map_or(Ok(()), |at| Err(Place::file(file).line(at + 1).fault(UNCLOSED)))
 }
 
-/// Error message for [`unclosed_quote`].
-pub const UNCLOSED: &str = "a quoted cell runs over the end of the line; close its quotation mark \
+/// Error message for [`check_quotes`].
+const UNCLOSED: &str = "a quoted cell runs over the end of the line; close its quotation mark \
                             there (a mark within a quoted cell is written twice)";
 
 /// Formats a number for messages, very large and very small ones with an exponent.

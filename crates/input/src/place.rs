@@ -70,7 +70,7 @@ impl Place {
 
 impl Placed for InputError {
     fn place(&self) -> Place {
-        self.place.clone()
+        self.place.clone().key(self.place.key.as_deref().unwrap_or_default())
     }
 }
 

@@ -9,7 +9,7 @@ mod tests;
 
 use csv::StringRecord;
 use input::shipped::nearest;
-use input::{InputError, Place, Placed, UNCLOSED, unclosed_quote};
+use input::{InputError, Place, Placed, check_quotes};
 use insertion::outcome::FailureClass;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use line::{Cells, is_of_space};
@@ -186,9 +186,7 @@ pub(crate) fn rows<T>(
         return Ok(Vec::new());
     }
     let at = |place: Option<&csv::Position>| Place::file(file).line(line_at(&text, place) as usize);
-    if let Some(line) = unclosed_quote(&text) {
-        return Err(Place::file(file).line(line).fault(UNCLOSED).into());
-    }
+    check_quotes(&text, file)?;
     let mut reader = reader().trim(csv::Trim::All).from_reader(text.as_bytes());
     let wrong = |error: csv::Error| at(error.position()).fault(syntax(&error));
     let header = reader.headers().map_err(wrong)?.clone();

@@ -3,8 +3,7 @@
 use calibration::experiments::Problems;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use finray::FingerError;
-use input::shipped::ShippedError;
-use input::{Fault, InputError, Place, Placed};
+use input::{InputError, Place, Placed, RequestError};
 use insertion::evaluation::template::DesignError;
 use insertion::stiffness::SurrogateError;
 use report::ReportError;
@@ -26,27 +25,14 @@ pub enum Failure {
     Interrupted(Option<String>),
 }
 
-/// Bad usage; the text may begin with the option.
-#[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-struct Usage(String);
-
-impl Placed for Usage {
-    fn place(&self) -> Place {
-        Place::option(&self.0)
-    }
-}
-
 fn place<E: Placed + Error + 'static>(error: &(dyn Error + 'static)) -> Option<Place> {
     error.downcast_ref::<E>().map(Placed::place)
 }
 
 /// Functions that return the place of an error, one for each type of error that has one.
-const PLACED: [fn(&(dyn Error + 'static)) -> Option<Place>; 9] = [
-    place::<Usage>,
-    place::<Fault>,
+const PLACED: [fn(&(dyn Error + 'static)) -> Option<Place>; 7] = [
     place::<InputError>,
-    place::<ShippedError>,
+    place::<RequestError>,
     place::<Problems>,
     place::<SurrogateError>,
     place::<FingerError>,
@@ -78,9 +64,10 @@ impl Failure {
         Failure::Input(error.into())
     }
 
-    /// Returns an error of bad usage with this text.
+    /// Returns an error of bad usage with this text, which may begin with the option.
     pub fn usage(message: impl Into<String>) -> Self {
-        Failure::input(Usage(message.into()))
+        let text = message.into();
+        Failure::input(RequestError { place: Place::option(&text), text })
     }
 
     /// Returns an error of bad usage found by clap; its text begins with the option.

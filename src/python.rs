@@ -1,6 +1,6 @@
 //! Python interpreter with the installed package.
 
-use input::{Fault, Place};
+use input::{InputError, Place};
 use std::ffi::OsString;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -40,7 +40,7 @@ impl Format {
     ///
     /// # Errors
     /// If it cannot read the file, or the package or its extra is not installed.
-    pub fn read(&self, path: &Path, file: &str) -> Result<(Vec<u8>, Vec<String>), Fault> {
+    pub fn read(&self, path: &Path, file: &str) -> Result<(Vec<u8>, Vec<String>), InputError> {
         let Format { name, extra, reader, otherwise } = self;
         let python = interpreter();
         let renamed = |text: &str| text.replace(&path.display().to_string(), file);

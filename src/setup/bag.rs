@@ -2,7 +2,7 @@
 
 use crate::python::Format;
 use calibration::identify::read;
-use input::{Fault, Place};
+use input::{InputError, Place};
 use std::path::Path;
 
 /// ROS recording, converted to the table of an RTDE recorder.
@@ -20,7 +20,7 @@ const EXTENSIONS: [&str; 3] = ["mcap", "db3", "bag"];
 ///
 /// # Errors
 /// If the log cannot be read, or if it is a recording and the package or its extra `ros` is not installed.
-pub fn log_text(path: &Path) -> Result<String, Fault> {
+pub fn log_text(path: &Path) -> Result<String, InputError> {
     let extension = path.extension().and_then(|extension| extension.to_str());
     if !path.is_dir() && !extension.is_some_and(|name| EXTENSIONS.contains(&name)) {
         return read::text(path);

@@ -190,18 +190,13 @@ pub fn left_out_csv(calibration: &Calibration, subjects: &[Subject]) -> String {
 pub fn parameters_csv(calibration: &Calibration) -> String {
     let head = "parameter,task,prior_low,prior_median,prior_high,posterior_low,posterior_median,posterior_high,moved,source\n";
     let line = |(one, coordinate): (ParameterUpdate, &Coordinate)| {
+        let ParameterUpdate { name, task, moved, prior_low, prior_median, prior_high, .. } = &one;
+        let ParameterUpdate { posterior_low, posterior_median, posterior_high, .. } = &one;
+        let task = task.as_deref().unwrap_or_default();
+        let source = coordinate.parameter.source.replace('"', "'");
         format!(
-            "{},{},{:.3},{:.3},{:.3},{:.3},{:.3},{:.3},{},\"{}\"\n",
-            one.name,
-            one.task.unwrap_or_default(),
-            one.prior_low,
-            one.prior_median,
-            one.prior_high,
-            one.posterior_low,
-            one.posterior_median,
-            one.posterior_high,
-            one.moved,
-            coordinate.parameter.source.replace('"', "'")
+            "{name},{task},{prior_low:.3},{prior_median:.3},{prior_high:.3},{posterior_low:.3},\
+             {posterior_median:.3},{posterior_high:.3},{moved},\"{source}\"\n"
         )
     };
     let lines = updates(calibration).into_iter().zip(&calibration.layout.coordinates).map(line);

@@ -145,7 +145,8 @@ fn sense(log: &mut Log, cell: u64, number: u64) {
         };
         (0..=last).map(rate).collect()
     };
-    let accelerations = rates(rates(log.samples.iter().map(|sample| sample.position).collect()));
+    let accelerations =
+        rates(rates(log.samples.iter().map(|sample| sample.tcp.position).collect()));
     for (i, sample) in log.samples.iter_mut().enumerate() {
         let share = i as f64 / last as f64;
         sample.force += bias + share * drift + normal(0.5) - TOOL_KG * accelerations[i];

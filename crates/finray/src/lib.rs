@@ -59,8 +59,7 @@ impl input::Placed for FingerError {
 impl FingerError {
     /// Creates an error about a finger as a whole, not about one of its values.
     pub fn finger(finger: &printed::PrintedFinger, problem: String) -> Self {
-        let file = finger.file.clone();
-        FingerError::Value(input::InputError { file, line: None, key: None, problem })
+        FingerError::Value(input::Place::file(&finger.file).fault(problem))
     }
 
     fn mesh(geometry: &geometry::Geometry, problem: mesh::MeshError) -> Self {

@@ -12,25 +12,11 @@ mod place;
 pub mod shipped;
 pub mod units;
 
-pub use place::{Fault, Place, Placed};
+pub use place::{InputError, Place, Placed, RequestError};
 use serde::de::DeserializeOwned;
 use std::sync::atomic::{AtomicU64, Ordering};
 use toml::Spanned;
 use toml::de::DeTable;
-
-/// Error of an input file: invalid TOML, an unknown or missing key, or an invalid value.
-#[derive(Debug, Clone, thiserror::Error, PartialEq)]
-#[error("{file}: {}{problem}", key.as_ref().map_or(String::new(), |key| format!("{key}: ")))]
-pub struct InputError {
-    /// The file as given.
-    pub file: String,
-    /// Line of a syntax error, if it is known; the problem includes it.
-    pub line: Option<usize>,
-    /// Path of an invalid field in the file; `None` for a syntax error.
-    pub key: Option<String>,
-    /// The problem, and what is accepted.
-    pub problem: String,
-}
 
 /// Largest absolute value of a number in a file; beyond it the unit is wrong, and sums and products
 /// could overflow.
@@ -40,22 +26,12 @@ const SMALLEST: f64 = 1e-9;
 /// Longest length and largest coordinate, mm.
 const LONGEST_MM: f64 = 1000.0;
 
-impl Placed for InputError {
-    fn place(&self) -> Place {
-        let place = Place { line: self.line, ..Place::file(self.file.clone()) };
-        place.key(self.key.as_deref().unwrap_or_default())
-    }
-}
-
 /// Returns the error of a file with invalid TOML or an unexpected structure; `text` is that of the file.
 pub fn syntax(file: &str, text: &str, error: &toml::de::Error) -> InputError {
     let before = error.span().and_then(|span| text.get(..span.start));
-    InputError {
-        file: file.to_owned(),
-        line: before.map(|before| 1 + before.matches('\n').count()),
-        key: None,
-        problem: error.to_string().trim_end().to_owned() + &suggestion(error.message()),
-    }
+    let line = before.map(|before| 1 + before.matches('\n').count());
+    let problem = error.to_string().trim_end().to_owned() + &suggestion(error.message());
+    Place { line, ..Place::file(file) }.fault(problem)
 }
 
 /// Returns a question with the accepted word nearest to an unknown one; empty if there is none.
@@ -119,11 +95,9 @@ impl<'a> Document<'a> {
         }
         // No array may be too long. The deserializer of TOML text ignores surplus elements: it would read
         // `[-4,175, 4,175]`, with decimal commas, as -4 and 175.
-        T::deserialize(toml::Value::Table(table)).map_err(|error| InputError {
-            file: self.file.to_owned(),
-            line: None,
-            key: error.to_string().rsplit('`').nth(1).map(str::to_owned),
-            problem: error.message().to_owned(),
+        T::deserialize(toml::Value::Table(table)).map_err(|error| {
+            let key = error.to_string().rsplit('`').nth(1).map(str::to_owned);
+            Place { key, ..Place::file(self.file) }.fault(error.message())
         })?;
         Ok(value)
     }
@@ -166,9 +140,12 @@ pub fn bad_text(table: &toml::Table) -> Option<(String, &'static str)> {
     })
 }
 
-/// Returns the first line of a CSV text, counted from 1, with an unclosed quoted cell, which would include the
-/// lines below. Lines that begin with `#` are comments.
-pub fn unclosed_quote(text: &str) -> Option<usize> {
+/// Checks that each line of a CSV text closes its quoted cells; an unclosed one would include the lines below. Lines
+/// that begin with `#` are comments; `file` is named in the error.
+///
+/// # Errors
+/// The first line with an unclosed cell.
+pub fn check_quotes(text: &str, file: &str) -> Result<(), InputError> {
     let runs_over = |line: &str| {
         // A quotation mark opens a cell only at its beginning; twice, it stands for itself.
         let (mut quoted, mut opens) = (false, true);
@@ -181,11 +158,12 @@ pub fn unclosed_quote(text: &str) -> Option<usize> {
         }
         quoted
     };
-    text.lines().position(|line| !line.starts_with('#') && runs_over(line)).map(|at| at + 1)
+    let unclosed = text.lines().position(|line| !line.starts_with('#') && runs_over(line));
+    unclosed.map_or(Ok(()), |at| Err(Place::file(file).line(at + 1).fault(UNCLOSED)))
 }
 
-/// Error message for [`unclosed_quote`].
-pub const UNCLOSED: &str = "a quoted cell runs over the end of the line; close its quotation mark \
+/// Error message for [`check_quotes`].
+const UNCLOSED: &str = "a quoted cell runs over the end of the line; close its quotation mark \
                             there (a mark within a quoted cell is written twice)";
 
 /// Formats a number for messages, very large and very small ones with an exponent.
@@ -212,8 +190,8 @@ impl Check<'_> {
     /// # Errors
     /// Always.
     pub fn fail<T>(&self, key: &str, problem: impl Into<String>) -> Result<T, InputError> {
-        let (file, key) = (self.file.to_owned(), Some(key.to_owned()));
-        Err(InputError { file, line: None, key, problem: problem.into() })
+        let key = Some(key.to_owned());
+        Err(Place { key, ..Place::file(self.file) }.fault(problem))
     }
 
     /// Checks a condition of a value; `must` is the requirement in words.
@@ -319,7 +297,7 @@ mod tests {
         }
         read::<Strategy>("[start]\nat_mm = [-4.175, 4.175]", "task.toml").unwrap();
         let error = read::<Strategy>("[start]\nat_mm = [-4,175, 4,175]", "task.toml").unwrap_err();
-        assert_eq!(error.key.as_deref(), Some("start.at_mm"));
+        assert_eq!(error.place.key.as_deref(), Some("start.at_mm"));
         assert!(error.to_string().contains("invalid length 4"), "{error}");
     }
 }

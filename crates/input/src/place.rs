@@ -19,14 +19,23 @@ pub trait Placed {
     fn place(&self) -> Place;
 }
 
-/// Error with its place and problem.
+/// Error of the input with its place: invalid syntax, an unknown or missing field, or an invalid value.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{place}: {problem}")]
-pub struct Fault {
+pub struct InputError {
     /// Place of the error; at least one of its fields is known.
     pub place: Place,
     /// The problem, and what is accepted.
     pub problem: String,
+}
+
+/// Error of a request, whose text names its place.
+#[derive(Debug, thiserror::Error)]
+#[error("{text}")]
+pub struct RequestError {
+    /// Place of the error, as far as known.
+    pub place: Place,
+    /// The error message.
+    pub text: String,
 }
 
 impl Place {
@@ -54,14 +63,28 @@ impl Place {
     }
 
     /// Returns the error of a problem at this place.
-    pub fn fault(self, problem: impl Into<String>) -> Fault {
-        Fault { place: self, problem: problem.into() }
+    pub fn fault(self, problem: impl Into<String>) -> InputError {
+        InputError { place: self, problem: problem.into() }
     }
 }
 
-impl Placed for Fault {
+impl Placed for InputError {
+    fn place(&self) -> Place {
+        self.place.clone().key(self.place.key.as_deref().unwrap_or_default())
+    }
+}
+
+impl Placed for RequestError {
     fn place(&self) -> Place {
         self.place.clone()
+    }
+}
+
+impl fmt::Display for InputError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // The parser of TOML begins its problem with the line.
+        let line = self.place.line.filter(|_| !self.problem.starts_with("TOML parse error"));
+        write!(f, "{}: {}", Place { line, ..self.place.clone() }, self.problem)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Files embedded in the program, so that it runs from any folder.
 
 use crate::files::{self, LARGEST_INPUT};
-use crate::place::{Place, Placed};
+use crate::place::{Place, RequestError};
 use std::path::Path;
 use strsim::osa_distance;
 
@@ -82,33 +82,19 @@ pub struct Source {
     pub text: String,
 }
 
-/// Error for a name or path that cannot be resolved to a text.
-#[derive(Debug, thiserror::Error)]
-#[error("{text}")]
-pub struct ShippedError {
-    place: Place,
-    text: String,
-}
-
-impl Placed for ShippedError {
-    fn place(&self) -> Place {
-        self.place.clone()
-    }
-}
-
 /// Returns the shipped file of that name or, if `name` looks like a path (it has a separator or an
 /// extension), the file at that path.
 ///
 /// # Errors
 /// If there is no such file; the message lists the nearest name and all names.
-pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, ShippedError> {
+pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, RequestError> {
     if let Some(found) = shipped.iter().find(|shipped| shipped.name == name) {
         return Ok(Source { file: found.file.to_owned(), text: found.text.to_owned() });
     }
     if name.contains(['/', '\\']) || Path::new(name).extension().is_some() {
         let text = files::read_text(Path::new(name), LARGEST_INPUT).map_err(|error| {
             let text = format!("{name}: cannot read the {kind}: {error}");
-            ShippedError { place: Place::file(name), text }
+            RequestError { place: Place::file(name), text }
         })?;
         return Ok(Source { file: name.to_owned(), text });
     }
@@ -119,7 +105,7 @@ pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, Sh
         hint.unwrap_or_default(),
         names.join(", ")
     );
-    Err(ShippedError { place: Place::default().key(&kind.replace(' ', "_")), text })
+    Err(RequestError { place: Place::default().key(&kind.replace(' ', "_")), text })
 }
 
 /// Returns the name with the smallest edit distance from `name`, if that is at most half the length of `name`.

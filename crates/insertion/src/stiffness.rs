@@ -4,7 +4,7 @@ use ask_tell::statistics::median;
 use finray::FingerError;
 use input::shipped::STIFFNESS;
 use input::units::N_PER_MM;
-use input::{Fault, Place, Placed, UNCLOSED, unclosed_quote};
+use input::{InputError, Place, Placed, check_quotes};
 use parameters::numbers;
 
 /// Direction of a finger's stiffness.
@@ -68,7 +68,8 @@ impl Measurement {
         }
     }
 
-    pub(crate) fn infill(&self) -> Infill {
+    /// Returns density and direction of the infill.
+    pub fn infill(&self) -> Infill {
         [self.density_percent, self.direction_deg]
     }
 }
@@ -78,7 +79,7 @@ impl Measurement {
 pub enum SurrogateError {
     /// Invalid CSV, a header other than [`HEADER`], an invalid value, or a column in another unit.
     #[error(transparent)]
-    Fault(#[from] Fault),
+    Fault(#[from] InputError),
     /// No measured design.
     #[error("no measured design; give at least one")]
     Empty,
@@ -135,9 +136,7 @@ fn rows(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
     // The reader counts one line too few in a "\r\n" file.
     let text = text.replace("\r\n", "\n");
     let at = |line: u64| Place::file(file).line(line as usize);
-    if let Some(line) = unclosed_quote(&text) {
-        return Err(at(line as u64).fault(UNCLOSED).into());
-    }
+    check_quotes(&text, file)?;
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let syntax = |error: csv::Error| match error.position() {
         Some(position) => at(position.line()).fault(error.to_string()),

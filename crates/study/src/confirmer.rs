@@ -4,7 +4,6 @@ use super::cached_evaluator::CachedEvaluator;
 use super::confirmed::{ConfirmationFile, ConfirmedDesign, WALK_FILE, Walk, ranked};
 use super::error::StudyError;
 use super::folder::{Study, write_analysis};
-use super::provenance::Provenance;
 use super::record::{ByRibs, Recorded, first_current};
 use super::rule::{Rank, Rule};
 use ask_tell::Grid;
@@ -239,11 +238,9 @@ impl Confirmer<'_> {
 /// Log of the confirmed designs: `walk.json` while it is written.
 pub struct ConfirmationLog {
     dir: PathBuf,
-    provenance: Provenance,
     /// Results of an earlier run.
     earlier: Vec<ConfirmedDesign>,
-    /// Results, in the order in which the designs were selected.
-    designs: Vec<ConfirmedDesign>,
+    file: ConfirmationFile,
 }
 
 impl ConfirmationLog {
@@ -252,20 +249,23 @@ impl ConfirmationLog {
         let (dir, provenance) = (study.dir().to_owned(), study.provenance().clone());
         let file = ConfirmationFile::read(&dir, Some(&provenance));
         let earlier = file.map_or(Vec::new(), |file| file.designs);
-        ConfirmationLog { dir, provenance, earlier, designs: Vec::new() }
+        let (complete, settled_after, designs) = (false, None, Vec::new());
+        let file = ConfirmationFile { provenance, complete, settled_after, designs };
+        ConfirmationLog { dir, earlier, file }
     }
 
     fn get(&self, recorded: &Recorded) -> Option<&ConfirmedDesign> {
-        self.designs.iter().find(|design| design.evaluation == recorded.index)
+        self.file.designs.iter().find(|design| design.evaluation == recorded.index)
     }
 
     /// Adds or replaces results, each with a flag whether it is new; writes the file if any is new.
     fn add(&mut self, results: Vec<(ConfirmedDesign, bool)>) -> Result<(), StudyError> {
         let any_new = results.iter().any(|(_, new)| *new);
         for (result, _) in results {
-            match self.designs.iter_mut().find(|design| design.evaluation == result.evaluation) {
+            let designs = &mut self.file.designs;
+            match designs.iter_mut().find(|design| design.evaluation == result.evaluation) {
                 Some(design) => *design = result,
-                None => self.designs.push(result),
+                None => designs.push(result),
             }
         }
         if any_new { self.write(None) } else { Ok(()) }
@@ -273,10 +273,9 @@ impl ConfirmationLog {
 
     /// Writes the file. `finished` is `Some` if the confirmation is complete; it then contains the number of
     /// evaluations after which the search settled, if it did.
-    fn write(&self, finished: Option<Option<u64>>) -> Result<(), StudyError> {
-        let (provenance, designs) = (self.provenance.clone(), self.designs.clone());
-        let (complete, settled_after) = (finished.is_some(), finished.flatten());
-        let file = ConfirmationFile { provenance, complete, settled_after, designs };
-        write_analysis(&self.dir, WALK_FILE, &file)
+    fn write(&mut self, finished: Option<Option<u64>>) -> Result<(), StudyError> {
+        self.file.complete = finished.is_some();
+        self.file.settled_after = finished.flatten();
+        write_analysis(&self.dir, WALK_FILE, &self.file)
     }
 }

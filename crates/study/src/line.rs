@@ -17,7 +17,7 @@ use insertion::evaluation::objective::Score;
 use insertion::space::{Design, Space, Variable};
 use insertion::surrogate::Prediction;
 use serde::{Deserialize, Serialize};
-use serde_json::json;
+use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
 /// Optuna's code of a complete trial.
@@ -42,7 +42,8 @@ struct TrialLine {
     distributions: BTreeMap<String, String>,
     user_attrs: UserAttributes,
     system_attrs: SystemAttributes,
-    intermediate_values: Empty,
+    /// Always empty.
+    intermediate_values: Map<String, Value>,
 }
 
 /// Data for which a trial of Optuna has no field.
@@ -58,9 +59,6 @@ struct SystemAttributes {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     constraints: Vec<f64>,
 }
-
-#[derive(Serialize, Deserialize)]
-struct Empty {}
 
 /// Returns the line of an evaluation, with its newline.
 ///
@@ -82,7 +80,7 @@ pub fn encode(recorded: &Recorded, space: &Space) -> Result<String, serde_json::
         system_attrs: SystemAttributes {
             constraints: score.map_or_else(Vec::new, |score| score.violations.clone()),
         },
-        intermediate_values: Empty {},
+        intermediate_values: Map::new(),
     };
     seal(&content, Some(&recorded.timing))
 }

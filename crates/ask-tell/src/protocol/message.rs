@@ -95,7 +95,7 @@ pub(super) struct PointResult {
 }
 
 /// Best result so far.
-#[derive(Clone, Serialize)]
+#[derive(Serialize)]
 pub(super) struct Best {
     /// `None` for a point that was not proposed.
     pub id: Option<usize>,

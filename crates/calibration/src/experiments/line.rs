@@ -1,8 +1,8 @@
 //! One line of a measurement file: its cells, and the checks of their combination.
 
-use super::{Experiment, NOT_MEASURABLE, problem};
+use super::{Experiment, NOT_MEASURABLE};
 use csv::StringRecord;
-use input::Fault;
+use input::{InputError, Place};
 use insertion::outcome::FailureClass;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use jiff::Timestamp;
@@ -20,8 +20,10 @@ type Parser<T> = fn(&str) -> Result<T, String>;
 pub(crate) struct Cells<'a> {
     pub(super) header: &'a StringRecord,
     pub(super) record: &'a StringRecord,
+    /// The file as given.
+    pub(super) file: &'a str,
     pub(crate) line: u64,
-    pub(super) problems: Vec<Fault>,
+    pub(super) problems: Vec<InputError>,
 }
 
 impl<'a> Cells<'a> {
@@ -41,9 +43,10 @@ impl<'a> Cells<'a> {
         if self.text(column).is_empty() { None } else { self.read(column, value) }
     }
 
-    /// Records a problem.
+    /// Records a problem; the name of the column may be empty.
     pub(crate) fn problem(&mut self, column: &str, words: &str) {
-        self.problems.push(problem(self.line, column, words));
+        let place = Place::file(self.file).line(self.line as usize).key(column);
+        self.problems.push(place.fault(words));
     }
 
     /// Parses the infill and the columns that are keys of a space file.
@@ -86,8 +89,10 @@ pub(super) fn experiment(cells: &mut Cells<'_>, before: &[Experiment]) -> Experi
     if cells.problems.is_empty() {
         check_window(cells, &experiment);
     }
-    if cells.problems.is_empty() {
-        cells.problems.extend(duplicate(&experiment, before));
+    if cells.problems.is_empty()
+        && let Some(words) = duplicate(&experiment, before)
+    {
+        cells.problem("task", &words);
     }
     let ends = experiment.positive_mm.zip(experiment.negative_mm);
     // Without the rounding error of the subtraction.
@@ -132,18 +137,17 @@ fn check_window(cells: &mut Cells<'_>, experiment: &Experiment) {
     }
 }
 
-/// Returns a fault if an earlier line has the same finger, task and day.
-fn duplicate(new: &Experiment, before: &[Experiment]) -> Option<Fault> {
+/// Returns the error message if an earlier line has the same finger, task and day.
+fn duplicate(new: &Experiment, before: &[Experiment]) -> Option<String> {
     let same = |old: &&Experiment| {
         old.task == new.task && old.design == new.design && old.date == new.date
     };
     let old = before.iter().find(same)?;
-    let words = format!(
+    Some(format!(
         "same finger as in line {}; give the mean with the number of `repeats`, or distinguish the two \
          by `date`",
         old.line
-    );
-    Some(problem(new.line, "task", &words))
+    ))
 }
 
 /// Largest length that is accepted as millimetres: larger than the tolerance of any connector.

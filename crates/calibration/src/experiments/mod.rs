@@ -9,7 +9,7 @@ mod tests;
 
 use csv::StringRecord;
 use input::shipped::nearest;
-use input::{Fault, Place, Placed, UNCLOSED, unclosed_quote};
+use input::{InputError, Place, Placed, check_quotes};
 use insertion::outcome::FailureClass;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use line::{Cells, is_of_space};
@@ -70,31 +70,19 @@ fn reader() -> csv::ReaderBuilder {
 
 /// All problems of a file, one line each.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{}", self.0.iter().map(Fault::to_string).collect::<Vec<_>>().join("\n"))]
-pub struct Problems(Vec<Fault>);
+#[error("{}", self.0.iter().map(InputError::to_string).collect::<Vec<_>>().join("\n"))]
+pub struct Problems(Vec<InputError>);
 
-impl Problems {
-    pub(crate) fn of(file: &str, mut problems: Vec<Fault>) -> Self {
-        problems.iter_mut().for_each(|fault| fault.place.file = Some(file.to_owned()));
-        Problems(problems)
-    }
-}
-
-impl From<Fault> for Problems {
-    fn from(fault: Fault) -> Self {
-        Problems(vec![fault])
+impl From<InputError> for Problems {
+    fn from(error: InputError) -> Self {
+        Problems(vec![error])
     }
 }
 
 impl Placed for Problems {
     fn place(&self) -> Place {
-        self.0.first().map(Fault::place).unwrap_or_default()
+        self.0.first().map(InputError::place).unwrap_or_default()
     }
-}
-
-/// Returns a fault of a line; the name of the column may be empty.
-pub(crate) fn problem(line: u64, column: &str, words: &str) -> Fault {
-    Place::default().line(line as usize).key(column).fault(words)
 }
 
 /// Line of a measurement file: a finger on a task; its fields have the keys of `--json`.
@@ -168,7 +156,7 @@ pub fn parse_known(text: &str, file: &str, known: &[&str]) -> Result<Vec<Experim
                 hint(&found.task, known),
                 known.join(", ")
             );
-            cells.problems.push(problem(cells.line, "task", &text));
+            cells.problem("task", &text);
         }
         found
     };
@@ -197,26 +185,24 @@ pub(crate) fn rows<T>(
     if is_empty(&text) {
         return Ok(Vec::new());
     }
-    let fault = |problem: Fault| Problems::of(file, vec![problem]);
-    if let Some(line) = unclosed_quote(&text) {
-        return Err(fault(problem(line as u64, "", UNCLOSED)));
-    }
+    let at = |place: Option<&csv::Position>| Place::file(file).line(line_at(&text, place) as usize);
+    check_quotes(&text, file)?;
     let mut reader = reader().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let wrong = |error: csv::Error| fault(syntax(&text, &error));
+    let wrong = |error: csv::Error| at(error.position()).fault(syntax(&error));
     let header = reader.headers().map_err(wrong)?.clone();
-    check_header(&header, columns, line_at(&text, header.position())).map_err(fault)?;
+    check_header(&header, columns, at(header.position()))?;
     let (mut found, mut problems) = (Vec::new(), Vec::new());
     for record in reader.records() {
         let record = record.map_err(wrong)?;
-        let line = line_at(&text, record.position());
-        let mut cells = Cells { header: &header, record: &record, line, problems: Vec::new() };
+        let (header, record, line) = (&header, &record, line_at(&text, record.position()));
+        let mut cells = Cells { header, record, file, line, problems: Vec::new() };
         let row = parse_line(&mut cells, &found);
         if cells.problems.is_empty() {
             found.push(row);
         }
         problems.extend(cells.problems);
     }
-    if problems.is_empty() { Ok(found) } else { Err(Problems::of(file, problems)) }
+    if problems.is_empty() { Ok(found) } else { Err(Problems(problems)) }
 }
 
 /// Returns the line of a record, for which the CSV reader gives the first line of the comments before it.
@@ -227,18 +213,17 @@ fn line_at(text: &str, position: Option<&csv::Position>) -> u64 {
     position.line() + rest.lines().take_while(bare).count() as u64
 }
 
-fn syntax(text: &str, error: &csv::Error) -> Fault {
-    let words = match error.kind() {
+fn syntax(error: &csv::Error) -> String {
+    match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             format!("has {len} cells where the header has {expected_len}")
         }
         _ => error.to_string(),
-    };
-    problem(line_at(text, error.position()), "", &words)
+    }
 }
 
 /// Checks that all columns are known and unique and that no required one is missing.
-fn check_header(header: &StringRecord, columns: &Columns<'_>, at: u64) -> Result<(), Fault> {
+fn check_header(header: &StringRecord, columns: &Columns<'_>, at: Place) -> Result<(), InputError> {
     let Columns { all, required, why } = columns;
     for (i, name) in header.iter().enumerate() {
         if !is_of_space(name) && !all.contains(&name) {
@@ -247,15 +232,15 @@ fn check_header(header: &StringRecord, columns: &Columns<'_>, at: u64) -> Result
                 hint(name, all),
                 all.join(", ")
             );
-            return Err(problem(at, name, &words));
+            return Err(at.key(name).fault(words));
         }
         if header.iter().take(i).any(|other| other == name) {
-            return Err(problem(at, name, "is given twice; each column may occur once"));
+            return Err(at.key(name).fault("is given twice; each column may occur once"));
         }
     }
     match all[..*required].iter().find(|required| header.iter().all(|name| name != **required)) {
         None => Ok(()),
-        Some(missing) => Err(problem(at, missing, &format!("is missing; {why}"))),
+        Some(missing) => Err(at.key(missing).fault(format!("is missing; {why}"))),
     }
 }
 

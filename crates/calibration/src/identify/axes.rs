@@ -97,7 +97,7 @@ pub(super) fn motion(remarks: &mut Remarks<'_>, run: &Run, task: &Task, touched:
 
 /// Adds a remark if commanded and measured motion, both relative to the first sample, disagree.
 fn commanded(remarks: &mut Remarks<'_>) {
-    let pair = |sample: &LogSample| Some((sample.target?.position, sample.position));
+    let pair = |sample: &LogSample| Some((sample.target?.position, sample.tcp.position));
     let samples = &remarks.log.samples;
     let Some((goal, first)) = pair(&samples[0]) else { return };
     let moves: Vec<Pair> =
@@ -147,7 +147,7 @@ fn search(remarks: &mut Remarks<'_>, task: &Task) {
             at
         }))
     });
-    let at = |sample: &LogSample| sample.target.map_or(sample.position, |target| target.position);
+    let at = |sample: &LogSample| sample.target.unwrap_or(sample.tcp).position;
     let samples = &remarks.log.samples;
     let first = at(&samples[0]);
     let done = planar_path(samples.iter().map(|sample| at(sample) - first));
@@ -171,11 +171,11 @@ fn search(remarks: &mut Remarks<'_>, task: &Task) {
 /// Adds a remark if a second attempt follows the first.
 fn second_attempt(remarks: &mut Remarks<'_>, touched: usize) {
     let samples = &remarks.log.samples;
-    let [first, touch] = [0, touched].map(|at| samples[at].position.z);
+    let [first, touch] = [0, touched].map(|at| samples[at].tcp.position.z);
     let high = touch + RISES.0 * (first - touch);
-    let up = samples[touched..].iter().position(|sample| sample.position.z > high);
+    let up = samples[touched..].iter().position(|sample| sample.tcp.position.z > high);
     let Some(up) = up.map(|at| at + touched).filter(|_| first - touch > RISES.1) else { return };
-    if let Some(down) = samples[up..].iter().position(|sample| sample.position.z <= touch) {
+    if let Some(down) = samples[up..].iter().position(|sample| sample.tcp.position.z <= touch) {
         let text = "the tool rises and descends to the socket again: this log contains two attempts; split it \
                     into one log for each";
         remarks.add(true, Some([up, up + down]), text);

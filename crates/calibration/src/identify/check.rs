@@ -136,27 +136,28 @@ fn clock(remarks: &mut Remarks<'_>) {
 fn pose(remarks: &mut Remarks<'_>, run: &Run, task: &Task) {
     let (log, first) = (remarks.log, remarks.log.samples[0]);
     let start = Vector3::from(task.strategy.start) + Vector3::y() * run.offset;
-    let far = (first.position - start).norm();
+    let far = (first.tcp.position - start).norm();
     let probe = run.outcome.is_none();
     if far > ASTRAY {
         let text = format!(
             "it begins at ({}) mm, {:.0} mm from the start of the task and offset, ({}) mm: {}",
-            formatted(first.position / MM, 1),
+            formatted(first.tcp.position / MM, 1),
             far / MM,
             formatted(start / MM, 1),
-            cause(first.position, start)
+            cause(first.tcp.position, start)
         );
         remarks.add(!probe, Some([0, 0]), text);
     }
-    let (tilt, wanted) = (first.tilt / DEG, task.strategy.tilt / DEG);
-    if !probe && (first.tilt - task.strategy.tilt).abs() > TILTED {
-        let hint = if (first.tilt + task.strategy.tilt).abs() < TILTED {
+    let (tilt, wanted) = (first.tcp.tilt, task.strategy.tilt);
+    if !probe && (tilt - wanted).abs() > TILTED {
+        let hint = if (tilt + wanted).abs() < TILTED {
             "its sign, or the direction of x, is inverted"
-        } else if (first.tilt / DEG - task.strategy.tilt).abs() < 0.1 * task.strategy.tilt.abs() {
+        } else if (tilt / DEG - wanted).abs() < 0.1 * wanted.abs() {
             "it looks like radians"
         } else {
             "check the frame, or the orientation in which the tool is upright"
         };
+        let [tilt, wanted] = [tilt, wanted].map(|angle| angle / DEG);
         let text = format!(
             "the tool is tilted by {tilt:.1} degrees, but in the task by {wanted:.1}: {hint}"
         );
@@ -178,7 +179,7 @@ fn pose(remarks: &mut Remarks<'_>, run: &Run, task: &Task) {
 fn standstill(samples: &[LogSample]) -> Option<[usize; 2]> {
     let mut from = 0;
     for (at, now) in samples.iter().enumerate() {
-        if (now.position - samples[from].position).amax() > STILL.0 {
+        if (now.tcp.position - samples[from].tcp.position).amax() > STILL.0 {
             from = at;
         }
         let (old, new) = (samples[from].target?, now.target?);
@@ -288,7 +289,8 @@ fn slope(samples: &[LogSample]) -> (Vector3<f64>, Vector3<f64>) {
 /// Checks that the log has the phases of its outcome.
 fn phases(remarks: &mut Remarks<'_>, run: &Run, task: &Task, touched: usize) {
     let log = remarks.log;
-    let depth = |sample: &LogSample| task.grip.tcp_z * libm::cos(sample.tilt) - sample.position.z;
+    let depth =
+        |sample: &LogSample| task.grip.tcp_z * libm::cos(sample.tcp.tilt) - sample.tcp.position.z;
     let deepest = log.samples.iter().map(depth).fold(f64::MIN, f64::max);
     let last = log.samples.len() - 1;
     if run.outcome == Some(Outcome::Inserted) && deepest < 0.5 * task.success.depth {

@@ -41,10 +41,10 @@ impl Curves {
             .collect();
         let target = |point: &LogSample| point.target.map(|target| target.position);
         Curves {
-            tcp: points.iter().map(|point| point.position).collect(),
+            tcp: points.iter().map(|point| point.tcp.position).collect(),
             target: points.iter().map(target).collect(),
             force: points.iter().map(|point| point.force - bias).collect(),
-            tilt: points.first().map_or(0.0, |point| point.tilt),
+            tilt: points.first().map_or(0.0, |point| point.tcp.tilt),
         }
     }
 
@@ -102,19 +102,12 @@ impl Curves {
 /// Interpolates linearly between two samples.
 fn between(a: &LogSample, b: &LogSample, time: f64) -> LogSample {
     let share = ((time - a.time_s) / (b.time_s - a.time_s)).clamp(0.0, 1.0);
-    let vector = |a: Vector3<f64>, b: Vector3<f64>| a + share * (b - a);
-    let number = |a: f64, b: f64| a + share * (b - a);
-    let target = a.target.zip(b.target).map(|(a, b)| Tcp {
-        position: vector(a.position, b.position),
-        tilt: number(a.tilt, b.tilt),
-    });
     LogSample {
         line: a.line,
         time_s: time,
-        position: vector(a.position, b.position),
-        tilt: number(a.tilt, b.tilt),
-        target,
-        force: vector(a.force, b.force),
+        tcp: a.tcp.towards(&b.tcp, share),
+        target: a.target.zip(b.target).map(|(a, b)| a.towards(&b, share)),
+        force: a.force + share * (b.force - a.force),
     }
 }
 

@@ -24,9 +24,9 @@ pub fn synthetic(noise: f64, drift: f64) -> Log {
         let error = Vector3::from_fn(|_, _| noise * normal());
         let sway = Vector3::new(0.3, -0.2, 0.8 + drift * time / 1.2);
         let force = Vector3::new(0.0, rub, press) + error + sway;
-        let (tilt, line) = (10.0 * DEG, i as usize + 2);
-        let target = Some(Tcp { position: position - Vector3::z() * 1e-5, tilt });
-        LogSample { line, time_s: 7.0 + time, position, tilt, target, force }
+        let tcp = Tcp { position, tilt: 10.0 * DEG };
+        let target = Some(Tcp { position: position - Vector3::z() * 1e-5, ..tcp });
+        LogSample { line: i as usize + 2, time_s: 7.0 + time, tcp, target, force }
     });
     Log::new("a.csv", samples.collect()).expect("samples in order")
 }

@@ -1,7 +1,7 @@
 //! The log of one attempt: commanded and measured TCP, and the force on the tool.
 
 use input::units::{DEG, MM};
-use input::{Fault, Place};
+use input::{InputError, Place};
 use insertion::outcome::Outcome;
 use insertion::space::Design;
 use insertion::trial::{Sample, Tcp};
@@ -27,10 +27,8 @@ pub struct LogSample {
     pub line: usize,
     /// Time on the recorder's clock, s.
     pub time_s: f64,
-    /// Measured TCP, m.
-    pub position: Vector3<f64>,
-    /// Measured tilt of the TCP about x, rad.
-    pub tilt: f64,
+    /// Measured TCP.
+    pub tcp: Tcp,
     /// Commanded TCP, if it was recorded.
     pub target: Option<Tcp>,
     /// Force on the tool, N.
@@ -66,7 +64,7 @@ impl Log {
     ///
     /// # Errors
     /// If there are too few or too many, a number is not finite, or time does not increase.
-    pub fn new(file: &str, samples: Vec<LogSample>) -> Result<Self, Fault> {
+    pub fn new(file: &str, samples: Vec<LogSample>) -> Result<Self, InputError> {
         let whole = |problem: String| Err(Place::file(file).fault(problem));
         if !(FEWEST..=MOST).contains(&samples.len()) {
             let count = samples.len();
@@ -108,8 +106,8 @@ impl Log {
         };
         for sample in &self.samples {
             let _ = write!(text, "\n{:.6}", sample.time_s);
-            sample.position.iter().for_each(|value| fixed(&mut text, value / MM, 5));
-            fixed(&mut text, sample.tilt / DEG, 5);
+            sample.tcp.position.iter().for_each(|value| fixed(&mut text, value / MM, 5));
+            fixed(&mut text, sample.tcp.tilt / DEG, 5);
             sample.force.iter().for_each(|value| fixed(&mut text, *value, 4));
             let target = sample.target.iter().flat_map(|target| &target.position);
             target.for_each(|value| fixed(&mut text, value / MM, 5));
@@ -121,10 +119,10 @@ impl Log {
 
 impl LogSample {
     fn is_finite(&self) -> bool {
-        let target =
-            self.target.map_or([0.0; 4], |Tcp { position: p, tilt }| [p.x, p.y, p.z, tilt]);
-        let vectors = self.position.iter().chain(&self.force).chain(&target);
-        vectors.chain([&self.time_s, &self.tilt]).all(|value| value.is_finite())
+        let own = self.force.iter().chain([&self.time_s]);
+        let tcps = [&self.tcp].into_iter().chain(&self.target);
+        let poses = tcps.flat_map(|tcp| tcp.position.iter().chain([&tcp.tilt]));
+        own.chain(poses).all(|value| value.is_finite())
     }
 }
 
@@ -132,18 +130,14 @@ impl LogSample {
 ///
 /// # Errors
 /// If the attempt was too short; see [`Log::new`].
-pub fn of_samples(file: &str, samples: &[Sample]) -> Result<Log, Fault> {
+pub fn of_samples(file: &str, samples: &[Sample]) -> Result<Log, InputError> {
     let start = samples.first().map_or(0.0, |sample| sample.time_s);
-    let converted = |(i, sample): (usize, &Sample)| LogSample {
-        line: i + 2,
-        time_s: sample.time_s - start,
-        position: Vector3::from(sample.tcp_mm) * MM,
-        tilt: sample.tcp_tilt_deg * DEG,
-        target: Some(Tcp {
-            position: Vector3::from(sample.target_mm) * MM,
-            tilt: sample.tcp_tilt_deg * DEG,
-        }),
-        force: Vector3::from(sample.sensed_n),
+    let converted = |(i, sample): (usize, &Sample)| {
+        let tilt = sample.tcp_tilt_deg * DEG;
+        let [tcp, target] = [sample.tcp_mm, sample.target_mm]
+            .map(|mm| Tcp { position: Vector3::from(mm) * MM, tilt });
+        let force = Vector3::from(sample.sensed_n);
+        LogSample { line: i + 2, time_s: sample.time_s - start, tcp, target: Some(target), force }
     };
     Log::new(file, samples.iter().enumerate().map(converted).collect())
 }

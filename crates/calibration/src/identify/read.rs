@@ -6,7 +6,7 @@ use crate::experiments::line::LARGEST_FORCE_N;
 use ask_tell::statistics::median;
 use input::files;
 use input::units::{DEG, MM};
-use input::{Fault, Place, shown};
+use input::{InputError, Place, shown};
 use insertion::trial::Tcp;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -25,7 +25,7 @@ const SLOWEST_S: f64 = 0.5;
 ///
 /// # Errors
 /// If it cannot be read, or is longer than [`LARGEST_LOG`].
-pub fn text(path: &Path) -> Result<String, Fault> {
+pub fn text(path: &Path) -> Result<String, InputError> {
     let cannot =
         |error| Place::file(path.display().to_string()).fault(format!("cannot be read: {error}"));
     files::read_text(path, LARGEST_LOG).map_err(cannot)
@@ -37,7 +37,7 @@ pub fn text(path: &Path) -> Result<String, Fault> {
 /// # Errors
 /// If the header is unknown, a cell is invalid or looks like a value in another unit, or [`Log::new`] rejects the
 /// samples.
-pub fn parse(text: &str, file: &str, frame: Option<&Frame>) -> Result<Log, Fault> {
+pub fn parse(text: &str, file: &str, frame: Option<&Frame>) -> Result<Log, InputError> {
     let whole = |problem: String| Place::file(file).fault(problem);
     let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate();
     let ignored = |line: &str| line.trim().is_empty() || line.trim_start().starts_with('#');
@@ -53,7 +53,7 @@ pub fn parse(text: &str, file: &str, frame: Option<&Frame>) -> Result<Log, Fault
         }
         let mut sample = table.sample(at + 1, line).map_err(|problem| fault(at, problem))?;
         if let (None, Some(target)) = (table.rtde, &mut sample.target) {
-            target.tilt = samples.first().map_or(sample.tilt, |first| first.tilt);
+            target.tilt = samples.first().map_or(sample.tcp.tilt, |first| first.tcp.tilt);
         }
         samples.push(sample);
     }
@@ -70,7 +70,7 @@ fn check_units(log: &Log) -> Result<(), String> {
             "the time between its lines is {gap}, which looks like milliseconds; give seconds"
         ));
     }
-    let far = log.samples.iter().map(|sample| sample.position.amax()).fold(0.0, f64::max);
+    let far = log.samples.iter().map(|sample| sample.tcp.position.amax()).fold(0.0, f64::max);
     if far < NEAREST_MM * MM {
         return Err(format!(
             "no coordinate exceeds {} mm, so that they look like metres; give millimetres",
@@ -180,7 +180,7 @@ impl<'a> Table<'a> {
             return Err(format!("a force of {large} looks like millinewtons; give newtons"));
         }
         let vector = Vector3::from_column_slice;
-        let (Tcp { position, tilt }, target, force) = match self.rtde {
+        let (tcp, target, force) = match self.rtde {
             Some(frame) => {
                 let target = (!goal.is_empty()).then(|| of_base(frame, &goal)).transpose()?;
                 let tcp = of_base(frame, &numbers[1..7])?;
@@ -204,7 +204,7 @@ impl<'a> Table<'a> {
                 (tcp, target, self.frame.map_or(force, |frame| frame.force(force)))
             }
         };
-        Ok(LogSample { line, time_s: numbers[0], position, tilt, target, force })
+        Ok(LogSample { line, time_s: numbers[0], tcp, target, force })
     }
 }
 

@@ -4,10 +4,10 @@ use super::frame::Frame;
 use super::log::{Log, Run};
 use super::read;
 use crate::experiments::line::{Cells, failure, length};
-use crate::experiments::{Columns, Problems, problem, rows};
+use crate::experiments::{Columns, Problems, rows};
 use input::files::{self, LARGEST_INPUT};
 use input::units::MM;
-use input::{Fault, Place};
+use input::{InputError, Place};
 use insertion::outcome::Outcome;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use std::path::Path;
@@ -66,7 +66,7 @@ fn outcome(text: &str) -> Result<Option<Outcome>, String> {
 pub fn read(
     path: &Path,
     frame: Option<&Frame>,
-    text_of: impl Fn(&Path) -> Result<String, Fault>,
+    text_of: impl Fn(&Path) -> Result<String, InputError>,
 ) -> Result<Vec<Run>, Problems> {
     let file = path.display().to_string();
     let text = files::read_text(path, LARGEST_INPUT)
@@ -88,7 +88,7 @@ pub fn read(
             let words = format!(
                 "the logs up to this line have more than {MAX_SAMPLES} samples; cut them to the attempts"
             );
-            return Err(Problems::of(&file, vec![problem(line, "log", &words)]));
+            return Err(Place::file(file).line(line as usize).key("log").fault(words).into());
         }
         runs.push(Run { log, design, offset: offset_mm * MM, outcome, line: line as usize });
     }

@@ -13,7 +13,7 @@ use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
-use insertion::trial::{Course, Grasp};
+use insertion::trial::{Course, Grasp, Tcp};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 fn usb() -> Task {
@@ -52,7 +52,7 @@ const FRAME: &str = "origin_mm = [400, -120, 35]\naxis_angle_rad = [0.02, -0.01,
 fn rtde(log: &Log, blank: &str) -> String {
     let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.02, -0.01, 0.7));
     let base = Isometry3::from_parts((Vector3::new(400.0, -120.0, 35.0) * MM).into(), turn);
-    let pose = |position: Vector3<f64>, tilt: f64| -> Vec<f64> {
+    let pose = |Tcp { position, tilt }: Tcp| -> Vec<f64> {
         let turn =
             turn * UnitQuaternion::from_scaled_axis(Vector3::x() * (tilt + std::f64::consts::PI));
         let (place, turn) = (base * nalgebra::Point3::from(position), turn.scaled_axis());
@@ -64,7 +64,7 @@ fn rtde(log: &Log, blank: &str) -> String {
         ["timestamp".to_owned()].into_iter().chain(names).collect::<Vec<_>>().join(blank);
     for sample in &log.samples {
         let target = sample.target.unwrap();
-        let (tcp, goal) = (pose(sample.position, sample.tilt), pose(target.position, target.tilt));
+        let (tcp, goal) = (pose(sample.tcp), pose(target));
         let force = turn * -sample.force;
         let all = [sample.time_s].into_iter().chain(tcp).chain(force.iter().copied());
         let cells: Vec<String> = all.chain([0.0; 3]).chain(goal).map(|v| v.to_string()).collect();
@@ -81,12 +81,11 @@ fn both_formats_give_the_same_log() {
         let found = read::parse(&rtde(&log, blank), "a.csv", Some(&frame)).unwrap();
         for (a, b) in log.samples.iter().zip(&found.samples) {
             let (goal, other) = (a.target.unwrap(), b.target.unwrap());
-            assert!((a.position - b.position).norm() < 1e-9 && (a.tilt - b.tilt).abs() < 1e-9);
+            let near = |a: Tcp, b: Tcp| {
+                (a.position - b.position).norm() < 1e-9 && (a.tilt - b.tilt).abs() < 1e-9
+            };
+            assert!(near(a.tcp, b.tcp) && near(goal, other));
             assert!((a.force - b.force).norm() < 1e-9 && a.time_s == b.time_s && a.line == b.line);
-            assert!(
-                (goal.position - other.position).norm() < 1e-9
-                    && (goal.tilt - other.tilt).abs() < 1e-9
-            );
         }
     }
     let error = read::parse(&rtde(&log, " "), "a.csv", None).unwrap_err().to_string();
@@ -119,7 +118,7 @@ fn what_cannot_be_read_is_told_with_its_line() {
     };
     let short: String = good.lines().take(40).map(|line| format!("{line}\n")).collect();
     let mut metres = synthetic(0.0, 0.0);
-    metres.samples.iter_mut().for_each(|sample| sample.position *= MM);
+    metres.samples.iter_mut().for_each(|sample| sample.tcp.position *= MM);
     for (text, words) in [
         (cell(9, 7, "nan"), "a.csv: line 9: fz_n: `nan` is not a finite number"),
         (cell(9, 2, ""), "a.csv: line 9: y_mm: is empty"),
@@ -181,11 +180,17 @@ fn remarks_say_what_is_wrong_and_where() {
         (said_of(|(_, m)| m.force.z = m.force.z.min(15.0)), "fz stays at its extreme value 15.0 N"),
         (said_of(|(_, m)| m.force.x += 9.0), "the force in the air is (9.3"),
         (said_of(|(_, m)| m.target = None), "stiffness cannot be identified"),
-        (said_of(|(_, m)| m.tilt *= -1.0), "-10.0 degrees, but in the task by 10.0: its sign"),
-        (said_of(|(_, m)| m.position.x += 0.1), "(100.0, -1.2, 51.0) mm, 100 mm from the start"),
-        (said_of(|(_, m)| m.position.z = m.position.z.max(0.0446)), "the tip is never deeper"),
-        (said_of(|(i, m)| m.position.z += if i > 590 { 0.03 } else { 0.0 }), "ends in the air"),
-        (said_of(|(_, m)| m.position = Vector3::new(0.0, -1.2, 51.0) * MM), "stands still"),
+        (said_of(|(_, m)| m.tcp.tilt *= -1.0), "-10.0 degrees, but in the task by 10.0: its sign"),
+        (
+            said_of(|(_, m)| m.tcp.position.x += 0.1),
+            "(100.0, -1.2, 51.0) mm, 100 mm from the start",
+        ),
+        (
+            said_of(|(_, m)| m.tcp.position.z = m.tcp.position.z.max(0.0446)),
+            "the tip is never deeper",
+        ),
+        (said_of(|(i, m)| m.tcp.position.z += if i > 590 { 0.03 } else { 0.0 }), "ends in the air"),
+        (said_of(|(_, m)| m.tcp.position = Vector3::new(0.0, -1.2, 51.0) * MM), "stands still"),
     ] {
         assert!(found.contains(words), "{words}: {found}");
     }

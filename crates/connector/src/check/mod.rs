@@ -33,7 +33,7 @@ impl Problem {
 impl From<&InputError> for Problem {
     fn from(error: &InputError) -> Self {
         let problem = &*error.problem;
-        let Some(key) = &error.key else {
+        let Some(key) = &error.place.key else {
             // The parser names an unknown or missing key in backticks.
             let key = problem.split('`').nth(1).unwrap_or("the file");
             let remedy = "see docs/guide/tasks.md, or `optimize task show usb`";

@@ -3,7 +3,7 @@
 use super::root;
 use earcut::Earcut;
 use earcut::utils3d::project3d_to_2d;
-use input::{Fault, Place};
+use input::{InputError, Place};
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -41,7 +41,7 @@ pub fn is_step(bytes: &[u8], file: &str) -> bool {
 ///
 /// # Errors
 /// If the bytes are neither STL nor OBJ, or contain no finite triangles.
-pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Body>, Fault> {
+pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Body>, InputError> {
     let step = is_step(bytes, file);
     let fail = |problem: &str| {
         let neither = || format!("is neither an STL nor an OBJ file: {problem}");
@@ -162,7 +162,11 @@ fn polygon(corners: &[Point3<f64>]) -> Vec<Triangle> {
 ///
 /// # Errors
 /// If the file lacks one of them; the text lists the available ones.
-pub fn pick(bodies: &[Body], names: &[String], file: &str) -> Result<[Vec<Triangle>; 2], Fault> {
+pub fn pick(
+    bodies: &[Body],
+    names: &[String],
+    file: &str,
+) -> Result<[Vec<Triangle>; 2], InputError> {
     let named = |name: &String| bodies.iter().any(|body| body.name == *name);
     let of = if names.iter().all(named) { bodies.to_vec() } else { shells(bodies) };
     let mut picked = [Vec::new(), Vec::new()];

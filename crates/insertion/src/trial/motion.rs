@@ -21,7 +21,7 @@ impl Tcp {
     }
 
     /// Returns the target at a share of the way to another.
-    pub(super) fn towards(&self, to: &Tcp, share: f64) -> Tcp {
+    pub fn towards(&self, to: &Tcp, share: f64) -> Tcp {
         Tcp {
             position: self.position + share * (to.position - self.position),
             tilt: self.tilt + share * (to.tilt - self.tilt),

@@ -59,9 +59,7 @@ pub fn line(
         line += &format!("{hidden:.3},{},{},", cell(value), cell(sd));
     }
 
-    let not_logged = |one: &&FingerWindows| {
-        !LOGGED.contains(&[one.finger.density_percent, one.finger.direction_deg])
-    };
+    let not_logged = |one: &&FingerWindows| !LOGGED.contains(&one.finger.infill());
     let others: Vec<&FingerWindows> = windows.iter().filter(not_logged).collect();
     let identified = others.par_iter().map(|one| {
         let design = Design::infill(one.finger.density_percent, one.finger.direction_deg);

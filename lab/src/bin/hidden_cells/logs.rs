@@ -42,9 +42,7 @@ pub fn write(
         let Specimen { task, finger: held, .. } = specimen;
         let rig = engine.rig(&task, &robot, &held, 1.0).map_err(Failure::input)?;
         let grasp = Grasp::of(&held);
-        let known = |one: &&FingerWindows| {
-            [one.finger.density_percent, one.finger.direction_deg] == [density, direction]
-        };
+        let known = |one: &&FingerWindows| one.finger.infill() == [density, direction];
         let [start, negative, positive] =
             windows.iter().find(known).map_or([0.0; 3], FingerWindows::starts_mm);
         let offsets = [None, Some(start), Some(negative + 0.2), Some(positive + 0.2)];
@@ -81,7 +79,8 @@ fn add_sensor_errors(log: &mut Log, cell: u64, number: u64) {
     let mut normal =
         |sd: f64| Vector3::from_fn(|_, _| sd * random.sample::<f64, _>(StandardNormal));
     let (bias, drift) = (normal(BIAS_N), normal(DRIFT_N));
-    let positions: Vec<Vector3<f64>> = log.samples.iter().map(|sample| sample.position).collect();
+    let positions: Vec<Vector3<f64>> =
+        log.samples.iter().map(|sample| sample.tcp.position).collect();
     let accelerations = rates(&rates(&positions));
     let last = (positions.len() - 1) as f64;
     for (i, LogSample { force, .. }) in log.samples.iter_mut().enumerate() {

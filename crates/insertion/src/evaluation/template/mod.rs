@@ -125,7 +125,7 @@ impl Template {
         let changed = Task::from_table(table, &self.numbers.file);
         changed.or_else(|error| {
             // The file itself is valid, so a value of the design causes the error.
-            let is_cause = |path: &&str| path.strip_prefix("task.") == error.key.as_deref();
+            let is_cause = |path: &&str| path.strip_prefix("task.") == error.place.key.as_deref();
             match of_task.iter().map(|(path, _)| *path).find(is_cause) {
                 Some(path) => DESIGN.fail(path, error.problem),
                 None => Err(error),

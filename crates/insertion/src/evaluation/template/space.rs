@@ -8,7 +8,7 @@ use crate::surrogate::Prediction;
 use crate::task::Task;
 use crate::trial::run::RigError;
 use input::units::MM;
-use input::{Check, InputError};
+use input::{Check, InputError, Place};
 
 /// Returns a space whose speeds do not exceed the limits of the connectors (`limits.speed_mm_per_s`).
 pub fn within_limits(mut space: Space, templates: &[Template]) -> Space {
@@ -40,11 +40,10 @@ pub(super) fn each_extreme<'a>(
         for value in variable.extremes() {
             let problem = match check_design(&Design::default().with(&variable.key, value)) {
                 Ok(()) => continue,
-                Err(DesignError::Value(InputError { key: Some(key), problem, .. }))
-                    if variable.key == key =>
-                {
-                    problem
-                }
+                Err(DesignError::Value(InputError {
+                    place: Place { key: Some(key), .. },
+                    problem,
+                })) if variable.key == key => problem,
                 Err(error) => format!("cannot be {value}: {error}"),
             };
             return check.fail(&variable.key, problem);

@@ -1,13 +1,8 @@
 //! The commands of README and guide, run in their order: each page in a folder of its own, with the files that the
 //! reader has by then. Studies run on the fake engine with a small budget; all else as written.
 
-use crate::common::{Studies, command, optimize_line, read, run};
+use crate::common::{Studies, command, optimize_line, read, root, run};
 use std::fs;
-use std::path::Path;
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
 
 /// A block of code and its language.
 struct Block {
@@ -16,7 +11,7 @@ struct Block {
 }
 
 fn blocks(page: &str) -> Vec<Block> {
-    let text = read(&root().join(page)).replace("\\\n", "");
+    let text = read(&root(page)).replace("\\\n", "");
     let mut blocks = Vec::new();
     let mut lines = text.lines();
     while let Some(line) = lines.next() {
@@ -78,7 +73,7 @@ fn follow(page: &str, folder: &Studies) -> usize {
 
 /// Copies the project's file to a name in the folder.
 fn copied(folder: &Studies, from: &str, to: &str) {
-    folder.file(to, read(&root().join(from)));
+    folder.file(to, read(&root(from)));
 }
 
 #[test]
@@ -115,7 +110,7 @@ fn tasks() {
         let name = format!("examples/meshes/{file}");
         let to = folder.dir(&name);
         fs::create_dir_all(to.parent().expect("a folder")).expect("it is made");
-        fs::copy(root().join(&name), to).expect("the mesh is copied");
+        fs::copy(root(&name), to).expect("the mesh is copied");
     }
     assert!(follow("docs/guide/tasks.md", &folder) >= 5);
 }

@@ -209,10 +209,7 @@ fn measurements_that_a_study_cannot_use_are_refused_before_it_begins() {
 fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
     let folder = Studies::new();
     let few = "--engine fake --simulations 24 --samples 20 --measurements";
-    let line = |line: &str| {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        run(command(&words).current_dir(folder.0.path()))
-    };
+    let line = |line: &str| run(command(&[]).args(line.split_whitespace()).current_dir(&folder.0));
     // A file that is not there is empty for `next` alone.
     let next = line(&format!("next --task ket8 {few} bench.csv"));
     let words = "ket8: nothing measured yet (bench.csv does not exist); by simulation alone\n";

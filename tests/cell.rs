@@ -1,7 +1,6 @@
 //! `--cell`: a cell's robot and numbers in every command that takes a task.
 
 use crate::common::{Studies, optimize_line};
-use input::shipped::ROBOTS;
 use serde_json::json;
 
 /// A row of a cell file.
@@ -14,7 +13,7 @@ fn row(name: &str, sets: &str, way: &str, numbers: &str, shared: bool) -> String
 
 /// The file of a cell with the robot `servo` and these rows.
 fn cell(rows: &str) -> String {
-    let servo = ROBOTS.iter().find(|robot| robot.name == "servo").unwrap().text;
+    let servo = include_str!("../robots/servo.toml");
     format!("name = \"mine\"\ndescription = \"made up\"\ntask = \"usb\"\n[robot]\n{servo}\n{rows}")
 }
 

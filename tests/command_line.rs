@@ -179,8 +179,7 @@ fn the_project_file_gives_defaults_that_options_precede() {
     let folder = |name: &str| studies.dir(name);
     fs::create_dir_all(folder("lab/below")).expect("a folder");
     let lines = |below: &str, line: &str| {
-        let mut command = command(&line.split_whitespace().collect::<Vec<_>>());
-        run(command.current_dir(folder(below)))
+        run(command(&[]).args(line.split_whitespace()).current_dir(folder(below)))
     };
     studies.file(
         "lab/finger-opt.toml",

@@ -3,6 +3,7 @@
 
 pub mod memory;
 mod ran;
+pub mod shipped;
 
 pub use ran::{Ran, read, run};
 
@@ -25,7 +26,7 @@ pub fn optimize(arguments: &[&str]) -> Ran {
 
 /// Runs a command line without spaces in its words.
 pub fn optimize_line(line: &str) -> Ran {
-    optimize(&line.split_whitespace().collect::<Vec<_>>())
+    run(command(&[]).args(line.split_whitespace()))
 }
 
 /// The same on the fake engine.
@@ -192,6 +193,39 @@ impl Studies {
         study::strip_times(&self.read(&format!("{name}/journal.jsonl")))
     }
 }
+
+/// Logs attempts of usb from these starts, mm, or probes, with fingers of these infills; gives the table of the logs.
+pub fn logged(
+    folder: &Studies,
+    below: &str,
+    fingers: [[u32; 2]; 2],
+    starts: [&str; 4],
+    more: &str,
+) -> String {
+    let mut runs = "log,infill_density_percent,infill_direction_deg,offset_mm,outcome\n".to_owned();
+    for [density, direction] in fingers {
+        for (i, offset) in starts.into_iter().enumerate() {
+            let name = format!("{below}{density}-{i}.csv");
+            let what =
+                if offset.is_empty() { "--probe".into() } else { format!("--offset-mm {offset}") };
+            let finger = format!("trial --task usb --density {density} --direction {direction}");
+            let log = folder.word(&name);
+            let found = optimize_line(&format!("{finger} {what} --json --log {log} {more}")).json();
+            let outcome = match &found["failure"] {
+                _ if offset.is_empty() => "probe".to_owned(),
+                serde_json::Value::Null => "inserted".to_owned(),
+                class => class.to_string(),
+            };
+            runs += &format!("{name},{density},{direction},{offset},{outcome}\n");
+        }
+    }
+    runs
+}
+
+/// A prior of friction alone, so that few replays are enough.
+pub const FRICTION: &str = "name = \"few\"\ndescription = \"of a test\"\n\
+    [[parameter]]\nname = \"friction\"\nsets = \"task.friction.plug_socket\"\nas = \"factor\"\n\
+    scale = \"log\"\nlow = 0.5\nhigh = 2.0\nshared = false\nsource = \"made up\"\n";
 
 /// A journal all of whose checks fit again.
 pub fn sealed(text: &str) -> String {
